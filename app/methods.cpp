@@ -60,12 +60,12 @@ using visibility::MethodDescription;
 using visibility::MethodOptions;
 
 /// Of a method with two engines: does it run on the processor?
-using OnVectors = bool (*)(const render::Device&, const MethodOptions&, const Light&);
+using OnVectors = bool (*)(const render::Machine&, const MethodOptions&, const Light&);
 
 struct TableRow {
   const MethodDescription& (*describe)();
   MethodDescription (*describe_with)(const MethodOptions&);  ///< what these options make of it
-  std::unique_ptr<Method> (*make)(DeviceSource&, const MethodOptions&);
+  std::unique_ptr<Method> (*make)(const render::Machine&, const MethodOptions&);
   bool on_device = false;
   OnVectors on_vectors = nullptr;  ///< none: a method with one engine
 };
@@ -89,12 +89,17 @@ template <auto kDescribe, auto kMake>
             return description;
           },
           describe_with<kDescribe>,
-          [](DeviceSource& devices, const MethodOptions& options) { return kMake(devices.device(), options); }, true,
-          on_vectors};
+          [](const render::Machine& machine, const MethodOptions& options) {
+            if constexpr (std::is_invocable_v<decltype(kMake), const render::Machine&, const MethodOptions&>) {
+              return kMake(machine, options);
+            } else {
+              return kMake(machine.device(), options);
+            }
+          },
+          true, on_vectors};
 }
 
-/// A method that runs on the processor: an instance can be asked what it is, without a Vulkan device. (To render with
-/// it takes one all the same, since view samples are found there.)
+/// A method that runs on the processor: an instance can be asked what it is, without a Vulkan device.
 template <auto kMake>
 [[maybe_unused]] TableRow on_processor() {
   return {[]() -> const MethodDescription& {
@@ -102,7 +107,7 @@ template <auto kMake>
             return description;
           },
           [](const MethodOptions& options) { return MethodDescription(kMake(options)->description()); },
-          [](DeviceSource&, const MethodOptions& options) { return kMake(options); }, false};
+          [](const render::Machine&, const MethodOptions& options) { return kMake(options); }, false};
 }
 
 /// The table of methods: one line a method; within a family the best comes first.
@@ -218,13 +223,21 @@ MethodDescription describe_method(std::string_view name, const MethodOptions& op
   return find_row(name).describe_with(options);
 }
 
-std::unique_ptr<Method> make_method(std::string_view name, const MethodOptions& options, DeviceSource& devices) {
-  return find_row(name).make(devices, options);
+std::unique_ptr<Method> make_method(std::string_view name, const MethodOptions& options,
+                                    const render::Machine& machine) {
+  return find_row(name).make(machine, options);
 }
 
-bool runs_on_device(std::string_view name, const MethodOptions& options, const Light& light, DeviceSource& devices) {
+bool runs_on_device(std::string_view name, const MethodOptions& options, const Light& light,
+                    const render::Machine& machine) {
   const TableRow& row = find_row(name);
-  return row.on_device && (row.on_vectors == nullptr || !row.on_vectors(devices.device(), options, light));
+  return row.on_device && (row.on_vectors == nullptr || !row.on_vectors(machine, options, light));
+}
+
+bool needs_device(std::string_view name, const MethodOptions& options) {
+  const TableRow& row = find_row(name);
+  const render::Machine without_gpu({.wanted = "cpu"});
+  return row.on_device && (row.on_vectors == nullptr || !row.on_vectors(without_gpu, options, Light{}));
 }
 
 bool counts_light_samples(const MethodDescription& method) {

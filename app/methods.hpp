@@ -1,6 +1,6 @@
 #pragma once
 
-#include "app/device_source.hpp"
+#include "app/machine.hpp"
 #include "visibility/method.hpp"
 
 #include <memory>
@@ -25,18 +25,21 @@ const visibility::MethodDescription& describe_method(std::string_view name);
 /// UsageError for options that it does not have, values that they cannot have, and options that exclude each other.
 visibility::MethodDescription describe_method(std::string_view name, const visibility::MethodOptions& options);
 
-/// Does it run on the Vulkan device, with these options and for this light? (Otherwise: on the processor.) Asks
-/// `devices` for one only for a method that may run on either.
+/// Whether the method runs on the Vulkan device, with these options and for this light, and not on the processor. Looks
+/// for a GPU only for a method that may run on either.
 bool runs_on_device(std::string_view name, const visibility::MethodOptions& options, const visibility::Light& light,
-                    DeviceSource& devices);
+                    const render::Machine& machine);
+
+/// Whether the method runs on a Vulkan device alone, whatever the light.
+bool needs_device(std::string_view name, const visibility::MethodOptions& options);
 
 /// Is V, of masks or not, about the light samples that --light-samples asks for? Other methods look at the light's
 /// centre, at points of their own, or at its area.
 bool counts_light_samples(const visibility::MethodDescription& method);
 
-/// Checks the options, then builds the method. Only methods that run on a device ask `devices` for one.
+/// Checks the options, then builds the method. Only methods that run on a device make the machine's.
 std::unique_ptr<visibility::Method> make_method(std::string_view name, const visibility::MethodOptions& options,
-                                                DeviceSource& devices);
+                                                const render::Machine& machine);
 
 bool can_do(const visibility::MethodDescription& method, const std::vector<visibility::Light>& lights);
 

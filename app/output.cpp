@@ -130,8 +130,8 @@ void BitsOutput::commit() {
 }
 
 std::string device_of(const std::string& method, const visibility::MethodOptions& options,
-                      const visibility::Light& light, DeviceSource& devices) {
-  return runs_on_device(method, options, light, devices) ? devices.name() : compare::this_machine().processor;
+                      const visibility::Light& light, const render::Machine& machine) {
+  return runs_on_device(method, options, light, machine) ? machine.device_name() : compare::this_machine().processor;
 }
 
 namespace {

@@ -77,7 +77,7 @@ struct MethodLabel {
 
 /// What a method runs on with these options, for this light: the Vulkan device, or the processor's name.
 std::string device_of(const std::string& method, const visibility::MethodOptions& options,
-                      const visibility::Light& light, DeviceSource& devices);
+                      const visibility::Light& light, const render::Machine& machine);
 
 /// Lights, as in Session::lights, with what each was done with: one label a light, or one for all of them.
 struct LabelledLights {

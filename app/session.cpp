@@ -107,8 +107,8 @@ double median(std::vector<double> values) {
   return 0.5 * (*middle + *std::max_element(values.begin(), middle));
 }
 
-SessionMaker::SessionMaker(const RunOptions& options, DeviceSource& devices)
-    : options_(options), devices_(devices), request_(parse_light_samples(options)) {
+SessionMaker::SessionMaker(const RunOptions& options, const render::Machine& machine)
+    : options_(options), machine_(machine), request_(parse_light_samples(options)) {
   if (!options.size.empty()) size_ = parse_size(options.size);
   session_.shading_normals = parse_normals(options.normals);
 }
@@ -154,12 +154,12 @@ void SessionMaker::show(scenes::Scene scene, const std::string& camera, std::uin
   session_.load_seconds = load.seconds();
 
   const Stopwatch start_up;
-  const render::Device& device = devices_.device();
+  static_cast<void>(machine_.has_gpu());  // begun while the scene was read
   session_.device_seconds = start_up.seconds();
   load.restart();
   if (changed) {
     sampler_.reset();
-    sampler_.emplace(device, session_.floats);
+    sampler_.emplace(machine_, session_.floats);
   }
   session_.load_seconds += load.seconds();
 
@@ -213,12 +213,12 @@ scenes::Scene read_session_scene(const RunOptions& options, std::optional<double
   return scenes::read_scene(options.scene, reading);
 }
 
-Session open_session(const RunOptions& options, std::optional<double> time, DeviceSource& devices, std::uint32_t runs,
-                     Progress& progress) {
+Session open_session(const RunOptions& options, std::optional<double> time, const render::Machine& machine,
+                     std::uint32_t runs, Progress& progress) {
   progress.begin("reading " + options.scene.filename().string(), 1);
   // What is wrong with the command line is said before anything long begins.
-  SessionMaker maker(options, devices);
-  devices.begin();
+  SessionMaker maker(options, machine);
+  machine.begin(false);
   const Stopwatch load;
   scenes::Scene scene = read_session_scene(options, time);
   const double read_seconds = load.seconds();

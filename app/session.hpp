@@ -1,6 +1,6 @@
 #pragma once
 
-#include "app/device_source.hpp"
+#include "app/machine.hpp"
 #include "app/options.hpp"
 #include "app/process/progress.hpp"
 #include "engines/view_sampler.hpp"
@@ -56,8 +56,8 @@ struct Session {
 /// since is kept, where methods look for it too. An object that stays where it is, since its session is looked at.
 class SessionMaker {
  public:
-  /// Both must outlive it. Throws UsageError for what is wrong with the options.
-  SessionMaker(const RunOptions& options, DeviceSource& devices);
+  /// The options must outlive it. Throws UsageError for what is wrong with the options.
+  SessionMaker(const RunOptions& options, const render::Machine& machine);
   SessionMaker(const SessionMaker&) = delete;
   SessionMaker& operator=(const SessionMaker&) = delete;
 
@@ -75,7 +75,7 @@ class SessionMaker {
   void classify();
 
   const RunOptions& options_;
-  DeviceSource& devices_;
+  render::Machine machine_;
   visibility::SampleRequest request_;
   std::optional<std::pair<std::uint32_t, std::uint32_t>> size_;
   Session session_;
@@ -90,8 +90,8 @@ scenes::Scene read_session_scene(const RunOptions& options, std::optional<double
 /// Reads the scene and finds its view samples; once if `runs` is 0, else `runs` times after a
 /// discarded one. `time`: see read_session_scene.
 /// Throws UsageError, InputError or ResourceError.
-Session open_session(const RunOptions& options, std::optional<double> time, DeviceSource& devices, std::uint32_t runs,
-                     Progress& progress);
+Session open_session(const RunOptions& options, std::optional<double> time, const render::Machine& machine,
+                     std::uint32_t runs, Progress& progress);
 
 /// The middle one; of an even number, the mean of the two in the middle. Not of nothing.
 double median(std::vector<double> values);

@@ -148,9 +148,9 @@ const Contestant* find_contestant(const Entry& entry, const std::string& name) {
   return found == entry.contestants.end() ? nullptr : &*found;
 }
 
-void measure(const Subject& subject, const Options& options, const render::Device& device,
+void measure(const Subject& subject, const Options& options, const render::Machine& machine,
              const std::function<void(const Entry&)>& sink) {
-  const Ground ground = make_ground(subject, device);
+  const Ground ground = make_ground(subject, machine);
   Field field(ground, options);
   std::optional<ReferenceVisibility> reference;
   if (options.reference != Reference::none) reference = make_reference(ground, options);

@@ -2,7 +2,7 @@
 
 #include "bench/options.hpp"
 #include "compare/metrics.hpp"
-#include "render/device.hpp"
+#include "render/machine.hpp"
 
 #include <cstdint>
 #include <functional>
@@ -60,7 +60,7 @@ const Contestant* find_contestant(const Entry& entry, const std::string& name);
 /// for jittered peers) light samples. They take turns: a run of each, then the next run of each, so that whatever else
 /// the machine does affects all of them equally. The first run of each is discarded. Contestants that fail are left
 /// out, with a line on stderr.
-void measure(const Subject& subject, const Options& options, const render::Device& device,
+void measure(const Subject& subject, const Options& options, const render::Machine& machine,
              const std::function<void(const Entry&)>& sink);
 
 }  // namespace penumbra::bench

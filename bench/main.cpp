@@ -1,4 +1,4 @@
-#include "app/device_source.hpp"
+#include "app/machine.hpp"
 #include "app/process/output_files.hpp"
 #include "base/atomic_file.hpp"
 #include "base/error.hpp"
@@ -11,6 +11,7 @@
 #include "bench/picture.hpp"
 #include "bench/sequence.hpp"
 #include "bench/whole_frame.hpp"
+#include "compare/machine.hpp"
 
 #include <fmt/format.h>
 
@@ -51,26 +52,30 @@ void run_cpu(const bench::Options& options, Output& output) {
   });
 }
 
-void run_frames(const bench::Options& options, Output& output) {
-  app::DeviceSource devices(options.device);
-  fmt::print(stderr, "{}; commit {}; {} runs after one discarded\n", devices.device().info().name,
+void print_head(const bench::Options& options, const render::Machine& machine) {
+  fmt::print(stderr, "{}; commit {}; {} runs after one discarded\n",
+             machine.has_gpu() ? machine.device_name() : compare::this_machine().processor,
              options.commit.empty() ? "unknown" : options.commit, options.runs);
+}
+
+void run_frames(const bench::Options& options, Output& output) {
+  const render::Machine machine = app::make_machine(options.device);
+  print_head(options, machine);
   output.write(bench::cpu_table_head(), "");
-  bench::measure_frames(options, devices.device(), [&](const bench::CpuEntry& entry) {
+  bench::measure_frames(options, machine.device(), [&](const bench::CpuEntry& entry) {
     output.write(bench::cpu_table_row(entry), bench::json_line(entry, options));
   });
-  devices.check_validation();
+  machine.check_validation();
 }
 
 void run_whole_frames(const bench::Options& options, Output& output) {
-  app::DeviceSource devices(options.device);
-  fmt::print(stderr, "{}; commit {}; {} runs after one discarded\n", devices.device().info().name,
-             options.commit.empty() ? "unknown" : options.commit, options.runs);
+  const render::Machine machine = app::make_machine(options.device);
+  print_head(options, machine);
   output.write(bench::frame_table_head(), "");
-  bench::measure_whole_frames(options, devices, [&](const bench::FrameEntry& entry) {
+  bench::measure_whole_frames(options, machine, [&](const bench::FrameEntry& entry) {
     output.write(bench::frame_table_rows(entry), bench::frame_json_lines(entry, options));
   });
-  devices.check_validation();
+  machine.check_validation();
 }
 
 void run_sequences(const bench::Options& options, Output& output) {
@@ -84,19 +89,18 @@ void run_methods(const bench::Options& options, Output& output) {
   app::OutputFiles outputs;
   outputs.add("--picture", options.picture);
   outputs.require_writable();
-  app::DeviceSource devices(options.device);
-  fmt::print(stderr, "{}; commit {}; {} runs after one discarded\n", devices.device().info().name,
-             options.commit.empty() ? "unknown" : options.commit, options.runs);
+  const render::Machine machine = app::make_machine(options.device);
+  print_head(options, machine);
   output.write(bench::table_head(options.reference == bench::Reference::exact), "");
   std::vector<bench::Entry> entries;
   for (const bench::Subject& subject : options.subjects) {
-    bench::measure(subject, options, devices.device(), [&](const bench::Entry& entry) {
+    bench::measure(subject, options, machine, [&](const bench::Entry& entry) {
       output.write(bench::table_rows(entry), bench::json_lines(entry, options));
       entries.push_back(entry);
     });
     if (!options.picture.empty()) write_file_atomically(options.picture, bench::svg_picture(entries));
   }
-  devices.check_validation();
+  machine.check_validation();
 }
 
 int run(const std::vector<std::string>& arguments) {

@@ -60,7 +60,9 @@ double Runner::spent() const {
 }
 
 MethodRunner::MethodRunner(const app::MethodEntry& entry, const Ground& ground, const std::string& device)
-    : entry_(entry), devices_(device), method_(app::make_method(entry.name, entry.options, devices_)) {
+    : entry_(entry),
+      machine_(app::make_machine(device)),
+      method_(app::make_method(entry.name, entry.options, machine_)) {
   const app::Stopwatch watch;
   method_->prepare_mesh(ground.floats);
   mesh_ = watch.seconds();
@@ -68,8 +70,8 @@ MethodRunner::MethodRunner(const app::MethodEntry& entry, const Ground& ground, 
 
 void MethodRunner::prepare(const Question& question) {
   const compare::Machine machine = compare::this_machine();
-  where_ = app::runs_on_device(entry_.name, entry_.options, question.light, devices_)
-               ? devices_.name()
+  where_ = app::runs_on_device(entry_.name, entry_.options, question.light, machine_)
+               ? machine_.device_name()
                : fmt::format("{}, {} threads", machine.processor, machine.threads);
   passes_.clear();
   pairs_.reset();
@@ -111,7 +113,7 @@ Runner::Seconds MethodRunner::run_once(const Question& question, std::vector<flo
 }
 
 Contestant MethodRunner::result() const {
-  devices_.check_validation();
+  machine_.check_validation();
   Contestant contestant;
   contestant.name = entry_.label;
   contestant.device = where_;

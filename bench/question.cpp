@@ -5,7 +5,7 @@
 #include "compare/metrics.hpp"
 #include "reference/exact_method.hpp"
 #include "reference/ray_traced.hpp"
-#include "render/visibility_buffer.hpp"
+#include "engines/view_sampler.hpp"
 
 #include <fmt/format.h>
 
@@ -79,7 +79,7 @@ bool is_trivial(const Question& question, std::uint32_t left, std::uint32_t top)
 
 }  // namespace
 
-Ground make_ground(const Subject& subject, const render::Device& device) {
+Ground make_ground(const Subject& subject, const render::Machine& machine) {
   Ground ground;
   ground.scene = read_subject(subject);
   ground.pattern = subject.pattern;
@@ -88,7 +88,7 @@ Ground make_ground(const Subject& subject, const render::Device& device) {
     ground.floats = cast_for(ground.floats, light);
   const auto camera =
       visibility::make_camera(ground.scene.cameras.front(), ground.floats.origin, subject.size, subject.size);
-  ground.samples = render::VisibilityBuffer(device, ground.floats).render(camera);
+  ground.samples = engines::ViewSampler(machine, ground.floats).find(camera);
   ground.classes = visibility::classify_pixels(ground.floats, ground.samples, light_of(ground, 1));
   ground.judged = compare::pixels_of_class(ground.classes, PixelClass::judged);
   return ground;

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "bench/options.hpp"
-#include "render/device.hpp"
+#include "render/machine.hpp"
 #include "visibility/light_samples.hpp"
 #include "visibility/scene_floats.hpp"
 #include "visibility/view_samples.hpp"
@@ -22,7 +22,7 @@ struct Ground {
   std::vector<std::uint32_t> judged;                                    ///< pixels of that class, in order
   visibility::SamplePattern pattern = visibility::SamplePattern::rows;  ///< of light samples
 };
-Ground make_ground(const Subject& subject, const render::Device& device);
+Ground make_ground(const Subject& subject, const render::Machine& machine);
 
 /// The first light with light samples: those that methods get, or others.
 visibility::Light light_of(const Ground& ground, std::uint32_t samples,

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "app/device_source.hpp"
+#include "app/machine.hpp"
 #include "app/options.hpp"
 #include "bench/adaptive_rays.hpp"
 #include "bench/entry.hpp"
@@ -63,7 +63,7 @@ class MethodRunner final : public Runner {
 
   app::MethodEntry entry_;
   std::string where_;
-  app::DeviceSource devices_;
+  render::Machine machine_;
   std::unique_ptr<visibility::Method> method_;
   double mesh_ = 0;
   std::vector<visibility::PassTime> passes_;

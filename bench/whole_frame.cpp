@@ -103,8 +103,9 @@ class PlainProgram {
 /// `penumbra render`, from a scene in memory.
 class MethodFrame {
  public:
-  MethodFrame(const app::MethodEntry& method, const Subject& subject, std::uint32_t samples, app::DeviceSource& devices)
-      : devices_(devices), wish_{method.name, method.options, true} {
+  MethodFrame(const app::MethodEntry& method, const Subject& subject, std::uint32_t samples,
+              const render::Machine& machine)
+      : machine_(machine), wish_{method.name, method.options, true} {
     run_.scene = subject.name;
     run_.size = fmt::format("{0}x{0}", subject.size);
     run_.light_samples = std::to_string(samples);
@@ -114,7 +115,7 @@ class MethodFrame {
   TwoFrames run(const scenes::Scene& scene, const scenes::Scene& next, const Folder& folder) {
     run_.lights = {scene.lights.front().name};
     app::Progress progress(false);
-    app::FrameRenderer renderer(run_, wish_, devices_, progress);
+    app::FrameRenderer renderer(run_, wish_, machine_, progress);
     const auto stats_of = [&](const scenes::Scene& shown) {
       renderer.render(shown, {}, {}, 0);
       app::Exposure exposure;
@@ -133,7 +134,7 @@ class MethodFrame {
             {"write", seconds.write.value_or(0)}};
   }
 
-  app::DeviceSource& devices_;
+  render::Machine machine_;
   app::MethodWish wish_;
   app::RunOptions run_;
 };
@@ -159,7 +160,7 @@ void require_plain(const scenes::Scene& scene) {
 }
 
 FrameEntry measure_one(const Subject& subject, const scenes::Scene& scene, const scenes::Scene& next,
-                       std::uint32_t samples, const Options& options, app::DeviceSource& devices) {
+                       std::uint32_t samples, const Options& options, const render::Machine& machine) {
   const Folder folder;
   FrameEntry entry;
   entry.subject = subject.name;
@@ -172,7 +173,7 @@ FrameEntry measure_one(const Subject& subject, const scenes::Scene& scene, const
   std::vector<MethodFrame> pictures;
   entry.contestants.push_back({"embree", {}, {}});
   for (const app::MethodEntry& method : options.methods) {
-    pictures.emplace_back(method, subject, samples, devices);
+    pictures.emplace_back(method, subject, samples, machine);
     entry.contestants.push_back({method.label, {}, {}});
   }
   for (std::uint32_t run = 0; run <= options.runs; ++run) {
@@ -198,14 +199,14 @@ std::vector<double> FrameTimes::sum_of(const Phases& phases, const std::vector<s
   return sums;
 }
 
-void measure_whole_frames(const Options& options, app::DeviceSource& devices,
+void measure_whole_frames(const Options& options, const render::Machine& machine,
                           const std::function<void(const FrameEntry&)>& sink) {
   for (const Subject& subject : options.subjects) {
     const scenes::Scene scene = read_subject(subject);
     require_plain(scene);
     const scenes::Scene next = with_light_moved(scene);
     for (const std::uint32_t samples : options.light_samples) {
-      sink(measure_one(subject, scene, next, samples, options, devices));
+      sink(measure_one(subject, scene, next, samples, options, machine));
     }
   }
 }

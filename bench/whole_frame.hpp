@@ -1,6 +1,6 @@
 #pragma once
 
-#include "app/device_source.hpp"
+#include "app/machine.hpp"
 #include "bench/options.hpp"
 
 #include <cstdint>
@@ -46,7 +46,7 @@ struct FrameEntry {
 /// Whole pictures, each from a scene in memory, as `penumbra render` makes them, beside a plain program on Embree:
 /// hierarchy of medium quality, primary rays, 64 shadow rays at every view sample, then all N where they disagree; each
 /// followed by a frame in which the light has moved. They take turns; the first run of each is discarded.
-void measure_whole_frames(const Options& options, app::DeviceSource& devices,
+void measure_whole_frames(const Options& options, const render::Machine& machine,
                           const std::function<void(const FrameEntry&)>& sink);
 
 std::string frame_table_head();

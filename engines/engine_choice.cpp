@@ -2,8 +2,8 @@
 
 namespace penumbra::engines {
 
-bool runs_on_vectors(const render::Device& device, Engine engine) {
-  return engine == Engine::vectors || (engine == Engine::automatic && device.info().kind == "cpu");
+bool runs_on_vectors(const render::Machine& machine, Engine engine) {
+  return engine == Engine::vectors || (engine == Engine::automatic && !machine.has_gpu());
 }
 
 }  // namespace penumbra::engines

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "render/device.hpp"
+#include "render/machine.hpp"
 #include "visibility/method_options.hpp"
 
 #include <cstdint>
@@ -9,7 +9,7 @@ namespace penumbra::engines {
 
 /// What the option `engine` of a method that has both asks for.
 enum class Engine : std::uint8_t {
-  automatic,  ///< vectors where the Vulkan device is the processor itself
+  automatic,  ///< the GPU; vectors where there is none
   vulkan,     ///< the device
   vectors,    ///< the processor's own vector units, for what they can do
 };
@@ -20,9 +20,9 @@ inline constexpr visibility::ChoiceOption kEngine{
     Engine::automatic,
     "vulkan: on the device alone; native: on the processor's own vector units, where they can do the light; auto: "
     "native "
-    "where the Vulkan device is the processor anyway, or cannot do the light. The same bits"};
+    "where there is no GPU, or it cannot do the light. The same bits"};
 
-/// On vector units, what they can do?
-bool runs_on_vectors(const render::Device& device, Engine engine);
+/// Whether a method runs on vector units where they can do its light. Looks for a GPU only for Engine::automatic.
+bool runs_on_vectors(const render::Machine& machine, Engine engine);
 
 }  // namespace penumbra::engines

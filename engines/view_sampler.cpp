@@ -6,8 +6,8 @@
 
 namespace penumbra::engines {
 
-ViewSampler::ViewSampler(const render::Device& device, const visibility::SceneFloats& scene) : scene_(scene) {
-  if (!runs_on_vectors(device, Engine::automatic)) buffer_.emplace(device, scene);
+ViewSampler::ViewSampler(const render::Machine& machine, const visibility::SceneFloats& scene) : scene_(scene) {
+  if (!runs_on_vectors(machine, Engine::automatic)) buffer_.emplace(machine.device(), scene);
 }
 
 visibility::ViewSamples ViewSampler::find(const visibility::PinholeCamera& camera) {

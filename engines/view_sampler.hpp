@@ -1,18 +1,19 @@
 #pragma once
 
+#include "render/machine.hpp"
 #include "render/visibility_buffer.hpp"
 
 #include <optional>
 
 namespace penumbra::engines {
 
-/// View samples by the faster of two ways, with the same bits: the device's visibility buffer, or, where the Vulkan
-/// device is the processor itself, scan conversion on its vector units. Neither knows holes or orthographic cameras:
-/// those are walked along a tree of boxes.
+/// View samples by the faster of two engines, with the same bits: the GPU's visibility buffer, or, without a GPU, scan
+/// conversion on the processor's vector units. Neither knows holes or orthographic cameras: a tree of boxes finds what
+/// is seen through and by them.
 class ViewSampler {
  public:
-  /// Uploads the scene, which must stay, if the device is to draw it.
-  ViewSampler(const render::Device& device, const visibility::SceneFloats& scene);
+  /// Uploads the scene, which must outlive this object, if a GPU is to draw it.
+  ViewSampler(const render::Machine& machine, const visibility::SceneFloats& scene);
   /// Throws ResourceError for pictures that the device cannot draw.
   visibility::ViewSamples find(const visibility::PinholeCamera& camera);
 

@@ -174,17 +174,25 @@ std::vector<DeviceInfo> list_devices() try {
   return {};  // no loader, or none that can make an instance
 }
 
-Device::Device(const DeviceOptions& options) try : state_(std::make_unique<State>()) {
-  State& s = *state_;
+namespace {
+
+struct Opened {
+  std::unique_ptr<Device::State> state;  ///< with an instance, without a device
+  std::vector<vk::raii::PhysicalDevice> devices;
+};
+
+Opened open_instance(bool validation) {
+  Opened opened{std::make_unique<Device::State>(), {}};
+  Device::State& s = *opened.state;
   s.log = std::make_unique<ValidationLog>();
   try {
-    s.instance = make_instance(s.context, options.validation, s.debug_names);
+    s.instance = make_instance(s.context, validation, s.debug_names);
   } catch (const vk::IncompatibleDriverError&) {
     throw no_driver();
   } catch (const vk::SystemError& error) {
     throw no_instance(s.context, error);
   }
-  if (options.validation) {
+  if (validation) {
     using Severity = vk::DebugUtilsMessageSeverityFlagBitsEXT;
     using Type = vk::DebugUtilsMessageTypeFlagBitsEXT;
     s.messenger = vk::raii::DebugUtilsMessengerEXT(
@@ -192,9 +200,14 @@ Device::Device(const DeviceOptions& options) try : state_(std::make_unique<State
         vk::DebugUtilsMessengerCreateInfoEXT({}, Severity::eWarning | Severity::eError,
                                              Type::eValidation | Type::ePerformance, &on_message, s.log.get()));
   }
-  auto devices = physical_devices(s.instance);
-  s.info = choose(devices, options.wanted);
-  s.physical = std::move(devices[s.info.index]);
+  opened.devices = physical_devices(s.instance);
+  return opened;
+}
+
+std::unique_ptr<Device::State> open_device(Opened opened, DeviceInfo info) {
+  Device::State& s = *opened.state;
+  s.info = std::move(info);
+  s.physical = std::move(opened.devices[s.info.index]);
   s.queue_family = find_queue_family(s.physical).value();
   s.timestamp_bits = s.physical.getQueueFamilyProperties()[s.queue_family].timestampValidBits;
   s.limits = read_limits(s.physical, s.timestamp_bits);
@@ -212,13 +225,51 @@ Device::Device(const DeviceOptions& options) try : state_(std::make_unique<State
   if (!s.cache_file.empty()) s.cache_on_disk = read_file(s.cache_file);
   s.cache = vk::raii::PipelineCache(s.device,
                                     vk::PipelineCacheCreateInfo({}, s.cache_on_disk.size(), s.cache_on_disk.data()));
-} catch (const vk::IncompatibleDriverError&) {
-  throw no_driver();
-} catch (const vk::SystemError& error) {
-  fail(error, "making the Vulkan device");
-} catch (const std::runtime_error& error) {
-  if (dynamic_cast<const Error*>(&error) != nullptr) throw;
-  throw ResourceError("no Vulkan: {}", error.what());  // the loader's library is not there
+  return std::move(opened.state);
+}
+
+/// What `open` returns; what Vulkan throws becomes a ResourceError.
+template <typename Open>
+auto opening(Open open) {
+  try {
+    return open();
+  } catch (const vk::IncompatibleDriverError&) {
+    throw no_driver();
+  } catch (const vk::SystemError& error) {
+    fail(error, "making the Vulkan device");
+  } catch (const std::runtime_error& error) {
+    if (dynamic_cast<const Error*>(&error) != nullptr) throw;
+    throw ResourceError("no Vulkan: {}", error.what());  // the loader's library is not there
+  }
+}
+
+}  // namespace
+
+Device::Device(std::unique_ptr<State> state) : state_(std::move(state)) {}
+
+Device::Device(const DeviceOptions& options)
+    : Device(opening([&] {
+        Opened opened = open_instance(options.validation);
+        DeviceInfo info = choose(opened.devices, options.wanted);
+        return open_device(std::move(opened), std::move(info));
+      })) {}
+
+std::optional<Device> Device::find_gpu(const DeviceOptions& options) {
+  if (wants_any_processor(options.wanted)) return std::nullopt;
+  return opening([&]() -> std::optional<Device> {
+    Opened opened;
+    try {
+      opened = open_instance(false);
+    } catch (const std::runtime_error&) {  // no loader, or no driver
+      if (!options.wanted.empty()) throw;
+      return std::nullopt;
+    }
+    if (options.wanted.empty() && !has_usable(opened.devices)) return std::nullopt;
+    DeviceInfo info = choose(opened.devices, options.wanted);
+    if (info.kind == "cpu") return std::nullopt;
+    if (options.validation) return Device(options);  // in an instance with the layer
+    return Device(open_device(std::move(opened), std::move(info)));
+  });
 }
 
 Device::~Device() {

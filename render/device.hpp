@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -60,6 +61,10 @@ class Device {
  public:
   /// Throws ResourceError that carries the reason why each device was refused.
   explicit Device(const DeviceOptions& options = {});
+  /// The best usable device that is not the processor itself. Nullopt without one, without a Vulkan loader or driver,
+  /// or if `options.wanted` chooses the processor. Throws ResourceError if `options.wanted` is a device that is not
+  /// there or cannot be used, if the device fails, or for a validation layer that is not installed.
+  static std::optional<Device> find_gpu(const DeviceOptions& options);
   ~Device();
   Device(Device&&) noexcept;
   Device& operator=(Device&&) noexcept;
@@ -81,6 +86,7 @@ class Device {
   [[nodiscard]] State& state() const { return *state_; }  ///< for render/*.cpp only
 
  private:
+  explicit Device(std::unique_ptr<State> state);
   std::unique_ptr<State> state_;
 };
 

@@ -66,7 +66,7 @@ bool is_wanted(const DeviceInfo& info, const std::string& wanted) {
   if (std::all_of(wanted.begin(), wanted.end(), [](unsigned char c) { return std::isdigit(c) != 0; })) {
     return fmt::format("{}", info.index) == wanted;
   }
-  if (lower(wanted) == "cpu") return info.kind == "cpu";
+  if (wants_any_processor(wanted)) return info.kind == "cpu";
   return lower(info.name).find(lower(wanted)) != std::string::npos;
 }
 
@@ -139,6 +139,17 @@ ResourceError no_driver() {
   return ResourceError(
       "no Vulkan device: the loader found no driver; install one (mesa-vulkan-drivers runs on any processor) and check "
       "VK_DRIVER_FILES and VK_ICD_FILENAMES");
+}
+
+bool wants_any_processor(const std::string& wanted) {
+  return lower(wanted) == "cpu";
+}
+
+bool has_usable(const std::vector<vk::raii::PhysicalDevice>& devices) {
+  for (std::uint32_t i = 0; i < devices.size(); ++i) {
+    if (describe(devices[i], i).usable()) return true;
+  }
+  return false;
 }
 
 DeviceInfo choose(const std::vector<vk::raii::PhysicalDevice>& devices, const std::string& wanted) {

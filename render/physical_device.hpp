@@ -20,6 +20,12 @@ DeviceInfo describe(const vk::raii::PhysicalDevice& physical, std::uint32_t inde
 /// The best usable wanted device (DeviceOptions::wanted); throws a ResourceError that says of each device why not.
 DeviceInfo choose(const std::vector<vk::raii::PhysicalDevice>& devices, const std::string& wanted);
 
+/// Whether one of them can run Penumbra.
+bool has_usable(const std::vector<vk::raii::PhysicalDevice>& devices);
+
+/// Whether DeviceOptions::wanted is the word for any processor, `cpu`.
+bool wants_any_processor(const std::string& wanted);
+
 /// The first queue family with graphics and compute.
 std::optional<std::uint32_t> find_queue_family(const vk::raii::PhysicalDevice& physical);
 

@@ -59,7 +59,7 @@ visibility::MethodDescription view_sample_description(const visibility::MethodOp
   return description;
 }
 
-std::unique_ptr<visibility::Method> make_view_sample(const render::Device& device,
+std::unique_ptr<visibility::Method> make_view_sample(const render::Machine& machine,
                                                      const visibility::MethodOptions& given) {
   const visibility::ParsedOptions options = visibility::parse_options(view_sample_description(), given);
   if (options[kVariant] == Variant::sintorn) {
@@ -69,17 +69,17 @@ std::unique_ptr<visibility::Method> make_view_sample(const render::Device& devic
     return make_view_sample_lists(view_sample_description(given));
   }
   const auto native = [] { return make_view_sample_on_vectors(view_sample_description()); };
-  if (engines::runs_on_vectors(device, options[engines::kEngine])) return native();
-  if (options[engines::kEngine] == engines::Engine::vulkan) return make_vulkan_view_sample(device);
+  if (engines::runs_on_vectors(machine, options[engines::kEngine])) return native();
+  if (options[engines::kEngine] == engines::Engine::vulkan) return make_vulkan_view_sample(machine.device());
   return engines::make_engine_by_light(
-      {[&device] { return make_vulkan_view_sample(device); }, native, is_planar_light});
+      {[machine] { return make_vulkan_view_sample(machine.device()); }, native, is_planar_light});
 }
 
-bool view_sample_on_vectors(const render::Device& device, const visibility::MethodOptions& given,
+bool view_sample_on_vectors(const render::Machine& machine, const visibility::MethodOptions& given,
                             const visibility::Light& light) {
   const visibility::ParsedOptions options = visibility::parse_options(view_sample_description(), given);
   const engines::Engine engine = options[engines::kEngine];
-  return options[kVariant] == Variant::sintorn || engines::runs_on_vectors(device, engine) ||
+  return options[kVariant] == Variant::sintorn || engines::runs_on_vectors(machine, engine) ||
          (engine == engines::Engine::automatic && !is_planar_light(light));
 }
 

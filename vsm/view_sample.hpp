@@ -1,6 +1,6 @@
 #pragma once
 
-#include "render/device.hpp"
+#include "render/machine.hpp"
 #include "visibility/method.hpp"
 
 #include <memory>
@@ -12,11 +12,11 @@ namespace penumbra::vsm {
 /// light samples, any triangle soup; no bias, no adjacency. Every bit is the truth of its pair
 /// (visibility/pair_truth.hpp): float arithmetic with error bounds, the few open questions by exact predicates. The
 /// device must outlive it.
-std::unique_ptr<visibility::Method> make_view_sample(const render::Device& device,
+std::unique_ptr<visibility::Method> make_view_sample(const render::Machine& machine,
                                                      const visibility::MethodOptions& options);
 
 /// Are this light's shadows computed on the processor, though the method is given a device?
-bool view_sample_on_vectors(const render::Device& device, const visibility::MethodOptions& options,
+bool view_sample_on_vectors(const render::Machine& machine, const visibility::MethodOptions& options,
                             const visibility::Light& light);
 
 /// What it is with these options; needs no device.

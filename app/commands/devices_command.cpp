@@ -1,6 +1,6 @@
 #include "app/commands.hpp"
 #include "app/commands/self_test_report.hpp"
-#include "app/device_source.hpp"
+#include "app/machine.hpp"
 #include "base/error.hpp"
 #include "render/device.hpp"
 #include "render/opengl/context.hpp"
@@ -102,10 +102,10 @@ class DevicesCommand : public Command {
 
  private:
   [[nodiscard]] int run_self_test() const {
-    DeviceSource source(device_);
-    const render::Device& device = source.device();
+    const render::Machine machine = make_machine(device_);
+    const render::Device& device = machine.device();
     const SelfTestReport report(device, selftest::run_self_test(device));
-    source.check_validation();
+    machine.check_validation();
     json_ ? report.print_json() : report.print_table();
     return static_cast<int>(report.passed() ? ExitCode::done : ExitCode::answer_is_no);
   }

@@ -1,4 +1,6 @@
 #include "app/commands.hpp"
+#include "app/machine.hpp"
+#include "app/methods.hpp"
 #include "app/pictures/frame_render.hpp"
 #include "app/pictures/frames.hpp"
 #include "app/pictures/request.hpp"
@@ -49,8 +51,8 @@ class RenderCommand : public Command {
     OutputFiles outputs;
     if (!all_cameras) outputs = claim(cameras);
     Progress progress(!global.quiet);
-    DeviceSource devices(options_.run.device);
-    FrameRenderer renderer(options_.run, request_.wish, devices, progress);
+    const render::Machine machine = make_machine(options_.run.device);
+    FrameRenderer renderer(options_.run, request_.wish, machine, progress);
 
     progress.begin("reading " + options_.run.scene.filename().string(), 1);
     std::size_t at = all_cameras ? 0 : next_wanted(cameras, 0);
@@ -58,7 +60,8 @@ class RenderCommand : public Command {
       spdlog::info("all {} pictures are there", frames.size());
       return 0;
     }
-    devices.begin();  // while the scene is read, mostly by another process
+    // While the scene is read, mostly by another process.
+    machine.begin(!request_.wish.method.empty() && needs_device(request_.wish.method, request_.wish.options));
     ReadScene now = read(frames[at]);
     now.seconds = seconds_since_start();  // nothing else has been done yet
     if (all_cameras) {

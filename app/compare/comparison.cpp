@@ -6,7 +6,7 @@
 #include "app/compare/light_judge.hpp"
 #include "app/compare/reference_samples.hpp"
 #include "app/compare/report_views.hpp"
-#include "app/device_source.hpp"
+#include "app/machine.hpp"
 #include "app/methods.hpp"
 #include "app/output.hpp"
 #include "app/pictures/picture_file.hpp"
@@ -57,11 +57,11 @@ class Comparison {
         reference_(describe_reference(options.reference)),
         same_samples_(options.reference_samples == "same"),
         files_(run.out, {.png = options.png, .bits = options.bits}),
-        devices_(run.device) {
+        machine_(make_machine(run.device)) {
     reference_request_ = reference_samples(run, options.reference_samples);
     if (options.error_budget) require_explainable(options.methods);
     files_.claim(run.scene, options.methods, options.stats);
-    session_ = open_session(run, options.time, devices_, options.runs, progress);
+    session_ = open_session(run, options.time, machine_, options.runs, progress);
     files_.refuse_inputs(session_.scene.sources);
     check_layers(format_, session_, false);
     progress.clear();
@@ -75,7 +75,7 @@ class Comparison {
     for (const std::string& warning : session_.warnings) spdlog::warn("{}", warning);
     for (const Light& light : session_.lights) check_light(reference_.description, light);
     if (wants_bits(reference_)) check_bits(reference_.description, session_.lights);
-    entries_ = choose_entries(options, session_, [this](std::string text) { warn(std::move(text)); });
+    entries_ = choose_entries(options, session_, machine_, [this](std::string text) { warn(std::move(text)); });
     reference_lights_ = same_samples_ ? session_.lights : with_samples(session_, reference_request_);
     truths_ = choose_pixels(session_, options.sample_pixels);
     const std::vector<std::string> names = whole_names(session_.lights);
@@ -155,7 +155,7 @@ class Comparison {
       return;
     }
     const Entry rays{"rays", describe_method("raytrace"), {}};
-    const auto method = make_method(rays.description.name, rays.options, devices_);
+    const auto method = make_method(rays.description.name, rays.options, machine_);
     PackedMasks masks(session_.lights.size());
     const TileSink keep = keep_rays();
     Finished done;
@@ -232,7 +232,7 @@ class Comparison {
   /// Runs a method and writes its EXR and, if wanted, its bits.
   Finished run_one(const Entry& entry, const std::vector<Light>& lights, const TileSink& sink) {
     const MethodDescription& description = entry.description;
-    const auto method = make_method(description.name, entry.options, devices_);
+    const auto method = make_method(description.name, entry.options, machine_);
     BeautyAccumulator beauty(session_, lights);
     std::optional<BitsOutput> bits;
     if (wants_bits(entry)) bits.emplace(files_.of(entry.label, ".bits"), session_, lights.front());
@@ -258,7 +258,7 @@ class Comparison {
     done.run = of_whole_lights(std::move(run), session_);
     done.beauty = beauty.sum();
     done.masks = masks.finish();
-    devices_.check_validation();
+    machine_.check_validation();
     progress_.clear();
     const std::vector<MethodLabel> labels = labels_of(entry, lights);
     for (std::string& warning :
@@ -281,7 +281,7 @@ class Comparison {
     std::vector<MethodLabel> labels;
     for (const Light& light : lights) {
       labels.push_back(
-          {entry.description, entry.options, device_of(entry.description.name, entry.options, light, devices_)});
+          {entry.description, entry.options, device_of(entry.description.name, entry.options, light, machine_)});
     }
     return labels;
   }
@@ -329,7 +329,7 @@ class Comparison {
           if (truths_[light].judged.empty() || wholes[light].count > 1) continue;
           BudgetAnswer answer = measure_error_budget({session_, session_.lights[wholes[light].first], truths_[light],
                                                       reference_request_, entries_[i], visibility_[i][light]},
-                                                     report_.error_limit, devices_, progress_);
+                                                     report_.error_limit, machine_, progress_);
           report_.metrics.methods[i].lights[light].error_budget = std::move(answer.budget);
           report_.methods[i].lights[light].budget_pictures = std::move(answer.pictures);
         }
@@ -365,7 +365,7 @@ class Comparison {
   bool same_samples_;
   visibility::SampleRequest reference_request_;
   ComparisonFiles files_;
-  DeviceSource devices_;
+  render::Machine machine_;
   Session session_;
   std::vector<Light> reference_lights_;
   std::vector<Entry> entries_;

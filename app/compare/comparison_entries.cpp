@@ -6,6 +6,8 @@
 #include "base/error.hpp"
 #include "visibility/lights/device_light.hpp"
 
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <array>
 #include <optional>
@@ -41,6 +43,20 @@ std::optional<Entry> describe_entry(const MethodEntry& chosen, const std::functi
   }
 }
 
+/// Why no method of a group can run on a Vulkan device; empty if they can, or none has to.
+std::string why_no_device(const ComparisonOptions& options, const render::Machine& machine) {
+  const auto needs = [](const MethodEntry& chosen) {
+    return chosen.from_group && needs_device(chosen.name, chosen.options);
+  };
+  if (std::ranges::none_of(options.methods, needs)) return {};
+  try {
+    static_cast<void>(machine.device());
+    return {};
+  } catch (const ResourceError& error) {
+    return error.what();
+  }
+}
+
 }  // namespace
 
 Entry describe_reference(const std::string& name) {
@@ -52,8 +68,10 @@ Entry describe_reference(const std::string& name) {
 }
 
 std::vector<Entry> choose_entries(const ComparisonOptions& options, const Session& session,
-                                  const std::function<void(std::string)>& warn) {
+                                  const render::Machine& machine, const std::function<void(std::string)>& warn) {
   std::vector<Entry> entries;
+  const std::string no_device = why_no_device(options, machine);
+  std::vector<std::string> without_device;
   for (const MethodEntry& chosen : with_method_options(options)) {
     std::optional<Entry> described = describe_entry(chosen, warn);
     if (!described) continue;
@@ -65,9 +83,17 @@ std::vector<Entry> choose_entries(const ComparisonOptions& options, const Sessio
       warn(fmt::format("{} is left out: it cannot do every light of the scene", entry.label));
       continue;
     }
+    if (chosen.from_group && !no_device.empty() && needs_device(chosen.name, chosen.options)) {
+      without_device.push_back(entry.label);
+      continue;
+    }
     for (const visibility::Light& light : session.lights) check_light(entry.description, light);
     if (wants_bits(entry, options)) check_bits(entry.description, session.lights);
     entries.push_back(std::move(entry));
+  }
+  if (!without_device.empty()) {
+    if (entries.empty()) throw ResourceError("{}: {}", fmt::join(without_device, ", "), no_device);
+    warn(fmt::format("{} left out: {}", fmt::join(without_device, ", "), no_device));
   }
   if (entries.empty()) {
     throw InputError(

@@ -2,6 +2,7 @@
 
 #include "app/compare/comparison.hpp"
 #include "app/session.hpp"
+#include "render/machine.hpp"
 #include "visibility/method.hpp"
 
 #include <functional>
@@ -21,10 +22,11 @@ struct Entry {
 /// Who judges. UsageError for a method that is no reference.
 Entry describe_reference(const std::string& name);
 
-/// The chosen methods, each with those of --method-option that it has. Refuses, before anything long, what would fail
-/// later; leaves out of a group what cannot do the lights, and says so to `warn`.
+/// The chosen methods, each with the options of --method-option that it has. Refuses, before anything long, what would
+/// fail later; leaves out of a group, with a warning to `warn`, what cannot do the lights, and what needs a Vulkan
+/// device where there is none.
 std::vector<Entry> choose_entries(const ComparisonOptions& options, const Session& session,
-                                  const std::function<void(std::string)>& warn);
+                                  const render::Machine& machine, const std::function<void(std::string)>& warn);
 
 /// UsageError if none of these methods says what repairs its error.
 void require_explainable(std::span<const MethodEntry> methods);

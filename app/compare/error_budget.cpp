@@ -39,8 +39,8 @@ std::string why_whole(const Light& light) {
 
 class BudgetRuns {
  public:
-  BudgetRuns(const BudgetQuestion& question, DeviceSource& devices, Progress& progress)
-      : question_(question), devices_(devices), progress_(progress) {
+  BudgetRuns(const BudgetQuestion& question, const render::Machine& machine, Progress& progress)
+      : question_(question), machine_(machine), progress_(progress) {
     const Entry& entry = question.entry;
     runs_[key_of({entry.description.name, visibility::complete_options(entry.description, entry.options)})] =
         std::make_shared<const std::vector<float>>(question.visibility.begin(), question.visibility.end());
@@ -66,7 +66,7 @@ class BudgetRuns {
   static Key key_of(const RepairRun& run) { return {run.method, run.options, run.light_parts, run.light_samples}; }
 
   std::vector<float> evaluate(const RepairRun& run, const std::string& stage) {
-    const auto method = make_method(run.method, run.options, devices_);
+    const auto method = make_method(run.method, run.options, machine_);
     const Light whole = light_for(run);
     const std::vector<visibility::LightPart> parts = visibility::light_parts(whole, run.light_parts);
     std::vector<double> sum(question_.session.pixel_count(), 0.0);
@@ -79,7 +79,7 @@ class BudgetRuns {
       for (std::size_t pixel = 0; pixel < sum.size(); ++pixel)
         sum[pixel] += parts[i].weight * static_cast<double>(values[pixel]);
     }
-    devices_.check_validation();
+    machine_.check_validation();
     return {sum.begin(), sum.end()};
   }
 
@@ -94,7 +94,7 @@ class BudgetRuns {
   }
 
   const BudgetQuestion& question_;
-  DeviceSource& devices_;
+  render::Machine machine_;
   Progress& progress_;
   std::map<Key, std::shared_ptr<const std::vector<float>>> runs_;
 };
@@ -109,12 +109,12 @@ Image8 picture_of(const BudgetQuestion& question, const std::vector<float>& repa
 
 }  // namespace
 
-BudgetAnswer measure_error_budget(const BudgetQuestion& question, double limit, DeviceSource& devices,
+BudgetAnswer measure_error_budget(const BudgetQuestion& question, double limit, const render::Machine& machine,
                                   Progress& progress) {
   const Entry& entry = question.entry;
   const std::string whole = why_whole(question.light);
   const visibility::ErrorRepairs repairs = entry.description.repairs(entry.description, entry.options);
-  BudgetRuns runs(question, devices, progress);
+  BudgetRuns runs(question, machine, progress);
   BudgetAnswer answer;
   compare::ErrorBudget& budget = answer.budget;
   budget.rmse = compare::visibility_error(question.visibility, question.truth.reference, question.truth.judged)->rmse;

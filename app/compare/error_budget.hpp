@@ -1,6 +1,6 @@
 #pragma once
 
-#include "app/device_source.hpp"
+#include "app/machine.hpp"
 #include "app/compare/comparison_entries.hpp"
 #include "app/compare/light_judge.hpp"
 #include "app/process/progress.hpp"
@@ -32,7 +32,7 @@ struct BudgetAnswer {
 
 /// Runs what the method's description says, one run after the other. A run that the device or the scene refuses is
 /// noted and left out. `limit`: of the pictures' scale.
-BudgetAnswer measure_error_budget(const BudgetQuestion& question, double limit, DeviceSource& devices,
+BudgetAnswer measure_error_budget(const BudgetQuestion& question, double limit, const render::Machine& machine,
                                   Progress& progress);
 
 }  // namespace penumbra::app

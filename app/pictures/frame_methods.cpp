@@ -81,7 +81,7 @@ void FrameRenderer::label_lights() {
   for (const visibility::Light& light : lights) {
     const auto& [description, options, note] = done_.at(light.name);
     labels_.push_back(
-        {description, options, device_of(description.name, options, light, devices_), in_part_.contains(light.name)});
+        {description, options, device_of(description.name, options, light, machine_), in_part_.contains(light.name)});
   }
   say_unused_samples();
 }
@@ -106,7 +106,7 @@ FrameRenderer::Kept& FrameRenderer::method_for(const LightMethod& wanted) {
     return kept;
   }
   kept_.push_back(
-      {wanted, make_method(wanted.description.name, wanted.options, devices_), nullptr, lit().mesh_version});
+      {wanted, make_method(wanted.description.name, wanted.options, machine_), nullptr, lit().mesh_version});
   if (expects_frames_) kept_.back().method->expect_frames();
   return kept_.back();
 }

@@ -83,14 +83,14 @@ void add_times(MethodRun& to, const MethodRun& before) {
 
 }  // namespace
 
-FrameRenderer::FrameRenderer(const RunOptions& options, const MethodWish& wish, DeviceSource& devices,
+FrameRenderer::FrameRenderer(const RunOptions& options, const MethodWish& wish, const render::Machine& machine,
                              Progress& progress)
     : options_(options),
       wish_(wish),
       format_(parse_format(options.format)),
-      devices_(devices),
+      machine_(machine),
       progress_(progress),
-      maker_(options, devices),
+      maker_(options, machine),
       fine_options_(options) {}
 
 void FrameRenderer::say_once(const std::vector<std::string>& warnings) {
@@ -221,7 +221,7 @@ void FrameRenderer::render(scenes::Scene scene, const Frame& frame, const std::f
     render_mean(std::move(scene));
   }
   label_lights();
-  devices_.check_validation();  // before anything appears: a picture that cannot be trusted is none
+  machine_.check_validation();  // before anything appears: a picture that cannot be trusted is none
 }
 
 void FrameRenderer::render_mean(scenes::Scene scene) {
@@ -234,7 +234,7 @@ void FrameRenderer::render_mean(scenes::Scene scene) {
     if (!fine_ || fine_options_.size != size) {
       kept_.clear();  // what they hold is of the session that goes
       fine_options_.size = size;
-      fine_.emplace(fine_options_, devices_);
+      fine_.emplace(fine_options_, machine_);
     }
   }
   std::map<std::string, LightTimes> times;

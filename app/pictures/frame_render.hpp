@@ -38,7 +38,7 @@ struct Frame {
 class FrameRenderer {
  public:
   /// All must outlive it.
-  FrameRenderer(const RunOptions& options, const MethodWish& wish, DeviceSource& devices, Progress& progress);
+  FrameRenderer(const RunOptions& options, const MethodWish& wish, const render::Machine& machine, Progress& progress);
 
   /// Scenes will follow one another as frames of an animation do. Before the first.
   void expect_frames() { expects_frames_ = true; }
@@ -94,7 +94,7 @@ class FrameRenderer {
   const RunOptions& options_;
   const MethodWish& wish_;
   PictureFormat format_;
-  DeviceSource& devices_;
+  render::Machine machine_;
   Progress& progress_;
   SessionMaker maker_;
   RunOptions fine_options_;  // of the next, whose picture is several times as large

@@ -111,10 +111,10 @@ void expect_exact_area(const std::string& name, const FlawedStage& stage, const 
 
 class MeshVerdicts : public testing::Test {
  protected:
-  static void SetUpTestSuite() { devices_ = std::make_unique<app::DeviceSource>(""); }
-  static void TearDownTestSuite() { devices_.reset(); }
+  static void SetUpTestSuite() { machine_ = std::make_unique<render::Machine>(); }
+  static void TearDownTestSuite() { machine_.reset(); }
 
-  static app::DeviceSource& devices() { return *devices_; }
+  static const render::Machine& machine() { return *machine_; }
   template <typename Visit>
   static void for_each_defect(const Visit& visit) {
     for (const mesh::DefectName& defect : mesh::broken_defects()) {
@@ -124,18 +124,18 @@ class MeshVerdicts : public testing::Test {
   }
 
  private:
-  static inline std::unique_ptr<app::DeviceSource> devices_;
+  static inline std::unique_ptr<render::Machine> machine_;
 };
 
 /// All methods of the table except the ray caster, which judges them. Maps are small: these methods are approximate
 /// anyway.
-std::vector<std::unique_ptr<visibility::Method>> make_methods(app::DeviceSource& devices) {
+std::vector<std::unique_ptr<visibility::Method>> make_methods(const render::Machine& machine) {
   std::vector<std::unique_ptr<visibility::Method>> methods;
   for (const visibility::MethodDescription* method : app::all_methods()) {
     const bool is_map = method->family == visibility::Family::image;
     const visibility::MethodOptions options =
         is_map ? visibility::MethodOptions{{"size", "64"}} : visibility::MethodOptions{};
-    if (method->name != "raytrace") methods.push_back(app::make_method(method->name, options, devices));
+    if (method->name != "raytrace") methods.push_back(app::make_method(method->name, options, machine));
   }
   return methods;
 }
@@ -157,7 +157,7 @@ double error_of(visibility::Method& method, const FlawedStage& stage, const std:
 }
 
 TEST_F(MeshVerdicts, AreWhatEachMethodDoesWithEachDefect) {
-  const auto methods = make_methods(devices());
+  const auto methods = make_methods(machine());
   std::map<std::string, double> most;  // of those that are approximate, over every sixth defect
   std::set<std::string> exact;
   std::size_t defects = 0;
@@ -194,8 +194,8 @@ TEST_F(MeshVerdicts, AreWhatEachMethodDoesWithEachDefect) {
 /// The variants of depth-complexity: where `laine` is wrong, its verdict must have said so; `forest` errs on one side
 /// only.
 TEST_F(MeshVerdicts, NameWhereVariantsOfDepthComplexityFail) {
-  const auto laine = app::make_method("depth-complexity", {{"variant", "laine"}}, devices());
-  const auto forest = app::make_method("depth-complexity", {{"variant", "forest"}}, devices());
+  const auto laine = app::make_method("depth-complexity", {{"variant", "laine"}}, machine());
+  const auto forest = app::make_method("depth-complexity", {{"variant", "forest"}}, machine());
   std::size_t wrong = 0, bright = 0, promised = 0;
   for_each_defect([&](const std::string& defect, const FlawedStage& stage) {
     const Masks mapped = run(*laine, stage.floats, stage.light, stage.samples);

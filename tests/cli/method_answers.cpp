@@ -1,5 +1,5 @@
 // Whatever a method answers, what is no share of a light goes no further than the host.
-#include "app/device_source.hpp"
+#include "app/machine.hpp"
 #include "app/runner.hpp"
 #include "app/session.hpp"
 #include "base/error.hpp"
@@ -52,9 +52,9 @@ class MethodAnswers : public ProgramTest {
     OneWrong method(wrong, output, form_factor);
     RunOptions options;
     options.scene = tiny_scene();
-    app::DeviceSource devices("cpu");
+    const render::Machine machine = app::make_machine("cpu");
     app::Progress progress(false);
-    const app::Session session = app::open_session(options, std::nullopt, devices, 0, progress);
+    const app::Session session = app::open_session(options, std::nullopt, machine, 0, progress);
     app::run_method(
         method, session, {.lights = session.lights}, [](const app::TileResult&) {}, progress);
   }

@@ -303,28 +303,29 @@ visibility::MethodDescription depth_complexity_description(const visibility::Met
   return description;
 }
 
-std::unique_ptr<visibility::Method> make_depth_complexity(const render::Device& device,
+std::unique_ptr<visibility::Method> make_depth_complexity(const render::Machine& machine,
                                                           const visibility::MethodOptions& given) {
   const visibility::ParsedOptions options = parse(depth_complexity_description(), given);
-  if (options[kVariant] == Variant::forest) return make_packed_counters(device, options[kCounterBits]);
-  const auto on_device = [&device, variant = options[kVariant], crops = options[kCrop]] {
-    return std::make_unique<DepthComplexity>(device, variant, crops, false);
+  if (options[kVariant] == Variant::forest) return make_packed_counters(machine.device(), options[kCounterBits]);
+  const auto on_device = [machine, variant = options[kVariant], crops = options[kCrop]] {
+    return std::make_unique<DepthComplexity>(machine.device(), variant, crops, false);
   };
   const auto native = [search = options[kSearch]] {
     return make_depth_complexity_on_vectors(depth_complexity_description(), search);
   };
   const engines::Engine engine = options[engines::kEngine];
   if (!can_be_native(options) || engine == engines::Engine::vulkan) return on_device();
-  if (options[kSearch] != Search::hierarchy || engines::runs_on_vectors(device, engine)) return native();
+  if (options[kSearch] != Search::hierarchy || engines::runs_on_vectors(machine, engine)) return native();
   return engines::make_engine_by_light({on_device, native, is_planar_light});
 }
 
-bool depth_complexity_on_vectors(const render::Device& device, const visibility::MethodOptions& given,
+bool depth_complexity_on_vectors(const render::Machine& machine, const visibility::MethodOptions& given,
                                  const visibility::Light& light) {
   const visibility::ParsedOptions options = parse(depth_complexity_description(), given);
   const engines::Engine engine = options[engines::kEngine];
-  return can_be_native(options) && (options[kSearch] != Search::hierarchy || engines::runs_on_vectors(device, engine) ||
-                                    (engine == engines::Engine::automatic && !is_planar_light(light)));
+  return can_be_native(options) &&
+         (options[kSearch] != Search::hierarchy || engines::runs_on_vectors(machine, engine) ||
+          (engine == engines::Engine::automatic && !is_planar_light(light)));
 }
 
 std::unique_ptr<DepthCounters> make_depth_counters(const render::Device& device) {

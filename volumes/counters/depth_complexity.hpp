@@ -1,6 +1,6 @@
 #pragma once
 
-#include "render/device.hpp"
+#include "render/machine.hpp"
 #include "visibility/method.hpp"
 
 #include <cstdint>
@@ -21,11 +21,11 @@ namespace penumbra::volumes {
 ///
 /// crop=off (soup and laine): every edge between p and the light is a candidate, silhouette or not; the masks are
 /// equal, and it is slower (Lehtinen et al. 2006).
-std::unique_ptr<visibility::Method> make_depth_complexity(const render::Device& device,
+std::unique_ptr<visibility::Method> make_depth_complexity(const render::Machine& machine,
                                                           const visibility::MethodOptions& options);
 
 /// Are this light's shadows computed on the processor, though the method is given a device?
-bool depth_complexity_on_vectors(const render::Device& device, const visibility::MethodOptions& options,
+bool depth_complexity_on_vectors(const render::Machine& machine, const visibility::MethodOptions& options,
                                  const visibility::Light& light);
 
 /// What it is; needs no device.

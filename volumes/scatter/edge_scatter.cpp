@@ -288,25 +288,25 @@ visibility::MethodDescription edge_scatter_description(const visibility::MethodO
   return description;
 }
 
-std::unique_ptr<visibility::Method> make_edge_scatter(const render::Device& device,
+std::unique_ptr<visibility::Method> make_edge_scatter(const render::Machine& machine,
                                                       const visibility::MethodOptions& given) {
   visibility::MethodDescription description = edge_scatter_description(given);
   const visibility::ParsedOptions options = visibility::parse_options(description, given);
   const bool exact = options[kExactRows];
   const engines::Engine engine = options[engines::kEngine];
-  if (exact || engines::runs_on_vectors(device, engine))
+  if (exact || engines::runs_on_vectors(machine, engine))
     return make_edge_scatter_on_vectors(std::move(description), exact);
-  if (engine == engines::Engine::vulkan) return std::make_unique<EdgeScatter>(device, std::move(description));
+  if (engine == engines::Engine::vulkan) return std::make_unique<EdgeScatter>(machine.device(), std::move(description));
   return engines::make_engine_by_light(
-      {[&device, description] { return std::make_unique<EdgeScatter>(device, description); },
+      {[machine, description] { return std::make_unique<EdgeScatter>(machine.device(), description); },
        [description] { return make_edge_scatter_on_vectors(description, false); }, is_planar_light});
 }
 
-bool edge_scatter_on_vectors(const render::Device& device, const visibility::MethodOptions& given,
+bool edge_scatter_on_vectors(const render::Machine& machine, const visibility::MethodOptions& given,
                              const visibility::Light& light) {
   const visibility::ParsedOptions options = visibility::parse_options(describe(), given);
   const engines::Engine engine = options[engines::kEngine];
-  return options[kExactRows] || engines::runs_on_vectors(device, engine) ||
+  return options[kExactRows] || engines::runs_on_vectors(machine, engine) ||
          (engine == engines::Engine::automatic && !is_planar_light(light));
 }
 

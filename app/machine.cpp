@@ -1,0 +1,13 @@
+#include "app/machine.hpp"
+
+#include <cstdlib>
+#include <string_view>
+
+namespace penumbra::app {
+
+render::Machine make_machine(const std::string& wanted) {
+  const char* validation = std::getenv("PENUMBRA_VALIDATION");
+  return render::Machine({wanted, validation != nullptr && std::string_view(validation) == "1"});
+}
+
+}  // namespace penumbra::app
