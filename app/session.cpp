@@ -108,22 +108,27 @@ double median(std::vector<double> values) {
 }
 
 SessionMaker::SessionMaker(const RunOptions& options, const render::Machine& machine)
-    : options_(options), machine_(machine), request_(parse_light_samples(options)) {
-  if (!options.size.empty()) size_ = parse_size(options.size);
+    : options_(options), machine_(machine) {
+  // What is wrong with them is said before a scene is read.
+  static_cast<void>(parse_light_samples(options));
+  if (!options.size.empty()) static_cast<void>(parse_size(options.size));
   session_.shading_normals = parse_normals(options.normals);
 }
 
 void SessionMaker::show(scenes::Scene scene, const std::string& camera, std::uint32_t runs, Progress& progress) {
   Stopwatch load;
-  const bool first = session_.floats.triangles.empty();
-  const bool changed = first || !same_mesh(session_.scene, scene);
+  const visibility::SampleRequest request = parse_light_samples(options_);
+  std::optional<std::pair<std::uint32_t, std::uint32_t>> size;
+  if (!options_.size.empty()) size = parse_size(options_.size);
+  session_.shading_normals = parse_normals(options_.normals);
+  const bool changed = !std::exchange(is_whole_, false) || !same_mesh(session_.scene, scene);
   session_.scene = std::move(scene);
   session_.warnings = session_.scene.warnings;
   const std::string scene_name = options_.scene.string();
   const std::vector<std::size_t> wanted = wanted_lights(session_.scene, options_.lights, scene_name);
   session_.camera_index = camera.empty() ? 0 : find_named(session_.scene.cameras, camera, "--camera", scene_name);
   const scenes::Camera& seen_by = session_.scene.cameras[session_.camera_index];
-  std::tie(session_.width, session_.height) = size_.value_or(scenes::picture_size(session_.scene, seen_by));
+  std::tie(session_.width, session_.height) = size.value_or(scenes::picture_size(session_.scene, seen_by));
   std::size_t pieces = 0;
   for (const std::size_t light : wanted) {
     const auto* cut = std::get_if<scenes::Pieces>(&session_.scene.lights[light].shape);
@@ -141,7 +146,7 @@ void SessionMaker::show(scenes::Scene scene, const std::string& camera, std::uin
   for (const std::size_t light : wanted) {
     std::ranges::move(
         visibility::make_light_pieces(session_.scene, static_cast<std::uint32_t>(light), session_.floats.origin,
-                                      request_, light == wanted.front() ? &session_.warnings : nullptr),
+                                      request, light == wanted.front() ? &session_.warnings : nullptr),
         std::back_inserter(session_.lights));
   }
   filters_.clear();
@@ -163,15 +168,17 @@ void SessionMaker::show(scenes::Scene scene, const std::string& camera, std::uin
   }
   session_.load_seconds += load.seconds();
 
+  const bool is_seen = runs == 0 && !changed && seen_ == session_.camera;
   progress.begin("view samples", runs + 1);
-  std::vector<double> view_seconds;
-  for (std::uint32_t run = 0; run <= runs; ++run) {
+  std::vector<double> view_seconds = {0};
+  for (std::uint32_t run = is_seen ? 1 : 0; run <= runs; ++run) {
     const Stopwatch view;
     session_.samples = sampler_->find(session_.camera);
     view_seconds.push_back(view.seconds());
     progress.advance();
   }
-  if (view_seconds.size() > 1) view_seconds.erase(view_seconds.begin());
+  view_seconds.erase(view_seconds.begin(), view_seconds.end() - std::max(runs, 1U));
+  seen_ = session_.camera;
   session_.view_seconds = median(std::move(view_seconds));
 
   progress.begin("receivers", 1);
@@ -180,9 +187,11 @@ void SessionMaker::show(scenes::Scene scene, const std::string& camera, std::uin
   progress.advance();
   session_.receiver_seconds =
       receivers.seconds() - std::reduce(session_.filtered_seconds.begin(), session_.filtered_seconds.end());
+  is_whole_ = true;
 }
 
 visibility::ViewSamples SessionMaker::look_at(visibility::ViewSamples samples) {
+  seen_.reset();
   std::swap(session_.samples, samples);
   classify();
   return samples;
@@ -211,6 +220,13 @@ scenes::Scene read_session_scene(const RunOptions& options, std::optional<double
   reading.time = time;
   reading.lenient = options.lenient;
   return scenes::read_scene(options.scene, reading);
+}
+
+Session open_session(scenes::Scene scene, const RunOptions& options, const render::Machine& machine, std::uint32_t runs,
+                     Progress& progress) {
+  SessionMaker maker(options, machine);
+  maker.show(std::move(scene), options.camera, runs, progress);
+  return maker.take();
 }
 
 Session open_session(const RunOptions& options, std::optional<double> time, const render::Machine& machine,

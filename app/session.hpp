@@ -56,13 +56,15 @@ struct Session {
 /// since is kept, where methods look for it too. An object that stays where it is, since its session is looked at.
 class SessionMaker {
  public:
-  /// The options must outlive it. Throws UsageError for what is wrong with the options.
+  /// The options must outlive it, and may change before each show(). Throws UsageError for what is wrong with the
+  /// options.
   SessionMaker(const RunOptions& options, const render::Machine& machine);
   SessionMaker(const SessionMaker&) = delete;
   SessionMaker& operator=(const SessionMaker&) = delete;
 
-  /// `camera`: its name; empty: the first. View samples are found once if `runs` is 0, else `runs` times after a
-  /// discarded one.
+  /// `camera`: its name; empty: the first. View samples are found once if `runs` is 0 and the camera, the picture's
+  /// size or the mesh is another than before, else `runs` times after a discarded one. Throws UsageError for what is
+  /// wrong with the options.
   void show(scenes::Scene scene, const std::string& camera, std::uint32_t runs, Progress& progress);
   [[nodiscard]] const Session& session() const { return session_; }
   /// Puts other view samples of the same camera in the place of the session's. Returns those.
@@ -76,12 +78,12 @@ class SessionMaker {
 
   const RunOptions& options_;
   render::Machine machine_;
-  visibility::SampleRequest request_;
-  std::optional<std::pair<std::uint32_t, std::uint32_t>> size_;
   Session session_;
   std::vector<std::string> filters_;  // Light::filtered_by as made, whatever is looked at
   std::map<const visibility::SceneFloats*, visibility::AlphaReach> reaches_;  // of session_.floats and of those linked
   std::optional<engines::ViewSampler> sampler_;
+  bool is_whole_ = false;                          // the last show() came to its end
+  std::optional<visibility::PinholeCamera> seen_;  // what session_.samples were found for
 };
 
 /// The scene at a time of its animation; at rest without one.
@@ -92,6 +94,10 @@ scenes::Scene read_session_scene(const RunOptions& options, std::optional<double
 /// Throws UsageError, InputError or ResourceError.
 Session open_session(const RunOptions& options, std::optional<double> time, const render::Machine& machine,
                      std::uint32_t runs, Progress& progress);
+
+/// Finds the view samples of a scene that has been read.
+Session open_session(scenes::Scene scene, const RunOptions& options, const render::Machine& machine, std::uint32_t runs,
+                     Progress& progress);
 
 /// The middle one; of an even number, the mean of the two in the middle. Not of nothing.
 double median(std::vector<double> values);

@@ -4,6 +4,16 @@
 #include <cstdlib>
 #include <utility>
 
+namespace {
+
+constinit penumbra::KeptArrays arrays;  // before any other object
+
+}  // namespace
+
+penumbra::KeptArrays& penumbra::kept_arrays() {
+  return arrays;
+}
+
 namespace penumbra {
 
 void KeptArrays::start_keeping() {

@@ -11,15 +11,7 @@
 #include <malloc.h>
 #include <sys/mman.h>
 
-namespace {
-
-constinit penumbra::KeptArrays arrays;  // before any other object
-
-}  // namespace
-
-penumbra::KeptArrays& penumbra::kept_arrays() {
-  return arrays;
-}
+// Linked into Penumbra's own executables, never into the library: a host program keeps its own allocator.
 
 // Sanitizers have an operator new of their own, which finds more.
 #ifndef PENUMBRA_SHADOW_MEMORY
@@ -44,25 +36,26 @@ void* memory_of(std::size_t bytes, std::size_t alignment) {
     return std::aligned_alloc(alignment, std::max<std::size_t>((bytes + alignment - 1) / alignment, 1) * alignment);
   }
   const bool may_be_kept = bytes >= kLeastAsked && alignment <= kLargePage;
-  if (void* const kept = may_be_kept ? arrays.take(bytes) : nullptr) return kept;
+  if (void* const kept = may_be_kept ? penumbra::kept_arrays().take(bytes) : nullptr) return kept;
   void* first = nullptr;  // (aligned_alloc takes whole large pages alone, where sanitizers look)
   if (::posix_memalign(&first, std::max(alignment, kLargePage), bytes) != 0) first = nullptr;
   // Only pages that are the array's alone. A system without large pages gives small ones.
   if (first != nullptr) static_cast<void>(::madvise(first, bytes / kLargePage * kLargePage, MADV_HUGEPAGE));
-  if (may_be_kept) arrays.settle(bytes, is_kept_size(first) ? malloc_usable_size(first) : 0);
+  if (may_be_kept) penumbra::kept_arrays().settle(bytes, is_kept_size(first) ? malloc_usable_size(first) : 0);
   return first;
 }
 
 void give_back(void* first) {
   const bool ours = reinterpret_cast<std::uintptr_t>(first) % kLargePage == 0;
-  if (!ours || !is_kept_size(first) || !arrays.keep(first, malloc_usable_size(first))) std::free(first);
+  if (!ours || !is_kept_size(first) || !penumbra::kept_arrays().keep(first, malloc_usable_size(first)))
+    std::free(first);
 }
 
 void* memory_or_throw(std::size_t bytes, std::size_t alignment) {
   for (;;) {
     if (void* const first = memory_of(bytes, alignment)) return first;
-    if (arrays.bytes() > 0) {
-      arrays.free_all();
+    if (penumbra::kept_arrays().bytes() > 0) {
+      penumbra::kept_arrays().free_all();
       continue;
     }
     const std::new_handler handler = std::get_new_handler();

@@ -1,7 +1,7 @@
 #include "bench/whole_frame.hpp"
 
 #include "app/pictures/frame_render.hpp"
-#include "app/process/progress.hpp"
+#include "app/process/terminal_progress.hpp"
 #include "app/process/stopwatch.hpp"
 #include "base/assert.hpp"
 #include "base/error.hpp"
@@ -114,7 +114,7 @@ class MethodFrame {
 
   TwoFrames run(const scenes::Scene& scene, const scenes::Scene& next, const Folder& folder) {
     run_.lights = {scene.lights.front().name};
-    app::Progress progress(false);
+    app::TerminalProgress progress(false);
     app::FrameRenderer renderer(run_, wish_, machine_, progress);
     const auto stats_of = [&](const scenes::Scene& shown) {
       renderer.render(shown, {}, {}, 0);

@@ -6,6 +6,7 @@
 #include "base/memory.hpp"
 #include "mesh/import_wire.hpp"
 
+#include <dlfcn.h>
 #include <fcntl.h>
 #include <poll.h>
 #include <spawn.h>
@@ -34,12 +35,30 @@ std::string reason(int error) {
   return std::generic_category().message(error);
 }
 
-std::filesystem::path find_helper() {
-  if (const char* named = std::getenv("PENUMBRA_IMPORT_HELPER"); named != nullptr && *named != '\0') return named;
+std::filesystem::path folder_of_this_code() {
+  Dl_info info{};
   std::error_code error;
+  if (::dladdr(reinterpret_cast<void*>(&reason), &info) != 0 && info.dli_fname != nullptr) {
+    // The name of a program is what its caller called it by; that of a library is its path.
+    if (std::filesystem::path file = std::filesystem::canonical(info.dli_fname, error);
+        !error && file.extension() != "" && file.filename().string().find(".so") != std::string::npos)
+      return file.parent_path();
+  }
   const auto self = std::filesystem::read_symlink("/proc/self/exe", error);
   if (error) throw ResourceError("cannot find the running program's folder: {}", error.message());
-  return self.parent_path() / "penumbra-import";
+  return self.parent_path();
+}
+
+std::filesystem::path find_helper() {
+  if (const char* named = std::getenv("PENUMBRA_IMPORT_HELPER"); named != nullptr && *named != '\0') return named;
+  // Beside the file that holds this code, the program or the library, or where `cmake --install` puts it.
+  const std::filesystem::path folder = folder_of_this_code();
+  for (const char* const place : {".", "../bin", "../../bin"}) {
+    std::error_code ignored;
+    if (auto helper = (folder / place / "penumbra-import").lexically_normal(); std::filesystem::exists(helper, ignored))
+      return helper;
+  }
+  return folder / "penumbra-import";  // whose absence is said when it is started
 }
 
 /// What the output's pipe holds where the system allows that: the child goes on writing while this process reads.
@@ -112,7 +131,7 @@ pid_t spawn(std::vector<std::string> arguments, const Streams& streams, const In
   }
   if (error != 0) {
     throw ResourceError(
-        "cannot start the import helper {}: {}; it is built beside the program, or is named by the "
+        "cannot start the import helper {}: {}; it is built beside the program and the library, or is named by the "
         "environment variable PENUMBRA_IMPORT_HELPER",
         arguments[0], reason(error));
   }

@@ -59,6 +59,9 @@ endforeach()
 list(APPEND may_app/commands app/pictures)
 list(APPEND may_app/compare app/pictures)
 list(APPEND may_app/farm app/pictures)
+set(may_library app app/compare app/inspect app/pictures app/process app/wedges compare render ${all_visibility}
+    scenes/formats scenes mesh base)
+set(may_python)
 set(may_bench ${may_app} app app/pictures volumes/raster volumes/edges mesh/shapes)
 set(rooms base mesh mesh/diagnosis mesh/repair mesh/shapes scenes scenes/formats import import/gltf import/gltf/emitters visibility
     visibility/tree visibility/lights
@@ -66,7 +69,7 @@ set(rooms base mesh mesh/diagnosis mesh/repair mesh/shapes scenes scenes/formats
     volumes/wedges volumes/edges volumes/raster volumes/soft volumes/counters volumes/scatter vsm maps/host maps/products maps/products/lists
     maps/filters maps/sampling maps/backprojection maps/backprojection/patches maps/backprojection/contours
     maps/backprojection/soft_shadow_map selftest reference compare
-    app/process app app/pictures app/commands app/compare app/farm app/inspect app/wedges bench)
+    app/process app app/pictures app/commands app/compare app/farm app/inspect app/wedges library python bench)
 set(may_tests import ${rooms})
 list(APPEND rooms tests)
 

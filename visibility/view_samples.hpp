@@ -40,6 +40,8 @@ struct PinholeCamera {
   /// perspective camera.
   [[nodiscard]] glm::dvec3 screen_across() const;
   [[nodiscard]] glm::dvec3 screen_upward() const;
+
+  bool operator==(const PinholeCamera&) const = default;
 };
 
 /// Throws InputError when eye and target coincide or `up` is parallel to the view direction.

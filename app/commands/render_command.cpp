@@ -1,3 +1,4 @@
+#include "app/process/terminal_progress.hpp"
 #include "app/commands.hpp"
 #include "app/machine.hpp"
 #include "app/methods.hpp"
@@ -50,7 +51,7 @@ class RenderCommand : public Command {
     std::vector<std::string> cameras = {options_.run.camera};
     OutputFiles outputs;
     if (!all_cameras) outputs = claim(cameras);
-    Progress progress(!global.quiet);
+    TerminalProgress progress(!global.quiet);
     const render::Machine machine = make_machine(options_.run.device);
     FrameRenderer renderer(options_.run, request_.wish, machine, progress);
 

@@ -1,3 +1,4 @@
+#include "app/process/terminal_progress.hpp"
 #include "app/commands.hpp"
 #include "app/compare/comparison.hpp"
 #include "app/methods.hpp"
@@ -134,7 +135,7 @@ class CompareCommand : public Command {
     if (frame_) options_.time = parse_frame(*frame_) * (1 / fps);  // as `render` has it
     if (run_.camera == "all")
       throw UsageError("--camera all: errors are of one camera's pixels; name one, and compare once for each");
-    Progress progress(!global.quiet);
+    TerminalProgress progress(!global.quiet);
     const compare::Metrics metrics = compare_methods(run_, options_, global.arguments, progress);
     print_table(metrics);
     print_budgets(metrics);

@@ -22,8 +22,6 @@
 #include "compare/report.hpp"
 #include "render/device.hpp"
 
-#include <spdlog/spdlog.h>
-
 #include <algorithm>
 #include <cmath>
 #include <exception>
@@ -49,7 +47,9 @@ class Comparison {
   /// Of all lights' masks by rays, which are kept while the methods run.
   static constexpr std::uint64_t kMostRayBytes = std::uint64_t{1} << 30;
 
-  Comparison(const RunOptions& run, const ComparisonOptions& options, Progress& progress)
+  /// `scene`: nullopt: it is read from the run's file.
+  Comparison(const RunOptions& run, const ComparisonOptions& options, std::optional<scenes::Scene> scene,
+             Progress& progress)
       : run_(run),
         format_(parse_format(run.format)),
         options_(options),
@@ -60,9 +60,10 @@ class Comparison {
         machine_(make_machine(run.device)) {
     reference_request_ = reference_samples(run, options.reference_samples);
     if (options.error_budget) require_explainable(options.methods);
-    files_.claim(run.scene, options.methods, options.stats);
-    session_ = open_session(run, options.time, machine_, options.runs, progress);
-    files_.refuse_inputs(session_.scene.sources);
+    if (options.writes) files_.claim(run.scene, options.methods, options.stats);
+    session_ = scene ? open_session(std::move(*scene), run, machine_, options.runs, progress)
+                     : open_session(run, options.time, machine_, options.runs, progress);
+    if (options.writes) files_.refuse_inputs(session_.scene.sources);
     check_layers(format_, session_, false);
     progress.clear();
     for (const scenes::Object& object : session_.scene.objects) {
@@ -71,8 +72,8 @@ class Comparison {
           "\"{}\" is translucent: pictures here show what is behind it (render composites it over that)", object.name));
     }
     if (options.time && !session_.scene.motion)
-      spdlog::warn("{} has no animation: every frame shows the same", session_.scene.name);
-    for (const std::string& warning : session_.warnings) spdlog::warn("{}", warning);
+      progress.warn(session_.scene.name + " has no animation: every frame shows the same");
+    for (const std::string& warning : session_.warnings) progress.warn(warning);
     for (const Light& light : session_.lights) check_light(reference_.description, light);
     if (wants_bits(reference_)) check_bits(reference_.description, session_.lights);
     entries_ = choose_entries(options, session_, machine_, [this](std::string text) { warn(std::move(text)); });
@@ -93,9 +94,13 @@ class Comparison {
     run_reference();
     run_rays();
     for (const Entry& entry : entries_) run_or_report(entry);
-    make_error_pictures();
+    if (options_.writes) make_error_pictures();
     if (options_.error_budget) explain_errors();
     progress_.clear();
+    if (!options_.writes) {
+      if (hang_) std::rethrow_exception(hang_);
+      return std::move(report_.metrics);
+    }
     const std::string json = compare::json_text(compare::to_json(report_.metrics));
     write_file_atomically(run_.out / "metrics.json", json);
     if (!options_.stats.empty()) write_file_atomically(options_.stats, json);
@@ -198,7 +203,7 @@ class Comparison {
 
   void report_failure(const Entry& entry, const Failure& failure) {
     progress_.clear();
-    spdlog::error("{}: {}", entry.label, failure.message);
+    progress_.error(fmt::format("{}: {}", entry.label, failure.message));
     compare::MethodResult result;
     result.entry = entry.label;
     result.stats = stats_of(entry, session_.lights, {});
@@ -207,6 +212,7 @@ class Comparison {
     report_.metrics.methods.push_back(std::move(result));
     report_.methods.emplace_back().description = entry.description;
     visibility_.emplace_back();
+    if (!options_.writes) return;
     for (std::string& text : files_.remove(entry.label)) warn(std::move(text));
   }
 
@@ -220,7 +226,7 @@ class Comparison {
     result.entry = entry.label;
     result.stats = stats_of(entry, session_.lights, done.run);
     const auto of_method = std::span(result.stats.warnings).subspan(session_.warnings.size());
-    for (const std::string& warning : of_method) spdlog::warn("{}", warning);
+    for (const std::string& warning : of_method) progress_.warn(warning);
     judge.fill(result, done.run, pairs_of_reference, progress_);
     result.beauty_error = compare::beauty_error(done.beauty, reference_beauty_, truths_.front().judged);
     compare::ReportEntry pictures = pictures_of(entry, done);
@@ -260,6 +266,7 @@ class Comparison {
     done.masks = masks.finish();
     machine_.check_validation();
     progress_.clear();
+    if (!options_.writes) return done;
     const std::vector<MethodLabel> labels = labels_of(entry, lights);
     for (std::string& warning :
          write_picture(files_.of(entry.label, ".exr"),
@@ -289,7 +296,7 @@ class Comparison {
   compare::ReportEntry pictures_of(const Entry& entry, Finished& done) {
     compare::ReportEntry pictures =
         report_entry(session_, entry.description, report_.exposure, {done.run, done.beauty, std::move(done.masks)});
-    if (options_.png) write_png(files_.of(entry.label, ".png"), *pictures.beauty);
+    if (options_.png && options_.writes) write_png(files_.of(entry.label, ".png"), *pictures.beauty);
     return pictures;
   }
 
@@ -353,7 +360,7 @@ class Comparison {
 
   void warn(std::string text) {
     progress_.clear();
-    spdlog::warn("{}", text);
+    progress_.warn(text);
     warnings_.push_back(std::move(text));
   }
 
@@ -383,7 +390,12 @@ class Comparison {
 
 compare::Metrics compare_methods(const RunOptions& run, const ComparisonOptions& options,
                                  const std::vector<std::string>& arguments, Progress& progress) {
-  return Comparison(run, options, progress).run(arguments);
+  return Comparison(run, options, std::nullopt, progress).run(arguments);
+}
+
+compare::Metrics compare_methods(scenes::Scene scene, const RunOptions& run, const ComparisonOptions& options,
+                                 Progress& progress) {
+  return Comparison(run, options, std::move(scene), progress).run({});
 }
 
 }  // namespace penumbra::app

@@ -3,6 +3,7 @@
 #include "app/options.hpp"
 #include "app/process/progress.hpp"
 #include "compare/stats.hpp"
+#include "scenes/scene.hpp"
 
 #include <filesystem>
 #include <optional>
@@ -22,6 +23,7 @@ struct ComparisonOptions {
   bool bits = false, png = false;
   bool error_budget = false;      ///< why each image-based method is wrong
   std::filesystem::path stats;    ///< empty: only DIR/metrics.json
+  bool writes = true;             ///< all of DIR; else nothing is written, and what is returned is all
   std::optional<double> time;     ///< when the scene is looked at, in seconds; nothing: at rest
   std::optional<float> exposure;  ///< of pictures for eyes, in stops; nothing: the reference's fill them
 };
@@ -30,5 +32,8 @@ struct ComparisonOptions {
 /// said once is of the first. Seconds are sums over all lights. `arguments` is the command line, for the report.
 compare::Metrics compare_methods(const RunOptions& run, const ComparisonOptions& options,
                                  const std::vector<std::string>& arguments, Progress& progress);
+/// Of a scene that has been read already.
+compare::Metrics compare_methods(scenes::Scene scene, const RunOptions& run, const ComparisonOptions& options,
+                                 Progress& progress);
 
 }  // namespace penumbra::app

@@ -3,7 +3,7 @@
 #include "app/inspect/export.hpp"
 #include "app/inspect/report.hpp"
 #include "app/process/output_files.hpp"
-#include "app/process/progress.hpp"
+#include "app/process/terminal_progress.hpp"
 #include "app/reading_options.hpp"
 #include "base/atomic_file.hpp"
 #include "base/error.hpp"
@@ -64,7 +64,7 @@ class InspectCommand : public Command {
 
   int run(const GlobalOptions& global) override {
     const OutputFiles outputs = checked_outputs();
-    Progress progress(!global.quiet);
+    TerminalProgress progress(!global.quiet);
     std::vector<FileReport> reports;
     std::optional<RepairReport> repaired;
     for (const std::filesystem::path& file : files_) {

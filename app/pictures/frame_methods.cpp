@@ -7,7 +7,6 @@
 #include "base/assert.hpp"
 
 #include <fmt/ranges.h>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <cstddef>
@@ -68,7 +67,7 @@ void FrameRenderer::say_notes() {
     same->second.push_back(fmt::format("\"{}\"", lights_[i].name));
   }
   for (const auto& [what, names] : news)
-    spdlog::info("light{} {}{}", names.size() > 1 ? "s" : "", fmt::join(names, ", "), what);
+    progress_.info(fmt::format("light{} {}{}", names.size() > 1 ? "s" : "", fmt::join(names, ", "), what));
 }
 
 void FrameRenderer::label_lights() {
@@ -111,6 +110,12 @@ FrameRenderer::Kept& FrameRenderer::method_for(const LightMethod& wanted) {
   return kept_.back();
 }
 
+void FrameRenderer::keep_masks(const TileResult& tile) {
+  if (!frame_.keeps_masks || tile.masks.empty()) return;
+  masks_.resize(lit().lights.size());
+  masks_[tile.light].insert(masks_[tile.light].end(), tile.masks.begin(), tile.masks.end());
+}
+
 void FrameRenderer::run_methods(const std::filesystem::path& bits) {
   Stopwatch watch;
   say_warnings();
@@ -150,6 +155,7 @@ MethodRun FrameRenderer::run_lights(BeautyAccumulator& beauty, BitsOutput* bits)
         *kept.method, lit(), plan,
         [&](const TileResult& tile) {
           beauty.add(tile);
+          keep_masks(tile);
           if (bits == nullptr || tile.light != 0) return;
           const Stopwatch watch;
           bits->add(tile);

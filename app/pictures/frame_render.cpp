@@ -13,7 +13,6 @@
 #include "base/png.hpp"
 #include "visibility/alpha/panes.hpp"
 
-#include <spdlog/spdlog.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -97,7 +96,7 @@ void FrameRenderer::say_once(const std::vector<std::string>& warnings) {
   progress_.clear();
   for (const std::string& warning : warnings) {
     if (std::ranges::find(said_, warning) != said_.end()) continue;
-    spdlog::warn("{}", warning);
+    progress_.warn(warning);
     said_.push_back(warning);
   }
 }
@@ -106,7 +105,8 @@ void FrameRenderer::say_warnings() {
   progress_.clear();
   const auto& cameras = session().scene.cameras;
   if (cameras.size() > 1 && options_.camera.empty() && !std::exchange(camera_said_, true))
-    spdlog::info("camera \"{}\", the first of {}; --camera NAME or all", cameras.front().name, cameras.size());
+    progress_.info(
+        fmt::format("camera \"{}\", the first of {}; --camera NAME or all", cameras.front().name, cameras.size()));
   say_once(lit().warnings);
 }
 
@@ -207,6 +207,7 @@ void FrameRenderer::render(scenes::Scene scene, const Frame& frame, const std::f
   bits_.reset();
   mean_.reset();
   mattes_.reset();
+  masks_.clear();
   lamps_.clear();
   for (Kept& kept : kept_) kept.used = false;
   done_.clear();
@@ -289,25 +290,41 @@ void FrameRenderer::render_mean(scenes::Scene scene) {
   }
 }
 
+RenderedFrame FrameRenderer::take() {
+  const std::vector<std::string> own = whole_names(session().lights);
+  RenderedFrame frame;
+  frame.beauty = mean_ ? mean_->beauty(own) : std::move(beauty_);
+  frame.visibility = mean_ ? mean_->visibility(own) : std::move(run_.visibility);
+  frame.alpha = mean_ ? mean_->alpha() : std::move(alpha_);
+  frame.masks = std::move(masks_);
+  frame.sum = sum_of(frame.beauty, session().pixel_count());
+  if (!mean_) return frame;
+  std::vector<std::string> others = mean_->lights();  // lights of other moments alone
+  std::erase_if(others, [&](const std::string& light) { return std::ranges::find(own, light) != own.end(); });
+  const std::vector<glm::vec3> more = sum_of(mean_->beauty(others), frame.sum.size());
+  for (std::size_t i = 0; i < more.size(); ++i) frame.sum[i] += more[i];
+  return frame;
+}
+
+compare::Stats FrameRenderer::stats() {
+  compare::Stats stats = make_stats(session(), {session().lights, labels_}, run_);
+  say_once(stats.warnings);
+  stats.warnings.insert(stats.warnings.end(), notes_.begin(), notes_.end());
+  compare::Seconds& seconds = stats.seconds;
+  seconds.load = load_seconds_;
+  seconds.mesh = *seconds.mesh + make_seconds_;
+  seconds.view = view_seconds_;
+  seconds.beauty = std::max(beauty_seconds_ - bits_seconds_, 0.0);
+  return stats;
+}
+
 compare::Stats FrameRenderer::write(const FrameFiles& files, Exposure& exposure) {
   const Stopwatch write;
   const LabelledLights lights{session().lights, labels_};
-  const std::vector<std::string> own = whole_names(session().lights);
-  const std::vector<std::vector<glm::vec3>> beauty = mean_ ? mean_->beauty(own) : std::move(beauty_);
-  const std::vector<std::vector<float>> visibility = mean_ ? mean_->visibility(own) : std::move(run_.visibility);
-  const std::vector<float> alpha = mean_ ? mean_->alpha() : std::move(alpha_);
-  std::vector<glm::vec3> together;  // none: there is one light
-  if (beauty.size() != 1 || beauty.front().empty() || mean_) together = sum_of(beauty, session().pixel_count());
-  if (mean_) {  // lights of other moments alone
-    std::vector<std::string> others = mean_->lights();
-    std::erase_if(others, [&](const std::string& light) { return std::ranges::find(own, light) != own.end(); });
-    const std::vector<glm::vec3> more = sum_of(mean_->beauty(others), together.size());
-    for (std::size_t i = 0; i < more.size(); ++i) together[i] += more[i];
-  }
-  const std::span<const glm::vec3> sum = together.empty() ? beauty.front() : together;
+  const RenderedFrame content = take();
   float stops = exposure.stops;
   if (exposure.kind == Exposure::Kind::automatic || std::isnan(stops))
-    stops = std::log2(auto_exposure(session(), sum, lamps_));
+    stops = std::log2(auto_exposure(session(), content.sum, lamps_));
   if (exposure.kind == Exposure::Kind::first) exposure.stops = stops;
   std::map<std::string, std::string> attributes = {{kExposureAttribute, fmt::format("{}", stops)}};
   if (frame_.number) attributes["penumbra.frame"] = fmt::format("{}", *frame_.number);
@@ -320,27 +337,21 @@ compare::Stats FrameRenderer::write(const FrameFiles& files, Exposure& exposure)
   if (!files.png.empty()) {
     png.emplace(files.png);
     // libpng has one thread; OpenEXR's compress beside it.
-    packed = std::async(std::launch::async, [this, sum, stops] {
-      return encode_png(to_srgb(session().width, session().height, sum, std::exp2(stops)));
+    packed = std::async(std::launch::async, [this, &content, stops] {
+      return encode_png(to_srgb(session().width, session().height, content.sum, std::exp2(stops)));
     });
   }
-  say_once(write_picture(
-      picture,
-      {session(), lights, visibility, beauty, sum, alpha, std::move(attributes), mattes_ ? &*mattes_ : nullptr},
-      format_));
+  say_once(write_picture(picture,
+                         {session(), lights, content.visibility, content.beauty, content.sum, content.alpha,
+                          std::move(attributes), mattes_ ? &*mattes_ : nullptr},
+                         format_));
   picture.settle();
   if (png) {
     png->write(packed.get());
     png->settle();
   }
-  compare::Stats stats = make_stats(session(), lights, run_);
-  say_once(stats.warnings);
-  stats.warnings.insert(stats.warnings.end(), notes_.begin(), notes_.end());
+  compare::Stats stats = this->stats();
   compare::Seconds& seconds = stats.seconds;
-  seconds.load = load_seconds_;
-  seconds.mesh = *seconds.mesh + make_seconds_;
-  seconds.view = view_seconds_;
-  seconds.beauty = std::max(beauty_seconds_ - bits_seconds_, 0.0);
   seconds.write = write.seconds() + bits_seconds_;
   // From the last picture to this one: the seconds of a sequence's pictures add up to its own.
   const double now = seconds_since_start();
@@ -357,7 +368,7 @@ compare::Stats FrameRenderer::write(const FrameFiles& files, Exposure& exposure)
   bits_.reset();
   picture.commit();
   if (png) png->commit();
-  if (const std::string line = mesh_line(run_.counters); expects_frames_ && !line.empty()) spdlog::debug("{}", line);
+  if (const std::string line = mesh_line(run_.counters); expects_frames_ && !line.empty()) progress_.debug(line);
   if (stats_file) stats_file->commit();
   return stats;
 }

@@ -32,12 +32,23 @@ struct Frame {
   PixelFilter filter = {};       ///< of these
   /// Scenes at other moments, whose mean the picture is; empty: it is that of the one moment. Each is asked for once.
   std::vector<std::function<scenes::Scene()>> moments = {};
+  bool keeps_masks = false;  ///< RenderedFrame::masks; of a picture of one moment and of pixels' centres
+};
+
+/// What a picture shows, for each whole light and in all. Row by row from the top.
+struct RenderedFrame {
+  std::vector<std::vector<float>> visibility;  ///< V of each light, each pixel
+  std::vector<std::vector<glm::vec3>> beauty;  ///< of each light, each pixel; empty where none came
+  std::vector<glm::vec3> sum;                  ///< of all lights
+  std::vector<float> alpha;
+  /// Of each light that masks were made of, words_per_mask() words a pixel; else empty.
+  std::vector<std::vector<std::uint32_t>> masks;
 };
 
 /// Renders pictures of one scene after each other. Methods, and what they prepared, are kept from one to the next.
 class FrameRenderer {
  public:
-  /// All must outlive it.
+  /// All must outlive it. Options and wish may change from one picture to the next.
   FrameRenderer(const RunOptions& options, const MethodWish& wish, const render::Machine& machine, Progress& progress);
 
   /// Scenes will follow one another as frames of an animation do. Before the first.
@@ -46,6 +57,10 @@ class FrameRenderer {
   /// normals, depths and ids are those of `scene` and of pixels' centres. `read_seconds`: what reading the scene took,
   /// perhaps while the picture before was made; of the first, all since the process began.
   void render(scenes::Scene scene, const Frame& frame, const std::filesystem::path& bits, double read_seconds);
+  /// Gives away what was computed last.
+  RenderedFrame take();
+  /// What stats.json says of the picture computed last, without the seconds of writing it and in all.
+  [[nodiscard]] compare::Stats stats();
   /// Writes what was computed last. `exposure` gets its stops if it is of a sequence's first picture and has none yet.
   /// Returns what stats.json says.
   compare::Stats write(const FrameFiles& files, Exposure& exposure);
@@ -73,6 +88,7 @@ class FrameRenderer {
   void run_methods(const std::filesystem::path& bits);
   /// What the chosen methods make of the view samples that are looked at; `bits` may be null.
   MethodRun run_lights(BeautyAccumulator& beauty, BitsOutput* bits);
+  void keep_masks(const TileResult& tile);
   /// Composites translucent surfaces (BLEND), each shaded by view samples of its own, over what is behind them.
   void add_panes();
   void mark_lamps();
@@ -115,12 +131,13 @@ class FrameRenderer {
   std::vector<MethodLabel> labels_;
   std::vector<std::string> notes_;
   MethodRun run_;
-  std::vector<std::vector<glm::vec3>> beauty_;  // of each light
-  std::vector<float> alpha_;                    // of each pixel
-  std::vector<std::uint8_t> lights_something_;  // of each whole light: a view sample is before it
-  std::vector<std::uint8_t> lamps_;             // of each pixel: a translucent body of a light is seen; empty: none is
-  std::optional<PictureMean> mean_;             // nothing: the picture is that of one moment and of pixels' centres
-  std::optional<Mattes> mattes_;                // there when that is
+  std::vector<std::vector<glm::vec3>> beauty_;     // of each light
+  std::vector<std::vector<std::uint32_t>> masks_;  // of each light
+  std::vector<float> alpha_;                       // of each pixel
+  std::vector<std::uint8_t> lights_something_;     // of each whole light: a view sample is before it
+  std::vector<std::uint8_t> lamps_;  // of each pixel: a translucent body of a light is seen; empty: none is
+  std::optional<PictureMean> mean_;  // nothing: the picture is that of one moment and of pixels' centres
+  std::optional<Mattes> mattes_;     // there when that is
   std::optional<BitsOutput> bits_;
   // `make`: the device and methods. `beauty`: all that is done with what methods answer, writing bits included.
   double load_seconds_ = 0, make_seconds_ = 0, view_seconds_ = 0, beauty_seconds_ = 0, bits_seconds_ = 0;

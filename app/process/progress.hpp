@@ -1,34 +1,33 @@
 #pragma once
 
-#include <chrono>
 #include <cstdint>
 #include <string>
 
 namespace penumbra::app {
 
-/// A bar on stderr if that is a terminal, else a line every five seconds; neither if the user asked for quiet. Each
-/// step also looks for an interrupt, so that whatever reports progress can be stopped.
+/// What long work reports while it runs, and through which it is stopped.
 class Progress {
  public:
-  explicit Progress(bool wanted);
-  ~Progress();
+  enum class Level : std::uint8_t { debug, info, warning, error };
+
+  Progress() = default;
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
+  virtual ~Progress() = default;
 
-  /// Starts a stage of `steps` steps; the one before is wiped away.
-  void begin(std::string stage, std::uint64_t steps);
-  /// Throws Interrupted after SIGINT.
-  void advance(std::uint64_t steps = 1);
-  void clear();
-
- private:
-  void draw();
-
-  bool wanted_ = false, on_terminal_ = false;
-  std::string stage_;
-  std::uint64_t steps_ = 0, done_ = 0;
-  bool drawn_ = false;
-  std::chrono::steady_clock::time_point last_draw_;
+  /// Starts a stage of `steps` steps, which ends the one before.
+  virtual void begin(std::string stage, std::uint64_t steps) = 0;
+  /// Throws an Error if the work is to stop.
+  virtual void advance(std::uint64_t steps) = 0;
+  void advance() { advance(1); }
+  /// Takes away what shows the stage, so that other text can be written.
+  virtual void clear() = 0;
+  /// One message, without a line break at its end.
+  virtual void say(Level level, const std::string& message) = 0;
+  void debug(const std::string& message) { say(Level::debug, message); }
+  void info(const std::string& message) { say(Level::info, message); }
+  void warn(const std::string& message) { say(Level::warning, message); }
+  void error(const std::string& message) { say(Level::error, message); }
 };
 
 }  // namespace penumbra::app

@@ -2,14 +2,13 @@
 #include "app/options.hpp"
 #include "app/process/output_files.hpp"
 #include "app/reading_options.hpp"
-#include "app/wedges/report.hpp"
+#include "app/wedges/built_wedges.hpp"
 #include "base/atomic_file.hpp"
 #include "base/did_you_mean.hpp"
 #include "base/error.hpp"
 #include "scenes/formats/reader.hpp"
 #include "scenes/picture_size.hpp"
 #include "volumes/wedges/wedge_export.hpp"
-#include "volumes/wedges/wedge_faults.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/ranges.h>
@@ -26,27 +25,6 @@
 
 namespace penumbra::app {
 namespace {
-
-struct ChosenConstruction {
-  volumes::Construction construction = volumes::Construction::original;
-  std::optional<volumes::Fault> fault;
-};
-
-ChosenConstruction parse_construction(const std::string& text) {
-  if (text == "original") return {};
-  if (text == "tight") return {volumes::Construction::tight, {}};
-  constexpr std::string_view kBroken = "broken:";
-  if (text.size() == kBroken.size() + 1 && text.starts_with(kBroken) && text.back() >= '1' && text.back() <= '6') {
-    return {volumes::Construction::original, static_cast<volumes::Fault>(text.back() - '0')};
-  }
-  throw UsageError("--construction {}: expected original, tight, or broken:1 … broken:6", text);
-}
-
-volumes::SilhouettesFrom parse_from(const std::string& text) {
-  if (text == "centre") return volumes::SilhouettesFrom::center;
-  if (text == "anywhere") return volumes::SilhouettesFrom::anywhere;
-  throw UsageError("--from {}: expected centre or anywhere", text);
-}
 
 /// The number of what has this name; of an empty one the first.
 template <typename Named>
@@ -66,20 +44,6 @@ void look_through(scenes::Scene& scene, const std::string& camera, const std::st
   std::swap(scene.cameras.front(), scene.cameras[find_named(scene.cameras, "--camera", camera, scene)]);
   std::tie(scene.width, scene.height) =
       size.empty() ? scenes::picture_size(scene, scene.cameras.front()) : parse_size(size);
-}
-
-/// What the light itself is, where its hull is larger: points of a disk's or ellipse's rim. A sphere's outline changes
-/// with the point it is seen from; its hull stands for it.
-std::vector<glm::dvec3> shape_of(const visibility::Light& light, const volumes::LightHull& hull) {
-  if (light.kind == visibility::LightKind::sphere || !is_round(light.kind)) return hull.corners;
-  constexpr int kRim = 256;
-  const auto [center, u, v] = visibility::light_frame(light);
-  std::vector<glm::dvec3> rim;
-  for (int i = 0; i < kRim; ++i) {
-    const double angle = 2 * M_PI * i / kRim;
-    rim.push_back(center + std::cos(angle) * u + std::sin(angle) * v);
-  }
-  return rim;
 }
 
 class WedgesCommand : public Command {
@@ -117,8 +81,6 @@ class WedgesCommand : public Command {
   }
 
   int run(const GlobalOptions&) override {
-    const ChosenConstruction chosen = parse_construction(construction_);
-    const volumes::SilhouettesFrom from = parse_from(from_);
     OutputFiles outputs = named_outputs();
     outputs.refuse_inputs({&scene_, 1});
     outputs.require_writable();
@@ -126,52 +88,25 @@ class WedgesCommand : public Command {
     outputs.refuse_inputs(scene.sources);
     for (const std::string& warning : scene.warnings) spdlog::warn("{}", warning);
     look_through(scene, camera_, size_);
-    visibility::SceneFloats floats = visibility::make_scene_floats(scene);
-    const visibility::Light light =
-        visibility::make_light(scene, find_named(scene.lights, "--light", light_, scene), floats.origin, {});
-    if (!light.unshaded_by.empty()) floats = cast_for(floats, light);
-    if (!light.filtered_by.empty())
-      spdlog::warn("\"{}\" lets light through (alphaMode MASK or BLEND): wedges are of what stops all light",
-                   light.filtered_by);
-    if (light.sun) {
-      throw InputError("light \"{}\" is a sun; wedges are of lights in the scene: take another (--light)", light.name);
-    }
-    const volumes::LightHull hull = volumes::light_hull(light);
-    const volumes::Casters casters = volumes::casters_of(floats, light);
-    const bool tight = chosen.construction == volumes::Construction::tight;
-    const bool crop = tight && from == volumes::SilhouettesFrom::anywhere;
-    const volumes::CastingEdges casting = volumes::casting_edges(casters, hull, from, crop);
-    const std::vector<volumes::Wedge> wedges = chosen.fault
-                                                   ? volumes::build_faulty_wedges(casting.wedges, hull, *chosen.fault)
-                                                   : volumes::build_wedges(casting.wedges, hull, chosen.construction);
-    WedgesResult result{light, hull, floats.origin, construction_, from_, wedges};
-    std::optional<volumes::ValidationReport> report;
-    std::optional<volumes::Tightness> tightness;
-    std::optional<CoverageOutcome> coverage;
-    if (validate_) {
-      report = volumes::validate({casters, casting, hull, wedges, tight});
-      tightness = volumes::tightness_of(wedges, hull, shape_of(light, hull));
-      coverage = check_scene_coverage(scene, floats, light, casters, *report);
-      result.validation = &*report;
-      result.tightness = &*tightness;
-      result.coverage = &*coverage;
-    }
+    const BuiltWedges built(scene, {light_, construction_, from_, validate_});
+    for (const std::string& warning : built.warnings) spdlog::warn("{}", warning);
+    WedgesResult result = built.result();
     std::optional<Explanation> explanation;
     if (!explain_.empty()) {
       const auto [x, y] = parse_pixel(explain_, scene);
-      explanation = explain({scene, floats, light, casters, casting, wedges}, x, y);
+      explanation = explain({scene, built.floats, built.light, built.casters, built.casting, built.wedges}, x, y);
       result.explanation = &*explanation;
       if (!explanation->picture.empty()) result.svg = svg_;
     }
     if (!result.svg.empty()) write_file_atomically(result.svg, std::string_view(explanation->picture));
-    if (!json_.empty()) write_wedges_json(json_, result);
+    if (!json_.empty()) write_file_atomically(json_, std::string_view(wedges_json(result)));
     if (!export_.empty()) {
-      volumes::export_wedges(export_, {wedges, hull, volumes::bounds_of(casters), floats.origin,
-                                       report ? std::span<const volumes::Violation>(report->violations)
-                                              : std::span<const volumes::Violation>()});
+      volumes::export_wedges(export_, {built.wedges, built.hull, volumes::bounds_of(built.casters), built.floats.origin,
+                                       built.report ? std::span<const volumes::Violation>(built.report->violations)
+                                                    : std::span<const volumes::Violation>()});
     }
     print_wedges(result);
-    return static_cast<int>(report && !report->violations.empty() ? ExitCode::answer_is_no : ExitCode::done);
+    return static_cast<int>(built.holds() ? ExitCode::done : ExitCode::answer_is_no);
   }
 
  private:

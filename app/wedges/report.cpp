@@ -182,7 +182,7 @@ void print_validation(const volumes::ValidationReport& report, std::span<const W
 
 }  // namespace
 
-void write_wedges_json(const std::filesystem::path& path, const WedgesResult& result) {
+std::string wedges_json(const WedgesResult& result) {
   // The list may be long: each entry becomes text before the next is made.
   fmt::memory_buffer text;
   const auto put = [&](const std::string& piece) { text.append(piece.data(), piece.data() + piece.size()); };
@@ -213,7 +213,7 @@ void write_wedges_json(const std::filesystem::path& path, const WedgesResult& re
   if (result.coverage != nullptr) put(",\n\"coverage\":" + coverage_json(*result.coverage).dump());
   if (result.explanation != nullptr) put(",\n\"explain\":" + explain_json(*result.explanation, result.svg).dump());
   put("}\n");
-  write_file_atomically(path, std::string_view(text.data(), text.size()));
+  return fmt::to_string(text);
 }
 
 void print_wedges(const WedgesResult& result) {

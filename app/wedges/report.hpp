@@ -30,7 +30,7 @@ struct WedgesResult {
 /// The JSON of `wedges --json`, and beside it "counts", and if they were validated "checks",
 /// "tightness" and "coverage", if
 /// a pixel was to be explained "explain".
-void write_wedges_json(const std::filesystem::path& path, const WedgesResult& result);
+std::string wedges_json(const WedgesResult& result);
 
 /// For people, on stdout: how many of which outcome, what was proved, the first violations.
 void print_wedges(const WedgesResult& result);

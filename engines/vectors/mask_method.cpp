@@ -42,8 +42,10 @@ constexpr auto kSpots = [] {
   return spots;
 }();
 
+}  // namespace
+
 /// Buffers of one thread.
-struct Buffers {
+struct MaskMethod::Buffers {
   std::vector<GridSample> samples;
   std::vector<SampleMask> masks;
   std::vector<LightCone> cones;  // of the region's view samples
@@ -51,10 +53,17 @@ struct Buffers {
   LightGrid turned;              // to a region's or a cluster's
   std::uint64_t turned_for = 0;  // the light
 };
-Buffers& buffers() {
-  static tbb::enumerable_thread_specific<Buffers> all;
-  return all.local();
+
+/// Each method has its own: while a thread waits for one method's work it may do another's.
+struct MaskMethod::AllBuffers {
+  tbb::enumerable_thread_specific<Buffers> of_thread;
+};
+
+MaskMethod::Buffers& MaskMethod::buffers() const {
+  return buffers_->of_thread.local();
 }
+
+namespace {
 
 /// Eight bytes as a matrix of bits, transposed: bit r of byte c becomes bit c of byte r (H. S. Warren, Hacker's
 /// Delight, 2nd ed., 7-3).
@@ -97,7 +106,9 @@ void add_tiles(const LightGrid& grid, const std::uint16_t* from, std::uint32_t s
 }  // namespace
 
 MaskMethod::MaskMethod(visibility::MethodDescription description, std::string pass)
-    : description_(std::move(description)), pass_(std::move(pass)) {}
+    : description_(std::move(description)), pass_(std::move(pass)), buffers_(std::make_unique<AllBuffers>()) {}
+
+MaskMethod::~MaskMethod() = default;
 
 void MaskMethod::prepare_mesh(const visibility::SceneFloats& scene) {
   prepare_tree(scene);
@@ -133,8 +144,7 @@ void MaskMethod::prepare_light(const visibility::Light& light) {
   PENUMBRA_ASSERT(scene_ != nullptr, "prepare_mesh comes first: {}", light.name);
   light_ = &light;
   counters_.clear();
-  static std::atomic<std::uint64_t> prepared = 0;
-  light_number_ = ++prepared;
+  ++light_number_;
   grids_.clear();
   cone_.reset();
   if (!visibility::is_planar(light.kind)) {

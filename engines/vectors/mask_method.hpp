@@ -33,6 +33,7 @@ class MaskMethod : public visibility::Method {
  public:
   /// `pass`: the name of its one stage in the pass times.
   MaskMethod(visibility::MethodDescription description, std::string pass);
+  ~MaskMethod() override;
 
   [[nodiscard]] const visibility::MethodDescription& description() const override { return description_; }
   void expect_frames() override { expects_frames_ = true; }
@@ -104,6 +105,10 @@ class MaskMethod : public visibility::Method {
   [[nodiscard]] std::size_t tile_pixel(const GridSample& at) const { return at.pixel - first_pixel(); }
 
  private:
+  struct Buffers;
+  struct AllBuffers;
+  /// Those of this thread.
+  [[nodiscard]] Buffers& buffers() const;
   /// Lets the last mesh's hierarchy follow. False: it does not fit this one, or not well.
   bool refit_tree();
   void do_tile();
@@ -129,7 +134,8 @@ class MaskMethod : public visibility::Method {
   visibility::DeviceLight device_light_;
   std::vector<LightGrid> grids_;    // one a side that it emits to
   std::optional<ConeLight> cone_;   // of a sphere or sun
-  std::uint64_t light_number_ = 0;  // of all that methods of this process have prepared
+  std::uint64_t light_number_ = 0;  // of all that were prepared
+  std::unique_ptr<AllBuffers> buffers_;
   const visibility::ViewSamples* samples_ = nullptr;
   visibility::Tile tile_;
   UnsetList<std::uint16_t> masks_;  // of the tile; set where some light samples are visible and some are not

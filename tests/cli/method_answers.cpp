@@ -1,4 +1,5 @@
 // Whatever a method answers, what is no share of a light goes no further than the host.
+#include "app/process/terminal_progress.hpp"
 #include "app/machine.hpp"
 #include "app/runner.hpp"
 #include "app/session.hpp"
@@ -53,7 +54,7 @@ class MethodAnswers : public ProgramTest {
     RunOptions options;
     options.scene = tiny_scene();
     const render::Machine machine = app::make_machine("cpu");
-    app::Progress progress(false);
+    app::TerminalProgress progress(false);
     const app::Session session = app::open_session(options, std::nullopt, machine, 0, progress);
     app::run_method(
         method, session, {.lights = session.lights}, [](const app::TileResult&) {}, progress);

@@ -1,11 +1,14 @@
-#include "app/process/progress.hpp"
+#include "app/process/terminal_progress.hpp"
 
 #include "app/process/interrupt.hpp"
 #include "app/process/process.hpp"
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <array>
+#include <cstddef>
 #include <utility>
 
 #include <unistd.h>
@@ -19,14 +22,14 @@ constexpr auto kSilence = std::chrono::seconds(5);
 
 }  // namespace
 
-Progress::Progress(bool wanted)
+TerminalProgress::TerminalProgress(bool wanted)
     : wanted_(wanted), on_terminal_(::isatty(STDERR_FILENO) != 0), last_draw_(std::chrono::steady_clock::now()) {}
 
-Progress::~Progress() {
+TerminalProgress::~TerminalProgress() {
   clear();
 }
 
-void Progress::begin(std::string stage, std::uint64_t steps) {
+void TerminalProgress::begin(std::string stage, std::uint64_t steps) {
   check_interrupt();
   stage_ = std::move(stage);
   steps_ = std::max<std::uint64_t>(steps, 1);
@@ -35,33 +38,39 @@ void Progress::begin(std::string stage, std::uint64_t steps) {
   draw();
 }
 
-void Progress::advance(std::uint64_t steps) {
+void TerminalProgress::advance(std::uint64_t steps) {
   check_interrupt();
   done_ = std::min(done_ + steps, steps_);
   draw();
 }
 
-void Progress::clear() {
+void TerminalProgress::clear() {
   if (!drawn_) return;
-  say("\r\033[K");
+  app::say("\r\033[K");
   drawn_ = false;
 }
 
-void Progress::draw() {
+void TerminalProgress::say(Level level, const std::string& message) {
+  clear();
+  constexpr std::array kLevels = {spdlog::level::debug, spdlog::level::info, spdlog::level::warn, spdlog::level::err};
+  spdlog::log(kLevels.at(static_cast<std::size_t>(level)), "{}", message);
+}
+
+void TerminalProgress::draw() {
   if (!wanted_) return;
   const auto now = std::chrono::steady_clock::now();
   if (!on_terminal_) {
     if (now - last_draw_ < kSilence) return;
     last_draw_ = now;
-    say(fmt::format("penumbra: info: {:3}% {}\n", 100 * done_ / steps_, stage_));
+    app::say(fmt::format("penumbra: info: {:3}% {}\n", 100 * done_ / steps_, stage_));
     return;
   }
   if (now - last_draw_ < std::chrono::milliseconds(50) && done_ < steps_) return;  // a terminal is slower than a tile
   last_draw_ = now;
   constexpr std::uint64_t kWidth = 30;
   const std::uint64_t filled = kWidth * done_ / steps_;
-  say(fmt::format("\r\033[K[{}{}] {:3}% {}", std::string(filled, '='), std::string(kWidth - filled, ' '),
-                  100 * done_ / steps_, stage_));
+  app::say(fmt::format("\r\033[K[{}{}] {:3}% {}", std::string(filled, '='), std::string(kWidth - filled, ' '),
+                       100 * done_ / steps_, stage_));
   drawn_ = true;
 }
 

@@ -1,0 +1,52 @@
+#pragma once
+
+#include "app/wedges/coverage.hpp"
+#include "app/wedges/report.hpp"
+#include "scenes/scene.hpp"
+#include "visibility/light_samples.hpp"
+#include "visibility/scene_floats.hpp"
+#include "volumes/wedges/wedge_tightness.hpp"
+#include "volumes/wedges/wedge_validation.hpp"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace penumbra::app {
+
+/// Which wedges are built, as the user gave it.
+struct WedgeRequest {
+  std::string light = {};                 ///< empty: the scene's first
+  std::string construction = "original";  ///< original, tight, or broken:1 to broken:6
+  std::string from = "centre";            ///< centre or anywhere
+  bool validate = false;                  ///< prove every invariant
+};
+
+/// The wedges of one light of a scene, and what proving them found. An object that stays where it is, since its result
+/// refers to it.
+class BuiltWedges {
+ public:
+  /// Coverage is checked through the scene's first camera and at its size. Throws UsageError for what is wrong with the
+  /// request, InputError for a light that has no wedges.
+  BuiltWedges(const scenes::Scene& scene, const WedgeRequest& request);
+  BuiltWedges(const BuiltWedges&) = delete;
+  BuiltWedges& operator=(const BuiltWedges&) = delete;
+
+  /// Refers to this object.
+  [[nodiscard]] WedgesResult result() const;
+  [[nodiscard]] bool holds() const { return !report || report->violations.empty(); }
+
+  WedgeRequest request;
+  visibility::SceneFloats floats;
+  visibility::Light light;
+  volumes::LightHull hull;
+  volumes::Casters casters;
+  volumes::CastingEdges casting;
+  std::vector<volumes::Wedge> wedges;
+  std::optional<volumes::ValidationReport> report;  ///< of what was validated, as the next two
+  std::optional<volumes::Tightness> tightness;
+  std::optional<CoverageOutcome> coverage;
+  std::vector<std::string> warnings;
+};
+
+}  // namespace penumbra::app

@@ -1,0 +1,39 @@
+#include "app/compare/comparison.hpp"
+#include "app/options.hpp"
+#include "compare/stats.hpp"
+#include "library/library_progress.hpp"
+#include "library/scene_state.hpp"
+#include "scenes/formats/checks.hpp"
+
+#include <penumbra/compare.hpp>
+
+#include <fmt/ranges.h>
+
+namespace penumbra {
+
+std::string compare_json(const Scene& scene, const CompareOptions& options, const RendererOptions& renderer) {
+  const Scene::State& state = scene.state();
+  scenes::check_scene(state.scene, "the scene");
+  app::RunOptions run;
+  run.scene = "the scene";
+  run.out = options.out;
+  run.device = renderer.device;
+  run.light_samples = fmt::format("{}", options.light_samples);
+  run.sample_pattern = options.sample_pattern;
+  run.lights = options.lights;
+  run.camera = options.camera;
+  if (run.camera.empty() && state.camera) run.camera = state.scene.cameras[*state.camera].name;
+  if (options.width != 0 || options.height != 0) run.size = fmt::format("{}x{}", options.width, options.height);
+  app::ComparisonOptions comparison;
+  comparison.methods = app::parse_methods(fmt::format("{}", fmt::join(options.methods, ",")));
+  comparison.reference = options.reference;
+  comparison.reference_samples = options.reference_samples;
+  if (options.runs != 0) comparison.runs = options.runs;
+  comparison.error_budget = options.error_budget;
+  comparison.writes = !options.out.empty();
+  LibraryProgress progress(renderer);
+  const compare::Metrics metrics = app::compare_methods(state.scene, run, comparison, progress);
+  return compare::json_text(compare::to_json(metrics));
+}
+
+}  // namespace penumbra

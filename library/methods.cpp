@@ -1,0 +1,43 @@
+#include "app/method_list.hpp"
+#include "app/methods.hpp"
+
+#include <penumbra/methods.hpp>
+#include <penumbra/penumbra.hpp>
+
+#include <nlohmann/json.hpp>
+
+namespace penumbra {
+
+std::string version() {
+  return PENUMBRA_VERSION;
+}
+
+std::vector<MethodInfo> methods() {
+  std::vector<MethodInfo> all;
+  for (const visibility::MethodDescription* method : app::all_methods()) {
+    MethodInfo info{.name = method->name,
+                    .family = visibility::name_of(method->family),
+                    .paper = method->paper,
+                    .output = visibility::name_of(method->output),
+                    .exact_for = method->exact_for,
+                    .lights = app::light_names(*method),
+                    .options = {}};
+    for (const visibility::OptionDescription& option : method->options) {
+      info.options.push_back({.name = option.name,
+                              .default_value = option.default_value,
+                              .help = option.help,
+                              .choices = option.choices,
+                              .least = option.least,
+                              .most = option.most,
+                              .whole = option.whole});
+    }
+    all.push_back(std::move(info));
+  }
+  return all;
+}
+
+std::string methods_json() {
+  return app::methods_json().dump(2);
+}
+
+}  // namespace penumbra

@@ -1,0 +1,177 @@
+// Pictures of one scene after each other, by what renders the command line's frames.
+
+#include "app/light_methods.hpp"
+#include "app/options.hpp"
+#include "app/pictures/frame_render.hpp"
+#include "app/process/stopwatch.hpp"
+#include "app/whole_lights.hpp"
+#include "base/error.hpp"
+#include "compare/stats.hpp"
+#include "library/library_progress.hpp"
+#include "library/picture_state.hpp"
+#include "library/scene_state.hpp"
+#include "render/machine.hpp"
+#include "scenes/formats/checks.hpp"
+
+#include <penumbra/renderer.hpp>
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+namespace penumbra {
+namespace {
+
+constexpr float kFar = 1e10F;  // Z of the background
+
+/// View samples along each axis of a pixel. Throws UsageError for a number that is no square.
+std::uint32_t pixel_side(std::uint32_t samples) {
+  for (std::uint32_t side = 1; side <= 8; ++side) {
+    if (side * side == samples) return side;
+  }
+  throw UsageError("pixel_samples {}: expected a square number from 1 to 64, such as 4, 9 or 16", samples);
+}
+
+app::RunOptions run_options(const RenderOptions& options) {
+  app::RunOptions run;
+  run.scene = "the scene";
+  if (options.light_samples != 0) run.light_samples = fmt::format("{}", options.light_samples);
+  run.sample_pattern = options.sample_pattern;
+  run.sample_seed = options.sample_seed;
+  if ((options.width == 0) != (options.height == 0))
+    throw UsageError("size {}x{}: expected both, or neither for the scene's", options.width, options.height);
+  if (options.width != 0) run.size = fmt::format("{}x{}", options.width, options.height);
+  run.lights = options.lights;
+  run.normals = options.shading_normals ? "shading" : "geometric";
+  return run;
+}
+
+std::string camera_of(const Scene::State& scene, const RenderOptions& options) {
+  if (!options.camera.empty() || !scene.camera) return options.camera;
+  return scene.scene.cameras[*scene.camera].name;
+}
+
+std::shared_ptr<const Picture::State> picture_of(app::FrameRenderer& frames, double seconds) {
+  auto picture = std::make_shared<Picture::State>();
+  const app::Session& session = frames.session();
+  picture->width = session.width;
+  picture->height = session.height;
+  compare::Stats stats = frames.stats();
+  stats.seconds.total = seconds;
+  picture->stats = compare::json_text(compare::to_json(stats));
+  for (const compare::LightStats& light : stats.lights) {
+    picture->lights.push_back(light.name);
+    picture->methods.push_back(light.method);
+    picture->light_samples.push_back(light.light_samples);
+  }
+  picture->frame = frames.take();
+  const std::vector<app::WholeLight> wholes = app::whole_lights(session.lights);
+  std::vector<std::vector<std::uint32_t>> masks(wholes.size());
+  for (std::size_t light = 0; light < wholes.size(); ++light) {
+    const bool is_whole = wholes[light].count == 1 && wholes[light].first < picture->frame.masks.size();
+    if (is_whole) masks[light] = std::move(picture->frame.masks[wholes[light].first]);
+    picture->words.push_back(masks[light].empty() ? 0 : session.lights[wholes[light].first].words_per_mask());
+  }
+  picture->frame.masks = std::move(masks);
+
+  const visibility::ViewSamples& samples = session.samples;
+  picture->origin = session.floats.origin;
+  picture->relative_positions = samples.p;
+  picture->normals = samples.n;
+  picture->positions.resize(samples.size());
+  picture->depth.resize(samples.size());
+  picture->ids.resize(samples.size());
+  tbb::parallel_for(std::size_t{0}, samples.size(), [&](std::size_t i) {
+    const bool is_background = samples.triangle[i] == visibility::ViewSamples::kBackground;
+    picture->positions[i] =
+        is_background ? glm::vec3(0) : glm::vec3(glm::dvec3(samples.p[i]) + session.floats.origin);
+    picture->depth[i] = is_background ? kFar : samples.depth[i];
+    picture->ids[i] = static_cast<std::uint32_t>(samples.triangle[i]);
+  });
+  return picture;
+}
+
+}  // namespace
+
+void LibraryProgress::begin(std::string stage, std::uint64_t steps) {
+  stage_ = std::move(stage);
+  steps_ = std::max<std::uint64_t>(steps, 1);
+  done_ = 0;
+  report();
+}
+
+void LibraryProgress::advance(std::uint64_t steps) {
+  done_ = std::min(done_ + steps, steps_);
+  report();
+}
+
+void LibraryProgress::report() const {
+  if (options_.progress && !options_.progress(stage_, static_cast<double>(done_) / static_cast<double>(steps_)))
+    throw Cancelled();
+}
+
+void LibraryProgress::say(Level level, const std::string& message) {
+  constexpr std::array kLevels = {LogLevel::debug, LogLevel::info, LogLevel::warning, LogLevel::error};
+  if (options_.log) options_.log(kLevels.at(static_cast<std::size_t>(level)), message);
+}
+
+Cancelled::Cancelled() : Error(ExitCode::interrupted, "cancelled by the progress function") {}
+Cancelled::~Cancelled() = default;
+
+struct Renderer::State {
+  State(Scene made, RendererOptions wished)
+      : scene(std::move(made)), options(std::move(wished)), machine({.wanted = options.device}) {}
+
+  Scene scene;
+  RendererOptions options;
+  render::Machine machine;
+  LibraryProgress progress{options};
+  app::RunOptions run;
+  app::MethodWish wish;
+  std::optional<app::FrameRenderer> frames;  // refers to run, wish and progress
+};
+
+Renderer::Renderer(Scene scene, RendererOptions options)
+    : state_(std::make_unique<State>(std::move(scene), std::move(options))) {}
+Renderer::Renderer(Renderer&&) noexcept = default;
+Renderer& Renderer::operator=(Renderer&&) noexcept = default;
+Renderer::~Renderer() = default;
+
+Scene& Renderer::scene() {
+  return state_->scene;
+}
+const Scene& Renderer::scene() const {
+  return state_->scene;
+}
+
+Picture Renderer::render(const RenderOptions& options) {
+  const app::Stopwatch total;
+  State& state = *state_;
+  const Scene::State& scene = state.scene.state();
+  scenes::check_scene(scene.scene, "the scene");
+  app::RunOptions run = run_options(options);
+  const app::Frame frame{.number = {},
+                         .camera = camera_of(scene, options),
+                         .pixel_side = pixel_side(options.pixel_samples),
+                         .keeps_masks = options.masks && options.pixel_samples == 1};
+  static_cast<void>(app::parse_light_samples(run));  // what is wrong with them is said before the renderer's change
+  state.run = std::move(run);
+  state.wish = {options.method, {options.options.begin(), options.options.end()},
+                options.light_samples != 0 || !options.sample_pattern.empty()};
+  if (!state.frames) {
+    state.frames.emplace(state.run, state.wish, state.machine, state.progress);
+    state.frames->expect_frames();
+  }
+  try {
+    state.frames->render(scene.scene, frame, {}, 0);
+    return Picture(picture_of(*state.frames, total.seconds()));
+  } catch (...) {
+    state.frames.reset();  // whatever it holds may be half of one scene and half of another
+    throw;
+  }
+}
+
+}  // namespace penumbra

@@ -1,0 +1,28 @@
+#pragma once
+
+#include "scenes/scene.hpp"
+
+#include <penumbra/scene.hpp>
+
+#include <glm/vec3.hpp>
+
+#include <optional>
+#include <vector>
+
+namespace penumbra {
+
+/// A mesh as it was added or read: what set_transform() starts from.
+struct RestMesh {
+  std::uint32_t first = 0;  ///< of its vertices among the scene's; one after the other
+  std::vector<glm::dvec3> positions;
+  std::vector<glm::vec3> normals;  ///< empty: the scene has none
+};
+
+struct Scene::State {
+  scenes::Scene scene;
+  /// For each object, from its first set_transform() on.
+  std::vector<std::optional<RestMesh>> rest = {};
+  std::optional<std::size_t> camera = {};  ///< the one that looks by default; nullopt: the first
+};
+
+}  // namespace penumbra

@@ -1,0 +1,403 @@
+"""Penumbra: how much of an area light each visible point sees, exactly or by any known approximation.
+
+    import penumbra
+    scene = penumbra.load("room.json")
+    picture = penumbra.render(scene, size=(512, 512))        # exact areas
+    picture.V, picture.rgb                                   # numpy arrays (H, W) and (H, W, 3)
+
+Lengths are in the scene's unit, Y is up, angles are in degrees. Arrays of a picture are read-only views of its memory, row
+by row from the top left. Calls release the interpreter's lock while they work, and Ctrl-C ends them. Errors are
+`penumbra.Error` with the command line's messages: `UsageError` for a call that cannot be meant, `InputError` for a scene or
+file that cannot be used, `ResourceError` where the machine refuses.
+"""
+
+from __future__ import annotations
+
+import copy as _copy
+import json as _json
+import os as _os
+
+import numpy as _np
+
+from . import _core
+from ._core import Cancelled, Error, InputError, ResourceError, UsageError
+
+__version__ = _core.version()
+__all__ = [
+    "Cancelled", "Error", "InputError", "LightPicture", "Picture", "Renderer", "ResourceError", "Scene", "UsageError",
+    "compare", "inspect", "load", "methods", "render", "wedges",
+]
+
+_SHAPES = {
+    "rectangle": ("center", "half_u", "half_v"),
+    "disk": ("center", "normal", "radius"),
+    "ellipse": ("center", "half_u", "half_v"),
+    "polygon": ("vertices",),
+    "sphere": ("center", "radius"),
+    "sun": ("direction", "angle"),
+}
+_SPELLINGS = {"halfU": "half_u", "halfV": "half_v", "twoSided": "two_sided"}  # of scene files
+
+
+def _plain(value):
+    """Numpy numbers and arrays as JSON has them."""
+    if hasattr(value, "tolist"):
+        return value.tolist()
+    raise TypeError(f"{value!r} cannot stand in a scene")
+
+
+def _names(value):
+    return [] if value is None else [value] if isinstance(value, str) else list(value)
+
+
+def _size(size):
+    if size is None:
+        return 0, 0
+    width, height = size
+    return int(width), int(height)
+
+
+class Scene:
+    """Triangle meshes, area lights and cameras: a value that can be changed and copied (`copy.copy`)."""
+
+    def __init__(self, core=None):
+        self._core = _core.Scene() if core is None else core
+
+    def __copy__(self):
+        return Scene(_core.Scene(self._core))
+
+    def __deepcopy__(self, memo):
+        return self.__copy__()
+
+    @classmethod
+    def load(cls, file, *, lenient=False, allow_outside=False, frame=None, fps=24.0, lamp_radius=None, sun_angle=None,
+             lumens_per_watt=None, clips=()):
+        """Reads a .json (penumbra-scene/1), .gltf or .glb file. `frame` is at frame / fps seconds of its animation; the
+        other options are those of `penumbra render`."""
+        return cls(_core.Scene.load(_os.fspath(file), lenient, allow_outside, frame, fps, lamp_radius, sun_angle,
+                                    lumens_per_watt, _names(clips)))
+
+    @classmethod
+    def from_dict(cls, scene, folder=".", *, allow_outside=False):
+        """Builds a scene from a dict as a penumbra-scene/1 file has it. A mesh may have arrays "vertices" (V, 3) and "faces"
+        (F, 3) in place of a file or a shape. Names of files are relative to `folder`."""
+        scene = dict(scene)
+        scene.setdefault("format", "penumbra-scene/1")
+        arrays = {}
+        meshes = []
+        for index, mesh in enumerate(scene.get("meshes", [])):
+            if "vertices" in mesh or "faces" in mesh:
+                mesh = dict(mesh)
+                if not ("vertices" in mesh and "faces" in mesh):
+                    raise UsageError(f"mesh {index}: vertices and faces come together")
+                arrays[index] = mesh.pop("vertices"), mesh.pop("faces")
+                # Takes the mesh's place while the file's other rules are checked; shows what its transform does.
+                mesh["triangles"] = [[0, 0, 0, 1, 0, 0, 0, 1, 0], [0, 0, 0, 0, 1, 0, 0, 0, 1]]
+            meshes.append(mesh)
+        scene["meshes"] = meshes
+        core = _core.Scene.parse(_json.dumps(scene, default=_plain), _os.fspath(folder), allow_outside)
+        for index, (vertices, faces) in arrays.items():
+            vertices = _np.asarray(vertices, float)
+            if "transform" in meshes[index]:
+                vertices = _transformed(meshes[index]["transform"], vertices)
+            core.set_mesh(index, vertices, faces)
+        return cls(core)
+
+    def add_mesh(self, name, vertices, faces, *, color=(0.8, 0.8, 0.8), casts_shadow=True, receives_shadow=True):
+        """Adds a mesh: vertices (V, 3), faces (F, 3). Returns its number."""
+        return self._core.add_mesh(name, vertices, faces, color, casts_shadow, receives_shadow)
+
+    def set_positions(self, mesh, vertices):
+        """Other positions (V, 3) for the vertices of a mesh, by its name or number."""
+        self._core.set_positions(self._mesh(mesh), vertices)
+
+    def set_transform(self, mesh, matrix):
+        """Moves a mesh, by its name or number: `matrix` (4, 4), for column vectors, takes the positions that the mesh was
+        added or read with to where they are."""
+        self._core.set_transform(self._mesh(mesh), _np.asarray(matrix, float))
+
+    def _mesh(self, mesh):
+        return self._core.mesh(mesh) if isinstance(mesh, str) else int(mesh)
+
+    def add_light(self, name, kind, *, radiance=(10, 10, 10), two_sided=False, **shape):
+        """Adds a light of a kind: rectangle(center, half_u, half_v), disk(center, normal, radius), ellipse(center, half_u,
+        half_v), polygon(vertices), sphere(center, radius) or sun(direction, angle)."""
+        self._core.add_light(name, kind, _shape(kind, shape), tuple(radiance), two_sided)
+
+    def set_light(self, name, **changes):
+        """Changes a light: parts of its shape, `radiance`, `two_sided`; `kind` and the whole of another shape."""
+        light = self._core.light(name)
+        changes = {_SPELLINGS.get(key, key): value for key, value in changes.items()}
+        options = {key: changes.pop(key) for key in ("radiance", "two_sided") if key in changes}
+        kind = changes.pop("kind", light["kind"])
+        shape = changes if kind != light["kind"] else {
+            key: changes.get(key, light[key]) for key in light if key not in ("kind", "radiance", "two_sided")} | changes
+        trial = _core.Scene(self._core) if options and shape else self._core
+        if changes or kind != light["kind"]:
+            trial.set_light_shape(name, kind, _shape(kind, shape))
+        if options:
+            trial.set_light_options(name, tuple(options.get("radiance", light["radiance"])),
+                                    bool(options.get("two_sided", light["two_sided"])))
+        if trial is not self._core:  # both could be done
+            self._core.set_light_options(name, tuple(options.get("radiance", light["radiance"])),
+                                         bool(options.get("two_sided", light["two_sided"])))
+            if changes or kind != light["kind"]:
+                self._core.set_light_shape(name, kind, _shape(kind, shape))
+
+    def remove_light(self, name):
+        self._core.remove_light(name)
+
+    def light(self, name):
+        """A dict of the light: its kind, shape, radiance and two_sided."""
+        return self._core.light(name)
+
+    def set_camera(self, eye, target, up=(0, 1, 0), vertical_fov=45.0, height=None, name="camera"):
+        """Adds a camera, or replaces that of the same name; it looks by default. `height` makes it orthographic."""
+        self._core.set_camera(tuple(eye), tuple(target), tuple(up), vertical_fov, height, name)
+
+    @property
+    def meshes(self):
+        return self._core.mesh_names()
+
+    @property
+    def lights(self):
+        return self._core.light_names()
+
+    @property
+    def cameras(self):
+        return self._core.camera_names()
+
+    @property
+    def triangle_count(self):
+        return self._core.triangle_count()
+
+    @property
+    def size(self):
+        """(width, height) of pictures for which none is asked for."""
+        return tuple(self._core.size())
+
+    @size.setter
+    def size(self, size):
+        self._core.set_size(*_size(size))
+
+    @property
+    def warnings(self):
+        """What was skipped or changed while the scene was read."""
+        return self._core.warnings()
+
+    def save(self, file):
+        """Writes .json, .glb or .obj; returns warnings about what the format cannot hold."""
+        return self._core.save(_os.fspath(file))
+
+    def __repr__(self):
+        return f"<penumbra.Scene: {self.triangle_count} triangles, lights {self.lights}, cameras {self.cameras}>"
+
+
+def _shape(kind, given):
+    if kind not in _SHAPES:
+        raise UsageError(f'light of kind "{kind}": expected {", ".join(_SHAPES)}')
+    shape = {_SPELLINGS.get(key, key): value for key, value in given.items()}
+    for key in shape:
+        if key not in _SHAPES[kind]:
+            raise UsageError(f'a {kind} light has no "{key}"; it has {", ".join(_SHAPES[kind])}')
+    as_tuple = lambda value: value if _np.isscalar(value) else _np.asarray(value, float).tolist()
+    return {key: as_tuple(value) for key, value in shape.items()}
+
+
+def _transformed(transform, vertices):
+    """The rule of scene files: scale, then rotate about x, y and z in degrees, then translate."""
+    scale = _np.broadcast_to(_np.asarray(transform.get("scale", 1), float), 3)
+    vertices = vertices * scale
+    for axis, angle in enumerate(_np.radians(_np.asarray(transform.get("rotate", (0, 0, 0)), float))):
+        a, b = [(1, 2), (2, 0), (0, 1)][axis]
+        turned = vertices.copy()
+        turned[:, a] = _np.cos(angle) * vertices[:, a] - _np.sin(angle) * vertices[:, b]
+        turned[:, b] = _np.sin(angle) * vertices[:, a] + _np.cos(angle) * vertices[:, b]
+        vertices = turned
+    return vertices + _np.asarray(transform.get("translate", (0, 0, 0)), float)
+
+
+class LightPicture:
+    """What a picture shows of one light."""
+
+    def __init__(self, core, index):
+        self._core, self._index = core, index
+
+    @property
+    def V(self):
+        """Visibility (H, W), 0 to 1: the share of the light's area that the pixel sees."""
+        return self._core.visibility(self._index)
+
+    @property
+    def rgb(self):
+        """Linear beauty of this light alone (H, W, 3)."""
+        return self._core.light_beauty(self._index)
+
+    @property
+    def masks(self):
+        """Which light samples each pixel sees, bool (H, W, N); None of areas and of methods without masks."""
+        words = self._core.mask_words(self._index)
+        if words is None:
+            return None
+        bits = _np.unpackbits(words.astype("<u4").view(_np.uint8), axis=-1, bitorder="little")
+        return bits[..., : self._core.light_samples(self._index)].astype(bool)
+
+    @property
+    def method(self):
+        """The name of the method that it was done by."""
+        return self._core.method(self._index)
+
+
+class Picture(LightPicture):
+    """A rendered picture: numpy arrays, row by row from the top left. V and masks are of the first light."""
+
+    def __init__(self, core):
+        super().__init__(core, 0)
+        self.lights = {name: LightPicture(core, i) for i, name in enumerate(core.light_names())}
+
+    @property
+    def size(self):
+        """(width, height)."""
+        return self._core.width(), self._core.height()
+
+    @property
+    def rgb(self):
+        """Linear beauty of all lights together (H, W, 3)."""
+        return self._core.beauty()
+
+    @property
+    def A(self):
+        """Coverage (H, W): 1 where the pixel shows a surface, 0 in the background."""
+        return self._core.alpha()
+
+    @property
+    def P(self):
+        """Positions in world space (H, W, 3)."""
+        return self._core.positions()
+
+    @property
+    def Prel(self):
+        """Positions relative to `origin` (H, W, 3), in which visibility is decided."""
+        return self._core.relative_positions()
+
+    @property
+    def origin(self):
+        return tuple(self._core.origin())
+
+    @property
+    def N(self):
+        """Geometric normals toward the camera (H, W, 3)."""
+        return self._core.normals()
+
+    @property
+    def Z(self):
+        """Depth along the camera's axis (H, W); 1e10 in the background."""
+        return self._core.depth()
+
+    @property
+    def id(self):
+        """Triangle numbers (H, W); 4294967295 in the background."""
+        return self._core.ids()
+
+    @property
+    def stats(self):
+        """A dict: seconds of each phase, counters, warnings, lights."""
+        return _json.loads(self._core.stats_json())
+
+    def __repr__(self):
+        return f"<penumbra.Picture: {self.size[0]}x{self.size[1]}, lights {list(self.lights)}>"
+
+
+class Renderer:
+    """Renders one scene again and again, and keeps from call to call what did not change: hierarchies over meshes, view
+    samples, the Vulkan device. The scene given to it is copied; `scene` is its own, which may be changed between calls."""
+
+    def __init__(self, scene, *, device="", log=None, progress=None):
+        """`device`: part of a Vulkan device's name, its index, or "cpu". `log(level, message)` gets messages,
+        `progress(stage, done)` is called many times a second; the call ends with Cancelled if it returns False."""
+        self._core = _core.Renderer(_as_scene(scene)._core, device, log, progress)
+        self.scene = Scene(self._core.scene())
+
+    def set_light(self, name, **changes):
+        """Scene.set_light of its scene."""
+        self.scene.set_light(name, **changes)
+
+    def set_camera(self, *args, **kwargs):
+        """Scene.set_camera of its scene."""
+        self.scene.set_camera(*args, **kwargs)
+
+    def set_transform(self, mesh, matrix):
+        """Scene.set_transform of its scene."""
+        self.scene.set_transform(mesh, matrix)
+
+    def render(self, size=None, method="", light_samples=0, options=None, light=None, camera="", *, sample_pattern="",
+               sample_seed=0, pixel_samples=1, normals="shading", masks=True):
+        """A Picture. `size`: (width, height), or None for the scene's. Without `method` each light gets the best one that
+        gives its exact area; with `light_samples` (1 to 4096) the best one with samples. `options`: a dict of the method's.
+        `light`: a name or names, for these lights alone. `normals`: "shading" or "geometric", of the beauty."""
+        if normals not in ("shading", "geometric"):
+            raise UsageError(f'normals "{normals}": expected shading or geometric')
+        width, height = _size(size)
+        texts = {str(key): _text(value) for key, value in (options or {}).items()}
+        return Picture(self._core.render(width, height, method or "", texts, int(light_samples or 0), sample_pattern,
+                                         sample_seed, _names(light), camera or "", pixel_samples, normals == "shading",
+                                         masks))
+
+
+def _text(value):
+    if isinstance(value, bool):
+        return "on" if value else "off"
+    return str(value)
+
+
+def _as_scene(scene):
+    if isinstance(scene, Scene):
+        return scene
+    if isinstance(scene, dict):
+        return Scene.from_dict(scene)
+    return load(scene)
+
+
+def load(file, **options):
+    """Scene.load."""
+    return Scene.load(file, **options)
+
+
+def render(scene, size=None, method="", light_samples=0, options=None, light=None, camera="", *, device="", log=None,
+           progress=None, **more):
+    """One picture of a Scene, a dict (Scene.from_dict) or a file: Renderer(scene).render(…)."""
+    return Renderer(scene, device=device, log=log, progress=progress).render(
+        size, method, light_samples, options, light, camera, **more)
+
+
+def compare(scene, methods="default", *, reference="raytrace", reference_samples=1024, size=None, light_samples=256,
+            sample_pattern="", light=None, camera="", runs=0, error_budget=False, out="", device="", log=None,
+            progress=None):
+    """Several methods on the same view samples against a reference ("raytrace" or "exact"): a list of dicts as metrics.json's
+    `methods` has them. `methods`: entries "NAME:key=value:…", or the groups geometry, image, all, default. `out`: a folder
+    for pictures and the report."""
+    width, height = _size(size)
+    text = _core.compare_json(_as_scene(scene)._core, _names(methods), reference, str(reference_samples), width, height,
+                              light_samples, sample_pattern, _names(light), camera, runs, error_budget, _os.fspath(out),
+                              device, log, progress)
+    return _json.loads(text)["methods"]
+
+
+def inspect(mesh, faces=None, *, weld=0.0, self_intersections=True, list_limit=100):
+    """What is wrong with a mesh, and what each method makes of it: a dict as `penumbra inspect --json` prints it. `mesh`: a
+    file, or vertices (V, 3) with `faces` (F, 3)."""
+    if faces is None:
+        text = _core.inspect_file(_os.fspath(mesh), weld, self_intersections, list_limit)
+    else:
+        text = _core.inspect_arrays(mesh, faces, weld, self_intersections, list_limit)
+    return _json.loads(text)
+
+
+def wedges(scene, light="", *, construction="original", from_="centre", validate=False):
+    """The penumbra wedges of a light: a dict as `penumbra wedges --json` writes it."""
+    return _json.loads(_core.wedges_json(_as_scene(scene)._core, light, construction, from_, validate))
+
+
+def methods():
+    """All methods: a list of dicts as `penumbra methods --json` prints it."""
+    return _json.loads(_core.methods_json())["methods"]

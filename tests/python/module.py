@@ -1,0 +1,193 @@
+"""The Python module against the program and against itself: module.py PENUMBRA SOURCE."""
+
+import copy
+import json
+import os
+import pathlib
+import signal
+import subprocess
+import sys
+import tempfile
+import threading
+import unittest
+
+import numpy as np
+
+import penumbra
+
+PROGRAM, SOURCE = sys.argv[1], pathlib.Path(sys.argv[2])
+ROOM = SOURCE / "scenes" / "room.json"
+LIGHTS = SOURCE / "scenes" / "lights.json"
+
+
+def program(*arguments):
+    return subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True, check=True).stdout
+
+
+def board_over_floor():
+    """A scene by hand: a square light at height 2 over a floor, half of it hidden by a board."""
+    return {
+        "camera": {"eye": [0, 0.8, 4], "target": [0, 0, 0]},
+        "meshes": [
+            {"name": "floor", "vertices": np.array([[-3, 0, 3], [3, 0, 3], [3, 0, -3], [-3, 0, -3]]),
+             "faces": np.array([[0, 1, 2], [0, 2, 3]]), "color": [0.5, 0.5, 0.5]},
+            {"name": "board", "vertices": [[0, 1, -3.0], [3, 1, -3], [3, 1, 3], [0, 1, 3]], "faces": [[0, 1, 2], [0, 2, 3]]},
+        ],
+        "lights": [{"name": "key", "rectangle": {"center": [0, 2, 0], "halfU": [0.5, 0, 0], "halfV": [0, 0, 0.5]}}],
+    }
+
+
+class Module(unittest.TestCase):
+    def test_masks_are_the_programs_bits(self):
+        with tempfile.TemporaryDirectory() as folder:
+            program("--quiet", "render", ROOM, "-o", f"{folder}/a.exr", "--size", "24x16", "--method", "edge-scatter",
+                    "--light-samples", 64, "--bits", f"{folder}/a.bits", "--light", "sky")
+            data = pathlib.Path(folder, "a.bits").read_bytes()
+        picture = penumbra.render(penumbra.load(ROOM), size=(24, 16), method="edge-scatter", light_samples=64, light="sky")
+        start = data.index(b"\n") + 1 + 3 * 8 + 64 * 12
+        rows = np.frombuffer(data[start:], np.uint8).reshape(16, 24, 16 + 8)
+        bits = np.unpackbits(rows[..., 16:], axis=-1, bitorder="little").astype(bool)
+        self.assertEqual(picture.masks.shape, (16, 24, 64))
+        self.assertEqual(picture.masks.dtype, bool)
+        np.testing.assert_array_equal(picture.masks, bits)
+        np.testing.assert_array_equal(np.ascontiguousarray(rows[..., :12]).view("<f4").reshape(16, 24, 3), picture.Prel)
+        seen = picture.masks.mean(axis=-1)[picture.A == 1]
+        np.testing.assert_allclose(picture.V[picture.A == 1], seen, atol=1e-7)  # a share of 64, rounded to float32
+
+    def test_exact_half_shadow(self):
+        # Below the board's edge the plane x = 0 through p divides the light: V by the similar triangles of the section, for
+        # the board is as long as the scene. p at x sees the light from x' = -x (the edge at half height mirrors it).
+        picture = penumbra.render(board_over_floor(), size=(64, 64))
+        on_floor = (picture.id < 2) & (np.abs(picture.P[..., 0]) < 0.45) & (np.abs(picture.P[..., 2]) < 1)
+        self.assertGreater(on_floor.sum(), 50)
+        expected = 0.5 - picture.P[..., 0] / 1.0  # the light is from -0.5 to 0.5: it is seen from -0.5 to -x
+        np.testing.assert_allclose(picture.V[on_floor], expected[on_floor], atol=2e-6)  # x in float32, twice
+
+    def test_arrays(self):
+        picture = penumbra.render(ROOM, size=(20, 10))
+        self.assertEqual([a.shape for a in (picture.V, picture.rgb, picture.P, picture.N, picture.Z, picture.id, picture.A)],
+                         [(10, 20), (10, 20, 3), (10, 20, 3), (10, 20, 3), (10, 20), (10, 20), (10, 20)])
+        self.assertIsNone(picture.masks)
+        self.assertEqual(list(picture.lights), ["sun", "sky"])
+        np.testing.assert_allclose(picture.rgb, sum(light.rgb for light in picture.lights.values()), rtol=1e-6)
+        np.testing.assert_array_equal(picture.lights["sun"].V, picture.V)
+        v = picture.V
+        first = v[0, 0]
+        del picture  # the array keeps its memory
+        self.assertEqual(v[0, 0], first)
+        with self.assertRaises(ValueError):
+            v[0, 0] = 2  # read-only
+        self.assertIsNot(v.base, None)  # a view, no copy
+
+    def test_kept_renderer(self):
+        renderer = penumbra.Renderer(penumbra.load(LIGHTS))
+        size = (24, 16)
+        for name, changes in {"panel": {"center": (0.3, 2.5, 0)}, "ball": {"radius": 0.2}, "sun": {"angle": 3.0},
+                              "disk": {"radiance": (1, 2, 3), "two_sided": True}}.items():
+            renderer.set_light(name, **changes)
+            light = renderer.scene.light(name)
+            for key, value in changes.items():
+                np.testing.assert_allclose(light[key], value)
+            fresh = penumbra.render(renderer.scene, size=size)
+            kept = renderer.render(size=size)
+            np.testing.assert_array_equal(kept.rgb, fresh.rgb)
+        renderer.set_light("panel", kind="sphere", center=(0, 3, 0), radius=0.25)
+        self.assertEqual(renderer.scene.light("panel")["kind"], "sphere")
+
+    def test_transform_of_arrays(self):
+        scene = board_over_floor()
+        turned = json.loads(json.dumps(scene, default=lambda a: a.tolist()))
+        transform = {"translate": [0.1, 0.2, 0], "rotate": [10, 20, 30], "scale": 0.5}
+        scene["meshes"][1]["transform"] = transform
+        mesh = turned["meshes"][1]
+        mesh["triangles"] = [sum((mesh["vertices"][v] for v in face), []) for face in mesh.pop("faces")]
+        mesh.pop("vertices")
+        mesh["transform"] = transform
+        turned["format"] = "penumbra-scene/1"
+        floor = turned["meshes"][0]
+        floor["triangles"] = [sum((floor["vertices"][v] for v in face), []) for face in floor.pop("faces")]
+        floor.pop("vertices")
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder, "scene.json")
+            file.write_text(json.dumps(turned))
+            by_file = penumbra.render(file, size=(32, 32))
+        np.testing.assert_allclose(penumbra.render(scene, size=(32, 32)).P, by_file.P, atol=1e-5)
+
+    def test_errors(self):
+        scene = penumbra.load(ROOM)
+        for error in (penumbra.UsageError, penumbra.InputError, penumbra.ResourceError, penumbra.Cancelled):
+            self.assertTrue(issubclass(error, penumbra.Error))
+        with self.assertRaisesRegex(penumbra.UsageError, "edge-scater.*edge-scatter"):
+            penumbra.render(scene, method="edge-scater")
+        with self.assertRaisesRegex(penumbra.InputError, "nowhere.json"):
+            penumbra.load("nowhere.json")
+        with self.assertRaisesRegex(penumbra.UsageError, 'no "radius"'):
+            scene.set_light("sky", radius=2)
+        with self.assertRaises(penumbra.UsageError):
+            scene.set_light("moon", radius=2)
+        with self.assertRaises(penumbra.InputError):
+            penumbra.Scene.from_dict({"meshes": [], "lights": []})
+        with self.assertRaises(penumbra.InputError):
+            scene.add_mesh("bad", [[0, 0, 0], [1, 0, 0], [0, 1, np.nan]], [[0, 1, 2]])
+        before = scene.light("sky")
+        with self.assertRaises(penumbra.InputError):
+            scene.set_light("sky", half_u=(0, 0, 0), radiance=(1, 1, 1))
+        self.assertEqual(scene.light("sky"), before)
+        with self.assertRaises(penumbra.ResourceError):
+            penumbra.render(scene, device="no such device", method="pcf")
+
+    def test_copies_are_independent(self):
+        scene = penumbra.load(ROOM)
+        other = copy.copy(scene)
+        other.set_light("sky", radiance=(1, 2, 3))
+        self.assertNotEqual(scene.light("sky")["radiance"], other.light("sky")["radiance"])
+
+    def test_compare_inspect_wedges_methods(self):
+        rows = penumbra.compare(ROOM, methods=["edge-scatter", "edge-scatter:rows=exact"], reference="exact", size=(24, 16),
+                                light_samples=64, runs=1)
+        self.assertEqual([row["method"] for row in rows], ["edge-scatter", "edge-scatter"])
+        self.assertLess(rows[1]["error"]["rmse"], 1e-6)
+        self.assertGreater(rows[0]["error"]["rmse"], rows[1]["error"]["rmse"])
+        tetrahedron = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], float)
+        faces = np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
+        report = penumbra.inspect(tetrahedron, faces)
+        self.assertTrue(report["closed"])
+        self.assertAlmostEqual(report["volume"], 1 / 6)
+        self.assertFalse(penumbra.inspect(tetrahedron, faces[:3])["closed"])
+        wedges = penumbra.wedges(ROOM, light="sky", validate=True)
+        self.assertEqual(wedges["violations"], [])
+        self.assertGreater(len(wedges["wedges"]), 0)
+        self.assertEqual(penumbra.methods(), json.loads(program("methods", "--json"))["methods"])
+
+    def test_works_beside_other_threads(self):
+        # The interpreter's lock is free while a picture is made: another thread counts on.
+        count, stop = [0], threading.Event()
+
+        def counting():
+            while not stop.is_set():
+                count[0] += 1
+
+        thread = threading.Thread(target=counting)
+        thread.start()
+        before = count[0]
+        penumbra.render(ROOM, size=(96, 96), method="exact")
+        after = count[0]
+        stop.set()
+        thread.join()
+        self.assertGreater(after - before, 1000)
+
+    def test_progress_and_interrupt(self):
+        stages = []
+        with self.assertRaises(penumbra.Cancelled):
+            penumbra.render(ROOM, size=(64, 64), progress=lambda stage, done: stages.append(stage) or len(stages) < 3)
+        self.assertEqual(len(stages), 3)
+        with self.assertRaises(ZeroDivisionError):
+            penumbra.render(ROOM, size=(64, 64), progress=lambda stage, done: 1 // 0)
+        threading.Timer(0.3, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
+        with self.assertRaises(KeyboardInterrupt):
+            for _ in range(1000):
+                penumbra.render(ROOM, size=(256, 256))
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])
