@@ -55,18 +55,22 @@ void require_image_memory(std::uint64_t width, std::uint64_t height, std::uint64
                  fmt::format("an image of {}x{} pixels", width, height), "choose a smaller --size");
 }
 
-/// Do the two scenes, with the objects' flags, give the same scene floats?
-bool same_mesh(const scenes::Scene& a, const scenes::Scene& b) {
+/// Whether the objects' flags are the same, and the origin.
+bool same_casters(const scenes::Scene& a, const scenes::Scene& b) {
   const auto alike = [](const scenes::Object& one, const scenes::Object& other) {
     return one.casts_shadow == other.casts_shadow && one.receives_shadow == other.receives_shadow &&
            one.emits == other.emits && one.alpha == other.alpha && one.picture == other.picture;
   };
+  return a.origin == b.origin && std::ranges::equal(a.objects, b.objects, alike);
+}
+
+/// Whether the two scenes, with the objects' flags, give the same scene floats.
+bool same_mesh(const scenes::Scene& a, const scenes::Scene& b) {
   const bool filters = std::ranges::any_of(
       a.objects, [](const scenes::Object& object) { return object.alpha.mode != scenes::Alpha::Mode::opaque; });
   if (filters && (a.looks.places != b.looks.places || a.looks.colors != b.looks.colors || a.pictures != b.pictures))
     return false;
-  return a.origin == b.origin && std::ranges::equal(a.objects, b.objects, alike) &&
-         mesh::equal_on_all_cores(a.soup.positions, b.soup.positions) &&
+  return same_casters(a, b) && mesh::equal_on_all_cores(a.soup.positions, b.soup.positions) &&
          mesh::equal_on_all_cores(a.soup.triangles, b.soup.triangles) &&
          mesh::equal_on_all_cores(a.soup.object, b.soup.object);
 }
@@ -116,12 +120,27 @@ SessionMaker::SessionMaker(const RunOptions& options, const render::Machine& mac
 }
 
 void SessionMaker::show(scenes::Scene scene, const std::string& camera, std::uint32_t runs, Progress& progress) {
+  const bool changed = !is_whole_ || !same_mesh(session_.scene, scene);
+  show(std::move(scene), changed, camera, runs, progress);
+}
+
+void SessionMaker::show_again(scenes::Scene scene, const std::string& camera, Progress& progress) {
+  PENUMBRA_ASSERT(is_whole_, "{}: no scene has been shown", scene.name);
+  const bool changed = !same_casters(session_.scene, scene);
+  scene.soup = std::move(session_.scene.soup);
+  scene.looks = std::move(session_.scene.looks);
+  scene.pictures = std::move(session_.scene.pictures);
+  show(std::move(scene), changed, camera, 0, progress);
+}
+
+void SessionMaker::show(scenes::Scene scene, bool changed, const std::string& camera, std::uint32_t runs,
+                        Progress& progress) {
+  is_whole_ = false;
   Stopwatch load;
   const visibility::SampleRequest request = parse_light_samples(options_);
   std::optional<std::pair<std::uint32_t, std::uint32_t>> size;
   if (!options_.size.empty()) size = parse_size(options_.size);
   session_.shading_normals = parse_normals(options_.normals);
-  const bool changed = !std::exchange(is_whole_, false) || !same_mesh(session_.scene, scene);
   session_.scene = std::move(scene);
   session_.warnings = session_.scene.warnings;
   const std::string scene_name = options_.scene.string();
@@ -213,6 +232,21 @@ void SessionMaker::classify() {
     if (session_.filtered[i].empty()) light.filtered_by.clear();
     session_.filtered_seconds[i] = watch.seconds();
   }
+}
+
+scenes::Scene without_meshes(const scenes::Scene& scene) {
+  scenes::Scene rest;
+  rest.name = scene.name;
+  rest.width = scene.width;
+  rest.height = scene.height;
+  rest.objects = scene.objects;
+  rest.lights = scene.lights;
+  rest.cameras = scene.cameras;
+  rest.sources = scene.sources;
+  rest.origin = scene.origin;
+  rest.motion = scene.motion;
+  rest.warnings = scene.warnings;
+  return rest;
 }
 
 scenes::Scene read_session_scene(const RunOptions& options, std::optional<double> time) {

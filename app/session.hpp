@@ -66,6 +66,11 @@ class SessionMaker {
   /// size or the mesh is another than before, else `runs` times after a discarded one. Throws UsageError for what is
   /// wrong with the options.
   void show(scenes::Scene scene, const std::string& camera, std::uint32_t runs, Progress& progress);
+  /// `scene` has the triangles, pictures and vertices' looks of the last one, and comes without them (without_meshes);
+  /// after a show() that came to its end.
+  void show_again(scenes::Scene scene, const std::string& camera, Progress& progress);
+  /// Whether the last show() came to its end.
+  [[nodiscard]] bool is_whole() const { return is_whole_; }
   [[nodiscard]] const Session& session() const { return session_; }
   /// Puts other view samples of the same camera in the place of the session's. Returns those.
   visibility::ViewSamples look_at(visibility::ViewSamples samples);
@@ -73,6 +78,8 @@ class SessionMaker {
   Session take() { return std::move(session_); }
 
  private:
+  /// `changed`: triangles, or whether they cast, are others than in the last one.
+  void show(scenes::Scene scene, bool changed, const std::string& camera, std::uint32_t runs, Progress& progress);
   /// What the session's lights are to its view samples.
   void classify();
 
@@ -85,6 +92,9 @@ class SessionMaker {
   bool is_whole_ = false;                          // the last show() came to its end
   std::optional<visibility::PinholeCamera> seen_;  // what session_.samples were found for
 };
+
+/// All of a scene but its triangles, pictures and vertices' looks.
+scenes::Scene without_meshes(const scenes::Scene& scene);
 
 /// The scene at a time of its animation; at rest without one.
 scenes::Scene read_session_scene(const RunOptions& options, std::optional<double> time);

@@ -131,6 +131,7 @@ struct Renderer::State {
   LibraryProgress progress{options};
   app::RunOptions run;
   app::MethodWish wish;
+  std::uint64_t rendered = 0;                // Scene::State::meshes of the last picture
   std::optional<app::FrameRenderer> frames;  // refers to run, wish and progress
 };
 
@@ -156,6 +157,8 @@ Picture Renderer::render(const RenderOptions& options) {
   const app::Frame frame{.number = {},
                          .camera = camera_of(scene, options),
                          .pixel_side = pixel_side(options.pixel_samples),
+                         .same_meshes = options.pixel_samples == 1 && state.frames && state.frames->has_meshes() &&
+                                        state.rendered == scene.meshes,
                          .keeps_masks = options.masks && options.pixel_samples == 1};
   static_cast<void>(app::parse_light_samples(run));  // what is wrong with them is said before the renderer's change
   state.run = std::move(run);
@@ -166,7 +169,8 @@ Picture Renderer::render(const RenderOptions& options) {
     state.frames->expect_frames();
   }
   try {
-    state.frames->render(scene.scene, frame, {}, 0);
+    state.frames->render(frame.same_meshes ? app::without_meshes(scene.scene) : scene.scene, frame, {}, 0);
+    state.rendered = scene.meshes;
     return Picture(picture_of(*state.frames, total.seconds()));
   } catch (...) {
     state.frames.reset();  // whatever it holds may be half of one scene and half of another

@@ -14,6 +14,7 @@
 #include <glm/matrix.hpp>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -227,6 +228,11 @@ void copy_object(const scenes::Scene& from, std::uint32_t object, scenes::Scene&
 
 }  // namespace
 
+std::uint64_t next_meshes() {
+  static std::atomic<std::uint64_t> last = 0;
+  return ++last;
+}
+
 Scene::Scene() : state_(std::make_unique<State>()) {
   state_->scene.name = "scene";
 }
@@ -272,6 +278,7 @@ MeshId Scene::add_mesh(std::string name, std::span<const Vector> positions,
   changed->scene.objects.push_back(std::move(made));
   append(changed->scene, object, where, positions, triangles);
   settle_origin(*changed);
+  changed->meshes = next_meshes();
   state_ = std::move(changed);
   return {object};
 }
@@ -295,6 +302,7 @@ void Scene::set_mesh(MeshId mesh, std::span<const Vector> positions,
       copy_object(old, object, changed->scene);
     }
   }
+  changed->meshes = next_meshes();
   state_ = std::move(changed);
 }
 
@@ -344,6 +352,7 @@ void Scene::set_transform(MeshId mesh, const Matrix& m) {
     if (!(glm::length(p) <= scenes::kLargestCoordinate))
       throw InputError("transform of mesh \"{}\": a vertex would be at ({}, {}, {})", mesh_name(mesh), p.x, p.y, p.z);
   }
+  state_->meshes = next_meshes();
   std::ranges::copy(moved, state_->scene.soup.positions.begin() + rest.first);
   // Normals turn as planes do: by the matrix of cofactors, which also a singular matrix has.
   const glm::dmat3 cofactors(glm::cross(linear[1], linear[2]), glm::cross(linear[2], linear[0]),
@@ -361,6 +370,7 @@ void Scene::set_positions(MeshId mesh, std::span<const Vector> positions) {
   RestMesh& rest = rest_of(*state_, mesh.index);
   if (positions.size() != rest.positions.size())
     throw InputError("{}: {} positions; it has {}", where, positions.size(), rest.positions.size());
+  state_->meshes = next_meshes();
   for (std::size_t i = 0; i < positions.size(); ++i) {
     rest.positions[i] = to_glm(positions[i]);
     state_->scene.soup.positions[rest.first + i] = rest.positions[i];

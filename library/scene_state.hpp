@@ -6,6 +6,7 @@
 
 #include <glm/vec3.hpp>
 
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -18,10 +19,15 @@ struct RestMesh {
   std::vector<glm::vec3> normals;  ///< empty: the scene has none
 };
 
+/// A number that no scene has had.
+std::uint64_t next_meshes();
+
 struct Scene::State {
   scenes::Scene scene;
   /// For each object, from its first set_transform() on.
   std::vector<std::optional<RestMesh>> rest = {};
+  /// Another number, other triangles, pictures or vertices' looks: of all scenes of the process.
+  std::uint64_t meshes = next_meshes();
   std::optional<std::size_t> camera = {};  ///< the one that looks by default; nullopt: the first
 };
 

@@ -1,5 +1,5 @@
 # The library as a program uses it that only knows its headers, and the Python module.
-penumbra_test(library PREFIX library.
+penumbra_test(library
   SOURCES library/renderer.cpp cli/program.cpp
   LIBRARIES penumbra::penumbra penumbra_base nlohmann_json::nlohmann_json)
 target_compile_definitions(library_test PRIVATE PENUMBRA_PROGRAM="$<TARGET_FILE:penumbra>")
@@ -8,7 +8,7 @@ add_test(NAME library.consumer COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/library/consu
                                        ${PROJECT_BINARY_DIR}/library_consumer)
 set_tests_properties(library.consumer PROPERTIES LABELS quick)
 foreach(test module page)
-  add_test(NAME python.${test} COMMAND /usr/bin/python3 ${CMAKE_CURRENT_SOURCE_DIR}/python/${test}.py $<TARGET_FILE:penumbra>
+  add_test(NAME python.${test} COMMAND ${Python_EXECUTABLE} ${CMAKE_CURRENT_SOURCE_DIR}/python/${test}.py $<TARGET_FILE:penumbra>
                                        ${PROJECT_SOURCE_DIR})
   set_tests_properties(python.${test} PROPERTIES LABELS quick ENVIRONMENT "PYTHONPATH=${PROJECT_BINARY_DIR}/python;MPLBACKEND=Agg")
 endforeach()

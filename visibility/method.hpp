@@ -75,7 +75,8 @@ struct Tile {
 /// prepare_mesh, prepare_light, prepare_view, then for each tile evaluate and read. A light with another body needs
 /// prepare_view again: what shows a light's body receives no shadow of it (visibility/receivers.hpp). It times them,
 /// chooses tiles no higher than max_tile_rows(), and calls each method from one thread at a time. Methods on
-/// different threads do not meet. Every call completes before it returns. Throws InputError for a light it cannot do, ResourceError when memory does not suffice.
+/// different threads do not meet. Every call completes before it returns. Throws InputError for a light it cannot do,
+/// ResourceError when memory does not suffice.
 class Method {
  public:
   virtual ~Method() = default;

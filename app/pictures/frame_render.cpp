@@ -132,7 +132,10 @@ void FrameRenderer::say_idle_lights() {
 }
 
 void FrameRenderer::show(SessionMaker& maker, scenes::Scene scene) {
-  maker.show(std::move(scene), frame_.camera, 0, progress_);
+  if (frame_.same_meshes)
+    maker.show_again(std::move(scene), frame_.camera, progress_);
+  else
+    maker.show(std::move(scene), frame_.camera, 0, progress_);
   load_seconds_ += maker.session().load_seconds;
   make_seconds_ += maker.session().device_seconds;
   view_seconds_ += maker.session().view_seconds + maker.session().receiver_seconds;

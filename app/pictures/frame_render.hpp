@@ -32,6 +32,8 @@ struct Frame {
   PixelFilter filter = {};       ///< of these
   /// Scenes at other moments, whose mean the picture is; empty: it is that of the one moment. Each is asked for once.
   std::vector<std::function<scenes::Scene()>> moments = {};
+  /// The scene is without_meshes(), and has those of the last picture; of one moment and of pixels' centres.
+  bool same_meshes = false;
   bool keeps_masks = false;  ///< RenderedFrame::masks; of a picture of one moment and of pixels' centres
 };
 
@@ -64,6 +66,9 @@ class FrameRenderer {
   /// Writes what was computed last. `exposure` gets its stops if it is of a sequence's first picture and has none yet.
   /// Returns what stats.json says.
   compare::Stats write(const FrameFiles& files, Exposure& exposure);
+
+  /// Whether Frame::same_meshes can be: a picture has been rendered, and the last one came to its end.
+  [[nodiscard]] bool has_meshes() const { return maker_.is_whole(); }
 
   [[nodiscard]] const Session& session() const { return maker_.session(); }
 

@@ -58,7 +58,8 @@ constexpr float low_number(std::int64_t triangle) {
   return static_cast<float>(static_cast<std::uint64_t>(triangle + 1) % kFloatNumbers);
 }
 constexpr float high_number(std::int64_t triangle) {
-  return static_cast<float>(static_cast<std::uint64_t>(triangle + 1) / kFloatNumbers);
+  const std::uint64_t whole = static_cast<std::uint64_t>(triangle + 1) / kFloatNumbers;
+  return static_cast<float>(whole);
 }
 
 }  // namespace penumbra::app

@@ -86,8 +86,8 @@ TEST_F(Library, TheProgramsNumbers) {
     }
     expect_same(renderer.render(options), arguments, method);
   }
-  expect_same(renderer.render({.width = 12, .height = 8, .pixel_samples = 4}), {"--size", "12x8", "--pixel-samples", "4"},
-              "four view samples a pixel");
+  expect_same(renderer.render({.width = 12, .height = 8, .pixel_samples = 4}),
+              {"--size", "12x8", "--pixel-samples", "4"}, "four view samples a pixel");
 }
 
 TEST_F(Library, MasksAreTheBitsOfTheProgram) {
@@ -243,13 +243,13 @@ TEST_F(Library, SaysWhatTheProgramSays) {
   const std::array<Vector, 3> corners = {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}};
   const std::array<std::array<std::uint32_t, 3>, 1> face = {{{0, 1, 2}}};
   EXPECT_EQ(nlohmann::json::parse(inspect_json(corners, face)).at("boundaryEdges"), 3);
-  const auto metrics = nlohmann::json::parse(
-      compare_json(Scene::load(scene_), {.methods = {"edge-scatter", "edge-scatter:rows=exact"},
-                                         .reference = "exact",
-                                         .width = 24,
-                                         .height = 16,
-                                         .light_samples = 16,
-                                         .runs = 1}));
+  const auto metrics =
+      nlohmann::json::parse(compare_json(Scene::load(scene_), {.methods = {"edge-scatter", "edge-scatter:rows=exact"},
+                                                               .reference = "exact",
+                                                               .width = 24,
+                                                               .height = 16,
+                                                               .light_samples = 16,
+                                                               .runs = 1}));
   EXPECT_LT(metrics.at("methods").at(1).at("error").at("rmse"), 1e-6);
   EXPECT_GT(metrics.at("methods").at(0).at("error").at("rmse"), 1e-6);
   EXPECT_THAT(files(), ElementsAre("scene.json", "w.json"));

@@ -7,7 +7,7 @@ import re
 import sys
 import tempfile
 
-source = pathlib.Path(sys.argv[2])
+source = pathlib.Path(sys.argv[2]).resolve()
 page = (source / "docs" / "python.md").read_text()
 blocks = re.findall(r"^```python\n(.*?)^```", page, re.S | re.M)
 assert len(blocks) >= 5, "the page has lost its code"

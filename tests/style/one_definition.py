@@ -17,7 +17,7 @@ ALTERNATIVES = {"render/opengl/absent.cpp"}
 
 TOKEN = re.compile(
     r"(?:inline\s+)?namespace\s*(?P<namespace>[\w:]*)\s*\{"
-    r"|\b(?:struct|class|union|enum(?:\s+class)?)\s+(?:\[\[\w+\]\]\s*|alignas\(\w+\)\s*)*(?P<type>[\w:]+)(?P<rest>[^;{}()=]*)\{"
+    r"|\b(?:struct|class|union|enum(?:\s+class)?)\s+(?:\[\[\w+\]\]\s*|alignas\(\w+\)\s*|PENUMBRA_API\s+)*(?P<type>[\w:]+)(?P<rest>[^;{}()=]*)\{"
     r"|[{}]")
 NOT_CODE = re.compile(r'//[^\n]*|/\*.*?\*/|R"(\w*)\(.*?\)\1"|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])+\'', re.S)
 

@@ -1,5 +1,5 @@
-// consumer SCENE.json: renders with the installed library, and prints what it found. Replaces operator new, which a library
-// must leave to its host.
+// consumer SCENE.json: renders with the installed library, and prints what it found. Replaces operator new, which a
+// library must leave to its host.
 
 #include <penumbra/penumbra.hpp>
 
