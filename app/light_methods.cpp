@@ -80,7 +80,7 @@ LightMethod choose(const Light& light, const SceneFloats& scene, const MethodWis
   if (nearer != nullptr && nearer->name != method.name) {
     chosen.note = note_of_span(
         light, nearer->name, chosen.description.gives_area() ? method.name + ", without light samples," : method.name);
-  } else if (!wish.samples && !counts_light_samples(chosen.description) && !chosen.description.gives_area()) {
+  } else if (!wish.samples && !chosen.description.counts_light_samples() && !chosen.description.gives_area()) {
     chosen.note = fmt::format("light \"{}\": {} gives an estimate of V without light samples; it is exact for {}",
                               light.name, method.name, method.exact_for);
   } else if (!wish.samples && !chosen.description.gives_area()) {

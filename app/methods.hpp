@@ -5,6 +5,7 @@
 
 #include <memory>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -17,13 +18,20 @@ std::vector<const visibility::MethodDescription*> all_methods();
 /// not take minutes); nothing for any other word.
 std::optional<std::vector<const visibility::MethodDescription*>> method_group(std::string_view group);
 
-/// Throws UsageError, listing what is there, for an unknown name and (in other words) for a method that is not there
-/// yet.
+/// Throws UsageError, listing what is there, for an unknown name.
 const visibility::MethodDescription& describe_method(std::string_view name);
 
 /// The description of a method run with these options: its output and its lights may depend on them. Throws
 /// UsageError for options that it does not have, values that they cannot have, and options that exclude each other.
 visibility::MethodDescription describe_method(std::string_view name, const visibility::MethodOptions& options);
+
+/// The names of the family `reference`.
+std::vector<std::string> judge_names();
+/// A member of the family `reference`, against which others are held. Throws UsageError, about the option --reference,
+/// for any other name.
+const visibility::MethodDescription& describe_judge(std::string_view name);
+/// The one with masks: pairs of all methods with masks are held against it, light sample by light sample.
+const visibility::MethodDescription& ray_judge();
 
 /// Whether the method runs on the Vulkan device, with these options and for this light, and not on the processor. Looks
 /// for a GPU only for a method that may run on either.
@@ -32,10 +40,6 @@ bool runs_on_device(std::string_view name, const visibility::MethodOptions& opti
 
 /// Whether the method runs on a Vulkan device alone, whatever the light.
 bool needs_device(std::string_view name, const visibility::MethodOptions& options);
-
-/// Is V, of masks or not, about the light samples that --light-samples asks for? Other methods look at the light's
-/// centre, at points of their own, or at its area.
-bool counts_light_samples(const visibility::MethodDescription& method);
 
 /// Checks the options, then builds the method. Only methods that run on a device make the machine's.
 std::unique_ptr<visibility::Method> make_method(std::string_view name, const visibility::MethodOptions& options,

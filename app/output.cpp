@@ -1,6 +1,5 @@
 #include "app/output.hpp"
 
-#include "app/method_warnings.hpp"
 #include "app/methods.hpp"
 #include "base/error.hpp"
 #include "base/memory.hpp"
@@ -13,7 +12,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <optional>
 #include <utility>
 
@@ -31,7 +29,7 @@ std::vector<glm::dvec3> colors_of(std::span<const scenes::Object> objects) {
 std::uint32_t samples_of(const LabelledLights& all, const WholeLight& whole) {
   std::uint32_t count = 0;
   for (std::size_t piece = whole.first; piece < whole.first + whole.count; ++piece) {
-    if (counts_light_samples(all.label(piece).description)) count += all.lights[piece].sample_count();
+    if (all.label(piece).description.counts_light_samples()) count += all.lights[piece].sample_count();
   }
   return count;
 }
@@ -195,7 +193,9 @@ compare::Stats make_stats(const Session& session, const LabelledLights& lights, 
   stats.memory = memory_of(session, wholes.size(), run);
   stats.counters = run.counters;
   stats.warnings = session.warnings;
-  std::ranges::move(method_warnings(stats.method, stats.options, run.counters), std::back_inserter(stats.warnings));
+  if (const auto warning = label.description.warning) {
+    if (auto text = warning(stats.options, run.counters)) stats.warnings.push_back(*std::move(text));
+  }
   return stats;
 }
 

@@ -13,7 +13,6 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
-#include <string_view>
 #include <utility>
 
 namespace penumbra::app {
@@ -35,14 +34,10 @@ bool lies_in_light_by_rule(PixelClass pixel) {
   return pixel == PixelClass::background || pixel == PixelClass::emitter || pixel == PixelClass::unshadowed;
 }
 
-/// Refuses a mesh that this machine has no memory for with this method, before it is asked for. Measured on meshes of
-/// one and five million triangles, and rounded down a good deal: what is refused would not have fitted.
+/// Refuses a mesh that this machine has no memory for with this method, before it is asked for.
 void require_mesh_memory(const visibility::MethodDescription& method, const visibility::SceneFloats& floats) {
-  const std::string_view name = method.name;
-  const bool keeps_edges = name == "edge-scatter" || name == "depth-complexity";
-  const std::uint64_t bytes_per_triangle = keeps_edges ? 400 : name == "view-sample" ? 100 : 50;
-  require_memory(floats.triangles.size() * bytes_per_triangle,
-                 fmt::format("{} on {} triangles", name, floats.triangles.size()),
+  require_memory(floats.triangles.size() * method.bytes_per_triangle,
+                 fmt::format("{} on {} triangles", method.name, floats.triangles.size()),
                  "make the meshes smaller, or choose another --method");
 }
 

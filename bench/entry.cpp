@@ -1,5 +1,6 @@
 #include "bench/entry.hpp"
 
+#include "app/methods.hpp"
 #include "app/session.hpp"
 #include "base/error.hpp"
 #include "bench/cpu.hpp"
@@ -18,7 +19,7 @@ using visibility::SamplePattern;
 
 app::MethodEntry oracle_entry() {
   app::MethodEntry entry;
-  entry.label = entry.name = "raytrace";
+  entry.label = entry.name = app::ray_judge().name;
   return entry;
 }
 
@@ -153,7 +154,7 @@ void measure(const Subject& subject, const Options& options, const render::Machi
   const Ground ground = make_ground(subject, machine);
   Field field(ground, options);
   std::optional<ReferenceVisibility> reference;
-  if (options.reference != Reference::none) reference = make_reference(ground, options);
+  if (!options.reference.empty()) reference = make_reference(ground, options, machine);
   for (const std::uint32_t samples : options.light_samples) {
     Entry entry;
     entry.subject = entry.name = subject.name;

@@ -28,13 +28,13 @@ Timing timing_of(std::vector<double> seconds);
 
 /// What one contestant did on one subject with so many light samples.
 struct Contestant {
-  std::string name;    ///< "edge-scatter", "plain-rays" (the speed peer), "raytrace"
+  std::string name;    ///< a method with its options, or a peer such as "plain-rays"
   std::string device;  ///< where it ran
   double mesh = 0;     ///< once
   Times times;
-  std::optional<compare::VisibilityError> error;  ///< of V against raytrace at the same light samples, judged pixels
+  std::optional<compare::VisibilityError> error;  ///< of V against rays on the same light samples, judged pixels
   std::optional<compare::VisibilityError> error_to_reference;
-  std::optional<compare::PairCounts> pairs;       ///< against raytrace; only of methods with masks
+  std::optional<compare::PairCounts> pairs;       ///< against rays; only of methods with masks
   std::map<std::string, double> passes;           ///< milliseconds, of the last run
   std::map<std::string, std::uint64_t> counters;  ///< of the last run
   std::optional<std::uint64_t> memory;            ///< bytes, at their peak on this subject so far; methods only
@@ -50,7 +50,7 @@ struct Entry {
   double load_before = 0;  ///< the machine's, mean of the last minute; above this process's own: distrust the times
   std::string reference;   ///< what error_to_reference is against, over how many pixels; empty: nothing
   std::uint64_t reference_pixels = 0;
-  std::vector<Contestant> contestants;  ///< methods, peers, raytrace
+  std::vector<Contestant> contestants;  ///< methods, peers, the oracle
 };
 
 /// The contestant of that name, or null.

@@ -91,7 +91,7 @@ void run_methods(const bench::Options& options, Output& output) {
   outputs.require_writable();
   const render::Machine machine = app::make_machine(options.device);
   print_head(options, machine);
-  output.write(bench::table_head(options.reference == bench::Reference::exact), "");
+  output.write(bench::table_head(bench::takes_area(options)), "");
   std::vector<bench::Entry> entries;
   for (const bench::Subject& subject : options.subjects) {
     bench::measure(subject, options, machine, [&](const bench::Entry& entry) {

@@ -1,5 +1,6 @@
 #include "bench/options.hpp"
 
+#include "app/methods.hpp"
 #include "app/parse.hpp"
 #include "base/error.hpp"
 #include "bench/adaptive_rays.hpp"
@@ -32,11 +33,10 @@ const char* const kHelp =
   --peer NAME[:pattern=jittered]
                        a ray caster beside plain-rays: plain-rays, nontrivial-rays, adaptive-rays; may be given again;
                        none: no other (default: plain-rays:pattern=jittered, nontrivial-rays, adaptive-rays)
-  --reference raytrace|exact
-                       also the errors against many light samples, or against the exact area
+  --reference NAME     a method of the family reference: also the errors against it, with many light samples or by areas
   --reference-samples M
-                       of raytrace: 1 to 1048576 (default 16384)
-  --sample-pixels N    of exact: how many pixels in penumbra (default 2000), or all
+                       of a reference with light samples: 1 to 1048576 (default 16384)
+  --sample-pixels N    of a reference by areas: how many pixels in penumbra (default 2000), or all
   --runs N             timed runs after one that is discarded (default 5)
   --budget SECONDS     a contestant whose timed runs have used as much gets no further run
   --frame              instead of shadows alone: whole pictures from scenes in memory, by each method and by a plain
@@ -92,12 +92,6 @@ Peer parse_peer(const std::string& text) {
                    kJittered);
 }
 
-Reference parse_reference(const std::string& text) {
-  if (text == "raytrace") return Reference::raytrace;
-  if (text == "exact") return Reference::exact;
-  throw UsageError("--reference {}: expected raytrace or exact", text);
-}
-
 /// "name:key=value:key=value", the keys in their order.
 std::string contestant_name(const app::MethodEntry& entry) {
   std::string name = entry.name;
@@ -107,7 +101,7 @@ std::string contestant_name(const app::MethodEntry& entry) {
 
 void add_methods(std::vector<app::MethodEntry>& methods, const std::string& text) {
   for (app::MethodEntry& entry : app::parse_methods(text)) {
-    if (entry.from_group && entry.name == "raytrace") continue;  // runs anyway
+    if (entry.from_group && entry.name == app::ray_judge().name) continue;  // runs anyway
     entry.label = contestant_name(entry);
     methods.push_back(std::move(entry));
   }
@@ -136,7 +130,7 @@ const std::map<std::string, Take>& options_with_value() {
        }},
       {"--method", [](Reading& r, auto&, auto& value) { add_methods(r.options.methods, value); }},
       {"--peer", [](Reading& r, auto&, auto& value) { r.peers.push_back(value); }},
-      {"--reference", [](Reading& r, auto&, auto& value) { r.options.reference = parse_reference(value); }},
+      {"--reference", [](Reading& r, auto&, auto& value) { r.options.reference = app::describe_judge(value).name; }},
       {"--reference-samples",
        [](Reading& r, auto& option, auto& value) {
          r.options.reference_samples = parse_number<std::uint32_t>(option, value, 1U << 20);
@@ -194,10 +188,9 @@ void set_defaults(Reading& reading) {
   if (options.triangles.empty() && options.frames) options.triangles = {10'000, 100'000, 1'000'000};
   if (options.triangles.empty()) options.triangles = {5'000, 50'000, 500'000};
   if (methods) options.subjects = make_subjects(reading.subjects);
-  if (!options.picture.empty() &&
-      (!methods || options.whole_frames || options.sequence || options.reference == Reference::none))
+  if (!options.picture.empty() && (!methods || options.whole_frames || options.sequence || options.reference.empty()))
     throw UsageError("--picture needs --reference: against their own light samples, right methods have no error");
-  std::vector<std::string> rivals = {"plain-rays", "raytrace"}, subjects, samples;  // those two always run
+  std::vector<std::string> rivals = {name_of(RayWork::all), app::ray_judge().name}, subjects, samples;  // always run
   for (const app::MethodEntry& method : options.methods) rivals.push_back(method.label);
   for (const Peer& peer : options.peers) rivals.push_back(peer.name);
   for (const Subject& subject : options.subjects) subjects.push_back(subject.name);

@@ -24,17 +24,15 @@ struct Peer {
   std::string name;       ///< "plain-rays", "plain-rays:pattern=jittered"
 };
 
-enum class Reference { none, raytrace, exact };
-
 struct Options {
   std::vector<Subject> subjects;
   std::vector<app::MethodEntry> methods;     ///< their labels are contestants' names, with options as given
   std::vector<Peer> peers;                   ///< beside plain-rays, which always runs
   std::vector<std::uint32_t> light_samples;  ///< 256 if none were asked for
   bool samples_in_name = false;              ///< the user asked for them
-  Reference reference = Reference::none;
+  std::string reference;                     ///< a method of the family `reference`; empty: none
   std::uint32_t reference_samples = 16384;
-  std::string sample_pixels = "2000";  ///< of the exact reference
+  std::string sample_pixels = "2000";  ///< of a reference that gives areas
   std::uint32_t runs = 5;              ///< timed runs, after one that is discarded
   double budget = 0;   ///< seconds; a contestant whose timed runs have used as much gets no further run; 0: no limit
   std::string device;  ///< as `penumbra --device` takes it

@@ -1,10 +1,9 @@
 #include "bench/question.hpp"
 
+#include "app/methods.hpp"
 #include "app/sample_pixels.hpp"
 #include "base/assert.hpp"
 #include "compare/metrics.hpp"
-#include "reference/exact_method.hpp"
-#include "reference/ray_traced.hpp"
 #include "engines/view_sampler.hpp"
 
 #include <fmt/format.h>
@@ -35,13 +34,13 @@ std::vector<float> evaluate_once(visibility::Method& method, const Ground& groun
   return visibility;
 }
 
-std::vector<float> dense_visibility(visibility::Method& raytrace, const Ground& ground, std::uint32_t samples) {
+std::vector<float> dense_visibility(visibility::Method& rays, const Ground& ground, std::uint32_t samples) {
   std::vector<double> sum(ground.samples.size());
   std::uint32_t seed = 1;
   for (std::uint32_t left = samples; left > 0; ++seed) {
     const std::uint32_t count = std::min(left, kMostAtOnce);
     const auto light = light_of(ground, count, visibility::SamplePattern::sobol, seed);
-    const std::vector<float> visibility = evaluate_once(raytrace, ground, light);
+    const std::vector<float> visibility = evaluate_once(rays, ground, light);
     for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += static_cast<double>(visibility[i]) * count;
     left -= count;
   }
@@ -50,9 +49,9 @@ std::vector<float> dense_visibility(visibility::Method& raytrace, const Ground& 
   return mean;
 }
 
-std::vector<std::uint32_t> penumbra_pixels(visibility::Method& raytrace, const Ground& ground) {
+std::vector<std::uint32_t> penumbra_pixels(visibility::Method& rays, const Ground& ground) {
   const auto light = light_of(ground, 64, visibility::SamplePattern::sobol);
-  const std::vector<float> visibility = evaluate_once(raytrace, ground, light);
+  const std::vector<float> visibility = evaluate_once(rays, ground, light);
   std::vector<std::uint32_t> pixels = ground.judged;
   std::erase_if(pixels, [&](std::uint32_t pixel) { return visibility[pixel] <= 0 || visibility[pixel] >= 1; });
   return pixels;
@@ -100,23 +99,27 @@ visibility::Light light_of(const Ground& ground, std::uint32_t samples,
                                 {.count = samples, .pattern = pattern.value_or(ground.pattern), .seed = seed});
 }
 
-ReferenceVisibility make_reference(const Ground& ground, const Options& options) {
-  PENUMBRA_ASSERT(options.reference != Reference::none, "no reference was asked for");
-  const auto raytrace = reference::make_ray_traced({});
-  raytrace->prepare_mesh(ground.floats);
-  if (options.reference == Reference::raytrace) {
-    return {fmt::format("raytrace at {} light samples", options.reference_samples),
-            dense_visibility(*raytrace, ground, options.reference_samples), ground.judged};
+bool takes_area(const Options& options) {
+  return !options.reference.empty() && app::describe_method(options.reference).gives_area();
+}
+
+ReferenceVisibility make_reference(const Ground& ground, const Options& options, const render::Machine& machine) {
+  PENUMBRA_ASSERT(!options.reference.empty(), "no reference was asked for");
+  const auto rays = app::make_method(app::ray_judge().name, {}, machine);
+  rays->prepare_mesh(ground.floats);
+  if (!takes_area(options)) {
+    return {fmt::format("{} at {} light samples", options.reference, options.reference_samples),
+            dense_visibility(*rays, ground, options.reference_samples), ground.judged};
   }
-  const auto exact = reference::make_exact({});
+  const auto areas = app::make_method(options.reference, {}, machine);
   ReferenceVisibility reference;
-  reference.name = "exact";
-  reference.pixels = app::sample_pixels(penumbra_pixels(*raytrace, ground), options.sample_pixels, ground.samples.width,
+  reference.name = options.reference;
+  reference.pixels = app::sample_pixels(penumbra_pixels(*rays, ground), options.sample_pixels, ground.samples.width,
                                         ground.samples.height);
-  exact->want_pixels(reference.pixels);
-  exact->prepare_mesh(ground.floats);
+  areas->want_pixels(reference.pixels);
+  areas->prepare_mesh(ground.floats);
   const auto light = light_of(ground, 1);
-  reference.visibility = evaluate_once(*exact, ground, light);
+  reference.visibility = evaluate_once(*areas, ground, light);
   return reference;
 }
 

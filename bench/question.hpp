@@ -28,7 +28,7 @@ Ground make_ground(const Subject& subject, const render::Machine& machine);
 visibility::Light light_of(const Ground& ground, std::uint32_t samples,
                            std::optional<visibility::SamplePattern> pattern = {}, std::uint32_t seed = 0);
 
-/// What all contestants are asked, and what the oracle (`raytrace`) answers.
+/// What all contestants are asked, and what the oracle (rays on the same light samples) answers.
 struct Question {
   const Ground& ground;
   const visibility::Light& light;
@@ -38,13 +38,15 @@ struct Question {
 
 /// V that does not depend on the light samples of a question.
 struct ReferenceVisibility {
-  std::string name;                   ///< "raytrace at 16384 light samples", "exact"
+  std::string name;                   ///< the method's, and how many light samples if it takes them
   std::vector<float> visibility;      ///< one for each pixel
   std::vector<std::uint32_t> pixels;  ///< those that are compared
 };
-/// raytrace: Owen-scrambled Sobol samples in passes of up to 4096, each with a seed of its own, over judged pixels.
-/// exact: over the pixels chosen among those that are judged and in penumbra by 64 light samples.
-ReferenceVisibility make_reference(const Ground& ground, const Options& options);
+/// By rays: Owen-scrambled Sobol samples in passes of up to 4096, each with a seed of its own, over judged pixels.
+/// By areas: over the pixels chosen among those that are judged and in penumbra by 64 light samples.
+ReferenceVisibility make_reference(const Ground& ground, const Options& options, const render::Machine& machine);
+/// Is there a reference, and by areas?
+bool takes_area(const Options& options);
 
 /// The pixels that the fair peer must still trace: those of the 8 × 8 blocks in which V is between 0 and 1 somewhere,
 /// or is not the same everywhere, among the view samples that are evaluated at all (no background, emitter or receiver

@@ -1,4 +1,4 @@
-#include "reference/exact_method.hpp"
+#include "reference/methods.hpp"
 
 #include "base/assert.hpp"
 #include "base/error.hpp"

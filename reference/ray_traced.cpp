@@ -7,7 +7,7 @@
 // contact shadows. Triangles that cast none are not in the scene. Scene and rays are scaled to where float32 neither
 // underflows nor overflows (EmbreeRange).
 
-#include "reference/ray_traced.hpp"
+#include "reference/methods.hpp"
 
 #include "base/assert.hpp"
 #include "base/error.hpp"

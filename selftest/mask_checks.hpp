@@ -3,7 +3,7 @@
 #include "selftest/check.hpp"
 #include "selftest/small_scenes.hpp"
 #include "visibility/method.hpp"
-#include "volumes/counters/depth_complexity.hpp"
+#include "volumes/counters/depth_counters.hpp"
 
 #include <cstddef>
 #include <string>

@@ -9,9 +9,10 @@
 #include "selftest/mask_checks.hpp"
 #include "selftest/prefilter_checks.hpp"
 #include "selftest/rasteriser_checks.hpp"
-#include "volumes/counters/depth_complexity.hpp"
-#include "volumes/scatter/edge_scatter.hpp"
-#include "vsm/view_sample.hpp"
+#include "volumes/counters/depth_counters.hpp"
+#include "volumes/counters/methods.hpp"
+#include "volumes/scatter/methods.hpp"
+#include "vsm/methods.hpp"
 
 #include <fmt/format.h>
 

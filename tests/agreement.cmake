@@ -12,6 +12,7 @@ penumbra_test(agreement FULL CorpusSweep.*
   agreement/long_walks.cpp
   agreement/masks_raytrace.cpp
   agreement/mesh_verdicts.cpp
+  agreement/method_table.cpp
   agreement/textured_lights_methods.cpp
   analytic/textured_lights_exact.cpp
   cli/corpus_sweep.cpp  # every mesh of two packages through inspect and compare; prints a table

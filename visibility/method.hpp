@@ -49,11 +49,15 @@ struct MethodDescription {
   Family family = Family::geometry;
   std::string paper;
   Output output = Output::mask;
-  std::string exact_for;          ///< what it is exact for, in words
-  std::vector<LightKind> lights;  ///< shapes it can do
-  bool textures = true;           ///< weighs V by a light's texture
-  bool any_pattern = true;        ///< otherwise only light samples in rows (patterns rows and grid)
-  bool on_request = false;        ///< takes so long that a comparison has it only by name, or with its whole family
+  std::string exact_for;           ///< what it is exact for, in words
+  std::vector<LightKind> lights;   ///< shapes it can do
+  bool textures = true;            ///< weighs V by a light's texture
+  bool any_pattern = true;         ///< otherwise only light samples in rows (patterns rows and grid)
+  bool on_request = false;         ///< takes so long that a comparison has it only by name, or with its whole family
+  bool shares_of_samples = false;  ///< V without masks is the share of light samples that are visible, as with masks
+  /// Memory that it takes at least for each triangle of a mesh. Measured on meshes of one and five million triangles,
+  /// and rounded down a good deal: a mesh that is refused for it would not have fitted.
+  std::uint64_t bytes_per_triangle = 50;
   std::vector<OptionDescription> options;
   std::optional<ExactArea> exact_area = {};  ///< none: it never gives it
   LightSpan span = {};                       ///< of lights that it does; by default of any size
@@ -61,9 +65,15 @@ struct MethodDescription {
   MeshVerdict (*verdict_on)(const mesh::Diagnosis& mesh) = nullptr;
   /// Which runs do without each cause of its error, for options that it takes. Image-based methods have one.
   ErrorRepairs (*repairs)(const MethodDescription& method, const MethodOptions& given) = nullptr;
+  /// What a run's options and counters say that a viewer of its picture must know; null: never anything.
+  std::optional<std::string> (*warning)(const MethodOptions& options,
+                                        const std::map<std::string, std::uint64_t>& counters) = nullptr;
 
   /// Is V, with these options, the visible area itself? Then light samples play no part in it, nor in the beauty.
   [[nodiscard]] bool gives_area() const { return output == Output::radiance; }
+  /// Is V, of masks or not, about the light samples that --light-samples asks for? Other methods look at the light's
+  /// centre, at points of their own, or at its area.
+  [[nodiscard]] bool counts_light_samples() const { return output == Output::mask || shares_of_samples; }
 };
 
 /// A band of whole pixel rows.

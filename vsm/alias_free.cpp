@@ -6,7 +6,7 @@
 // window around its view samples. A test is the exact predicate on the view sample itself: no depth is stored, so there
 // is no bias. A view sample that is in shadow leaves its list.
 
-#include "vsm/alias_free.hpp"
+#include "vsm/methods.hpp"
 
 #include "base/assert.hpp"
 #include "engines/pairs/list_raster.hpp"

@@ -5,7 +5,7 @@
 // Departures. Every test carries its error bound; what is left of a leaf is decided by BlockedSamples, exactly. Cores
 // share out subtrees of view samples, and each takes the triangles near what is between it and the light.
 
-#include "vsm/hierarchical_penumbra.hpp"
+#include "vsm/methods.hpp"
 
 #include "engines/pairs/pair_method.hpp"
 #include "vsm/box_planes.hpp"

@@ -1,6 +1,6 @@
 // `view-sample`: which of its two engines does a light; or the published variant.
 
-#include "vsm/view_sample.hpp"
+#include "vsm/methods.hpp"
 
 #include "base/error.hpp"
 #include "engines/engine_by_light.hpp"
@@ -46,6 +46,7 @@ visibility::MethodDescription view_sample_description(const visibility::MethodOp
       .exact_for = "every pair of view sample and light sample, for any triangle soup",
       .lights = {LightKind::rectangle, LightKind::disk, LightKind::ellipse, LightKind::polygon, LightKind::sphere,
                  LightKind::sun},
+      .bytes_per_triangle = 100,
       .options = {engines::kEngine.description(), kVariant.description()},
       .span = visibility::kFloatSpan,
       .verdict_on = view_sample_verdict,

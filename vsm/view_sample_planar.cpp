@@ -7,7 +7,7 @@
 // plane parallel to the light: any scene. Texels have lists of view samples where the camera put them. Back-projections
 // are lines of planes through p and an edge, without a division. lookup=exact decides what a map leaves open.
 
-#include "vsm/view_sample_planar.hpp"
+#include "vsm/methods.hpp"
 
 #include "engines/pairs/list_raster.hpp"
 #include "engines/pairs/pair_method.hpp"

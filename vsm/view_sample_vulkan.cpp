@@ -8,7 +8,7 @@
 #include "vsm/resolve.comp.spv.hpp"
 #include "vsm/test_pairs.comp.spv.hpp"
 #include "vsm/uploads.hpp"
-#include "vsm/view_sample.hpp"
+#include "vsm/methods.hpp"
 #include "vsm/view_sample.shared.h"
 
 #include <algorithm>

@@ -9,6 +9,7 @@
 #include "base/error.hpp"
 
 #include <CLI/CLI.hpp>
+#include <fmt/ranges.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
@@ -88,15 +89,15 @@ class CompareCommand : public Command {
         ->type_name("LIST")
         ->capture_default_str();
     cli_.add_option("--reference", options_.reference,
-                    "who judges: raytrace, or exact: areas, not samples (slow; see --sample-pixels)")
-        ->type_name("raytrace|exact")
+                    "who judges: rays on light samples, or areas (slow; see --sample-pixels)")
+        ->type_name(fmt::format("{}", fmt::join(judge_names(), "|")))
         ->capture_default_str();
     cli_.add_option("--reference-samples", options_.reference_samples,
                     "light samples of the reference; same: those of the methods, which are then compared pair by pair")
         ->type_name("M|same")
         ->capture_default_str();
     cli_.add_option("--sample-pixels", options_.sample_pixels,
-                    "take the error over N judged pixels, all, or these: x,y;x,y; exact evaluates no others")
+                    "take the error over N judged pixels, all, or these: x,y;x,y; areas are found for no others")
         ->type_name("N|all|x,y;...")
         ->capture_default_str();
     cli_.add_option("--max-rmse", max_rmse_text_, "exit with 1 if the error of a method exceeds this")->type_name("X");

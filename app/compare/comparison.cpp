@@ -159,7 +159,7 @@ class Comparison {
                       mask_bytes() >> 20));
       return;
     }
-    const Entry rays{"rays", describe_method("raytrace"), {}};
+    const Entry rays{"rays", ray_judge(), {}};
     const auto method = make_method(rays.description.name, rays.options, machine_);
     PackedMasks masks(session_.lights.size());
     const TileSink keep = keep_rays();

@@ -2,14 +2,12 @@
 
 #include "app/methods.hpp"
 #include "app/output.hpp"
-#include "base/did_you_mean.hpp"
 #include "base/error.hpp"
 #include "visibility/lights/device_light.hpp"
 
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <optional>
 #include <utility>
 
@@ -60,11 +58,7 @@ std::string why_no_device(const ComparisonOptions& options, const render::Machin
 }  // namespace
 
 Entry describe_reference(const std::string& name) {
-  constexpr std::array kJudges = {"raytrace", "exact"};
-  if (std::ranges::find(kJudges, name) == kJudges.end())
-    throw UsageError("--reference {}: expected raytrace or exact{}", name,
-                     did_you_mean(name, {kJudges.begin(), kJudges.end()}));
-  return {"reference", describe_method(name), {}};
+  return {"reference", describe_judge(name), {}};
 }
 
 std::vector<Entry> choose_entries(const ComparisonOptions& options, const Session& session,
@@ -109,7 +103,7 @@ void require_explainable(std::span<const MethodEntry> methods) {
     return;
   throw UsageError(
       "--error-budget: none of the chosen methods is image-based; it takes the errors of those apart: name one with "
-      "--methods, such as backproject or bitmask");
+      "--methods (see `penumbra methods`)");
 }
 
 bool wants_bits(const Entry& entry, const ComparisonOptions& options) {

@@ -67,7 +67,7 @@ void add_picture_options(CLI::App& command, PictureOptions& options) {
   command
       .add_option("--method", options.method,
                   "shadow method, see `penumbra methods` (default: for each light the best one that gives its exact "
-                  "area; where light samples are asked for, or none does, the best geometry-based one, or raytrace)")
+                  "area; where light samples are asked for, or none does, the best geometry-based one, or rays)")
       ->type_name("NAME");
   command.add_option("--stats", options.stats, "times, counters and warnings as JSON; times of one run, the first")
       ->type_name("FILE.json");

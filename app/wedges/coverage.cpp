@@ -1,9 +1,7 @@
 #include "app/wedges/coverage.hpp"
 
 #include "app/pixel_samples.hpp"
-#ifdef PENUMBRA_HAS_REFERENCE
 #include "areas/exact_area.hpp"
-#endif
 
 #include <tbb/parallel_for.h>
 
@@ -67,7 +65,6 @@ CoverageOutcome check_scene_coverage(const scenes::Scene& scene, const visibilit
   const volumes::SoftVisibility soft(floats, light, casters);
   const std::vector<LitPoint> samples = where_edges_appear(soft, judged_samples(scene, floats, light));
   outcome.points = volumes::check_coverage(soft, light, samples, report);
-#ifdef PENUMBRA_HAS_REFERENCE
   areas::ExactArea area(floats);
   area.set_light(light);
   outcome.hidden.resize(samples.size());
@@ -79,7 +76,6 @@ CoverageOutcome check_scene_coverage(const scenes::Scene& scene, const visibilit
   for (std::size_t i = 0; i < samples.size(); ++i) {
     volumes::check_union(outcome.points[i], outcome.hidden[i], error, report);
   }
-#endif
   return outcome;
 }
 

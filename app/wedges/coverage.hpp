@@ -11,7 +11,7 @@ namespace penumbra::app {
 /// What `wedges --validate` found of sums over silhouettes.
 struct CoverageOutcome {
   std::vector<volumes::CoveragePoint> points;
-  std::vector<double> hidden;  ///< for each, the exact area of the union; empty where this build has no such oracle
+  std::vector<double> hidden;  ///< for each, the exact area of the union
   bool textured = false;       ///< areas are weights
 };
 

@@ -4,9 +4,7 @@
 #include "app/parse.hpp"
 #include "app/pixel_samples.hpp"
 #include "base/error.hpp"
-#ifdef PENUMBRA_HAS_REFERENCE
 #include "areas/exact_area.hpp"
-#endif
 
 #include <nlohmann/json.hpp>
 
@@ -27,16 +25,10 @@ const char* name_of(PixelClass kind) {
   return kNames[static_cast<std::size_t>(kind)];
 }
 
-std::optional<double> exact_visibility(const ToExplain& input, const volumes::LitPoint& sample) {
-#ifdef PENUMBRA_HAS_REFERENCE
+double exact_visibility(const ToExplain& input, const volumes::LitPoint& sample) {
   areas::ExactArea area(input.floats);
   area.set_light(input.light);
   return area.visibility({sample.p, sample.carrier, sample.facing});
-#else
-  static_cast<void>(input);
-  static_cast<void>(sample);
-  return std::nullopt;
-#endif
 }
 
 /// Each edge once, by its first wedge that contains p; and the edges that are seen, yet in no such wedge.
@@ -170,7 +162,7 @@ ordered_json explain_json(const Explanation& explanation, const std::filesystem:
   entry["edgesOutsideTheirWedges"] = explanation.outside.size();
   entry["centre"] = sum_json(*explanation.center);
   entry["receiver"] = sum_json(*explanation.receiver);
-  entry["exactV"] = explanation.exact ? ordered_json(*explanation.exact) : ordered_json();
+  entry["exactV"] = explanation.exact;
   entry["svg"] = svg.empty() ? ordered_json() : ordered_json(svg.string());
   return entry;
 }
@@ -219,7 +211,7 @@ void print_explanation(const Explanation& explanation, const std::filesystem::pa
   }
   print_sum("silhouettes of centre:", *explanation.center);
   print_sum("silhouettes of p:", *explanation.receiver);
-  if (explanation.exact) fmt::print("exact area: V = {:.9f}\n", *explanation.exact);
+  fmt::print("exact area: V = {:.9f}\n", explanation.exact);
   if (!svg.empty()) fmt::print("picture: {}\n", svg.string());
 }
 

@@ -34,7 +34,7 @@ struct Explanation {
   std::vector<ExplainedWedge> wedges;
   std::vector<std::uint32_t> outside;  ///< edges that appear on the light, yet p is in none of their wedges: a flaw
   std::optional<volumes::LayerSum> center, receiver;  ///< nothing where V is `given`
-  std::optional<double> exact;                        ///< V
+  double exact = 0;                                   ///< V
   bool touching = false;                              ///< something meets the light itself: no sum is exact
   glm::uvec2 texels{0};  ///< of the light's texture, by which areas and V are weighed; 0: there is none
   std::string picture;   ///< SVG, where there is something to see

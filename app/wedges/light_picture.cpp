@@ -244,8 +244,7 @@ class Drawing {
       put("<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"18\" height=\"8\" fill=\"{}\"/>\n", x, at - 8, color);
       text(x + 24, at, what);
     };
-    text(kMargin, y, picture_.exact ? fmt::format("exact V = {:.6f}", *picture_.exact) : "no exact area in this build",
-         12, " font-weight=\"bold\"");
+    text(kMargin, y, fmt::format("exact V = {:.6f}", picture_.exact), 12, " font-weight=\"bold\"");
     entry(kMargin, y + 44, kTakes, "edge that takes from the light, and the area beyond it");
     entry(kMargin, y + 62, kGives, "edge that gives back, and the area beyond it");
     entry(2 * kMargin + kPanel, y + 44, kHidden, "hidden by some triangle");

@@ -2,7 +2,6 @@
 
 #include "volumes/wedges/soft_visibility.hpp"
 
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,7 +14,7 @@ struct LightPicture {
   const volumes::SoftVisibility& soft;
   volumes::LitPoint sample;
   const volumes::LayerSum &center, &receiver;
-  std::optional<double> exact;  ///< V
+  double exact = 0;  ///< V
   std::string title;
 };
 

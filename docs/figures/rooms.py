@@ -70,7 +70,7 @@ def rooms_figure():
         if users[room]:
             level[room] = min(level[other] for other in users[room]) - 1
     # Of a row with more boxes than fit, those that nothing keeps there go one lower, and so on down.
-    width, step, margin = 1000, 62, 16
+    width, step, margin = 1160, 62, 16
     box = {room: 7.6 * len(room) + 18 for room in rooms}
 
     def lowest(room):
@@ -80,7 +80,7 @@ def rooms_figure():
         while True:
             row = [room for room in rooms if level[room] == n]
             free = [room for room in row if level[room] > lowest(room)]
-            if not free or sum(box[room] + 14 for room in row) < width - 2 * margin:
+            if not free or sum(box[room] + 40 for room in row) < width - 2 * margin:
                 break
             level[min(free, key=lambda room: (lowest(room), room))] -= 1
     # An arrow over several rows passes each row between at a place of its own, so that none runs behind a box.

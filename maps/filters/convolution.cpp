@@ -2,7 +2,7 @@
 // light's image is taken for each view sample, by summed areas, where the paper convolves a picture for one receiver at
 // a time; blockers are all casters but the ground (ground_of), where the paper is told which they are.
 
-#include "maps/filters/convolution.hpp"
+#include "maps/filters/methods.hpp"
 
 #include "maps/filters/slice_recipe.hpp"
 #include "maps/host/mesh_verdict.hpp"

@@ -2,7 +2,7 @@
 // section 5.2.5). Departures: surfaces are sorted into slices by one raster pass from the light's centre, and box means
 // are taken from summed areas in integers unless `filter` says otherwise.
 
-#include "maps/filters/occlusion_textures.hpp"
+#include "maps/filters/methods.hpp"
 
 #include "maps/filters/slice_recipe.hpp"
 #include "maps/host/mesh_verdict.hpp"

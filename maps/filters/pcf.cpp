@@ -2,7 +2,7 @@
 // Eisemann et al. 2009, section 4.1.2. Departures: each texel is compared with the receiver's plane (receiverPlane=off:
 // with the receiver's depth, as published), and a window in a hemicube goes on on the next face.
 
-#include "maps/filters/pcf.hpp"
+#include "maps/filters/methods.hpp"
 
 #include "maps/filters/pcf.comp.spv.hpp"
 #include "maps/filters/pcf.shared.h"

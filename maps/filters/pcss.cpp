@@ -3,7 +3,7 @@
 // a tap whose light point is below the receiver's horizon counts as hidden, as in every other method here; a filter tap
 // weighs what a light's texture has at its light point.
 
-#include "maps/filters/pcss.hpp"
+#include "maps/filters/methods.hpp"
 
 #include "base/error.hpp"
 #include "maps/products/light_shape.hpp"

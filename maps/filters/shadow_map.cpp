@@ -2,7 +2,7 @@
 // texel's centre in place of a constant bias (taps.glsl), and up to five faces hold what one perspective image cannot
 // (map_fit.cpp).
 
-#include "maps/filters/shadow_map.hpp"
+#include "maps/filters/methods.hpp"
 
 #include "maps/host/map_method.hpp"
 #include "maps/host/mesh_verdict.hpp"

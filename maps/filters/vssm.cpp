@@ -2,7 +2,7 @@
 // (vsm), Lauritzen and McCool 2008 (lvsm, evsm), Annen et al. 2007 and 2008 (csm, esm), and the mean blocker by Yang et
 // al. 2010 or, with csm, by Annen et al. 2008. docs/vssm.md says where this departs from them, and why.
 
-#include "maps/filters/vssm.hpp"
+#include "maps/filters/methods.hpp"
 
 #include "maps/filters/vssm.comp.spv.hpp"
 #include "maps/filters/vssm.shared.h"

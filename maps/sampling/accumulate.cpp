@@ -2,7 +2,7 @@
 // of the light. Departures: they draw the blended shadow into a texture a receiver polygon; here each light sample has
 // a shadow map (Williams 1978), looked up at the view samples, and its answer is kept as a bit of its own.
 
-#include "maps/sampling/accumulate.hpp"
+#include "maps/sampling/methods.hpp"
 
 #include "maps/sampling/accumulate.comp.spv.hpp"
 #include "maps/host/map_method.hpp"

@@ -4,7 +4,7 @@
 // every tap is compared with the receiver's plane (taps.glsl), and how many pixels may differ is a share of the pixels
 // (option shareOf: of a map's texels, as published, with which small pictures would have four maps).
 
-#include "maps/sampling/adaptive_light.hpp"
+#include "maps/sampling/methods.hpp"
 
 #include "base/assert.hpp"
 #include "maps/host/map_method.hpp"

@@ -3,7 +3,7 @@
 // as constant pieces (it jumps at every event, so that lines would break the bound), V = 1 and V = 0 are kept as they
 // are, the receiver's plane is compared at the texel's centre (taps.glsl), and what is below the horizon is dark.
 
-#include "maps/sampling/deep_penumbra.hpp"
+#include "maps/sampling/methods.hpp"
 
 #include "maps/host/map_method.hpp"
 #include "maps/host/mesh_verdict.hpp"
@@ -35,6 +35,7 @@ visibility::MethodDescription deep_penumbra_description() {
       .exact_for = "nothing; in the limit of large maps and bound 0 the share of light samples that are visible",
       .lights = planar_lights(),
       .on_request = true,
+      .shares_of_samples = true,
       .options = map_option_descriptions(kDeepSize),
       .verdict_on = deep_penumbra_verdict,
       .repairs = sampling_repairs};

@@ -4,7 +4,7 @@
 // the eight around (option neighbours), its plane is compared at the texel's centre (taps.glsl), and what is below the
 // horizon is dark.
 
-#include "maps/sampling/layered_attenuation.hpp"
+#include "maps/sampling/methods.hpp"
 
 #include "maps/host/map_method.hpp"
 #include "maps/host/mesh_verdict.hpp"
@@ -44,6 +44,7 @@ visibility::MethodDescription layered_attenuation_description() {
       .exact_for = "nothing; in the limit of large maps and small epsilon the share of light samples that are visible",
       .lights = planar_lights(),
       .on_request = true,
+      .shares_of_samples = true,
       .options = map_option_descriptions(kLayeredSize),
       .verdict_on = layered_attenuation_verdict,
       .repairs = sampling_repairs};

@@ -3,7 +3,7 @@
 
 #include "tests/agreement/mask_methods.hpp"
 #include "tests/agreement/support.hpp"
-#include "volumes/counters/depth_complexity.hpp"
+#include "volumes/counters/methods.hpp"
 
 namespace penumbra {
 namespace {

@@ -2,9 +2,9 @@
 
 #include "render/device.hpp"
 #include "visibility/method.hpp"
-#include "volumes/counters/depth_complexity.hpp"
-#include "volumes/scatter/edge_scatter.hpp"
-#include "vsm/view_sample.hpp"
+#include "volumes/counters/methods.hpp"
+#include "volumes/scatter/methods.hpp"
+#include "vsm/methods.hpp"
 
 #include <array>
 #include <memory>

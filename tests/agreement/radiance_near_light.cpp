@@ -2,7 +2,7 @@
 // wrong it is, and how far point samples and cells are from `exact`. Prints the table of docs/radiance.md.
 
 #include "compare/beauty.hpp"
-#include "reference/exact_method.hpp"
+#include "reference/methods.hpp"
 #include "tests/agreement/panel.hpp"
 #include "tests/unit/ray_traced_masks.hpp"
 

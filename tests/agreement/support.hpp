@@ -11,7 +11,7 @@
 #include "visibility/method.hpp"
 #include "visibility/pair_truth.hpp"
 #include "visibility/receivers.hpp"
-#include "vsm/view_sample.hpp"
+#include "vsm/methods.hpp"
 
 #include <fmt/format.h>
 #include <glm/common.hpp>

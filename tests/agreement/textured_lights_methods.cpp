@@ -1,7 +1,7 @@
 // All methods under textured lights: the same pairs as without, V from the weights of what is visible, and beauty.
 
 #include "compare/beauty.hpp"
-#include "maps/sampling/accumulate.hpp"
+#include "maps/sampling/methods.hpp"
 #include "tests/agreement/support.hpp"
 #include "tests/unit/textured_lights_support.hpp"
 

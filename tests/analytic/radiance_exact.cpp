@@ -1,7 +1,7 @@
 // `exact`'s form factors: closed forms, brute force, additivity. Lights near the floor make cosines and distances
 // differ over the light as much as they can.
 
-#include "reference/exact_method.hpp"
+#include "reference/methods.hpp"
 #include "tests/unit/exact_area_scenes.hpp"
 #include "visibility/lights/form_factor.hpp"
 #include "visibility/lights/unshadowed_light.hpp"

@@ -37,6 +37,7 @@ class OneWrong final : public visibility::Method {
     if (first_row_ <= kRow) visibility[(kRow - first_row_) * width_ + kColumn] = wrong_;
   }
   void read_form_factors(std::span<glm::dvec3> form_factors) override { std::ranges::fill(form_factors, form_factor_); }
+  void need(std::uint64_t bytes_per_triangle) { description_.bytes_per_triangle = bytes_per_triangle; }
   static constexpr std::uint32_t kRow = 25, kColumn = 24;  // of the tiny scene: the floor
 
  private:
@@ -50,7 +51,9 @@ class MethodAnswers : public ProgramTest {
  protected:
   static constexpr glm::dvec3 kQuarter{0.25};
   void run_with(float wrong, visibility::Output output, const glm::dvec3& form_factor = kQuarter) const {
-    OneWrong method(wrong, output, form_factor);
+    run_method(OneWrong(wrong, output, form_factor));
+  }
+  void run_method(OneWrong method) const {
     RunOptions options;
     options.scene = tiny_scene();
     const render::Machine machine = app::make_machine("cpu");
@@ -61,6 +64,13 @@ class MethodAnswers : public ProgramTest {
   }
   using RunOptions = app::RunOptions;
 };
+
+TEST_F(MethodAnswers, AMeshBeyondTheMemoryIsRefusedBeforeTheMethodRuns) {
+  OneWrong method(-1, visibility::Output::scalar, kQuarter);
+  method.need(std::uint64_t{1} << 50);  // a pebibyte
+  EXPECT_THAT([&] { run_method(method); },
+              ThrowsMessage<ResourceError>(AllOf(HasSubstr("one-wrong on "), HasSubstr(" triangles"))));
+}
 
 TEST_F(MethodAnswers, MustBeSharesOfALight) {
   using visibility::Output;

@@ -5,9 +5,9 @@
 #include "tests/fuzz/soup_judge.hpp"
 #include "visibility/pair_truth.hpp"
 #include "visibility/receivers.hpp"
-#include "volumes/counters/depth_complexity.hpp"
-#include "volumes/scatter/edge_scatter.hpp"
-#include "vsm/view_sample.hpp"
+#include "volumes/counters/methods.hpp"
+#include "volumes/scatter/methods.hpp"
+#include "vsm/methods.hpp"
 
 #include <fmt/format.h>
 

@@ -1,6 +1,6 @@
 // `exact` as a method: pixels asked for and not, rules, options, the same bits however it is cut in tiles.
 
-#include "reference/exact_method.hpp"
+#include "reference/methods.hpp"
 
 #include "base/error.hpp"
 #include "tests/unit/ray_traced_masks.hpp"

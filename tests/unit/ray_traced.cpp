@@ -1,4 +1,4 @@
-#include "reference/ray_traced.hpp"
+#include "reference/methods.hpp"
 
 #include "base/error.hpp"
 #include "reference/plain_rays.hpp"

@@ -2,7 +2,7 @@
 
 // Runs the ray caster over a whole picture and keeps its masks.
 
-#include "reference/ray_traced.hpp"
+#include "reference/methods.hpp"
 #include "tests/unit/visibility/scenes.hpp"
 #include "visibility/method.hpp"
 

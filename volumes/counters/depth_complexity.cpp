@@ -3,7 +3,7 @@
 // hierarchy of edges instead of wedges in a hemicube, signed multiplicities make it right for any soup, the constant is
 // counted at a certified corner, and what rounding leaves open is decided exactly.
 
-#include "volumes/counters/depth_complexity.hpp"
+#include "volumes/counters/methods.hpp"
 
 #include "base/assert.hpp"
 #include "base/error.hpp"
@@ -292,6 +292,7 @@ visibility::MethodDescription depth_complexity_description(const visibility::Met
           "plane passes through the light, too bright elsewhere",
       .lights = {LightKind::rectangle, LightKind::disk, LightKind::ellipse, LightKind::polygon, LightKind::sphere,
                  LightKind::sun},
+      .bytes_per_triangle = 400,
       .options = {engines::kEngine.description(), kVariant.description(), kSearch.description(), kCrop.description(),
                   kCounterBits.description()},
       .span = visibility::kFloatSpan,

@@ -16,6 +16,7 @@
 #include "visibility/masks/visible_share.hpp"
 #include "volumes/raster/carrier_horizon.hpp"
 #include "volumes/wedges/light_hull.hpp"
+#include "volumes/counters/methods.hpp"
 #include "volumes/counters/packed_counters.frag.spv.hpp"
 #include "volumes/counters/packed_counters.shared.h"
 #include "volumes/raster/volume_count.hpp"

@@ -2,7 +2,7 @@
 
 #include "render/device.hpp"
 #include "visibility/method.hpp"
-#include "volumes/counters/depth_complexity.hpp"
+#include "volumes/counters/depth_counters.hpp"
 
 #include <cstdint>
 #include <memory>

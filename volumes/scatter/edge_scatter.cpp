@@ -1,7 +1,7 @@
 // Depth complexity by silhouette edges (Laine et al. 2005), for any soup by signed multiplicities (Bergeron 1986), on a
 // grid of light samples, or on light samples anywhere in rows of about the same height: docs/edge-scatter.md.
 
-#include "volumes/scatter/edge_scatter.hpp"
+#include "volumes/scatter/methods.hpp"
 
 #include "base/assert.hpp"
 #include "base/error.hpp"
@@ -265,6 +265,7 @@ visibility::MethodDescription describe() {
           .output = visibility::Output::mask,
           .exact_for = "every pair of view sample and light sample, for any triangle soup",
           .lights = {kLights.begin(), kLights.end()},
+          .bytes_per_triangle = 400,
           .options = {engines::kEngine.description(), kExactRows.description()},
           .exact_area = visibility::ExactArea{{kLights.begin(), kLights.end()}, {{"rows", "exact"}}},
           .span = visibility::kFloatSpan,

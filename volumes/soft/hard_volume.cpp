@@ -1,7 +1,7 @@
 // Crow 1977, Heidmann 1991, Everitt and Kilgard 2002: V is 1 where no shadow volume of the light's centre is counted.
 // volume_count.cpp says how it counts, and where it departs from them.
 
-#include "volumes/soft/hard_volume.hpp"
+#include "volumes/soft/methods.hpp"
 
 #include "base/assert.hpp"
 #include "base/error.hpp"

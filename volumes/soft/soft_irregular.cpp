@@ -7,7 +7,7 @@
 // skips lists that end before it. The umbra is decided by exact predicates, without bias. A view sample outside of the
 // frustum tries every edge. Polygons and textures, which have no arcs.
 
-#include "volumes/soft/soft_irregular.hpp"
+#include "volumes/soft/methods.hpp"
 
 #include "base/assert.hpp"
 #include "engines/pairs/far_plane.hpp"

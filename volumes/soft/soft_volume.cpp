@@ -4,7 +4,7 @@
 // of integers in a buffer in place of blending; the edge cut by the light is its own test of being in the wedge; signs
 // in double decide which way round an edge goes, as they decide the count, and where they cannot, the host does.
 
-#include "volumes/soft/soft_volume.hpp"
+#include "volumes/soft/methods.hpp"
 
 #include "base/assert.hpp"
 #include "base/error.hpp"

@@ -4,10 +4,11 @@
 // and they are taken in the scene's order, so no order of triangles shows; boxes hold covered corners of the light,
 // too.
 
-#include "volumes/soft/soft_volume_blend.hpp"
+#include "volumes/soft/methods.hpp"
 
 #include "base/assert.hpp"
 #include "base/parallel.hpp"
+#include "volumes/soft/blended_cover.hpp"
 #include "volumes/wedges/soft_visibility.hpp"
 #include "volumes/soft/soft_volume_blend.frag.spv.hpp"
 #include "volumes/soft/soft_volume_blend.shared.h"

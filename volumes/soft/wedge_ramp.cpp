@@ -3,7 +3,7 @@
 // hard step, light that falls linearly. Departures: any soup and rectangle, disk and ellipse lights, not a sphere;
 // integer sums.
 
-#include "volumes/soft/wedge_ramp.hpp"
+#include "volumes/soft/methods.hpp"
 
 #include "base/assert.hpp"
 #include "base/parallel.hpp"

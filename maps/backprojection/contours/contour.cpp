@@ -3,7 +3,7 @@
 // plane in each texel's direction (taps.glsl); what the light's centre is in follows from the contour itself, not from
 // the texel it falls on; up to five faces hold what one perspective image cannot; areas are added as integers.
 
-#include "maps/backprojection/contours/contour.hpp"
+#include "maps/backprojection/contours/methods.hpp"
 
 #include "maps/backprojection/contours/contour_recipe.hpp"
 #include "maps/backprojection/subsampled.hpp"

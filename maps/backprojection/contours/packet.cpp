@@ -4,7 +4,7 @@
 // direction, not where its depth is between the pixels' (thresholds.glsl); a packet that is not coherent is done pixel
 // by pixel by the same workgroup, not in a second pass; a textured light is as many plain ones as there are sub-lights.
 
-#include "maps/backprojection/contours/packet.hpp"
+#include "maps/backprojection/contours/methods.hpp"
 
 #include "base/error.hpp"
 #include "maps/backprojection/contours/contour.shared.h"

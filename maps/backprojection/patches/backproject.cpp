@@ -3,7 +3,7 @@
 // cannot; parts of the light are added as integers; lights have any planar shape (light_table.hpp); several layers may
 // be asked, as Bavoil et al. 2006 do.
 
-#include "maps/backprojection/patches/backproject.hpp"
+#include "maps/backprojection/patches/methods.hpp"
 
 #include "maps/backprojection/patches/backproject.comp.spv.hpp"
 #include "maps/backprojection/patches/backproject.shared.h"

@@ -2,7 +2,7 @@
 // last layer's middle needs the layer behind it, which is peeled, too; a block is as wide as the square root of the
 // ratio of counts, where the paper takes the ratio.
 
-#include "maps/backprojection/patches/backproject_peel.hpp"
+#include "maps/backprojection/patches/methods.hpp"
 
 #include "maps/backprojection/patches/backproject_peel.comp.spv.hpp"
 #include "maps/backprojection/patches/backproject_peel.shared.h"

@@ -3,7 +3,7 @@
 // decided one by one in place of look-up tables; quads are two triangles; the box of a coarse texel is around what
 // there is in its block and not around what is nearer than the receiver, which no table could hold.
 
-#include "maps/backprojection/patches/bitmask.hpp"
+#include "maps/backprojection/patches/methods.hpp"
 
 #include "maps/backprojection/patches/bitmask.comp.spv.hpp"
 #include "maps/backprojection/patches/bitmask.shared.h"

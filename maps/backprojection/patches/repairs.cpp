@@ -3,8 +3,7 @@
 
 #include "maps/backprojection/patches/repairs.hpp"
 
-#include "maps/backprojection/patches/backproject.hpp"
-#include "maps/backprojection/patches/bitmask.hpp"
+#include "maps/backprojection/patches/methods.hpp"
 #include "maps/host/error_repairs.hpp"
 
 #include <fmt/format.h>

@@ -3,7 +3,7 @@
 #include "maps/backprojection/soft_shadow_map/soft_settings.hpp"
 
 #include "base/error.hpp"
-#include "maps/backprojection/soft_shadow_map/soft_shadow_map.hpp"
+#include "maps/backprojection/soft_shadow_map/methods.hpp"
 #include "maps/host/error_repairs.hpp"
 #include "maps/host/map_method.hpp"
 #include "maps/host/mesh_verdict.hpp"
@@ -50,6 +50,16 @@ visibility::ErrorRepairs repairs(const visibility::MethodDescription& method, co
                       .bias = {{"bias", "0"}}});
 }
 
+/// Pixels on occluders have no shadows.
+std::optional<std::string> warning(const visibility::MethodOptions& options,
+                                   const std::map<std::string, std::uint64_t>& counters) {
+  const auto found = counters.find(kPixelsOnOccluders);
+  if (found == counters.end() || found->second == 0) return std::nullopt;
+  if (visibility::parse_options(soft_shadow_map_description(), options)[kSelf] != SoftSelf::none) return std::nullopt;
+  return "soft-shadow-map has no shadows on what casts shadows: the pixels that show it (counter pixelsOnOccluders) "
+         "see the light above their horizon; method option self=backproject shades them";
+}
+
 }  // namespace
 
 visibility::MethodDescription soft_shadow_map_description() {
@@ -64,23 +74,14 @@ visibility::MethodDescription soft_shadow_map_description() {
       .lights = planar_lights(),
       .options = map_option_descriptions(kSize, kNoBias),
       .verdict_on = soft_shadow_map_verdict,
-      .repairs = repairs};
+      .repairs = repairs,
+      .warning = warning};
   for (const visibility::OptionDescription& option :
        {kDepth.description(), kReceiverSize.description(), kPasses.description(), kPrecision.description(),
         kForm.description(), kFilter.description(), kSelf.description()}) {
     description.options.push_back(option);
   }
   return description;
-}
-
-std::optional<std::string> soft_shadow_map_warning(const visibility::MethodOptions& options,
-                                                   const std::map<std::string, std::uint64_t>& counters) {
-  const auto found = counters.find(kPixelsOnOccluders);
-  if (found == counters.end() || found->second == 0) return std::nullopt;
-  if (visibility::parse_options(soft_shadow_map_description(), options)[kSelf] != SoftSelf::none) return std::nullopt;
-  return "soft-shadow-map has no shadows on what casts shadows: the pixels that show it (counter pixelsOnOccluders) "
-         "see "
-         "the light above their horizon; method option self=backproject shades them";
 }
 
 SoftSettings soft_settings(const visibility::ParsedOptions& parsed) {

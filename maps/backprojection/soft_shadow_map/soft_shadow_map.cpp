@@ -5,10 +5,10 @@
 // (precision=fp16: 16-bit floats, as published); each receiver texel gathers occluders (form=scatter: as published),
 // which are the same sums; what the paper leaves out, shadows on occluders, another method may do (self=backproject).
 
-#include "maps/backprojection/soft_shadow_map/soft_shadow_map.hpp"
+#include "maps/backprojection/soft_shadow_map/methods.hpp"
 
 #include "base/assert.hpp"
-#include "maps/backprojection/patches/backproject.hpp"
+#include "maps/backprojection/patches/methods.hpp"
 #include "maps/backprojection/soft_shadow_map/soft_gather.comp.spv.hpp"
 #include "maps/backprojection/soft_shadow_map/soft_resolve.comp.spv.hpp"
 #include "maps/backprojection/soft_shadow_map/soft_scatter.comp.spv.hpp"

@@ -4,8 +4,8 @@
 #include "tests/agreement/differences.hpp"
 
 #include "scenes/formats/reader.hpp"
-#include "volumes/counters/depth_complexity.hpp"
-#include "volumes/scatter/edge_scatter.hpp"
+#include "volumes/counters/methods.hpp"
+#include "volumes/scatter/methods.hpp"
 
 #include <filesystem>
 

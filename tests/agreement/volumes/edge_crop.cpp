@@ -5,7 +5,7 @@
 #include "tests/unit/shipped_scene.hpp"
 
 #include "visibility/lights/device_light.hpp"
-#include "volumes/counters/depth_complexity.hpp"
+#include "volumes/counters/methods.hpp"
 #include "volumes/edges/edge_lists.hpp"
 
 namespace penumbra::volumes {

@@ -2,10 +2,10 @@
 
 // edge-scatter with rows=exact held against the exact areas, view sample by view sample.
 
-#include "reference/exact_method.hpp"
+#include "reference/methods.hpp"
 #include "tests/agreement/support.hpp"
 #include "volumes/edges/light_window.hpp"
-#include "volumes/scatter/edge_scatter.hpp"
+#include "volumes/scatter/methods.hpp"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>

@@ -8,7 +8,7 @@
 #include "tests/property/lattice_truth.hpp"
 
 #include "base/error.hpp"
-#include "volumes/soft/soft_irregular.hpp"
+#include "volumes/soft/methods.hpp"
 
 namespace penumbra::volumes {
 namespace {

@@ -3,8 +3,8 @@
 #include "tests/agreement/volumes/soft_stage.hpp"
 #include "tests/unit/mesh/shuffled.hpp"
 
-#include "volumes/soft/soft_volume.hpp"
-#include "volumes/soft/soft_volume_blend.hpp"
+#include "volumes/soft/blended_cover.hpp"
+#include "volumes/soft/methods.hpp"
 
 namespace penumbra::volumes {
 namespace {

@@ -2,7 +2,7 @@
 
 #include "tests/agreement/volumes/soft_stage.hpp"
 
-#include "volumes/soft/soft_volume.hpp"
+#include "volumes/soft/methods.hpp"
 
 namespace penumbra::volumes {
 namespace {

@@ -3,7 +3,7 @@
 #include "tests/agreement/volumes/soft_stage.hpp"
 
 #include "volumes/soft/coverage_table.hpp"
-#include "volumes/soft/soft_volume.hpp"
+#include "volumes/soft/methods.hpp"
 #include "volumes/wedges/texture_weights.hpp"
 
 #include <glm/geometric.hpp>

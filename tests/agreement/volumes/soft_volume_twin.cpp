@@ -8,7 +8,7 @@
 #include "tests/agreement/volumes/soft_stage.hpp"
 #include "tests/unit/mesh/shuffled.hpp"
 
-#include "volumes/soft/soft_volume.hpp"
+#include "volumes/soft/methods.hpp"
 
 namespace penumbra::volumes {
 namespace {

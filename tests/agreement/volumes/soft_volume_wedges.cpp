@@ -5,8 +5,7 @@
 #include "tests/agreement/volumes/soft_stage.hpp"
 
 #include "mesh/shapes/broken_meshes.hpp"
-#include "volumes/soft/soft_volume.hpp"
-#include "volumes/soft/soft_volume_blend.hpp"
+#include "volumes/soft/methods.hpp"
 
 namespace penumbra::volumes {
 namespace {

@@ -3,7 +3,7 @@
 #include "tests/agreement/volumes/soft_stage.hpp"
 
 #include "volumes/soft/ramp_wedges.hpp"
-#include "volumes/soft/wedge_ramp.hpp"
+#include "volumes/soft/methods.hpp"
 
 namespace penumbra::volumes {
 namespace {

@@ -6,8 +6,8 @@
 #include "tests/analytic/maps/backprojection_scenes.hpp"
 
 #include "maps/products/light_shape.hpp"
-#include "maps/sampling/adaptive_light.hpp"
-#include "reference/exact_method.hpp"
+#include "maps/sampling/methods.hpp"
+#include "reference/methods.hpp"
 
 #include <cstdint>
 #include <utility>

@@ -2,10 +2,7 @@
 // the same bytes in any order of triangles; and where filters are known to be wrong.
 
 #include "base/error.hpp"
-#include "maps/filters/convolution.hpp"
-#include "maps/filters/occlusion_textures.hpp"
-#include "maps/filters/pcf.hpp"
-#include "maps/filters/vssm.hpp"
+#include "maps/filters/methods.hpp"
 #include "maps/products/light_shape.hpp"
 #include "mesh/shapes/broken_meshes.hpp"
 #include "tests/agreement/differences.hpp"

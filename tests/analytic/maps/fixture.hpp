@@ -2,18 +2,11 @@
 
 // How tests make a method of maps/ and run it.
 
-#include "maps/backprojection/patches/backproject.hpp"
-#include "maps/backprojection/patches/backproject_peel.hpp"
-#include "maps/backprojection/patches/bitmask.hpp"
-#include "maps/backprojection/contours/contour.hpp"
-#include "maps/backprojection/contours/packet.hpp"
-#include "maps/backprojection/soft_shadow_map/soft_shadow_map.hpp"
-#include "maps/sampling/accumulate.hpp"
-#include "maps/sampling/adaptive_light.hpp"
-#include "maps/sampling/deep_penumbra.hpp"
-#include "maps/sampling/layered_attenuation.hpp"
-#include "maps/filters/pcss.hpp"
-#include "maps/filters/shadow_map.hpp"
+#include "maps/backprojection/patches/methods.hpp"
+#include "maps/backprojection/contours/methods.hpp"
+#include "maps/backprojection/soft_shadow_map/methods.hpp"
+#include "maps/sampling/methods.hpp"
+#include "maps/filters/methods.hpp"
 #include "tests/agreement/support.hpp"
 
 #include <cmath>

@@ -1,10 +1,7 @@
 // Layers of a map: what depth peeling finds, against every triangle at every texel in double, and what the option
 // `depth` makes of the first two.
 
-#include "maps/filters/convolution.hpp"
-#include "maps/filters/occlusion_textures.hpp"
-#include "maps/filters/pcf.hpp"
-#include "maps/filters/vssm.hpp"
+#include "maps/filters/methods.hpp"
 #include "selftest/rasteriser_checks.hpp"
 #include "tests/analytic/maps/centre_maps.hpp"
 #include "tests/analytic/maps/parallel_square.hpp"

@@ -1,7 +1,6 @@
 // What holds on every scene between one light and its parts or its corners (docs/predicates.md: I4, I19, I20).
 
-#include "maps/backprojection/contours/contour.hpp"
-#include "maps/backprojection/contours/packet.hpp"
+#include "maps/backprojection/contours/methods.hpp"
 #include "tests/analytic/maps/adaptive_light.hpp"
 #include "tests/analytic/maps/places.hpp"
 #include "visibility/lights/light_parts.hpp"

@@ -2,8 +2,7 @@
 // rays are walked, from what difference on layered-attenuation takes two surfaces for one.
 
 #include "maps/products/lists/penumbra_events.hpp"
-#include "maps/sampling/deep_penumbra.hpp"
-#include "maps/sampling/layered_attenuation.hpp"
+#include "maps/sampling/methods.hpp"
 #include "selftest/crowd.hpp"
 #include "selftest/list_checks.hpp"
 #include "tests/analytic/maps/fixture.hpp"

@@ -5,8 +5,7 @@
 
 #include "maps/products/lists/layered_depth.hpp"
 #include "maps/products/lists/layered_depth.shared.h"
-#include "maps/sampling/deep_penumbra.hpp"
-#include "maps/sampling/layered_attenuation.hpp"
+#include "maps/sampling/methods.hpp"
 #include "selftest/list_checks.hpp"
 
 #include <fmt/format.h>

@@ -1,8 +1,7 @@
 #pragma once
 // What tests of lists of depths share: deep-penumbra's steps and layered-attenuation's layers.
 
-#include "maps/sampling/deep_penumbra.hpp"
-#include "maps/sampling/layered_attenuation.hpp"
+#include "maps/sampling/methods.hpp"
 #include "selftest/list_checks.hpp"
 #include "tests/analytic/maps/parallel_square.hpp"
 

@@ -1,10 +1,7 @@
 #include "tests/analytic/maps/parallel_square.hpp"
 
 #include "base/error.hpp"
-#include "maps/filters/convolution.hpp"
-#include "maps/filters/occlusion_textures.hpp"
-#include "maps/filters/pcf.hpp"
-#include "maps/filters/vssm.hpp"
+#include "maps/filters/methods.hpp"
 #include "maps/host/caster_maps.hpp"
 
 #include <bit>

@@ -1,7 +1,7 @@
 // vssm: against its twin in double, against the closed forms of Chebyshev's bound, and what each kind of moments
 // promises.
 
-#include "maps/filters/vssm.hpp"
+#include "maps/filters/methods.hpp"
 
 #include "tests/analytic/maps/vssm_twin.hpp"
 

@@ -1,6 +1,6 @@
 // pcf: a fixed window of texels, whose widths, levels and self-shadowing are known in closed form.
 
-#include "maps/filters/pcf.hpp"
+#include "maps/filters/methods.hpp"
 
 #include "tests/analytic/maps/centre_maps.hpp"
 

@@ -1,7 +1,7 @@
 // What papers and algebra say of the image-based family on every scene, or on every scene of a class, where no other
 // file of this room has it. docs/predicates.md lists all, with their names and what is measured.
 
-#include "maps/filters/vssm.hpp"
+#include "maps/filters/methods.hpp"
 #include "tests/analytic/maps/predicates.hpp"
 
 #include <algorithm>

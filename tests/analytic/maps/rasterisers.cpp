@@ -2,10 +2,7 @@
 // them. The twin itself against triangles whose coverage is known.
 
 #include "base/error.hpp"
-#include "maps/filters/convolution.hpp"
-#include "maps/filters/occlusion_textures.hpp"
-#include "maps/filters/pcf.hpp"
-#include "maps/filters/vssm.hpp"
+#include "maps/filters/methods.hpp"
 #include "selftest/centre_maps.hpp"
 #include "selftest/crowd.hpp"
 #include "selftest/raster_twin.hpp"

@@ -1,9 +1,7 @@
 // occlusion-textures and convolution: slices against their twin, and what flat blockers parallel to the light must
 // give.
 
-#include "maps/filters/convolution.hpp"
-#include "maps/filters/occlusion_textures.hpp"
-#include "maps/filters/vssm.hpp"
+#include "maps/filters/methods.hpp"
 #include "maps/products/light_shape.hpp"
 #include "maps/products/slices.hpp"
 #include "selftest/crowd.hpp"

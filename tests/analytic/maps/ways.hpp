@@ -2,10 +2,7 @@
 
 // Methods of maps/ by the words of the command line: "bitmask:occluder=quad:layers=2".
 
-#include "maps/filters/convolution.hpp"
-#include "maps/filters/occlusion_textures.hpp"
-#include "maps/filters/pcf.hpp"
-#include "maps/filters/vssm.hpp"
+#include "maps/filters/methods.hpp"
 #include "tests/analytic/maps/fixture.hpp"
 
 #include <map>

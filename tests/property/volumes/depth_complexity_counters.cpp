@@ -7,7 +7,8 @@
 #include "mesh/shapes/broken_meshes.hpp"
 #include "selftest/mask_checks.hpp"
 #include "tests/unit/passed.hpp"
-#include "volumes/counters/depth_complexity.hpp"
+#include "volumes/counters/depth_counters.hpp"
+#include "volumes/counters/methods.hpp"
 
 #include <atomic>
 #include <cmath>

@@ -7,7 +7,7 @@
 #include "tests/unit/shipped_scene.hpp"
 
 #include "mesh/shapes/broken_meshes.hpp"
-#include "volumes/soft/hard_volume.hpp"
+#include "volumes/soft/methods.hpp"
 #include "volumes/raster/volume_count.hpp"
 
 #include <glm/geometric.hpp>

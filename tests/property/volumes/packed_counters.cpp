@@ -9,7 +9,7 @@
 #include "tests/agreement/lattice.hpp"
 #include "tests/agreement/volumes/light_span.hpp"
 #include "tests/unit/mesh/shuffled.hpp"
-#include "volumes/counters/depth_complexity.hpp"
+#include "volumes/counters/methods.hpp"
 
 #include <cmath>
 

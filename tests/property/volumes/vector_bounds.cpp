@@ -4,7 +4,7 @@
 #include "tests/agreement/crossings.hpp"
 #include "tests/agreement/most_used.hpp"
 #include "tests/property/volumes/under_a_light.hpp"
-#include "volumes/scatter/edge_scatter.hpp"
+#include "volumes/scatter/methods.hpp"
 
 #include <fmt/format.h>
 #include <glm/vec3.hpp>

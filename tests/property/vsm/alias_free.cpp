@@ -8,7 +8,7 @@
 #include "tests/unit/shipped_scene.hpp"
 
 #include "mesh/shapes/broken_meshes.hpp"
-#include "vsm/alias_free.hpp"
+#include "vsm/methods.hpp"
 
 namespace penumbra::vsm {
 namespace {

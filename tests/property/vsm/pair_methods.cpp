@@ -10,9 +10,8 @@
 #include "tests/unit/shipped_scene.hpp"
 
 #include "mesh/shapes/broken_meshes.hpp"
-#include "vsm/hierarchical_penumbra.hpp"
+#include "vsm/methods.hpp"
 #include "vsm/view_sample_lists.hpp"
-#include "vsm/view_sample_planar.hpp"
 
 #include <optional>
 

@@ -4,7 +4,7 @@
 #include "maps/backprojection/patches/level_maps.hpp"
 #include "tests/analytic/maps/backprojection_scenes.hpp"
 #include "tests/analytic/maps/parallel_square.hpp"
-#include "reference/exact_method.hpp"
+#include "reference/methods.hpp"
 #include "tests/analytic/maps/backprojection/patch_twin.hpp"
 
 #include <random>

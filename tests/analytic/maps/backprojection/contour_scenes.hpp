@@ -1,7 +1,7 @@
 #pragma once
 // Scenes for contours: what they are about is said beside each. Lights are 5 above a floor at height 0.
 
-#include "reference/exact_method.hpp"
+#include "reference/methods.hpp"
 #include "tests/analytic/maps/parallel_square.hpp"
 
 namespace penumbra::tests {

@@ -2,7 +2,7 @@
 // areas.
 
 #include "maps/backprojection/light_table.hpp"
-#include "reference/exact_method.hpp"
+#include "reference/methods.hpp"
 #include "tests/analytic/maps/backprojection_scenes.hpp"
 
 #include <array>

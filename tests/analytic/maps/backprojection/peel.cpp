@@ -2,7 +2,7 @@
 
 #include "tests/analytic/maps/backprojection_scenes.hpp"
 #include "tests/analytic/maps/parallel_square.hpp"
-#include "reference/exact_method.hpp"
+#include "reference/methods.hpp"
 
 namespace penumbra::tests {
 namespace {

@@ -3,7 +3,7 @@
 #include "tests/analytic/maps/backprojection/soft_shadow_map.hpp"
 
 #include "base/error.hpp"
-#include "maps/backprojection/patches/backproject.hpp"
+#include "maps/backprojection/patches/methods.hpp"
 
 #include <fmt/format.h>
 
@@ -333,7 +333,7 @@ TEST_F(SoftShadowMap, WhereOccludersHaveNoShadowsItSaysSo) {
     options["size"] = options["receiverSize"] = "16";
     const auto method = maps::make_soft_shadow_map(device(), options);
     run(*method, stage);
-    return maps::soft_shadow_map_warning(options, method->counters()).value_or("");
+    return maps::soft_shadow_map_description().warning(options, method->counters()).value_or("");
   };
   const Stage stage(ball(0.5), 16, 16, light_samples(1));
   EXPECT_NE(warning(stage, {}).find("self=backproject"), std::string::npos);

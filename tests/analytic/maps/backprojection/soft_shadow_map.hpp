@@ -5,8 +5,8 @@
 
 #include "tests/analytic/maps/parallel_square.hpp"
 
-#include "maps/backprojection/soft_shadow_map/soft_shadow_map.hpp"
-#include "reference/exact_method.hpp"
+#include "maps/backprojection/soft_shadow_map/methods.hpp"
+#include "reference/methods.hpp"
 
 #include <cmath>
 #include <cstdint>

@@ -3,11 +3,9 @@
 #include "render/machine.hpp"
 #include "visibility/method.hpp"
 
-#include <cstdint>
-#include <limits>
 #include <memory>
-#include <span>
 
+/// Of each method what makes it, and what it is, which needs no device.
 namespace penumbra::volumes {
 
 /// `depth-complexity`: an integer counter for each light sample: how many triangles are between p and it. Any
@@ -31,18 +29,5 @@ bool depth_complexity_on_vectors(const render::Machine& machine, const visibilit
 /// What it is; needs no device.
 /// Throws UsageError for options that are not its own or exclude each other.
 visibility::MethodDescription depth_complexity_description(const visibility::MethodOptions& options = {});
-
-/// A variant that keeps its counters beside its masks: to look at them.
-/// Virtual: a variant may be a method by another way, too.
-class DepthCounters : public virtual visibility::Method {
- public:
-  /// Left to exact predicates, or of a view sample that sees nothing of the light.
-  static constexpr std::int32_t kNoCounter = std::numeric_limits<std::int32_t>::min();
-
-  /// For each pixel of the tile last evaluated, one counter a light sample. Light samples below the horizon have one.
-  virtual void read_counters(std::span<std::int32_t> counters) = 0;
-};
-/// variant=soup.
-std::unique_ptr<DepthCounters> make_depth_counters(const render::Device& device);
 
 }  // namespace penumbra::volumes

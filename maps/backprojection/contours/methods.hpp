@@ -5,7 +5,13 @@
 
 #include <memory>
 
+/// Of each method what makes it, and what it is, which needs no device.
 namespace penumbra::maps {
+
+/// Guennebaud, Barthe and Paulin 2007: contours of what shades, on one map. docs/contour.md.
+std::unique_ptr<visibility::Method> make_contour(const render::Device& device,
+                                                 const visibility::MethodOptions& options);
+visibility::MethodDescription contour_description();
 
 /// Yang, Feng, Guennebaud and Liu 2009: contours for packets of pixels, found in a hierarchy. docs/packet.md.
 std::unique_ptr<visibility::Method> make_packet(const render::Device& device, const visibility::MethodOptions& options);

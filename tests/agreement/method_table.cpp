@@ -1,0 +1,60 @@
+// What the families' tables say of their methods is what these do.
+#include "app/methods.hpp"
+#include "tests/agreement/support.hpp"
+
+#include <set>
+
+namespace penumbra::tests {
+namespace {
+
+/// A floor below a plate below a rectangle light, by so many light samples.
+Stage plate_over_floor(std::uint32_t samples) {
+  scenes::Scene scene;
+  add_quad(scene, {0, 0, 0}, {4, 0, 0}, {0, 0, 4});
+  add_quad(scene, {0.1, 1, 0.2}, {0.7, 0, 0}, {0, 0, 0.6});
+  scene.lights.push_back(ceiling_light(3, 0.8));
+  scene.cameras.push_back(camera({0.4, 3, 7}, {0, 0.3, 0}));
+  return Stage(scene, 24, 16, light_samples(samples));
+}
+
+/// Maps small enough that each method takes but an instant.
+visibility::MethodOptions small_maps(const visibility::MethodDescription& method) {
+  visibility::MethodOptions options;
+  for (const char* name : {"size", "receiverSize"}) {
+    if (std::ranges::find(method.options, name, &visibility::OptionDescription::name) != method.options.end())
+      options[name] = "32";
+  }
+  return options;
+}
+
+class MethodTable : public DeviceTest {};
+
+TEST_F(MethodTable, MakesWhatItDescribesAndKnowsWhichCountLightSamples) {
+  const Stage one = plate_over_floor(1), many = plate_over_floor(16);
+  for (const visibility::MethodDescription* described : app::all_methods()) {
+    const visibility::MethodOptions options = small_maps(*described);
+    const auto method = app::make_method(described->name, options, device());
+    EXPECT_EQ(method->description().name, described->name);
+    EXPECT_EQ(method->description().output, app::describe_method(described->name, options).output) << described->name;
+    const std::vector<float> by_one = run(*method, one).visibility, by_many = run(*method, many).visibility;
+    EXPECT_NE(*std::ranges::min_element(by_many), 1) << described->name << " sees no shadow";
+    EXPECT_EQ(by_one != by_many, described->counts_light_samples()) << described->name;
+  }
+}
+
+TEST_F(MethodTable, ListsEachMethodOnceTheDefaultFirst) {
+  std::set<std::string> names;
+  std::vector<visibility::Family> families;
+  for (const visibility::MethodDescription* method : app::all_methods()) {
+    EXPECT_TRUE(names.insert(method->name).second) << method->name;
+    if (families.empty() || families.back() != method->family) families.push_back(method->family);
+  }
+  using visibility::Family;
+  EXPECT_EQ(families, (std::vector{Family::geometry, Family::image, Family::reference}));
+  EXPECT_EQ(app::all_methods()[0]->name, "edge-scatter");
+  EXPECT_EQ(app::all_methods()[1]->name, "view-sample") << "a row of another table, by its precedence";
+  EXPECT_EQ(app::ray_judge().name, "raytrace");
+}
+
+}  // namespace
+}  // namespace penumbra::tests

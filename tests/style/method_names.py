@@ -1,0 +1,47 @@
+"""method_names.py SOURCE PROGRAM: fails where app/, bench/, compare/ or a script of theirs names a shadow method in a string. What
+there is to know of a method comes from its family's table; only what users get if they choose nothing is named."""
+
+import json
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+DEFAULTS = {("app/compare/comparison.hpp", "raytrace"),
+            ("bench/options.cpp", "edge-scatter,view-sample"), ("bench/options.cpp", "edge-scatter,edge-scatter:rows=exact")}
+
+
+def literals(text):
+    """Strings of a line of C++, Python or Bash, but for names of JSON members."""
+    return [a or b for a, b in re.findall(r'''(?<!\[)"((?:[^"\\]|\\.)*)"|(?<!\[)'((?:[^'\\]|\\.)*)\'''', text)]
+
+
+def is_named(literal, names):
+    """Is it a method's name, or a list of names with options, as --methods takes them?"""
+    return any(entry.partition(":")[0] in names for entry in literal.split(","))
+
+
+def complaints(root, names):
+    for folder in ("app", "bench", "compare"):
+        for path in sorted((root / folder).rglob("*")):
+            if path.suffix not in (".hpp", ".cpp", ".sh", ".py", ".js"):
+                continue
+            file = path.relative_to(root).as_posix()
+            comment = re.compile(r"(^|\s)#\s.*" if path.suffix in (".sh", ".py") else r"(^|\s)//.*|^#include.*")
+            for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
+                for literal in literals(comment.sub("", line)):
+                    if is_named(literal, names) and (file, literal) not in DEFAULTS:
+                        yield f"{file}:{number}: names a method: {literal}"
+
+
+def main():
+    root, program = Path(sys.argv[1]), sys.argv[2]
+    listed = subprocess.run([program, "methods", "--json"], check=True, capture_output=True, text=True).stdout
+    names = {method["name"] for method in json.loads(listed)["methods"]}
+    for planted in ('name == "pcss"', 'add("exact,pcss:size=8");'):  # what it looks for it finds
+        assert any(is_named(literal, names) for literal in literals(planted)), planted
+    found = list(complaints(root, names))
+    sys.exit("\n".join(found) if found else 0)
+
+
+main()

@@ -1,0 +1,18 @@
+#include "vsm/methods.hpp"
+
+#include <array>
+
+namespace penumbra::vsm {
+
+std::span<const engines::MethodRow> methods() {
+  using namespace engines;
+  static const std::array kRows{
+      on_either<view_sample_description, make_view_sample, view_sample_on_vectors>(1),
+      on_processor<make_hierarchical_penumbra>(),
+      on_processor<make_view_sample_planar>(),
+      on_processor<make_alias_free>(),
+  };
+  return kRows;
+}
+
+}  // namespace penumbra::vsm
