@@ -7,7 +7,8 @@
 namespace penumbra::engines {
 
 ViewSampler::ViewSampler(const render::Machine& machine, const visibility::SceneFloats& scene) : scene_(scene) {
-  if (!runs_on_vectors(machine, Engine::automatic)) buffer_.emplace(machine.device(), scene);
+  if (runs_on_vectors(machine, Engine::automatic)) return;
+  if (render::VisibilityBuffer::runs_on(machine.device().info())) buffer_.emplace(machine.device(), scene);
 }
 
 visibility::ViewSamples ViewSampler::find(const visibility::PinholeCamera& camera) {

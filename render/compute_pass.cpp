@@ -2,6 +2,7 @@
 
 #include "base/assert.hpp"
 #include "render/bindings.hpp"
+#include "render/features.hpp"
 
 #include <algorithm>
 #include <map>
@@ -35,8 +36,10 @@ namespace {
 ComputePipelines::One make_pipeline(const Device& device, const ComputePassOptions& options) {
   Device::State& state = device.state();
   ComputePipelines::One made;
+  require_features(device.info(), options.spirv, options.name);
   const ShaderInterface shader = reflect(options.spirv, options.name);
   made.push_bytes = shader.push_bytes;
+  if (state.only_checks) return made;
   made.bindings = Bindings(state, options.name, shader, vk::ShaderStageFlagBits::eCompute);
 
   const vk::raii::Device& d = state.device;

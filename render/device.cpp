@@ -3,6 +3,7 @@
 #include "base/error.hpp"
 #include "base/memory.hpp"
 #include "base/threads.hpp"
+#include "render/optional_features.hpp"
 #include "render/physical_device.hpp"
 #include "render/vulkan.hpp"
 
@@ -128,9 +129,13 @@ vk::raii::Device make_device(const vk::raii::PhysicalDevice& physical, std::uint
       chain;
   chain.get<vk::DeviceCreateInfo>().setQueueCreateInfos(queue);
   auto& core = chain.get<vk::PhysicalDeviceFeatures2>().features;
-  core.shaderFloat64 = core.shaderInt64 = core.fragmentStoresAndAtomics = VK_TRUE;
   auto& v12 = chain.get<vk::PhysicalDeviceVulkan12Features>();
-  v12.shaderBufferInt64Atomics = v12.scalarBlockLayout = VK_TRUE;
+  OptionalFeatures there = optional_features(physical);
+  core = there.core;
+  core.fragmentStoresAndAtomics = VK_TRUE;
+  there.v12.pNext = v12.pNext;
+  v12 = there.v12;
+  v12.scalarBlockLayout = VK_TRUE;
   auto& v13 = chain.get<vk::PhysicalDeviceVulkan13Features>();
   v13.dynamicRendering = v13.synchronization2 = v13.maintenance4 = v13.subgroupSizeControl = VK_TRUE;
   const auto available = physical.enumerateDeviceExtensionProperties();
@@ -251,6 +256,7 @@ Device::Device(const DeviceOptions& options)
     : Device(opening([&] {
         Opened opened = open_instance(options.validation);
         DeviceInfo info = choose(opened.devices, options.wanted);
+        opened.state->only_checks = options.only_checks;
         return open_device(std::move(opened), std::move(info));
       })) {}
 

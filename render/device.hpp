@@ -28,6 +28,7 @@ struct DeviceInfo {
   std::string driver;  ///< driver name and version
   std::string api_version;
   std::vector<std::string> refusals;  ///< why it cannot run Penumbra; empty: it can
+  std::vector<std::string> lacks;     ///< what only some passes need (missing_for): those do not run there
   std::uint64_t max_storage_buffer_range = 0;
   std::uint32_t subgroup_size = 0;
   std::uint64_t memory_bytes = 0;  ///< its largest device-local heap
@@ -39,8 +40,9 @@ struct DeviceInfo {
 std::vector<DeviceInfo> list_devices();
 
 struct DeviceOptions {
-  std::string wanted;       ///< a part of its name (case ignored), its index, "cpu", or empty: the best one
-  bool validation = false;  ///< validation layer with synchronization validation; see Device::take_validation_messages
+  std::string wanted;        ///< a part of its name (case ignored), its index, "cpu", or empty: the best one
+  bool validation = false;   ///< validation layer with synchronization validation; see Device::take_validation_messages
+  bool only_checks = false;  ///< passes are refused or not, and never run: drivers may take seconds to compile one
 };
 
 /// Limits that code here depends on.

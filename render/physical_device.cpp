@@ -1,5 +1,7 @@
 #include "render/physical_device.hpp"
 
+#include "render/optional_features.hpp"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -31,7 +33,7 @@ std::string version_text(std::uint32_t version) {
                      VK_API_VERSION_PATCH(version));
 }
 
-/// Each feature that Penumbra needs: how it is read from the device, and what it is for.
+/// Each feature that all of Penumbra needs: how it is read from the device, and what it is for.
 std::vector<std::string> missing_features(const vk::raii::PhysicalDevice& physical) {
   const auto chain = physical.getFeatures2<vk::PhysicalDeviceFeatures2, vk::PhysicalDeviceVulkan11Features,
                                            vk::PhysicalDeviceVulkan12Features, vk::PhysicalDeviceVulkan13Features>();
@@ -42,11 +44,7 @@ std::vector<std::string> missing_features(const vk::raii::PhysicalDevice& physic
   const auto need = [&](vk::Bool32 has, const char* what) {
     if (has == VK_FALSE) missing.emplace_back(what);
   };
-  need(core.shaderFloat64, "no shaderFloat64 (view samples are decided in double precision)");
-  need(core.shaderInt64, "no shaderInt64 (the visibility buffer orders double distances as 64-bit integers)");
-  need(v12.shaderBufferInt64Atomics,
-       "no shaderBufferInt64Atomics (the visibility buffer takes the nearest by atomicMin)");
-  need(core.fragmentStoresAndAtomics, "no fragmentStoresAndAtomics (the visibility buffer is a storage buffer)");
+  need(core.fragmentStoresAndAtomics, "no fragmentStoresAndAtomics (maps are written into storage buffers)");
   need(v12.scalarBlockLayout, "no scalarBlockLayout (structs are shared between C++ and GLSL)");
   need(v13.dynamicRendering, "no dynamicRendering");
   need(v13.synchronization2, "no synchronization2");
@@ -75,6 +73,11 @@ int preference(const DeviceInfo& info) {
   if (info.kind == "integrated") return 1;
   if (info.kind == "virtual") return 2;
   return info.kind == "cpu" ? 3 : 4;
+}
+
+/// Of one kind, one that lacks less is better.
+bool comes_before(const DeviceInfo& a, const DeviceInfo& b) {
+  return std::pair(preference(a), a.lacks.size()) < std::pair(preference(b), b.lacks.size());
 }
 
 }  // namespace
@@ -122,15 +125,7 @@ DeviceInfo describe(const vk::raii::PhysicalDevice& physical, std::uint32_t inde
     return info;  // the feature structs below are 1.3's
   }
   info.refusals = missing_features(physical);
-  const auto wanted = vk::SubgroupFeatureFlagBits::eBasic | vk::SubgroupFeatureFlagBits::eBallot |
-                      vk::SubgroupFeatureFlagBits::eShuffle | vk::SubgroupFeatureFlagBits::eArithmetic |
-                      vk::SubgroupFeatureFlagBits::eVote;
-  if ((subgroup.supportedOperations & wanted) != wanted) {
-    info.refusals.emplace_back("no subgroup ballot, shuffle, vote or arithmetic operations");
-  }
-  if (info.subgroup_size < 8 || info.subgroup_size > 64) {
-    info.refusals.push_back(fmt::format("subgroups of {} lanes (8 to 64 are supported)", info.subgroup_size));
-  }
+  info.lacks = lacking(physical);
   if (!find_queue_family(physical)) info.refusals.emplace_back("no queue with graphics and compute");
   return info;
 }
@@ -161,7 +156,7 @@ DeviceInfo choose(const std::vector<vk::raii::PhysicalDevice>& devices, const st
       reasons += fmt::format("\n  {} {}: not what --device {} asks for", i, info.name, wanted);
     } else if (!info.usable()) {
       reasons += fmt::format("\n  {} {}: {}", i, info.name, fmt::join(info.refusals, "; "));
-    } else if (!best || preference(info) < preference(*best)) {
+    } else if (!best || comes_before(info, *best)) {
       best = info;
     }
   }

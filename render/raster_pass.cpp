@@ -3,6 +3,7 @@
 #include "base/assert.hpp"
 #include "base/error.hpp"
 #include "render/bindings.hpp"
+#include "render/features.hpp"
 
 namespace penumbra::render {
 
@@ -107,6 +108,8 @@ RasterPass::RasterPass(const Device& device, const RasterPassOptions& options) t
   s.name = options.name;
   s.depth = options.depth;
   s.cleared = options.compare == DepthCompare::greater ? 0.0F : 1.0F;
+  require_features(device.info(), options.vertex, s.name);
+  require_features(device.info(), options.fragment, s.name);
   // The two stages share one set; a stage may use fewer bindings than the other.
   ShaderInterface shader = reflect(options.vertex, options.name);
   if (!options.fragment.empty()) {
@@ -116,6 +119,7 @@ RasterPass::RasterPass(const Device& device, const RasterPassOptions& options) t
   }
   PENUMBRA_ASSERT(shader.push_bytes == options.push_bytes, "{}: the shaders' push constants have {} bytes, C++'s {}",
                   s.name, shader.push_bytes, options.push_bytes);
+  if (s.device->only_checks) return;
   s.bindings =
       Bindings(*s.device, s.name, shader, vk::ShaderStageFlagBits::eVertex | vk::ShaderStageFlagBits::eFragment);
 

@@ -1,6 +1,7 @@
 #include "render/visibility_buffer.hpp"
 
 #include "base/error.hpp"
+#include "render/features.hpp"
 #include "render/raster_pass.hpp"
 #include "render/visibility_buffer.frag.spv.hpp"
 #include "render/visibility_buffer.shared.h"
@@ -69,6 +70,11 @@ struct VisibilityBuffer::State {
   std::vector<Batch> batches;
   std::vector<std::int32_t> by_rank;
 };
+
+bool VisibilityBuffer::runs_on(const DeviceInfo& device) {
+  return missing_for(device, shaders::kVisibilityBufferVert).empty() &&
+         missing_for(device, shaders::kVisibilityBufferFrag).empty();
+}
 
 VisibilityBuffer::VisibilityBuffer(const Device& device, const visibility::SceneFloats& scene) {
   const std::vector<std::uint32_t> ranks = visibility::ranks(scene);

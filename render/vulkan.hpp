@@ -47,7 +47,8 @@ struct Device::State {
   Limits limits;
   std::uint64_t allocated = 0, peak = 0;
   bool debug_names = false;
-  bool abandoned = false;  // see abandon()
+  bool only_checks = false;  // DeviceOptions
+  bool abandoned = false;    // see abandon()
   std::unique_ptr<opengl::Context> opengl;
   std::unique_ptr<ComputePipelines, void (*)(ComputePipelines*)> compute_pipelines{nullptr, nullptr};
 

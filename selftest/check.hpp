@@ -20,6 +20,7 @@ struct Check {
          allowed = 0;     ///< the difference that comes nearest to its bound, or is farthest beyond, and that bound
   std::string first{};    ///< the first wrong one: where, and what it is
   std::string refused{};  ///< why it could not run, if so
+  bool lacking = false;   ///< it could not because this device lacks what the pass needs: no fault
 
   [[nodiscard]] bool passed() const { return refused.empty() && wrong == 0 && compared > 0; }
 
@@ -59,6 +60,7 @@ struct Check {
     if (wrong == 0) first = more.first;
     wrong += more.wrong;
     if (refused.empty()) refused = more.refused;
+    lacking = lacking || more.lacking;
     keep_worst(more.largest, more.allowed);
   }
 };

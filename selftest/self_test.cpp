@@ -2,6 +2,7 @@
 
 #include "base/error.hpp"
 #include "mesh/shapes/shapes.hpp"
+#include "render/features.hpp"
 #include "selftest/crowd.hpp"
 #include "selftest/edge_checks.hpp"
 #include "selftest/list_checks.hpp"
@@ -32,6 +33,9 @@ Check repeated(const std::string& pass, const std::function<void(Check&)>& work)
   all.pass = pass;
   try {
     work(all);
+  } catch (const render::LacksFeature& error) {
+    all.refused = error.what();
+    all.lacking = true;
   } catch (const ResourceError& error) {
     all.refused = error.what();
   }

@@ -32,8 +32,9 @@ SelfTestReport::SelfTestReport(const render::Device& device, std::vector<Check> 
 }
 
 bool SelfTestReport::passed() const {
-  return std::ranges::all_of(
-      checks_, [&](const Check& check) { return check.passed() || (!has_opengl_ && !check.refused.empty()); });
+  return std::ranges::all_of(checks_, [&](const Check& check) {
+    return check.passed() || check.lacking || (!has_opengl_ && !check.refused.empty());
+  });
 }
 
 void SelfTestReport::print_table() const {
@@ -43,7 +44,7 @@ void SelfTestReport::print_table() const {
   for (const Check& check : checks_) {
     fmt::print("{:<48} {:>10} {:>10} {:>9.2g} {:>9.2g}  {:<8} {}\n", check.pass, check.compared, check.differing,
                check.largest, check.allowed, verdict_of(check), check.against);
-    if (!check.refused.empty() && has_opengl_) fmt::print("    {}\n", check.refused);
+    if (!check.refused.empty() && (has_opengl_ || check.lacking)) fmt::print("    {}\n", check.refused);
     if (check.wrong > 0) {
       fmt::print("    {} of {} break the rule \"{}\"; the first: {}\n", check.wrong, check.compared, check.rule,
                  check.first);
