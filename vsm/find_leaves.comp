@@ -11,7 +11,7 @@ layout(binding = 5) uniform usamplerBuffer nodes;         // 2 texels a child: (
 layout(binding = 6) uniform usamplerBuffer parts;         // 14 texels a closed part: 7 boxes, itself and what touches it
 
 shared uint stack[kStackSize];
-shared uint leaves[kChunk + 8 * (kLanes / 8) + 8];
+shared uint leaves[kChunk + kTeam * kTeams + 8];
 
 // Hands the first `count` collected leaves to the second pass.
 void emit_chunk(uint header, uint outside_of, uint count) {
@@ -77,7 +77,7 @@ uvec2 first_of_part() {
 
 void walk(bool on, float side, uint header, uint outside_of) {
   const Shaft shaft = make_shaft(on, side);
-  const uint lane = gl_SubgroupInvocationID, teams = kLanes / kTeam, team = lane / kTeam, member = lane % kTeam;
+  const uint lane = gl_SubgroupInvocationID, team = lane / kTeam, member = lane % kTeam;
   const uvec2 sizes = first_of_part();
   uint stack_size = sizes.x, leaf_count = sizes.y;
   subgroupMemoryBarrierShared();
@@ -85,37 +85,41 @@ void walk(bool on, float side, uint header, uint outside_of) {
   while (stack_size > 0 || leaf_count > 0) {
     // Short, because some devices run all of a loop's body whatever its branches say.
     while (stack_size > 0 && leaf_count < kChunk) {
-      const uint taken = min(stack_size, teams);
+      const uint taken = min(stack_size, kTeams);
       const uint node = team < taken ? stack[stack_size - 1 - team] : 0;
       stack_size -= taken;
-      const int texel = int((node * kTeam + member) * 2);
-      const uvec4 first = texelFetch(nodes, texel), second = texelFetch(nodes, texel + 1);
-      const vec3 middle = uintBitsToFloat(first.xyz), half_size = uintBitsToFloat(second.xyz);
-      const float at = dot(shaft.axis, middle), spread = dot(abs(shaft.axis), half_size);
-      const vec4 least = shaft.nx * middle.x + shaft.ny * middle.y + shaft.nz * middle.z -
-                         (abs(shaft.nx) * half_size.x + abs(shaft.ny) * half_size.y + abs(shaft.nz) * half_size.z);
-      const bool hit = team < taken && first.w != kNone && (outside_of >> second.w & 1) == 0 && at - spread <= shaft.highest && at + spread >= shaft.lowest &&
-                       all(lessThanEqual(least, shaft.beyond));
-      const bool leaf = (first.w & kLeafBit) != 0;
-      const uvec4 inner_hits = subgroupBallot(hit && !leaf), leaf_hits = subgroupBallot(hit && leaf);
-      subgroupMemoryBarrierShared();
-      subgroupBarrier();
-      if (hit && !leaf) stack[stack_size + subgroupBallotExclusiveBitCount(inner_hits)] = first.w;
-      if (hit && leaf) leaves[leaf_count + subgroupBallotExclusiveBitCount(leaf_hits)] = first.w & ~kLeafBit;
-      stack_size += subgroupBallotBitCount(inner_hits);
-      leaf_count += subgroupBallotBitCount(leaf_hits);
-      subgroupMemoryBarrierShared();
-      subgroupBarrier();
+      for (uint turn = 0; turn < kTurns; ++turn) {
+        const int texel = int((node * kTeam + turn * kLanes + member) * 2);
+        const uvec4 first = texelFetch(nodes, texel), second = texelFetch(nodes, texel + 1);
+        const vec3 middle = uintBitsToFloat(first.xyz), half_size = uintBitsToFloat(second.xyz);
+        const float at = dot(shaft.axis, middle), spread = dot(abs(shaft.axis), half_size);
+        const vec4 least = shaft.nx * middle.x + shaft.ny * middle.y + shaft.nz * middle.z -
+                           (abs(shaft.nx) * half_size.x + abs(shaft.ny) * half_size.y + abs(shaft.nz) * half_size.z);
+        const bool hit = team < taken && first.w != kNone && (outside_of >> second.w & 1) == 0 && at - spread <= shaft.highest && at + spread >= shaft.lowest &&
+                         all(lessThanEqual(least, shaft.beyond));
+        const bool leaf = (first.w & kLeafBit) != 0;
+        const uvec4 inner_hits = subgroupBallot(hit && !leaf), leaf_hits = subgroupBallot(hit && leaf);
+        subgroupMemoryBarrierShared();
+        subgroupBarrier();
+        if (hit && !leaf) stack[stack_size + subgroupBallotExclusiveBitCount(inner_hits)] = first.w;
+        if (hit && leaf) leaves[leaf_count + subgroupBallotExclusiveBitCount(leaf_hits)] = first.w & ~kLeafBit;
+        stack_size += subgroupBallotBitCount(inner_hits);
+        leaf_count += subgroupBallotBitCount(leaf_hits);
+        subgroupMemoryBarrierShared();
+        subgroupBarrier();
+      }
     }
     const uint emitted = min(leaf_count, kChunk);
     if (emitted > 0) emit_chunk(header, outside_of, emitted);
     leaf_count -= emitted;
-    const uint rest = lane < leaf_count ? leaves[emitted + lane] : 0;
-    subgroupMemoryBarrierShared();
-    subgroupBarrier();
-    if (lane < leaf_count) leaves[lane] = rest;
-    subgroupMemoryBarrierShared();
-    subgroupBarrier();
+    for (uint turn = 0; turn < kTurns; ++turn) {          // moves them to the front, the first ones first
+      const uint i = turn * kLanes + lane, rest = i < leaf_count ? leaves[emitted + i] : 0;
+      subgroupMemoryBarrierShared();
+      subgroupBarrier();
+      if (i < leaf_count) leaves[i] = rest;
+      subgroupMemoryBarrierShared();
+      subgroupBarrier();
+    }
     if (emitted < kChunk && stack_size > 0) break;        // the inner loop was cut off
   }
   // Some processors' drivers end loops after 65535 turns. Never go on as if nothing had happened.

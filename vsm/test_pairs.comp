@@ -200,16 +200,17 @@ void main() {
   const Shaft shaft = make_shaft(on, side);
   const vec3 lower = subgroupMin(on ? p : vec3(1e30)), upper = subgroupMax(on ? p : vec3(-1e30));
   const vec3 middle = 0.5 * lower + 0.5 * upper, half_size = 0.5 * upper - 0.5 * lower;
-  const uint teams = kLanes / kTeam, team = gl_SubgroupInvocationID / kTeam, member = gl_SubgroupInvocationID % kTeam;
-  uint at = subgroupAny(on) ? 0 : kChunk;
+  const uint team = gl_SubgroupInvocationID / kTeam, member = gl_SubgroupInvocationID % kTeam;
+  const uint end = kChunk * kTurns;
+  uint at = subgroupAny(on) ? 0 : end;
   uint again_count = 0;
-  for (; at < kChunk; at += teams) {
-    const uint leaf = at + team < kChunk ? chunks[first + kChunkHead + at + team] : kNone;
+  for (; at < end; at += kTeams) {                        // turn after turn of the teams, leaf after leaf
+    const uint number = at / kTurns + team, leaf = number < kChunk ? chunks[first + kChunkHead + number] : kNone;
     if (subgroupAll(leaf == kNone)) {
-      at = kChunk;
+      at = end;
       break;
     }
-    const uint slot = (leaf == kNone ? 0 : leaf) * kTeam + member;
+    const uint slot = (leaf == kNone ? 0 : leaf) * kTeam + at % kTurns * kLanes + member;
     const Corners t = fetch(slot);
     const vec3 levels = vec3(dot(shaft.axis, t.a), dot(shaft.axis, t.b), dot(shaft.axis, t.c));
     const float nearest = min(levels.x, min(levels.y, levels.z));
@@ -245,6 +246,6 @@ void main() {
     if (on && t.plane != carrier_plane) test_carefully(t.a, e1, e2, vec2(length(e1), length(e2)), t.triangle, again[i] >> 31 != 0);
   }
   // Some processors' drivers end loops after 65535 turns. Never go on as if nothing had happened.
-  if (at < kChunk || i < again_count) atomicOr(asked.cut_off, 1u);
+  if (at < end || i < again_count) atomicOr(asked.cut_off, 1u);
   if (on && !take_from_mask()) atomicOr(asked.cut_off, 1u);
 }

@@ -38,6 +38,8 @@ layout(scalar, binding = 4) buffer Chunks {
 layout(scalar, push_constant) uniform Push { ViewSamplePush push; };
 
 const uint kTeam = 8;                                     // children of a node, triangles of a leaf
+// A team of lanes looks at a node's children: several teams in a subgroup, or one that takes several turns.
+const uint kTeams = kLanes < kTeam ? 1 : kLanes / kTeam, kTurns = kLanes < kTeam ? kTeam / kLanes : 1;
 const uint kNone = 0xffffffffu, kLeafBit = 0x80000000u, kBackBit = 0x80000000u;
 const uint kPartShift = 27, kPlaneMask = (1u << kPartShift) - 1;  // a plane's number, and above it a closed part's
 const uint kChunkHead = 2;                                // words before the leaves

@@ -3,6 +3,7 @@
 #include "base/error.hpp"
 #include "engines/device/mask_method.hpp"
 #include "render/compute_pass.hpp"
+#include "render/features.hpp"
 #include "visibility/lights/device_light.hpp"
 #include "vsm/leaf_lists.hpp"
 #include "vsm/resolve.comp.spv.hpp"
@@ -28,7 +29,9 @@ class ViewSampleMapping final : public device::MaskMethod {
   explicit ViewSampleMapping(const render::Device& device)
       : MaskMethod(device, view_sample_description(), sizeof(gpu::OpenQuestion)),
         resolve_(device, {.name = "resolve", .spirv = shaders::kResolveComp, .push_bytes = sizeof(gpu::ResolvePush)}),
-        lists_(device, view_sample_description().name) {}
+        lists_(device, view_sample_description().name) {
+    render::require_features(device.info(), shaders::kTestPairsComp, "test pairs");  // made when the light is known
+  }
 
   void prepare_light(const visibility::Light& light) override {
     if (!visibility::is_planar(light.kind)) {
@@ -79,16 +82,18 @@ class ViewSampleMapping final : public device::MaskMethod {
     std::uint32_t words_per_row = 1, shared_words = 1, chunk = 1;
   };
 
-  /// Blocks as square as the subgroup allows: 4×2, 4×4, 8×4, 8×8.
+  /// Blocks as square as the subgroup allows: 2×2, 4×2, 4×4, 8×4, 8×8.
   [[nodiscard]] std::uint32_t lanes() const { return device().limits().subgroup_size; }
-  [[nodiscard]] std::uint32_t block_width() const { return lanes() >= 32 ? 8 : 4; }
+  [[nodiscard]] std::uint32_t block_width() const { return lanes() >= 32 ? 8 : lanes() >= 8 ? 4 : 2; }
   [[nodiscard]] std::uint32_t block_height() const { return lanes() / block_width(); }
 
+  /// Of whole teams: one at least, of which a smaller subgroup is a part at a time.
+  [[nodiscard]] std::uint32_t lanes_of_teams() const { return std::max(lanes(), TriangleTree::kWidth); }
+
   void build_passes() {
-    // Depth first, `teams` nodes at a time, each leaves at most seven more than it takes; rounded up, so that not every
+    // Depth first, a node a team at a time, each leaves at most seven more than it takes; rounded up, so that not every
     // scene needs passes of its own.
-    const std::uint32_t teams = lanes() / TriangleTree::kWidth, levels = (tree().depth + 3) / 4 * 4 + 2,
-                        stack = teams * TriangleTree::kWidth * levels;
+    const std::uint32_t levels = (tree().depth + 3) / 4 * 4 + 2, stack = lanes_of_teams() * levels;
     check_shared_memory(stack);
     const std::vector<std::uint32_t> constants{
         lanes(),      lanes(), shape_.scattered ? 1U : 0U, shape_.words_per_row, shape_.shared_words, block_width(),
@@ -105,7 +110,7 @@ class ViewSampleMapping final : public device::MaskMethod {
 
   /// A mask a lane; and the stack and leaves of the walk, or the triangles that are looked at twice.
   void check_shared_memory(std::uint32_t stack) const {
-    const std::uint64_t walk = stack + shape_.chunk + lanes() + 8;
+    const std::uint64_t walk = stack + shape_.chunk + lanes_of_teams() + 8;
     const std::uint64_t twice = std::uint64_t{shape_.chunk} * TriangleTree::kWidth + 1;
     const std::uint64_t needed = 4 * (std::uint64_t{shape_.shared_words} * lanes() + std::max(walk, twice));
     if (needed <= device().limits().max_shared_memory) return;

@@ -1,7 +1,7 @@
 #include "volumes/edges/edge_lists.hpp"
 
 #include "base/assert.hpp"
-#include "base/error.hpp"
+#include "render/features.hpp"
 #include "volumes/edges/find_edges.comp.spv.hpp"
 
 #include <glm/geometric.hpp>
@@ -30,9 +30,7 @@ EdgeLists::EdgeLists(const render::Device& device, std::string method, bool crop
       sides_(method_),
       crops_(crops),
       lists_(device, {"edge lists", sizeof(Head), sizeof(std::uint32_t), kFirstWords}) {
-  const std::uint32_t lanes = device.limits().subgroup_size;
-  if (lanes >= TriangleTree::kWidth && kBlock * kBlock % lanes == 0) return;
-  throw ResourceError("{} needs subgroups of 8, 16, 32 or 64 lanes; {} has {}", method_, device.info().name, lanes);
+  render::require_features(device.info(), shaders::kFindEdgesComp, "find edges");  // made when the light is known
 }
 
 void EdgeLists::prepare_mesh(const visibility::SceneFloats& scene, const TriangleTree& tree, float scale) {
@@ -82,13 +80,13 @@ void EdgeLists::prepare_edges() {
   if (edges.front) front_->cut(input(*edges.front));
 }
 
-/// Its stack: depth first, `teams` nodes at a time, each leaves at most seven more than it takes. Cut edges deepen a
+/// Its stack: depth first, a node a team at a time, each leaves at most seven more than it takes. Cut edges deepen a
 /// hierarchy by a level, and may be many; rounded up, so that not every scene needs a pass of its own.
 void EdgeLists::build_pass() {
-  const std::uint32_t lanes = device_->limits().subgroup_size, teams = lanes / TriangleTree::kWidth;
+  const std::uint32_t lanes = device_->limits().subgroup_size, of_teams = std::max(lanes, TriangleTree::kWidth);
   const std::uint32_t depth = std::max({tree_->depth, whole_->depth(), front_->depth(), back_ ? back_->depth() : 0U});
   const std::uint32_t levels = (depth + 3) / 4 * 4 + 10;
-  const std::vector<std::uint32_t> constants{lanes, lanes, teams * TriangleTree::kWidth * levels, crops_ ? 1U : 0U};
+  const std::vector<std::uint32_t> constants{lanes, lanes, of_teams * levels, crops_ ? 1U : 0U};
   if (pass_ && constants == constants_) return;
   pass_.emplace(*device_, render::ComputePassOptions{.name = "find edges",
                                                      .spirv = shaders::kFindEdgesComp,

@@ -21,6 +21,8 @@ layout(scalar, binding = 2) buffer Lists {
 layout(scalar, push_constant) uniform Push { ScatterPush push; };
 
 const uint kTeam = 8;                                     // children of a node, records of a leaf
+// A team of lanes looks at a node's children: several teams in a subgroup, or one that takes several turns.
+const uint kTeams = kLanes < kTeam ? 1 : kLanes / kTeam, kTurns = kLanes < kTeam ? kTeam / kLanes : 1;
 const uint kBlock = 8;                                    // a block is kBlock × kBlock pixels
 const uint kClusters = 4;                                 // of view samples, at most, in a block
 const uint kNone = 0xffffffffu, kLeafBit = 0x80000000u;

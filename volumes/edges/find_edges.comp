@@ -25,10 +25,11 @@ layout(binding = 12) uniform usamplerBuffer corner_b;
 layout(binding = 13) uniform usamplerBuffer corner_c;
 
 const uint kBatch = 24;                                     // leaves looked into at a time
+const uint kMostLeaves = kBatch + kTeams * kTeam;           // with what one more turn of the loop brings
 
 shared uint stack[kStackSize];
-shared uint leaves[kBatch + kLanes];
-shared uint items[(kBatch + kLanes) * kTeam];
+shared uint leaves[kMostLeaves];
+shared uint items[kMostLeaves * kTeam];
 
 // The cluster's view samples as a box.
 vec3 middle, half_size;
@@ -113,7 +114,7 @@ uvec2 first_of_part(bool edges) {
 
 // Adds to the list `head`, which it returns.
 uint walk(Shaft shaft, bool edges, uint head) {
-  const uint lane = gl_SubgroupInvocationID, teams = kLanes / kTeam, team = lane / kTeam, member = lane % kTeam;
+  const uint lane = gl_SubgroupInvocationID, team = lane / kTeam, member = lane % kTeam;
   const uvec2 sizes = first_of_part(edges);
   uint stack_size = sizes.x, known_leaves = sizes.y;
   while (stack_size + known_leaves > 0) {
@@ -123,33 +124,37 @@ uint walk(Shaft shaft, bool edges, uint head) {
     subgroupBarrier();
     // Short, because some devices run all of a loop's body whatever its branches say.
     while (stack_size > 0 && leaf_count < kBatch) {
-      const uint taken = min(stack_size, teams);
+      const uint taken = min(stack_size, kTeams);
       const uint node = team < taken ? stack[stack_size - 1 - team] : 0;
       stack_size -= taken;
-      const int child = int(node * kTeam + member);
-      const uvec4 first = edges ? texelFetch(edge_nodes, 3 * child) : texelFetch(triangle_nodes, 2 * child);
-      const uvec4 second = edges ? texelFetch(edge_nodes, 3 * child + 1) : texelFetch(triangle_nodes, 2 * child + 1);
-      const uvec4 third = edges ? texelFetch(edge_nodes, 3 * child + 2) : uvec4(0);
-      const vec3 center = uintBitsToFloat(first.xyz), extent = uintBitsToFloat(second.xyz);
-      const float at = dot(axis, center), spread = dot(abs(axis), extent);
-      const vec4 least = along_shaft(shaft, center) - (abs(shaft.nx) * extent.x + abs(shaft.ny) * extent.y + abs(shaft.nz) * extent.z);
-      const bool met = team < taken && first.w != kNone && at - spread <= shaft.highest && at + spread >= shaft.lowest &&
-                       all(lessThanEqual(least, shaft.beyond));
-      const bool hit = met && !(edges && kCrops != 0 && same_side(center, extent, uintBitsToFloat(third)));
-      const bool leaf = (first.w & kLeafBit) != 0;
-      const uvec4 inner_hits = subgroupBallot(hit && !leaf), leaf_hits = subgroupBallot(hit && leaf);
-      subgroupMemoryBarrierShared();
-      subgroupBarrier();
-      if (hit && !leaf) stack[stack_size + subgroupBallotExclusiveBitCount(inner_hits)] = first.w;
-      if (hit && leaf) leaves[leaf_count + subgroupBallotExclusiveBitCount(leaf_hits)] = first.w & ~kLeafBit;
-      stack_size += subgroupBallotBitCount(inner_hits);
-      leaf_count += subgroupBallotBitCount(leaf_hits);
-      subgroupMemoryBarrierShared();
-      subgroupBarrier();
+      for (uint turn = 0; turn < kTurns; ++turn) {
+        const int child = int(node * kTeam + turn * kLanes + member);
+        const uvec4 first = edges ? texelFetch(edge_nodes, 3 * child) : texelFetch(triangle_nodes, 2 * child);
+        const uvec4 second = edges ? texelFetch(edge_nodes, 3 * child + 1) : texelFetch(triangle_nodes, 2 * child + 1);
+        const uvec4 third = edges ? texelFetch(edge_nodes, 3 * child + 2) : uvec4(0);
+        const vec3 center = uintBitsToFloat(first.xyz), extent = uintBitsToFloat(second.xyz);
+        const float at = dot(axis, center), spread = dot(abs(axis), extent);
+        const vec4 least = along_shaft(shaft, center) - (abs(shaft.nx) * extent.x + abs(shaft.ny) * extent.y + abs(shaft.nz) * extent.z);
+        const bool met = team < taken && first.w != kNone && at - spread <= shaft.highest && at + spread >= shaft.lowest &&
+                         all(lessThanEqual(least, shaft.beyond));
+        const bool hit = met && !(edges && kCrops != 0 && same_side(center, extent, uintBitsToFloat(third)));
+        const bool leaf = (first.w & kLeafBit) != 0;
+        const uvec4 inner_hits = subgroupBallot(hit && !leaf), leaf_hits = subgroupBallot(hit && leaf);
+        subgroupMemoryBarrierShared();
+        subgroupBarrier();
+        if (hit && !leaf) stack[stack_size + subgroupBallotExclusiveBitCount(inner_hits)] = first.w;
+        if (hit && leaf) leaves[leaf_count + subgroupBallotExclusiveBitCount(leaf_hits)] = first.w & ~kLeafBit;
+        stack_size += subgroupBallotBitCount(inner_hits);
+        leaf_count += subgroupBallotBitCount(leaf_hits);
+        subgroupMemoryBarrierShared();
+        subgroupBarrier();
+      }
     }
-    for (; i < leaf_count; i += teams) {
-      const bool used = i + team < leaf_count;
-      const uint slot = (used ? leaves[i + team] : 0) * kTeam + member;
+    const uint end = leaf_count * kTurns;
+    for (; i < end; i += kTeams) {                          // turn after turn of the teams, leaf after leaf
+      const uint number = i / kTurns + team;
+      const bool used = number < leaf_count;
+      const uint slot = (used ? leaves[number] : 0) * kTeam + i % kTurns * kLanes + member;
       const bool kept = used && (edges ? edge_matters(shaft, slot) : triangle_matters(shaft, slot));
       const uvec4 all_kept = subgroupBallot(kept);
       if (kept) items[item_count + subgroupBallotExclusiveBitCount(all_kept)] = slot;
@@ -159,7 +164,7 @@ uint walk(Shaft shaft, bool edges, uint head) {
     subgroupBarrier();
     if (item_count > 0) head = emit(head, item_count);
     // Some processors' drivers end loops after 65535 turns. Never go on as if nothing had happened.
-    if (i < leaf_count || (stack_size > 0 && leaf_count < kBatch)) {
+    if (i < end || (stack_size > 0 && leaf_count < kBatch)) {
       atomicOr(unfinished, 1u);
       break;
     }

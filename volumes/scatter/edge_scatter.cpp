@@ -8,6 +8,7 @@
 #include "engines/engine_by_light.hpp"
 #include "engines/engine_choice.hpp"
 #include "render/compute_pass.hpp"
+#include "render/features.hpp"
 #include "visibility/lights/device_light.hpp"
 #include "volumes/edges/edge_method.hpp"
 #include "volumes/edges/edge_scatter.shared.h"
@@ -59,14 +60,16 @@ static_assert(sizeof(gpu::PointQuestion) == sizeof(gpu::RowQuestion), "one list 
 class EdgeScatter final : public EdgeMethod {
  public:
   EdgeScatter(const render::Device& device, visibility::MethodDescription given)
-      : EdgeMethod(device, std::move(given), sizeof(gpu::RowQuestion)) {}
+      : EdgeMethod(device, std::move(given), sizeof(gpu::RowQuestion)) {
+    render::require_features(device.info(), shaders::kScatterEdgesComp, "scatter edges");
+  }
 
  private:
   /// As many light rows at a time as the histograms of a subgroup leave room for.
   device::MaskLayout prepare_kernel() override {
     const bool in_rows = device_light().rows;
     device::MaskLayout layout = in_rows ? arrange_rows() : arrange_points();
-    const std::uint32_t lanes = device().limits().subgroup_size, block_width = lanes >= 32 ? 8 : 4;
+    const std::uint32_t lanes = device().limits().subgroup_size, block_width = lanes >= 32 ? 8 : lanes >= 8 ? 4 : 2;
     const std::uint32_t words = in_rows ? columns_ * band_rows_ / 4 : words_of_points(points_->fours, band_rows_);
     const std::vector<std::uint32_t> constants{
         lanes, lanes, block_width, in_rows ? columns_ : points_->fours, in_rows ? band_rows_ / 4 : band_rows_, words};
