@@ -6,6 +6,7 @@
 #include "engines/method_row.hpp"
 #include "maps/methods.hpp"
 #include "reference/methods.hpp"
+#include "render/features.hpp"
 #include "visibility/lights/device_light.hpp"
 #include "volumes/methods.hpp"
 #include "vsm/methods.hpp"
@@ -106,7 +107,11 @@ const MethodDescription& ray_judge() {
 
 std::unique_ptr<Method> make_method(std::string_view name, const MethodOptions& options,
                                     const render::Machine& machine) {
-  return find_row(name).make(machine, options);
+  try {
+    return find_row(name).make(machine, options);
+  } catch (const render::LacksFeature& error) {
+    throw render::LacksFeature("{}: {}", name, error.what());
+  }
 }
 
 bool runs_on_device(std::string_view name, const MethodOptions& options, const Light& light,

@@ -1,9 +1,11 @@
 #include "app/commands.hpp"
+#include "app/commands/refused_methods.hpp"
 #include "app/commands/self_test_report.hpp"
 #include "app/machine.hpp"
 #include "base/error.hpp"
 #include "render/device.hpp"
 #include "render/opengl/context.hpp"
+#include "render/visibility_buffer.hpp"
 #include "selftest/self_test.hpp"
 
 #include <CLI/CLI.hpp>
@@ -13,6 +15,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <utility>
 
 namespace penumbra::app {
 namespace {
@@ -21,14 +24,26 @@ std::string verdict_of(const std::vector<std::string>& refusals, const char* wha
   return refusals.empty() ? what : fmt::format("no: {}", fmt::join(refusals, "; "));
 }
 
+/// What does not run on a device that can be used.
+void print_exceptions(const render::DeviceInfo& device) {
+  if (!device.usable() || device.lacks.empty()) return;
+  fmt::print("\n{} {} lacks {}. So these do not run there:\n", device.index, device.name,
+             fmt::join(device.lacks, ", "));
+  if (!render::VisibilityBuffer::runs_on(device))
+    fmt::print("  {:<32} the processor finds them: the same bits\n", "view samples");
+  for (const RefusedMethod& one : refused_methods(device))
+    fmt::print("  {:<32} {}\n", one.method, one.reason.substr(one.reason.find(": ") + 2));
+}
+
 void print_table(const std::vector<render::DeviceInfo>& devices,
                  const std::vector<render::opengl::ContextInfo>& contexts) {
   fmt::print("{:<6} {:<52} {:<11} {:<8} {:>9}  {}\n", "index", "name", "kind", "Vulkan", "memory", "can run Penumbra");
   for (const render::DeviceInfo& device : devices) {
     fmt::print("{:<6} {:<52} {:<11} {:<8} {:>5.1f} GiB  {}\n", device.index, device.name, device.kind,
                device.api_version, static_cast<double>(device.memory_bytes) / (1u << 30),
-               verdict_of(device.refusals, "yes"));
+               verdict_of(device.refusals, device.lacks.empty() ? "yes" : "yes, with exceptions"));
   }
+  for (const render::DeviceInfo& device : devices) print_exceptions(device);
   fmt::print("\n{:<12} {:<46} {:<11} {:<8}  {}\n", "EGL", "OpenGL renderer", "kind", "snaps to",
              "can draw maps (rasteriser=opengl)");
   for (const render::opengl::ContextInfo& context : contexts) {
@@ -39,6 +54,9 @@ void print_table(const std::vector<render::DeviceInfo>& devices,
 }
 
 nlohmann::ordered_json json_of(const render::DeviceInfo& device) {
+  auto refused = nlohmann::ordered_json::array();
+  for (const RefusedMethod& one : refused_methods(device))
+    refused.push_back({{"method", one.method}, {"reason", one.reason}});
   return {{"index", device.index},
           {"name", device.name},
           {"kind", device.kind},
@@ -46,6 +64,8 @@ nlohmann::ordered_json json_of(const render::DeviceInfo& device) {
           {"apiVersion", device.api_version},
           {"usable", device.usable()},
           {"refusals", device.refusals},
+          {"lacks", device.lacks},
+          {"refusedMethods", std::move(refused)},
           {"maxStorageBufferRange", device.max_storage_buffer_range},
           {"subgroupSize", device.subgroup_size},
           {"memoryBytes", device.memory_bytes}};
@@ -67,7 +87,8 @@ nlohmann::ordered_json json_of(const render::opengl::ContextInfo& context) {
 class DevicesCommand : public Command {
  public:
   explicit DevicesCommand(CLI::App& app)
-      : Command(app, "devices", "list the Vulkan devices and OpenGL beside them, and why one cannot be used") {
+      : Command(app, "devices",
+                "list the Vulkan devices and OpenGL beside them, and why one cannot be used, or not for all") {
     cli_.add_flag("--json", json_, "as JSON");
     cli_.add_flag(
         "--self-test", self_test_,

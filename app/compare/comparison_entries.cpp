@@ -3,6 +3,7 @@
 #include "app/methods.hpp"
 #include "app/output.hpp"
 #include "base/error.hpp"
+#include "render/features.hpp"
 #include "visibility/lights/device_light.hpp"
 
 #include <fmt/ranges.h>
@@ -55,6 +56,17 @@ std::string why_no_device(const ComparisonOptions& options, const render::Machin
   }
 }
 
+/// What the device lacks of what a method of a group needs there; empty: nothing.
+std::string why_not_there(const MethodEntry& chosen, const render::Machine& machine) {
+  if (machine.device().info().lacks.empty()) return {};
+  try {
+    static_cast<void>(make_method(chosen.name, chosen.options, machine));
+    return {};
+  } catch (const render::LacksFeature& error) {
+    return error.what();
+  }
+}
+
 }  // namespace
 
 Entry describe_reference(const std::string& name) {
@@ -77,9 +89,15 @@ std::vector<Entry> choose_entries(const ComparisonOptions& options, const Sessio
       warn(fmt::format("{} is left out: it cannot do every light of the scene", entry.label));
       continue;
     }
-    if (chosen.from_group && !no_device.empty() && needs_device(chosen.name, chosen.options)) {
-      without_device.push_back(entry.label);
-      continue;
+    if (chosen.from_group && needs_device(chosen.name, chosen.options)) {
+      if (!no_device.empty()) {
+        without_device.push_back(entry.label);
+        continue;
+      }
+      if (const std::string reason = why_not_there(chosen, machine); !reason.empty()) {
+        warn("left out: " + reason);
+        continue;
+      }
     }
     for (const visibility::Light& light : session.lights) check_light(entry.description, light);
     if (wants_bits(entry, options)) check_bits(entry.description, session.lights);
