@@ -8,6 +8,7 @@
 #include "bench/frames.hpp"
 #include "bench/lines.hpp"
 #include "bench/options.hpp"
+#include "bench/question.hpp"
 #include "bench/picture.hpp"
 #include "bench/sequence.hpp"
 #include "bench/whole_frame.hpp"
