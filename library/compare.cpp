@@ -32,7 +32,15 @@ std::string compare_json(const Scene& scene, const CompareOptions& options, cons
   comparison.error_budget = options.error_budget;
   comparison.writes = !options.out.empty();
   LibraryProgress progress(renderer);
-  const compare::Metrics metrics = app::compare_methods(state.scene, run, comparison, progress);
+  const compare::Metrics metrics = [&] {
+    try {
+      return app::compare_methods(state.scene, run, comparison, progress);
+    } catch (...) {
+      progress.rethrow();
+      throw;
+    }
+  }();
+  progress.rethrow();
   return compare::json_text(compare::to_json(metrics));
 }
 

@@ -1,6 +1,7 @@
 // Pictures of one scene after each other, by what renders the command line's frames.
 
 #include "app/light_methods.hpp"
+#include "app/machine.hpp"
 #include "app/options.hpp"
 #include "app/pictures/frame_render.hpp"
 #include "app/process/stopwatch.hpp"
@@ -108,14 +109,33 @@ void LibraryProgress::advance(std::uint64_t steps) {
   report();
 }
 
-void LibraryProgress::report() const {
-  if (options_.progress && !options_.progress(stage_, static_cast<double>(done_) / static_cast<double>(steps_)))
+template <typename Function>
+void LibraryProgress::call(const Function& function) {
+  if (thrown_) throw Cancelled();
+  try {
+    function();
+  } catch (...) {
+    thrown_ = std::current_exception();
     throw Cancelled();
+  }
+}
+
+void LibraryProgress::report() {
+  call([&] {
+    if (options_.progress && !options_.progress(stage_, static_cast<double>(done_) / static_cast<double>(steps_)))
+      throw Cancelled();
+  });
+}
+
+void LibraryProgress::rethrow() {
+  if (const std::exception_ptr thrown = std::exchange(thrown_, nullptr)) std::rethrow_exception(thrown);
 }
 
 void LibraryProgress::say(Level level, const std::string& message) {
   constexpr std::array kLevels = {LogLevel::debug, LogLevel::info, LogLevel::warning, LogLevel::error};
-  if (options_.log) options_.log(kLevels.at(static_cast<std::size_t>(level)), message);
+  call([&] {
+    if (options_.log) options_.log(kLevels.at(static_cast<std::size_t>(level)), message);
+  });
 }
 
 Cancelled::Cancelled() : Error(ExitCode::interrupted, "cancelled by the progress function") {}
@@ -123,7 +143,7 @@ Cancelled::~Cancelled() = default;
 
 struct Renderer::State {
   State(Scene made, RendererOptions wished)
-      : scene(std::move(made)), options(std::move(wished)), machine({.wanted = options.device}) {}
+      : scene(std::move(made)), options(std::move(wished)), machine(app::make_machine(options.device)) {}
 
   Scene scene;
   RendererOptions options;
@@ -154,8 +174,9 @@ Picture Renderer::render(const RenderOptions& options) {
   const Scene::State& scene = state.scene.state();
   scenes::check_scene(scene.scene, "the scene");
   app::RunOptions run = run_options(options);
+  run.camera = camera_of(scene, options);
   const app::Frame frame{.number = {},
-                         .camera = camera_of(scene, options),
+                         .camera = run.camera,
                          .pixel_side = pixel_side(options.pixel_samples),
                          .same_meshes = options.pixel_samples == 1 && state.frames && state.frames->has_meshes() &&
                                         state.rendered == scene.meshes,
@@ -171,9 +192,12 @@ Picture Renderer::render(const RenderOptions& options) {
   try {
     state.frames->render(frame.same_meshes ? app::without_meshes(scene.scene) : scene.scene, frame, {}, 0);
     state.rendered = scene.meshes;
-    return Picture(picture_of(*state.frames, total.seconds()));
+    Picture picture(picture_of(*state.frames, total.seconds()));
+    state.progress.rethrow();
+    return picture;
   } catch (...) {
     state.frames.reset();  // whatever it holds may be half of one scene and half of another
+    state.progress.rethrow();
     throw;
   }
 }

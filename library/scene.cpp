@@ -299,9 +299,14 @@ void Scene::set_mesh(MeshId mesh, std::span<const Vector> positions,
       append(changed->scene, object, where, positions, triangles);
       changed->scene.objects[object].picture.reset();
     } else {
+      if (object < state_->rest.size() && state_->rest[object]) {
+        changed->rest[object] = state_->rest[object];
+        changed->rest[object]->first = static_cast<std::uint32_t>(changed->scene.soup.positions.size());
+      }
       copy_object(old, object, changed->scene);
     }
   }
+  settle_origin(*changed);
   changed->meshes = next_meshes();
   state_ = std::move(changed);
 }
@@ -413,7 +418,13 @@ void Scene::add_light(std::string name, const LightShape& shape, const LightOpti
 }
 
 void Scene::set_light(std::string_view name, const LightShape& shape) {
-  change_light(state_->scene, name, [&](scenes::AreaLight& light) { light.shape = to_scene(shape); });
+  change_light(state_->scene, name, [&](scenes::AreaLight& light) {
+    scenes::LightShape made = to_scene(shape);
+    const auto* const before = std::get_if<scenes::Sphere>(&light.shape);
+    auto* const after = std::get_if<scenes::Sphere>(&made);
+    if (before != nullptr && after != nullptr) after->cone = before->cone;  // a spot lamp stays one
+    light.shape = std::move(made);
+  });
 }
 
 void Scene::set_light(std::string_view name, const LightOptions& options) {
@@ -451,10 +462,15 @@ LightOptions Scene::light_options(std::string_view name) const {
 void Scene::set_camera(const Camera& camera) {
   const scenes::Camera made = to_scene(camera);
   scenes::check_camera(made, fmt::format("camera \"{}\"", made.name));
+  if (made.height && !(*made.height > 0 && std::isfinite(*made.height)))
+    throw InputError("camera \"{}\": height {}: expected a length above 0", made.name, *made.height);
   std::vector<scenes::Camera>& cameras = state_->scene.cameras;
   auto place = std::ranges::find(cameras, made.name, &scenes::Camera::name);
   if (place == cameras.end()) place = cameras.insert(cameras.end(), made);
+  const scenes::Camera before = *place;
   *place = made;
+  place->aspect = before.aspect;  // of a camera that was read, and is moved
+  place->shift = before.shift;
   state_->camera = static_cast<std::size_t>(place - cameras.begin());
 }
 

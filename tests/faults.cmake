@@ -14,6 +14,7 @@ penumbra_test(faults FULL *Long*
   faults/waits.cpp
   LIBRARIES penumbra_base)
 add_library(penumbra_interpose MODULE faults/interpose.cpp)  # what LD_PRELOAD names
+set_target_properties(penumbra_interpose PROPERTIES CXX_VISIBILITY_PRESET default)
 target_link_libraries(penumbra_interpose PRIVATE penumbra_warnings ${CMAKE_DL_LIBS})
 target_compile_definitions(faults_test PRIVATE PENUMBRA_PROGRAM="$<TARGET_FILE:penumbra>"
                            PENUMBRA_INTERPOSE="$<TARGET_FILE:penumbra_interpose>")

@@ -4,6 +4,7 @@ penumbra_test(library
   LIBRARIES penumbra::penumbra penumbra_base nlohmann_json::nlohmann_json)
 target_compile_definitions(library_test PRIVATE PENUMBRA_PROGRAM="$<TARGET_FILE:penumbra>")
 add_dependencies(library_test penumbra)
+if(NOT PENUMBRA_SANITIZE)  # a program or an interpreter without sanitizers cannot load the library
 add_test(NAME library.consumer COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/library/consumer.sh ${PROJECT_BINARY_DIR} ${PROJECT_SOURCE_DIR}
                                        ${PROJECT_BINARY_DIR}/library_consumer)
 set_tests_properties(library.consumer PROPERTIES LABELS quick)
@@ -12,3 +13,4 @@ foreach(test module page)
                                        ${PROJECT_SOURCE_DIR})
   set_tests_properties(python.${test} PROPERTIES LABELS quick ENVIRONMENT "PYTHONPATH=${PROJECT_BINARY_DIR}/python;MPLBACKEND=Agg")
 endforeach()
+endif()

@@ -111,7 +111,7 @@ FrameRenderer::Kept& FrameRenderer::method_for(const LightMethod& wanted) {
 }
 
 void FrameRenderer::keep_masks(const TileResult& tile) {
-  if (!frame_.keeps_masks || tile.masks.empty()) return;
+  if (!frame_.keeps_masks || layers_ || tile.masks.empty()) return;
   masks_.resize(lit().lights.size());
   masks_[tile.light].insert(masks_[tile.light].end(), tile.masks.begin(), tile.masks.end());
 }
@@ -155,7 +155,7 @@ MethodRun FrameRenderer::run_lights(BeautyAccumulator& beauty, BitsOutput* bits)
         *kept.method, lit(), plan,
         [&](const TileResult& tile) {
           beauty.add(tile);
-          keep_masks(tile);
+          if (!plan.filtered_alone) keep_masks(tile);
           if (bits == nullptr || tile.light != 0) return;
           const Stopwatch watch;
           bits->add(tile);

@@ -170,6 +170,7 @@ void FrameRenderer::add_panes() {
     }
   };
   visibility::ViewSamples behind;
+  layers_ = true;
   for (std::size_t number = 0; number < panes.depth(); ++number) {
     Stopwatch watch;
     visibility::PaneLayer layer = panes.layer(number);
@@ -191,6 +192,7 @@ void FrameRenderer::add_panes() {
     }
     beauty_seconds_ += watch.seconds();
   }
+  layers_ = false;
   const Stopwatch back;
   lit_maker().look_at(std::move(behind));
   view_seconds_ += back.seconds();
@@ -211,12 +213,17 @@ void FrameRenderer::render(scenes::Scene scene, const Frame& frame, const std::f
   mean_.reset();
   mattes_.reset();
   masks_.clear();
+  layers_ = false;
   lamps_.clear();
   for (Kept& kept : kept_) kept.used = false;
   done_.clear();
   in_part_.clear();
   notes_.clear();
   run_ = {};
+  if (frame.pixel_side == 1 && fine_) {
+    kept_.clear();  // what they hold is of the session that goes
+    fine_.reset();
+  }
   if (frame.moments.empty() && frame.pixel_side == 1) {
     show(maker_, std::move(scene));
     check_wanted_layers();
@@ -235,9 +242,11 @@ void FrameRenderer::render_mean(scenes::Scene scene) {
     check_wanted_layers();
     view_seconds_ += sum_of(session().filtered_seconds);
     const std::string size = fmt::format("{}x{}", session().width * side, session().height * side);
-    if (!fine_ || fine_options_.size != size) {
+    const bool is_other = !fine_ || fine_options_.size != size;
+    fine_options_ = options_;  // which may have changed since the last picture
+    fine_options_.size = size;
+    if (is_other) {
       kept_.clear();  // what they hold is of the session that goes
-      fine_options_.size = size;
       fine_.emplace(fine_options_, machine_);
     }
   }

@@ -137,6 +137,7 @@ class FrameRenderer {
   std::vector<std::string> notes_;
   MethodRun run_;
   std::vector<std::vector<glm::vec3>> beauty_;     // of each light
+  bool layers_ = false;                            // translucent surfaces are looked at, and not what is behind them
   std::vector<std::vector<std::uint32_t>> masks_;  // of each light
   std::vector<float> alpha_;                       // of each pixel
   std::vector<std::uint8_t> lights_something_;     // of each whole light: a view sample is before it

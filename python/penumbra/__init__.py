@@ -90,6 +90,8 @@ class Scene:
                 mesh = dict(mesh)
                 if not ("vertices" in mesh and "faces" in mesh):
                     raise UsageError(f"mesh {index}: vertices and faces come together")
+                if "fit" in mesh:
+                    raise UsageError(f"mesh {index}: fit is for files; give arrays a transform")
                 arrays[index] = mesh.pop("vertices"), mesh.pop("faces")
                 # Takes the mesh's place while the file's other rules are checked; shows what its transform does.
                 mesh["triangles"] = [[0, 0, 0, 1, 0, 0, 0, 1, 0], [0, 0, 0, 0, 1, 0, 0, 0, 1]]
@@ -132,17 +134,17 @@ class Scene:
         kind = changes.pop("kind", light["kind"])
         shape = changes if kind != light["kind"] else {
             key: changes.get(key, light[key]) for key in light if key not in ("kind", "radiance", "two_sided")} | changes
-        trial = _core.Scene(self._core) if options and shape else self._core
-        if changes or kind != light["kind"]:
-            trial.set_light_shape(name, kind, _shape(kind, shape))
+        def set_options(values):
+            self._core.set_light_options(name, tuple(values["radiance"]), bool(values["two_sided"]))
+
         if options:
-            trial.set_light_options(name, tuple(options.get("radiance", light["radiance"])),
-                                    bool(options.get("two_sided", light["two_sided"])))
-        if trial is not self._core:  # both could be done
-            self._core.set_light_options(name, tuple(options.get("radiance", light["radiance"])),
-                                         bool(options.get("two_sided", light["two_sided"])))
-            if changes or kind != light["kind"]:
+            set_options({**light, **options})
+        if changes or kind != light["kind"]:
+            try:
                 self._core.set_light_shape(name, kind, _shape(kind, shape))
+            except Exception:
+                set_options(light)  # both or neither
+                raise
 
     def remove_light(self, name):
         self._core.remove_light(name)
@@ -205,14 +207,18 @@ def _shape(kind, given):
 
 
 def _transformed(transform, vertices):
-    """The rule of scene files: scale, then rotate about x, y and z in degrees, then translate."""
+    """The rule of scene files: scale, then rotate about x, y and z in degrees, then translate; or 16 numbers row by row."""
+    if not isinstance(transform, dict):
+        matrix = _np.asarray(transform, float).reshape(4, 4)
+        return vertices @ matrix[:3, :3].T + matrix[:3, 3]
     scale = _np.broadcast_to(_np.asarray(transform.get("scale", 1), float), 3)
     vertices = vertices * scale
     for axis, angle in enumerate(_np.radians(_np.asarray(transform.get("rotate", (0, 0, 0)), float))):
         a, b = [(1, 2), (2, 0), (0, 1)][axis]
         turned = vertices.copy()
-        turned[:, a] = _np.cos(angle) * vertices[:, a] - _np.sin(angle) * vertices[:, b]
-        turned[:, b] = _np.sin(angle) * vertices[:, a] + _np.cos(angle) * vertices[:, b]
+        sine, cosine = _np.round([_np.sin(angle), _np.cos(angle)], 15) if angle % (_np.pi / 2) == 0 else (_np.sin(angle), _np.cos(angle))
+        turned[:, a] = cosine * vertices[:, a] - sine * vertices[:, b]
+        turned[:, b] = sine * vertices[:, a] + cosine * vertices[:, b]
         vertices = turned
     return vertices + _np.asarray(transform.get("translate", (0, 0, 0)), float)
 
@@ -316,7 +322,12 @@ class Renderer:
         """`device`: part of a Vulkan device's name, its index, or "cpu". `log(level, message)` gets messages,
         `progress(stage, done)` is called many times a second; the call ends with Cancelled if it returns False."""
         self._core = _core.Renderer(_as_scene(scene)._core, device, log, progress)
-        self.scene = Scene(self._core.scene())
+        self._scene = Scene(self._core.scene())
+
+    @property
+    def scene(self):
+        """The renderer's own scene."""
+        return self._scene
 
     def set_light(self, name, **changes):
         """Scene.set_light of its scene."""

@@ -172,7 +172,7 @@ TEST_F(ErrorBudget, WithoutTheOptionThereIsNone) {
 TEST_F(ErrorBudget, IsRefusedWhereNoMethodIsImageBased) {
   const Outcome outcome = compare(tiny_scene(), "edge-scatter,view-sample");
   EXPECT_EQ(outcome.code, 2);
-  EXPECT_THAT(outcome.err, testing::AllOf(HasSubstr("--error-budget"), HasSubstr("bitmask")));
+  EXPECT_THAT(outcome.err, testing::AllOf(HasSubstr("--error-budget"), HasSubstr("penumbra methods")));
   EXPECT_FALSE(std::filesystem::exists(path("dir")));
 }
 

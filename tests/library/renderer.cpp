@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <array>
+#include <stdexcept>
 #include <thread>
 
 namespace penumbra::tests {
@@ -133,6 +134,11 @@ TEST_F(Library, KeepsNothingThatChanged) {
   expect_fresh(exact, "moved");
   renderer.scene().set_transform(wedge, {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1});
   expect_fresh({.width = 24, .height = 16, .method = "view-sample", .light_samples = 64}, "moved back");
+  expect_fresh({.width = 12, .height = 8, .pixel_samples = 4}, "four view samples a pixel");
+  expect_fresh({.width = 12, .height = 8, .light_samples = 16, .pixel_samples = 4}, "with light samples");
+  expect_fresh({.width = 12, .height = 8, .light_samples = 64, .sample_pattern = "sobol", .pixel_samples = 4},
+               "others");
+  expect_fresh(exact, "one again");
   renderer.scene().add_light("rim", Rectangle{.center = {2, 2, 0}, .half_u = {0, 0.5, 0}, .half_v = {0, 0, -0.5}});
   expect_fresh(exact, "second light");
   renderer.scene().remove_light("key");
@@ -215,6 +221,36 @@ TEST_F(Library, RenderersOnTwoThreadsDoNotMeet) {
   other.join();
   EXPECT_EQ(first_at_once, first);
   EXPECT_EQ(second_at_once, second);
+}
+
+TEST_F(Library, MeshesMoveFromWhereTheyWere) {
+  Scene scene = Scene::load(scene_);
+  const RenderOptions options{.width = 24, .height = 16};
+  const std::string before = all_bytes(Renderer(scene).render(options));
+  const Matrix away = {1, 0, 0, 1, 0, 1, 0, 1, 0, 0, 1, 0, 0, 0, 0, 1},
+               home = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+  scene.set_transform(scene.mesh("wedge"), away);
+  EXPECT_NE(all_bytes(Renderer(scene).render(options)), before);
+  const std::array<Vector, 4> floor = {{{-4, 0, 4}, {4, 0, 4}, {4, 0, -4}, {-4, 0, -4}}};
+  const std::array<std::array<std::uint32_t, 3>, 2> two = {{{0, 1, 2}, {0, 2, 3}}};
+  scene.set_mesh(scene.mesh("floor"), floor, two);
+  scene.set_transform(scene.mesh("wedge"), home);
+  const std::string back = all_bytes(Renderer(scene).render(options));
+  scene.set_transform(scene.mesh("wedge"), away);
+  scene.set_transform(scene.mesh("wedge"), home);
+  EXPECT_EQ(all_bytes(Renderer(scene).render(options)), back);
+}
+
+TEST_F(Library, ComparisonsEndToo) {
+  int calls = 0;
+  const auto end = [&](std::string_view, double) -> bool {
+    if (++calls > 5) throw std::logic_error("the host's own");
+    return true;
+  };
+  EXPECT_THROW(
+      compare_json(Scene::load(scene_), {.methods = {"edge-scatter", "raytrace"}, .runs = 1}, {.progress = end}),
+      std::logic_error);
+  EXPECT_EQ(calls, 6);
 }
 
 TEST_F(Library, BuildsWhatAFileSays) {
