@@ -11,6 +11,7 @@
 #include "library/library_progress.hpp"
 #include "library/picture_state.hpp"
 #include "library/scene_state.hpp"
+#include "render/device.hpp"
 #include "render/machine.hpp"
 #include "scenes/formats/checks.hpp"
 
@@ -19,6 +20,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -34,6 +36,13 @@ std::uint32_t pixel_side(std::uint32_t samples) {
     if (side * side == samples) return side;
   }
   throw UsageError("pixel_samples {}: expected a square number from 1 to 64, such as 4, 9 or 16", samples);
+}
+
+void check_lights_and_cameras(const scenes::Scene& scene) {
+  for (const scenes::AreaLight& light : scene.lights)
+    scenes::check_light(light, fmt::format("light \"{}\"", light.name));
+  for (const scenes::Camera& camera : scene.cameras)
+    scenes::check_camera(camera, fmt::format("camera \"{}\"", camera.name));
 }
 
 app::RunOptions run_options(const RenderOptions& options) {
@@ -145,14 +154,31 @@ struct Renderer::State {
   State(Scene made, RendererOptions wished)
       : scene(std::move(made)), options(std::move(wished)), machine(app::make_machine(options.device)) {}
 
+  /// Throws UsageError while a picture is made: its progress and log functions cannot ask for another.
+  void require_idle() const {
+    if (working) throw UsageError("the renderer is at work; it is for one call at a time");
+  }
+  /// While it exists, a picture is made.
+  class Working {
+   public:
+    explicit Working(State& state) : state_(state) { state_.working = true; }
+    Working(const Working&) = delete;
+    Working& operator=(const Working&) = delete;
+    ~Working() { state_.working = false; }
+
+   private:
+    State& state_;
+  };
+
   Scene scene;
   RendererOptions options;
+  std::atomic<bool> working = false;
   render::Machine machine;
   LibraryProgress progress{options};
   app::RunOptions run;
   app::MethodWish wish;
   std::uint64_t rendered = 0;                // Scene::State::meshes of the last picture
-  std::optional<app::FrameRenderer> frames;  // refers to run, wish and progress
+  std::unique_ptr<app::FrameRenderer> frames;  // refers to run, wish and progress
 };
 
 Renderer::Renderer(Scene scene, RendererOptions options)
@@ -162,6 +188,7 @@ Renderer& Renderer::operator=(Renderer&&) noexcept = default;
 Renderer::~Renderer() = default;
 
 Scene& Renderer::scene() {
+  state_->require_idle();
   return state_->scene;
 }
 const Scene& Renderer::scene() const {
@@ -171,30 +198,43 @@ const Scene& Renderer::scene() const {
 Picture Renderer::render(const RenderOptions& options) {
   const app::Stopwatch total;
   State& state = *state_;
+  state.require_idle();
+  const State::Working working(state);
   const Scene::State& scene = state.scene.state();
-  scenes::check_scene(scene.scene, "the scene");
+  const std::uint64_t meshes = scene.meshes;
+  const bool same_meshes = options.pixel_samples == 1 && state.frames && state.frames->has_meshes() &&
+                           state.rendered == meshes && !scene.scene.lights.empty();
+  if (same_meshes)
+    check_lights_and_cameras(scene.scene);
+  else
+    scenes::check_scene(scene.scene, "the scene");
   app::RunOptions run = run_options(options);
   run.camera = camera_of(scene, options);
   const app::Frame frame{.number = {},
                          .camera = run.camera,
                          .pixel_side = pixel_side(options.pixel_samples),
-                         .same_meshes = options.pixel_samples == 1 && state.frames && state.frames->has_meshes() &&
-                                        state.rendered == scene.meshes,
+                         .same_meshes = same_meshes,
                          .keeps_masks = options.masks && options.pixel_samples == 1};
   static_cast<void>(app::parse_light_samples(run));  // what is wrong with them is said before the renderer's change
   state.run = std::move(run);
-  state.wish = {options.method, {options.options.begin(), options.options.end()},
+  state.wish = {options.method,
+                {options.options.begin(), options.options.end()},
                 options.light_samples != 0 || !options.sample_pattern.empty()};
   if (!state.frames) {
-    state.frames.emplace(state.run, state.wish, state.machine, state.progress);
+    state.frames = std::make_unique<app::FrameRenderer>(state.run, state.wish, state.machine, state.progress);
     state.frames->expect_frames();
   }
   try {
-    state.frames->render(frame.same_meshes ? app::without_meshes(scene.scene) : scene.scene, frame, {}, 0);
-    state.rendered = scene.meshes;
+    state.frames->render(same_meshes ? app::without_meshes(scene.scene) : scene.scene, frame, {}, 0);
+    state.rendered = meshes;
     Picture picture(picture_of(*state.frames, total.seconds()));
     state.progress.rethrow();
     return picture;
+  } catch (const render::DeviceDoesNotAnswer& error) {
+    // Nothing of the device may be destroyed while it is at work: what holds it is left alone for ever.
+    static_cast<void>(state.frames.release());
+    state.machine = app::make_machine(state.options.device);
+    throw ResourceError(error.what());
   } catch (...) {
     state.frames.reset();  // whatever it holds may be half of one scene and half of another
     state.progress.rethrow();

@@ -157,6 +157,13 @@ void require_mesh(const std::string& where, std::span<const Vector> positions,
   }
 }
 
+/// A light and its body move together, which the interface cannot do.
+void require_no_light(const scenes::Scene& scene, std::uint32_t object, const std::string& name) {
+  if (const auto& emits = scene.objects[object].emits)
+    throw InputError("mesh \"{}\" is the body of light \"{}\", which would stay behind: remove the light first", name,
+                     scene.lights[*emits].name);
+}
+
 /// Lists of looks that exist are as long as the soup's positions.
 void fill_looks(scenes::Scene& scene) {
   const std::size_t count = scene.soup.positions.size();
@@ -286,6 +293,7 @@ MeshId Scene::add_mesh(std::string name, std::span<const Vector> positions,
 void Scene::set_mesh(MeshId mesh, std::span<const Vector> positions,
                      std::span<const std::array<std::uint32_t, 3>> triangles) {
   const std::string where = fmt::format("mesh \"{}\"", mesh_name(mesh));
+  require_no_light(state_->scene, mesh.index, mesh_name(mesh));
   require_mesh(where, positions, triangles);
   // Object by object, so that triangles stay in the order of the objects.
   const scenes::Scene& old = state_->scene;
@@ -343,7 +351,7 @@ RestMesh& rest_of(Scene::State& state, std::uint32_t object) {
 }  // namespace
 
 void Scene::set_transform(MeshId mesh, const Matrix& m) {
-  static_cast<void>(mesh_name(mesh));
+  require_no_light(state_->scene, mesh.index, mesh_name(mesh));
   const bool is_affine = m[12] == 0 && m[13] == 0 && m[14] == 0 && m[15] == 1;
   if (!is_affine || !std::ranges::all_of(m, [](double x) { return std::isfinite(x); }))
     throw InputError("transform of mesh \"{}\": expected finite numbers, and 0 0 0 1 in the last row", mesh_name(mesh));
@@ -371,6 +379,7 @@ void Scene::set_transform(MeshId mesh, const Matrix& m) {
 
 void Scene::set_positions(MeshId mesh, std::span<const Vector> positions) {
   const std::string where = fmt::format("mesh \"{}\"", mesh_name(mesh));
+  require_no_light(state_->scene, mesh.index, mesh_name(mesh));
   require_coordinates(positions, where);
   RestMesh& rest = rest_of(*state_, mesh.index);
   if (positions.size() != rest.positions.size())
@@ -418,6 +427,13 @@ void Scene::add_light(std::string name, const LightShape& shape, const LightOpti
 }
 
 void Scene::set_light(std::string_view name, const LightShape& shape) {
+  const scenes::Scene& scene = state_->scene;
+  const auto number = static_cast<std::uint32_t>(find_named(scene.lights, name, "light"));
+  for (const scenes::Object& object : scene.objects) {
+    if (object.emits == number)
+      throw InputError("light \"{}\" has a body, mesh \"{}\", which would stay behind: remove the light, and add another",
+                       name, object.name);
+  }
   change_light(state_->scene, name, [&](scenes::AreaLight& light) {
     scenes::LightShape made = to_scene(shape);
     const auto* const before = std::get_if<scenes::Sphere>(&light.shape);

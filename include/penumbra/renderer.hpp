@@ -65,7 +65,7 @@ class PENUMBRA_API Renderer {
   Renderer& operator=(Renderer&&) noexcept;
   ~Renderer();
 
-  /// What the next call renders; change it as you like.
+  /// What the next call renders; change it as you like. Throws UsageError while a call is at work.
   [[nodiscard]] Scene& scene();
   [[nodiscard]] const Scene& scene() const;
 

@@ -114,14 +114,16 @@ class PENUMBRA_API Scene {
   [[nodiscard]] const std::string& mesh_name(MeshId mesh) const;
   /// Moves a mesh: its vertices are where `matrix` takes the positions that it was added or read with. Throws UsageError
   /// for a mesh that the scene does not have, InputError for a matrix that is not finite or whose last row is not
-  /// 0 0 0 1.
+  /// 0 0 0 1, or a mesh that is the body of a light.
   void set_transform(MeshId mesh, const Matrix& matrix);
-  /// Replaces the positions that a mesh was added or read with, as many as it has. Throws as add_mesh().
+  /// Replaces the positions that a mesh was added or read with, as many as it has, and takes its transform back. Throws as
+  /// add_mesh(), and for a mesh that is the body of a light.
   void set_positions(MeshId mesh, std::span<const Vector> positions);
 
   /// Adds a light. Throws InputError for a shape that is none, and UsageError for a name that is taken.
   void add_light(std::string name, const LightShape& shape, const LightOptions& options = {});
-  /// Gives a light another shape, or other options. Throws UsageError without a light of that name.
+  /// Gives a light another shape, or other options. Throws UsageError without a light of that name, InputError for a shape
+  /// that is none and for a light whose body is a mesh.
   void set_light(std::string_view name, const LightShape& shape);
   void set_light(std::string_view name, const LightOptions& options);
   void remove_light(std::string_view name);

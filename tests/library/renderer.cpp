@@ -104,7 +104,7 @@ TEST_F(Library, MasksAreTheBitsOfTheProgram) {
   EXPECT_EQ(picture.light_samples(), 100U);
   ASSERT_EQ(picture.masks().size(), pixels * words);
   // After the line, three doubles and the light points each pixel has p, its triangle and its words.
-  std::size_t at = bits.find('\n') + 1 + 3 * 8 + 100 * 12;
+  std::size_t at = bits.find('\n') + 1 + 3 * sizeof(double) + 100 * sizeof(Picture::Float3);
   for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
     at += 12 + 4;
     EXPECT_EQ(bits.substr(at, words * 4), bytes_of(picture.masks().subspan(pixel * words, words))) << pixel;
@@ -221,6 +221,24 @@ TEST_F(Library, RenderersOnTwoThreadsDoNotMeet) {
   other.join();
   EXPECT_EQ(first_at_once, first);
   EXPECT_EQ(second_at_once, second);
+}
+
+TEST_F(Library, OneCallAtATime) {
+  Renderer* self = nullptr;
+  int refused = 0;
+  Renderer renderer(Scene::load(scene_), {.progress = [&](std::string_view, double) {
+                      try {
+                        static_cast<void>(self->render());
+                      } catch (const UsageError&) {
+                        ++refused;
+                      }
+                      EXPECT_THROW(static_cast<void>(self->scene()), UsageError);
+                      return true;
+                    }});
+  self = &renderer;
+  static_cast<void>(renderer.render());
+  EXPECT_GT(refused, 0);
+  EXPECT_NO_THROW(static_cast<void>(renderer.scene()));
 }
 
 TEST_F(Library, MeshesMoveFromWhereTheyWere) {
