@@ -63,7 +63,7 @@ for scene in map(pathlib.Path, sys.argv[1:]):
         show(scene, light, "rows", method["entry"])
         if method["output"] != "scalar" and method["anyPattern"]:
             show(scene, light, "sobol", method["entry"])
-    if scene.name != "room.json":
+    if scene.name != "fusion.json":
         continue
     for method in methods:
         for option in method["options"]:
