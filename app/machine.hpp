@@ -6,8 +6,8 @@
 
 namespace penumbra::app {
 
-/// What a command runs on. `wanted`: as `--device` takes it. PENUMBRA_VALIDATION=1 in the environment switches the
-/// validation layer on.
+/// Makes the machine that a command runs on. `wanted`: as `--device` takes it. PENUMBRA_VALIDATION=1 in the environment
+/// switches the validation layer on.
 render::Machine make_machine(const std::string& wanted);
 
 }  // namespace penumbra::app

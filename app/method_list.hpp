@@ -12,7 +12,7 @@ namespace penumbra::app {
 /// Names of the kinds of lights that the method does.
 std::vector<std::string> light_names(const visibility::MethodDescription& method);
 
-/// What one option makes of a method, where that is not what it is by default.
+/// A method with one option set, where that changes what the method is.
 struct Variant {
   std::string option, value;
   visibility::MethodDescription method;
@@ -21,7 +21,7 @@ struct Variant {
 /// Each option by itself, at all of its choices; of a number the first that matters of the least two and the most.
 std::vector<Variant> variants_of(const visibility::MethodDescription& method);
 
-/// What `methods --json` prints.
+/// The JSON that `methods --json` prints.
 nlohmann::ordered_json methods_json();
 
 }  // namespace penumbra::app

@@ -113,7 +113,7 @@ double median(std::vector<double> values) {
 
 SessionMaker::SessionMaker(const RunOptions& options, const render::Machine& machine)
     : options_(options), machine_(machine) {
-  // What is wrong with them is said before a scene is read.
+  // Wrong options are reported before a scene is read.
   static_cast<void>(parse_light_samples(options));
   if (!options.size.empty()) static_cast<void>(parse_size(options.size));
   session_.shading_normals = parse_normals(options.normals);

@@ -19,8 +19,8 @@ class LibraryProgress final : public app::Progress {
   void advance(std::uint64_t steps) override;
   void clear() override {}
   void say(Level level, const std::string& message) override;
-  /// Throws on what a function of the calling program threw, and Cancelled if that asked for the end: also where the work
-  /// between caught it.
+  /// Throws on what a function of the calling program threw, and Cancelled if that asked for the end: also where the
+  /// work between caught it.
   void rethrow();
 
  private:

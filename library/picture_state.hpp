@@ -14,7 +14,7 @@ namespace penumbra {
 
 struct Picture::State {
   std::uint32_t width = 0, height = 0;
-  std::vector<std::string> lights, methods;      ///< for each light
+  std::vector<std::string> lights, methods;       ///< for each light
   std::vector<std::size_t> words, light_samples;  ///< for each light; 0: no masks, no light samples
   app::RenderedFrame frame;
   glm::dvec3 origin{0};

@@ -96,8 +96,7 @@ std::shared_ptr<const Picture::State> picture_of(app::FrameRenderer& frames, dou
   picture->ids.resize(samples.size());
   tbb::parallel_for(std::size_t{0}, samples.size(), [&](std::size_t i) {
     const bool is_background = samples.triangle[i] == visibility::ViewSamples::kBackground;
-    picture->positions[i] =
-        is_background ? glm::vec3(0) : glm::vec3(glm::dvec3(samples.p[i]) + session.floats.origin);
+    picture->positions[i] = is_background ? glm::vec3(0) : glm::vec3(glm::dvec3(samples.p[i]) + session.floats.origin);
     picture->depth[i] = is_background ? kFar : samples.depth[i];
     picture->ids[i] = static_cast<std::uint32_t>(samples.triangle[i]);
   });
@@ -177,7 +176,7 @@ struct Renderer::State {
   LibraryProgress progress{options};
   app::RunOptions run;
   app::MethodWish wish;
-  std::uint64_t rendered = 0;                // Scene::State::meshes of the last picture
+  std::uint64_t rendered = 0;                  // Scene::State::meshes of the last picture
   std::unique_ptr<app::FrameRenderer> frames;  // refers to run, wish and progress
 };
 

@@ -1,4 +1,5 @@
-// A scene in a program's hands: the scene of scenes/, built or changed piece by piece, each change checked as a file is.
+// A scene in a program's hands: the scene of scenes/, built or changed piece by piece, each change checked as a file
+// is.
 
 #include "base/did_you_mean.hpp"
 #include "base/error.hpp"
@@ -78,9 +79,7 @@ std::optional<LightShape> from_scene(const scenes::LightShape& shape) {
       for (const glm::dvec3& vertex : p.vertices) polygon.vertices.push_back(from_glm(vertex));
       return polygon;
     }
-    std::optional<LightShape> operator()(const scenes::Sphere& s) const {
-      return Sphere{from_glm(s.center), s.radius};
-    }
+    std::optional<LightShape> operator()(const scenes::Sphere& s) const { return Sphere{from_glm(s.center), s.radius}; }
     std::optional<LightShape> operator()(const scenes::Sun& s) const { return Sun{from_glm(s.direction), s.angle}; }
     std::optional<LightShape> operator()(const scenes::Pieces&) const { return std::nullopt; }
   };
@@ -431,8 +430,9 @@ void Scene::set_light(std::string_view name, const LightShape& shape) {
   const auto number = static_cast<std::uint32_t>(find_named(scene.lights, name, "light"));
   for (const scenes::Object& object : scene.objects) {
     if (object.emits == number)
-      throw InputError("light \"{}\" has a body, mesh \"{}\", which would stay behind: remove the light, and add another",
-                       name, object.name);
+      throw InputError(
+          "light \"{}\" has a body, mesh \"{}\", which would stay behind: remove the light, and add another", name,
+          object.name);
   }
   change_light(state_->scene, name, [&](scenes::AreaLight& light) {
     scenes::LightShape made = to_scene(shape);

@@ -1,5 +1,6 @@
-// penumbra._core: the library's classes for Python. Arrays of pictures are views that keep the picture alive; everything
-// that takes long gives the interpreter's lock away and listens to Ctrl-C. What Python users see is in __init__.py.
+// penumbra._core: the library's classes for Python. Arrays of pictures are views that keep the picture alive;
+// everything that takes long gives the interpreter's lock away and listens to Ctrl-C. What Python users see is in
+// __init__.py.
 
 #include <penumbra/penumbra.hpp>
 
@@ -21,8 +22,7 @@ using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
 using Indices = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>;
 
 std::vector<Vector> rows_of(const Doubles& array) {
-  if (array.ndim() != 2 || array.shape(1) != 3)
-    throw UsageError("vertices: expected an array of shape (V, 3)");
+  if (array.ndim() != 2 || array.shape(1) != 3) throw UsageError("vertices: expected an array of shape (V, 3)");
   std::vector<Vector> rows(static_cast<std::size_t>(array.shape(0)));
   if (!rows.empty()) std::memcpy(rows.data(), array.data(), rows.size() * sizeof(Vector));
   return rows;
@@ -97,15 +97,16 @@ Value wanted(const py::dict& dict, const char* key) {
   try {
     return dict[key].cast<Value>();
   } catch (const py::cast_error&) {
-    throw UsageError(std::string("light: ") + key + " is not what it should be: " +
-                     py::repr(dict[key]).cast<std::string>());
+    throw UsageError(std::string("light: ") + key +
+                     " is not what it should be: " + py::repr(dict[key]).cast<std::string>());
   }
 }
 
 LightShape shape_of(const std::string& kind, const py::dict& d) {
   if (kind == "rectangle")
     return Rectangle{wanted<Vector>(d, "center"), wanted<Vector>(d, "half_u"), wanted<Vector>(d, "half_v")};
-  if (kind == "disk") return Disk{wanted<Vector>(d, "center"), wanted<Vector>(d, "normal"), wanted<double>(d, "radius")};
+  if (kind == "disk")
+    return Disk{wanted<Vector>(d, "center"), wanted<Vector>(d, "normal"), wanted<double>(d, "radius")};
   if (kind == "ellipse")
     return Ellipse{wanted<Vector>(d, "center"), wanted<Vector>(d, "half_u"), wanted<Vector>(d, "half_v")};
   if (kind == "polygon") return Polygon{wanted<std::vector<Vector>>(d, "vertices")};
@@ -165,11 +166,11 @@ PYBIND11_MODULE(_core, module) {
       .def(py::init<const Scene&>())
       .def_static(
           "load",
-          [](const std::filesystem::path& file, bool lenient, bool allow_outside, std::optional<double> frame, double fps,
-             std::optional<double> lamp_radius, std::optional<double> sun_angle, std::optional<double> lumens_per_watt,
-             std::vector<std::string> clips) {
-            return Scene::load(file, {lenient, allow_outside, frame, fps, lamp_radius, sun_angle, lumens_per_watt,
-                                      std::move(clips)});
+          [](const std::filesystem::path& file, bool lenient, bool allow_outside, std::optional<double> frame,
+             double fps, std::optional<double> lamp_radius, std::optional<double> sun_angle,
+             std::optional<double> lumens_per_watt, std::vector<std::string> clips) {
+            return Scene::load(
+                file, {lenient, allow_outside, frame, fps, lamp_radius, sun_angle, lumens_per_watt, std::move(clips)});
           },
           Unlocked())
       .def_static(
@@ -207,11 +208,15 @@ PYBIND11_MODULE(_core, module) {
            })
       .def("add_light",
            [](Scene& scene, std::string name, const std::string& kind, const py::dict& shape, const Vector& radiance,
-              bool two_sided) { scene.add_light(std::move(name), shape_of(kind, shape), {radiance, two_sided}); })
+              bool two_sided) {
+             scene.add_light(std::move(name), shape_of(kind, shape), {radiance, two_sided});
+           })
       .def("set_light_shape", [](Scene& scene, const std::string& name, const std::string& kind,
                                  const py::dict& shape) { scene.set_light(name, shape_of(kind, shape)); })
-      .def("set_light_options", [](Scene& scene, const std::string& name, const Vector& radiance,
-                                   bool two_sided) { scene.set_light(name, LightOptions{radiance, two_sided}); })
+      .def("set_light_options",
+           [](Scene& scene, const std::string& name, const Vector& radiance, bool two_sided) {
+             scene.set_light(name, LightOptions{radiance, two_sided});
+           })
       .def("remove_light", [](Scene& scene, const std::string& name) { scene.remove_light(name); })
       .def("light",
            [](const Scene& scene, const std::string& name) {
@@ -273,27 +278,36 @@ PYBIND11_MODULE(_core, module) {
           "render",
           [](Renderer& renderer, std::uint32_t width, std::uint32_t height, std::string method,
              std::map<std::string, std::string> options, std::uint32_t light_samples, std::string sample_pattern,
-             std::uint32_t sample_seed, std::vector<std::string> lights, std::string camera, std::uint32_t pixel_samples,
-             bool shading_normals, bool masks) {
+             std::uint32_t sample_seed, std::vector<std::string> lights, std::string camera,
+             std::uint32_t pixel_samples, bool shading_normals, bool masks) {
             return renderer.render({width, height, std::move(method), std::move(options), light_samples,
                                     std::move(sample_pattern), sample_seed, std::move(lights), std::move(camera),
                                     pixel_samples, shading_normals, masks});
           },
           Unlocked());
 
-  module.def("compare_json",
-             [](const Scene& scene, std::vector<std::string> methods, std::string reference,
-                std::string reference_samples, std::uint32_t width, std::uint32_t height, std::uint32_t light_samples,
-                std::string sample_pattern, std::vector<std::string> lights, std::string camera, std::uint32_t runs,
-                bool error_budget, const std::filesystem::path& out, std::string device, py::object log,
-                py::object progress) {
-               const RendererOptions renderer = options_of(std::move(device), std::move(log), std::move(progress));
-               const CompareOptions options{std::move(methods), std::move(reference), std::move(reference_samples), width,
-                                            height, light_samples, std::move(sample_pattern), std::move(lights),
-                                            std::move(camera), runs, error_budget, out};
-               const py::gil_scoped_release unlocked;
-               return compare_json(scene, options, renderer);
-             });
+  module.def(
+      "compare_json",
+      [](const Scene& scene, std::vector<std::string> methods, std::string reference, std::string reference_samples,
+         std::uint32_t width, std::uint32_t height, std::uint32_t light_samples, std::string sample_pattern,
+         std::vector<std::string> lights, std::string camera, std::uint32_t runs, bool error_budget,
+         const std::filesystem::path& out, std::string device, py::object log, py::object progress) {
+        const RendererOptions renderer = options_of(std::move(device), std::move(log), std::move(progress));
+        const CompareOptions options{std::move(methods),
+                                     std::move(reference),
+                                     std::move(reference_samples),
+                                     width,
+                                     height,
+                                     light_samples,
+                                     std::move(sample_pattern),
+                                     std::move(lights),
+                                     std::move(camera),
+                                     runs,
+                                     error_budget,
+                                     out};
+        const py::gil_scoped_release unlocked;
+        return compare_json(scene, options, renderer);
+      });
   module.def(
       "inspect_file",
       [](const std::filesystem::path& file, double weld, bool self_intersections, std::size_t list_limit) {

@@ -13,7 +13,7 @@ struct RefusedMethod {
   std::string reason;  ///< begins with the method's name
 };
 
-/// Those of a device that can be used but lacks something: found by making each method there, as it is and with each
+/// Finds the methods that a usable device cannot run: makes each method there, as it is and with each
 /// choice of each option. No device is made for one that lacks nothing.
 std::vector<RefusedMethod> refused_methods(const render::DeviceInfo& device);
 

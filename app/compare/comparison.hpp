@@ -32,7 +32,7 @@ struct ComparisonOptions {
 /// said once is of the first. Seconds are sums over all lights. `arguments` is the command line, for the report.
 compare::Metrics compare_methods(const RunOptions& run, const ComparisonOptions& options,
                                  const std::vector<std::string>& arguments, Progress& progress);
-/// Of a scene that has been read already.
+/// Compares on a scene that has been read already.
 compare::Metrics compare_methods(scenes::Scene scene, const RunOptions& run, const ComparisonOptions& options,
                                  Progress& progress);
 

@@ -56,7 +56,7 @@ std::string why_no_device(const ComparisonOptions& options, const render::Machin
   }
 }
 
-/// What the device lacks of what a method of a group needs there; empty: nothing.
+/// Returns the features that the device lacks and a method of a group needs there; empty if it lacks none.
 std::string why_not_there(const MethodEntry& chosen, const render::Machine& machine) {
   if (machine.device().info().lacks.empty()) return {};
   try {

@@ -37,13 +37,13 @@ struct Frame {
   bool keeps_masks = false;  ///< RenderedFrame::masks; of a picture of one moment and of pixels' centres
 };
 
-/// What a picture shows, for each whole light and in all. Row by row from the top.
+/// The numbers of a picture, for each whole light and for all together. Row by row from the top.
 struct RenderedFrame {
   std::vector<std::vector<float>> visibility;  ///< V of each light, each pixel
   std::vector<std::vector<glm::vec3>> beauty;  ///< of each light, each pixel; empty where none came
   std::vector<glm::vec3> sum;                  ///< of all lights
   std::vector<float> alpha;
-  /// Of each light that masks were made of, words_per_mask() words a pixel; else empty.
+  /// Masks of each light, words_per_mask() words a pixel; empty for a light without masks.
   std::vector<std::vector<std::uint32_t>> masks;
 };
 
@@ -61,7 +61,7 @@ class FrameRenderer {
   void render(scenes::Scene scene, const Frame& frame, const std::filesystem::path& bits, double read_seconds);
   /// Gives away what was computed last.
   RenderedFrame take();
-  /// What stats.json says of the picture computed last, without the seconds of writing it and in all.
+  /// The content of stats.json for the picture computed last, without the seconds of writing it and the total.
   [[nodiscard]] compare::Stats stats();
   /// Writes what was computed last. `exposure` gets its stops if it is of a sequence's first picture and has none yet.
   /// Returns what stats.json says.

@@ -5,7 +5,7 @@
 
 namespace penumbra::app {
 
-/// What long work reports while it runs, and through which it is stopped.
+/// The receiver of what long work reports while it runs; it can also stop the work.
 class Progress {
  public:
   enum class Level : std::uint8_t { debug, info, warning, error };

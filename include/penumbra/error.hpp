@@ -42,8 +42,8 @@ class PENUMBRA_API UsageError : public Error {
  public:
   explicit UsageError(const std::string& message);
   template <typename... Args>
-    requires(sizeof...(Args) > 0)
-  PENUMBRA_HIDDEN explicit UsageError(detail::Format<std::type_identity_t<Args>...> format, Args&&... args);
+  requires(sizeof...(Args) > 0) PENUMBRA_HIDDEN
+      explicit UsageError(detail::Format<std::type_identity_t<Args>...> format, Args&&... args);
   UsageError(const UsageError&) noexcept = default;
   UsageError& operator=(const UsageError&) noexcept = default;
   ~UsageError() override;
@@ -54,8 +54,8 @@ class PENUMBRA_API InputError : public Error {
  public:
   explicit InputError(const std::string& message);
   template <typename... Args>
-    requires(sizeof...(Args) > 0)
-  PENUMBRA_HIDDEN explicit InputError(detail::Format<std::type_identity_t<Args>...> format, Args&&... args);
+  requires(sizeof...(Args) > 0) PENUMBRA_HIDDEN
+      explicit InputError(detail::Format<std::type_identity_t<Args>...> format, Args&&... args);
   InputError(const InputError&) noexcept = default;
   InputError& operator=(const InputError&) noexcept = default;
   ~InputError() override;
@@ -66,8 +66,8 @@ class PENUMBRA_API ResourceError : public Error {
  public:
   explicit ResourceError(const std::string& message);
   template <typename... Args>
-    requires(sizeof...(Args) > 0)
-  PENUMBRA_HIDDEN explicit ResourceError(detail::Format<std::type_identity_t<Args>...> format, Args&&... args);
+  requires(sizeof...(Args) > 0) PENUMBRA_HIDDEN
+      explicit ResourceError(detail::Format<std::type_identity_t<Args>...> format, Args&&... args);
   ResourceError(const ResourceError&) noexcept = default;
   ResourceError& operator=(const ResourceError&) noexcept = default;
   ~ResourceError() override;

@@ -12,13 +12,13 @@
 namespace penumbra {
 
 struct InspectOptions {
-  double weld = 0;                  ///< vertices at most this far apart are one
-  bool self_intersections = true;   ///< search them, which takes longest
-  std::size_t list_limit = 100;     ///< places listed of each defect
+  double weld = 0;                 ///< vertices at most this far apart are one
+  bool self_intersections = true;  ///< search them, which takes longest
+  std::size_t list_limit = 100;    ///< places listed of each defect
 };
 
-/// What is wrong with a mesh, and what each method makes of it: the JSON of `penumbra inspect --json`. Throws InputError
-/// for a file that cannot be read, or arrays that are no mesh (Scene::add_mesh).
+/// What is wrong with a mesh, and what each method makes of it: the JSON of `penumbra inspect --json`. Throws
+/// InputError for a file that cannot be read, or arrays that are no mesh (Scene::add_mesh).
 PENUMBRA_API std::string inspect_json(const std::filesystem::path& file, const InspectOptions& options = {});
 PENUMBRA_API std::string inspect_json(std::span<const Vector> positions,
                                       std::span<const std::array<std::uint32_t, 3>> triangles,

@@ -12,9 +12,9 @@
 
 namespace penumbra {
 
-/// What was rendered: for every pixel, row by row from the top left. The numbers are those of the channels of the command
-/// line's OUT.exr. Copies share their memory, which never changes; spans are valid while a copy lives. A picture may be
-/// read by several threads at once.
+/// What was rendered: for every pixel, row by row from the top left. The numbers are those of the channels of the
+/// command line's OUT.exr. Copies share their memory, which never changes; spans are valid while a copy lives. A
+/// picture may be read by several threads at once.
 class PENUMBRA_API Picture {
  public:
   using Float3 = std::array<float, 3>;
@@ -25,8 +25,8 @@ class PENUMBRA_API Picture {
   /// that no light has.
   [[nodiscard]] const std::vector<std::string>& lights() const;
 
-  /// Visibility V of a light, 0 to 1 (channel V of the first light): the share of the light's area that is seen, weighted
-  /// by a texture's luminance; 1 in the background.
+  /// Visibility V of a light, 0 to 1 (channel V of the first light): the share of the light's area that is seen,
+  /// weighted by a texture's luminance; 1 in the background.
   [[nodiscard]] std::span<const float> visibility(std::size_t light = 0) const;
   /// Linear red green blue of all lights together (R G B), or of one.
   [[nodiscard]] std::span<const Float3> beauty() const;

@@ -57,7 +57,7 @@ struct LightOptions {
 
 struct Camera {
   Vector eye{}, target{0, 0, -1}, up{0, 1, 0};
-  double vertical_fov = 45;         ///< degrees
+  double vertical_fov = 45;           ///< degrees
   std::optional<double> height = {};  ///< of an orthographic camera: the picture's height, in place of an angle
   std::string name = "camera";
 };
@@ -69,8 +69,8 @@ struct MeshOptions {
 
 /// How a file is read. Where a number is not set, the file's own holds, or the default of the command line.
 struct LoadOptions {
-  bool lenient = false;        ///< leave out, with a warning, what would change a shadow and cannot be done
-  bool allow_outside = false;  ///< let the scene name files outside its folder
+  bool lenient = false;              ///< leave out, with a warning, what would change a shadow and cannot be done
+  bool allow_outside = false;        ///< let the scene name files outside its folder
   std::optional<double> frame = {};  ///< of the file's animation; without it the scene is at rest
   double fps = 24;                   ///< frame F is at F / fps seconds
   std::optional<double> lamp_radius = {}, sun_angle = {}, lumens_per_watt = {};  ///< of glTF lamps without their own
@@ -82,8 +82,8 @@ struct MeshId {
   std::uint32_t index = 0;
 };
 
-/// Triangles, area lights and cameras. A value: copies are independent of each other. A call that throws leaves the scene
-/// as it was. Scenes on different threads do not meet; one scene is for one thread at a time.
+/// Triangles, area lights and cameras. A value: copies are independent of each other. A call that throws leaves the
+/// scene as it was. Scenes on different threads do not meet; one scene is for one thread at a time.
 class PENUMBRA_API Scene {
  public:
   /// Without meshes, lights and cameras.
@@ -104,26 +104,26 @@ class PENUMBRA_API Scene {
   /// InputError for numbers that are not finite or too large, and indices out of range.
   MeshId add_mesh(std::string name, std::span<const Vector> positions,
                   std::span<const std::array<std::uint32_t, 3>> triangles, const MeshOptions& options = {});
-  /// Replaces the vertices and triangles of a mesh, which keeps its place among the meshes and its options; vertices' own
-  /// normals, colours and pictures go. Throws as add_mesh().
+  /// Replaces the vertices and triangles of a mesh, which keeps its place among the meshes and its options; vertices'
+  /// own normals, colours and pictures go. Throws as add_mesh().
   void set_mesh(MeshId mesh, std::span<const Vector> positions,
                 std::span<const std::array<std::uint32_t, 3>> triangles);
   /// Throws UsageError without a mesh of that name.
   [[nodiscard]] MeshId mesh(std::string_view name) const;
   [[nodiscard]] std::size_t mesh_count() const;
   [[nodiscard]] const std::string& mesh_name(MeshId mesh) const;
-  /// Moves a mesh: its vertices are where `matrix` takes the positions that it was added or read with. Throws UsageError
-  /// for a mesh that the scene does not have, InputError for a matrix that is not finite or whose last row is not
-  /// 0 0 0 1, or a mesh that is the body of a light.
+  /// Moves a mesh: its vertices are where `matrix` takes the positions that it was added or read with. Throws
+  /// UsageError for a mesh that the scene does not have, InputError for a matrix that is not finite or whose last row
+  /// is not 0 0 0 1, or a mesh that is the body of a light.
   void set_transform(MeshId mesh, const Matrix& matrix);
-  /// Replaces the positions that a mesh was added or read with, as many as it has, and takes its transform back. Throws as
-  /// add_mesh(), and for a mesh that is the body of a light.
+  /// Replaces the positions that a mesh was added or read with, as many as it has, and takes its transform back. Throws
+  /// as add_mesh(), and for a mesh that is the body of a light.
   void set_positions(MeshId mesh, std::span<const Vector> positions);
 
   /// Adds a light. Throws InputError for a shape that is none, and UsageError for a name that is taken.
   void add_light(std::string name, const LightShape& shape, const LightOptions& options = {});
-  /// Gives a light another shape, or other options. Throws UsageError without a light of that name, InputError for a shape
-  /// that is none and for a light whose body is a mesh.
+  /// Gives a light another shape, or other options. Throws UsageError without a light of that name, InputError for a
+  /// shape that is none and for a light whose body is a mesh.
   void set_light(std::string_view name, const LightShape& shape);
   void set_light(std::string_view name, const LightOptions& options);
   void remove_light(std::string_view name);
@@ -133,8 +133,8 @@ class PENUMBRA_API Scene {
   [[nodiscard]] std::optional<LightShape> light_shape(std::string_view name) const;
   [[nodiscard]] LightOptions light_options(std::string_view name) const;
 
-  /// Adds a camera, or replaces that of the same name; it becomes the one that looks by default. Throws InputError for one
-  /// that sees nothing.
+  /// Adds a camera, or replaces that of the same name; it becomes the one that looks by default. Throws InputError for
+  /// one that sees nothing.
   void set_camera(const Camera& camera);
   [[nodiscard]] std::vector<Camera> cameras() const;
 

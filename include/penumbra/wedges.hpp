@@ -14,8 +14,8 @@ struct WedgeOptions {
   bool validate = false;                  ///< prove every invariant by exact signs
 };
 
-/// The penumbra wedges of a light: the JSON of `penumbra wedges --json`, with `violations` if they were validated. Throws
-/// UsageError for options that cannot be meant, InputError for a light that has no wedges.
+/// The penumbra wedges of a light: the JSON of `penumbra wedges --json`, with `violations` if they were validated.
+/// Throws UsageError for options that cannot be meant, InputError for a light that has no wedges.
 PENUMBRA_API std::string wedges_json(const Scene& scene, const WedgeOptions& options = {});
 
 }  // namespace penumbra
