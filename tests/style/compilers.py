@@ -1,4 +1,5 @@
-"""Does everything compile as the presets `clang`, `fuzz`, `coverage` and a Debug build would have it? Without building them:
+"""Do all presets configure, and does everything compile as `clang`, `fuzz`, `coverage` and a Debug build would have it? Without
+building them:
 
     compilers.py SOURCE BUILD
 
@@ -11,6 +12,7 @@ import json
 import os
 import re
 import shlex
+import shutil
 import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor
@@ -32,6 +34,24 @@ def configure(source, build, name, *options):
     for entry in own:
         entry["command"] = entry["command"].replace(os.path.join(folder, "shaders"), os.path.join(build, "shaders"))
     return folder, [entry for entry in own if entry["file"].endswith((".cpp", ".cxx"))]
+
+
+def presets_that_fail(source, build):
+    """Configures each preset that users may name. Returns how many cannot be."""
+    with open(os.path.join(source, "CMakePresets.json")) as file:
+        names = [preset["name"] for preset in json.load(file)["configurePresets"] if not preset.get("hidden")]
+    failed = 0
+    for name in names:
+        folder = os.path.join(build, "compilers-preset")
+        shutil.rmtree(folder, ignore_errors=True)
+        done = subprocess.run(["cmake", "--preset", name, "-B", folder], cwd=source, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                              text=True)
+        if done.returncode != 0:
+            print(f"preset {name}:\n" + done.stdout, file=sys.stderr)
+            failed += 1
+    shutil.rmtree(folder, ignore_errors=True)
+    print(f"style: {len(names)} presets, {failed} do not configure", flush=True)
+    return failed
 
 
 def make_generated(folder):
@@ -68,9 +88,10 @@ def check(name, jobs):
 
 def main(source, build):
     source, build = os.path.realpath(source), os.path.realpath(build)
+    failed = presets_that_fail(source, build)
     _, clang = configure(source, build, "compilers-clang", "-DCMAKE_BUILD_TYPE=Release", "-DCMAKE_C_COMPILER=clang",
                          "-DCMAKE_CXX_COMPILER=clang++", "-DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON", "-DPENUMBRA_JOIN=ON")
-    failed = check("clang", [(entry, ["-fsyntax-only"]) for entry in clang])
+    failed += check("clang", [(entry, ["-fsyntax-only"]) for entry in clang])
 
     folder, debug = configure(source, build, "compilers-debug", "-DCMAKE_BUILD_TYPE=Debug")
     headers = subprocess.run(["ninja", "-C", folder, "penumbra_precompiled", "penumbra_precompiled_tests"],
