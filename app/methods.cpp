@@ -14,8 +14,11 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <deque>
 #include <functional>
 #include <iterator>
+#include <mutex>
+#include <shared_mutex>
 #include <string>
 
 namespace penumbra::app {
@@ -40,6 +43,25 @@ const std::vector<MethodRow>& table() {
   return rows;
 }
 
+/// Methods that a program added. A row stays where it is.
+struct AddedMethods {
+  std::shared_mutex mutex;
+  std::deque<MethodRow> rows;
+};
+AddedMethods& added() {
+  static AddedMethods methods;
+  return methods;
+}
+
+/// All rows there are at the moment.
+std::vector<const MethodRow*> all_rows() {
+  std::vector<const MethodRow*> rows;
+  for (const MethodRow& row : table()) rows.push_back(&row);
+  const std::shared_lock lock(added().mutex);
+  for (const MethodRow& row : added().rows) rows.push_back(&row);
+  return rows;
+}
+
 std::vector<std::string> names_of(const std::vector<const MethodDescription*>& methods) {
   std::vector<std::string> names;
   for (const MethodDescription* method : methods) names.push_back(method->name);
@@ -47,8 +69,9 @@ std::vector<std::string> names_of(const std::vector<const MethodDescription*>& m
 }
 
 const MethodRow& find_row(std::string_view name) {
-  const auto row = std::ranges::find_if(table(), [&](const MethodRow& r) { return r.description.name == name; });
-  if (row != table().end()) return *row;
+  for (const MethodRow* row : all_rows()) {
+    if (row->description.name == name) return *row;
+  }
   const std::vector<std::string> names = names_of(all_methods());
   throw UsageError("there is no method \"{}\"; what is there: {}{}", name, fmt::join(names, ", "),
                    did_you_mean(name, names));
@@ -58,8 +81,18 @@ const MethodRow& find_row(std::string_view name) {
 
 std::vector<const MethodDescription*> all_methods() {
   std::vector<const MethodDescription*> methods;
-  for (const MethodRow& row : table()) methods.push_back(&row.description);
+  for (const MethodRow* row : all_rows()) methods.push_back(&row->description);
   return methods;
+}
+
+void add_method(MethodRow row) {
+  if (method_group(row.description.name))
+    throw UsageError("a method cannot be called \"{}\": that is a group of methods", row.description.name);
+  const std::unique_lock lock(added().mutex);
+  const auto has_name = [&](const MethodRow& other) { return other.description.name == row.description.name; };
+  if (std::ranges::any_of(table(), has_name) || std::ranges::any_of(added().rows, has_name))
+    throw UsageError("there is a method \"{}\" already", row.description.name);
+  added().rows.push_back(std::move(row));
 }
 
 std::optional<std::vector<const MethodDescription*>> method_group(std::string_view group) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "app/machine.hpp"
+#include "engines/method_row.hpp"
 #include "visibility/method.hpp"
 
 #include <memory>
@@ -11,8 +12,12 @@
 
 namespace penumbra::app {
 
-/// All methods of this build, in the order of `penumbra methods`. Needs no device.
+/// All methods of this build, in the order of `penumbra methods`, then those that were added. Needs no device.
 std::vector<const visibility::MethodDescription*> all_methods();
+
+/// Adds a method to those of this process, for its life. Safe while other threads look methods up. Throws UsageError
+/// for a name that is taken.
+void add_method(engines::MethodRow row);
 
 /// The members of `reference`, `geometry`, `image`, `all`, or `default` (geometry-based and image-based ones that do
 /// not take minutes); nothing for any other word.

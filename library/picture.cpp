@@ -1,17 +1,12 @@
 #include "library/picture_state.hpp"
 
 #include "base/error.hpp"
+#include "library/float3.hpp"
 
 #include <utility>
 
 namespace penumbra {
 namespace {
-
-/// glm's vectors are three floats one after the other, as the interface's.
-std::span<const Picture::Float3> as_floats(const std::vector<glm::vec3>& values) {
-  static_assert(sizeof(glm::vec3) == sizeof(Picture::Float3));
-  return {reinterpret_cast<const Picture::Float3*>(values.data()), values.size()};
-}
 
 template <typename List>
 const auto& of_light(const List& list, std::size_t light) {

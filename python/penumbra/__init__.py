@@ -25,7 +25,7 @@ from ._core import Cancelled, Error, InputError, ResourceError, UsageError
 __version__ = _core.version()
 __all__ = [
     "Cancelled", "Error", "InputError", "LightPicture", "Picture", "Renderer", "ResourceError", "Scene", "UsageError",
-    "compare", "inspect", "load", "methods", "render", "wedges",
+    "add_method", "compare", "inspect", "load", "methods", "render", "wedges",
 ]
 
 _SHAPES = {
@@ -392,6 +392,45 @@ def compare(scene, methods="default", *, reference="raytrace", reference_samples
                               light_samples, sample_pattern, _names(light), camera, runs, error_budget, _os.fspath(out),
                               device, log, progress)
     return _json.loads(text)["methods"]
+
+
+class Question:
+    """What the function of an own method is asked (add_method): numpy arrays, all positions relative to `origin`.
+
+    For the K pixels that receive shadow of this light: `p` (K, 3) points, `n` (K, 3) unit normals toward the camera, `face`
+    (K,) the faces that carry them, `pixels` (K,) their numbers, row by row.
+    The scene: `vertices` (V, 3) float32, `faces` (F, 3), `casts` (F,) False for those that cast no shadow of this light.
+    The light: `light`, a dict with name, kind, center, u, v, radius, two_sided, outline, points (N, 3) and weights; of a sun
+    center, u, v and points are directions toward it. `points_of_pixel` (K, N, 3): a sphere's light samples, else None.
+    The whole view: `size` (width, height), `all_p` and `all_n` (H, W, 3), `all_faces` (H, W), -1 in the background."""
+
+    def __init__(self, values):
+        self.__dict__.update(values)
+
+
+def add_method(name, function, *, family="image", masks=False, lights=tuple(_SHAPES), textures=False, options=None, paper="",
+               exact_for="nothing"):
+    """Adds a shadow method of your own to this process: from then on `render`, `compare` and `methods` have it by its name.
+
+    `function(question, **options)` gets a Question and returns V, an array (K,) of numbers from 0 to 1, or with `masks` a bool
+    array (K, N): does pixel k see light sample j? `options`: a dict of names to (default, least, most) for numbers, whole
+    if all three are int, or to a list of strings, the first of which is the default. `family`: "image" or "geometry".
+    `lights`: kinds that it does; `textures`: V is weighted by light["weights"]. What the function raises ends the call."""
+    described, types = [], {}
+    for key, values in (options or {}).items():
+        if isinstance(values, list):
+            described.append(dict(name=key, default=values[0], choices=values, least=0.0, most=0.0, whole=False))
+            types[key] = str
+        else:
+            default, least, most = values
+            whole = all(isinstance(value, int) for value in values)
+            described.append(dict(name=key, default=str(default), choices=[], least=float(least), most=float(most), whole=whole))
+            types[key] = int if whole else float
+
+    def ask(values):
+        return function(Question(values), **{key: types[key](text) for key, text in values["options"].items()})
+
+    _core.add_method(name, ask, family, paper, exact_for, masks, _names(lights), textures, described)
 
 
 def inspect(mesh, faces=None, *, weld=0.0, self_intersections=True, list_limit=100):

@@ -108,6 +108,27 @@ def compare(scene: _Scene, methods: Union[str, Sequence[str]] = ..., *, referenc
             sample_pattern: str = ..., light: Union[None, str, Sequence[str]] = ..., camera: str = ..., runs: int = ...,
             error_budget: bool = ..., out: _Path = ..., device: str = ..., log: Optional[_Log] = ...,
             progress: Optional[_Progress] = ...) -> list[dict[str, Any]]: ...
+class Question:
+    options: dict[str, str]
+    origin: tuple[float, float, float]
+    vertices: NDArray[np.float32]
+    faces: NDArray[np.uint32]
+    casts: NDArray[np.bool_]
+    light: dict[str, Any]
+    size: tuple[int, int]
+    all_p: NDArray[np.float32]
+    all_n: NDArray[np.float32]
+    all_faces: NDArray[np.int32]
+    pixels: NDArray[np.uint32]
+    p: NDArray[np.float32]
+    n: NDArray[np.float32]
+    face: NDArray[np.int32]
+    points_of_pixel: Optional[NDArray[np.float32]]
+    masks: bool
+
+def add_method(name: str, function: Callable[..., ArrayLike], *, family: str = ..., masks: bool = ...,
+               lights: Union[str, Sequence[str]] = ..., textures: bool = ...,
+               options: Optional[Mapping[str, Any]] = ..., paper: str = ..., exact_for: str = ...) -> None: ...
 def inspect(mesh: Any, faces: Optional[ArrayLike] = ..., *, weld: float = ..., self_intersections: bool = ...,
             list_limit: int = ...) -> dict[str, Any]: ...
 def wedges(scene: _Scene, light: str = ..., *, construction: str = ..., from_: str = ...,

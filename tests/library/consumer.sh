@@ -15,5 +15,10 @@ ninja -C "$work/build" >"$work/build.log" || { cat "$work/build.log"; exit 1; }
 export PKG_CONFIG_PATH=$(dirname "$library")/pkgconfig
 g++ "$source/tests/library/consumer/main.cpp" $(pkg-config --cflags --libs penumbra) -Wl,-rpath,"$(dirname "$library")" -o "$work/by_pkg_config"
 "$work/by_pkg_config" "$source/scenes/room.json"
+cmake -S "$source/examples/own_method" -B "$work/own_method" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_PREFIX_PATH="$work/installed" >"$work/configure.log"
+ninja -C "$work/own_method" >"$work/build.log" || { cat "$work/build.log"; exit 1; }
+"$work/own_method/own_method" "$source/scenes/contact.json" -o "$work/compared" >"$work/metrics.json"
+for name in gathering pcss; do grep -q "\"method\": \"$name\"" "$work/metrics.json" || { echo "no $name in $work/metrics.json"; exit 1; }; done
+[[ -s $work/compared/report.html ]]
 PENUMBRA=$work/installed/bin/penumbra
 "$PENUMBRA" --quiet render "$source/scenes/bunny.json" -o "$work/out.exr" --size 8x8  # finds its helper

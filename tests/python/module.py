@@ -37,6 +37,96 @@ def board_over_floor():
     }
 
 
+def crossed_segments(question):
+    """Which segments from p to the light's points no triangle meets, in double: (K, N)."""
+    ends = question.points_of_pixel if question.points_of_pixel is not None else question.light["points"][None]
+    p = question.p[:, None].astype(float)
+    way = ends - p if question.light["kind"] != "sun" else np.broadcast_to(ends, (len(p), *ends.shape[1:])).astype(float)
+    free = (way * question.n[:, None]).sum(-1) > 0
+    if question.light["kind"] != "sun" and question.light["kind"] != "sphere":
+        free &= (way * np.cross(question.light["u"], question.light["v"])).sum(-1) < 0
+    for face in question.faces[question.casts]:
+        a, b, c = question.vertices[face].astype(float)
+        normal = np.cross(b - a, c - a)
+        along = way @ normal
+        with np.errstate(divide="ignore", invalid="ignore"):
+            t = ((a - p) @ normal) / along
+            hit = p + t[..., None] * way
+            inside = np.ones(t.shape, bool)
+            for start, end in ((a, b), (b, c), (c, a)):
+                inside &= np.cross(end - start, hit - start) @ normal >= 0
+            free &= ~(inside & (t > 1e-6) & ((t < 1) | (question.light["kind"] == "sun")))
+    return free
+
+
+class OwnMethod(unittest.TestCase):
+    """Methods that Python functions answer."""
+
+    def test_masks_of_a_function_are_those_of_exact_methods(self):
+        penumbra.add_method("segments", crossed_segments, masks=True, family="geometry", exact_for="all but rounding")
+        scene = board_over_floor()
+        for light in ({"rectangle": {"center": [0, 2, 0], "halfU": [0.5, 0, 0], "halfV": [0, 0, 0.5]}},
+                      {"sphere": {"center": [0, 2, 0], "radius": 0.4}}, {"sun": {"direction": [-0.2, -1, 0.1], "angle": 20}}):
+            scene["lights"] = [{"name": "key", **light}]
+            own = penumbra.render(scene, size=(24, 18), method="segments", light_samples=49)
+            exact = penumbra.render(scene, size=(24, 18), method="edge-scatter", light_samples=49)
+            self.assertEqual(own.masks.shape, (18, 24, 49))
+            # Rows of light samples that end on the board's edge exactly are rounding's affair: at most one row of seven.
+            self.assertLess((own.masks != exact.masks).mean(), 0.002, light)
+            self.assertGreater((exact.masks != exact.masks[0, 0]).mean(), 0.01)
+            np.testing.assert_array_equal(own.V, own.masks.mean(-1, dtype=float).astype(np.float32))
+
+    def test_is_compared_with_its_options(self):
+        seen = []
+
+        def even(question, share, rule):
+            seen.append((share, rule))
+            self.assertEqual(question.all_p.shape, (12, 16, 3))
+            np.testing.assert_array_equal(question.all_p.reshape(-1, 3)[question.pixels], question.p)
+            return np.full(len(question.p), share)
+
+        penumbra.add_method("even", even, options={"share": (0.5, 0.0, 1.0), "rule": ["plain", "odd"]}, lights="rectangle")
+        rows = penumbra.compare(board_over_floor(), ["even:share=0.25", "even:rule=odd"], reference="exact", size=(16, 12), runs=1)
+        exact = penumbra.render(board_over_floor(), size=(16, 12))
+        judged = [row["error"]["bias"] for row in rows]
+        self.assertEqual(set(seen), {(0.25, "plain"), (0.5, "odd")})
+        self.assertAlmostEqual(judged[1] - judged[0], 0.25, places=6)
+        self.assertEqual(exact.V.shape, (12, 16))
+        listed = {method["name"]: method for method in penumbra.methods()}["even"]
+        self.assertEqual((listed["family"], listed["output"]), ("image", "scalar"))
+        with self.assertRaisesRegex(penumbra.UsageError, "share"):
+            penumbra.render(board_over_floor(), size=(8, 6), method="even", options={"share": 2})
+        scene = board_over_floor()
+        scene["lights"][0] = {"name": "key", "sphere": {"center": [0, 2, 0], "radius": 0.4}}
+        with self.assertRaisesRegex(penumbra.InputError, "sphere"):
+            penumbra.render(scene, size=(8, 6), method="even")
+
+    def test_refuses_what_cannot_be(self):
+        answer = {}
+        penumbra.add_method("answers", lambda question: answer["of"](question))
+        render = lambda: penumbra.render(board_over_floor(), size=(8, 6), method="answers")
+        answer["of"] = lambda question: np.full(len(question.p), np.nan)
+        with self.assertRaisesRegex(penumbra.ResourceError, "answers"):
+            render()
+        answer["of"] = lambda question: np.zeros(1)
+        with self.assertRaisesRegex(penumbra.UsageError, "shape"):
+            render()
+        answer["of"] = lambda question: {}["missing"]
+        with self.assertRaises(KeyError):
+            render()
+        answer["of"] = lambda question: np.zeros(len(question.p))
+        self.assertEqual(render().V[render().A == 1].max(), 0)
+        for name in ("answers", "edge-scatter", "image", "a:b", ""):
+            with self.assertRaises(penumbra.UsageError, msg=name):
+                penumbra.add_method(name, print)
+        with self.assertRaisesRegex(penumbra.UsageError, "did you mean"):
+            penumbra.add_method("other", print, lights=["rectangel"])
+        with self.assertRaises(penumbra.UsageError):
+            penumbra.add_method("other", print, options={"n": (0, 1, 4)})
+        with self.assertRaises(penumbra.UsageError):
+            penumbra.add_method("other", print, family="reference")
+
+
 class Module(unittest.TestCase):
     def test_masks_are_the_programs_bits(self):
         with tempfile.TemporaryDirectory() as folder:
