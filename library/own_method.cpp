@@ -233,7 +233,8 @@ visibility::OptionDescription option_of(const OwnMethodInfo& info, const MethodO
                                           .default_value = {},
                                           .help = option.help};
   described.default_value = option.choices.empty() ? fmt::format("{}", option.least) : option.choices.front();
-  visibility::ParsedOptions(info.name, {{described}}, {{option.name, option.default_value}});  // throws if it cannot be
+  // Throws if the default cannot be.
+  static_cast<void>(visibility::ParsedOptions(info.name, {{described}}, {{option.name, option.default_value}}));
   described.default_value = option.default_value;
   return described;
 }
@@ -273,7 +274,7 @@ void OwnMethod::masks(std::span<const std::uint32_t> /*pixels*/, std::span<std::
 
 void add_method(const OwnMethodInfo& info, MakeOwnMethod make) {
   if (!make) throw UsageError("method {}: expected a function that makes it", info.name);
-  const MethodDescription description = description_of(info);
+  MethodDescription description = description_of(info);
   const auto describe = [description](const MethodOptions& options) {
     visibility::parse_options(description, options);
     return description;

@@ -76,7 +76,7 @@ class Striped final : public OwnMethod {
 
 /// Once a process, since methods stay.
 void add_once() {
-  static const bool kAdded = [] {
+  static const bool added = [] {
     add_method(
         {.name = "constant",
          .options = {{.name = "value", .default_value = "0.5", .help = {}, .choices = {}, .least = -9, .most = 9}}},
@@ -89,7 +89,7 @@ void add_once() {
         [](const auto& options) { return std::make_unique<Striped>(options.at("bits") == "all" ? ~0U : 0x55555555U); });
     return true;
   }();
-  static_cast<void>(kAdded);
+  static_cast<void>(added);
 }
 
 std::vector<float> on_surfaces(const Picture& picture) {
