@@ -187,6 +187,7 @@ compare::Stats make_stats(const Session& session, const LabelledLights& lights, 
   stats.seconds.light = run.times.light;
   stats.seconds.evaluate = run.times.evaluate;
   stats.seconds.warmup = run.times.warmup;
+  stats.runs = run.times.runs;
   stats.seconds.total = stats.seconds.sum();
   stats.passes = run.passes;
   stats.peak_memory_bytes = run.memory_bytes;

@@ -60,7 +60,7 @@ std::vector<std::size_t> chosen_lights(const RunPlan& plan) {
   return all;
 }
 
-/// Runs a method on all lights of a session; knows where the results of the last run go.
+/// Runs a method on all lights of a session; knows where the results go.
 class Host {
  public:
   Host(visibility::Method& method, const Session& session, const RunPlan& plan, const TileSink& sink,
@@ -69,8 +69,10 @@ class Host {
 
   [[nodiscard]] const visibility::SceneFloats* prepared() const { return mesh_; }
 
-  OneRun run(bool last, MethodRun& result) {
+  /// `reads`: hands the results on.
+  OneRun run(bool reads, MethodRun& result) {
     OneRun times{std::vector<LightTimes>(plan_.lights.size())};
+    result.counters.clear();
     for (const std::size_t light : in_order_of_meshes()) {
       Stopwatch watch;
       if (const visibility::SceneFloats& floats = session_.floats_for(light); mesh_ != &floats) {
@@ -99,17 +101,15 @@ class Host {
         const Tile tile{row, std::min(rows, session_.height - row)};
         times.lights[light].evaluate += evaluate(tile) + filter(light, samples, tile);
         watch.restart();
-        if (last) read(light, tile, result);
+        if (reads) read(light, tile, result);
         times.read += watch.seconds();
         progress_.advance(tile.row_count);
       }
-      if (last) {
-        // Counters start again with each light; what is wanted is their sum.
-        for (const auto& [name, count] : method_.counters()) result.counters[name] += count;
-        if (!plan_.lights[light].filtered_by.empty()) {
-          result.counters["maskPairs"] += alpha_counts_.mask_pairs;
-          result.counters["blendPairs"] += alpha_counts_.blend_pairs;
-        }
+      // Counters start again with each light; what is wanted is their sum.
+      for (const auto& [name, count] : method_.counters()) result.counters[name] += count;
+      if (!plan_.lights[light].filtered_by.empty()) {
+        result.counters["maskPairs"] += alpha_counts_.mask_pairs;
+        result.counters["blendPairs"] += alpha_counts_.blend_pairs;
       }
       alpha_counts_ = {};
     }
@@ -340,19 +340,25 @@ MethodRun run_method(visibility::Method& method, const Session& session, const R
   Host host(method, session, plan, sink, progress);
   std::vector<OneRun> runs;
   std::optional<OneRun> first;
-  for (std::uint32_t run = 0; run < plan.runs + discarded; ++run) {
+  double elapsed = 0;  // of timed runs
+  while (runs.empty() || (runs.size() < plan.runs && elapsed < plan.run_seconds)) {
     method.take_pass_times();  // those of earlier runs
-    const bool last = run + 1 == plan.runs + discarded;
-    OneRun times = host.run(last, result);
-    if (run == 0) result.times.mesh = times.mesh;  // later runs prepare meshes anew only where lights' casters differ
-    result.times.view = times.view;
-    result.times.read = times.read;
-    if (run < discarded) {
+    const bool is_first = !first && runs.empty(), is_discarded = is_first && plan.discard_first;
+    const Stopwatch watch;
+    OneRun times = host.run(is_first, result);
+    if (!is_discarded) elapsed += watch.seconds();
+    if (is_first) {
+      result.times.mesh = times.mesh;  // later runs prepare meshes again only where lights' casters differ
+      result.times.view = times.view;
+      result.times.read = times.read;
+    }
+    if (is_discarded) {
       first = std::move(times);
     } else {
       runs.push_back(std::move(times));
     }
   }
+  result.times.runs = static_cast<std::uint32_t>(runs.size());
   const auto median_of = [&](const auto& time) {
     std::vector<double> seconds;
     for (const OneRun& run : runs) seconds.push_back(time(run));

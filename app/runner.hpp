@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <map>
 #include <optional>
 #include <span>
@@ -28,7 +29,7 @@ struct TileResult {
   std::span<const glm::dvec3> form_factors;
 };
 
-/// Gets each tile of each light once, in order, from the last run.
+/// Gets each tile of each light once, in order, from the first run.
 using TileSink = std::function<void(const TileResult&)>;
 
 struct RunPlan {
@@ -37,9 +38,10 @@ struct RunPlan {
   /// digit of their neighbours' depends on them.
   std::span<const visibility::Light> lights;
   bool filtered_alone = false;  ///< of a light with filtered_by, those view samples alone; else NaN
-  std::uint32_t runs = 1;       ///< timed runs
-  bool discard_first = false;   ///< one more before them, which warms up and does not count
-  bool shades = false;          ///< form factors come with V, in the time of `evaluate` (Method::want_form_factors)
+  std::uint32_t runs = 1;       ///< timed runs, the most
+  double run_seconds = std::numeric_limits<double>::infinity();  ///< no other run begins once these are over
+  bool discard_first = false;  ///< one more before them, which warms up and does not count
+  bool shades = false;         ///< form factors come with V, in the time of `evaluate` (Method::want_form_factors)
   std::optional<std::vector<std::uint32_t>> pixels =
       {};                              ///< all that will be looked at (ascending); nothing: every pixel
   std::vector<std::size_t> only = {};  ///< the lights that are done (indices); empty: all of them
@@ -56,10 +58,11 @@ struct LightTimes {
 /// Times of one method over all lights, in seconds: medians where there were several runs.
 struct RunTimes {
   double mesh = 0, light = 0, evaluate = 0;
-  double view = 0;                 ///< of the last run: handing view samples to the method
-  double read = 0;                 ///< of the last run: reading back, and sinks
+  double view = 0;                 ///< of the first run: handing view samples to the method
+  double read = 0;                 ///< of the first run: reading back, and sinks
   std::vector<LightTimes> lights;  ///< of each of the plan's; 0 for those that were not done
   std::optional<double> warmup;    ///< the discarded run's light + evaluate less the medians, >= 0; empty: no such run
+  std::uint32_t runs = 0;          ///< timed runs
   double total = 0;                ///< wall-clock of all that was done for this method, reading back and sinks included
 };
 
@@ -75,11 +78,12 @@ struct MethodRun {
 /// Adds what another method made of other lights of the same plan, or of another part of the same ones.
 void add_run(MethodRun& to, MethodRun&& other);
 
-/// Runs a method on a session: mesh once, then light and tiles, and reads the last run's result. In one place for every
-/// method stand the host's rules: background, pixels that carry the light's own body, and receivers with receivesShadow
-/// = false are visible from every light sample, and those that the light does not light (a mesh's `lights`) from none.
-/// Where a light has casters of its own, the method gets the scene in which nothing else casts. What lets light through
-/// takes its part of masks after the method (visibility::AlphaFilter), in the time of `evaluate`.
+/// Runs a method on a session: mesh once, then light and tiles, and reads the first run's result. In one place for
+/// every method stand the host's rules: background, pixels that carry the light's own body, and receivers with
+/// receivesShadow = false are visible from every light sample, and those that the light does not light (a mesh's
+/// `lights`) from none. Where a light has casters of its own, the method gets the scene in which nothing else casts.
+/// What lets light through takes its part of masks after the method (visibility::AlphaFilter), in the time of
+/// `evaluate`.
 MethodRun run_method(visibility::Method& method, const Session& session, const RunPlan& plan, const TileSink& sink,
                      Progress& progress);
 

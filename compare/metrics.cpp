@@ -55,6 +55,20 @@ std::optional<VisibilityError> visibility_error(std::span<const float> visibilit
   return visibility_error({&light, 1});
 }
 
+std::vector<ClassError> class_errors(std::span<const float> visibility, std::span<const float> reference,
+                                     const PixelClasses& classes) {
+  std::vector<ClassError> errors;
+  const auto add = [&](const char* name, const std::vector<std::uint32_t>& pixels) {
+    errors.push_back({name, pixels.size(), visibility_error(visibility, reference, pixels)});
+  };
+  add("lit", classes.lit);
+  add("penumbra", classes.penumbra);
+  add("umbra", classes.umbra);
+  add("cast", classes.cast);
+  add("self", classes.self);
+  return errors;
+}
+
 std::optional<VisibilityError> visibility_error(std::span<const JudgedVisibility> lights) {
   std::vector<double> magnitudes;
   VisibilityError error;

@@ -37,6 +37,24 @@ struct VisibilityError {
 std::optional<VisibilityError> visibility_error(std::span<const float> visibility, std::span<const float> reference,
                                                 std::span<const std::uint32_t> pixels);
 
+/// Judged pixels by what happens there: all of the light is seen, some, or none; and where some is hidden, by whom. A
+/// pixel is in one of the first three, and of the shadowed ones in one or both of the others (or in none, where no ray
+/// met what hides it).
+struct PixelClasses {
+  std::vector<std::uint32_t> lit, penumbra, umbra;
+  std::vector<std::uint32_t> cast;  ///< another object hides some of the light
+  std::vector<std::uint32_t> self;  ///< the object that the pixel shows hides some of it
+};
+
+/// Errors over each of these; nullopt over no pixels.
+struct ClassError {
+  const char* name = "";
+  std::uint64_t pixels = 0;
+  std::optional<VisibilityError> error;
+};
+std::vector<ClassError> class_errors(std::span<const float> visibility, std::span<const float> reference,
+                                     const PixelClasses& classes);
+
 /// V by a method and by its reference under one light, and the pixels that count (indices into both).
 struct JudgedVisibility {
   std::span<const float> visibility, reference;

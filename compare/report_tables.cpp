@@ -82,6 +82,31 @@ const LightResult* pixels_under(const ReportInput& in, std::size_t light) {
   return nullptr;
 }
 
+/// Where a method is wrong: RMSE over the judged pixels of each class, and which way.
+std::string classes_html(const ReportInput& in, std::size_t light, const std::string& under) {
+  const LightResult* pixels = pixels_under(in, light);
+  if (pixels == nullptr || pixels->classes.empty()) return {};
+  ReportTable table{"RMSE of V" + under +
+                        " by what happens at the pixel: all, some or none of the light is seen; another object hides "
+                        "some of it (cast), or the one that is seen does (self). + is too bright.",
+                    {"Method"},
+                    {}};
+  for (const ClassError& one : pixels->classes)
+    table.headers.push_back(fmt::format("{} ({})", one.name, count_text(one.pixels)));
+  for (const MethodResult& result : in.metrics.methods) {
+    if (light >= result.lights.size() || result.lights[light].classes.empty()) continue;
+    std::vector<ReportCell> row = {label_html(result.entry, "")};
+    for (const ClassError& one : result.lights[light].classes) {
+      if (!one.error)
+        row.emplace_back("–");
+      else
+        row.emplace_back(fmt::format("{:.4f} ({:+.4f})", one.error->rmse, one.error->bias), one.error->rmse);
+    }
+    table.rows.push_back(std::move(row));
+  }
+  return table_html(table);
+}
+
 std::string errors_html(const ReportInput& in) {
   const std::string against = "Error of V against " + escape_html(in.metrics.reference.method);
   const bool several = in.lights.size() > 1;
@@ -89,7 +114,7 @@ std::string errors_html(const ReportInput& in) {
   const auto cost_under = [&](std::size_t light) {
     return cost != nullptr && light < cost->lights.size() ? cost->lights[light].error : std::nullopt;
   };
-  std::string html = "<h3>Errors</h3>\n", horizon;
+  std::string html = "<h3>Errors</h3>\n", classes, horizon;
   if (several) {
     html += errors_table_html(in, {against + " under all lights together. 0 would be perfect.",
                                    [](const MethodResult& result, std::size_t) { return result.all_lights_error; }, 0,
@@ -102,11 +127,13 @@ std::string errors_html(const ReportInput& in) {
     html += errors_table_html(in, {against + under + ". 0 would be perfect. " + count_text(pixels->judged_pixels) +
                                        " judged pixels, " + count_text(pixels->horizon_pixels) + " horizon pixels.",
                                    error_under, light, !several, cost_under(light)});
+    classes += classes_html(in, light, under);
     if (pixels->horizon_pixels == 0) continue;
     horizon +=
         errors_table_html(in, {against + under + " at " + count_text(pixels->horizon_pixels) + " horizon pixels.",
                                horizon_error_under, light});
   }
+  if (!classes.empty()) html += "<details><summary>Errors by class of pixel</summary>\n" + classes + "</details>\n";
   if (!horizon.empty()) html += "<details><summary>Errors at the horizon</summary>\n" + horizon + "</details>\n";
   return html;
 }

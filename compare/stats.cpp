@@ -53,6 +53,18 @@ void add_budget(Json& json, const LightResult* light) {
   json["errorBudgetRuns"] = budget != nullptr ? runs_json(*budget) : Json();
 }
 
+/// An object with a key a class; null where there are none.
+Json classes_json(const std::vector<ClassError>& classes) {
+  Json json;
+  for (const ClassError& one : classes) {
+    json[one.name] = {{"pixels", one.pixels},
+                      {"rmse", one.error ? Json(one.error->rmse) : Json()},
+                      {"bias", one.error ? Json(one.error->bias) : Json()},
+                      {"max", one.error ? Json(one.error->max) : Json()}};
+  }
+  return json;
+}
+
 /// Each light as it was asked, if that is known, and what became of it.
 Json lights_json(const std::vector<LightStats>& asked, const std::vector<LightResult>& lights) {
   Json json = Json::array();
@@ -68,6 +80,7 @@ Json lights_json(const std::vector<LightStats>& asked, const std::vector<LightRe
     row["horizonPixels"] = light.horizon_pixels;
     row["error"] = to_json(light.error);
     row["horizonError"] = to_json(light.horizon_error);
+    row["classes"] = classes_json(light.classes);
     row["sameSamples"] = same;
     add_budget(row, &light);
     json.push_back(std::move(row));
@@ -80,6 +93,7 @@ Json to_json(const MethodResult& result) {
   json["entry"] = result.entry;
   json["error"] = to_json(result.error);
   json["horizonError"] = to_json(result.horizon_error);
+  json["classes"] = classes_json(result.lights.empty() ? std::vector<ClassError>() : result.lights.front().classes);
   json["errorAllLights"] = to_json(result.all_lights_error);
   if (!result.lights.empty()) json["lights"] = lights_json(result.stats.lights, result.lights);
   const auto& beauty = result.beauty_error;
@@ -135,6 +149,7 @@ Json to_json(const Stats& stats) {
           {"options", options_json(stats.options)},
           {"lightSamples", stats.light_samples},
           {"samplePattern", pattern_json(stats.sample_pattern)},
+          {"runs", stats.runs},
           {"seconds", to_json(stats.seconds)},
           {"passes", passes},
           {"peakMemoryBytes", stats.peak_memory_bytes},

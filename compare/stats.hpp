@@ -54,6 +54,7 @@ struct Stats {
   std::uint32_t light_samples = 0;  ///< 0: V is an area
   std::string sample_pattern;       ///< empty: likewise
   std::vector<LightStats> lights;   ///< what stands above is of the first
+  std::uint32_t runs = 1;           ///< timed ones, whose medians are in `seconds`
   Seconds seconds;
   std::vector<visibility::PassTime> passes;
   std::uint64_t peak_memory_bytes = 0;          ///< the method's own structures
@@ -81,6 +82,7 @@ struct LightResult {
   std::string name;
   std::uint64_t judged_pixels = 0, horizon_pixels = 0;
   std::optional<VisibilityError> error, horizon_error;
+  std::vector<ClassError> classes = {};     ///< the judged pixels by what happens there
   std::optional<SameSamples> same_samples;  ///< none for a method without masks
   std::optional<ErrorBudget> error_budget =
       {};  ///< of an image-based method, if it was asked for and pixels are judged

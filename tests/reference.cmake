@@ -4,5 +4,6 @@ penumbra_test(reference
   analytic/ray_traced_closed_forms.cpp
   property/ray_traced_pairs.cpp
   property/ray_traced_scales.cpp
+  unit/hiding_objects.cpp
   unit/ray_traced.cpp
   LIBRARIES penumbra_reference)

@@ -1,6 +1,7 @@
 #include "app/process/terminal_progress.hpp"
 #include "app/commands.hpp"
 #include "app/compare/comparison.hpp"
+#include "app/compare/comparison_entries.hpp"
 #include "app/methods.hpp"
 #include "app/options.hpp"
 #include "app/parse.hpp"
@@ -25,10 +26,11 @@ std::string number(const std::optional<double>& value, const char* format) {
 
 /// The result for people, on stdout: one line a method.
 void print_table(const compare::Metrics& metrics) {
-  const bool samples = describe_method(metrics.reference.method).output == visibility::Output::mask;
   fmt::print("{} judged pixels, {} at the horizon; errors of V against {}{}\n", metrics.judged_pixels,
              metrics.horizon_pixels, metrics.reference.method,
-             samples ? fmt::format(" with {} light samples", metrics.reference.light_samples) : "");
+             metrics.reference.light_samples == 0
+                 ? ""
+                 : fmt::format(" with {} light samples", metrics.reference.light_samples));
   fmt::print("{:<28} {:>9} {:>9} {:>9} {:>10} {:>12} {:>9}\n", "method", "rmse", "max", "bias", "differing", "of pairs",
              "shadow s");
   const auto line = [](const std::string& name, const compare::Stats& stats, const compare::MethodResult* result) {
@@ -89,8 +91,10 @@ class CompareCommand : public Command {
         ->type_name("LIST")
         ->capture_default_str();
     cli_.add_option("--reference", options_.reference,
-                    "who judges: rays on light samples, or areas (slow; see --sample-pixels)")
-        ->type_name(fmt::format("{}", fmt::join(judge_names(), "|")))
+                    fmt::format("who judges: rays on light samples, areas (exact; slow, see --sample-pixels), or any "
+                                "method whose areas are exact, such as {}",
+                                exact_area_example()))
+        ->type_name(fmt::format("{}|NAME:key=value", fmt::join(judge_names(), "|")))
         ->capture_default_str();
     cli_.add_option("--reference-samples", options_.reference_samples,
                     "light samples of the reference; same: those of the methods, which are then compared pair by pair")
@@ -101,10 +105,11 @@ class CompareCommand : public Command {
         ->type_name("N|all|x,y;...")
         ->capture_default_str();
     cli_.add_option("--max-rmse", max_rmse_text_, "exit with 1 if the error of a method exceeds this")->type_name("X");
-    cli_.add_option("--runs", options_.runs, "timed runs of each method, after a discarded one; their median counts")
+    cli_.add_option("--runs", options_.runs,
+                    "timed runs of each method, after a discarded one; their median counts (default: as many as begin "
+                    "within two seconds, at most five)")
         ->type_name("N")
-        ->check(CLI::Range(1, 1000))
-        ->capture_default_str();
+        ->check(CLI::Range(1, 1000));
     cli_.add_flag("--bits", options_.bits, "also write DIR/<method>.bits: every pair's answer (mask methods)");
     cli_.add_flag("--error-budget", options_.error_budget,
                   "why is each image-based method wrong? Runs it again, often: without each cause of error alone, and "

@@ -3,6 +3,7 @@
 #include "app/compare/comparison_entries.hpp"
 #include "app/compare/comparison_files.hpp"
 #include "app/compare/error_budget.hpp"
+#include "app/compare/error_classes.hpp"
 #include "app/compare/light_judge.hpp"
 #include "app/compare/reference_samples.hpp"
 #include "app/compare/report_views.hpp"
@@ -46,6 +47,9 @@ class Comparison {
  public:
   /// Of all lights' masks by rays, which are kept while the methods run.
   static constexpr std::uint64_t kMostRayBytes = std::uint64_t{1} << 30;
+  /// Where no number of runs is asked for: view samples are found so often, and methods run as often as this allows.
+  static constexpr std::uint32_t kViewRuns = 3, kMostRuns = 5;
+  static constexpr double kRunSeconds = 2;
 
   /// `scene`: nullopt: it is read from the run's file.
   Comparison(const RunOptions& run, const ComparisonOptions& options, std::optional<scenes::Scene> scene,
@@ -61,8 +65,9 @@ class Comparison {
     reference_request_ = reference_samples(run, options.reference_samples);
     if (options.error_budget) require_explainable(options.methods);
     if (options.writes) files_.claim(run.scene, options.methods, options.stats);
-    session_ = scene ? open_session(std::move(*scene), run, machine_, options.runs, progress)
-                     : open_session(run, options.time, machine_, options.runs, progress);
+    const std::uint32_t looks = options.runs != 0 ? options.runs : kViewRuns;
+    session_ = scene ? open_session(std::move(*scene), run, machine_, looks, progress)
+                     : open_session(run, options.time, machine_, looks, progress);
     if (options.writes) files_.refuse_inputs(session_.scene.sources);
     check_layers(format_, session_, false);
     progress.clear();
@@ -144,6 +149,7 @@ class Comparison {
       if (rays) truths_[light].rays = done.run.visibility[light];
       truths_[light].reference = std::move(done.run.visibility[light]);
     }
+    sort_into_classes(session_, truths_);
     reference_beauty_ = std::move(done.beauty);
   }
 
@@ -243,10 +249,15 @@ class Comparison {
     std::optional<BitsOutput> bits;
     if (wants_bits(entry)) bits.emplace(files_.of(entry.label, ".bits"), session_, lights.front());
     RunPlan plan{.lights = lights, .runs = options_.runs, .discard_first = true, .pixels = wanted_};
+    if (options_.runs == 0) {
+      plan.runs = kMostRuns;
+      plan.run_seconds = kRunSeconds;
+    }
     // Maps answer all pixels in little time, and their pictures are whole.
     if (description.family == visibility::Family::image) plan.pixels.reset();
-    // An oracle without samples is not raced, and it may take minutes: once is enough.
-    if (description.family == visibility::Family::reference && description.output != Output::mask) {
+    // A judge without samples is not raced, and it may take minutes: once is enough.
+    const bool is_judge = description.family == visibility::Family::reference || &entry == &reference_;
+    if (is_judge && description.output != Output::mask) {
       plan.runs = 1;
       plan.discard_first = false;
     }

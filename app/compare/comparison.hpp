@@ -19,7 +19,7 @@ struct ComparisonOptions {
   std::string reference = "raytrace";
   std::string reference_samples = "1024";  ///< or "same"
   std::string sample_pixels = "all";
-  std::uint32_t runs = 5;
+  std::uint32_t runs = 0;  ///< timed runs of each entry; 0: as many as begin within two seconds, at most five
   bool bits = false, png = false;
   bool error_budget = false;      ///< why each image-based method is wrong
   std::filesystem::path stats;    ///< empty: only DIR/metrics.json

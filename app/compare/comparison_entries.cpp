@@ -15,6 +15,8 @@
 namespace penumbra::app {
 namespace {
 
+using visibility::MethodDescription;
+
 std::vector<MethodEntry> with_method_options(const ComparisonOptions& options) {
   std::vector<MethodEntry> entries = options.methods;
   for (const auto& [key, value] : options.method_options) {
@@ -69,8 +71,29 @@ std::string why_not_there(const MethodEntry& chosen, const render::Machine& mach
 
 }  // namespace
 
-Entry describe_reference(const std::string& name) {
-  return {"reference", describe_judge(name), {}};
+Entry describe_reference(const std::string& text) {
+  const std::string name = text.substr(0, text.find(':'));
+  const auto methods = all_methods();
+  if (std::ranges::find(methods, name, &MethodDescription::name) == methods.end())
+    return {"reference", describe_judge(text), {}};  // says what there is
+  const std::vector<MethodEntry> entries = parse_methods(text);
+  if (entries.size() == 1) {
+    MethodDescription description = describe_method(name, entries.front().options);
+    if (description.family == visibility::Family::reference || description.gives_area())
+      return {"reference", std::move(description), entries.front().options};
+  }
+  throw UsageError("--reference {}: expected {}, or one method with options that make it give exact areas, such as {}",
+                   text, fmt::join(judge_names(), ", "), exact_area_example());
+}
+
+std::string exact_area_example() {
+  for (const MethodDescription* method : all_methods()) {
+    if (!method->exact_area || method->exact_area->options.empty()) continue;
+    std::string label = method->name;
+    for (const auto& [key, value] : method->exact_area->options) label += fmt::format(":{}={}", key, value);
+    return label;
+  }
+  return "none";
 }
 
 std::vector<Entry> choose_entries(const ComparisonOptions& options, const Session& session,

@@ -19,8 +19,11 @@ struct Entry {
   visibility::MethodOptions options;
 };
 
-/// Who judges. UsageError for a method that is no reference.
-Entry describe_reference(const std::string& name);
+/// Who judges: a member of the family `reference`, or a method that gives exact areas with these options
+/// (NAME:key=value). Throws UsageError for any other.
+Entry describe_reference(const std::string& text);
+/// The first method that gives exact areas by options, as one names it with --methods or --reference.
+std::string exact_area_example();
 
 /// The chosen methods, each with the options of --method-option that it has. Refuses, before anything long, what would
 /// fail later; leaves out of a group, with a warning to `warn`, what cannot do the lights, and what needs a Vulkan

@@ -3,6 +3,7 @@
 #include "app/options.hpp"
 #include "app/process/output_files.hpp"
 
+#include <algorithm>
 #include <filesystem>
 #include <span>
 #include <string>
@@ -27,7 +28,9 @@ class ComparisonFiles {
   /// UsageError if a file that is written is one of these.
   void refuse_inputs(std::span<const std::filesystem::path> inputs) const { outputs_.refuse_inputs(inputs); }
 
-  [[nodiscard]] std::filesystem::path of(const std::string& label, const char* ending) const {
+  /// DIR/<entry><ending>, with a comma for each colon, which some file systems and tools do not take in a name.
+  [[nodiscard]] std::filesystem::path of(std::string label, const char* ending) const {
+    std::ranges::replace(label, ':', ',');
     return out_ / (label + ending);
   }
 

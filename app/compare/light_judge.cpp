@@ -64,6 +64,7 @@ std::vector<compare::LightResult> LightJudge::judge(const MethodRun& run, Progre
     result.horizon_pixels = truth.horizon.size();
     result.error = compare::visibility_error(run.visibility[light], truth.reference, truth.judged);
     result.horizon_error = compare::visibility_error(run.visibility[light], truth.reference, truth.horizon);
+    result.classes = compare::class_errors(run.visibility[light], truth.reference, truth.classes);
     if (!has_masks_ || truth.ray_masks.empty()) continue;
     result.same_samples =
         compare::SameSamples{compare::visibility_error(run.visibility[light], truth.rays, truth.judged), {}, {}};

@@ -19,6 +19,7 @@ namespace penumbra::app {
 struct LightTruth {
   std::vector<std::uint32_t> judged, horizon;  ///< pixels that errors are taken over
   std::vector<float> reference;                ///< V of each pixel
+  compare::PixelClasses classes;               ///< of the judged ones, by the reference
   std::vector<float> rays;                     ///< V of each pixel by rays on the methods' light samples; empty: none
   std::vector<std::vector<std::uint32_t>> ray_masks;  ///< of the same rays, of each piece; empty: none
 };

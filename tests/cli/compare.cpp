@@ -89,13 +89,61 @@ TEST_F(Compare, ExactRowsAreAreasAndHaveErrorsButNoPairs) {
   }
   EXPECT_EQ(methods[0].at("error"), methods[2].at("error"));
   EXPECT_EQ(methods[1].at("pairsDiffering"), 0);
-  EXPECT_FALSE(std::filesystem::exists(path("dir/edge-scatter:rows=exact.bits")));
+  EXPECT_FALSE(std::filesystem::exists(path("dir/edge-scatter,rows=exact.bits")));
   EXPECT_TRUE(std::filesystem::exists(path("dir/edge-scatter.bits")));
-  EXPECT_EQ(read_exr(path("dir/edge-scatter:rows=exact.exr")).attributes.at("penumbra.output"), "radiance");
+  EXPECT_EQ(read_exr(path("dir/edge-scatter,rows=exact.exr")).attributes.at("penumbra.output"), "radiance");
   // What cannot be done is refused before the reference is traced.
   const Outcome bits = run({"render", path("scene.json"), "-o", path("a.exr"), "--method", "edge-scatter",
                             "--method-option", "rows=exact", "--bits", path("a.bits")});
   EXPECT_EQ(bits.code, 2) << bits.err;
+}
+
+/// Lit, penumbra and umbra share out the judged pixels, so their errors add up to the whole one; cast and self are
+/// among the shadowed ones. Here the wedge alone casts, on the floor and on itself.
+TEST_F(Compare, ErrorsByClassAddUp) {
+  ASSERT_EQ(compare({"--methods", "pcss:size=64", "--reference", "exact"}).code, 0);
+  const json all = metrics(), method = all.at("methods").at(0), classes = method.at("classes");
+  std::uint64_t pixels = 0;
+  double squares = 0, sum = 0, largest = 0;
+  for (const char* name : {"lit", "penumbra", "umbra"}) {
+    const json& one = classes.at(name);
+    const auto count = one.at("pixels").get<std::uint64_t>();
+    EXPECT_GT(count, 0U) << name;
+    pixels += count;
+    squares += static_cast<double>(count) * std::pow(one.at("rmse").get<double>(), 2);
+    sum += static_cast<double>(count) * one.at("bias").get<double>();
+    largest = std::max(largest, one.at("max").get<double>());
+  }
+  EXPECT_EQ(pixels, all.at("judgedPixels"));
+  const auto count = static_cast<double>(pixels);
+  EXPECT_NEAR(std::sqrt(squares / count), method.at("error").at("rmse").get<double>(), 1e-12);
+  EXPECT_NEAR(sum / count, method.at("error").at("bias").get<double>(), 1e-12);
+  EXPECT_EQ(largest, method.at("error").at("max").get<double>());
+  const auto pixels_of = [&](const char* name) { return classes.at(name).at("pixels").get<std::uint64_t>(); };
+  EXPECT_GT(pixels_of("cast"), 0U);
+  EXPECT_LE(std::max(pixels_of("cast"), pixels_of("self")), pixels_of("penumbra") + pixels_of("umbra"));
+  EXPECT_EQ(method.at("lights").at(0).at("classes"), classes);
+}
+
+TEST_F(Compare, RunsAreAsManyAsTwoSecondsHoldOrAsAskedFor) {
+  ASSERT_EQ(run({"compare", tiny_scene(), "-o", path("dir"), "--methods", "edge-scatter"}).code, 0);
+  EXPECT_EQ(metrics().at("methods").at(0).at("runs"), 5);
+  ASSERT_EQ(compare({"--methods", "edge-scatter"}).code, 0);
+  EXPECT_EQ(metrics().at("methods").at(0).at("runs"), 1);
+}
+
+TEST_F(Compare, AnyMethodWithExactAreasMayJudge) {
+  ASSERT_EQ(compare({"--methods", "pcf", "--reference", "exact"}).code, 0);
+  const json exact = metrics().at("methods").at(0).at("error");
+  ASSERT_EQ(compare({"--methods", "pcf", "--reference", "edge-scatter:rows=exact"}).code, 0);
+  const json result = metrics();
+  EXPECT_EQ(result.at("reference").at("options").at("rows"), "exact");
+  EXPECT_EQ(result.at("reference").at("lightSamples"), 0);
+  // Both are exact to the last digits of a float.
+  EXPECT_NEAR(result.at("methods").at(0).at("error").at("rmse").get<double>(), exact.at("rmse").get<double>(), 1e-6);
+  const Outcome refused = compare({"--methods", "pcf", "--reference", "pcf"});
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_THAT(refused.err, HasSubstr("edge-scatter:rows=exact"));
 }
 
 /// A method that fails takes nothing away from the others, and the command ends with its exit code.
@@ -103,7 +151,7 @@ TEST_F(Compare, AMethodThatFailsIsReportedAndTheOthersGoOn) {
   // Beside the new report there must be no file that an earlier run made; files that are not ours stay.
   std::filesystem::create_directories(path("dir"));
   for (const char* ending : {".exr", "-error.png", ".png"})
-    write("dir/edge-scatter:engine=vulkan" + std::string(ending), "old");
+    write("dir/edge-scatter,engine=vulkan" + std::string(ending), "old");
   const Outcome outcome = compare({"--methods", "edge-scatter:engine=vulkan,view-sample,depth-complexity",
                                    "--light-samples", "2x2048", "--reference-samples", "same", "--max-rmse", "1"});
   EXPECT_EQ(outcome.code, 3) << outcome.err;
@@ -119,9 +167,9 @@ TEST_F(Compare, AMethodThatFailsIsReportedAndTheOthersGoOn) {
     EXPECT_TRUE(methods[i].at("failure").is_null());
     EXPECT_EQ(methods[i].at("pairsDiffering"), 0);
   }
-  EXPECT_FALSE(std::filesystem::exists(path("dir/edge-scatter:engine=vulkan.exr")));
-  EXPECT_FALSE(std::filesystem::exists(path("dir/edge-scatter:engine=vulkan-error.png")));
-  EXPECT_TRUE(std::filesystem::exists(path("dir/edge-scatter:engine=vulkan.png"))) << "--png was not asked for";
+  EXPECT_FALSE(std::filesystem::exists(path("dir/edge-scatter,engine=vulkan.exr")));
+  EXPECT_FALSE(std::filesystem::exists(path("dir/edge-scatter,engine=vulkan-error.png")));
+  EXPECT_TRUE(std::filesystem::exists(path("dir/edge-scatter,engine=vulkan.png"))) << "--png was not asked for";
   EXPECT_TRUE(std::filesystem::exists(path("dir/view-sample.exr")));
   EXPECT_THAT(read("dir/report.html"), HasSubstr("What went wrong"));
 }
@@ -311,7 +359,7 @@ TEST_F(Compare, OptionsReachTheMethodsThatHaveThem) {
   EXPECT_TRUE(methods[0].at("options").empty());
   EXPECT_EQ(methods[1].at("options").at("size"), "64");
   EXPECT_EQ(methods[2].at("options").at("size"), "128");
-  EXPECT_TRUE(std::filesystem::exists(path("dir/pcss:size=64.exr")));
+  EXPECT_TRUE(std::filesystem::exists(path("dir/pcss,size=64.exr")));
 }
 
 TEST_F(Compare, ReportIsOneFileWithoutNetwork) {

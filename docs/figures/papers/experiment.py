@@ -109,7 +109,7 @@ class Runner:
             found, counted = {}, None  # all entries have the same view samples
             for entry in metrics["methods"]:
                 assert entry["failure"] is None, (entry["entry"], entry["failure"])
-                channels, _ = read_exr(out / f"{entry['entry']}.exr")
+                channels, _ = read_exr(out / f"{entry['entry'].replace(':', ',')}.exr")
                 counted = counted or judged(world, channels)
                 found[entry["entry"]] = {
                     "V": channels["V"], "A": channels["A"], "judged": counted, "counters": entry["counters"], "device": entry["device"],

@@ -1,0 +1,50 @@
+#include "app/compare/error_classes.hpp"
+
+#include "reference/hiding_objects.hpp"
+
+#include <algorithm>
+#include <iterator>
+
+namespace penumbra::app {
+namespace {
+
+void sort_by_visibility(LightTruth& truth) {
+  for (const std::uint32_t pixel : truth.judged) {
+    const float v = truth.reference[pixel];
+    auto& pixels = v >= 1 ? truth.classes.lit : v <= 0 ? truth.classes.umbra : truth.classes.penumbra;
+    pixels.push_back(pixel);
+  }
+}
+
+/// Those of one of the light's pieces; of a light in one piece, all.
+void sort_by_object(const Session& session, std::size_t light, std::span<const std::uint32_t> shadowed,
+                    std::vector<reference::HiddenBy>& hidden) {
+  const auto found =
+      reference::hiding_objects(session.floats_for(light), session.samples, session.lights[light], shadowed);
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    hidden[i].own |= found[i].own;
+    hidden[i].other |= found[i].other;
+  }
+}
+
+}  // namespace
+
+void sort_into_classes(const Session& session, std::vector<LightTruth>& truths) {
+  const std::vector<WholeLight> wholes = whole_lights(session.lights);
+  for (std::size_t whole = 0; whole < truths.size(); ++whole) {
+    LightTruth& truth = truths[whole];
+    truth.classes = {};
+    sort_by_visibility(truth);
+    std::vector<std::uint32_t> shadowed;
+    std::ranges::set_union(truth.classes.penumbra, truth.classes.umbra, std::back_inserter(shadowed));
+    std::vector<reference::HiddenBy> hidden(shadowed.size());
+    for (std::size_t piece = 0; piece < wholes[whole].count; ++piece)
+      sort_by_object(session, wholes[whole].first + piece, shadowed, hidden);
+    for (std::size_t i = 0; i < shadowed.size(); ++i) {
+      if (hidden[i].other) truth.classes.cast.push_back(shadowed[i]);
+      if (hidden[i].own) truth.classes.self.push_back(shadowed[i]);
+    }
+  }
+}
+
+}  // namespace penumbra::app

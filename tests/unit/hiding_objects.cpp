@@ -1,0 +1,84 @@
+#include "reference/hiding_objects.hpp"
+
+#include "tests/unit/ray_traced_masks.hpp"
+#include "tests/unit/visibility/scenes.hpp"
+#include "visibility/pair_truth.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numeric>
+
+namespace penumbra::reference {
+namespace {
+
+using tests::Stage;
+
+/// A board over the left of a floor, and over its right a flap of the floor's own object; both overlap in the middle.
+scenes::Scene board_and_flap() {
+  scenes::Scene scene;
+  tests::add_object(scene, "floor", tests::quad({0, 0, 0}, {4, 0, 0}, {0, 0, -4}));
+  tests::add_object(scene, "board", tests::quad({-1, 1, 0}, {1.5, 0, 0}, {0, 0, -1.5}));
+  tests::add_object(scene, "flap", tests::quad({1, 1.5, 0}, {1.5, 0, 0}, {0, 0, -1.5}));
+  std::ranges::replace(scene.soup.object, 2U, 0U);  // the flap is the floor's
+  scene.objects.pop_back();
+  scene.lights.push_back(tests::ceiling_light(4, 0.7));
+  scene.cameras.push_back(tests::camera({0, 0.9, 7}, {0, 0, 0}));
+  return scene;
+}
+
+/// Every light sample against every triangle, by exact predicates: is there one whose object hides it?
+HiddenBy by_exact_predicates(const Stage& setup, std::size_t pixel) {
+  HiddenBy hidden;
+  for (const bool own : {true, false}) {
+    visibility::SceneFloats scene = setup.floats;
+    const std::uint32_t object = scene.object[static_cast<std::size_t>(setup.samples.triangle[pixel])];
+    for (std::size_t i = 0; i < scene.triangles.size(); ++i)
+      scene.casts_shadow[i] &= (scene.object[i] == object) == own;
+    for (std::uint32_t sample = 0; sample < setup.light.sample_count(); ++sample) {
+      const auto truth = visibility::decide_pair(scene, setup.samples, pixel, setup.light, sample);
+      if (truth.outcome == visibility::PairOutcome::blocked) (own ? hidden.own : hidden.other) = true;
+    }
+  }
+  return hidden;
+}
+
+TEST(HidingObjects, AreThoseThatExactPredicatesFind) {
+  const Stage setup(board_and_flap(), 40, 30);
+  std::vector<std::uint32_t> pixels;
+  for (std::uint32_t i = 0; i < setup.samples.size(); ++i) {
+    if (setup.samples.triangle[i] != visibility::ViewSamples::kBackground && setup.samples.p[i].y < 0.1F)
+      pixels.push_back(i);
+  }
+  const std::vector<HiddenBy> found = hiding_objects(setup.floats, setup.samples, setup.light, pixels);
+  ASSERT_EQ(found.size(), pixels.size());
+  int both = 0, own = 0, other = 0, missed = 0;
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    const HiddenBy truth = by_exact_predicates(setup, pixels[i]);
+    both += truth.own && truth.other ? 1 : 0;
+    own += truth.own ? 1 : 0;
+    other += truth.other ? 1 : 0;
+    EXPECT_LE(found[i].own, truth.own) << pixels[i];
+    EXPECT_LE(found[i].other, truth.other) << pixels[i];
+    EXPECT_EQ(found[i].own || found[i].other, truth.own || truth.other) << pixels[i];
+    // Sixteen of the light samples are asked about both, so a second object that hides less can be missed.
+    missed += found[i].own != truth.own || found[i].other != truth.other ? 1 : 0;
+  }
+  EXPECT_GT(both, 20);
+  EXPECT_GT(own, both + 10);
+  EXPECT_GT(other, both + 10);
+  EXPECT_LT(missed, both / 4);
+}
+
+TEST(HidingObjects, AreNoneWhereNothingCasts) {
+  scenes::Scene scene = board_and_flap();
+  for (scenes::Object& object : scene.objects) object.casts_shadow = false;
+  const Stage setup(scene, 8, 8);
+  std::vector<std::uint32_t> pixels(setup.samples.size());
+  std::iota(pixels.begin(), pixels.end(), 0U);
+  for (const HiddenBy& hidden : hiding_objects(setup.floats, setup.samples, setup.light, pixels))
+    EXPECT_FALSE(hidden.own || hidden.other);
+}
+
+}  // namespace
+}  // namespace penumbra::reference
