@@ -1,0 +1,227 @@
+#include "app/sweep/sweep.hpp"
+
+#include "app/methods.hpp"
+#include "app/parse.hpp"
+#include "base/did_you_mean.hpp"
+#include "base/error.hpp"
+
+#include <fmt/ranges.h>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <functional>
+#include <set>
+#include <utility>
+
+namespace penumbra::app {
+namespace {
+
+constexpr const char *kHalf = "light.half", *kAngle = "light.angle", *kSamples = "light-samples";
+
+using Values = std::map<std::string, std::string>;
+
+/// Every choice of one value a key.
+std::vector<Values> products(std::span<const SweptKey> keys) {
+  std::vector<Values> all = {{}};
+  for (const SweptKey& key : keys) {
+    std::vector<Values> longer;
+    for (const Values& values : all) {
+      for (const std::string& value : key.values) {
+        longer.push_back(values);
+        longer.back()[key.name] = value;
+      }
+    }
+    all = std::move(longer);
+  }
+  return all;
+}
+
+std::vector<SweptKey> keys_where(std::span<const SweptKey> keys, const std::function<bool(const SweptKey&)>& holds) {
+  std::vector<SweptKey> chosen;
+  std::ranges::copy_if(keys, std::back_inserter(chosen), holds);
+  return chosen;
+}
+
+bool is_of_light(const SweptKey& key) {
+  return key.name == kHalf || key.name == kAngle;
+}
+
+double positive(const std::string& key, const std::string& text) {
+  const auto value = parse_number(text);
+  if (!value || *value <= 0) throw UsageError("--over {}={}: expected a number above 0", key, text);
+  return *value;
+}
+
+/// Scales a light about its center until the larger half of its extent is `half`.
+struct SetHalf {
+  double half;
+  const std::string& name;
+
+  void operator()(scenes::Rectangle& light) const { scale(light.half_u, light.half_v); }
+  void operator()(scenes::Ellipse& light) const { scale(light.half_u, light.half_v); }
+  void operator()(scenes::Disk& light) const { light.radius = half; }
+  void operator()(scenes::Sphere& light) const { light.radius = half; }
+  void operator()(scenes::Polygon& light) const {
+    glm::dvec3 lower(light.vertices.front()), upper = lower;
+    for (const glm::dvec3& vertex : light.vertices) {
+      lower = glm::min(lower, vertex);
+      upper = glm::max(upper, vertex);
+    }
+    const glm::dvec3 center = (lower + upper) / 2.0, extent = (upper - lower) / 2.0;
+    const double larger = std::max({extent.x, extent.y, extent.z});
+    for (glm::dvec3& vertex : light.vertices) vertex = center + (vertex - center) * (half / larger);
+  }
+  void operator()(scenes::Sun& /*light*/) const {
+    throw UsageError("--over {}: light \"{}\" is a sun, whose size is {}", kHalf, name, kAngle);
+  }
+  void operator()(scenes::Pieces& /*light*/) const {
+    throw UsageError(
+        "--over {}: light \"{}\" is a mesh in pieces, which cannot change its size; choose others with --light", kHalf,
+        name);
+  }
+
+ private:
+  void scale(glm::dvec3& u, glm::dvec3& v) const {
+    const double larger = std::max(glm::length(u), glm::length(v));
+    u *= half / larger;
+    v *= half / larger;
+  }
+};
+
+/// The scene with the chosen lights at these sizes.
+scenes::Scene with_lights(scenes::Scene scene, const Values& sizes, const std::vector<std::string>& chosen) {
+  for (std::size_t i = 0; i < scene.lights.size() && !sizes.empty(); ++i) {
+    scenes::AreaLight& light = scene.lights[i];
+    if (!chosen.empty() && std::ranges::find(chosen, light.name) == chosen.end()) continue;
+    const auto is_body = [&](const scenes::Object& object) { return object.emits == i; };
+    if (std::ranges::any_of(scene.objects, is_body))
+      throw UsageError("--over {}: light \"{}\" is an emitting mesh, which keeps its size; choose others with --light",
+                       sizes.begin()->first, light.name);
+    if (const auto half = sizes.find(kHalf); half != sizes.end())
+      std::visit(SetHalf{positive(kHalf, half->second), light.name}, light.shape);
+    if (const auto angle = sizes.find(kAngle); angle != sizes.end()) {
+      auto* const sun = std::get_if<scenes::Sun>(&light.shape);
+      if (sun == nullptr)
+        throw UsageError("--over {}: light \"{}\" is no sun; its size is {}", kAngle, light.name, kHalf);
+      sun->angle = positive(kAngle, angle->second);
+      if (sun->angle >= 180) throw UsageError("--over {}={}: expected less than 180 degrees", kAngle, angle->second);
+    }
+  }
+  return scene;
+}
+
+bool has_option(const MethodEntry& entry, const std::string& key) {
+  const auto& options = describe_method(entry.name).options;
+  return std::ranges::find(options, key, &visibility::OptionDescription::name) != options.end();
+}
+
+/// Each entry with each choice of the swept options that it has and does not set itself.
+std::vector<MethodEntry> with_swept_options(std::span<const MethodEntry> entries, std::span<const SweptKey> keys) {
+  std::vector<MethodEntry> all;
+  std::set<std::string> labels;
+  for (const MethodEntry& entry : entries) {
+    const std::vector<SweptKey> own = keys_where(
+        keys, [&](const SweptKey& key) { return has_option(entry, key.name) && !entry.options.contains(key.name); });
+    for (const Values& values : products(own)) {
+      MethodEntry with = entry;
+      for (const auto& [key, value] : values) {
+        with.options[key] = value;
+        with.label += fmt::format(":{}={}", key, value);
+      }
+      if (labels.insert(with.label).second) all.push_back(std::move(with));
+    }
+  }
+  return all;
+}
+
+void require_known_keys(std::span<const SweptKey> over, std::span<const MethodEntry> entries) {
+  for (const SweptKey& key : over) {
+    if (is_of_light(key) || key.name == kSamples) continue;
+    if (std::ranges::any_of(entries, [&](const MethodEntry& entry) { return has_option(entry, key.name); })) continue;
+    std::vector<std::string> names = {kHalf, kAngle, kSamples};
+    for (const MethodEntry& entry : entries) {
+      for (const auto& option : describe_method(entry.name).options) names.push_back(option.name);
+    }
+    std::ranges::sort(names);
+    names.erase(std::unique(names.begin(), names.end()), names.end());
+    throw UsageError("--over {}: none of the methods has such an option; what there is: {}{}", key.name,
+                     fmt::join(names, ", "), did_you_mean(key.name, names));
+  }
+}
+
+std::optional<double> rmse_of(const SweepRow& row) {
+  const auto& error = row.result.all_lights_error;
+  return error ? std::optional(error->rmse) : std::nullopt;
+}
+
+/// Marks the rows of one light that no other of it beats in both error and time.
+void mark_hull(std::span<SweepRow> rows) {
+  for (SweepRow& row : rows) {
+    const auto rmse = rmse_of(row), seconds = row.result.stats.seconds.shadow();
+    row.on_hull = rmse && seconds && std::ranges::none_of(rows, [&](const SweepRow& other) {
+                    const auto other_rmse = rmse_of(other), other_seconds = other.result.stats.seconds.shadow();
+                    return other_rmse && other_seconds && *other_rmse <= *rmse && *other_seconds <= *seconds &&
+                           (*other_rmse < *rmse || *other_seconds < *seconds);
+                  });
+  }
+}
+
+std::vector<SweepSummary> summarize(std::span<const SweepRow> rows) {
+  std::vector<SweepSummary> summaries;
+  for (const SweepRow& row : rows) {
+    const std::string& method = row.result.stats.method;
+    if (std::ranges::find(summaries, method, &SweepSummary::method) == summaries.end())
+      summaries.push_back({row.light, method, {{1.0 / 64}, {1.0 / 128}, {1.0 / 256}}});
+    SweepSummary& summary = *std::ranges::find(summaries, method, &SweepSummary::method);
+    const auto rmse = rmse_of(row), seconds = row.result.stats.seconds.shadow();
+    if (!rmse || !seconds) continue;
+    for (SecondsTo& to : summary.to) {
+      if (*rmse > to.rmse || (to.seconds && *to.seconds <= *seconds)) continue;
+      to.seconds = seconds;
+      to.entry = row.result.entry;
+    }
+  }
+  return summaries;
+}
+
+}  // namespace
+
+Sweep sweep_methods(const scenes::Scene& scene, const RunOptions& run, ComparisonOptions options,
+                    std::vector<SweptKey> over, Progress& progress) {
+  require_known_keys(over, options.methods);
+  Sweep sweep{std::move(over), {}, {}, {}};
+  const auto of_light = keys_where(sweep.over, is_of_light);
+  const auto samples = keys_where(sweep.over, [](const SweptKey& key) { return key.name == kSamples; });
+  const auto of_methods =
+      keys_where(sweep.over, [](const SweptKey& key) { return !is_of_light(key) && key.name != kSamples; });
+  const std::vector<MethodEntry> entries = with_swept_options(options.methods, of_methods);
+  options.writes = false;
+  for (const Values& light : products(of_light)) {
+    const scenes::Scene lit = with_lights(scene, light, run.lights);
+    const std::size_t first_row = sweep.rows.size();
+    bool is_first = true;
+    for (const Values& count : products(samples)) {
+      RunOptions with = run;
+      if (!count.empty()) with.light_samples = count.begin()->second;
+      options.methods.clear();
+      std::ranges::copy_if(entries, std::back_inserter(options.methods), [&](const MethodEntry& entry) {
+        return is_first || describe_method(entry.name, entry.options).counts_light_samples();
+      });
+      is_first = false;
+      if (options.methods.empty()) continue;
+      compare::Metrics metrics = compare_methods(lit, with, options, progress);
+      if (sweep.reference.method.empty()) sweep.reference = metrics.reference;
+      for (compare::MethodResult& result : metrics.methods) {
+        if (!count.empty() && describe_method(result.stats.method, result.stats.options).counts_light_samples())
+          result.entry += fmt::format(":{}={}", kSamples, count.begin()->second);
+        sweep.rows.push_back({light, std::move(result)});
+      }
+    }
+    const std::span rows = std::span(sweep.rows).subspan(first_row);
+    mark_hull(rows);
+    std::ranges::move(summarize(rows), std::back_inserter(sweep.summaries));
+  }
+  return sweep;
+}
+
+}  // namespace penumbra::app

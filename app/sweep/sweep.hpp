@@ -1,0 +1,51 @@
+#pragma once
+
+#include "app/compare/comparison.hpp"
+#include "app/options.hpp"
+#include "app/process/progress.hpp"
+#include "app/sweep/ranges.hpp"
+#include "scenes/scene.hpp"
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace penumbra::app {
+
+/// One method with one choice of values, under one size of the lights.
+struct SweepRow {
+  std::map<std::string, std::string> light;  ///< light.half, light.angle: values that were swept; empty: the scene's
+  compare::MethodResult result;
+  bool on_hull = false;  ///< under this light no other row has both less error and less time
+};
+
+/// Seconds for the shadow that a method needs, at the least, for an error of V of at most `rmse`.
+struct SecondsTo {
+  double rmse = 0;
+  std::optional<double> seconds = {};  ///< nullopt: no row of the method comes that near
+  std::string entry = {};
+};
+
+/// What a method can do under one size of the lights, over all of its rows.
+struct SweepSummary {
+  std::map<std::string, std::string> light;
+  std::string method;
+  std::vector<SecondsTo> to;  ///< for 1/64, 1/128 and 1/256
+};
+
+struct Sweep {
+  std::vector<SweptKey> over;
+  compare::Stats reference;  ///< of the first comparison
+  std::vector<SweepRow> rows;
+  std::vector<SweepSummary> summaries;
+};
+
+/// Compares each of the methods at each value of the keys that it has as options (all of their products), under each
+/// size of the lights (light.half: the larger half of a light's extent in the scene's unit; light.angle: a sun's
+/// diameter in degrees), and for each number of light-samples those methods that count them. Throws UsageError for a
+/// key that is nobody's, and as compare_methods().
+Sweep sweep_methods(const scenes::Scene& scene, const RunOptions& run, ComparisonOptions options,
+                    std::vector<SweptKey> over, Progress& progress);
+
+}  // namespace penumbra::app
