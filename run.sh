@@ -7,7 +7,10 @@ build=$root/build
 source "$root/cmake/bootstrap.sh"
 
 install_packages
-build OFF penumbra
+targets=(penumbra)
+# What mends meshes is a program of its own, which takes long to compile.
+case " $* " in *" --repair"*) targets+=(penumbra-repair) ;; esac
+build OFF "${targets[@]}"
 if (($# == 0)); then
   set -- compare "$root/scenes/bunny.json" -o out
   say "no arguments: running the main job, penumbra $*"

@@ -7,13 +7,70 @@
 #include <system_error>
 
 #include <fcntl.h>
+#include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 namespace penumbra {
+namespace {
+
+std::string reason() {
+  return std::generic_category().message(errno);
+}
+
+/// posix_spawn's two argument objects for a command's files.
+class SpawnSettings {
+ public:
+  explicit SpawnSettings(const std::vector<int>& files) {
+    const auto count = static_cast<int>(files.size());
+    std::vector<int> from = files;
+    for (int& file : from) {  // above all numbers that the child's files will have, so that none overwrites another
+      if (file >= count) continue;
+      copies_.emplace_back(::fcntl(file, F_DUPFD_CLOEXEC, count));
+      if (!copies_.back().is_open()) throw ResourceError("cannot duplicate a file descriptor: {}", reason());
+      file = copies_.back().get();
+    }
+    ::posix_spawn_file_actions_init(&actions_);
+    ::posix_spawnattr_init(&attributes_);
+    for (int i = 0; i < count; ++i) ::posix_spawn_file_actions_adddup2(&actions_, from[static_cast<std::size_t>(i)], i);
+    ::posix_spawn_file_actions_addclosefrom_np(&actions_, count);
+    sigset_t none, all;
+    ::sigemptyset(&none);
+    ::sigfillset(&all);
+    ::posix_spawnattr_setsigmask(&attributes_, &none);
+    ::posix_spawnattr_setsigdefault(&attributes_, &all);
+    ::posix_spawnattr_setflags(&attributes_, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
+  }
+  SpawnSettings(const SpawnSettings&) = delete;
+  SpawnSettings& operator=(const SpawnSettings&) = delete;
+  ~SpawnSettings() {
+    ::posix_spawn_file_actions_destroy(&actions_);
+    ::posix_spawnattr_destroy(&attributes_);
+  }
+  [[nodiscard]] const posix_spawn_file_actions_t* actions() const { return &actions_; }
+  [[nodiscard]] const posix_spawnattr_t* attributes() const { return &attributes_; }
+
+ private:
+  std::vector<Descriptor> copies_;
+  posix_spawn_file_actions_t actions_{};
+  posix_spawnattr_t attributes_{};
+};
+
+}  // namespace
+
+ChildStart start_child(const ChildCommand& command) {
+  std::vector<std::string> words = command.words;
+  std::vector<char*> argv;
+  argv.reserve(words.size() + 1);
+  for (std::string& word : words) argv.push_back(word.data());
+  argv.push_back(nullptr);
+  const SpawnSettings settings(command.files);
+  ChildStart start;
+  start.error = ::posix_spawn(&start.pid, argv[0], settings.actions(), settings.attributes(), argv.data(), ::environ);
+  return start;
+}
 
 Pipe make_pipe() {
-  const auto reason = [] { return std::generic_category().message(errno); };
   std::array<int, 2> fds{};
   if (::pipe2(fds.data(), O_CLOEXEC) != 0) throw ResourceError("cannot make a pipe: {}", reason());
   Pipe pipe{Descriptor(fds[0]), Descriptor(fds[1])};

@@ -3,6 +3,7 @@
 
 #include "base/error.hpp"
 #include "base/memory.hpp"
+#include "mesh/helper_process.hpp"
 #include "mesh/import_helper.hpp"
 #include "import/read.hpp"
 #include "mesh/import_wire.hpp"
@@ -11,17 +12,11 @@
 #include "scenes/scene_wire.hpp"
 #include "import/texture_file.hpp"
 
-#include <fcntl.h>
-#include <poll.h>
-#include <sys/prctl.h>
-#include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <charconv>
-#include <csignal>
 #include <cstdlib>
 #include <new>
 #include <optional>
@@ -89,43 +84,6 @@ bool parse(int argc, char** argv, Arguments& arguments) {
          parse(argv[3], arguments.bytes) && parse(argv[4], arguments.asker);
 }
 
-void limit(__rlimit_resource resource, rlim_t value) {
-  const rlimit both{value, value};
-  setrlimit(resource, &both);  // fails only where a lower limit is in force already
-}
-
-/// Sees to it that this process ends with the one that asked, at whatever moment that is killed; false: it is gone
-/// already. Standard input is a pipe whose other end only the asker has.
-bool end_with_asker(std::uint64_t asker) {
-  // Two ways, since each has its hole: the first is bound to the thread that asked; for the second, another child of
-  // the asker may for a moment hold the pipe's other end.
-  prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (static_cast<std::uint64_t>(getppid()) != asker) return false;  // it died before, so that no signal will come
-  const int pipe = fcntl(STDIN_FILENO, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
-  const int nothing = open("/dev/null", O_RDONLY | O_CLOEXEC);
-  if (pipe < 0 || nothing < 0 || dup2(nothing, STDIN_FILENO) < 0) return false;
-  close(nothing);
-  fcntl(pipe, F_SETOWN, getpid());
-  fcntl(pipe, F_SETSIG, SIGKILL);
-  fcntl(pipe, F_SETFL, O_ASYNC);  // SIGKILL when the other end closes …
-  pollfd state{pipe, POLLIN, 0};
-  return poll(&state, 1, 0) == 0;  // … unless it did so before
-}
-
-/// From here on this process can read files and answer, and not much more.
-void confine(const Arguments& arguments) {
-  prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0);
-  prctl(PR_SET_DUMPABLE, 0);
-  limit(RLIMIT_CORE, 0);
-  limit(RLIMIT_FSIZE, 0);  // it writes to a pipe only
-  limit(RLIMIT_NOFILE, 64);
-  limit(RLIMIT_CPU, arguments.milliseconds / 1000 + 2);  // the asker's clock comes first, unless it has died
-#if !defined(PENUMBRA_SHADOW_MEMORY)
-  limit(RLIMIT_AS, arguments.bytes);
-  limit(RLIMIT_NPROC, 0);  // no threads, no children
-#endif
-}
-
 struct Answer {
   mesh::WireWriter head, payload;
   // What the payload says without copying it.
@@ -135,10 +93,7 @@ struct Answer {
 };
 
 Answer message(mesh::HelperStatus status) {
-  Answer answer;
-  for (const char c : mesh::kHelperMagic) answer.head.put(c);
-  answer.head.put(static_cast<std::uint8_t>(status));
-  return answer;
+  return {mesh::answer_head(status), {}, {}, {}, {}};
 }
 
 mesh::ImportedMesh read_mesh(const mesh::InputFile& input, const Arguments& arguments) {
@@ -179,18 +134,6 @@ Answer answer_for(const Arguments& arguments) {
   }
 }
 
-bool write_all(int to, const mesh::WireWriter& from) {
-  for (std::span<const std::byte> bytes : from.pieces()) {
-    while (!bytes.empty()) {
-      const ssize_t count = write(to, bytes.data(), bytes.size());
-      if (count < 0 && errno == EINTR) continue;
-      if (count <= 0) return false;
-      bytes = bytes.subspan(static_cast<std::size_t>(count));
-    }
-  }
-  return true;
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -199,15 +142,10 @@ int main(int argc, char** argv) {
     fmt::print(stderr, "penumbra-import reads meshes and scenes for penumbra; it is not meant to be called by hand.\n");
     return static_cast<int>(ExitCode::usage);
   }
-  // First of all, while nothing is to be lost.
-  if (!end_with_asker(arguments.asker)) return static_cast<int>(ExitCode::interrupted);
-  // The answer goes where standard output went; what libraries print must not get into it.
-  const int output = dup(STDOUT_FILENO);
-  if (output < 0 || dup2(STDERR_FILENO, STDOUT_FILENO) < 0) return static_cast<int>(ExitCode::resource);
-  confine(arguments);
+  const int output = mesh::begin_helper({arguments.asker, arguments.milliseconds, arguments.bytes});
   keep_freed_memory();
   const Answer answer = answer_for(arguments);
   // _exit: the libraries' own cleaning up after a hostile file is one more chance to crash.
-  const bool told = write_all(output, answer.head) && write_all(output, answer.payload);
+  const bool told = mesh::write_all(output, answer.head) && mesh::write_all(output, answer.payload);
   _exit(told ? 0 : static_cast<int>(ExitCode::resource));
 }

@@ -5,7 +5,10 @@
 #include <glm/vec3.hpp>
 
 #include <algorithm>
+#include <cerrno>
 #include <limits>
+
+#include <unistd.h>
 
 namespace penumbra::mesh {
 namespace {
@@ -93,6 +96,18 @@ std::vector<std::byte> WireWriter::bytes() const {
   std::vector<std::byte> bytes;
   for (const auto piece : pieces()) bytes.insert(bytes.end(), piece.begin(), piece.end());
   return bytes;
+}
+
+bool write_all(int to, const mesh::WireWriter& from) {
+  for (std::span<const std::byte> bytes : from.pieces()) {
+    while (!bytes.empty()) {
+      const ssize_t count = ::write(to, bytes.data(), bytes.size());
+      if (count < 0 && errno == EINTR) continue;
+      if (count <= 0) return false;
+      bytes = bytes.subspan(static_cast<std::size_t>(count));
+    }
+  }
+  return true;
 }
 
 namespace {

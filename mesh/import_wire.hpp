@@ -73,6 +73,9 @@ class WireWriter {
   std::vector<InPlace> in_place_;
 };
 
+/// Writes all that was put; false if that fails.
+bool write_all(int to, const WireWriter& from);
+
 /// The answer is not what a healthy helper sends.
 struct WireError : std::runtime_error {
   using std::runtime_error::runtime_error;

@@ -26,13 +26,16 @@ struct Repaired {
   std::vector<std::string> left;  ///< what it could not repair, with counts
 };
 
-/// True if this build has it (CGAL's polygon mesh processing is GPL: CMake option PENUMBRA_WITH_CGAL_GPL).
-bool can_repair();
-
 /// Removes zero-area and duplicate triangles, merges equal vertices, splits non-manifold vertices and edges, orients
 /// neighbours alike and closed parts outward, stitches borders that coincide, fills holes up to a size, and on request
-/// resolves self-intersections. The input is never changed. Objects keep their numbers. Throws UsageError without
-/// CGAL's GPL part.
+/// resolves self-intersections. The input is never changed. Objects keep their numbers.
+///
+/// The program `penumbra-repair` does it, in a process of its own: it contains CGAL's GPL packages, which neither the
+/// library nor the program `penumbra` is to be a work with. Throws UsageError if a length or a number cannot be meant,
+/// ResourceError if that program is missing, cannot be started or crashes.
 Repaired repair(const TriangleSoup& soup, const RepairOptions& options);
+
+/// Throws ResourceError where repair() would because `penumbra-repair` is missing: before long work begins.
+void require_repair();
 
 }  // namespace penumbra::mesh

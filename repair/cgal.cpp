@@ -1,4 +1,4 @@
-#include "mesh/repair/cgal.hpp"
+#include "repair/cgal.hpp"
 
 #include "mesh/box_tree.hpp"
 #include "mesh/edge_graph.hpp"
@@ -20,8 +20,10 @@
 #include <stdexcept>
 #include <utility>
 
-namespace penumbra::mesh {
+namespace penumbra::repair {
 namespace {
+
+using mesh::Box;
 
 namespace pmp = CGAL::Polygon_mesh_processing;
 using Face = CgalMesh::Face_index;
@@ -332,4 +334,4 @@ TriangleSoup fill_holes(const TriangleSoup& soup, std::uint32_t most_edges, Repa
   return repaired;
 }
 
-}  // namespace penumbra::mesh
+}  // namespace penumbra::repair

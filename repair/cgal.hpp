@@ -1,6 +1,6 @@
 #pragma once
 
-#include "mesh/repair/steps.hpp"
+#include "repair/steps.hpp"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Surface_mesh.h>
@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-/// Inside mesh/ only: soups as CGAL's meshes. Whatever includes this is GPL.
-namespace penumbra::mesh {
+/// Inside repair/ only: soups as CGAL's meshes. Whatever includes this is GPL.
+namespace penumbra::repair {
 
 using CgalKernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using CgalPoint = CgalKernel::Point_3;
@@ -56,4 +56,4 @@ struct SurfaceParts {
 };
 SurfaceParts surface_parts(const TriangleSoup& soup);
 
-}  // namespace penumbra::mesh
+}  // namespace penumbra::repair

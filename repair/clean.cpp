@@ -1,5 +1,5 @@
 #include "mesh/edge_graph.hpp"
-#include "mesh/repair/steps.hpp"
+#include "repair/steps.hpp"
 
 #include <algorithm>
 #include <array>
@@ -8,7 +8,7 @@
 #include <optional>
 #include <utility>
 
-namespace penumbra::mesh {
+namespace penumbra::repair {
 namespace {
 
 void add(TriangleSoup& to, const TriangleSoup& from, std::size_t t, const Triangle& corners) {
@@ -209,4 +209,4 @@ TriangleSoup without_unused_positions(const TriangleSoup& soup) {
   return compact;
 }
 
-}  // namespace penumbra::mesh
+}  // namespace penumbra::repair

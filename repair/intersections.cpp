@@ -1,5 +1,5 @@
 #include "mesh/predicates.hpp"
-#include "mesh/repair/cgal.hpp"
+#include "repair/cgal.hpp"
 
 #include <CGAL/Polygon_mesh_processing/repair_self_intersections.h>
 #include <CGAL/Polygon_mesh_processing/self_intersections.h>
@@ -13,7 +13,7 @@
 #include <optional>
 #include <utility>
 
-namespace penumbra::mesh {
+namespace penumbra::repair {
 namespace {
 
 namespace pmp = CGAL::Polygon_mesh_processing;
@@ -157,4 +157,4 @@ TriangleSoup resolve_intersections(const TriangleSoup& soup, RepairRecord& recor
   return record[RepairKind::intersection] == 0 ? soup : without_unused_positions(repaired);
 }
 
-}  // namespace penumbra::mesh
+}  // namespace penumbra::repair

@@ -1,7 +1,7 @@
 #include "base/assert.hpp"
 #include "mesh/edge_graph.hpp"
 #include "mesh/predicates.hpp"
-#include "mesh/repair/steps.hpp"
+#include "repair/steps.hpp"
 #include "mesh/union_find.hpp"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
@@ -13,8 +13,12 @@
 #include <tuple>
 #include <utility>
 
-namespace penumbra::mesh {
+namespace penumbra::repair {
 namespace {
+
+using mesh::find_root;
+using mesh::Side;
+using mesh::side_of_plane;
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;  // of CGAL, its kernel alone (LGPL)
 
@@ -285,4 +289,4 @@ TriangleSoup join(const TriangleSoup& soup, double weld, RepairRecord& record) {
   return Joiner(soup, graph, record).joined();
 }
 
-}  // namespace penumbra::mesh
+}  // namespace penumbra::repair

@@ -1,32 +1,18 @@
-#include "mesh/repair/repair.hpp"
+#include "repair/run_repair.hpp"
 
-#include "base/error.hpp"
-#include "mesh/repair/steps.hpp"
+#include "repair/steps.hpp"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <exception>
 #include <map>
 #include <new>
 #include <string_view>
 #include <utility>
 
-namespace penumbra::mesh {
-
-#ifndef PENUMBRA_WITH_CGAL_GPL
-
-bool can_repair() {
-  return false;
-}
-
-Repaired repair(const TriangleSoup&, const RepairOptions&) {
-  throw UsageError(
-      "this build cannot repair meshes: it was made without CGAL's GPL packages; build it with "
-      "-DPENUMBRA_WITH_CGAL_GPL=ON");
-}
-
-#else
+namespace penumbra::repair {
 
 namespace {
 
@@ -112,14 +98,7 @@ std::uint64_t count_open_edges(const TriangleSoup& soup) {
 
 }  // namespace
 
-bool can_repair() {
-  return true;
-}
-
-Repaired repair(const TriangleSoup& soup, const RepairOptions& options) {
-  if (!(options.weld >= 0) || !std::isfinite(options.weld)) {
-    throw UsageError("a welding distance of {} cannot be; give a length of 0 or more", options.weld);
-  }
+Repaired run_repair(const TriangleSoup& soup, const RepairOptions& options) {
   Repaired repaired{soup, {}, {}};
   std::array<std::uint64_t, static_cast<std::size_t>(RepairKind::kinds)> total{};
   bool settled = false;
@@ -145,6 +124,4 @@ Repaired repair(const TriangleSoup& soup, const RepairOptions& options) {
   return repaired;
 }
 
-#endif
-
-}  // namespace penumbra::mesh
+}  // namespace penumbra::repair

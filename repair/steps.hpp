@@ -1,6 +1,7 @@
 #pragma once
 
-#include "mesh/repair/repair.hpp"
+#include "mesh/edge_graph.hpp"
+#include "mesh/repair.hpp"
 
 #include <array>
 #include <cstddef>
@@ -8,8 +9,18 @@
 #include <string>
 #include <vector>
 
-/// The steps of repair, each a function from a soup to a repaired one that counts what it did. Inside mesh/ only.
-namespace penumbra::mesh {
+/// The steps of repair, each a function from a soup to a repaired one that counts what it did. Inside repair/ only.
+namespace penumbra::repair {
+
+using mesh::build_edge_graph;
+using mesh::Edge;
+using mesh::EdgeGraph;
+using mesh::Incidence;
+using mesh::Repaired;
+using mesh::RepairOptions;
+using mesh::Triangle;
+using mesh::TriangleKind;
+using mesh::TriangleSoup;
 
 enum class RepairKind : std::uint8_t {
   repeated,   ///< triangles removed: two corners at one point
@@ -65,4 +76,4 @@ TriangleSoup fill_holes(const TriangleSoup& soup, std::uint32_t most_edges, Repa
 
 TriangleSoup resolve_intersections(const TriangleSoup& soup, RepairRecord& record);
 
-}  // namespace penumbra::mesh
+}  // namespace penumbra::repair

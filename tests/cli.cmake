@@ -38,3 +38,7 @@ penumbra_test(cli FULL *EveryTriple* SHARDS Part/RenderTogether=2 Part/CompareTo
 target_compile_definitions(cli_test PRIVATE PENUMBRA_PROGRAM="$<TARGET_FILE:penumbra>"
   PENUMBRA_PUBLIC_CASES="${CMAKE_CURRENT_SOURCE_DIR}/public_cases")
 add_dependencies(cli_test penumbra)
+if(PENUMBRA_WITH_CGAL_GPL)
+  target_compile_definitions(cli_test PRIVATE PENUMBRA_WITH_CGAL_GPL)
+  add_dependencies(cli_test penumbra-repair)
+endif()

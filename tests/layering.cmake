@@ -8,7 +8,7 @@ cmake_minimum_required(VERSION 3.25)
 set(may_base)
 set(may_mesh base)
 set(may_mesh/diagnosis mesh base)
-set(may_mesh/repair mesh base)
+set(may_repair mesh base)
 set(may_mesh/shapes mesh/diagnosis mesh base)
 set(may_scenes mesh base)
 set(may_scenes/formats scenes mesh/shapes mesh base)
@@ -53,7 +53,7 @@ set(may_reference areas engines render ${all_visibility} scenes mesh base)
 set(may_compare ${all_visibility} scenes mesh base)
 set(may_app/process render base)
 set(may_app app/process selftest compare reference areas engines engines/vectors maps vsm volumes volumes/wedges render/opengl render ${all_visibility}
-    scenes/formats scenes mesh/repair mesh/diagnosis mesh base)
+    scenes/formats scenes mesh/diagnosis mesh base)
 foreach(room commands compare farm inspect pictures wedges)
   set(may_app/${room} ${may_app} app)
 endforeach()
@@ -64,7 +64,7 @@ set(may_library app app/compare app/inspect app/pictures app/process app/wedges 
     scenes/formats scenes mesh base)
 set(may_python)
 set(may_bench ${may_app} app app/pictures volumes/raster volumes/edges mesh/shapes)
-set(rooms base mesh mesh/diagnosis mesh/repair mesh/shapes scenes scenes/formats import import/gltf import/gltf/emitters visibility
+set(rooms base mesh mesh/diagnosis mesh/shapes repair scenes scenes/formats import import/gltf import/gltf/emitters visibility
     visibility/tree visibility/lights
     visibility/masks visibility/alpha areas render/opengl render engines/device engines/vectors engines/pairs engines
     volumes/wedges volumes/edges volumes/raster volumes/soft volumes/counters volumes/scatter volumes vsm maps/host maps/products maps/products/lists
@@ -80,7 +80,7 @@ set(kept_vulkan render)
 set(kept_spirv_cross render)
 set(kept_EGL render/opengl)
 set(kept_GL render/opengl)
-set(kept_CGAL mesh visibility)
+set(kept_CGAL mesh repair visibility)  # GPL packages in repair alone: unit/repair/licence.py
 set(kept_OpenMesh mesh)
 set(kept_embree3 reference bench)
 set(kept_assimp import)
@@ -171,7 +171,7 @@ if(SELF_TEST)
   file(WRITE ${SELF_TEST}/vsm/b.comp "  #  include \"app/runner.hpp\"\n")       # in a shader
   file(WRITE ${SELF_TEST}/maps/host/a.cpp "#include <vulkan/vulkan_raii.hpp>\n")     # a library outside its room
   file(WRITE ${SELF_TEST}/reference/a.hpp "#include <embree3/rtcore.h>\n")      # a library in a header
-  file(WRITE ${SELF_TEST}/mesh/a.hpp "#include \"mesh/repair/repair.hpp\"\n")     # a room on one inside it that depends on it
+  file(WRITE ${SELF_TEST}/mesh/a.hpp "#include \"mesh/diagnosis/diagnosis.hpp\"\n")     # a room on one inside it that depends on it
   file(WRITE ${SELF_TEST}/volumes/edges/a.hpp "#include \"volumes/scatter/a.hpp\"\n")  # one room of a family on another
   file(WRITE ${SELF_TEST}/app/fine.cpp "#include \"base/error.hpp\"\n#include <vector>\n#include <CLI/CLI.hpp>\n")
   check(${SELF_TEST} complaints)

@@ -1,4 +1,4 @@
-# Meshes: readers through the child process, exact predicates, the edge graph, silhouettes, half-edges, diagnosis, repair.
+# Meshes: readers through the child process, exact predicates, the edge graph, silhouettes, half-edges, diagnosis.
 find_package(CGAL REQUIRED)
 penumbra_test(mesh FULL CgalMeshes.All
   SOURCES
@@ -19,15 +19,15 @@ penumbra_test(mesh FULL CgalMeshes.All
   unit/mesh/import.cpp
   unit/mesh/readers.cpp
   unit/mesh/readers_xml.cpp
-  unit/mesh/repair.cpp
   unit/mesh/soup_ply.cpp
   APART property/mesh/diagnosis_oracle.cpp
   # GMP's rationals are the judge of the exact predicates: another library, another formula.
   LIBRARIES penumbra_mesh CGAL::CGAL PkgConfig::MINIZIP nlohmann_json::nlohmann_json ${RAPIDCHECK} TBB::tbb gmpxx gmp)
 penumbra_cgal_corpus(mesh_test)
 if(PENUMBRA_WITH_CGAL_GPL)
-  # Polygon_mesh_processing is GPL: the test, never the program without repair, links it.
+  # Polygon_mesh_processing is GPL: of programs, penumbra-repair alone has it, and tests.
   target_compile_definitions(mesh_test PRIVATE PENUMBRA_WITH_CGAL_GPL)
+  add_dependencies(mesh_test penumbra-repair)
   target_sources(mesh_test PRIVATE agreement/mesh/diagnosis_cgal.cpp)
   set_source_files_properties(agreement/mesh/diagnosis_cgal.cpp PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
 endif()

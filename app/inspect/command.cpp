@@ -101,11 +101,7 @@ class InspectCommand : public Command {
       if (files_.size() > 1)
         throw UsageError("{}: {} FILEs are too many for one output", output->string(), files_.size());
     }
-    if (!repaired_.empty() && !mesh::can_repair()) {
-      throw UsageError(
-          "--repair: this build goes without CGAL's GPL packages, which do it; configure with "
-          "-DPENUMBRA_WITH_CGAL_GPL=ON");
-    }
+    if (!repaired_.empty()) mesh::require_repair();
     OutputFiles outputs;
     if (json_ != "-") outputs.add("--json", json_);
     outputs.add("--export-defects", defects_);

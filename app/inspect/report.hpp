@@ -1,7 +1,7 @@
 #pragma once
 
 #include "app/inspect/examine.hpp"
-#include "mesh/repair/repair.hpp"
+#include "mesh/repair.hpp"
 
 #include <nlohmann/json_fwd.hpp>
 

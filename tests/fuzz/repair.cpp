@@ -2,7 +2,7 @@
 // are gone or mentioned.
 #include "base/assert.hpp"
 #include "mesh/diagnosis/diagnosis.hpp"
-#include "mesh/repair/repair.hpp"
+#include "repair/run_repair.hpp"
 #include "tests/fuzz/bytes.hpp"
 
 #include <cmath>
@@ -37,7 +37,6 @@ TriangleSoup make_soup(Bytes& bytes) {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  if (!can_repair()) return 0;
   Bytes bytes({data, size});
   const auto head = bytes.take<std::uint8_t>();
   RepairOptions options;
@@ -46,7 +45,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   options.resolve_self_intersections = (head & 16) != 0;
   const TriangleSoup soup = make_soup(bytes);
   if (soup.triangles.empty()) return 0;
-  const Repaired repaired = repair(soup, options);
+  const Repaired repaired = penumbra::repair::run_repair(soup, options);
   const TriangleSoup& after = repaired.soup;
   PENUMBRA_ASSERT(after.object.size() == after.triangles.size() && after.source_face.size() == after.triangles.size(),
                   "{} triangles, {} objects, {} faces", after.triangles.size(), after.object.size(),

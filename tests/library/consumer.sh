@@ -22,3 +22,5 @@ for name in gathering pcss; do grep -q "\"method\": \"$name\"" "$work/metrics.js
 [[ -s $work/compared/report.html ]]
 PENUMBRA=$work/installed/bin/penumbra
 "$PENUMBRA" --quiet render "$source/scenes/bunny.json" -o "$work/out.exr" --size 8x8  # finds its helper
+repair=$work/installed/bin/penumbra-repair
+if [[ -e $repair ]]; then "$PENUMBRA" --quiet inspect "$source/scenes/room.json" --repair "$work/repaired.ply" >"$work/repair.log"; fi

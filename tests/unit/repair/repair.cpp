@@ -2,7 +2,7 @@
 // promises: an oriented manifold by indices, the same points, its own input untouched, and nothing left for a second
 // repair.
 
-#include "mesh/repair/repair.hpp"
+#include "repair/run_repair.hpp"
 
 #include "base/error.hpp"
 #include "mesh/shapes/shapes.hpp"
@@ -16,19 +16,25 @@
 #include <set>
 #include <string>
 
-namespace penumbra::mesh {
+namespace penumbra::repair {
 namespace {
 
+namespace test = mesh::test;
+using mesh::build_edge_graph;
+using mesh::EdgeGraph;
+using mesh::make_blob;
+using mesh::make_icosphere;
+using mesh::make_quad;
+using mesh::make_sphere;
+using mesh::make_torus;
+using mesh::Repaired;
+using mesh::RepairOptions;
+using mesh::RepairStep;
+using mesh::SphereShape;
+using mesh::Triangle;
+using mesh::TriangleKind;
+using mesh::TriangleSoup;
 using test::view;
-
-#ifndef PENUMBRA_WITH_CGAL_GPL
-
-TEST(Repair, SaysThatThisBuildCannot) {
-  EXPECT_FALSE(can_repair());
-  EXPECT_THROW(repair(test::box(), {}), UsageError);
-}
-
-#else
 
 std::uint64_t count_of(const Repaired& repaired, const std::string& word) {
   for (const RepairStep& step : repaired.done) {
@@ -99,14 +105,14 @@ void expect_kept_promises(const TriangleSoup& soup, const Repaired& repaired, co
   if (!repaired.done.empty()) expect_manifold(after);
   const EdgeGraph graph = build_edge_graph(view(after));
   for (const TriangleKind kind : graph.kind) EXPECT_EQ(kind, TriangleKind::proper);
-  const Repaired again = repair(after, options);
+  const Repaired again = run_repair(after, options);
   EXPECT_TRUE(again.done.empty()) << "the second time: " << sentences(again) << " the first: " << sentences(repaired);
   EXPECT_TRUE(same(again.soup, after));
   EXPECT_EQ(again.left, repaired.left);
 }
 
 Repaired repair_and_check(const TriangleSoup& soup, const RepairOptions& options = {}) {
-  Repaired repaired = repair(soup, options);
+  Repaired repaired = run_repair(soup, options);
   expect_kept_promises(soup, repaired, options);
   return repaired;
 }
@@ -296,13 +302,10 @@ TEST(Repair, LatticeSoupsComeOutAsOrientedManifolds) {
 }
 
 TEST(Repair, AnEmptySoupAndOneWithoutAreaComeOutEmpty) {
-  EXPECT_TRUE(repair({}, {}).done.empty());
-  const Repaired repaired = repair(test::soup_of({{0, 0, 0}, {1, 1, 1}, {2, 2, 2}}, {{0, 1, 2}, {0, 0, 1}}), {});
+  EXPECT_TRUE(run_repair({}, {}).done.empty());
+  const Repaired repaired = run_repair(test::soup_of({{0, 0, 0}, {1, 1, 1}, {2, 2, 2}}, {{0, 1, 2}, {0, 0, 1}}), {});
   EXPECT_TRUE(repaired.soup.triangles.empty());
-  EXPECT_THROW(repair(test::box(), {.weld = -1}), UsageError);
 }
 
-#endif
-
 }  // namespace
-}  // namespace penumbra::mesh
+}  // namespace penumbra::repair

@@ -1,0 +1,50 @@
+#!/usr/bin/env python3
+"""licence.py BUILD: no object of the library, the programs or the Python module depends on a header that is under the GPL alone.
+
+Reads what ninja has recorded of each object's headers, and their SPDX lines. The objects of penumbra-repair, which is a program of
+its own for that reason, and of tests may; penumbra-repair must, or this test would look at nothing.
+"""
+import re
+import subprocess
+import sys
+
+ALLOWED = re.compile(r"(^|/)CMakeFiles/(penumbra[-_]repair|[a-z_]+_test)\.dir/")
+SKIPPED = 77
+
+
+def is_gpl_alone(header, known={}):
+    """Under the GPL without the choice of LGPL or of a free licence beside it, and without an exception as Linux has."""
+    if header not in known:
+        try:
+            with open(header, encoding="utf-8", errors="replace") as file:
+                lines = re.findall(r"SPDX-License-Identifier:(.*)", file.read(4096))
+        except FileNotFoundError:  # an object of an earlier state of the tree
+            lines = []
+        known[header] = any(re.search(r"\bGPL-", line) and not re.search(r"LGPL|BSL|MIT|Apache| WITH ", line) for line in lines)
+    return known[header]
+
+
+def main(build):
+    try:
+        recorded = subprocess.run(["ninja", "-C", build, "-t", "deps"], capture_output=True, text=True, check=True).stdout
+    except (OSError, subprocess.CalledProcessError):
+        print("this folder was not built by ninja")
+        return SKIPPED
+    target, offenders, allowed = "", {}, 0
+    for line in recorded.splitlines():
+        if not line.startswith(" "):
+            target = line.partition(":")[0]
+        elif line.strip().startswith("/") and is_gpl_alone(line.strip()):
+            if ALLOWED.search(target):
+                allowed += 1
+            else:
+                offenders.setdefault(target, []).append(line.strip())
+    for target, headers in sorted(offenders.items()):
+        print(f"{target} includes {len(headers)} headers under the GPL, the first of them {headers[0]}")
+    if not allowed:
+        print("not even penumbra-repair includes a header under the GPL: is it built?")
+        return SKIPPED
+    return 1 if offenders else 0
+
+
+sys.exit(main(*sys.argv[1:]))
