@@ -2,7 +2,7 @@
 
 #include "mesh/predicates.hpp"
 #include "mesh/silhouettes.hpp"
-#include "volumes/edges/facing.shared.h"
+#include "volumes/edges/device/facing.shared.h"
 #include "volumes/wedges/wedge_plane.hpp"
 
 #include <fmt/format.h>

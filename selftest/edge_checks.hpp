@@ -5,7 +5,7 @@
 #include "selftest/check.hpp"
 #include "visibility/light_samples.hpp"
 #include "visibility/scene_floats.hpp"
-#include "volumes/edges/silhouette_pass.hpp"
+#include "volumes/edges/device/silhouette_pass.hpp"
 #include "volumes/raster/wedge_builder.hpp"
 
 #include <glm/vec3.hpp>

@@ -15,7 +15,7 @@
 
 /// Methods on the processor's own vector units: what they share. A light as seen from view samples that lie
 /// together. Bounds are derived in docs/edge-scatter.md; names are those of the device's passes
-/// (volumes/edges/edge_scatter.glsl). Lengths are scene floats times visibility::device_scale.
+/// (volumes/edges/device/edge_scatter.glsl). Lengths are scene floats times visibility::device_scale.
 namespace penumbra::vectors {
 
 struct NearCasters;

@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "engines/device/mask.shared.h"
-#include "volumes/edges/edge_scatter.glsl"
+#include "volumes/edges/device/edge_scatter.glsl"
 #include "volumes/counters/depth_complexity.shared.h"
 
 // Second pass of depth complexity, a workgroup a view sample: one counter a light sample. D, the number of triangles

@@ -14,7 +14,7 @@
 #include "volumes/counters/depth_complexity.shared.h"
 #include "volumes/counters/packed_counters.hpp"
 #include "volumes/counters/vectors/depth_complexity_vectors.hpp"
-#include "volumes/edges/edge_method.hpp"
+#include "volumes/edges/device/edge_method.hpp"
 
 #include <fmt/ranges.h>
 

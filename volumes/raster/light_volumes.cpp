@@ -4,7 +4,7 @@
 #include "volumes/raster/light_volumes.hpp"
 
 #include "base/parallel.hpp"
-#include "volumes/edges/silhouette_pass.hpp"
+#include "volumes/edges/device/silhouette_pass.hpp"
 #include "volumes/raster/volume_count.shared.h"
 #include "volumes/raster/small_vectors.hpp"
 

@@ -2,8 +2,8 @@
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_shader_explicit_arithmetic_types_float64 : require
-#include "volumes/edges/facing.shared.h"
-#include "volumes/edges/silhouette.shared.h"
+#include "volumes/edges/device/facing.shared.h"
+#include "volumes/edges/device/silhouette.shared.h"
 #include "volumes/raster/wedge_build.shared.h"
 
 // Penumbra wedges of the construction `original` (Assarsson and Akenine-Möller 2003), a lane a silhouette edge: the twin

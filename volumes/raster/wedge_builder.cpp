@@ -9,7 +9,7 @@
 #include "render/commands.hpp"
 #include "render/compute_pass.hpp"
 #include "volumes/wedges/light_hull.hpp"
-#include "volumes/edges/silhouette_pass.hpp"
+#include "volumes/edges/device/silhouette_pass.hpp"
 #include "volumes/raster/wedge_build.comp.spv.hpp"
 #include "volumes/raster/wedge_build.shared.h"
 

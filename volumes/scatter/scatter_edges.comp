@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "engines/device/mask.shared.h"
-#include "volumes/edges/edge_scatter.glsl"
+#include "volumes/edges/device/edge_scatter.glsl"
 
 // Second pass of edge scatter, a workgroup a few neighbouring view samples (one a lane) and a band of light rows: how many
 // triangles are between p and each light sample. D at the light's lower left corner is counted triangle by triangle. From

@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "engines/device/mask.shared.h"
-#include "volumes/edges/edge_scatter.glsl"
+#include "volumes/edges/device/edge_scatter.glsl"
 
 // scatter_edges.comp for light samples anywhere: those of about the same height are a row (point_rows.cpp), and an edge
 // changes a row from one light sample on, as there. What differs is which light samples those are: docs/edge-scatter.md,

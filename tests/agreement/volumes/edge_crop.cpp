@@ -6,7 +6,7 @@
 
 #include "visibility/lights/device_light.hpp"
 #include "volumes/counters/methods.hpp"
-#include "volumes/edges/edge_lists.hpp"
+#include "volumes/edges/device/edge_lists.hpp"
 
 namespace penumbra::volumes {
 namespace {

@@ -7,7 +7,7 @@
 #include "tests/agreement/support.hpp"
 #include "tests/agreement/volumes/exact_rows.hpp"
 #include "volumes/edges/edge_sides.hpp"
-#include "volumes/scatter/vectors/scene_edges.hpp"
+#include "volumes/edges/vectors/scene_edges.hpp"
 #include "visibility/tree/tree_refit.hpp"
 
 #include <array>

@@ -5,8 +5,8 @@
 #include "tests/agreement/support.hpp"
 #include "visibility/tree/tree_texels.hpp"
 #include "volumes/edges/edge_sides.hpp"
-#include "volumes/edges/edge_upload.hpp"
-#include "volumes/scatter/vectors/cut.hpp"
+#include "volumes/edges/device/edge_upload.hpp"
+#include "volumes/edges/vectors/cut.hpp"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,7 @@
 #include "mesh/shapes/shapes.hpp"
 #include "selftest/edge_checks.hpp"
 #include "tests/unit/passed.hpp"
-#include "volumes/edges/silhouette_pass.hpp"
+#include "volumes/edges/device/silhouette_pass.hpp"
 
 #include <algorithm>
 #include <array>

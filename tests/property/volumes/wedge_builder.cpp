@@ -8,7 +8,7 @@
 #include "selftest/edge_checks.hpp"
 #include "tests/unit/passed.hpp"
 #include "tests/unit/shipped_scene.hpp"
-#include "volumes/edges/facing.shared.h"
+#include "volumes/edges/device/facing.shared.h"
 #include "volumes/raster/wedge_builder.hpp"
 
 namespace penumbra::volumes {

@@ -5,7 +5,7 @@
 #include "volumes/counters/vectors/count_samples.hpp"
 
 #include "engines/vectors/horizon.hpp"
-#include "volumes/scatter/vectors/precise.hpp"
+#include "volumes/edges/vectors/precise.hpp"
 
 #include <algorithm>
 #include <array>
@@ -18,8 +18,8 @@
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
 
 #include "engines/vectors/vectors-inl.hpp"
-#include "volumes/scatter/vectors/projection-inl.hpp"
-#include "volumes/scatter/vectors/special-inl.hpp"
+#include "volumes/edges/vectors/projection-inl.hpp"
+#include "volumes/edges/vectors/special-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace penumbra::volumes::HWY_NAMESPACE {

@@ -4,7 +4,7 @@
 
 #include "base/error.hpp"
 #include "volumes/counters/vectors/count_samples.hpp"
-#include "volumes/scatter/vectors/vector_edges.hpp"
+#include "volumes/edges/vectors/vector_edges.hpp"
 
 #include <tbb/enumerable_thread_specific.h>
 

@@ -6,7 +6,7 @@
 #include "base/assert.hpp"
 #include "visibility/lights/unshadowed_light.hpp"
 #include "visibility/lights/whole_form_factors.hpp"
-#include "volumes/scatter/vectors/vector_edges.hpp"
+#include "volumes/edges/vectors/vector_edges.hpp"
 #include "volumes/scatter/vectors/rows.hpp"
 
 #include <glm/common.hpp>

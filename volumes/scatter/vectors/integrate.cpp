@@ -21,7 +21,7 @@
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
 
 #include "engines/vectors/vectors-inl.hpp"
-#include "volumes/scatter/vectors/projection-inl.hpp"
+#include "volumes/edges/vectors/projection-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace penumbra::volumes::HWY_NAMESPACE {

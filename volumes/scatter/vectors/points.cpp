@@ -3,8 +3,8 @@
 // docs/edge-scatter.md, "Light samples anywhere".
 
 #include "engines/vectors/horizon.hpp"
-#include "volumes/scatter/vectors/disk_cuts.hpp"
-#include "volumes/scatter/vectors/precise.hpp"
+#include "volumes/edges/vectors/disk_cuts.hpp"
+#include "volumes/edges/vectors/precise.hpp"
 #include "volumes/scatter/vectors/scatter.hpp"
 
 #include <algorithm>
@@ -19,9 +19,9 @@
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
 
 #include "engines/vectors/vectors-inl.hpp"
-#include "volumes/scatter/vectors/projection-inl.hpp"
+#include "volumes/edges/vectors/projection-inl.hpp"
 #include "volumes/scatter/vectors/tile_rows-inl.hpp"
-#include "volumes/scatter/vectors/special-inl.hpp"
+#include "volumes/edges/vectors/special-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace penumbra::volumes::HWY_NAMESPACE {

@@ -3,7 +3,7 @@
 #include "volumes/scatter/vectors/scatter.hpp"
 
 #include "engines/vectors/horizon.hpp"
-#include "volumes/scatter/vectors/precise.hpp"
+#include "volumes/edges/vectors/precise.hpp"
 
 #include <glm/geometric.hpp>
 
@@ -19,8 +19,8 @@
 
 #include "engines/vectors/pack-inl.hpp"
 #include "engines/vectors/vectors-inl.hpp"
-#include "volumes/scatter/vectors/projection-inl.hpp"
-#include "volumes/scatter/vectors/special-inl.hpp"
+#include "volumes/edges/vectors/projection-inl.hpp"
+#include "volumes/edges/vectors/special-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace penumbra::volumes::HWY_NAMESPACE {

@@ -1,4 +1,4 @@
-#include "volumes/scatter/vectors/disk_cuts.hpp"
+#include "volumes/edges/vectors/disk_cuts.hpp"
 
 #include "engines/vectors/disk_plane.hpp"
 
@@ -11,7 +11,7 @@
 #include <utility>
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "volumes/scatter/vectors/disk_cuts.cpp"
+#define HWY_TARGET_INCLUDE "volumes/edges/vectors/disk_cuts.cpp"
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
 #include <hwy/highway.h>
 

@@ -1,8 +1,8 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
-#include "volumes/edges/facing.shared.h"
-#include "volumes/edges/silhouette.shared.h"
+#include "volumes/edges/device/facing.shared.h"
+#include "volumes/edges/device/silhouette.shared.h"
 
 // On which side of every triangle is one point? One lane for each triangle. A sign counts only beyond its error bound
 // (volumes/README.md, Bounds); a triangle whose sign is within it gets both bits and goes on a list for the host. No branch on

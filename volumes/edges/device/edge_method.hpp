@@ -1,7 +1,7 @@
 #pragma once
 
 #include "engines/device/mask_method.hpp"
-#include "volumes/edges/edge_lists.hpp"
+#include "volumes/edges/device/edge_lists.hpp"
 
 #include <cstdint>
 #include <map>

@@ -1,4 +1,4 @@
-#include "volumes/scatter/vectors/cut.hpp"
+#include "volumes/edges/vectors/cut.hpp"
 
 #include "base/assert.hpp"
 #include "base/parallel.hpp"

@@ -5,7 +5,7 @@
 #extension GL_KHR_shader_subgroup_shuffle : require
 #extension GL_KHR_shader_subgroup_arithmetic : require
 #extension GL_KHR_shader_subgroup_vote : require
-#include "volumes/edges/edge_scatter.shared.h"
+#include "volumes/edges/device/edge_scatter.shared.h"
 
 layout(local_size_x_id = 0) in;
 layout(constant_id = 1) const uint kLanes = 8;            // the workgroup's size, one subgroup

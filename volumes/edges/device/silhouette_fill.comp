@@ -1,8 +1,8 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
-#include "volumes/edges/facing.shared.h"
-#include "volumes/edges/silhouette.shared.h"
+#include "volumes/edges/device/facing.shared.h"
+#include "volumes/edges/device/silhouette.shared.h"
 
 // The silhouettes of each block of edges, from the block's place on: in the order of edges, whatever the device does.
 

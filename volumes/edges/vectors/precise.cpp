@@ -1,6 +1,6 @@
-#include "volumes/scatter/vectors/precise.hpp"
+#include "volumes/edges/vectors/precise.hpp"
 
-#include "volumes/scatter/vectors/disk_cuts.hpp"
+#include "volumes/edges/vectors/disk_cuts.hpp"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>

@@ -1,4 +1,4 @@
-#include "volumes/scatter/vectors/scene_edges.hpp"
+#include "volumes/edges/vectors/scene_edges.hpp"
 
 #include "base/parallel.hpp"
 #include "visibility/tree/tree_refit.hpp"

@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "volumes/edges/edge_scatter.glsl"
+#include "volumes/edges/device/edge_scatter.glsl"
 
 // First pass of edge scatter, a workgroup a block of pixels. The block's view samples fall into clusters where gaps are
 // between them. For each: the edges that the shaft from the cluster to the light meets and that may be silhouettes as seen

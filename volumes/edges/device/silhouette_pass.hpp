@@ -6,7 +6,7 @@
 #include "render/buffer.hpp"
 #include "render/device.hpp"
 #include "visibility/method.hpp"
-#include "volumes/edges/silhouette.shared.h"
+#include "volumes/edges/device/silhouette.shared.h"
 
 #include <glm/vec3.hpp>
 

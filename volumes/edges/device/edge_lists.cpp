@@ -1,8 +1,8 @@
-#include "volumes/edges/edge_lists.hpp"
+#include "volumes/edges/device/edge_lists.hpp"
 
 #include "base/assert.hpp"
 #include "render/features.hpp"
-#include "volumes/edges/find_edges.comp.spv.hpp"
+#include "volumes/edges/device/find_edges.comp.spv.hpp"
 
 #include <glm/geometric.hpp>
 

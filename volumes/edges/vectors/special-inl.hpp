@@ -8,8 +8,8 @@
 #define PENUMBRA_VOLUMES_VECTORS_SPECIAL_INL_HPP
 #endif
 
-#include "volumes/scatter/vectors/precise.hpp"
-#include "volumes/scatter/vectors/projection-inl.hpp"
+#include "volumes/edges/vectors/precise.hpp"
+#include "volumes/edges/vectors/projection-inl.hpp"
 
 #include <algorithm>
 #include <bit>

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "mesh/triangle_soup.hpp"
-#include "volumes/edges/facing.shared.h"
+#include "volumes/edges/device/facing.shared.h"
 
 #include <glm/vec3.hpp>
 

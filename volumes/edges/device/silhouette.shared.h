@@ -1,7 +1,7 @@
 // One struct, two languages (scalar layout): what the silhouette passes read and write.
 #ifdef __cplusplus
 #pragma once
-#include "volumes/edges/facing.shared.h"
+#include "volumes/edges/device/facing.shared.h"
 
 #include <cstdint>
 namespace penumbra::volumes::gpu {

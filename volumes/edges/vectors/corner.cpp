@@ -9,7 +9,7 @@
 #include <optional>
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "volumes/scatter/vectors/corner.cpp"
+#define HWY_TARGET_INCLUDE "volumes/edges/vectors/corner.cpp"
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
 
 #include "engines/vectors/vectors-inl.hpp"

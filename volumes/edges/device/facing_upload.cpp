@@ -2,7 +2,7 @@
 // wrong by. A change of an expression here or in silhouette_facing.comp needs one of its derivation in
 // volumes/README.md (Bounds).
 
-#include "volumes/edges/facing_upload.hpp"
+#include "volumes/edges/device/facing_upload.hpp"
 
 #include "mesh/predicates.hpp"
 

@@ -1,15 +1,15 @@
-#include "volumes/edges/silhouette_pass.hpp"
+#include "volumes/edges/device/silhouette_pass.hpp"
 
 #include "base/assert.hpp"
 #include "base/parallel.hpp"
 #include "render/commands.hpp"
 #include "render/compute_pass.hpp"
-#include "volumes/edges/facing_upload.hpp"
-#include "volumes/edges/silhouette_count.comp.spv.hpp"
-#include "volumes/edges/silhouette_facing.comp.spv.hpp"
-#include "volumes/edges/silhouette_fill.comp.spv.hpp"
-#include "volumes/edges/silhouette_patch.comp.spv.hpp"
-#include "volumes/edges/silhouette_scan.comp.spv.hpp"
+#include "volumes/edges/device/facing_upload.hpp"
+#include "volumes/edges/device/silhouette_count.comp.spv.hpp"
+#include "volumes/edges/device/silhouette_facing.comp.spv.hpp"
+#include "volumes/edges/device/silhouette_fill.comp.spv.hpp"
+#include "volumes/edges/device/silhouette_patch.comp.spv.hpp"
+#include "volumes/edges/device/silhouette_scan.comp.spv.hpp"
 
 #include <algorithm>
 #include <array>

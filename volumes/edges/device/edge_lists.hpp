@@ -11,11 +11,11 @@
 #include "visibility/lights/light_touch.hpp"
 #include "visibility/method.hpp"
 #include "visibility/tree/triangle_tree.hpp"
-#include "volumes/edges/edge_scatter.shared.h"
+#include "volumes/edges/device/edge_scatter.shared.h"
 #include "volumes/edges/edge_set.hpp"
 #include "volumes/edges/edge_tree.hpp"
 #include "volumes/edges/edge_sides.hpp"
-#include "volumes/edges/edge_upload.hpp"
+#include "volumes/edges/device/edge_upload.hpp"
 
 #include <array>
 #include <cstddef>

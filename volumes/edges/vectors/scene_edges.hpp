@@ -1,6 +1,6 @@
 #pragma once
 
-#include "volumes/scatter/vectors/cut.hpp"
+#include "volumes/edges/vectors/cut.hpp"
 
 #include <cstdint>
 #include <map>

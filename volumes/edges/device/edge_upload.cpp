@@ -1,4 +1,4 @@
-#include "volumes/edges/edge_upload.hpp"
+#include "volumes/edges/device/edge_upload.hpp"
 
 #include "visibility/tree/triangle_tree.hpp"
 

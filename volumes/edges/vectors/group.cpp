@@ -11,7 +11,7 @@
 #include <cmath>
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "volumes/scatter/vectors/group.cpp"
+#define HWY_TARGET_INCLUDE "volumes/edges/vectors/group.cpp"
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
 
 #include "engines/vectors/hull-inl.hpp"

@@ -2,9 +2,9 @@
 
 #include "engines/vectors/mask_method.hpp"
 #include "volumes/edges/edge_sides.hpp"
-#include "volumes/scatter/vectors/cut.hpp"
+#include "volumes/edges/vectors/cut.hpp"
 #include "volumes/scatter/vectors/scatter.hpp"
-#include "volumes/scatter/vectors/scene_edges.hpp"
+#include "volumes/edges/vectors/scene_edges.hpp"
 
 #include <tbb/enumerable_thread_specific.h>
 

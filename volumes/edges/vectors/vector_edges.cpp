@@ -1,4 +1,4 @@
-#include "volumes/scatter/vectors/vector_edges.hpp"
+#include "volumes/edges/vectors/vector_edges.hpp"
 
 #include "engines/vectors/horizon.hpp"
 
