@@ -33,38 +33,39 @@ bool any_seen_openly(std::span<const visibility::PixelClass> classes, std::span<
 /// Areas know nothing of what lets light through: they are right wherever none of it is on the way.
 void FrameRenderer::choose_methods(const Session& session) {
   const std::vector<visibility::Light>& lights = session.lights;
-  lights_ = lights;
-  for (visibility::Light& light : lights_) light.filtered_by.clear();
-  chosen_ = choose_light_methods(lights_, session.floats, wish_);
-  counting_.assign(lights.size(), std::nullopt);
+  plan_.lights = lights;
+  for (visibility::Light& light : plan_.lights) light.filtered_by.clear();
+  plan_.chosen = choose_light_methods(plan_.lights, session.floats, wish_);
+  plan_.counting.assign(lights.size(), std::nullopt);
   if (std::ranges::all_of(lights, [](const auto& light) { return light.filtered_by.empty(); })) return;
   std::vector<LightMethod> counting = choose_light_methods(lights, session.floats, wish_);
   for (std::size_t i = 0; i < lights.size(); ++i) {
     if (lights[i].filtered_by.empty()) continue;
-    if (chosen_[i].description.gives_area()) counting_[i] = counting[i];
-    if (counting_[i] && any_seen_openly(session.classes[i], session.filtered[i])) {
-      counting_[i]->note += " where that may be in between, exact areas elsewhere";
+    if (plan_.chosen[i].description.gives_area()) plan_.counting[i] = counting[i];
+    if (plan_.counting[i] && any_seen_openly(session.classes[i], session.filtered[i])) {
+      plan_.counting[i]->note += " where that may be in between, exact areas elsewhere";
     } else {
-      chosen_[i] = std::move(counting[i]);
-      lights_[i].filtered_by = lights[i].filtered_by;
+      plan_.chosen[i] = std::move(counting[i]);
+      plan_.lights[i].filtered_by = lights[i].filtered_by;
     }
   }
 }
 
 void FrameRenderer::say_notes() {
   std::vector<std::pair<std::string, std::vector<std::string>>> news;  // what is said, and of which lights
-  for (std::size_t i = 0; i < chosen_.size(); ++i) {
-    const std::string& note = counting_[i] ? counting_[i]->note : chosen_[i].note;
+  for (std::size_t i = 0; i < plan_.chosen.size(); ++i) {
+    const std::string& note = plan_.counting[i] ? plan_.counting[i]->note : plan_.chosen[i].note;
     if (note.empty()) continue;
-    if (std::ranges::find(notes_, note) == notes_.end()) notes_.push_back(note);  // pieces say the same
-    if (std::ranges::find(said_, note) != said_.end()) continue;
-    said_.push_back(note);
-    const std::string subject = fmt::format("light \"{}\"", lights_[i].name);
+    if (std::ranges::find(picture_.notes, note) == picture_.notes.end())
+      picture_.notes.push_back(note);  // pieces say the same
+    if (std::ranges::find(said_.warnings, note) != said_.warnings.end()) continue;
+    said_.warnings.push_back(note);
+    const std::string subject = fmt::format("light \"{}\"", plan_.lights[i].name);
     PENUMBRA_ASSERT(note.starts_with(subject), "the note \"{}\" is of {}", note, subject);
     const std::string what = note.substr(subject.size());
     auto same = std::ranges::find(news, what, [](const auto& one) { return one.first; });
     if (same == news.end()) same = news.insert(news.end(), {what, {}});
-    same->second.push_back(fmt::format("\"{}\"", lights_[i].name));
+    same->second.push_back(fmt::format("\"{}\"", plan_.lights[i].name));
   }
   for (const auto& [what, names] : news)
     progress_.info(fmt::format("light{} {}{}", names.size() > 1 ? "s" : "", fmt::join(names, ", "), what));
@@ -72,15 +73,15 @@ void FrameRenderer::say_notes() {
 
 void FrameRenderer::label_lights() {
   const std::vector<visibility::Light>& lights = session().lights;
-  if (std::ranges::any_of(lights, [&](const auto& light) { return !done_.contains(light.name); })) {
+  if (std::ranges::any_of(lights, [&](const auto& light) { return !done_.with.contains(light.name); })) {
     choose_methods(session());
-    for (std::size_t i = 0; i < lights.size(); ++i) done_.try_emplace(lights[i].name, chosen_[i]);
+    for (std::size_t i = 0; i < lights.size(); ++i) done_.with.try_emplace(lights[i].name, plan_.chosen[i]);
   }
-  labels_.clear();
+  done_.labels.clear();
   for (const visibility::Light& light : lights) {
-    const auto& [description, options, note] = done_.at(light.name);
-    labels_.push_back(
-        {description, options, device_of(description.name, options, light, machine_), in_part_.contains(light.name)});
+    const auto& [description, options, note] = done_.with.at(light.name);
+    done_.labels.push_back({description, options, device_of(description.name, options, light, machine_),
+                            done_.in_part.contains(light.name)});
   }
   say_unused_samples();
 }
@@ -89,12 +90,12 @@ void FrameRenderer::say_unused_samples() {
   const char* const asked = !options_.light_samples.empty()    ? "--light-samples"
                             : !options_.sample_pattern.empty() ? "--sample-pattern"
                                                                : nullptr;
-  const LabelledLights lights{session().lights, labels_};
+  const LabelledLights lights{session().lights, done_.labels};
   const auto has_none = [&](const WholeLight& whole) { return samples_of(lights, whole) == 0; };
   if (asked == nullptr || !std::ranges::all_of(whole_lights(session().lights), has_none)) return;
-  notes_.push_back(
-      fmt::format("{}: {} gives areas, and takes no light samples", asked, labels_.front().description.name));
-  say_once({notes_.back()});
+  picture_.notes.push_back(
+      fmt::format("{}: {} gives areas, and takes no light samples", asked, done_.labels.front().description.name));
+  say_once({picture_.notes.back()});
 }
 
 FrameRenderer::Kept& FrameRenderer::method_for(const LightMethod& wanted) {
@@ -111,34 +112,34 @@ FrameRenderer::Kept& FrameRenderer::method_for(const LightMethod& wanted) {
 }
 
 void FrameRenderer::keep_masks(const TileResult& tile) {
-  if (!frame_.keeps_masks || layers_ || tile.masks.empty()) return;
-  masks_.resize(lit().lights.size());
-  masks_[tile.light].insert(masks_[tile.light].end(), tile.masks.begin(), tile.masks.end());
+  if (!picture_.frame.keeps_masks || picture_.layers || tile.masks.empty()) return;
+  picture_.masks.resize(lit().lights.size());
+  picture_.masks[tile.light].insert(picture_.masks[tile.light].end(), tile.masks.begin(), tile.masks.end());
 }
 
 void FrameRenderer::run_methods(const std::filesystem::path& bits) {
   Stopwatch watch;
   say_warnings();
-  lights_something_.clear();
+  done_.lights_something.clear();
   mark_lights();
   choose_methods(lit());
   say_notes();
-  load_seconds_ += watch.seconds();
+  spent_.load += watch.seconds();
   if (!bits.empty()) {
-    check_bits(chosen_.front().description, lit().lights);
-    bits_.emplace(bits, lit(), lit().lights.front());
+    check_bits(plan_.chosen.front().description, lit().lights);
+    picture_.bits.emplace(bits, lit(), lit().lights.front());
   }
   watch.restart();
   BeautyAccumulator beauty(lit(), lit().lights);
-  beauty_seconds_ += watch.seconds();
-  run_ = run_lights(beauty, bits_ ? &*bits_ : nullptr);
+  spent_.beauty += watch.seconds();
+  picture_.run = run_lights(beauty, picture_.bits ? &*picture_.bits : nullptr);
   watch.restart();
-  beauty_ = std::move(beauty).parts();
-  alpha_.resize(lit().samples.size());
-  std::ranges::transform(lit().samples.triangle, alpha_.begin(), [](std::int32_t triangle) {
+  picture_.beauty = std::move(beauty).parts();
+  picture_.alpha.resize(lit().samples.size());
+  std::ranges::transform(lit().samples.triangle, picture_.alpha.begin(), [](std::int32_t triangle) {
     return triangle == visibility::ViewSamples::kBackground ? 0.0f : 1.0f;
   });
-  beauty_seconds_ += watch.seconds();
+  spent_.beauty += watch.seconds();
   add_panes();
   say_idle_lights();
 }
@@ -148,7 +149,7 @@ MethodRun FrameRenderer::run_lights(BeautyAccumulator& beauty, BitsOutput* bits)
   const auto run_with = [&](const LightMethod& method, RunPlan plan) {
     const Stopwatch make;
     Kept& kept = method_for(method);
-    make_seconds_ += make.seconds();
+    spent_.make += make.seconds();
     plan.prepared = kept.prepared;
     plan.shades = true;
     MethodRun run = run_method(
@@ -159,7 +160,7 @@ MethodRun FrameRenderer::run_lights(BeautyAccumulator& beauty, BitsOutput* bits)
           if (bits == nullptr || tile.light != 0) return;
           const Stopwatch watch;
           bits->add(tile);
-          bits_seconds_ += watch.seconds();
+          spent_.bits += watch.seconds();
         },
         progress_);
     // Whatever was made for a mesh is counted by who made it (Method::take_mesh_counters).
@@ -167,25 +168,25 @@ MethodRun FrameRenderer::run_lights(BeautyAccumulator& beauty, BitsOutput* bits)
     kept.prepared = run.prepared;
     // Whatever is no phase of the method's is about its answers.
     const RunTimes& times = run.times;
-    beauty_seconds_ += times.total - times.mesh - times.light - times.evaluate - times.view;
+    spent_.beauty += times.total - times.mesh - times.light - times.evaluate - times.view;
     add_run(all, std::move(run));
   };
-  for (const std::vector<std::size_t>& lights : same_methods(chosen_))
-    run_with(chosen_[lights.front()], {.lights = lights_, .only = lights});
+  for (const std::vector<std::size_t>& lights : same_methods(plan_.chosen))
+    run_with(plan_.chosen[lights.front()], {.lights = plan_.lights, .only = lights});
   std::vector<std::size_t> in_part;
   std::vector<LightMethod> with;
-  for (std::size_t i = 0; i < counting_.size(); ++i) {
-    if (!counting_[i]) {
-      done_.try_emplace(lights_[i].name, chosen_[i]);
+  for (std::size_t i = 0; i < plan_.counting.size(); ++i) {
+    if (!plan_.counting[i]) {
+      done_.with.try_emplace(plan_.lights[i].name, plan_.chosen[i]);
       continue;
     }
-    done_.insert_or_assign(lights_[i].name, *counting_[i]);
+    done_.with.insert_or_assign(plan_.lights[i].name, *plan_.counting[i]);
     all.counters["viewSamplesCounted"] +=
         static_cast<std::uint64_t>(std::ranges::count(lit().filtered[i], std::uint8_t{1}));
-    if (!lights_[i].filtered_by.empty()) continue;  // no areas
-    in_part_.insert(lights_[i].name);
+    if (!plan_.lights[i].filtered_by.empty()) continue;  // no areas
+    done_.in_part.insert(plan_.lights[i].name);
     in_part.push_back(i);
-    with.push_back(*counting_[i]);
+    with.push_back(*plan_.counting[i]);
   }
   for (std::vector<std::size_t> lights : same_methods(with)) {
     const LightMethod& method = with[lights.front()];
@@ -196,7 +197,7 @@ MethodRun FrameRenderer::run_lights(BeautyAccumulator& beauty, BitsOutput* bits)
     all.times.evaluate += lit().filtered_seconds[i];
     all.times.lights[i].evaluate += lit().filtered_seconds[i];
   }
-  view_seconds_ += all.times.view;
+  spent_.view += all.times.view;
   return of_whole_lights(std::move(all), lit());
 }
 

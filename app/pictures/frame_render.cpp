@@ -89,22 +89,21 @@ FrameRenderer::FrameRenderer(const RunOptions& options, const MethodWish& wish, 
       format_(parse_format(options.format)),
       machine_(machine),
       progress_(progress),
-      maker_(options, machine),
-      fine_options_(options) {}
+      maker_(options, machine) {}
 
 void FrameRenderer::say_once(const std::vector<std::string>& warnings) {
   progress_.clear();
   for (const std::string& warning : warnings) {
-    if (std::ranges::find(said_, warning) != said_.end()) continue;
+    if (std::ranges::find(said_.warnings, warning) != said_.warnings.end()) continue;
     progress_.warn(warning);
-    said_.push_back(warning);
+    said_.warnings.push_back(warning);
   }
 }
 
 void FrameRenderer::say_warnings() {
   progress_.clear();
   const auto& cameras = session().scene.cameras;
-  if (cameras.size() > 1 && options_.camera.empty() && !std::exchange(camera_said_, true))
+  if (cameras.size() > 1 && options_.camera.empty() && !std::exchange(said_.camera, true))
     progress_.info(
         fmt::format("camera \"{}\", the first of {}; --camera NAME or all", cameras.front().name, cameras.size()));
   say_once(lit().warnings);
@@ -112,10 +111,11 @@ void FrameRenderer::say_warnings() {
 
 void FrameRenderer::mark_lights() {
   const std::vector<WholeLight> lights = whole_lights(lit().lights);
-  lights_something_.resize(lights.size());
+  done_.lights_something.resize(lights.size());
   for (std::size_t i = 0; i < lights.size(); ++i) {
     const auto pieces = std::span(lit().classes).subspan(lights[i].first, lights[i].count);
-    if (std::ranges::any_of(pieces, [](const auto& piece) { return lights_anything(piece); })) lights_something_[i] = 1;
+    if (std::ranges::any_of(pieces, [](const auto& piece) { return lights_anything(piece); }))
+      done_.lights_something[i] = 1;
   }
 }
 
@@ -124,7 +124,7 @@ void FrameRenderer::say_idle_lights() {
   const std::vector<WholeLight> lights = whole_lights(lit().lights);
   for (std::size_t i = 0; i < lights.size(); ++i) {
     const visibility::Light& light = lit().lights[lights[i].first];
-    if (light.radiance == glm::dvec3(0) || lights_something_[i] != 0) continue;
+    if (light.radiance == glm::dvec3(0) || done_.lights_something[i] != 0) continue;
     warnings.push_back(fmt::format("no visible point is before light \"{}\": nothing in the picture is lit by it{}",
                                    light.name, light.two_sided ? "" : " (does it shine the other way?)"));
   }
@@ -132,45 +132,45 @@ void FrameRenderer::say_idle_lights() {
 }
 
 void FrameRenderer::show(SessionMaker& maker, scenes::Scene scene) {
-  if (frame_.same_meshes)
-    maker.show_again(std::move(scene), frame_.camera, progress_);
+  if (picture_.frame.same_meshes)
+    maker.show_again(std::move(scene), picture_.frame.camera, progress_);
   else
-    maker.show(std::move(scene), frame_.camera, 0, progress_);
-  load_seconds_ += maker.session().load_seconds;
-  make_seconds_ += maker.session().device_seconds;
-  view_seconds_ += maker.session().view_seconds + maker.session().receiver_seconds;
+    maker.show(std::move(scene), picture_.frame.camera, 0, progress_);
+  spent_.load += maker.session().load_seconds;
+  spent_.make += maker.session().device_seconds;
+  spent_.view += maker.session().view_seconds + maker.session().receiver_seconds;
 }
 
 void FrameRenderer::check_wanted_layers() const {
-  check_layers(format_, session(), frame_.pixel_side > 1 || !frame_.moments.empty());
+  check_layers(format_, session(), picture_.frame.pixel_side > 1 || !picture_.frame.moments.empty());
 }
 
 /// Notes in which of the picture's pixels the surfaces that are looked at are bodies of lights.
 void FrameRenderer::mark_lamps() {
-  lamps_.resize(session().pixel_count());
+  picture_.lamps.resize(session().pixel_count());
   const std::uint32_t side = lit().width / session().width;
   for (std::size_t i = 0; i < lit().samples.size(); ++i) {
     const std::int32_t triangle = lit().samples.triangle[i];
     if (triangle < 0 || lit().floats.emits[static_cast<std::size_t>(triangle)] < 0) continue;
-    lamps_[i / lit().width / side * session().width + i % lit().width / side] = 1;
+    picture_.lamps[i / lit().width / side * session().width + i % lit().width / side] = 1;
   }
 }
 
 void FrameRenderer::add_panes() {
   const Stopwatch find;
   const visibility::Panes panes(lit().floats, lit().samples);
-  view_seconds_ += find.seconds();
+  spent_.view += find.seconds();
   if (panes.depth() == 0) return;
-  const std::size_t pixels = alpha_.size();
+  const std::size_t pixels = picture_.alpha.size();
   std::vector<double> through(pixels, 1.0);
-  std::vector<std::vector<glm::dvec3>> over(beauty_.size(), std::vector<glm::dvec3>(pixels, glm::dvec3(0)));
+  std::vector<std::vector<glm::dvec3>> over(picture_.beauty.size(), std::vector<glm::dvec3>(pixels, glm::dvec3(0)));
   const auto add = [&](std::size_t pixel, double share, std::span<const std::vector<glm::vec3>> beauty) {
     for (std::size_t light = 0; light < over.size(); ++light) {
       if (!beauty[light].empty()) over[light][pixel] += share * glm::dvec3(beauty[light][pixel]);
     }
   };
   visibility::ViewSamples behind;
-  layers_ = true;
+  picture_.layers = true;
   for (std::size_t number = 0; number < panes.depth(); ++number) {
     Stopwatch watch;
     visibility::PaneLayer layer = panes.layer(number);
@@ -178,48 +178,47 @@ void FrameRenderer::add_panes() {
     if (behind.size() == 0) behind = std::move(before);
     choose_methods(lit());
     say_notes();
-    view_seconds_ += watch.seconds() - sum_of(lit().filtered_seconds);
+    spent_.view += watch.seconds() - sum_of(lit().filtered_seconds);
     watch.restart();
     mark_lights();
     mark_lamps();
     BeautyAccumulator beauty(lit(), lit().lights);
-    beauty_seconds_ += watch.seconds();
-    add_times(run_, run_lights(beauty, nullptr));
+    spent_.beauty += watch.seconds();
+    add_times(picture_.run, run_lights(beauty, nullptr));
     watch.restart();
     for (std::size_t i = 0; i < pixels; ++i) {
       add(i, through[i] * double{layer.alpha[i]}, beauty.parts());
       through[i] *= 1 - double{layer.alpha[i]};
     }
-    beauty_seconds_ += watch.seconds();
+    spent_.beauty += watch.seconds();
   }
-  layers_ = false;
+  picture_.layers = false;
   const Stopwatch back;
   lit_maker().look_at(std::move(behind));
-  view_seconds_ += back.seconds();
+  spent_.view += back.seconds();
   for (std::size_t i = 0; i < pixels; ++i) {
-    add(i, through[i], beauty_);
-    alpha_[i] = static_cast<float>(1 - through[i] * (1 - double{alpha_[i]}));
+    add(i, through[i], picture_.beauty);
+    picture_.alpha[i] = static_cast<float>(1 - through[i] * (1 - double{picture_.alpha[i]}));
   }
   for (std::size_t light = 0; light < over.size(); ++light)
-    beauty_[light].assign(over[light].begin(), over[light].end());
+    picture_.beauty[light].assign(over[light].begin(), over[light].end());
 }
 
 void FrameRenderer::render(scenes::Scene scene, const Frame& frame, const std::filesystem::path& bits,
                            double read_seconds) {
-  frame_ = frame;
-  load_seconds_ = read_seconds;
-  make_seconds_ = view_seconds_ = beauty_seconds_ = bits_seconds_ = 0;
-  bits_.reset();
-  mean_.reset();
-  mattes_.reset();
-  masks_.clear();
-  layers_ = false;
-  lamps_.clear();
+  picture_.frame = frame;
+  spent_ = {.load = read_seconds};
+  picture_.bits.reset();
+  picture_.mean.reset();
+  picture_.mattes.reset();
+  picture_.masks.clear();
+  picture_.layers = false;
+  picture_.lamps.clear();
   for (Kept& kept : kept_) kept.used = false;
-  done_.clear();
-  in_part_.clear();
-  notes_.clear();
-  run_ = {};
+  done_.with.clear();
+  done_.in_part.clear();
+  picture_.notes.clear();
+  picture_.run = {};
   if (frame.pixel_side == 1 && fine_) {
     kept_.clear();  // what they hold is of the session that goes
     fine_.reset();
@@ -236,30 +235,31 @@ void FrameRenderer::render(scenes::Scene scene, const Frame& frame, const std::f
 }
 
 void FrameRenderer::render_mean(scenes::Scene scene) {
-  const std::uint32_t side = frame_.pixel_side;
+  const std::uint32_t side = picture_.frame.pixel_side;
   if (side > 1) {
     show(maker_, scene);
     check_wanted_layers();
-    view_seconds_ += sum_of(session().filtered_seconds);
+    spent_.view += sum_of(session().filtered_seconds);
     const std::string size = fmt::format("{}x{}", session().width * side, session().height * side);
-    const bool is_other = !fine_ || fine_options_.size != size;
-    fine_options_ = options_;  // which may have changed since the last picture
-    fine_options_.size = size;
-    if (is_other) {
+    RunOptions options = options_;  // which may have changed since the last picture
+    options.size = size;
+    if (!fine_ || fine_->options.size != size) {
       kept_.clear();  // what they hold is of the session that goes
-      fine_.emplace(fine_options_, machine_);
+      fine_.emplace(options, machine_);
     }
+    fine_->options = std::move(options);
   }
   std::map<std::string, LightTimes> times;
   const auto add = [&](scenes::Scene moment) {
-    show(side > 1 ? *fine_ : maker_, std::move(moment));
-    MethodRun before = std::exchange(run_, {});
+    show(side > 1 ? fine_->maker : maker_, std::move(moment));
+    MethodRun before = std::exchange(picture_.run, {});
     run_methods({});
     const Stopwatch watch;
-    if (!mean_) {
+    if (!picture_.mean) {
       const std::uint32_t width = lit().width / side, height = lit().height / side;
-      mean_.emplace(width, height, frame_.filter);
-      mattes_ = Mattes{MatteShares(width, height, frame_.filter), MatteShares(width, height, frame_.filter)};
+      picture_.mean.emplace(width, height, picture_.frame.filter);
+      picture_.mattes =
+          Mattes{MatteShares(width, height, picture_.frame.filter), MatteShares(width, height, picture_.frame.filter)};
     }
     const Surfaces surfaces(lit());
     std::vector<std::uint32_t> shown(lit().samples.size());
@@ -267,79 +267,79 @@ void FrameRenderer::render_mean(scenes::Scene scene) {
       tbb::parallel_for(std::size_t{0}, shown.size(), [&](std::size_t i) { shown[i] = (surfaces.*number)(i); });
       return shown;
     };
-    mattes_->objects.add(surfaces.objects(), numbers(&Surfaces::object), side);
-    mattes_->materials.add(surfaces.materials(), numbers(&Surfaces::material), side);
+    picture_.mattes->objects.add(surfaces.objects(), numbers(&Surfaces::object), side);
+    picture_.mattes->materials.add(surfaces.materials(), numbers(&Surfaces::material), side);
     const std::vector<std::string> names = whole_names(lit().lights);
-    mean_->add(alpha_, names, run_.visibility, beauty_, side);
-    beauty_seconds_ += watch.seconds();
+    picture_.mean->add(picture_.alpha, names, picture_.run.visibility, picture_.beauty, side);
+    spent_.beauty += watch.seconds();
     for (std::size_t light = 0; light < names.size(); ++light) {
-      times[names[light]].light += run_.times.lights[light].light;
-      times[names[light]].evaluate += run_.times.lights[light].evaluate;
+      times[names[light]].light += picture_.run.times.lights[light].light;
+      times[names[light]].evaluate += picture_.run.times.lights[light].evaluate;
     }
     before.times.lights.clear();  // its lights may be others
-    add_times(run_, before);
+    add_times(picture_.run, before);
   };
-  if (frame_.moments.empty()) add(scene);
-  for (const auto& moment : frame_.moments) {
+  if (picture_.frame.moments.empty()) add(scene);
+  for (const auto& moment : picture_.frame.moments) {
     const Stopwatch read;
     scenes::Scene then = moment();
-    load_seconds_ += read.seconds();
+    spent_.load += read.seconds();
     add(std::move(then));
   }
   if (side == 1) {
     show(maker_, std::move(scene));
-    view_seconds_ += sum_of(session().filtered_seconds);
+    spent_.view += sum_of(session().filtered_seconds);
   }
   // What is written of lights is about those of the frame's own time.
-  run_.times.lights.clear();
+  picture_.run.times.lights.clear();
   const std::vector<std::string> own = whole_names(session().lights);
-  for (const std::string& light : own) run_.times.lights.push_back(times[light]);
-  for (const std::string& light : mean_->lights()) {
+  for (const std::string& light : own) picture_.run.times.lights.push_back(times[light]);
+  for (const std::string& light : picture_.mean->lights()) {
     if (std::ranges::find(own, light) != own.end()) continue;
-    notes_.push_back(fmt::format(
+    picture_.notes.push_back(fmt::format(
         "light \"{}\" is not there at the frame's own time: R G B have its light, and it has no layer", light));
-    say_once({notes_.back()});
+    say_once({picture_.notes.back()});
   }
 }
 
 RenderedFrame FrameRenderer::take() {
   const std::vector<std::string> own = whole_names(session().lights);
   RenderedFrame frame;
-  frame.beauty = mean_ ? mean_->beauty(own) : std::move(beauty_);
-  frame.visibility = mean_ ? mean_->visibility(own) : std::move(run_.visibility);
-  frame.alpha = mean_ ? mean_->alpha() : std::move(alpha_);
-  frame.masks = std::move(masks_);
+  frame.beauty = picture_.mean ? picture_.mean->beauty(own) : std::move(picture_.beauty);
+  frame.visibility = picture_.mean ? picture_.mean->visibility(own) : std::move(picture_.run.visibility);
+  frame.alpha = picture_.mean ? picture_.mean->alpha() : std::move(picture_.alpha);
+  frame.masks = std::move(picture_.masks);
   frame.sum = sum_of(frame.beauty, session().pixel_count());
-  if (!mean_) return frame;
-  std::vector<std::string> others = mean_->lights();  // lights of other moments alone
+  if (!picture_.mean) return frame;
+  std::vector<std::string> others = picture_.mean->lights();  // lights of other moments alone
   std::erase_if(others, [&](const std::string& light) { return std::ranges::find(own, light) != own.end(); });
-  const std::vector<glm::vec3> more = sum_of(mean_->beauty(others), frame.sum.size());
+  const std::vector<glm::vec3> more = sum_of(picture_.mean->beauty(others), frame.sum.size());
   for (std::size_t i = 0; i < more.size(); ++i) frame.sum[i] += more[i];
   return frame;
 }
 
 compare::Stats FrameRenderer::stats() {
-  compare::Stats stats = make_stats(session(), {session().lights, labels_}, run_);
+  compare::Stats stats = make_stats(session(), {session().lights, done_.labels}, picture_.run);
   say_once(stats.warnings);
-  stats.warnings.insert(stats.warnings.end(), notes_.begin(), notes_.end());
+  stats.warnings.insert(stats.warnings.end(), picture_.notes.begin(), picture_.notes.end());
   compare::Seconds& seconds = stats.seconds;
-  seconds.load = load_seconds_;
-  seconds.mesh = *seconds.mesh + make_seconds_;
-  seconds.view = view_seconds_;
-  seconds.beauty = std::max(beauty_seconds_ - bits_seconds_, 0.0);
+  seconds.load = spent_.load;
+  seconds.mesh = *seconds.mesh + spent_.make;
+  seconds.view = spent_.view;
+  seconds.beauty = std::max(spent_.beauty - spent_.bits, 0.0);
   return stats;
 }
 
 compare::Stats FrameRenderer::write(const FrameFiles& files, Exposure& exposure) {
   const Stopwatch write;
-  const LabelledLights lights{session().lights, labels_};
+  const LabelledLights lights{session().lights, done_.labels};
   const RenderedFrame content = take();
   float stops = exposure.stops;
   if (exposure.kind == Exposure::Kind::automatic || std::isnan(stops))
-    stops = std::log2(auto_exposure(session(), content.sum, lamps_));
+    stops = std::log2(auto_exposure(session(), content.sum, picture_.lamps));
   if (exposure.kind == Exposure::Kind::first) exposure.stops = stops;
   std::map<std::string, std::string> attributes = {{kExposureAttribute, fmt::format("{}", stops)}};
-  if (frame_.number) attributes["penumbra.frame"] = fmt::format("{}", *frame_.number);
+  if (picture_.frame.number) attributes["penumbra.frame"] = fmt::format("{}", *picture_.frame.number);
 
   progress_.clear();
   // All are on the disk before the first has its name: what has no room leaves nothing.
@@ -355,7 +355,7 @@ compare::Stats FrameRenderer::write(const FrameFiles& files, Exposure& exposure)
   }
   say_once(write_picture(picture,
                          {session(), lights, content.visibility, content.beauty, content.sum, content.alpha,
-                          std::move(attributes), mattes_ ? &*mattes_ : nullptr},
+                          std::move(attributes), picture_.mattes ? &*picture_.mattes : nullptr},
                          format_));
   picture.settle();
   if (png) {
@@ -364,7 +364,7 @@ compare::Stats FrameRenderer::write(const FrameFiles& files, Exposure& exposure)
   }
   compare::Stats stats = this->stats();
   compare::Seconds& seconds = stats.seconds;
-  seconds.write = write.seconds() + bits_seconds_;
+  seconds.write = write.seconds() + spent_.bits;
   // From the last picture to this one: the seconds of a sequence's pictures add up to its own.
   const double now = seconds_since_start();
   seconds.total = now - std::exchange(written_, now);
@@ -373,14 +373,15 @@ compare::Stats FrameRenderer::write(const FrameFiles& files, Exposure& exposure)
     stats_file->write(compare::json_text(compare::to_json(stats)));
     stats_file->settle();
   }
-  if (bits_) bits_->settle();
+  if (picture_.bits) picture_.bits->settle();
   // All of a frame's files or none, also where a signal comes now.
   const UnwindsAfterSignals unwinds;
-  if (bits_) bits_->commit();
-  bits_.reset();
+  if (picture_.bits) picture_.bits->commit();
+  picture_.bits.reset();
   picture.commit();
   if (png) png->commit();
-  if (const std::string line = mesh_line(run_.counters); expects_frames_ && !line.empty()) progress_.debug(line);
+  if (const std::string line = mesh_line(picture_.run.counters); expects_frames_ && !line.empty())
+    progress_.debug(line);
   if (stats_file) stats_file->commit();
   return stats;
 }

@@ -102,8 +102,8 @@ class FrameRenderer {
   void check_wanted_layers() const;
   void render_mean(scenes::Scene scene);
   /// What methods look at: the picture's session, or that of more view samples a pixel.
-  [[nodiscard]] const Session& lit() const { return fine_ ? fine_->session() : maker_.session(); }
-  [[nodiscard]] SessionMaker& lit_maker() { return fine_ ? *fine_ : maker_; }
+  [[nodiscard]] const Session& lit() const { return fine_ ? fine_->maker.session() : maker_.session(); }
+  [[nodiscard]] SessionMaker& lit_maker() { return fine_ ? fine_->maker : maker_; }
   Kept& method_for(const LightMethod& wanted);
   void say_warnings();
   void say_once(const std::vector<std::string>& warnings);
@@ -112,41 +112,68 @@ class FrameRenderer {
   /// Once all view samples have been looked at.
   void say_idle_lights();
 
+  /// The session of more view samples a pixel, whose picture is several times as large.
+  struct Fine {
+    Fine(const RunOptions& given, const render::Machine& machine) : options(given), maker(options, machine) {}
+    Fine(const Fine&) = delete;
+    Fine& operator=(const Fine&) = delete;
+    ~Fine() = default;
+    RunOptions options;
+    SessionMaker maker;  // refers to these
+  };
+  /// What has been said, once.
+  struct Said {
+    std::vector<std::string> warnings;
+    bool camera = false;
+  };
+  /// Which method each light gets, of the view samples that are looked at.
+  struct Plan {
+    std::vector<LightMethod> chosen;
+    // Of lights whose areas are known where nothing that lets light through may be on the way: what counts elsewhere.
+    std::vector<std::optional<LightMethod>> counting;
+    std::vector<visibility::Light> lights;  // as those chosen know them: of areas, without filtered_by
+  };
+  /// What the lights of the picture computed last were done with.
+  struct Done {
+    std::map<std::string, LightMethod> with;  // by name: what counted where anything did, else what gave areas
+    std::set<std::string> in_part;            // names of lights that both did
+    std::vector<MethodLabel> labels;
+    std::vector<std::uint8_t> lights_something;  // of each whole light: a view sample is before it
+  };
+  /// The picture computed last.
+  struct Picture {
+    Frame frame;
+    std::vector<std::string> notes;
+    MethodRun run;
+    std::vector<std::vector<glm::vec3>> beauty;     // of each light
+    bool layers = false;                            // translucent surfaces are looked at, and not what is behind them
+    std::vector<std::vector<std::uint32_t>> masks;  // of each light
+    std::vector<float> alpha;                       // of each pixel
+    std::vector<std::uint8_t> lamps;  // of each pixel: a translucent body of a light is seen; empty: none is
+    std::optional<PictureMean> mean;  // nothing: the picture is that of one moment and of pixels' centres
+    std::optional<Mattes> mattes;     // there when that is
+    std::optional<BitsOutput> bits;
+  };
+  /// Seconds that it took. `make`: the device and methods. `beauty`: all that is done with what methods answer, writing
+  /// bits included.
+  struct Spent {
+    double load = 0, make = 0, view = 0, beauty = 0, bits = 0;
+  };
+
   const RunOptions& options_;
   const MethodWish& wish_;
   PictureFormat format_;
   render::Machine machine_;
   Progress& progress_;
   SessionMaker maker_;
-  RunOptions fine_options_;  // of the next, whose picture is several times as large
-  std::optional<SessionMaker> fine_;
+  std::optional<Fine> fine_;
   std::vector<Kept> kept_;
   bool expects_frames_ = false;
-  std::vector<std::string> said_;  // warnings, once each
-  bool camera_said_ = false;
-
-  // Of the picture computed last:
-  Frame frame_;
-  std::vector<LightMethod> chosen_;
-  // Of lights whose areas are known where nothing that lets light through may be on the way: what counts elsewhere.
-  std::vector<std::optional<LightMethod>> counting_;
-  std::vector<visibility::Light> lights_;    // as those chosen know them: of areas, without filtered_by
-  std::map<std::string, LightMethod> done_;  // by name: what counted where anything did, else what gave areas
-  std::set<std::string> in_part_;            // names of lights that both did
-  std::vector<MethodLabel> labels_;
-  std::vector<std::string> notes_;
-  MethodRun run_;
-  std::vector<std::vector<glm::vec3>> beauty_;     // of each light
-  bool layers_ = false;                            // translucent surfaces are looked at, and not what is behind them
-  std::vector<std::vector<std::uint32_t>> masks_;  // of each light
-  std::vector<float> alpha_;                       // of each pixel
-  std::vector<std::uint8_t> lights_something_;     // of each whole light: a view sample is before it
-  std::vector<std::uint8_t> lamps_;  // of each pixel: a translucent body of a light is seen; empty: none is
-  std::optional<PictureMean> mean_;  // nothing: the picture is that of one moment and of pixels' centres
-  std::optional<Mattes> mattes_;     // there when that is
-  std::optional<BitsOutput> bits_;
-  // `make`: the device and methods. `beauty`: all that is done with what methods answer, writing bits included.
-  double load_seconds_ = 0, make_seconds_ = 0, view_seconds_ = 0, beauty_seconds_ = 0, bits_seconds_ = 0;
+  Said said_;
+  Plan plan_;
+  Done done_;
+  Picture picture_;
+  Spent spent_;
   double written_ = 0;  // when the last picture was, since the process began
 };
 
