@@ -24,6 +24,7 @@ namespace penumbra::repair {
 namespace {
 
 using mesh::Box;
+using mesh::collinear;
 
 namespace pmp = CGAL::Polygon_mesh_processing;
 using Face = CgalMesh::Face_index;

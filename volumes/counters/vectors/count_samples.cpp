@@ -5,6 +5,7 @@
 #include "volumes/counters/vectors/count_samples.hpp"
 
 #include "engines/vectors/horizon.hpp"
+#include "volumes/edges/vectors/corner.hpp"
 #include "volumes/edges/vectors/precise.hpp"
 
 #include <algorithm>
@@ -52,7 +53,7 @@ static_assert(kSeenFields == CountScratch::kFields);
 
 class SampleCount {
  public:
-  SampleCount(const ScatterInput& in, Scratch& scratch, CountScratch& counting, const ClusterSample& at,
+  SampleCount(const ClusterInput& in, EdgeScratch& scratch, CountScratch& counting, const ClusterSample& at,
               OpenJudge& judge)
       : in_(in), tiles_(*in.grid.tiles), s_(scratch), c_(counting), at_(at), judge_(judge) {}
 
@@ -181,9 +182,9 @@ class SampleCount {
                          static_cast<std::uint32_t>(slot) + static_cast<std::uint32_t>(std::countr_zero(left))});
   }
 
-  const ScatterInput& in_;
+  const ClusterInput& in_;
   const LightTiles& tiles_;
-  Scratch& s_;
+  EdgeScratch& s_;
   CountScratch& c_;
   const ClusterSample& at_;
   OpenJudge& judge_;
@@ -218,7 +219,7 @@ std::optional<float> depth_by_one(const LightTiles& tiles, const CountScratch& c
   return std::nullopt;
 }
 
-void count_one(const ScatterInput& in, Scratch& scratch, CountScratch& counting, const ClusterSample& at,
+void count_one(const ClusterInput& in, EdgeScratch& scratch, CountScratch& counting, const ClusterSample& at,
                OpenJudge& judge, SampleMask& mask) {
   const LightTiles& tiles = *in.grid.tiles;
   const std::size_t some = scratch.lists.settled.count + scratch.lists.unsettled.count;
@@ -243,7 +244,7 @@ void count_one(const ScatterInput& in, Scratch& scratch, CountScratch& counting,
   if (at.straddles) cut_at_horizon(in.grid, at, scratch.open, mask);
 }
 
-void count_samples_here(const ScatterInput& in, Scratch& scratch, CountScratch& counting, OpenJudge& judge,
+void count_samples_here(const ClusterInput& in, EdgeScratch& scratch, CountScratch& counting, OpenJudge& judge,
                         std::span<SampleMask> masks) {
   for_each_sample(in, scratch.lists, [&](std::size_t i) {
     const ClusterSample& at = in.samples[i];
@@ -262,7 +263,7 @@ namespace penumbra::volumes {
 
 HWY_EXPORT(count_samples_here);
 
-void count_samples(const ScatterInput& input, Scratch& scratch, CountScratch& counting, OpenJudge& judge,
+void count_samples(const ClusterInput& input, EdgeScratch& scratch, CountScratch& counting, OpenJudge& judge,
                    std::span<SampleMask> masks) {
   HWY_DYNAMIC_DISPATCH(count_samples_here)(input, scratch, counting, judge, masks);
 }

@@ -1,6 +1,7 @@
 #pragma once
 
-#include "volumes/scatter/vectors/scatter.hpp"
+#include "volumes/edges/vectors/edge_scratch.hpp"
+#include "volumes/edges/vectors/group.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -10,10 +11,10 @@
 /// depth-complexity on a processor. Inside volumes/ only.
 namespace penumbra::volumes {
 
-/// Buffers of one thread, beside Scratch.
+/// Buffers of one thread, beside EdgeScratch.
 struct CountScratch {
   static constexpr std::size_t kFields = 10;
-  Table<kFields> edges;         ///< of those in Scratch::crossing; columns are count_samples.cpp's
+  Table<kFields> edges;         ///< of those in EdgeScratch::crossing; columns are count_samples.cpp's
   std::vector<float> counters;  ///< of each slot (LightTiles)
   struct Near {
     std::uint32_t edge, slot;
@@ -26,7 +27,7 @@ struct CountScratch {
 
 /// Counts the triangles between each view sample and each light sample (in tiles) at silhouette edges. `masks`: one for
 /// each view sample; of its bits all or none are written.
-void count_samples(const ScatterInput& input, Scratch& scratch, CountScratch& counting, OpenJudge& judge,
+void count_samples(const ClusterInput& input, EdgeScratch& scratch, CountScratch& counting, OpenJudge& judge,
                    std::span<SampleMask> masks);
 
 }  // namespace penumbra::volumes

@@ -57,7 +57,7 @@ class VectorDepthComplexity final : public VectorEdges {
     shape.rows = shape.columns = 0;
     return shape;
   }
-  void do_occluded(const ScatterInput& input, OpenJudge& judge, std::span<SampleMask> masks) override {
+  void do_occluded(const ClusterInput& input, OpenJudge& judge, std::span<SampleMask> masks) override {
     CountScratch& counting = counting_.local();
     if (search_ == Search::hierarchy) counting.candidates += input.edges.count * input.samples.size();
     count_samples(input, scratch_.local(), counting, judge, masks);

@@ -1,7 +1,7 @@
 // Edge scatter on a processor: the depth at the light's corner, to which edges add their changes.
 
 #include "visibility/certain_meeting.hpp"
-#include "volumes/scatter/vectors/scatter.hpp"
+#include "volumes/edges/vectors/corner.hpp"
 
 #include <array>
 #include <bit>

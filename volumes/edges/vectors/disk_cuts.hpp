@@ -1,6 +1,6 @@
 #pragma once
 
-#include "volumes/scatter/vectors/scatter.hpp"
+#include "volumes/edges/vectors/tables.hpp"
 
 #include <glm/vec2.hpp>
 

@@ -1,7 +1,7 @@
 // Edge scatter on a processor: a few neighbouring view samples sort out, together, which of their cluster's edges and
 // triangles matter to them.
 
-#include "volumes/scatter/vectors/scatter.hpp"
+#include "volumes/edges/vectors/group.hpp"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -80,7 +80,7 @@ struct Range {
 
 class GroupFilter {
  public:
-  GroupFilter(const ScatterInput& in, const GroupBounds& g, const Hull& hull) : in_(in), g_(g), hull_(hull) {
+  GroupFilter(const ClusterInput& in, const GroupBounds& g, const Hull& hull) : in_(in), g_(g), hull_(hull) {
     const glm::vec3 from_light = in.cluster.middle - in.grid.center;
     foot_ = glm::vec2(glm::dot(in.grid.across, from_light), glm::dot(in.grid.along, from_light)) + in.grid.first_cell;
     height_ = glm::dot(in.grid.axis, from_light);
@@ -246,14 +246,14 @@ class GroupFilter {
     table.count += more;
   }
 
-  const ScatterInput& in_;
+  const ClusterInput& in_;
   const GroupBounds& g_;
   const Hull& hull_;
   glm::vec2 foot_{0};  // of the cluster's middle
   float height_ = 0;
 };
 
-void sort_out_here(const ScatterInput& in, std::span<const ClusterSample> group, GroupLists& lists) {
+void sort_out_here(const ClusterInput& in, std::span<const ClusterSample> group, GroupLists& lists) {
   const GroupBounds bounds = bounds_of(group);
   const Hull hull = hull_of(in.grid, in.cluster, group);
   const GroupFilter filter(in, bounds, hull);
@@ -269,9 +269,17 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace penumbra::volumes {
 
+void reset_open(const LightGrid& grid, const visibility::LightTouch& touch, const GridSample& at, Open& open) {
+  open.clear();
+  if (touch.empty()) return;
+  open.samples = touch.samples;
+  const float farthest = glm::length(at.p - grid.center) + grid.radius;
+  open.pixel = touch.any_near && at.height < static_cast<float>(visibility::LightTouch::kFlat) * farthest;
+}
+
 HWY_EXPORT(sort_out_here);
 
-void sort_out(const ScatterInput& input, std::span<const ClusterSample> group, GroupLists& lists) {
+void sort_out(const ClusterInput& input, std::span<const ClusterSample> group, GroupLists& lists) {
   HWY_DYNAMIC_DISPATCH(sort_out_here)(input, group, lists);
 }
 

@@ -96,8 +96,8 @@ float first_right_of(const PreciseInput& in, float row, float lowest, float high
   float first = lowest;
   for (; first <= highest; ++first) {
     const std::uint32_t sample =
-        static_cast<std::uint32_t>(row) * in.scatter.grid.columns + static_cast<std::uint32_t>(first);
-    const int side = side_of_way(in, glm::dvec3(in.scatter.grid.points[sample]) - glm::dvec3(in.at.p));
+        static_cast<std::uint32_t>(row) * in.of.grid.columns + static_cast<std::uint32_t>(first);
+    const int side = side_of_way(in, glm::dvec3(in.of.grid.points[sample]) - glm::dvec3(in.at.p));
     if (side == 0) {
       marks.sample(row, first);
     } else if ((side < 0) == runs_up) {  // right of an edge that runs up
@@ -129,7 +129,7 @@ bool passes_corner(const LightGrid& grid, const ProjectedEdge& s) {
 template <typename Counter>
 float cross_rows(const PreciseInput& in, const ProjectedEdge& s, Counter jump, const Changes<Counter>& changes,
                  Marks& marks) {
-  const LightGrid& grid = in.scatter.grid;
+  const LightGrid& grid = in.of.grid;
   const auto columns = static_cast<float>(grid.columns);
   const float error = error_of_rows(grid, s);
   const bool upper_right = (s.near.y < s.far.y ? s.far.x : s.near.x) >= -0.5F;
@@ -174,7 +174,7 @@ float cross_rows(const PreciseInput& in, const ProjectedEdge& s, Counter jump, c
 template <typename Counter>
 void cross_left_side(const PreciseInput& in, const ProjectedEdge& s, float from, Counter up,
                      const Changes<Counter>& changes, Marks& marks) {
-  const LightGrid& grid = in.scatter.grid;
+  const LightGrid& grid = in.of.grid;
   const glm::vec2 way = s.far - s.near;
   const float inverse = way.y / way.x;
   const float weight =
@@ -191,7 +191,7 @@ void cross_left_side(const PreciseInput& in, const ProjectedEdge& s, float from,
 }
 
 /// As stored.
-std::array<glm::dvec3, 2> ends_of(const ScatterInput& in, std::size_t edge) {
+std::array<glm::dvec3, 2> ends_of(const ClusterInput& in, std::size_t edge) {
   const auto slot = std::bit_cast<std::uint32_t>(in.edges[kEdgeSlot][edge]);
   const WideEdges& leaf = in.edge_tree.leaves[slot / kWide];
   const auto point = [&](const WidePoints& end) {
@@ -254,20 +254,20 @@ std::optional<float> exact_multiplicity(const EdgeTable& edges, std::size_t edge
 }
 
 int side_of_way(const PreciseInput& in, const glm::dvec3& l) {
-  const auto [from, to] = ends_of(in.scatter, in.edge);
+  const auto [from, to] = ends_of(in.of, in.edge);
   const glm::dvec3 a = from - glm::dvec3(in.at.p), b = to - glm::dvec3(in.at.p);
   const double side = glm::dot(l, glm::cross(a, b));
   // As in visibility::certainly_meets.
   const double error = 0x1p-46 * glm::length(l) * glm::length(a) * glm::length(b);
   if (std::abs(side) <= error) return 0;
   // From above, where the light is, the grid is turned over.
-  return (side > 0) == (in.scatter.grid.side < 0) ? 1 : -1;
+  return (side > 0) == (in.of.grid.side < 0) ? 1 : -1;
 }
 
 std::optional<ProjectedEdge> place_edge(const PreciseInput& in, Open& open) {
-  const LightGrid& grid = in.scatter.grid;
+  const LightGrid& grid = in.of.grid;
   const ClusterSample& at = in.at;
-  const EdgeTable& edges = in.scatter.edges;
+  const EdgeTable& edges = in.of.edges;
   const std::size_t edge = in.edge;
   const Placing& place = at.on_light;
   const auto way_to = [&](float x, float y, float h) {
@@ -277,8 +277,7 @@ std::optional<ProjectedEdge> place_edge(const PreciseInput& in, Open& open) {
   const Way b = way_to(edges[kBx][edge], edges[kBy][edge], edges[kBh][edge]);
   const float far = edges[kFar][edge] + at.far, far_a = far_of(grid, place, a, far),
               far_b = far_of(grid, place, b, far);
-  const PassingEdge passing =
-      !in.settled && at.meets_end ? pass_disk({grid, at}, ends_of(in.scatter, edge)) : PassingEdge();
+  const PassingEdge passing = !in.settled && at.meets_end ? pass_disk({grid, at}, ends_of(in.of, edge)) : PassingEdge();
   const WindowPart part =
       in.settled ? WindowPart{a, b, far_a, far_b} : cut_to_window(grid, at, a, b, far_a, far_b, passing);
   if (part.is_empty || in.k == 0) return std::nullopt;
@@ -303,7 +302,7 @@ void scatter_precisely(const PreciseInput& in, const Changes<Counter>& changes, 
   const std::optional<ProjectedEdge> placed = place_edge(in, open);
   if (!placed) return;
   const ProjectedEdge& edge_on_light = *placed;
-  const LightGrid& grid = in.scatter.grid;
+  const LightGrid& grid = in.of.grid;
   const float k = in.k;
   Marks marks(grid, open);
   for (const auto& [end, error] : {std::pair(edge_on_light.near, edge_on_light.error_near),

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "volumes/scatter/vectors/scatter.hpp"
+#include "volumes/edges/vectors/group.hpp"
 
 #include <glm/vec2.hpp>
 
@@ -21,7 +21,7 @@ struct Changes {
 };
 
 struct PreciseInput {
-  const ScatterInput& scatter;
+  const ClusterInput& of;
   const ClusterSample& at;
   std::size_t edge;  ///< in the EdgeTable
   float k;           ///< as seen from the light's front

@@ -1,4 +1,4 @@
-// Edge scatter on a processor: where a group's edges appear to one of its view samples. Inside volumes/ only.
+// Signed edges on a processor: where a group's edges appear to one of its view samples. Inside volumes/ only.
 
 #if defined(PENUMBRA_VOLUMES_PROJECTION_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef PENUMBRA_VOLUMES_PROJECTION_INL_HPP
@@ -10,7 +10,7 @@
 #include "engines/vectors/disk_plane.hpp"
 #include "engines/vectors/pack-inl.hpp"
 #include "engines/vectors/vectors-inl.hpp"
-#include "volumes/scatter/vectors/scatter.hpp"
+#include "volumes/edges/vectors/group.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace penumbra::volumes::HWY_NAMESPACE {
@@ -53,7 +53,7 @@ struct SpecialEdges {
 /// Fills the table of crossings of one view sample.
 class Projection {
  public:
-  Projection(const ScatterInput& in, const ClusterSample& at, const GroupLists& lists, CrossingTable& out)
+  Projection(const ClusterInput& in, const ClusterSample& at, const GroupLists& lists, CrossingTable& out)
       : in_(in), at_(at), place_(at.on_light), lists_(lists), out_(out) {}
 
   /// `special` gets edges whose multiplicity is open, and those that pass through p within rounding.
@@ -227,7 +227,7 @@ class Projection {
     out_.count += more;
   }
 
-  const ScatterInput& in_;
+  const ClusterInput& in_;
   const ClusterSample& at_;
   const Placing& place_;
   const GroupLists& lists_;

@@ -1,4 +1,4 @@
-// Edge scatter on a processor: a group's edges that are not for vectors, where light samples form no rows. Inside
+// Signed edges on a processor: a group's edges that are not for vectors, where light samples form no rows. Inside
 // volumes/ only.
 
 #if defined(PENUMBRA_VOLUMES_VECTORS_SPECIAL_INL_HPP) == defined(HWY_TARGET_TOGGLE)
@@ -8,6 +8,7 @@
 #define PENUMBRA_VOLUMES_VECTORS_SPECIAL_INL_HPP
 #endif
 
+#include "volumes/edges/vectors/edge_scratch.hpp"
 #include "volumes/edges/vectors/precise.hpp"
 #include "volumes/edges/vectors/projection-inl.hpp"
 
@@ -22,7 +23,7 @@ namespace {
 /// visit(edge, k) of each whose multiplicity is sure, if need be by exact predicates; the view sample is open where
 /// another's is not.
 template <typename Visit>
-[[maybe_unused]] void for_each_sure(const ScatterInput& in, const ClusterSample& at, const SpecialEdges& edges,
+[[maybe_unused]] void for_each_sure(const ClusterInput& in, const ClusterSample& at, const SpecialEdges& edges,
                                     OpenJudge& judge, Open& view_sample, Visit visit) {
   HWY_ALIGN float k[hn::MaxLanes(D())];
   std::uint8_t open[8] = {};
@@ -38,7 +39,7 @@ template <typename Visit>
 }
 
 /// Placed by themselves, they join the others in the table of crossings.
-[[maybe_unused]] void place_special(const ScatterInput& in, Scratch& s, const ClusterSample& at,
+[[maybe_unused]] void place_special(const ClusterInput& in, EdgeScratch& s, const ClusterSample& at,
                                     const SpecialEdges& edges, OpenJudge& judge) {
   for_each_sure(in, at, edges, judge, s.open, [&](std::uint32_t edge, float k) {
     const auto placed = place_edge({in, at, edge, k, edges.settled, std::nullopt}, s.open);

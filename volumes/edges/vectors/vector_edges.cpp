@@ -68,26 +68,26 @@ bool VectorEdges::prepare_casters() {
 }
 
 vectors::Blocks VectorEdges::begin_region(const LightGrid& grid, const Cluster& all) {
-  Scratch& scratch = scratch_.local();
-  find_edge_roots({grid, edges_of(grid), all}, scratch.edges, scratch.edge_roots);
-  find_triangle_roots({grid, triangles(), all, all.corner}, scratch.triangles, scratch.triangle_roots);
-  scratch.dense =
-      count_leaves({grid, triangles(), all, all.corner}, scratch.triangle_roots, scratch.stack, kDense) == kDense;
-  scratch.dense_regions += scratch.dense ? 1 : 0;
-  scratch.alone = false;
-  return scratch.dense ? vectors::Blocks::small : vectors::Blocks::usual;
+  EdgeScratch& scratch = scratch_.local();
+  find_edge_roots({grid, edges_of(grid), all}, scratch.edges, scratch.walk.edge_roots);
+  find_triangle_roots({grid, triangles(), all, all.corner}, scratch.triangles, scratch.walk.triangle_roots);
+  scratch.walk.dense = count_leaves({grid, triangles(), all, all.corner}, scratch.walk.triangle_roots,
+                                    scratch.walk.stack, kDense) == kDense;
+  scratch.walk.dense_regions += scratch.walk.dense ? 1 : 0;
+  scratch.walk.alone = false;
+  return scratch.walk.dense ? vectors::Blocks::small : vectors::Blocks::usual;
 }
 
 void VectorEdges::do_cluster(const LightGrid& grid, std::span<const GridSample> view_samples, OpenJudge& judge,
                              std::span<SampleMask> masks) {
-  Scratch& scratch = scratch_.local();
-  const Roots roots{edge_roots(grid, view_samples), scratch.triangle_roots};
+  EdgeScratch& scratch = scratch_.local();
+  const Roots roots{edge_roots(grid, view_samples), scratch.walk.triangle_roots};
   if (roots.edges.empty() && roots.triangles.empty() && !at_disk(grid))
     return do_unoccluded(grid, view_samples, judge, masks);
   const Cluster cluster = make_cluster(grid, view_samples);
   if (!find_edges_together(grid, view_samples, cluster, roots))
     return do_each_alone(grid, view_samples, cluster, roots, judge, masks);
-  find_triangles({grid, triangles(), cluster, cluster.corner}, roots.triangles, scratch.stack, scratch.triangles);
+  find_triangles({grid, triangles(), cluster, cluster.corner}, roots.triangles, scratch.walk.stack, scratch.triangles);
   scratch.samples.clear();
   if (scratch.edges.count + scratch.triangles.count > 0 || at_disk(grid)) {
     for (const GridSample& at : view_samples) scratch.samples.push_back(complete(grid, cluster, at));
@@ -97,39 +97,39 @@ void VectorEdges::do_cluster(const LightGrid& grid, std::span<const GridSample> 
 
 bool VectorEdges::find_edges_together(const LightGrid& grid, std::span<const GridSample> view_samples,
                                       const Cluster& cluster, const Roots& roots) {
-  Scratch& scratch = scratch_.local();
+  EdgeScratch& scratch = scratch_.local();
   const EdgeInput input{grid, edges_of(grid), cluster};
-  scratch.stack = roots.edges;
+  scratch.walk.stack = roots.edges;
   scratch.edges.count = 0;
   const std::size_t count = view_samples.size();
-  if (find_more_edges(input, scratch.stack, scratch.edges, count > 1 ? worth_of(count, 0) : kAll)) return true;
-  if (scratch.alone) return false;
+  if (find_more_edges(input, scratch.walk.stack, scratch.edges, count > 1 ? worth_of(count, 0) : kAll)) return true;
+  if (scratch.walk.alone) return false;
   const auto middle = view_samples.subspan(count / 2, 1);
   const Cluster one = make_cluster(grid, middle);
   const ClusterSample at = complete(grid, one, middle[0]);
-  const std::size_t leaves =
-      count_edge_leaves({grid, input.tree, one, skips_gaps(grid) ? &at : nullptr}, roots.edges, scratch.probe_stack);
-  if (find_more_edges(input, scratch.stack, scratch.edges, worth_of(count, leaves))) return true;
-  scratch.alone = true;
+  const std::size_t leaves = count_edge_leaves({grid, input.tree, one, skips_gaps(grid) ? &at : nullptr}, roots.edges,
+                                               scratch.walk.probe_stack);
+  if (find_more_edges(input, scratch.walk.stack, scratch.edges, worth_of(count, leaves))) return true;
+  scratch.walk.alone = true;
   return false;
 }
 
 void VectorEdges::do_each_alone(const LightGrid& grid, std::span<const GridSample> view_samples, const Cluster& cluster,
                                 const Roots& roots, OpenJudge& judge, std::span<SampleMask> masks) {
-  Scratch& scratch = scratch_.local();
-  scratch.alone_samples += view_samples.size();
-  scratch.narrow_edge_roots = roots.edges;
-  scratch.narrow_triangle_roots = roots.triangles;
-  narrow_edge_roots({grid, edges_of(grid), cluster}, scratch.narrow_edge_roots);
-  narrow_triangle_roots({grid, triangles(), cluster, cluster.corner}, scratch.narrow_triangle_roots);
+  EdgeScratch& scratch = scratch_.local();
+  scratch.walk.alone_samples += view_samples.size();
+  scratch.walk.narrow_edge_roots = roots.edges;
+  scratch.walk.narrow_triangle_roots = roots.triangles;
+  narrow_edge_roots({grid, edges_of(grid), cluster}, scratch.walk.narrow_edge_roots);
+  narrow_triangle_roots({grid, triangles(), cluster, cluster.corner}, scratch.walk.narrow_triangle_roots);
   for (std::size_t i = 0; i < view_samples.size(); ++i) {
     const auto one = view_samples.subspan(i, 1);
     const Cluster own = make_cluster(grid, one);
     scratch.samples.clear();
     scratch.samples.push_back(complete(grid, own, one[0]));
     const ClusterSample* at = skips_gaps(grid) ? scratch.samples.data() : nullptr;
-    find_edges({grid, edges_of(grid), own, at}, scratch.narrow_edge_roots, scratch.stack, scratch.edges);
-    find_triangles({grid, triangles(), own, own.corner}, scratch.narrow_triangle_roots, scratch.stack,
+    find_edges({grid, edges_of(grid), own, at}, scratch.walk.narrow_edge_roots, scratch.walk.stack, scratch.edges);
+    find_triangles({grid, triangles(), own, own.corner}, scratch.walk.narrow_triangle_roots, scratch.walk.stack,
                    scratch.triangles);
     do_list(grid, one, own, judge, masks.subspan(i, 1));
   }
@@ -137,18 +137,18 @@ void VectorEdges::do_each_alone(const LightGrid& grid, std::span<const GridSampl
 
 void VectorEdges::do_list(const LightGrid& grid, std::span<const GridSample> view_samples, const Cluster& cluster,
                           OpenJudge& judge, std::span<SampleMask> masks) {
-  Scratch& scratch = scratch_.local();
-  scratch.listed += scratch.edges.count;
+  EdgeScratch& scratch = scratch_.local();
+  scratch.walk.listed += scratch.edges.count;
   if (scratch.edges.count + scratch.triangles.count == 0 && !at_disk(grid))
     return do_unoccluded(grid, view_samples, judge, masks);
-  do_occluded(
-      {grid, touch_, edges_of(grid), triangles(), cluster, scratch.samples, scratch.edges, scratch.triangles,
-       scratch.dense ? kDenseEdgeGroup : kEdgeGroup, exact_area_, cut_edges(grid).ends(), front_->plane_of_light()},
-      judge, masks);
+  do_occluded({grid, touch_, edges_of(grid), triangles(), cluster, scratch.samples, scratch.edges, scratch.triangles,
+               scratch.walk.dense ? kDenseEdgeGroup : kEdgeGroup, exact_area_, cut_edges(grid).ends(),
+               front_->plane_of_light()},
+              judge, masks);
 }
 
 const std::vector<std::uint32_t>& VectorEdges::edge_roots(const LightGrid&, std::span<const GridSample>) {
-  return scratch_.local().edge_roots;
+  return scratch_.local().walk.edge_roots;
 }
 
 void VectorEdges::do_unoccluded(const LightGrid& grid, std::span<const GridSample> view_samples, OpenJudge& judge,
@@ -162,10 +162,10 @@ void VectorEdges::do_unoccluded(const LightGrid& grid, std::span<const GridSampl
 
 void VectorEdges::count(std::map<std::string, std::uint64_t>& counters) {
   if (!touch_.samples.empty()) counters["touchedSamples"] = touch_.samples.size();
-  for (Scratch& scratch : scratch_) {
-    counters["listedEdges"] += std::exchange(scratch.listed, 0);
-    counters["samplesAlone"] += std::exchange(scratch.alone_samples, 0);
-    counters["denseRegions"] += std::exchange(scratch.dense_regions, 0);
+  for (EdgeScratch& scratch : scratch_) {
+    counters["listedEdges"] += std::exchange(scratch.walk.listed, 0);
+    counters["samplesAlone"] += std::exchange(scratch.walk.alone_samples, 0);
+    counters["denseRegions"] += std::exchange(scratch.walk.dense_regions, 0);
   }
 }
 

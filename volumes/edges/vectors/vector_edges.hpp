@@ -2,8 +2,10 @@
 
 #include "engines/vectors/mask_method.hpp"
 #include "volumes/edges/edge_sides.hpp"
+#include "volumes/edges/light_window.hpp"
 #include "volumes/edges/vectors/cut.hpp"
-#include "volumes/scatter/vectors/scatter.hpp"
+#include "volumes/edges/vectors/edge_scratch.hpp"
+#include "volumes/edges/vectors/group.hpp"
 #include "volumes/edges/vectors/scene_edges.hpp"
 
 #include <tbb/enumerable_thread_specific.h>
@@ -56,7 +58,7 @@ class VectorEdges : public vectors::MaskMethod {
   /// View samples with nothing between them and the light. Here: all light samples above the horizon are visible.
   virtual void do_unoccluded(const LightGrid& grid, std::span<const GridSample> view_samples, OpenJudge& judge,
                              std::span<SampleMask> masks);
-  virtual void do_occluded(const ScatterInput& input, OpenJudge& judge, std::span<SampleMask> masks) = 0;
+  virtual void do_occluded(const ClusterInput& input, OpenJudge& judge, std::span<SampleMask> masks) = 0;
 
   visibility::LightTouch touch_;
   EdgeSides sides_;
@@ -78,7 +80,7 @@ class VectorEdges : public vectors::MaskMethod {
   void count(std::map<std::string, std::uint64_t>& counters) override;
 
   LightWindow window_;  // of the light that is being prepared
-  tbb::enumerable_thread_specific<Scratch> scratch_;
+  tbb::enumerable_thread_specific<EdgeScratch> scratch_;
 
  private:
   bool exact_area_;

@@ -7,13 +7,17 @@
 #include "visibility/lights/unshadowed_light.hpp"
 #include "visibility/lights/whole_form_factors.hpp"
 #include "volumes/edges/vectors/vector_edges.hpp"
+#include "volumes/scatter/vectors/integrate.hpp"
+#include "volumes/scatter/vectors/points.hpp"
 #include "volumes/scatter/vectors/rows.hpp"
+#include "volumes/scatter/vectors/scatter.hpp"
 
 #include <glm/common.hpp>
 #include <tbb/blocked_range.h>
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
+#include <atomic>
 #include <optional>
 #include <utility>
 
@@ -28,9 +32,15 @@ class VectorEdgeScatter final : public VectorEdges {
 
  private:
   [[nodiscard]] bool cuts_casters() const override { return true; }
-  void do_occluded(const ScatterInput& input, OpenJudge& judge, std::span<SampleMask> masks) override {
-    scatter(input, scratch_.local(), judge, masks);
+  void do_occluded(const ClusterInput& input, OpenJudge& judge, std::span<SampleMask> masks) override {
+    if (input.grid.tiles)
+      scatter_points(input, scratch_.local(), points_.local(), judge, masks);
+    else
+      scatter(input, scratch_.local(), rows_.local(), judge, masks);
   }
+
+  tbb::enumerable_thread_specific<RowScratch> rows_;
+  tbb::enumerable_thread_specific<PointScratch> points_;
 };
 
 /// rows=exact: shares of the light, and their form factors on request.
@@ -159,7 +169,7 @@ class VectorEdgeRows final : public VectorEdges {
     return true;
   }
   void use_exact_area(const GridSample& at) {
-    scratch_.local().unproven += is_hard() ? 0 : 1;
+    if (!is_hard()) unproven_.fetch_add(1, std::memory_order_relaxed);
     const areas::ExactView exact = areas_.view(samples(), at.pixel);
     shares_[tile_pixel(at)] = static_cast<float>(exact.visibility);
     if (finds_radiance_ && is_partial(exact.visibility)) set_radiance(at, exact.form_factor);
@@ -168,15 +178,16 @@ class VectorEdgeRows final : public VectorEdges {
   void set_radiance(const GridSample& at, const glm::dvec3& form_factor) {
     partly_seen_.local().emplace_back(static_cast<std::uint32_t>(tile_pixel(at)), form_factor);
   }
-  void do_occluded(const ScatterInput& input, OpenJudge& judge, std::span<SampleMask>) override {
+  void do_occluded(const ClusterInput& input, OpenJudge& judge, std::span<SampleMask>) override {
     if (is_hard()) {
       for (const GridSample& at : input.samples) use_exact_area(at);
       return;
     }
     std::vector<float> shares(input.samples.size());
     std::vector<glm::dvec3> radiance(finds_radiance_ ? input.samples.size() : 0);
-    integrate({input, *region_, blocks_, scene(), light(), samples(), areas_, scale()}, scratch_.local(), judge,
-              {shares, radiance});
+    const std::size_t unproven = integrate({input, *region_, blocks_, scene(), light(), samples(), areas_, scale()},
+                                           scratch_.local(), judge, {shares, radiance});
+    unproven_.fetch_add(unproven, std::memory_order_relaxed);
     for (std::size_t i = 0; i < shares.size(); ++i) {
       shares_[tile_pixel(input.samples[i])] = shares[i];
       if (finds_radiance_ && is_partial(double{shares[i]})) set_radiance(input.samples[i], radiance[i]);
@@ -185,10 +196,11 @@ class VectorEdgeRows final : public VectorEdges {
 
   void count(std::map<std::string, std::uint64_t>& counters) override {
     VectorEdges::count(counters);
-    for (Scratch& scratch : scratch_) counters["unprovenPixels"] += std::exchange(scratch.unproven, 0);
+    counters["unprovenPixels"] += unproven_.exchange(0);
   }
 
   AreasOnDemand areas_;
+  std::atomic<std::uint64_t> unproven_ = 0;     // view samples whose share double could not prove
   std::optional<LightRegion> region_;           // of the light
   std::optional<areas::TextureBlocks> blocks_;  // of its texture
   std::vector<std::optional<float>> shares_;    // of the tile; none: the light is behind, or below the horizon

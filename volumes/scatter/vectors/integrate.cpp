@@ -1,11 +1,13 @@
 // Edge scatter on a processor, rows=exact: from edges as they appear to the visible share of the light, without light
 // samples.
 
+#include "volumes/scatter/vectors/integrate.hpp"
+
 #include "areas/form_factor_sum.hpp"
 #include "visibility/lights/part_form_factors.hpp"
 #include "visibility/lights/unshadowed_light.hpp"
+#include "volumes/edges/vectors/corner.hpp"
 #include "volumes/scatter/vectors/rows.hpp"
-#include "volumes/scatter/vectors/scatter.hpp"
 
 #include <glm/common.hpp>
 #include <glm/vector_relational.hpp>
@@ -28,7 +30,7 @@ namespace penumbra::volumes::HWY_NAMESPACE {
 namespace {
 
 /// The depth at the light's corner, from that at a place that no edge comes near: exact predicates count there.
-std::optional<std::int32_t> depth_by_other_place(const ScatterInput& in, const LightWindow& window, const RowSum& rows,
+std::optional<std::int32_t> depth_by_other_place(const ClusterInput& in, const LightWindow& window, const RowSum& rows,
                                                  const GridSample& at, OpenJudge& judge) {
   constexpr int kTries = 64;
   for (int i = 0; i < kTries; ++i) {
@@ -46,7 +48,7 @@ std::optional<std::int32_t> depth_by_other_place(const ScatterInput& in, const L
 std::optional<std::int32_t> depth_by_light_sample(const IntegralInput& in, const RowSum& rows, const GridSample& at,
                                                   OpenJudge& judge) {
   constexpr std::size_t kTries = 64;
-  const LightGrid& grid = in.scatter.grid;
+  const LightGrid& grid = in.cluster.grid;
   const glm::dvec2 half(grid.half_cells);
   const double off = 2 * std::max(half.x, half.y) * static_cast<double>(grid.cones->deviation) /
                      glm::length(grid.cones->of[at.cone].u);
@@ -70,9 +72,9 @@ struct Rows {
 };
 
 /// Nothing: double cannot prove it.
-std::optional<double> share_of(const IntegralInput& input, Scratch& scratch, const ClusterSample& at, Rows& all,
+std::optional<double> share_of(const IntegralInput& input, EdgeScratch& scratch, const ClusterSample& at, Rows& all,
                                OpenJudge& judge) {
-  const ScatterInput& in = input.scatter;
+  const ClusterInput& in = input.cluster;
   RowSum& rows = all.sum;
   all.parts.clear();
   Open& open = scratch.open;
@@ -118,7 +120,7 @@ class PartlyLit {
  public:
   explicit PartlyLit(const IntegralInput& in)
       : in_(in),
-        cells_(2.0 * glm::dvec2(in.scatter.grid.half_cells)),
+        cells_(2.0 * glm::dvec2(in.cluster.grid.half_cells)),
         is_plain_(!in.texture && !visibility::is_round(in.light.kind)) {}
 
   glm::dvec3 form_factor(const GridSample& at, const std::vector<Trapezoid>& parts) {
@@ -147,15 +149,16 @@ class PartlyLit {
   visibility::FourCorneredParts corners_;
 };
 
-void integrate_here(const IntegralInput& input, Scratch& scratch, OpenJudge& judge, const Integral& out) {
-  const ScatterInput& in = input.scatter;
+std::size_t integrate_here(const IntegralInput& input, EdgeScratch& scratch, OpenJudge& judge, const Integral& out) {
+  const ClusterInput& in = input.cluster;
   Rows rows{RowSum(in.grid, input.region, input.scene, input.scale), input.region.window, {}, !out.radiance.empty()};
   PartlyLit partly_lit(input);
+  std::size_t unproven = 0;
   for_each_sample(in, scratch.lists, [&](std::size_t i) {
     const ClusterSample& at = in.samples[i];
     const std::optional<double> share = share_of(input, scratch, at, rows, judge);
     if (!share) {
-      ++scratch.unproven;
+      ++unproven;
       const areas::ExactView exact = input.areas.view(input.samples, at.pixel);
       out.shares[i] = static_cast<float>(exact.visibility);
       if (!out.radiance.empty()) out.radiance[i] = exact.form_factor;
@@ -165,6 +168,7 @@ void integrate_here(const IntegralInput& input, Scratch& scratch, OpenJudge& jud
     const bool is_partial = out.shares[i] != 0 && out.shares[i] != 1;
     if (!out.radiance.empty() && is_partial) out.radiance[i] = partly_lit.form_factor(at, rows.parts);
   });
+  return unproven;
 }
 
 }  // namespace
@@ -176,8 +180,8 @@ namespace penumbra::volumes {
 
 HWY_EXPORT(integrate_here);
 
-void integrate(const IntegralInput& input, Scratch& scratch, OpenJudge& judge, const Integral& out) {
-  HWY_DYNAMIC_DISPATCH(integrate_here)(input, scratch, judge, out);
+std::size_t integrate(const IntegralInput& input, EdgeScratch& scratch, OpenJudge& judge, const Integral& out) {
+  return HWY_DYNAMIC_DISPATCH(integrate_here)(input, scratch, judge, out);
 }
 
 }  // namespace penumbra::volumes

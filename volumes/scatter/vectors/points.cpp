@@ -2,10 +2,12 @@
 // light samples side by side; of all others of a row to its right one number says how they change.
 // docs/edge-scatter.md, "Light samples anywhere".
 
+#include "volumes/scatter/vectors/points.hpp"
+
 #include "engines/vectors/horizon.hpp"
+#include "volumes/edges/vectors/corner.hpp"
 #include "volumes/edges/vectors/disk_cuts.hpp"
 #include "volumes/edges/vectors/precise.hpp"
-#include "volumes/scatter/vectors/scatter.hpp"
 
 #include <algorithm>
 #include <array>
@@ -55,8 +57,8 @@ struct PointChanges {
 
 class PointScatter {
  public:
-  PointScatter(const ScatterInput& in, Scratch& scratch, PointChanges& changes, OpenJudge& judge)
-      : in_(in), tiles_(*in.grid.tiles), s_(scratch), changes_(changes), judge_(judge), find_(tiles_) {}
+  PointScatter(const ClusterInput& in, EdgeScratch& found, PointChanges& changes, OpenJudge& judge)
+      : in_(in), tiles_(*in.grid.tiles), s_(found), changes_(changes), judge_(judge), find_(tiles_) {}
 
   /// Whether the depth may change anywhere on the light, or something is open.
   bool operator()(const ClusterSample& at) {
@@ -215,9 +217,9 @@ class PointScatter {
     if (exact != 0 && is_right != (side > 0)) changes_.slots[slot] += is_right ? e[kJump] : -e[kJump];
   }
 
-  const ScatterInput& in_;
+  const ClusterInput& in_;
   const LightTiles& tiles_;
-  Scratch& s_;
+  EdgeScratch& s_;
   PointChanges& changes_;
   OpenJudge& judge_;
   RowsFinder find_;
@@ -282,15 +284,15 @@ std::int32_t depth_by_a_sample(const LightTiles& tiles, const PointChanges& chan
 }
 
 /// One view sample, its group's edges sorted out.
-void scatter_sample(const ScatterInput& in, Scratch& scratch, const ClusterSample& at, OpenJudge& judge,
-                    SampleMask& mask) {
+void scatter_sample(const ClusterInput& in, EdgeScratch& found, PointScratch& scratch, const ClusterSample& at,
+                    OpenJudge& judge, SampleMask& mask) {
   const LightTiles& tiles = *in.grid.tiles;
   const std::size_t some =
-      scratch.lists.settled.count + scratch.lists.unsettled.count + (at.meets_end ? std::size_t{1} : 0);
+      found.lists.settled.count + found.lists.unsettled.count + (at.meets_end ? std::size_t{1} : 0);
   std::int32_t depth = 0;
-  if (scratch.lists.triangles.count > 0) {
+  if (found.lists.triangles.count > 0) {
     depth = static_cast<std::int32_t>(
-        count_to_corner({in.grid, in.tree, scratch.lists.triangles, at, some == 0, in.light_plane}, scratch.open));
+        count_to_corner({in.grid, in.tree, found.lists.triangles, at, some == 0, in.light_plane}, found.open));
   }
   scratch.depths.resize(tiles.tile_count());
   scratch.tile_changes.assign(tiles.tile_count() + tiles.rows.size(), 0);
@@ -300,23 +302,24 @@ void scatter_sample(const ScatterInput& in, Scratch& scratch, const ClusterSampl
   scratch.touched.resize(tiles.tile_count() + 1);
   PointChanges changes{scratch.row_changes.data(), scratch.tile_changes.data(), scratch.depths,
                        scratch.is_touched.data(), scratch.touched.data()};
-  const bool changes_any = some > 0 && PointScatter(in, scratch, changes, judge)(at);
-  if (scratch.open.corner) depth = depth_by_a_sample(tiles, changes, scratch.open, at, judge);
+  const bool changes_any = some > 0 && PointScatter(in, found, changes, judge)(at);
+  if (found.open.corner) depth = depth_by_a_sample(tiles, changes, found.open, at, judge);
   if (changes_any) {
     sum_up(tiles, changes, depth, scratch.tile_depths.data(), mask);
   } else {
     mask.visible = depth == 0 ? in.grid.sample_count : 0;
-    if (at.straddles || scratch.open.any()) fill(in.grid, depth == 0, mask);
+    if (at.straddles || found.open.any()) fill(in.grid, depth == 0, mask);
   }
-  if (at.straddles) cut_at_horizon(in.grid, at, scratch.open, mask);
+  if (at.straddles) cut_at_horizon(in.grid, at, found.open, mask);
 }
 
-void scatter_points_here(const ScatterInput& in, Scratch& scratch, OpenJudge& judge, std::span<SampleMask> masks) {
-  for_each_sample(in, scratch.lists, [&](std::size_t i) {
+void scatter_points_here(const ClusterInput& in, EdgeScratch& found, PointScratch& scratch, OpenJudge& judge,
+                         std::span<SampleMask> masks) {
+  for_each_sample(in, found.lists, [&](std::size_t i) {
     const ClusterSample& at = in.samples[i];
-    reset_open(in.grid, in.touch, at, scratch.open);
-    scatter_sample(in, scratch, at, judge, masks[i]);
-    if (scratch.open.any()) judge.decide(at, scratch.open, masks[i]);
+    reset_open(in.grid, in.touch, at, found.open);
+    scatter_sample(in, found, scratch, at, judge, masks[i]);
+    if (found.open.any()) judge.decide(at, found.open, masks[i]);
   });
 }
 
@@ -329,8 +332,9 @@ namespace penumbra::volumes {
 
 HWY_EXPORT(scatter_points_here);
 
-void scatter_points(const ScatterInput& input, Scratch& scratch, OpenJudge& judge, std::span<SampleMask> masks) {
-  HWY_DYNAMIC_DISPATCH(scatter_points_here)(input, scratch, judge, masks);
+void scatter_points(const ClusterInput& input, EdgeScratch& found, PointScratch& scratch, OpenJudge& judge,
+                    std::span<SampleMask> masks) {
+  HWY_DYNAMIC_DISPATCH(scatter_points_here)(input, found, scratch, judge, masks);
 }
 
 }  // namespace penumbra::volumes

@@ -1,9 +1,9 @@
 #pragma once
 
 #include "volumes/edges/light_window.hpp"
+#include "volumes/edges/vectors/group.hpp"
 #include "volumes/scatter/vectors/light_measure.hpp"
 #include "volumes/scatter/vectors/row_sweep.hpp"
-#include "volumes/scatter/vectors/scatter.hpp"
 #include "volumes/scatter/vectors/wide_places.hpp"
 
 #include <array>
@@ -53,7 +53,7 @@ class RowSum {
   /// For place_side_by_side.
   [[nodiscard]] PlacesFrame frame() const;
   /// All of a table; stops where is_open().
-  void add(const CrossingTable& crossing, const ScatterInput& of);
+  void add(const CrossingTable& crossing, const ClusterInput& of);
   /// Casters may reach into the sphere that is the light: edges that are added from now on end at the disk that the
   /// view sample (set_view_sample's) sees of it, and each caster that passes through the disk has an edge there. (bound
   /// pass)
@@ -103,7 +103,7 @@ class RowSum {
   void add(const std::optional<Placed>& placed) {
     if (placed) add(placed->edge, placed->error);
   }
-  void add_side_by_side(const PlacesFrame& here, const ScatterInput& of);
+  void add_side_by_side(const PlacesFrame& here, const ClusterInput& of);
   void count_error(double error);
   void keep(const RowEdge& edge);
   void add_outline();

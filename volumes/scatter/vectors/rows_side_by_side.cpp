@@ -22,7 +22,7 @@ PlacesFrame RowSum::frame() const {
           grid_.cones && grid_.cones->end};
 }
 
-void RowSum::add(const CrossingTable& crossing, const ScatterInput& of) {
+void RowSum::add(const CrossingTable& crossing, const ClusterInput& of) {
   const PlacesFrame here = frame();
   places_.count = 0;
   for (std::size_t i = 0; i < crossing.count && !is_open_; ++i) {
@@ -47,7 +47,7 @@ void RowSum::add(const CrossingTable& crossing, const ScatterInput& of) {
   add_side_by_side(here, of);
 }
 
-void RowSum::add_side_by_side(const PlacesFrame& here, const ScatterInput& of) {
+void RowSum::add_side_by_side(const PlacesFrame& here, const ClusterInput& of) {
   place_side_by_side(here, places_);
   for (std::size_t i = 0; i < places_.count && !is_open_; ++i) {
     const WidePlaces::How how = places_.how[i];

@@ -3,6 +3,7 @@
 #include "volumes/scatter/vectors/scatter.hpp"
 
 #include "engines/vectors/horizon.hpp"
+#include "volumes/edges/vectors/corner.hpp"
 #include "volumes/edges/vectors/precise.hpp"
 
 #include <glm/geometric.hpp>
@@ -30,40 +31,42 @@ namespace hn = hwy::HWY_NAMESPACE;
 using namespace vectors::HWY_NAMESPACE;
 
 /// Where the group's edges appear to one view sample: those that vectors add, and those that are added one by one.
-void project(const ScatterInput& in, Scratch& scratch, const ClusterSample& at, OpenJudge& judge) {
+void project(const ClusterInput& in, EdgeScratch& found, RowScratch& scratch, const ClusterSample& at,
+             OpenJudge& judge) {
   scratch.precise.clear();
   const auto special = [&](const SpecialEdges& edges) {
-    for_each_sure(in, at, edges, judge, scratch.open, [&](std::uint32_t edge, float k) {
+    for_each_sure(in, at, edges, judge, found.open, [&](std::uint32_t edge, float k) {
       scratch.precise.push_back({edge, k, edges.settled});
     });
   };
-  Projection{in, at, scratch.lists, scratch.crossing}(special);
+  Projection{in, at, found.lists, found.crossing}(special);
 }
 
 /// Adds their changes.
 template <typename Counter>
 class SampleScatter {
  public:
-  SampleScatter(const ScatterInput& in, Scratch& scratch, const Changes<Counter>& changes, const ClusterSample& at)
-      : in_(in), s_(scratch), changes_(changes), at_(at) {}
+  SampleScatter(const ClusterInput& in, EdgeScratch& found, RowScratch& scratch, const Changes<Counter>& changes,
+                const ClusterSample& at)
+      : in_(in), f_(found), s_(scratch), changes_(changes), at_(at) {}
 
   /// Whether the depth changes anywhere on the light, or something is open.
   bool operator()() {
     for (const PreciseEdge& one : s_.precise) precisely(one.edge, one.k, one.settled, std::nullopt);
     std::size_t landed = 0;
     bool any = !s_.precise.empty();
-    for (std::size_t i = 0; i < s_.crossing.count; i += hn::Lanes(D())) any |= cross(i, landed);
+    for (std::size_t i = 0; i < f_.crossing.count; i += hn::Lanes(D())) any |= cross(i, landed);
     for (std::size_t i = 0; i < landed; ++i) {
       Counter& cell = changes_.cells[s_.landing[i]];
       cell = static_cast<Counter>(cell + s_.jump[i]);
     }
-    return any || landed > 0 || any_looked_at_ || s_.open.any();
+    return any || landed > 0 || any_looked_at_ || f_.open.any();
   }
 
  private:
   void precisely(std::size_t edge, float k, bool is_settled, const std::optional<std::array<glm::vec2, 2>>& projected) {
     const float turned = in_.grid.side < 0 ? -k : k;  // seen from behind, counter-clockwise is clockwise
-    scatter_precisely<Counter>({in_, at_, edge, turned, is_settled, projected}, changes_, s_.open);
+    scatter_precisely<Counter>({in_, at_, edge, turned, is_settled, projected}, changes_, f_.open);
   }
 
   /// Scatters crossing edges; returns whether the left side changes.
@@ -71,7 +74,7 @@ class SampleScatter {
     const D d;
     const I di;
     const LightGrid& grid = in_.grid;
-    const CrossingTable& table = s_.crossing;
+    const CrossingTable& table = f_.crossing;
     const M used = first_lanes(table.count - i);
     const auto column_of = [&](std::size_t field) { return hn::Load(d, table[field] + i); };
     const V x0 = column_of(kX0), y0 = column_of(kY0), x1 = column_of(kX1), y1 = column_of(kY1);
@@ -161,7 +164,7 @@ class SampleScatter {
   }
 
   void look_again(std::size_t first, M which) {
-    const CrossingTable& table = s_.crossing;
+    const CrossingTable& table = f_.crossing;
     for_each_lane(which, [&](std::size_t lane) {
       const std::size_t i = first + lane;
       const auto number = std::bit_cast<std::uint32_t>(table[kEdge][i]);
@@ -171,8 +174,9 @@ class SampleScatter {
     any_looked_at_ = true;
   }
 
-  const ScatterInput& in_;
-  Scratch& s_;
+  const ClusterInput& in_;
+  EdgeScratch& f_;
+  RowScratch& s_;
   const Changes<Counter>& changes_;
   const ClusterSample& at_;
   bool any_looked_at_ = false;
@@ -254,63 +258,63 @@ std::uint32_t depth_by_any_sample(const LightGrid& grid, Open& open, const Clust
 /// One view sample whose edges have been projected: adds all changes, and the depth at the light's corner. False:
 /// nothing changes anywhere on the light, and its corner's depth is that of all of it.
 template <typename Counter>
-bool scatter_changes(const ScatterInput& in, Scratch& scratch, std::vector<Counter>& counters, const ClusterSample& at,
-                     OpenJudge& judge, std::uint32_t& depth, SampleMask& mask) {
+bool scatter_changes(const ClusterInput& in, EdgeScratch& found, RowScratch& scratch, std::vector<Counter>& counters,
+                     const ClusterSample& at, OpenJudge& judge, std::uint32_t& depth, SampleMask& mask) {
   const LightGrid& grid = in.grid;
   const std::size_t cells = std::size_t{grid.columns} * grid.padded_rows;
   counters.resize(cells + grid.padded_rows);
   std::memset(counters.data(), 0, counters.size() * sizeof(Counter));
   const Changes<Counter> changes{counters.data(), counters.data() + cells};
-  const bool any = SampleScatter<Counter>(in, scratch, changes, at)();
-  if (scratch.open.corner) depth = depth_by_other_sample(grid, changes, scratch.open, at, judge);
+  const bool any = SampleScatter<Counter>(in, found, scratch, changes, at)();
+  if (found.open.corner) depth = depth_by_other_sample(grid, changes, found.open, at, judge);
   if (any) sum_up(grid, changes, depth, mask);
   return any;
 }
 
 /// One view sample, its group's edges sorted out.
-void scatter_sample(const ScatterInput& in, Scratch& scratch, const ClusterSample& at, OpenJudge& judge,
-                    SampleMask& mask) {
+void scatter_sample(const ClusterInput& in, EdgeScratch& found, RowScratch& scratch, const ClusterSample& at,
+                    OpenJudge& judge, SampleMask& mask) {
   const LightGrid& grid = in.grid;
-  const bool edges = scratch.lists.settled.count + scratch.lists.unsettled.count > 0;
-  const std::size_t triangles = scratch.lists.triangles.count;
+  const bool edges = found.lists.settled.count + found.lists.unsettled.count > 0;
+  const std::size_t triangles = found.lists.triangles.count;
   std::uint32_t depth =
-      triangles == 0
-          ? 0
-          : count_to_corner({grid, in.tree, scratch.lists.triangles, at, !edges, in.light_plane}, scratch.open);
+      triangles == 0 ? 0
+                     : count_to_corner({grid, in.tree, found.lists.triangles, at, !edges, in.light_plane}, found.open);
   bool changes_any = false;
   if (edges) {
-    project(in, scratch, at, judge);
+    project(in, found, scratch, at, judge);
     // Whoever goes from the corner up the left side and to a light sample crosses an edge once, or twice, which changes
     // nothing. So no depth is larger, and where it is less than there are counts, none but 0 is counted as 0, whatever
     // sums overflow on the way.
     const std::size_t most =
-        (scratch.open.corner ? triangles : depth) + 2 * (scratch.crossing.count + scratch.precise.size());
+        (found.open.corner ? triangles : depth) + 2 * (found.crossing.count + scratch.precise.size());
     if (most < 0x100)
-      changes_any = scatter_changes(in, scratch, scratch.bytes, at, judge, depth, mask);
+      changes_any = scatter_changes(in, found, scratch, scratch.bytes, at, judge, depth, mask);
     else if (most < 0x10000)
-      changes_any = scatter_changes(in, scratch, scratch.words, at, judge, depth, mask);
+      changes_any = scatter_changes(in, found, scratch, scratch.words, at, judge, depth, mask);
     else
-      changes_any = scatter_changes(in, scratch, scratch.wide_words, at, judge, depth, mask);
-  } else if (scratch.open.corner) {
-    depth = depth_by_any_sample(grid, scratch.open, at, judge);
+      changes_any = scatter_changes(in, found, scratch, scratch.wide_words, at, judge, depth, mask);
+  } else if (found.open.corner) {
+    depth = depth_by_any_sample(grid, found.open, at, judge);
   }
   if (!changes_any) {
     mask.visible = depth == 0 ? grid.rows * grid.columns : 0;
-    if (at.straddles || scratch.open.any()) fill(grid, depth == 0, mask);
+    if (at.straddles || found.open.any()) fill(grid, depth == 0, mask);
   }
-  if (at.straddles) cut_at_horizon(grid, at, scratch.open, mask);
+  if (at.straddles) cut_at_horizon(grid, at, found.open, mask);
 }
 
-void scatter_here(const ScatterInput& in, Scratch& scratch, OpenJudge& judge, std::span<SampleMask> masks) {
+void scatter_here(const ClusterInput& in, EdgeScratch& found, RowScratch& scratch, OpenJudge& judge,
+                  std::span<SampleMask> masks) {
   if (scratch.landing.empty()) {
     scratch.landing.resize(4096);
     scratch.jump.resize(4096);
   }
-  for_each_sample(in, scratch.lists, [&](std::size_t i) {
+  for_each_sample(in, found.lists, [&](std::size_t i) {
     const ClusterSample& at = in.samples[i];
-    reset_open(in.grid, in.touch, at, scratch.open);
-    scatter_sample(in, scratch, at, judge, masks[i]);
-    if (scratch.open.any()) judge.decide(at, scratch.open, masks[i]);
+    reset_open(in.grid, in.touch, at, found.open);
+    scatter_sample(in, found, scratch, at, judge, masks[i]);
+    if (found.open.any()) judge.decide(at, found.open, masks[i]);
   });
 }
 
@@ -321,19 +325,11 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace penumbra::volumes {
 
-void reset_open(const LightGrid& grid, const visibility::LightTouch& touch, const GridSample& at, Open& open) {
-  open.clear();
-  if (touch.empty()) return;
-  open.samples = touch.samples;
-  const float farthest = glm::length(at.p - grid.center) + grid.radius;
-  open.pixel = touch.any_near && at.height < static_cast<float>(visibility::LightTouch::kFlat) * farthest;
-}
-
 HWY_EXPORT(scatter_here);
 
-void scatter(const ScatterInput& input, Scratch& scratch, OpenJudge& judge, std::span<SampleMask> masks) {
-  if (input.grid.tiles) return scatter_points(input, scratch, judge, masks);
-  HWY_DYNAMIC_DISPATCH(scatter_here)(input, scratch, judge, masks);
+void scatter(const ClusterInput& input, EdgeScratch& found, RowScratch& scratch, OpenJudge& judge,
+             std::span<SampleMask> masks) {
+  HWY_DYNAMIC_DISPATCH(scatter_here)(input, found, scratch, judge, masks);
 }
 
 }  // namespace penumbra::volumes

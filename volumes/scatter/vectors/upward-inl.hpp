@@ -10,7 +10,7 @@
 
 #include "engines/vectors/light_tiles.hpp"
 #include "engines/vectors/vectors-inl.hpp"
-#include "volumes/scatter/vectors/scatter.hpp"
+#include "volumes/edges/vectors/tables.hpp"
 
 #include <array>
 #include <cstddef>

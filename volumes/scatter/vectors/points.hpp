@@ -1,0 +1,25 @@
+#pragma once
+
+#include "volumes/edges/vectors/edge_scratch.hpp"
+#include "volumes/edges/vectors/group.hpp"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+/// Edge scatter on a processor, light samples in tiles. Inside volumes/ only.
+namespace penumbra::volumes {
+
+/// Buffers of one thread, beside EdgeScratch.
+struct PointScratch {
+  std::vector<std::int32_t> tile_changes, row_changes, tile_depths;  // PointChanges
+  vectors::SlotFloats depths;                                        // 0 between view samples
+  std::vector<std::uint8_t> is_touched;                              // of each tile; 0 between view samples
+  std::vector<std::uint32_t> touched;
+};
+
+/// As scatter.
+void scatter_points(const ClusterInput& input, EdgeScratch& found, PointScratch& scratch, OpenJudge& judge,
+                    std::span<SampleMask> masks);
+
+}  // namespace penumbra::volumes
