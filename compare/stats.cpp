@@ -99,6 +99,7 @@ Json to_json(const MethodResult& result) {
   const auto& beauty = result.beauty_error;
   json["beautyError"] =
       beauty ? Json{{"relativeRmse", beauty->relative_rmse}, {"relativeBias", beauty->relative_bias}} : Json();
+  if (result.flicker) json["flicker"] = *result.flicker;
   add_pairs(json, result.pairs, result.verdicts);
   add_budget(json, result.lights.empty() ? nullptr : &result.lights.front());
   const auto& failure = result.failure;

@@ -98,9 +98,10 @@ struct MethodResult {
   std::optional<VisibilityError> error;          ///< over judged pixels
   std::optional<VisibilityError> horizon_error;  ///< over horizon pixels
   std::optional<BeautyError> beauty_error;       ///< over judged pixels, of all lights
-  std::optional<PairCounts> pairs;               ///< two sample-based methods on the same samples
-  std::optional<PairVerdicts> verdicts;          ///< of all differing pairs, or of an evenly spaced sample of them
-  std::optional<MethodFailure> failure;          ///< then there are no seconds, errors and pairs
+  std::optional<double> flicker = {};    ///< of a sequence: RMSE of ΔV − ΔV of the reference from frame to frame
+  std::optional<PairCounts> pairs;       ///< two sample-based methods on the same samples
+  std::optional<PairVerdicts> verdicts;  ///< of all differing pairs, or of an evenly spaced sample of them
+  std::optional<MethodFailure> failure;  ///< then there are no seconds, errors and pairs
 };
 
 /// Rays on the methods' own light samples, run beside a reference that looks at others.

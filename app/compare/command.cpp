@@ -2,6 +2,7 @@
 #include "app/commands.hpp"
 #include "app/compare/comparison.hpp"
 #include "app/compare/comparison_entries.hpp"
+#include "app/compare/sequence.hpp"
 #include "app/methods.hpp"
 #include "app/options.hpp"
 #include "app/parse.hpp"
@@ -50,6 +51,10 @@ void print_table(const compare::Metrics& metrics) {
   };
   for (const compare::MethodResult& result : metrics.methods) line(result.entry, result.stats, &result);
   line("reference " + metrics.reference.method, metrics.reference, nullptr);
+  if (std::ranges::none_of(metrics.methods, [](const auto& result) { return result.flicker.has_value(); })) return;
+  fmt::print("\n{:<28} {:>9}\n", "from frame to frame", "flicker");
+  for (const compare::MethodResult& result : metrics.methods)
+    fmt::print("{:<28} {:>9}\n", result.entry, number(result.flicker, "{:.6f}"));
 }
 
 /// By how much each method's RMSE changes when one cause alone is repaired, and what is left without all of them.
@@ -118,6 +123,10 @@ class CompareCommand : public Command {
     cli_.add_option("--stats", options_.stats, "write metrics.json here as well")->type_name("FILE.json");
     cli_.add_option("--frame", frame_, "frame of the scene's animation, or a moment between two, such as 12.5")
         ->type_name("F");
+    cli_.add_option("--frames", frames_,
+                    "frames of the scene's animation, every N-th: errors over all of them, and how much each method "
+                    "flickers beside the reference; pictures and report are of the last one")
+        ->type_name("A-B[xN]");
     cli_.add_option("--fps", fps_, "frame F is F / fps seconds of a glTF animation (default: 24)")->type_name("N");
     cli_.add_option("--exposure", exposure_,
                     "of the pictures for eyes: auto and first (the reference's lit surfaces fill them) or stops "
@@ -142,7 +151,7 @@ class CompareCommand : public Command {
     if (run_.camera == "all")
       throw UsageError("--camera all: errors are of one camera's pixels; name one, and compare once for each");
     TerminalProgress progress(!global.quiet);
-    const compare::Metrics metrics = compare_methods(run_, options_, global.arguments, progress);
+    const compare::Metrics metrics = compared(global.arguments, fps, progress);
     print_table(metrics);
     print_budgets(metrics);
     spdlog::info("{} shows it all", (run_.out / "report.html").string());
@@ -163,7 +172,6 @@ class CompareCommand : public Command {
     cli_.add_option("--filter-width", filter_width_, "of --pixel-filter; not here")->type_name("PIXELS");
     cli_.add_option("--motion-samples", motion_samples_, "1 alone: errors are of one moment")->type_name("1");
     cli_.add_option("--shutter", shutter_, "of --motion-samples; not here")->type_name("FRAMES");
-    cli_.add_option("--frames", frames_, "not here: errors are of one frame (--frame)")->type_name("A-B[xN]");
     cli_.add_flag("--skip-existing", skip_existing_, "not here: everything is measured anew");
   }
 
@@ -182,10 +190,18 @@ class CompareCommand : public Command {
     if (!shutter_.empty())
       throw UsageError("--shutter {}: methods are compared at one moment (--frame), not over an open shutter",
                        shutter_);
-    if (!frames_.empty())
-      throw UsageError("--frames {}: methods are compared on one frame; --frame F, once for each", frames_);
     if (skip_existing_)
       throw UsageError("--skip-existing: a comparison is measured as a whole, so nothing of an earlier one is kept");
+  }
+
+  [[nodiscard]] compare::Metrics compared(const std::vector<std::string>& arguments, double fps,
+                                          Progress& progress) const {
+    if (frames_.empty()) return compare_methods(run_, options_, arguments, progress);
+    if (frame_) throw UsageError("--frames {} and --frame {}: expected one of them", frames_, *frame_);
+    if (options_.error_budget)
+      throw UsageError("--error-budget: causes of errors are told apart in one frame (--frame), not in --frames {}",
+                       frames_);
+    return compare_frames(run_, options_, numbers_of(parse_frames(frames_)), fps, arguments, progress);
   }
 
   [[nodiscard]] bool exceeds_max_rmse(const compare::Metrics& metrics) const {

@@ -26,6 +26,7 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -113,6 +114,19 @@ class Comparison {
     compare::write_report(run_.out / "report.html", report_);
     if (hang_) std::rethrow_exception(hang_);
     return std::move(report_.metrics);
+  }
+
+  /// Once all ran.
+  [[nodiscard]] EntryErrors errors() const {
+    EntryErrors all;
+    for (const auto& of_lights : visibility_) {
+      std::vector<float>& errors = all.emplace_back();
+      if (of_lights.empty()) continue;  // it failed
+      errors.assign(session_.pixel_count(), std::numeric_limits<float>::quiet_NaN());
+      for (const std::uint32_t pixel : truths_.front().judged)
+        errors[pixel] = of_lights.front()[pixel] - truths_.front().reference[pixel];
+    }
+    return all;
   }
 
  private:
@@ -400,8 +414,11 @@ class Comparison {
 }  // namespace
 
 compare::Metrics compare_methods(const RunOptions& run, const ComparisonOptions& options,
-                                 const std::vector<std::string>& arguments, Progress& progress) {
-  return Comparison(run, options, std::nullopt, progress).run(arguments);
+                                 const std::vector<std::string>& arguments, Progress& progress, EntryErrors* errors) {
+  Comparison comparison(run, options, std::nullopt, progress);
+  compare::Metrics metrics = comparison.run(arguments);
+  if (errors != nullptr) *errors = comparison.errors();
+  return metrics;
 }
 
 compare::Metrics compare_methods(scenes::Scene scene, const RunOptions& run, const ComparisonOptions& options,

@@ -28,10 +28,16 @@ struct ComparisonOptions {
   std::optional<float> exposure;  ///< of pictures for eyes, in stops; nothing: the reference's fill them
 };
 
+/// e = V − V of the reference at each pixel under the first light, for each entry; NaN where it is not judged. Empty:
+/// the entry failed.
+using EntryErrors = std::vector<std::vector<float>>;
+
 /// Runs the reference, then each method on the same view samples, and writes all of DIR. Every light is judged; what is
 /// said once is of the first. Seconds are sums over all lights. `arguments` is the command line, for the report.
+/// `errors`: gets each entry's; null: nobody wants them.
 compare::Metrics compare_methods(const RunOptions& run, const ComparisonOptions& options,
-                                 const std::vector<std::string>& arguments, Progress& progress);
+                                 const std::vector<std::string>& arguments, Progress& progress,
+                                 EntryErrors* errors = nullptr);
 /// Compares on a scene that has been read already.
 compare::Metrics compare_methods(scenes::Scene scene, const RunOptions& run, const ComparisonOptions& options,
                                  Progress& progress);

@@ -1,0 +1,184 @@
+#include "app/compare/sequence.hpp"
+
+#include "app/session.hpp"
+#include "base/atomic_file.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace penumbra::app {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Errors of V over the pixels of several frames, of which only the largest are kept: for p999.
+class ErrorSum {
+ public:
+  /// `most`: pixels of all frames together, at the most.
+  explicit ErrorSum(std::size_t most) : kept_(most / 1000 + 2) {}
+
+  void add(std::span<const float> errors) {
+    for (const float e : errors) {
+      if (std::isnan(e)) continue;
+      const double magnitude = std::abs(double{e});
+      ++count_;
+      mean_ += magnitude;
+      bias_ += e;
+      squares_ += magnitude * magnitude;
+      if (magnitude > 0.05) ++over_;
+      largest_.push_back(std::abs(e));
+      if (largest_.size() >= 2 * kept_ + 1024) trim();
+    }
+  }
+
+  /// Nullopt over no pixels.
+  [[nodiscard]] std::optional<compare::VisibilityError> error() {
+    if (count_ == 0) return std::nullopt;
+    std::ranges::sort(largest_, std::greater());
+    const auto n = static_cast<double>(count_);
+    // The nearest rank ⌈0.999 n⌉ from below is the ⌊0.001 n⌋-th from above, counted from 0.
+    return compare::VisibilityError{.mean = mean_ / n,
+                                    .rmse = std::sqrt(squares_ / n),
+                                    .p999 = largest_[count_ / 1000],
+                                    .max = largest_.front(),
+                                    .over05 = static_cast<double>(over_) / n,
+                                    .bias = bias_ / n};
+  }
+
+ private:
+  void trim() {
+    std::nth_element(largest_.begin(), largest_.begin() + static_cast<std::ptrdiff_t>(kept_), largest_.end(),
+                     std::greater());
+    largest_.resize(kept_);
+  }
+
+  std::size_t kept_, count_ = 0, over_ = 0;
+  double mean_ = 0, bias_ = 0, squares_ = 0;
+  std::vector<float> largest_;
+};
+
+/// Sum of squares of differences, and how many there are.
+struct Squares {
+  double sum = 0;
+  std::uint64_t count = 0;
+
+  void add(std::span<const float> now, std::span<const float> before) {
+    for (std::size_t i = 0; i < std::min(now.size(), before.size()); ++i) {
+      const double change = double{now[i]} - before[i];
+      if (std::isnan(change)) continue;
+      sum += change * change;
+      ++count;
+    }
+  }
+  Squares& operator+=(const Squares& other) {
+    sum += other.sum, count += other.count;
+    return *this;
+  }
+  [[nodiscard]] std::optional<double> root() const {
+    return count == 0 ? std::nullopt : std::optional(std::sqrt(sum / static_cast<double>(count)));
+  }
+};
+
+/// What is known of one entry after some frames.
+struct EntrySum {
+  ErrorSum errors;
+  Squares flicker;
+  std::vector<double> light, evaluate;
+  std::vector<float> before;  ///< errors of the frame before
+};
+
+/// Says each message once, whichever frame it is about first.
+class SayOnce final : public Progress {
+ public:
+  explicit SayOnce(Progress& progress) : progress_(progress) {}
+
+  void begin(std::string stage, std::uint64_t steps) override { progress_.begin(std::move(stage), steps); }
+  using Progress::advance;
+  void advance(std::uint64_t steps) override { progress_.advance(steps); }
+  void clear() override { progress_.clear(); }
+  void say(Level level, const std::string& message) override {
+    if (said_.insert(message).second) progress_.say(level, message);
+  }
+
+ private:
+  Progress& progress_;
+  std::set<std::string> said_;
+};
+
+Json number_or_null(const std::optional<double>& value) {
+  return value ? Json(*value) : Json();
+}
+
+Json frame_json(std::int64_t number, const compare::Metrics& metrics, std::span<const Squares> flicker) {
+  Json methods = Json::array();
+  for (std::size_t i = 0; i < metrics.methods.size(); ++i) {
+    const compare::MethodResult& result = metrics.methods[i];
+    methods.push_back({{"entry", result.entry},
+                       {"rmse", result.error ? Json(result.error->rmse) : Json()},
+                       {"bias", result.error ? Json(result.error->bias) : Json()},
+                       {"flicker", number_or_null(flicker[i].root())},
+                       {"shadow", number_or_null(result.stats.seconds.shadow())}});
+  }
+  return {{"frame", number},
+          {"judgedPixels", metrics.judged_pixels},
+          {"horizonPixels", metrics.horizon_pixels},
+          {"methods", methods}};
+}
+
+}  // namespace
+
+compare::Metrics compare_frames(const RunOptions& run, const ComparisonOptions& options,
+                                std::span<const std::int64_t> frames, double fps,
+                                const std::vector<std::string>& arguments, Progress& progress) {
+  compare::Metrics all;
+  SayOnce said(progress);
+  std::vector<EntrySum> sums;
+  Json rows = Json::array();
+  std::uint64_t judged = 0, horizon = 0;
+  for (const std::int64_t number : frames) {
+    ComparisonOptions of_frame = options;
+    of_frame.time = static_cast<double>(number) * (1 / fps);  // as `render` has it
+    of_frame.writes = number == frames.back();
+    of_frame.stats.clear();
+    EntryErrors errors;
+    all = compare_methods(run, of_frame, arguments, said, &errors);
+    if (sums.empty())
+      sums.resize(errors.size(),
+                  {ErrorSum(std::size_t{all.reference.width} * all.reference.height * frames.size()), {}, {}, {}, {}});
+    std::vector<Squares> flicker(errors.size());
+    for (std::size_t i = 0; i < std::min(errors.size(), sums.size()); ++i) {
+      flicker[i].add(errors[i], sums[i].before);
+      sums[i].flicker += flicker[i];
+      sums[i].errors.add(errors[i]);
+      if (const auto& light = all.methods[i].stats.seconds.light) sums[i].light.push_back(*light);
+      if (const auto& evaluate = all.methods[i].stats.seconds.evaluate) sums[i].evaluate.push_back(*evaluate);
+      sums[i].before = std::move(errors[i]);
+    }
+    rows.push_back(frame_json(number, all, flicker));
+    judged += all.judged_pixels;
+    horizon += all.horizon_pixels;
+  }
+  all.judged_pixels = judged;
+  all.horizon_pixels = horizon;
+  for (std::size_t i = 0; i < std::min(all.methods.size(), sums.size()); ++i) {
+    compare::MethodResult& result = all.methods[i];
+    result.error = sums[i].errors.error();
+    result.flicker = sums[i].flicker.root();
+    if (!sums[i].light.empty()) result.stats.seconds.light = median(sums[i].light);
+    if (!sums[i].evaluate.empty()) result.stats.seconds.evaluate = median(sums[i].evaluate);
+  }
+  Json json = compare::to_json(all);
+  json["frames"] = rows;
+  write_file_atomically(run.out / "metrics.json", compare::json_text(json));
+  if (!options.stats.empty()) write_file_atomically(options.stats, compare::json_text(json));
+  return all;
+}
+
+}  // namespace penumbra::app
