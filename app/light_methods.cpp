@@ -36,8 +36,7 @@ MethodOptions options_for(const MethodDescription& method, const MethodWish& wis
 
 /// The method with the options that make areas of its answers, if the light and what was given allow it.
 std::optional<LightMethod> area_method(const MethodDescription& method, const Light& light, const MethodWish& wish) {
-  if (!method.exact_area || std::ranges::find(method.exact_area->lights, light.kind) == method.exact_area->lights.end())
-    return std::nullopt;
+  if (!method.exact_area || !method.exact_area->lights.contains(light.kind)) return std::nullopt;
   const bool has_all =
       std::ranges::all_of(wish.options, [&](const auto& one) { return has_option(method, one.first); });
   if (!has_all) return std::nullopt;

@@ -16,7 +16,7 @@ using visibility::OptionDescription;
 
 std::vector<std::string> light_names(const MethodDescription& method) {
   std::vector<std::string> names;
-  for (const LightKind kind : method.lights) names.emplace_back(visibility::name_of(kind));
+  for (const LightKind kind : method.lights.list()) names.emplace_back(visibility::name_of(kind));
   return names;
 }
 
@@ -52,7 +52,7 @@ nlohmann::ordered_json exact_area_json(const MethodDescription& method) {
   if (!method.exact_area) return nullptr;
   const MethodDescription with = describe_method(method.name, method.exact_area->options);
   auto lights = nlohmann::ordered_json::array(), options = nlohmann::ordered_json::object();
-  for (const LightKind kind : method.exact_area->lights) lights.push_back(visibility::name_of(kind));
+  for (const LightKind kind : method.exact_area->lights.list()) lights.push_back(visibility::name_of(kind));
   for (const auto& [key, value] : method.exact_area->options) options[key] = value;
   return {{"lights", lights}, {"textures", with.textures}, {"options", options}};
 }

@@ -158,7 +158,7 @@ bool needs_device(std::string_view name, const MethodOptions& options) {
 
 bool can_do(const MethodDescription& method, const std::vector<Light>& lights) {
   return std::ranges::all_of(lights, [&](const Light& light) {
-    return std::ranges::find(method.lights, light.kind) != method.lights.end() && (method.textures || !light.texture) &&
+    return method.lights.contains(light.kind) && (method.textures || !light.texture) &&
            (method.any_pattern || light.rows != 0) &&
            (light.filtered_by.empty() || method.output == visibility::Output::mask);
   });

@@ -110,10 +110,10 @@ void check_bits(const visibility::MethodDescription& description, std::span<cons
     throw UsageError("--bits: light \"{}\" is cut in {} pieces, and the file is of one; choose another with --light",
                      light.name, pieces);
   }
-  if (light.kind == visibility::LightKind::sphere) {
+  if (is_body(light.kind)) {
     throw UsageError(
-        "--bits: light \"{}\" is a sphere, whose points differ from pixel to pixel; choose another with --light",
-        light.name);
+        "--bits: light \"{}\" is a {}, whose points differ from pixel to pixel; choose another with --light",
+        light.name, name_of(light.kind));
   }
 }
 

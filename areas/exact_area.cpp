@@ -39,7 +39,6 @@ namespace penumbra::areas {
 namespace {
 
 using visibility::Light;
-using visibility::LightKind;
 using visibility::SceneFloats;
 using visibility::TriangleTree;
 
@@ -159,7 +158,7 @@ ExactArea& ExactArea::operator=(ExactArea&&) noexcept = default;
 
 void ExactArea::set_light(const Light& light) {
   data_->light = &light;
-  if (light.kind != LightKind::sphere) data_->frame = integer_frame(light, {});
+  if (!is_body(light.kind)) data_->frame = integer_frame(light, {});
   data_->region = light_region(light);
   data_->round = visibility::is_round(light.kind);
   data_->area = area_of(data_->region);
@@ -216,7 +215,7 @@ double ExactArea::visible_share(const Receiver& receiver, SweepArithmetic arithm
     if (sees && form_factor != nullptr) form_factor->add_whole();
     return sees ? 1 : 0;
   }
-  const IntegerFrame frame = light.kind == LightKind::sphere ? integer_frame(light, receiver.p) : data_->frame;
+  const IntegerFrame frame = is_body(light.kind) ? integer_frame(light, receiver.p) : data_->frame;
   IntegerGrid grid = data_->grid;
   grid.include(frame.grid);
   grid.include(receiver.p);

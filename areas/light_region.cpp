@@ -38,17 +38,8 @@ Region projected_outline(const visibility::Light& light) {
 }  // namespace
 
 Region light_region(const visibility::Light& light) {
-  switch (light.kind) {
-    case visibility::LightKind::rectangle:
-    case visibility::LightKind::disk:
-    case visibility::LightKind::ellipse:
-    case visibility::LightKind::sphere:
-    case visibility::LightKind::sun:
-      return {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
-    case visibility::LightKind::polygon:
-      return projected_outline(light);
-  }
-  PENUMBRA_ASSERT(false, "light kind {}", static_cast<int>(light.kind));
+  if (is_polygon(light.kind)) return projected_outline(light);
+  return {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
 }
 
 mpq_class area_of(const Region& region) {

@@ -75,11 +75,11 @@ Subject find_subject(const std::string& scene) {
 }
 
 visibility::LightKind parse_kind(const std::string& text) {
-  using enum visibility::LightKind;
-  for (const auto kind : {disk, ellipse, polygon, sphere, sun}) {
+  constexpr visibility::LightKinds kOthers = visibility::kEveryLight - visibility::kParallelograms;
+  for (const visibility::LightKind kind : kOthers.list()) {
     if (text == visibility::name_of(kind)) return kind;
   }
-  throw UsageError("--light {}: expected disk, ellipse, polygon, sphere or sun", text);
+  throw UsageError("--light {}: expected {}", text, kOthers.words(" or "));
 }
 
 visibility::SamplePattern parse_pattern(const std::string& text) {

@@ -18,7 +18,6 @@ namespace penumbra::compare {
 namespace {
 
 using visibility::Light;
-using visibility::LightKind;
 using visibility::UnshadowedLight;
 
 using Mask = std::span<const std::uint32_t>;
@@ -140,7 +139,7 @@ glm::dvec3 VisibleLight::visible(const LitPoint& at, Mask mask, std::span<const 
   }
   if (!sees_any(mask) || !at.seen.shines()) return glm::dvec3(0);
   if (sees_all(mask)) return unshadowed(at);
-  const bool cells = light_->kind == LightKind::rectangle && light_->rows != 0 && !light_->texture;
+  const bool cells = is_parallelogram(light_->kind) && light_->rows != 0 && !light_->texture;
   const double whole = at.seen.whole();
   return cells ? of_runs(at, whole, mask) : of_samples(at, whole, mask);
 }
@@ -209,7 +208,7 @@ glm::dvec3 VisibleLight::of_runs(const LitPoint& at, double whole, Mask mask) co
 glm::dvec3 VisibleLight::of_samples(const LitPoint& at, double whole, Mask mask,
                                     std::span<const float> transmittances) const {
   std::vector<glm::vec3> facing;  // a sphere's points
-  if (light_->kind == LightKind::sphere) {
+  if (is_body(light_->kind)) {
     facing.resize(light_->sample_count());
     visibility::light_points_for(*light_, at.p, facing.data());
   }

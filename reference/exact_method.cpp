@@ -19,7 +19,6 @@ namespace {
 
 using areas::ExactArea, areas::ExactView, areas::Receiver, areas::SweepArithmetic;
 using visibility::Light;
-using visibility::LightKind;
 using visibility::SceneFloats;
 using visibility::Tile;
 using visibility::ViewSamples;
@@ -87,8 +86,7 @@ Exact::Exact(const visibility::MethodOptions& options) {
   description_.exact_for =
       "any light, textured or not, and any triangle soup, up to float32 of V, and for the beauty under constant "
       "radiance and textures of up to 64 x 64 texels";
-  description_.lights = {LightKind::rectangle, LightKind::disk,   LightKind::ellipse,
-                         LightKind::polygon,   LightKind::sphere, LightKind::sun};
+  description_.lights = visibility::kEveryLight;
   description_.exact_area = visibility::ExactArea{description_.lights};
   description_.verdict_on = exact_method_verdict;
   description_.options = {kSweep.description()};

@@ -75,7 +75,7 @@ void PlainRays::prepare_light(const visibility::Light& light) {
   std::iota(order_.begin(), order_.end(), 0u);
   if (options_.neighbours) order_ = tracing_order(light);
   if (!light.sun) embree_->range().require_light(light, point_bounds(light));
-  if (light.kind == visibility::LightKind::sphere) return;
+  if (is_body(light.kind)) return;
   const EmbreeRange& range = embree_->range();
   points_.assign(light.points, order_,
                  [&](const glm::vec3& l) { return light.sun ? EmbreeRange::direction(l) : range.scaled(l); });
@@ -215,7 +215,7 @@ int PlainRays::trace_pixel(const glm::vec3& p, const glm::vec3& n, const PointAr
 template <int kWidth>
 void PlainRays::evaluate_pixels(const visibility::ViewSamples& samples, std::span<float> visibility) const {
   const visibility::Light& light = *light_;
-  const bool sphere = light.kind == visibility::LightKind::sphere;
+  const bool sphere = is_body(light.kind);
   const EmbreeRange& range = embree_->range();
   const glm::vec3 light_center = range.scaled(light.center);
   const glm::dvec3 light_normal = glm::cross(glm::dvec3(light.center_u - light.center),  // may be far too long

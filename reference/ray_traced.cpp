@@ -35,7 +35,6 @@ namespace penumbra::reference {
 namespace {
 
 using visibility::Light;
-using visibility::LightKind;
 using visibility::SceneFloats;
 using visibility::Tile;
 using visibility::ViewSamples;
@@ -136,8 +135,7 @@ RayTraced::RayTraced(const visibility::MethodOptions& options) {
       "(2013)";
   description_.output = visibility::Output::mask;
   description_.exact_for = "every light and any triangle soup, up to rounding in Embree's robust ray-triangle test";
-  description_.lights = {LightKind::rectangle, LightKind::disk,   LightKind::ellipse,
-                         LightKind::polygon,   LightKind::sphere, LightKind::sun};
+  description_.lights = visibility::kEveryLight;
   description_.span = {0, 0x1p45F};  // EmbreeRange refuses what is farther, and perhaps a bit more
   description_.verdict_on = ray_traced_verdict;
   description_.options = {kPacket.description()};
@@ -206,7 +204,7 @@ void RayTraced::trace_pixel(std::size_t pixel, Workspace& work, std::span<std::u
   const auto carrier = static_cast<std::uint32_t>(samples_->triangle[pixel]);
   const glm::vec3 p = samples_->p[pixel];
   const EmbreeRange& range = embree_->range();
-  const bool sphere = light_->kind == LightKind::sphere;
+  const bool sphere = is_body(light_->kind);
   if (sphere) {
     if (!in_front_of_light(*light_, p)) return;
     light_points_for(*light_, p, work.points.data());
@@ -278,7 +276,7 @@ void RayTraced::trace_tile(const Tile& tile) {
   const std::size_t words = light_->words_per_mask();
   const tbb::blocked_range2d<std::size_t> pixels(0, tile.row_count, 8, 0, samples_->width, 32);
   tbb::parallel_for(pixels, [&](const tbb::blocked_range2d<std::size_t>& block) {
-    const std::vector<glm::vec3> room(light_->kind == LightKind::sphere ? light_->sample_count() : 0);
+    const std::vector<glm::vec3> room(is_body(light_->kind) ? light_->sample_count() : 0);
     Workspace work{room, room, std::vector<std::uint32_t>(words)};
     for (std::size_t row = block.rows().begin(); row != block.rows().end(); ++row) {
       for (std::size_t x = block.cols().begin(); x != block.cols().end(); ++x) {

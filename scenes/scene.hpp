@@ -100,7 +100,8 @@ struct Pieces {
   using Piece = std::variant<Rectangle, Polygon, Sphere>;
   std::vector<Piece> pieces;  ///< at least one; no cones
 };
-using LightShape = std::variant<Rectangle, Disk, Polygon, Sphere, Ellipse, Sun, Pieces>;
+/// In the order of LightKind (scenes/light_kind.hpp); Pieces, which are of several kinds, last.
+using LightShape = std::variant<Rectangle, Disk, Ellipse, Polygon, Sphere, Sun, Pieces>;
 
 /// A picture on a rectangle light. It stands upright and unmirrored before who looks at the side that emits, half_u to
 /// the right and half_v upward: texel (0, 0), the picture's top left, lies in the corner −half_u + half_v. Each texel

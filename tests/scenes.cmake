@@ -6,6 +6,7 @@ penumbra_test(scenes
   unit/scenes/float_rounding.cpp
   unit/scenes/json.cpp
   unit/scenes/json_scene.cpp
+  unit/scenes/light_kinds.cpp
   unit/scenes/shapes.cpp
   unit/scenes/shipped.cpp
   unit/scenes/wire.cpp

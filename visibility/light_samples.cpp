@@ -15,34 +15,8 @@
 
 namespace penumbra::visibility {
 
-const char* name_of(LightKind kind) {
-  switch (kind) {
-    case LightKind::rectangle:
-      return "rectangle";
-    case LightKind::disk:
-      return "disk";
-    case LightKind::polygon:
-      return "polygon";
-    case LightKind::sphere:
-      return "sphere";
-    case LightKind::ellipse:
-      return "ellipse";
-    case LightKind::sun:
-      return "sun";
-  }
-  return "?";
-}
-
-bool is_round(LightKind kind) {
-  return kind != LightKind::rectangle && kind != LightKind::polygon;
-}
-
-bool is_planar(LightKind kind) {
-  return kind != LightKind::sphere && kind != LightKind::sun;
-}
-
 glm::vec3 center_of(const Light& light) {
-  if (light.kind != LightKind::polygon) return light.center;
+  if (!is_polygon(light.kind)) return light.center;
   // The mean of the centroids of a fan's triangles, weighted by area.
   const LightFrame frame = light_frame(light);
   const glm::dvec3 a = light.outline.front(), normal = glm::cross(frame.u, frame.v);
@@ -58,7 +32,7 @@ glm::vec3 center_of(const Light& light) {
 }
 
 LightFrame light_frame(const Light& light) {
-  PENUMBRA_ASSERT(light.kind != LightKind::sphere, "light {} is a sphere and has no stored axes", light.name);
+  PENUMBRA_ASSERT(!is_body(light.kind), "light {} is a {} and has no stored axes", light.name, name_of(light.kind));
   const glm::dvec3 c = light.center;
   if (light.sun) {
     return {c, light.sun->tangent * glm::dvec3(light.sun->axis_u), light.sun->tangent * glm::dvec3(light.sun->axis_v)};
@@ -67,7 +41,7 @@ LightFrame light_frame(const Light& light) {
 }
 
 LightFrame light_frame_from(const Light& light, const glm::vec3& p) {
-  if (light.kind != LightKind::sphere) return light_frame(light);
+  if (!is_body(light.kind)) return light_frame(light);
   const glm::dvec3 c = light.center, q = glm::dvec3(p) - c;
   const double r = light.radius, d = std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z);
   const double touching = (d - r) * (d + r);  // the square of the tangents' length
@@ -82,7 +56,7 @@ glm::dvec3 way_to(const Light& light, const glm::vec3& p, const glm::vec3& l) {
 }
 
 Bounds point_bounds(const Light& light) {
-  if (light.kind == LightKind::sphere) {
+  if (is_body(light.kind)) {
     // The disks are inside the ball; their points are rounded to float32, as the bounds are.
     const float farthest = std::max({std::abs(light.center.x), std::abs(light.center.y), std::abs(light.center.z)});
     const float reach =
@@ -99,7 +73,7 @@ Bounds point_bounds(const Light& light) {
 }
 
 void light_points_for(const Light& light, const glm::vec3& p, glm::vec3* out) {
-  if (light.kind != LightKind::sphere) {
+  if (!is_body(light.kind)) {
     std::copy(light.points.begin(), light.points.end(), out);
     return;
   }

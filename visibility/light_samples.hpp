@@ -1,25 +1,37 @@
 #pragma once
 
-#include "scenes/scene.hpp"
+#include "base/error.hpp"
+#include "scenes/light_kind.hpp"
 #include "visibility/bounds.hpp"
 #include "visibility/light_texture.hpp"
 
+#include <fmt/format.h>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace penumbra::visibility {
 
-enum class LightKind { rectangle, disk, polygon, sphere, ellipse, sun };
-const char* name_of(LightKind kind);
-/// Is it the unit disk of its frame? (Disks, ellipses, suns; spheres as each p sees them.)
-bool is_round(LightKind kind);
-/// Has it a plane, which stored points span? (All but spheres and suns.)
-bool is_planar(LightKind kind);
+// What is true of each kind of light is in scenes/light_kind.hpp.
+using scenes::is_body;
+using scenes::is_circle;
+using scenes::is_parallelogram;
+using scenes::is_planar;
+using scenes::is_polygon;
+using scenes::is_round;
+using scenes::kBodies;
+using scenes::kEveryLight;
+using scenes::kParallelograms;
+using scenes::kPlanarLights;
+using scenes::kPolygons;
+using scenes::LightKind;
+using scenes::LightKinds;
+using scenes::name_of;
 
 enum class SamplePattern { rows, grid, sobol, jittered, rgss };
 const char* name_of(SamplePattern pattern);
@@ -118,6 +130,15 @@ Bounds point_bounds(const Light& light);
 /// fixed fraction of a cell. grid: the same without shifts. sobol: Owen-scrambled. jittered: one point in each of N
 /// strata of equal area, in L = round(√N) rows.
 std::vector<glm::dvec2> unit_square_samples(const SampleRequest& request);
+
+/// Throws InputError unless the light is of one of these kinds: `light "lamp" is a sun`, and what `why` says, which
+/// begins with a colon, a comma or the like.
+template <typename... Values>
+void require_kind(const Light& light, LightKinds kinds, fmt::format_string<Values...> why, Values&&... values) {
+  if (kinds.contains(light.kind)) return;
+  throw InputError("light \"{}\" is a {}{}", light.name, name_of(light.kind),
+                   fmt::format(why, std::forward<Values>(values)...));
+}
 
 /// Throws InputError for a light of zero area, one whose points are not finite in float32 relative to `origin`, one
 /// whose samples all lie on black texels, or one in pieces.

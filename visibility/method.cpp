@@ -2,8 +2,6 @@
 
 #include "base/error.hpp"
 
-#include <algorithm>
-
 namespace penumbra::visibility {
 const char* name_of(Family family) {
   switch (family) {
@@ -42,14 +40,13 @@ void Method::read_form_factors(std::span<glm::dvec3> form_factors) {
 }
 
 void check_light(const MethodDescription& description, const Light& light) {
-  const std::vector<LightKind>& can = description.lights;
   if (light.texture && !description.textures) {
     throw InputError(
         "light \"{}\" has a texture; method {}, as asked for, does not weigh V by it. Take another light (--light) or "
         "method (--method: edge-scatter and raytrace do textures, of outlines packet:sublights=S, S of 2 or more)",
         light.name, description.name);
   }
-  if (light.rows == 0 && !description.any_pattern && light.kind == LightKind::rectangle) {
+  if (light.rows == 0 && !description.any_pattern && is_parallelogram(light.kind)) {
     throw InputError(
         "light \"{}\": method {} takes light samples in rows (--sample-pattern rows or grid), not {}; view-sample and "
         "raytrace take any",
@@ -63,15 +60,10 @@ void check_light(const MethodDescription& description, const Light& light) {
         light.name, light.filtered_by, description.name, description.gives_area() ? ", as asked for," : "",
         description.gives_area() ? "areas" : "V");
   }
-  if (std::find(can.begin(), can.end(), light.kind) != can.end()) return;
-  std::string kinds;
-  for (const LightKind kind : can) kinds += (kinds.empty() ? "" : ", ") + std::string(name_of(kind));
-  throw InputError(
-      "light \"{}\" is a {}; method {}, as asked for, can do: {}. Take another light (--light) or method (--method; "
-      "edge-scatter and "
-      "raytrace "
-      "do every kind)",
-      light.name, name_of(light.kind), description.name, kinds);
+  require_kind(light, description.lights,
+               "; method {}, as asked for, can do: {}. Take another light (--light) or method (--method; edge-scatter "
+               "and raytrace do every kind)",
+               description.name, description.lights.words());
 }
 
 MethodOptions complete_options(const MethodDescription& description, const MethodOptions& given) {

@@ -30,7 +30,7 @@ const char* name_of(Output output);
 /// Of which lights a method gives the visible area itself, to the last digit of a float, and the options that this
 /// takes.
 struct ExactArea {
-  std::vector<LightKind> lights;
+  LightKinds lights;
   MethodOptions options = {};
 };
 
@@ -50,7 +50,7 @@ struct MethodDescription {
   std::string paper;
   Output output = Output::mask;
   std::string exact_for;           ///< what it is exact for, in words
-  std::vector<LightKind> lights;   ///< shapes it can do
+  LightKinds lights;               ///< what it can do
   bool textures = true;            ///< weighs V by a light's texture
   bool any_pattern = true;         ///< otherwise only light samples in rows (patterns rows and grid)
   bool on_request = false;         ///< takes so long that a comparison has it only by name, or with its whole family

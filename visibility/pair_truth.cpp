@@ -49,7 +49,7 @@ EdgeSign edge_sign(const glm::vec3& p, const glm::vec3& l, const glm::vec3& a, c
   if (sign != 0) return {sign, false};
   const ExactVector pa = difference(a, p), pb = difference(b, p);
   ExactVector u, v;
-  if (light.kind == LightKind::sphere) {
+  if (is_body(light.kind)) {
     const LightFrame frame = light_frame_from(light, p);
     u = difference(frame.u, glm::dvec3(0));
     v = difference(frame.v, glm::dvec3(0));
@@ -189,7 +189,7 @@ bool above_horizon(const Light& light, const std::array<glm::vec3, 3>& carrier, 
 
 bool in_front_of_light(const Light& light, const glm::vec3& p) {
   if (light.sun) return true;
-  if (light.kind == LightKind::sphere) return outside_sphere(light, p);
+  if (is_body(light.kind)) return outside_sphere(light, p);
   const Side side = side_of_plane(light.center, light.center_u, light.center_v, p);
   return light.two_sided ? side != Side::on : side == Side::front;
 }
@@ -201,7 +201,7 @@ PairTruth decide_pair(const SceneFloats& scene, const ViewSamples& samples, std:
   const auto carrier = static_cast<std::uint32_t>(samples.triangle[pixel]);
   const glm::vec3& p = samples.p[pixel];
   // In a sphere there are no light points that could be above or below anything.
-  if (light.kind == LightKind::sphere && !in_front_of_light(light, p)) return {PairOutcome::behind, false};
+  if (is_body(light.kind) && !in_front_of_light(light, p)) return {PairOutcome::behind, false};
   std::vector<glm::vec3> points(light.sample_count());
   light_points_for(light, p, points.data());
   const glm::vec3& l = points[light_sample];

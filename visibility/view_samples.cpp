@@ -135,7 +135,7 @@ PixelClass Classifier::operator()(std::size_t pixel) const {
   if (light.sun) {
     return cone_above(corners, samples.facing[pixel], light) ? PixelClass::judged : PixelClass::horizon;
   }
-  if (light.kind == LightKind::sphere) {
+  if (is_body(light.kind)) {
     return sphere_above(corners, samples.facing[pixel], light) ? PixelClass::judged : PixelClass::horizon;
   }
   const mesh::SidesOfPlane sides(corners[0], corners[1], corners[2]);

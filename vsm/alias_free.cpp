@@ -28,7 +28,6 @@ namespace penumbra::vsm {
 namespace {
 
 using pairs::Footprint, pairs::LightPixels;
-using visibility::LightKind;
 
 visibility::MeshVerdict alias_free_verdict(const mesh::Diagnosis& mesh) {
   return {
@@ -46,8 +45,7 @@ visibility::MethodDescription describe_alias_free() {
           .paper = "Aila and Laine 2004; Johnson, Lee, Burns and Mark 2005",
           .output = visibility::Output::scalar,
           .exact_for = "the hard shadow of the light's centre, of any triangle soup and every kind of light",
-          .lights = {LightKind::rectangle, LightKind::disk, LightKind::ellipse, LightKind::polygon, LightKind::sphere,
-                     LightKind::sun},
+          .lights = visibility::kEveryLight,
           .options = {kPerPixel.description()},
           .verdict_on = alias_free_verdict};
 }

@@ -25,7 +25,6 @@ namespace penumbra::vsm {
 namespace {
 
 using pairs::PairCounts;
-using visibility::LightKind;
 
 constexpr std::uint32_t kSubtrees = 256;  // of view samples, about: what cores share out
 constexpr std::uint32_t kLeafWords = 8;   // of masks, tried at once against a leaf's view samples
@@ -43,7 +42,7 @@ visibility::MethodDescription describe_hierarchical_penumbra() {
           .paper = "Laine and Aila 2005",
           .output = visibility::Output::mask,
           .exact_for = "every pair of view sample and light sample, for any triangle soup",
-          .lights = {LightKind::rectangle, LightKind::disk, LightKind::ellipse, LightKind::polygon, LightKind::sun},
+          .lights = visibility::kEveryLight - visibility::kBodies,
           .on_request = true,
           .options = {},
           .verdict_on = hierarchical_penumbra_verdict};

@@ -37,15 +37,13 @@ bool is_planar_light(const visibility::Light& light) {
 }  // namespace
 
 visibility::MethodDescription view_sample_description(const visibility::MethodOptions& given) {
-  using visibility::LightKind;
   visibility::MethodDescription description{
       .name = "view-sample",
       .family = visibility::Family::geometry,
       .paper = "Eisemann and Décoret 2007; Sintorn, Eisemann and Assarsson 2008",
       .output = visibility::Output::mask,
       .exact_for = "every pair of view sample and light sample, for any triangle soup",
-      .lights = {LightKind::rectangle, LightKind::disk, LightKind::ellipse, LightKind::polygon, LightKind::sphere,
-                 LightKind::sun},
+      .lights = visibility::kEveryLight,
       .bytes_per_triangle = 100,
       .options = {engines::kEngine.description(), kVariant.description()},
       .span = visibility::kFloatSpan,
@@ -54,9 +52,8 @@ visibility::MethodDescription view_sample_description(const visibility::MethodOp
   const visibility::ParsedOptions options = visibility::parse_options(description, given);
   const bool published = options[kVariant] == Variant::sintorn,
              on_device = options[engines::kEngine] == engines::Engine::vulkan;
-  std::erase_if(description.lights, [&](LightKind kind) {
-    return (published && kind == LightKind::sphere) || (on_device && !visibility::is_planar(kind));
-  });
+  if (published) description.lights = description.lights - visibility::kBodies;
+  if (on_device) description.lights = description.lights & visibility::kPlanarLights;
   return description;
 }
 

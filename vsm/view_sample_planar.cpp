@@ -26,7 +26,6 @@ namespace penumbra::vsm {
 namespace {
 
 using pairs::PairCounts;
-using visibility::LightKind;
 
 constexpr double kPerTexel = 1;
 using pairs::kDeterminant;
@@ -62,7 +61,7 @@ visibility::MethodDescription describe(const visibility::MethodOptions& given) {
       .paper = "Eisemann and Décoret 2007",
       .output = visibility::Output::mask,
       .exact_for = "every pair of view sample and light sample, for any triangle soup (lookup=exact)",
-      .lights = {LightKind::rectangle, LightKind::disk, LightKind::ellipse, LightKind::polygon, LightKind::sun},
+      .lights = visibility::kEveryLight - visibility::kBodies,
       .on_request = true,
       .options = {kLookup.description(), kMap.description(), kFewest.description()},
       .verdict_on = exact_on};

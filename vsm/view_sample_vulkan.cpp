@@ -34,13 +34,10 @@ class ViewSampleMapping final : public device::MaskMethod {
   }
 
   void prepare_light(const visibility::Light& light) override {
-    if (!visibility::is_planar(light.kind)) {
-      throw InputError(
-          "light \"{}\" is a {}: view-sample with engine=vulkan does planar lights (rectangle, disk, ellipse, "
-          "polygon); "
-          "without engine=vulkan it does every light",
-          light.name, visibility::name_of(light.kind));
-    }
+    visibility::require_kind(
+        light, visibility::kPlanarLights,
+        ": view-sample with engine=vulkan does planar lights ({}); without engine=vulkan it does every light",
+        visibility::kPlanarLights.words());
     MaskMethod::prepare_light(light);
   }
 

@@ -40,7 +40,7 @@ std::vector<compare::ReportLight> report_lights(const Session& session, std::spa
     shown.packed_classes = compare::pack_bytes(std::as_bytes(std::span(classes)));
     if (whole.count > 1) continue;  // many samples of many shapes: no drawing has them
     shown.round = is_round(light.kind);
-    if (light.kind == visibility::LightKind::rectangle || light.kind == visibility::LightKind::ellipse) {
+    if (!is_circle(light.kind) && !is_polygon(light.kind)) {  // sides or axes of two lengths
       const visibility::LightFrame frame = visibility::light_frame(light);
       shown.aspect = glm::length(frame.u) / glm::length(frame.v);
     }

@@ -14,31 +14,10 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <set>
 #include <utility>
 
 namespace penumbra::app {
 namespace {
-
-using visibility::LightKind;
-
-/// Of a light in pieces, those of all pieces.
-std::set<LightKind> kinds_of(const scenes::AreaLight& light) {
-  struct Kinds {
-    std::set<LightKind> operator()(const scenes::Rectangle&) const { return {LightKind::rectangle}; }
-    std::set<LightKind> operator()(const scenes::Disk&) const { return {LightKind::disk}; }
-    std::set<LightKind> operator()(const scenes::Ellipse&) const { return {LightKind::ellipse}; }
-    std::set<LightKind> operator()(const scenes::Sun&) const { return {LightKind::sun}; }
-    std::set<LightKind> operator()(const scenes::Polygon&) const { return {LightKind::polygon}; }
-    std::set<LightKind> operator()(const scenes::Sphere&) const { return {LightKind::sphere}; }
-    std::set<LightKind> operator()(const scenes::Pieces& light) const {
-      std::set<LightKind> kinds;
-      for (const scenes::Pieces::Piece& piece : light.pieces) kinds.merge(std::visit(*this, piece));
-      return kinds;
-    }
-  };
-  return std::visit(Kinds(), light.shape);
-}
 
 InspectedMesh read_scene(const std::filesystem::path& file, bool allow_outside) {
   scenes::Scene scene = scenes::read_scene(file, {.allow_outside = allow_outside, .needs_light = false});
@@ -49,7 +28,7 @@ InspectedMesh read_scene(const std::filesystem::path& file, bool allow_outside) 
   mesh.notes = std::move(scene.warnings);
   mesh.sources = std::move(scene.sources);
   for (const scenes::AreaLight& light : scene.lights) {
-    for (const LightKind kind : kinds_of(light)) mesh.lights.push_back({light.name, kind});
+    for (const scenes::LightKind kind : scenes::kinds_of(light.shape).list()) mesh.lights.push_back({light.name, kind});
   }
   return mesh;
 }
@@ -110,7 +89,7 @@ std::vector<MethodVerdict> verdicts_on(const mesh::Diagnosis& diagnosis, const I
           fmt::format("light passes through \"{}\", which is asked light sample by light sample", mesh.scene->filter)};
     }
     for (const InspectedMesh::Light& light : mesh.lights) {
-      if (std::ranges::find(method->lights, light.kind) != method->lights.end()) continue;
+      if (method->lights.contains(light.kind)) continue;
       verdict = {visibility::Verdict::refused,
                  fmt::format("it cannot do the scene's light \"{}\", a {}", light.name, name_of(light.kind))};
       break;

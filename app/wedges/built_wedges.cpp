@@ -49,7 +49,7 @@ std::uint32_t find_light(const scenes::Scene& scene, const std::string& name) {
 /// What the light itself is, where its hull is larger: points of a disk's or ellipse's rim. A sphere's outline changes
 /// with the point it is seen from; its hull stands for it.
 std::vector<glm::dvec3> shape_of(const visibility::Light& light, const volumes::LightHull& hull) {
-  if (light.kind == visibility::LightKind::sphere || !is_round(light.kind)) return hull.corners;
+  if (is_body(light.kind) || !is_round(light.kind)) return hull.corners;
   constexpr int kRim = 256;
   const auto [center, u, v] = visibility::light_frame(light);
   std::vector<glm::dvec3> rim;

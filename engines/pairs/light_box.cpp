@@ -17,7 +17,7 @@ glm::dvec2 LightBox::sample(const glm::vec3& l) const {
 }
 
 LightBox make_light_box(const visibility::Light& light) {
-  PENUMBRA_ASSERT(light.kind != visibility::LightKind::sphere, "light \"{}\": a sphere has no plane", light.name);
+  PENUMBRA_ASSERT(!is_body(light.kind), "light \"{}\": a body has no plane", light.name);
   LightBox box;
   box.sun = light.sun.has_value();
   if (box.sun) {

@@ -177,7 +177,7 @@ void MaskMethod::prepare_light(const visibility::Light& light) {
 }
 
 MaskMethod::GridShape MaskMethod::grid_shape() const {
-  GridShape shape{visibility::make_device_light(*light_, scale_), light_->kind == visibility::LightKind::rectangle};
+  GridShape shape{visibility::make_device_light(*light_, scale_), is_parallelogram(light_->kind)};
   if (shape.frame.rows) {
     shape.rows = light_->rows;
     shape.columns = light_->columns;

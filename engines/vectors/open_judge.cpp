@@ -15,7 +15,7 @@ std::uint32_t ExactOpenJudge::depth(const GridSample& sample, std::uint32_t ligh
 }
 
 glm::vec3 ExactOpenJudge::light_point(const GridSample& sample, std::uint32_t light_sample) {
-  if (judge_.light.kind != visibility::LightKind::sphere) return judge_.light.points[light_sample];
+  if (!is_body(judge_.light.kind)) return judge_.light.points[light_sample];
   if (!seen_ || seen_->pixel != sample.pixel)
     seen_ = {sample.pixel, visibility::light_frame_from(judge_.light, judge_.samples.p[sample.pixel])};
   return visibility::sphere_point(seen_->disk, judge_.light.coordinates[light_sample]);

@@ -88,7 +88,7 @@ std::vector<float> shares_of_polygon(const std::vector<glm::dvec2>& outline, con
 LightTableData light_table(const visibility::Light& light, const LightBasis& basis) {
   const LightBounds bounds = light_bounds(light, basis);
   LightTableData data{{bounds.lower, bounds.upper, 0, static_cast<float>(light.area), 0, kCells, kCells}, {}, {}};
-  if (light.kind == visibility::LightKind::disk || light.kind == visibility::LightKind::sphere) {
+  if (is_circle(light.kind)) {
     data.head.radius = static_cast<float>(light.radius);
     data.shares = shares_at_nodes([](const glm::dvec2& at) { return disk_share(2 * at.x - 1, 2 * at.y - 1); });
     return data;
@@ -100,9 +100,8 @@ LightTableData light_table(const visibility::Light& light, const LightBasis& bas
   }
   data.head.corners = static_cast<std::uint32_t>(outline.size());
   const glm::dvec2 extent = bounds.upper - bounds.lower;
-  const bool upright =
-      light.kind == visibility::LightKind::rectangle &&
-      std::abs(visibility::area_of(outline) - extent.x * extent.y) <= kPerpendicular * extent.x * extent.y;
+  const bool upright = is_parallelogram(light.kind) && std::abs(visibility::area_of(outline) - extent.x * extent.y) <=
+                                                           kPerpendicular * extent.x * extent.y;
   if (!upright) {
     data.shares = shares_of_polygon(outline, bounds);
     return data;

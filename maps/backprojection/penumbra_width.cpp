@@ -17,7 +17,7 @@ std::unique_ptr<visibility::Method> make_penumbra_widths(const render::Device& d
                                    .paper = "Guennebaud et al. 2007",
                                    .output = visibility::Output::scalar,
                                    .exact_for = "nothing",
-                                   .lights = with_spheres(planar_lights()),
+                                   .lights = visibility::kPlanarLights | visibility::kBodies,
                                    .options = compared_map_option_descriptions()},
                    .look_up_name = "penumbra widths",
                    .look_up = shaders::kPenumbraWidthComp};

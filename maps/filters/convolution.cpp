@@ -24,7 +24,7 @@ visibility::MethodDescription convolution_description() {
       .paper = "Soler and Sillion 1998",
       .output = visibility::Output::scalar,
       .exact_for = "nothing; in the limit of large maps, blockers in one plane parallel to a rectangle light",
-      .lights = planar_lights(),
+      .lights = visibility::kPlanarLights,
       .textures = false,
       .options = single_map_option_descriptions(),
       .verdict_on = convolution_verdict,

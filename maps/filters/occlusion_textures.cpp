@@ -27,7 +27,7 @@ visibility::MethodDescription occlusion_textures_description() {
                                             .exact_for =
                                                 "nothing; in the limit of large maps, one flat blocker parallel to a "
                                                 "rectangle light in the far plane of a slice",
-                                            .lights = planar_lights(),
+                                            .lights = visibility::kPlanarLights,
                                             .textures = false,
                                             .options = single_map_option_descriptions(),
                                             .verdict_on = occlusion_textures_verdict,

@@ -31,7 +31,7 @@ visibility::MethodDescription pcf_description() {
       .paper = "Reeves, Salesin and Cook 1987",
       .output = visibility::Output::scalar,
       .exact_for = "nothing; in the limit of large maps the hard shadow of the light's centre",
-      .lights = planar_lights(),
+      .lights = visibility::kPlanarLights,
       .textures = false,
       .options = compared_map_option_descriptions(),
       .verdict_on = pcf_verdict,

@@ -83,7 +83,7 @@ visibility::MethodDescription pcss_description() {
       .exact_for =
           "nothing; in the limit of large maps and many samples, where all blockers lie in one plane parallel to "
           "the light and cover the search window or none of it",
-      .lights = planar_lights(),
+      .lights = visibility::kPlanarLights,
       .options = compared_map_option_descriptions(),
       .verdict_on = pcss_verdict,
       .repairs = filter_repairs};

@@ -37,7 +37,7 @@ visibility::MethodDescription shadow_map_description() {
       .paper = "Williams 1978",
       .output = visibility::Output::scalar,
       .exact_for = "nothing; in the limit of large maps the hard shadow of the light's centre",
-      .lights = planar_lights(),
+      .lights = visibility::kPlanarLights,
       .textures = false,
       .options = compared_map_option_descriptions(),
       .verdict_on = shadow_map_verdict,

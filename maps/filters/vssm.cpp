@@ -66,7 +66,7 @@ visibility::MethodDescription vssm_description() {
                                                 "nothing; in the limit of large maps, where all blockers lie in one "
                                                 "plane and what they shade in another, both "
                                                 "parallel to a rectangle light",
-                                            .lights = planar_lights(),
+                                            .lights = visibility::kPlanarLights,
                                             .textures = false,
                                             .options = single_map_option_descriptions(),
                                             .verdict_on = vssm_verdict,

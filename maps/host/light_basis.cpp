@@ -24,7 +24,7 @@ LightBasis light_basis(const visibility::Light& light) {
 }
 
 LightBasis light_basis(const visibility::Light& light, const visibility::SceneFloats& scene) {
-  if (light.kind != visibility::LightKind::sphere) return light_basis(light);
+  if (!is_body(light.kind)) return light_basis(light);
   LightBasis basis;
   basis.center = light.center;
   const glm::dvec3 way = 0.5 * (glm::dvec3(scene.lower) + glm::dvec3(scene.upper)) - basis.center, far = glm::abs(way);
@@ -38,10 +38,9 @@ LightBasis light_basis(const visibility::Light& light, const visibility::SceneFl
 }
 
 LightBounds light_bounds(const visibility::Light& light, const LightBasis& basis) {
-  if (light.kind == visibility::LightKind::disk || light.kind == visibility::LightKind::sphere)
-    return {glm::dvec2(-light.radius), glm::dvec2(light.radius)};
+  if (is_circle(light.kind)) return {glm::dvec2(-light.radius), glm::dvec2(light.radius)};
   LightBounds bounds;
-  if (light.kind == visibility::LightKind::ellipse) {
+  if (is_round(light.kind)) {
     const LightAxes axes = light_axes(light, basis);
     bounds.upper = {std::hypot(axes.u.x, axes.v.x), std::hypot(axes.u.y, axes.v.y)};
     bounds.lower = -bounds.upper;
@@ -63,7 +62,7 @@ LightAxes light_axes(const visibility::Light& light, const LightBasis& basis) {
 
 std::vector<glm::dvec2> light_outline(const visibility::Light& light, const LightBasis& basis) {
   std::vector<glm::dvec2> outline;
-  if (light.kind == visibility::LightKind::ellipse) {
+  if (is_round(light.kind) && !is_circle(light.kind)) {
     constexpr std::uint32_t kSides = 256;
     constexpr double kStep = 2 * std::numbers::pi / kSides;
     const double reach = std::sqrt(kStep / std::sin(kStep));  // ½ m reach² sin(2π/m) = π

@@ -176,7 +176,7 @@ FittedViews fit_views(const visibility::SceneFloats& scene, const visibility::Li
     // Strictly beyond everything: a depth of 1 means that there is nothing.
     fitted.views[i].far = static_cast<float>(std::max(farthest(scene, points[i]) * 1.0625, 1e-30));
   }
-  const bool both_sides = light.two_sided || light.kind == visibility::LightKind::sphere;
+  const bool both_sides = light.two_sided || is_body(light.kind);
   for (int s = 0; s < (both_sides ? 2 : 1); ++s) {
     const double sign = s == 0 ? 1 : -1;
     const SideTriangles receivers =

@@ -270,9 +270,9 @@ void MapMethod::ask(render::Commands& commands, const visibility::Tile& tile, st
     gpu::LookupPush push{.basis = basis_.rounded(),
                          .bias = static_cast<float>(options_.bias),
                          .size = options_.size,
-                         .two_sided = light_->kind == visibility::LightKind::sphere ? 2u
-                                      : light_->two_sided                           ? 1u
-                                                                                    : 0u,
+                         .two_sided = is_body(light_->kind) ? 2u
+                                      : light_->two_sided   ? 1u
+                                                            : 0u,
                          .first_receiver = part.first_receiver,
                          .receiver_count = part.count,
                          .first_result = part.first_result,
@@ -385,16 +385,6 @@ std::uint64_t MapMethod::memory_bytes() const {
 }
 
 }  // namespace
-
-std::vector<visibility::LightKind> planar_lights() {
-  return {visibility::LightKind::rectangle, visibility::LightKind::disk, visibility::LightKind::ellipse,
-          visibility::LightKind::polygon};
-}
-
-std::vector<visibility::LightKind> with_spheres(std::vector<visibility::LightKind> lights) {
-  lights.push_back(visibility::LightKind::sphere);
-  return lights;
-}
 
 std::unique_ptr<visibility::Method> make_map_method(const render::Device& device, MapRecipe recipe,
                                                     const visibility::MethodOptions& options) {

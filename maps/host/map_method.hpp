@@ -138,9 +138,4 @@ struct MapRecipe {
 std::unique_ptr<visibility::Method> make_map_method(const render::Device& device, MapRecipe recipe,
                                                     const visibility::MethodOptions& options);
 
-/// The shapes that methods of this family can do: all planar ones.
-std::vector<visibility::LightKind> planar_lights();
-/// What does not need a plane does spheres, too.
-std::vector<visibility::LightKind> with_spheres(std::vector<visibility::LightKind> lights);
-
 }  // namespace penumbra::maps

@@ -53,11 +53,11 @@ class Fan {
 
 std::vector<glm::vec2> light_pattern(const visibility::Light& light, const LightBasis& basis, std::uint32_t count) {
   std::vector<glm::vec2> pattern(count);
-  if (light.kind == visibility::LightKind::disk) {
+  if (is_circle(light.kind)) {
     for (std::uint32_t i = 0; i < count; ++i) pattern[i] = light.radius * disk_point(i);
     return pattern;
   }
-  if (light.kind == visibility::LightKind::ellipse) {
+  if (is_round(light.kind)) {
     const LightAxes axes = light_axes(light, basis);
     for (std::uint32_t i = 0; i < count; ++i) {
       const glm::dvec2 at = disk_point(i);
@@ -72,7 +72,7 @@ std::vector<glm::vec2> light_pattern(const visibility::Light& light, const Light
 
 LightSquare::LightSquare(const visibility::Light& light)
     : light_(&light), frame_(visibility::light_frame(light)), centroid_(visibility::center_of(light)) {
-  if (light.kind != visibility::LightKind::polygon) return;
+  if (!is_polygon(light.kind)) return;
   area_up_to_ = {0.0};
   for (std::size_t i = 0; i < light.outline.size(); ++i) {
     const glm::dvec3 a(light.outline[i]), b(light.outline[(i + 1) % light.outline.size()]);
@@ -96,7 +96,7 @@ glm::dvec3 LightSquare::outline(double share) const {
 
 glm::vec3 LightSquare::at(const glm::dvec2& unit) const {
   const double a = 2 * unit.x - 1, b = 2 * unit.y - 1;
-  if (light_->kind == visibility::LightKind::rectangle) return glm::vec3(frame_.center + a * frame_.u + b * frame_.v);
+  if (is_parallelogram(light_->kind)) return glm::vec3(frame_.center + a * frame_.u + b * frame_.v);
   const double ring = std::max(std::abs(a), std::abs(b));
   if (ring == 0) return glm::vec3(centroid_);
   // How far around the ring, from its lower left corner and counter-clockwise: a quarter a side.

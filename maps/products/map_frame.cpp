@@ -31,8 +31,8 @@ glm::dvec2 second_moments(const std::vector<glm::dvec2>& corners) {
 }  // namespace
 
 glm::dvec2 half_box(const visibility::Light& light, const LightBasis& basis) {
-  if (light.kind == visibility::LightKind::disk) return glm::dvec2(std::sqrt(3.0) / 2 * light.radius);
-  if (light.kind == visibility::LightKind::ellipse) {
+  if (is_circle(light.kind)) return glm::dvec2(std::sqrt(3.0) / 2 * light.radius);
+  if (is_round(light.kind)) {
     const LightBounds bounds = light_bounds(light, basis);  // the mean of x² is a quarter of the farthest
     return std::sqrt(3.0) / 2 * bounds.upper;
   }

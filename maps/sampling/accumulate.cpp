@@ -26,7 +26,7 @@ visibility::MethodDescription accumulate_description() {
           .exact_for =
               "nothing; in the limit of large maps every pair of view sample and light sample, any soup of "
               "triangles that can be rasterised",
-          .lights = planar_lights(),
+          .lights = visibility::kPlanarLights,
           .options = map_option_descriptions(),
           .verdict_on = accumulate_verdict,
           .repairs = sampling_repairs};

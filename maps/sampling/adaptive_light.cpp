@@ -71,7 +71,7 @@ visibility::MethodDescription adaptive_light_description() {
       .paper = "Schwärzler",
       .output = visibility::Output::scalar,
       .exact_for = "nothing; in the limit of large maps and many levels any soup of triangles that can be rasterised",
-      .lights = planar_lights(),
+      .lights = visibility::kPlanarLights,
       .options = map_option_descriptions(kAdaptiveSize),
       .verdict_on = adaptive_light_verdict,
       .repairs = sampling_repairs};

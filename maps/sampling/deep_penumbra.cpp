@@ -33,7 +33,7 @@ visibility::MethodDescription deep_penumbra_description() {
       .paper = "St-Amour et al. 2005",
       .output = visibility::Output::scalar,
       .exact_for = "nothing; in the limit of large maps and bound 0 the share of light samples that are visible",
-      .lights = planar_lights(),
+      .lights = visibility::kPlanarLights,
       .on_request = true,
       .shares_of_samples = true,
       .options = map_option_descriptions(kDeepSize),

@@ -42,7 +42,7 @@ visibility::MethodDescription layered_attenuation_description() {
       .paper = "Agrawala et al. 2000",
       .output = visibility::Output::scalar,
       .exact_for = "nothing; in the limit of large maps and small epsilon the share of light samples that are visible",
-      .lights = planar_lights(),
+      .lights = visibility::kPlanarLights,
       .on_request = true,
       .shares_of_samples = true,
       .options = map_option_descriptions(kLayeredSize),

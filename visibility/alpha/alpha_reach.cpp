@@ -53,7 +53,7 @@ class Ways {
                        v = light.sun->tangent * glm::dvec3(light.sun->axis_v), middle(light.center);
       corners_ = {middle - u - v, middle + u - v, middle + u + v, middle - u + v};
       room_ = kRoom * (1 + light.sun->tangent);
-    } else if (light.kind == LightKind::sphere) {
+    } else if (is_body(light.kind)) {
       corners_.resize(4);
     } else {
       corners_.assign(light.outline.begin(), light.outline.end());
@@ -64,7 +64,7 @@ class Ways {
 
   void start_at(const SceneFloats& scene, const ViewSamples& samples, std::size_t pixel) {
     p_ = samples.p[pixel];
-    if (light_.kind == LightKind::sphere) {
+    if (is_body(light_.kind)) {
       const auto [c, u, v] = light_frame_from(light_, samples.p[pixel]);
       corners_ = {c - u - v, c + u - v, c + u + v, c - u + v};
       normal_ = glm::cross(u, v);

@@ -20,7 +20,7 @@ struct Span {
 
 Span span_of(const Light& light) {
   const auto [center, to_u, to_v] = light_frame(light);
-  if (light.kind == LightKind::rectangle) return {center, to_u, to_v};
+  if (is_parallelogram(light.kind)) return {center, to_u, to_v};
   const glm::dvec3 axis_u = glm::normalize(to_u);
   const glm::dvec3 axis_v = glm::normalize(glm::cross(glm::cross(to_u, to_v), axis_u));
   glm::dvec2 lower(0), upper(0);
@@ -63,7 +63,7 @@ double shift_of(std::uint32_t row, std::uint32_t step) {
 
 /// The step that gives the light's row shifts, if the samples form rows that have one.
 std::optional<std::uint32_t> shift_step_of(const Light& light) {
-  if (light.kind != LightKind::rectangle || light.rows == 0) return std::nullopt;
+  if (!is_parallelogram(light.kind) || light.rows == 0) return std::nullopt;
   if (light.row_shift.size() < 2) return 0;
   const double step = light.row_shift[1] * kShiftUnit;
   const auto whole = static_cast<std::uint32_t>(static_cast<std::int64_t>(step)) % kShiftUnit;
@@ -76,7 +76,7 @@ std::optional<std::uint32_t> shift_step_of(const Light& light) {
 }  // namespace
 
 DeviceLight make_device_light(const Light& light, float scale) {
-  PENUMBRA_ASSERT(light.kind != LightKind::sphere, "a sphere has no plane");
+  PENUMBRA_ASSERT(!is_body(light.kind), "a {} has no plane", name_of(light.kind));
   const Span span = span_of(light);
   DeviceLight frame{
       glm::vec3(span.center) * scale, glm::vec3(span.u) * scale, glm::vec3(span.v) * scale, false, 0, {}, 0};
@@ -129,8 +129,7 @@ DeviceLight box_of_sphere(const Light& light, float scale) {
 bool can_span(const LightSpan& span, const Light& light, const SceneFloats& scene) {
   if (light.sun) return true;
   const float scale = device_scale(scene);
-  return holds(
-      span, sizes_of(light.kind == LightKind::sphere ? box_of_sphere(light, scale) : make_device_light(light, scale)));
+  return holds(span, sizes_of(is_body(light.kind) ? box_of_sphere(light, scale) : make_device_light(light, scale)));
 }
 
 void check_size(const Light& light, const DeviceLight& frame, const std::string& method) {

@@ -1,6 +1,5 @@
 #include "visibility/lights/light_parts.hpp"
 
-#include "base/error.hpp"
 #include "visibility/lights/convex_polygon.hpp"
 
 #include <glm/common.hpp>
@@ -136,12 +135,9 @@ std::vector<LightPart> rectangle_parts(const Light& light, std::uint32_t count) 
 
 std::vector<LightPart> light_parts(const Light& light, std::uint32_t count) {
   if (count == 1) return {{light, 1}};
-  if (!is_planar(light.kind)) {
-    throw InputError("light \"{}\" is a {}, which has no plane to be cut in; take sublights=1", light.name,
-                     name_of(light.kind));
-  }
+  require_kind(light, kPlanarLights, ", which has no plane to be cut in; take sublights=1");
   std::vector<LightPart> parts =
-      light.kind == LightKind::rectangle ? rectangle_parts(light, count) : polygon_parts(light, count);
+      is_parallelogram(light.kind) ? rectangle_parts(light, count) : polygon_parts(light, count);
   const double sum = std::accumulate(parts.begin(), parts.end(), 0.0,
                                      [](double so_far, const LightPart& part) { return so_far + part.weight; });
   for (LightPart& part : parts) part.weight /= sum;

@@ -3,6 +3,7 @@
 #include "base/assert.hpp"
 #include "visibility/lights/disk_part.hpp"
 #include "visibility/lights/form_factor.hpp"
+#include "visibility/lights/kinds/light_kinds.hpp"
 #include "visibility/pair_truth.hpp"
 
 #include <glm/geometric.hpp>
@@ -19,7 +20,7 @@ UnshadowedLight::UnshadowedLight(const Light& light, const glm::vec3& p, const g
   center_ = light.sun ? frame.center : frame.center - p_;
   u_ = frame.u;
   v_ = frame.v;
-  if (light.kind == LightKind::sphere) {
+  if (is_body(light.kind)) {
     radius_ = glm::length(u_);
     side_ = in_front_of_light(light, p) && radius_ > 0 ? 1 : 0;
     if (side_ != 0) along_ = glm::normalize(glm::dvec3(light.center) - p_);
@@ -42,39 +43,11 @@ UnshadowedLight::UnshadowedLight(const Light& light, const glm::vec3& p, const g
 }
 
 bool UnshadowedLight::above_horizon() const {
-  if (light_.kind == LightKind::rectangle) return height_ > std::abs(height_u_) + std::abs(height_v_);
-  if (light_.kind == LightKind::polygon) {
-    return std::ranges::all_of(light_.outline,
-                               [&](const glm::vec3& q) { return glm::dot(n_, glm::dvec3(q) - p_) > 0; });
-  }
-  return height_ > std::hypot(height_u_, height_v_);
+  return behaviour_of(light_.kind).is_above_horizon(*this);
 }
 
 double UnshadowedLight::whole() const {
-  if (!shines()) return 0;
-  switch (light_.kind) {
-    case LightKind::rectangle:
-      return box(glm::dvec2(-1), glm::dvec2(1));
-    case LightKind::disk:
-    case LightKind::sphere:
-    case LightKind::sun:
-      if (light_.sun && radius_ == 0) return std::max(0.0, glm::dot(n_, along_));
-      return form_factor(FormFactorDisk{center_, along_, radius_}, n_);
-    case LightKind::ellipse:
-      return form_factor(FormFactorEllipse{center_, u_, v_}, n_);
-    case LightKind::polygon:
-      break;
-  }
-  // In the frame's plane, as V and parts have it: three corners that are close together may tilt it a good deal.
-  const auto in_plane = [&](const glm::dvec3& way) { return way - glm::dot(along_, way) * along_; };
-  FormFactorLoop loop(n_);
-  for (std::size_t i = 0; i < light_.outline.size(); ++i) {
-    const glm::dvec3 from(light_.outline[i]), to(light_.outline[(i + 1) % light_.outline.size()]);
-    const glm::dvec3 a = center_ + in_plane(from - glm::dvec3(light_.center)),
-                     b = center_ + in_plane(to - glm::dvec3(light_.center));
-    loop.add({a, b, in_plane(to - from)}, glm::dot(n_, a), glm::dot(n_, b));
-  }
-  return std::abs(loop.sum());  // an outline may run either way around
+  return shines() ? behaviour_of(light_.kind).form_factor(*this) : 0;
 }
 
 double UnshadowedLight::part(std::span<const glm::dvec2> corners) const {

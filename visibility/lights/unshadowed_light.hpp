@@ -33,7 +33,13 @@ class UnshadowedLight {
   [[nodiscard]] double part(std::span<const glm::dvec2> corners) const;
   /// Of the part from `low` to `high`.
   [[nodiscard]] double box(const glm::dvec2& low, const glm::dvec2& high) const;
+  [[nodiscard]] const Light& light() const { return light_; }
+  [[nodiscard]] const glm::dvec3& p() const { return p_; }
   [[nodiscard]] const glm::dvec3& normal() const { return n_; }
+  /// Unit, perpendicular to the light, away from the side that p is on.
+  [[nodiscard]] const glm::dvec3& along() const { return along_; }
+  /// Of a light that is a circle, at the distance of frame().center.
+  [[nodiscard]] double radius() const { return radius_; }
   /// What part() computes with, for whoever does many side by side.
   struct Frame {
     glm::dvec3 center{0}, u{0}, v{0};               ///< relative to p

@@ -37,16 +37,16 @@ struct WholeLight {
 
 WholeLight make_whole_light(const Light& light) {
   WholeLight whole;
-  if (light.kind == LightKind::sphere) return whole;
+  if (is_body(light.kind)) return whole;
   whole.frame = light_frame(light);
   const auto& [c, u, v] = whole.frame;
   whole.across = glm::cross(u, v);
   const glm::dvec3 a = glm::abs(u), b = glm::abs(v);
   whole.at_most = {a.y * b.z + b.y * a.z, a.z * b.x + b.z * a.x, a.x * b.y + b.x * a.y};
   whole.front = glm::normalize(whole.across);
-  if (light.kind == LightKind::rectangle) {
+  if (is_parallelogram(light.kind)) {
     whole.corners = {{-u, -v, -2.0 * v}, {u, -v, 2.0 * u}, {u, v, 2.0 * v}, {-u, v, -2.0 * u}};
-  } else if (light.kind == LightKind::polygon) {
+  } else if (is_polygon(light.kind)) {
     const auto in_plane = [&](const glm::dvec3& way) { return way - glm::dot(whole.front, way) * whole.front; };
     const std::size_t count = light.outline.size();
     for (std::size_t i = 0; i < count; ++i) {
@@ -110,7 +110,7 @@ Wholes of_polygon(const Light& light, const WholeLight& whole, const V3& p, cons
   const V zero = hn::Zero(D());
   const V3 center = vector(whole.frame.center) - p;
   const Sides sides = sides_of(whole, center);
-  const bool is_rectangle = light.kind == LightKind::rectangle;
+  const bool is_rectangle = is_parallelogram(light.kind);
   const V height = dot(n, center), height_u = dot(n, vector(whole.frame.u)), height_v = dot(n, vector(whole.frame.v));
   // The rectangle's heights as UnshadowedLight::part has them; a polygon's as whole().
   const auto corner_of = [&](std::size_t i) {
@@ -228,10 +228,10 @@ void whole_form_factors_here(const Light& light, const SurfaceElements& elements
       return V3{hn::LoadU(d, of[0].data()), hn::LoadU(d, of[1].data()), hn::LoadU(d, of[2].data())};
     };
     const V3 p = load(at.p), n = normalize(load(at.n));
-    const Wholes found = !whole.corners.empty()            ? of_polygon(light, whole, p, n)
-                         : light.kind == LightKind::disk   ? of_flat_disk(light, whole, p, n)
-                         : light.kind == LightKind::sphere ? of_sphere(light, p, n)
-                                                           : of_sun(light, whole, n);
+    const Wholes found = !whole.corners.empty()  ? of_polygon(light, whole, p, n)
+                         : is_planar(light.kind) ? of_flat_disk(light, whole, p, n)
+                         : is_body(light.kind)   ? of_sphere(light, p, n)
+                                                 : of_sun(light, whole, n);
     hn::StoreU(found.value, d, values.data());
     std::copy_n(values.begin(), count, out.begin() + static_cast<std::ptrdiff_t>(first));
     if (hn::AllTrue(d, found.known)) continue;
@@ -257,7 +257,9 @@ HWY_EXPORT(whole_form_factors_here);
 void whole_form_factors(const Light& light, const SurfaceElements& elements, std::span<double> whole) {
   PENUMBRA_ASSERT(elements.which.size() == whole.size(), "{} elements, {} form factors", elements.which.size(),
                   whole.size());
-  if (light.kind != LightKind::ellipse) return HWY_DYNAMIC_DISPATCH(whole_form_factors_here)(light, elements, whole);
+  if (!is_round(light.kind) || is_circle(light.kind)) {
+    return HWY_DYNAMIC_DISPATCH(whole_form_factors_here)(light, elements, whole);
+  }
   for (std::size_t i = 0; i < whole.size(); ++i) {
     const std::uint32_t at = elements.which[i];
     whole[i] = UnshadowedLight(light, elements.p[at], elements.n[at]).whole();

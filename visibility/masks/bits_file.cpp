@@ -21,11 +21,11 @@ void put(std::vector<std::byte>& bytes, const Value& value) {
 }
 
 const std::filesystem::path& refuse_sphere(const std::filesystem::path& path, const Light& light) {
-  if (light.kind == LightKind::sphere) {
+  if (is_body(light.kind)) {
     throw UsageError(
-        "cannot write \"{}\": light \"{}\" is a sphere, whose light samples differ from pixel to pixel; "
+        "cannot write \"{}\": light \"{}\" is a {}, whose light samples differ from pixel to pixel; "
         "--bits needs a light of another kind (choose one with --light)",
-        path.string(), light.name);
+        path.string(), light.name, name_of(light.kind));
   }
   return path;
 }

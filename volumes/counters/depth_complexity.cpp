@@ -112,13 +112,10 @@ class DepthComplexity final : public EdgeMethod, public DepthCounters {
   }
 
   void prepare_light(const visibility::Light& light) override {
-    if (!is_planar_light(light)) {
-      throw InputError(
-          "light \"{}\" is a {}: depth-complexity on the Vulkan device (engine=vulkan, variant=laine, crop=off) does "
-          "planar "
-          "lights (rectangle, disk, ellipse, polygon); without these options it does every light",
-          light.name, visibility::name_of(light.kind));
-    }
+    visibility::require_kind(light, visibility::kPlanarLights,
+                             ": depth-complexity on the Vulkan device (engine=vulkan, variant=laine, crop=off) does "
+                             "planar lights ({}); without these options it does every light",
+                             visibility::kPlanarLights.words());
     EdgeMethod::prepare_light(light);
   }
 
@@ -279,7 +276,6 @@ class DepthComplexity final : public EdgeMethod, public DepthCounters {
 }  // namespace
 
 visibility::MethodDescription depth_complexity_description(const visibility::MethodOptions& options) {
-  using visibility::LightKind;
   visibility::MethodDescription description{
       .name = "depth-complexity",
       .family = visibility::Family::geometry,
@@ -290,8 +286,7 @@ visibility::MethodDescription depth_complexity_description(const visibility::Met
           "the same for closed meshes whose triangles all have an area, approximate for others; variant=forest: the "
           "same where no occluding triangle's "
           "plane passes through the light, too bright elsewhere",
-      .lights = {LightKind::rectangle, LightKind::disk, LightKind::ellipse, LightKind::polygon, LightKind::sphere,
-                 LightKind::sun},
+      .lights = visibility::kEveryLight,
       .bytes_per_triangle = 400,
       .options = {engines::kEngine.description(), kVariant.description(), kSearch.description(), kCrop.description(),
                   kCounterBits.description()},
@@ -300,7 +295,7 @@ visibility::MethodDescription depth_complexity_description(const visibility::Met
   const visibility::ParsedOptions parsed = parse(description, options);
   if (parsed[engines::kEngine] == engines::Engine::vulkan || !can_be_native(parsed) ||
       parsed[kSearch] != Search::hierarchy)
-    std::erase_if(description.lights, [](LightKind kind) { return !visibility::is_planar(kind); });
+    description.lights = description.lights & visibility::kPlanarLights;
   return description;
 }
 

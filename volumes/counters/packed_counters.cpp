@@ -48,8 +48,7 @@ LightHull hull_of(const Light& light) {
   };
   const auto within = [](const glm::dvec2& x) { return std::max(std::abs(x.x), std::abs(x.y)) < 1 - 0x1p-10; };
   const glm::dvec3 center(visibility::center_of(light));
-  const bool inside = light.kind == visibility::LightKind::rectangle && on_plane(center) &&
-                      std::ranges::all_of(hull.corners, on_plane) &&
+  const bool inside = is_parallelogram(light.kind) && on_plane(center) && std::ranges::all_of(hull.corners, on_plane) &&
                       std::ranges::all_of(light.points, [&](const glm::vec3& l) { return on_plane(glm::dvec3(l)); }) &&
                       std::ranges::all_of(light.coordinates, within);
   if (inside) return hull;

@@ -11,7 +11,7 @@ namespace {
 LightSide front_of_light(const visibility::Light& light, const visibility::DeviceLight& frame, float scale) {
   const auto [center, u, v] = visibility::light_frame(light);
   const std::array plane{center, glm::dvec3(light.center_u), glm::dvec3(light.center_v)};
-  if (light.kind == visibility::LightKind::rectangle) {
+  if (is_parallelogram(light.kind)) {
     return {plane, center, u, v, 1, scale};
   }
   const glm::dvec3 normal = glm::normalize(glm::cross(u, v));

@@ -10,7 +10,7 @@
 namespace penumbra::volumes {
 LightWindow window_of(const visibility::Light& light) {
   LightWindow window;
-  if (light.kind != visibility::LightKind::polygon) return window;
+  if (!is_polygon(light.kind)) return window;
   const auto [center, u, v] = visibility::light_frame(light);
   window.shear = glm::dot(u, v) / glm::dot(u, u);
   const glm::dvec3 across = v - window.shear * u, n = glm::cross(u, v);

@@ -21,7 +21,6 @@
 #include <glm/vec4.hpp>
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
@@ -32,9 +31,6 @@
 namespace penumbra::volumes {
 namespace {
 
-constexpr std::array kLights{visibility::LightKind::rectangle, visibility::LightKind::disk,
-                             visibility::LightKind::ellipse,   visibility::LightKind::polygon,
-                             visibility::LightKind::sphere,    visibility::LightKind::sun};
 constexpr std::uint32_t kBlock = 8;           // pixels, as in edge_scatter.glsl
 constexpr std::uint32_t kMostBandWords = 16;  // 64 light rows: what a question can name
 
@@ -267,10 +263,10 @@ visibility::MethodDescription describe() {
           .paper = "ours; after Laine et al. 2005 and Bergeron 1986",
           .output = visibility::Output::mask,
           .exact_for = "every pair of view sample and light sample, for any triangle soup",
-          .lights = {kLights.begin(), kLights.end()},
+          .lights = visibility::kEveryLight,
           .bytes_per_triangle = 400,
           .options = {engines::kEngine.description(), kExactRows.description()},
-          .exact_area = visibility::ExactArea{{kLights.begin(), kLights.end()}, {{"rows", "exact"}}},
+          .exact_area = visibility::ExactArea{visibility::kEveryLight, {{"rows", "exact"}}},
           .span = visibility::kFloatSpan,
           .verdict_on = verdict_on};
 }
@@ -283,7 +279,7 @@ visibility::MethodDescription edge_scatter_description(const visibility::MethodO
   const bool on_device = options[engines::kEngine] == engines::Engine::vulkan;
   if (on_device && options[kExactRows])
     throw UsageError("edge-scatter: rows=exact runs on the processor: leave engine=vulkan out");
-  if (on_device) std::erase_if(description.lights, [](auto kind) { return !visibility::is_planar(kind); });
+  if (on_device) description.lights = description.lights & visibility::kPlanarLights;
   if (!options[kExactRows]) return description;
   description.output = visibility::Output::radiance;
   description.exact_for =

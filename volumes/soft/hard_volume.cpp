@@ -26,13 +26,12 @@ constexpr visibility::ChoiceOption kVariant{
 }  // namespace
 
 visibility::MethodDescription hard_volume_description() {
-  using visibility::LightKind;
   return {.name = "hard-volume",
           .family = visibility::Family::geometry,
           .paper = "Crow 1977, Heidmann 1991, Everitt and Kilgard 2002",
           .output = visibility::Output::scalar,
           .exact_for = "the hard shadow of the light's centre, of any triangle soup (z-fail)",
-          .lights = {LightKind::rectangle, LightKind::disk, LightKind::ellipse, LightKind::polygon},
+          .lights = visibility::kPlanarLights,
           .options = {kVariant.description()},
           .verdict_on = hard_volume_verdict};
 }

@@ -7,7 +7,7 @@ namespace penumbra::volumes {
 
 std::vector<visibility::Light> light_parts(const visibility::Light& light, std::uint32_t n) {
   if (n == 1) return {light};
-  PENUMBRA_ASSERT(light.kind == visibility::LightKind::rectangle, "a {} cut in parts", name_of(light.kind));
+  PENUMBRA_ASSERT(is_parallelogram(light.kind), "a {} cut in parts", name_of(light.kind));
   const visibility::LightFrame frame = visibility::light_frame(light);
   const auto at = [&](double s, double t) { return glm::vec3(frame.center + s * frame.u + t * frame.v); };
   std::vector<visibility::Light> parts;

@@ -31,8 +31,6 @@
 namespace penumbra::volumes {
 namespace {
 
-using visibility::LightKind;
-
 constexpr double kPerLightPixel = 2;            ///< view samples, on average
 constexpr std::size_t kMostPixels = 1U << 18U;  ///< of a tile: each has a projection and a list of edges
 
@@ -67,7 +65,7 @@ visibility::MethodDescription describe_soft_irregular() {
           .exact_for =
               "one occluder at a time, of one layer, whose silhouettes from the view sample are those from the "
               "light's centre",
-          .lights = {LightKind::rectangle, LightKind::disk, LightKind::ellipse, LightKind::polygon},
+          .lights = visibility::kPlanarLights,
           .on_request = true,
           .options = {kUmbra.description(), kArc.description()},
           .verdict_on = soft_irregular_verdict};

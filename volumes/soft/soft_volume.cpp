@@ -7,7 +7,6 @@
 #include "volumes/soft/methods.hpp"
 
 #include "base/assert.hpp"
-#include "base/error.hpp"
 #include "base/parallel.hpp"
 #include "volumes/soft/coverage_table.hpp"
 #include "volumes/soft/light_parts.hpp"
@@ -30,7 +29,6 @@ namespace penumbra::volumes {
 namespace {
 
 using visibility::Light;
-using visibility::LightKind;
 using visibility::SceneFloats;
 using visibility::Tile;
 using visibility::ViewSamples;
@@ -77,7 +75,7 @@ visibility::MethodDescription soft_volume_description() {
           .exact_for =
               "occluders that do not overlap as seen from the view sample and whose silhouettes are those that "
               "the light's centre sees: planar ones, say",
-          .lights = {LightKind::rectangle, LightKind::disk, LightKind::ellipse},
+          .lights = visibility::kPlanarLights - visibility::kPolygons,
           .options = {kSplit.description(), kTable.description(), kConstruction.description(), kWedges.description(),
                       kTests.description()},
           .verdict_on = soft_volume_verdict};
@@ -130,9 +128,9 @@ class SoftVolume final : public visibility::Method {
 
   void prepare_light(const Light& light) override {
     visibility::check_light(description_, light);
-    if (split_ > 1 && light.kind != LightKind::rectangle) {
-      throw InputError("light \"{}\" is a {}; method soft-volume cuts only rectangles in parts: take split=1",
-                       light.name, name_of(light.kind));
+    if (split_ > 1) {
+      visibility::require_kind(light, visibility::kParallelograms,
+                               "; method soft-volume cuts only rectangles in parts: take split=1");
     }
     make_raster(light);
     const std::vector<Light> lights = light_parts(light, split_);

@@ -25,7 +25,6 @@ namespace penumbra::volumes {
 namespace {
 
 using visibility::Light;
-using visibility::LightKind;
 using visibility::SceneFloats;
 using visibility::Tile;
 using visibility::ViewSamples;
@@ -49,7 +48,7 @@ visibility::MethodDescription soft_volume_blend_description() {
           .paper = "Forest, Barthe and Paulin 2006",
           .output = visibility::Output::scalar,
           .exact_for = "what soft-volume is exact for, if boxes around occluders on a quarter of the light are apart",
-          .lights = {LightKind::rectangle},
+          .lights = visibility::kParallelograms,
           .textures = false,
           .options = {kBlendWedges.description()},
           .verdict_on = soft_volume_blend_verdict};

@@ -19,7 +19,6 @@ namespace penumbra::volumes {
 namespace {
 
 using visibility::Light;
-using visibility::LightKind;
 using visibility::SceneFloats;
 using visibility::Tile;
 using visibility::ViewSamples;
@@ -40,7 +39,7 @@ visibility::MethodDescription wedge_ramp_description() {
           .paper = "Akenine-Möller and Assarsson 2002",
           .output = visibility::Output::scalar,
           .exact_for = "nothing but umbra and full light of one occluder with a simple silhouette",
-          .lights = {LightKind::rectangle, LightKind::disk, LightKind::ellipse},
+          .lights = visibility::kPlanarLights - visibility::kPolygons,
           .textures = false,
           .options = {},
           .verdict_on = wedge_ramp_verdict};

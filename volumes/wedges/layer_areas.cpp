@@ -135,7 +135,7 @@ std::vector<Polygon> projected_layers(const visibility::Light& light, const glm:
 }
 
 bool touches_light(const visibility::Light& light, const std::array<glm::vec3, 3>& triangle) {
-  if (light.kind == visibility::LightKind::sphere) {
+  if (is_body(light.kind)) {
     const glm::dvec3 c = light.center;
     const auto& [p, q, r] = triangle;
     return distance_to({glm::dvec3(p) - c, glm::dvec3(q) - c, glm::dvec3(r) - c}) <= light.radius * (1 + kHair);

@@ -11,8 +11,6 @@
 namespace penumbra::volumes {
 namespace {
 
-using visibility::LightKind;
-
 /// By how much of the radius the hull is made larger, for rounding here and for what storage in float32 may have moved
 /// points by: half an ulp of each coordinate of the centre and of a point of the rim, less than 2⁻²² of their size.
 double margin_of(const visibility::Light& light, double radius) {
@@ -24,7 +22,7 @@ double margin_of(const visibility::Light& light, double radius) {
 LightHull round_hull(const visibility::Light& light, std::uint32_t sides) {
   const auto [center, u, v] = visibility::light_frame(light);
   double least = light.radius, most = light.radius;
-  if (light.kind == LightKind::ellipse) {  // bounds of its axes: their squares add up to u² + v²
+  if (!is_circle(light.kind)) {  // bounds of its axes: their squares add up to u² + v²
     most = std::hypot(glm::length(u), glm::length(v));
     least = glm::length(glm::cross(u, v)) / most;
   }
@@ -57,7 +55,7 @@ LightHull sphere_hull(const visibility::Light& light) {
 
 LightHull light_hull(const visibility::Light& light, std::uint32_t sides) {
   PENUMBRA_ASSERT(sides >= 3, "{} sides", sides);
-  if (light.kind == LightKind::sphere) return sphere_hull(light);
+  if (is_body(light.kind)) return sphere_hull(light);
   if (is_round(light.kind)) return round_hull(light, sides);
   LightHull hull{{}, glm::dvec3(visibility::center_of(light))};
   for (const glm::vec3& corner : light.outline) hull.corners.emplace_back(corner);

@@ -78,9 +78,8 @@ Projected mix(const Projected& a, const Projected& b, double t) {
 }  // namespace
 
 LightOutline light_outline(const visibility::Light& light) {
-  using visibility::LightKind;
   if (is_round(light.kind)) return {{}, std::numbers::pi};
-  if (light.kind == LightKind::rectangle) return {{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}, 4};
+  if (is_parallelogram(light.kind)) return {{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}, 4};
   const auto [center, u, v] = visibility::light_frame(light);
   const glm::dvec3 n = glm::cross(u, v);
   LightOutline outline;
@@ -125,7 +124,7 @@ double Projected::error() const {
 // r = p − o, d = x − p: S = −det(r, v, d), T = −det(u, r, d), W = −det(u, v, d), over K = det(u, v, r), as in
 // areas/back_projection.hpp. d is taken first: an edge that nearly touches p is seen as sharply as any other.
 LightProjection::LightProjection(const visibility::Light& light, const glm::vec3& p) : p_(p) {
-  if (light.kind == visibility::LightKind::sphere) {
+  if (is_body(light.kind)) {
     turn_ = in_front_of_light(light, p) ? 1 : 0;
   } else {
     turn_ = static_cast<int>(mesh::side_of_plane(light.center, light.center_u, light.center_v, p));

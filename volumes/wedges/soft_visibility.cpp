@@ -146,13 +146,13 @@ std::vector<SoftVisibility::Silhouette> SoftVisibility::silhouettes(const LitPoi
 
 /// The light's centre, or that of what p sees of a sphere.
 glm::vec3 SoftVisibility::center_from(const glm::vec3& p) const {
-  if (light_.kind != visibility::LightKind::sphere) return center_;
+  if (!is_body(light_.kind)) return center_;
   return glm::vec3(visibility::light_frame_from(light_, p).center);
 }
 
 /// What bounds the light as p sees it: of a sphere, the square around its disk, in floats.
 std::vector<glm::vec3> SoftVisibility::corners_from(const glm::vec3& p) const {
-  if (light_.kind != visibility::LightKind::sphere) return light_.outline;
+  if (!is_body(light_.kind)) return light_.outline;
   const auto [c, u, v] = visibility::light_frame_from(light_, p);
   return {glm::vec3(c - u - v), glm::vec3(c + u - v), glm::vec3(c + u + v), glm::vec3(c - u + v)};
 }
@@ -261,7 +261,7 @@ LayerSum SoftVisibility::at_center(const LitPoint& sample, std::span<const Silho
 LayerSum SoftVisibility::sum_of(const LitPoint& sample, Viewer viewer, std::span<const Silhouette> edges,
                                 const CenterCount& count) const {
   LayerSum result;
-  const bool no_disk = light_.kind == visibility::LightKind::sphere &&  // p is outside by less than double holds
+  const bool no_disk = is_body(light_.kind) &&  // p is outside by less than double holds
                        visibility::light_frame_from(light_, sample.p).u == glm::dvec3(0);
   result.in_front = visibility::in_front_of_light(light_, sample.p) && !no_disk;
   if (!result.in_front) return result;

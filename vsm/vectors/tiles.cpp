@@ -187,7 +187,7 @@ class TileTest {
     return {in_, at_, std::bit_cast<std::uint32_t>(s_.near[kTriangleSlot][triangle])};
   }
   [[nodiscard]] const glm::vec3& light_point(std::uint32_t sample) {
-    if (in_.light.kind != visibility::LightKind::sphere) return in_.light.points[sample];
+    if (!is_body(in_.light.kind)) return in_.light.points[sample];
     if (s_.light_points.empty()) {
       s_.light_points.resize(in_.light.sample_count());
       visibility::light_points_for(in_.light, in_.p[at_.pixel], s_.light_points.data());

@@ -30,7 +30,7 @@ visibility::MethodDescription contour_description() {
       .paper = "Guennebaud et al. 2007",
       .output = visibility::Output::scalar,
       .exact_for = "nothing; in the limit of large maps, where all that shades lies in one plane parallel to the light",
-      .lights = planar_lights(),
+      .lights = visibility::kPlanarLights,
       .textures = false,
       .options = compared_map_option_descriptions(),
       .verdict_on = contour_verdict,

@@ -28,18 +28,18 @@ ContourLightData contour_light(const visibility::Light& light, const LightBasis&
   const LightBounds bounds = light_bounds(light, basis);
   data.head.lower = bounds.lower;
   data.head.upper = bounds.upper;
-  if (light.kind == visibility::LightKind::disk) {
+  if (is_circle(light.kind)) {
     data.head.disk = 1;
     set_to_unit(data.head, {light.radius, 0}, {0, light.radius});
     return data;
   }
-  if (light.kind == visibility::LightKind::ellipse) {
+  if (is_round(light.kind)) {
     const LightAxes axes = light_axes(light, basis);
     data.head.disk = 1;
     set_to_unit(data.head, axes.u, axes.v);
     return data;
   }
-  if (light.kind == visibility::LightKind::rectangle) {
+  if (is_parallelogram(light.kind)) {
     const visibility::LightFrame frame = visibility::light_frame(light);
     const glm::dvec3 u = basis.local(basis.center + frame.u), v = basis.local(basis.center + frame.v);
     set_to_unit(data.head, glm::dvec2(u), glm::dvec2(v));

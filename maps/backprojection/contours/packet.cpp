@@ -77,7 +77,7 @@ visibility::MethodDescription packet_description(const visibility::MethodOptions
       .paper = "Yang et al. 2009",
       .output = visibility::Output::scalar,
       .exact_for = "nothing; in the limit of large maps, where all that shades lies in one plane parallel to the light",
-      .lights = planar_lights(),
+      .lights = visibility::kPlanarLights,
       .options = compared_map_option_descriptions(),
       .verdict_on = contour_verdict,
       .repairs = contour_repairs};

@@ -45,7 +45,7 @@ visibility::MethodDescription backproject_description(const visibility::MethodOp
       .paper = "Guennebaud et al. 2006",
       .output = visibility::Output::scalar,
       .exact_for = "nothing; in the limit of large maps, where all that shades lies in one plane parallel to the light",
-      .lights = planar_lights(),
+      .lights = visibility::kPlanarLights,
       .options = compared_map_option_descriptions(),
       .verdict_on = backproject_verdict,
       .repairs = backproject_repairs};
@@ -56,7 +56,7 @@ visibility::MethodDescription backproject_description(const visibility::MethodOp
   description.options.push_back(kSubsample.description());
   description.options.push_back(kSubsampleBy.description());
   if (visibility::parse_options(description, options)[kForm] == gpu::kFormSphere) {
-    description.lights = with_spheres(planar_lights());
+    description.lights = visibility::kPlanarLights | visibility::kBodies;
     description.textures = false;  // a cap of directions is as bright everywhere
   }
   return description;
@@ -81,8 +81,8 @@ std::unique_ptr<visibility::Method> make_backproject(const render::Device& devic
   recipe.push_words = sizeof(gpu::BackprojectPush) / sizeof(std::uint32_t);
   recipe.push = [layers = parsed[kDeepestLayers]](const visibility::Light& light) {
     // A sphere's area is that of the disk of its radius.
-    return push_words(gpu::BackprojectPush{layers, light.kind == visibility::LightKind::sphere ? 1u : 0u,
-                                           static_cast<float>(half_width(light))});
+    return push_words(
+        gpu::BackprojectPush{layers, is_body(light.kind) ? 1u : 0u, static_cast<float>(half_width(light))});
   };
   return subsampled(device, make_map_method(device, std::move(recipe), options), parsed, options);
 }

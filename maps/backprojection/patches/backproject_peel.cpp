@@ -44,7 +44,7 @@ visibility::MethodDescription backproject_peel_description() {
       .exact_for =
           "nothing; in the limit of large maps and all samples, where all that shades lies in one plane "
           "parallel to the light",
-      .lights = planar_lights(),
+      .lights = visibility::kPlanarLights,
       .options = compared_map_option_descriptions(DepthUse::midpoint),
       .verdict_on = backproject_peel_verdict,
       .repairs = peel_repairs};

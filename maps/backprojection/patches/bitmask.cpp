@@ -60,7 +60,7 @@ visibility::MethodDescription bitmask_description(const visibility::MethodOption
       .exact_for =
           "nothing; in the limit of large maps every pair of view sample and light sample whose occluders the "
           "light's centre sees",
-      .lights = planar_lights(),
+      .lights = visibility::kPlanarLights,
       .on_request = true,
       .options = compared_map_option_descriptions(),
       .verdict_on = bitmask_verdict,

@@ -71,7 +71,7 @@ visibility::MethodDescription soft_shadow_map_description() {
       .exact_for =
           "nothing; in the limit of large maps a receiver below occluders that are flat and parallel to the light "
           "and do not overlap",
-      .lights = planar_lights(),
+      .lights = visibility::kPlanarLights,
       .options = map_option_descriptions(kSize, kNoBias),
       .verdict_on = soft_shadow_map_verdict,
       .repairs = repairs,

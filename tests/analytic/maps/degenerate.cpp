@@ -77,8 +77,7 @@ class MapsDegenerate : public MapsTest {
   }
   static bool can(const visibility::Method& method, const visibility::Light& light) {
     const visibility::MethodDescription& description = method.description();
-    return std::ranges::find(description.lights, light.kind) != description.lights.end() &&
-           (description.textures || !light.texture);
+    return description.lights.contains(light.kind) && (description.textures || !light.texture);
   }
 
   template <typename Add>

@@ -6,7 +6,6 @@
 #include "tests/analytic/maps/places.hpp"
 #include "tests/analytic/maps/ways.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
@@ -162,8 +161,7 @@ class MapsIdentities : public MapsTest {
     }
     bool can(const std::string& words, const Stage& stage) {
       const visibility::MethodDescription& description = method(words).description();
-      return std::ranges::find(description.lights, stage.light.kind) != description.lights.end() &&
-             (description.textures || !stage.light.texture);
+      return description.lights.contains(stage.light.kind) && (description.textures || !stage.light.texture);
     }
 
    private:

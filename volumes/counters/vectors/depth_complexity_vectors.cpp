@@ -2,7 +2,6 @@
 
 #include "volumes/counters/vectors/depth_complexity_vectors.hpp"
 
-#include "base/error.hpp"
 #include "volumes/counters/vectors/count_samples.hpp"
 #include "volumes/edges/vectors/vector_edges.hpp"
 
@@ -22,11 +21,10 @@ class VectorDepthComplexity final : public VectorEdges {
       : VectorEdges(std::move(given), "count edges", false), search_(search) {}
 
   void prepare_light(const visibility::Light& light) override {
-    if (search_ != Search::hierarchy && !visibility::is_planar(light.kind)) {
-      throw InputError(
-          "light \"{}\" is a {}: depth-complexity with search=kd-tree or hemicube does planar lights; "
-          "search=hierarchy does every light",
-          light.name, visibility::name_of(light.kind));
+    if (search_ != Search::hierarchy) {
+      visibility::require_kind(light, visibility::kPlanarLights,
+                               ": depth-complexity with search=kd-tree or hemicube does planar lights; "
+                               "search=hierarchy does every light");
     }
     structures_ = {};
     VectorEdges::prepare_light(light);

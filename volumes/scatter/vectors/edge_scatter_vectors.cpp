@@ -95,8 +95,7 @@ class VectorEdgeRows final : public VectorEdges {
   /// Cells that have nothing to do with light samples.
   [[nodiscard]] GridShape grid_shape() const override {
     constexpr std::uint32_t kCells = 16;  // of a side
-    if (light().kind == visibility::LightKind::rectangle)
-      return {visibility::make_device_light(light(), scale()), true, kCells, kCells};
+    if (is_parallelogram(light().kind)) return {visibility::make_device_light(light(), scale()), true, kCells, kCells};
     const double to_scale = scale();
     const WindowAxes axes = axes_of(light(), window_);
     const glm::dvec3 u = to_scale * 0.5 * axes.u, v = to_scale * 0.5 * axes.v, corner = to_scale * axes.corner;
@@ -107,7 +106,7 @@ class VectorEdgeRows final : public VectorEdges {
     // Three roundings to float.
     const glm::dvec3 largest = glm::abs(corner) + 2.0 * glm::abs(u) + 2.0 * glm::abs(v);
     frame.deviation = static_cast<float>(0x1p-22 * (largest.x + largest.y + largest.z));
-    if (light().kind != visibility::LightKind::polygon) return {frame, true, kCells, kCells};
+    if (!is_polygon(light().kind)) return {frame, true, kCells, kCells};
     return {frame,
             true,
             kCells,

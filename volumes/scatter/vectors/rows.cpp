@@ -40,7 +40,7 @@ LightRegion make_light_region(const visibility::Light& light, const LightWindow&
                               float scale) {
   const glm::dvec2 cells(grid.columns, grid.rows);
   LightRegion region{window, LightMeasure(light, cells)};
-  if (light.kind != visibility::LightKind::polygon) return region;
+  if (!is_polygon(light.kind)) return region;
   const double per_length = std::max(glm::length(grid.axes[0]), glm::length(grid.axes[1]));
   double farthest = 0, twice_area = 0;
   std::vector<glm::dvec2> corners;

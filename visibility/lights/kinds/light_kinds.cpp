@@ -1,0 +1,32 @@
+#include "visibility/lights/kinds/light_kinds.hpp"
+
+#include "visibility/lights/form_factor.hpp"
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+namespace penumbra::visibility {
+namespace {
+
+/// In the order of scenes::kLightTraits.
+constexpr std::array kBehaviours{&kRectangleBehaviour, &kDiskBehaviour,   &kEllipseBehaviour,
+                                 &kPolygonBehaviour,   &kSphereBehaviour, &kSunBehaviour};
+static_assert(kBehaviours.size() == scenes::kLightTraits.size());
+
+}  // namespace
+
+const LightBehaviour& behaviour_of(LightKind kind) {
+  return *kBehaviours[static_cast<std::size_t>(kind)];
+}
+
+bool is_round_above_horizon(const UnshadowedLight& seen) {
+  const UnshadowedLight::Frame frame = seen.frame();
+  return frame.height > std::hypot(frame.height_u, frame.height_v);
+}
+
+double circle_form_factor(const UnshadowedLight& seen) {
+  return form_factor(FormFactorDisk{seen.frame().center, seen.along(), seen.radius()}, seen.normal());
+}
+
+}  // namespace penumbra::visibility
