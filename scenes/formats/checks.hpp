@@ -20,6 +20,12 @@ void check_camera(const Camera& camera, const std::string& where);
 /// camera too.
 void check_scene(const Scene& scene, const std::string& where, bool needs_light = true);
 
+/// Finite and within kLargestCoordinate. `what` it is, for the message.
+void check_position(const glm::dvec3& position, const std::string& where, const char* what);
+
+/// "(x, y, z)", as messages have it.
+std::string show_vector(const glm::dvec3& v);
+
 /// The polygon's unit normal, by Newell's method: the side from which its vertices run counter-clockwise.
 glm::dvec3 polygon_normal(const Polygon& polygon);
 

@@ -1,5 +1,6 @@
 #include "scenes/formats/checks.hpp"
 #include "scenes/formats/glb_model.hpp"
+#include "scenes/formats/lights/light_formats.hpp"
 #include "scenes/light_texture.hpp"
 #include "scenes/formats/writers.hpp"
 
@@ -25,7 +26,6 @@ namespace penumbra::scenes {
 namespace {
 
 constexpr const char* kEmissiveStrength = "KHR_materials_emissive_strength";
-constexpr unsigned kDiskSides = 64;
 
 int wrap_of(PictureUse::Wrap wrap) {
   if (wrap == PictureUse::Wrap::clamp) return TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE;
@@ -34,7 +34,7 @@ int wrap_of(PictureUse::Wrap wrap) {
 
 /// What glTF has lamps for.
 bool is_lamp(const AreaLight& light) {
-  return std::holds_alternative<Sun>(light.shape) || std::holds_alternative<Sphere>(light.shape);
+  return format_of(light.shape).lamp != nullptr;
 }
 
 /// Does nothing cast a shadow of the light?
@@ -116,29 +116,19 @@ class GlbBuilder {
     glb_.add_root(glb_.add_node(std::move(node)));
   }
 
-  /// A sun, or a sphere with or without a cone; its size goes into the extras.
+  /// What glTF has lamps for.
   void add_lamp(const AreaLight& light, bool casts_shadows) {
+    const GltfLamp made = format_of(light.shape).lamp(light.shape);
     tinygltf::Light lamp;
     lamp.name = light.name;
-    glm::dvec3 way(0, 0, -1), at(0), intensity = light.radiance;
+    lamp.type = made.type;
+    glm::dvec3 intensity = light.radiance * made.intensity;
     tinygltf::Value::Object extras;
-    if (const auto* sun = std::get_if<Sun>(&light.shape)) {
-      lamp.type = "directional";
-      way = sun->direction;
-      if (sun->angle > 0) intensity *= irradiance_of_radiance(*sun);
-      extras["angle"] = tinygltf::Value(sun->angle);
-    } else {
-      const auto& sphere = std::get<Sphere>(light.shape);
-      lamp.type = sphere.cone ? "spot" : "point";
-      at = sphere.center;
-      intensity *= std::numbers::pi * sphere.radius * sphere.radius;
-      extras["radius"] = tinygltf::Value(sphere.radius);
-      if (sphere.cone) {
-        way = sphere.cone->direction;
-        lamp.spot.innerConeAngle = sphere.cone->inner * std::numbers::pi / 180;
-        lamp.spot.outerConeAngle = sphere.cone->outer * std::numbers::pi / 180;
-        if (sphere.cone->smooth) extras["smooth"] = tinygltf::Value(1);
-      }
+    extras[made.size.first] = tinygltf::Value(made.size.second);
+    if (made.cone) {
+      lamp.spot.innerConeAngle = made.cone->inner * std::numbers::pi / 180;
+      lamp.spot.outerConeAngle = made.cone->outer * std::numbers::pi / 180;
+      if (made.cone->smooth) extras["smooth"] = tinygltf::Value(1);
     }
     // The colour is at most 1; the intensity carries the rest.
     lamp.intensity = std::max({intensity.x, intensity.y, intensity.z});
@@ -146,12 +136,13 @@ class GlbBuilder {
     lamp.color = {intensity.x, intensity.y, intensity.z};
     lamp.extras = tinygltf::Value(extras);
     // A lamp shines along its −Z.
-    const glm::dvec3 back = -glm::normalize(way),
+    const glm::dvec3 back = -glm::normalize(made.direction),
                      aside = std::abs(back.y) < 0.9 ? glm::dvec3(0, 1, 0) : glm::dvec3(1, 0, 0);
     const glm::dvec3 right = glm::normalize(glm::cross(aside, back)), up = glm::cross(back, right);
     tinygltf::Node node;
     node.name = light.name;
-    node.matrix = {right.x, right.y, right.z, 0, up.x, up.y, up.z, 0, back.x, back.y, back.z, 0, at.x, at.y, at.z, 1};
+    node.matrix = {right.x,         right.y,         right.z,         0, up.x, up.y, up.z, 0, back.x, back.y, back.z, 0,
+                   made.position.x, made.position.y, made.position.z, 1};
     if (!casts_shadows) node.extras = tinygltf::Value(tinygltf::Value::Object{{"castsShadow", tinygltf::Value(false)}});
     node.extensions["KHR_lights_punctual"] =
         tinygltf::Value(tinygltf::Value::Object{{"light", tinygltf::Value(glb_.add_lamp(std::move(lamp)))}});
@@ -240,30 +231,6 @@ void add_object(const Scene& scene, const ObjectRange& range, GlbBuilder& glb) {
   glb.add_mesh(object.name, vertices, indices, glb.add_material(scene, object), std::move(extras));
 }
 
-/// The light's outline, counter-clockwise seen from where it emits to; empty for a sphere or sun.
-std::vector<glm::dvec3> outline(const AreaLight& light) {
-  if (const auto* r = std::get_if<Rectangle>(&light.shape)) {
-    return {r->center - r->half_u - r->half_v, r->center + r->half_u - r->half_v, r->center + r->half_u + r->half_v,
-            r->center - r->half_u + r->half_v};
-  }
-  if (const auto* polygon = std::get_if<Polygon>(&light.shape)) return polygon->vertices;
-  std::vector<glm::dvec3> points;
-  const auto add_rim = [&](const glm::dvec3& center, const glm::dvec3& u, const glm::dvec3& v) {
-    for (unsigned i = 0; i < kDiskSides; ++i) {
-      const double angle = 2 * std::numbers::pi * i / kDiskSides;
-      points.push_back(center + (std::cos(angle) * u + std::sin(angle) * v));
-    }
-  };
-  if (const auto* disk = std::get_if<Disk>(&light.shape)) {
-    const glm::dvec3 aside = std::abs(disk->normal.x) < 0.5 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
-    const glm::dvec3 v = glm::normalize(glm::cross(disk->normal, aside)), u = glm::cross(v, disk->normal);
-    add_rim(disk->center, disk->radius * u, disk->radius * v);
-  } else if (const auto* ellipse = std::get_if<Ellipse>(&light.shape)) {
-    add_rim(ellipse->center, ellipse->half_u, ellipse->half_v);
-  }
-  return points;
-}
-
 /// All pieces in one mesh, spheres with flat sides and their area.
 void add_pieces(const AreaLight& light, const Pieces& shape, GlbBuilder& glb, Notes& notes) {
   constexpr std::uint32_t kSubdivisions = 3;
@@ -286,9 +253,8 @@ void add_pieces(const AreaLight& light, const Pieces& shape, GlbBuilder& glb, No
       for (const mesh::Triangle& t : ball.triangles)
         indices.insert(indices.end(), {first + t[0], first + t[1], first + t[2]});
     } else {
-      AreaLight one;
-      one.shape = std::visit([](const auto& its) { return LightShape(its); }, piece);
-      const std::vector<glm::dvec3> corners = outline(one);
+      const LightShape flat = std::visit([](const auto& its) { return LightShape(its); }, piece);
+      const std::vector<glm::dvec3> corners = format_of(flat).outline(flat);
       positions.insert(positions.end(), corners.begin(), corners.end());
       for (std::uint32_t i = 1; i + 1 < corners.size(); ++i)
         indices.insert(indices.end(), {first, first + i, first + i + 1});
@@ -304,10 +270,10 @@ void add_pieces(const AreaLight& light, const Pieces& shape, GlbBuilder& glb, No
 void add_light(const Scene& scene, const AreaLight& light, GlbBuilder& glb, Notes& notes) {
   if (const auto* pieces = std::get_if<Pieces>(&light.shape)) return add_pieces(light, *pieces, glb, notes);
   if (is_lamp(light)) return glb.add_lamp(light, !is_shadeless(scene, light));
-  const std::vector<glm::dvec3> points = outline(light);
-  if (std::holds_alternative<Disk>(light.shape) || std::holds_alternative<Ellipse>(light.shape)) {
+  const std::vector<glm::dvec3> points = format_of(light.shape).outline(light.shape);
+  if (is_round(kind_of(light.shape).value())) {
     notes.push_back(
-        fmt::format("light \"{}\": glTF has no round lights; written with {} sides", light.name, kDiskSides));
+        fmt::format("light \"{}\": glTF has no round lights; written with {} sides", light.name, kRimSides));
   }
   std::vector<std::uint32_t> fan;
   for (std::uint32_t i = 1; i + 1 < points.size(); ++i) fan.insert(fan.end(), {0, i, i + 1});

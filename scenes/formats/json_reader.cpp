@@ -8,14 +8,13 @@
 #include "scenes/formats/json_document.hpp"
 #include "scenes/formats/json_meshes.hpp"
 #include "scenes/formats/json_schema.hpp"
+#include "scenes/formats/lights/light_formats.hpp"
 #include "scenes/light_texture.hpp"
 
 #include <fmt/ranges.h>
-#include <glm/geometric.hpp>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <set>
 #include <unordered_map>
@@ -72,13 +71,6 @@ std::vector<Camera> read_cameras(const json& document, const Place& root, std::v
   return cameras;
 }
 
-/// Unit length; what already is, to rounding, stays as it is, so that writing and reading change nothing.
-glm::dvec3 unit(const glm::dvec3& direction) {
-  const double length = glm::length(direction);
-  constexpr double kRounding = 4 * std::numeric_limits<double>::epsilon();
-  return length == 0 || std::abs(length - 1) <= kRounding ? direction : direction / length;
-}
-
 Texture read_light_texture(const json& value, const Place& place, const ReadOptions& options, Scene& scene) {
   if (!value.contains("rectangle")) {
     throw InputError("{}: only a \"rectangle\" light can have a texture; take it away or make the light a rectangle",
@@ -104,78 +96,20 @@ void read_sun_light(const json& value, const Place& place, AreaLight& light, Sce
   }
 }
 
-Polygon read_polygon(const json& corners) {
-  Polygon polygon;
-  for (const json& corner : corners) polygon.vertices.push_back(read_vector(corner));
-  return polygon;
-}
-
-Sphere read_sphere(const json& shape) {
-  Sphere sphere{read_vector(shape["center"]), shape["radius"].get<double>(), {}};
-  if (shape.contains("cone")) {
-    const json& cone = shape["cone"];
-    sphere.cone = Cone{unit(read_vector(cone["direction"])), cone["inner"].get<double>(), cone["outer"].get<double>(),
-                       cone.value("smooth", false)};
-  }
-  return sphere;
-}
-
-Pieces read_pieces(const json& list) {
-  Pieces pieces;
-  for (const json& value : list) {
-    if (value.contains("rectangle")) {
-      const json& shape = value["rectangle"];
-      pieces.pieces.emplace_back(
-          Rectangle{read_vector(shape["center"]), read_vector(shape["halfU"]), read_vector(shape["halfV"])});
-    } else if (value.contains("polygon")) {
-      pieces.pieces.emplace_back(read_polygon(value["polygon"]));
-    } else {
-      pieces.pieces.emplace_back(read_sphere(value["sphere"]));
-    }
-  }
-  return pieces;
-}
-
 AreaLight read_light(const json& value, const Place& place, std::string fallback_name, const ReadOptions& options,
                      Scene& scene) {
   AreaLight light;
   light.name = read_name(value, place, std::move(fallback_name));
   if (value.contains("radiance")) light.radiance = read_vector(value["radiance"]);
   light.two_sided = value.value("twoSided", false);
-  const auto check = [&](const char* kind) { check_light(light, (place / kind).str()); };
-  const auto halves = [&](const json& shape, const char* kind, const char* oblique, auto halved) {
-    halved = {read_vector(shape["center"]), read_vector(shape["halfU"]), read_vector(shape["halfV"])};
-    light.shape = halved;
-    check(kind);
-    const double cosine = glm::dot(glm::normalize(halved.half_u), glm::normalize(halved.half_v));
-    if (std::abs(cosine) > 1e-3) {  // only a hint: what decimals leave of a right angle is no reason to speak
-      scene.warnings.push_back(
-          fmt::format("{}: halfU and halfV are not at right angles; {}", (place / kind).str(), oblique));
-    }
-  };
-  if (value.contains("rectangle")) {
-    halves(value["rectangle"], "rectangle", "the light is a parallelogram", Rectangle{});
-  } else if (value.contains("ellipse")) {
-    halves(value["ellipse"], "ellipse", "they are conjugate half diameters of the ellipse, not its axes", Ellipse{});
-  } else if (value.contains("disk")) {
-    const json& shape = value["disk"];
-    light.shape = Disk{read_vector(shape["center"]), unit(read_vector(shape["normal"])), shape["radius"].get<double>()};
-    check("disk");
-  } else if (value.contains("polygon")) {
-    light.shape = read_polygon(value["polygon"]);
-    check("polygon");
-  } else if (value.contains("pieces")) {
-    light.shape = read_pieces(value["pieces"]);
-    check("pieces");
-  } else if (value.contains("sun")) {
-    const json& shape = value["sun"];
-    light.shape = Sun{unit(read_vector(shape["direction"])), shape["angle"].get<double>()};
-    check("sun");
-    read_sun_light(value, place, light, scene);
-  } else {
-    light.shape = read_sphere(value["sphere"]);
-    check("sphere");
+  light.shape = read_light_shape(value);
+  const std::string where = (place / key_of(light.shape)).str();
+  check_light(light, where);
+  if (const auto hint = format_of(light.shape).hint) {
+    if (const std::string text = hint(light.shape); !text.empty())
+      scene.warnings.push_back(fmt::format("{}: {}", where, text));
   }
+  if (std::holds_alternative<Sun>(light.shape)) read_sun_light(value, place, light, scene);
   if (value.contains("irradiance") && !value.contains("sun")) {
     throw InputError("{}: only a \"sun\" has an irradiance; expected \"radiance\"", (place / "irradiance").str());
   }

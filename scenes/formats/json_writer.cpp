@@ -1,3 +1,4 @@
+#include "scenes/formats/lights/light_formats.hpp"
 #include "scenes/formats/writers.hpp"
 #include "scenes/picture_size.hpp"
 
@@ -30,58 +31,6 @@ void write_camera(const Camera& camera, TextStream& text) {
     text.print(R"(, "verticalFov": )").number(camera.vertical_fov).print("}}");
 }
 
-void write_shape(const Rectangle& rectangle, TextStream& text) {
-  text.print(R"("rectangle": {{"center": )").array(rectangle.center);
-  text.print(R"(, "halfU": )").array(rectangle.half_u);
-  text.print(R"(, "halfV": )").array(rectangle.half_v).print("}}");
-}
-
-void write_shape(const Disk& disk, TextStream& text) {
-  text.print(R"("disk": {{"center": )").array(disk.center);
-  text.print(R"(, "normal": )").array(disk.normal);
-  text.print(R"(, "radius": )").number(disk.radius).print("}}");
-}
-
-void write_shape(const Polygon& polygon, TextStream& text) {
-  text.print(R"("polygon": [)");
-  for (std::size_t i = 0; i < polygon.vertices.size(); ++i)
-    text.print("{}", i > 0 ? ", " : "").array(polygon.vertices[i]);
-  text.print("]");
-}
-
-void write_shape(const Sphere& sphere, TextStream& text) {
-  text.print(R"("sphere": {{"center": )").array(sphere.center);
-  text.print(R"(, "radius": )").number(sphere.radius);
-  if (sphere.cone) {
-    text.print(R"(, "cone": {{"direction": )").array(sphere.cone->direction);
-    text.print(R"(, "inner": )").number(sphere.cone->inner);
-    text.print(R"(, "outer": )").number(sphere.cone->outer);
-    text.print("{}}}", sphere.cone->smooth ? R"(, "smooth": true)" : "");
-  }
-  text.print("}}");
-}
-
-void write_shape(const Ellipse& ellipse, TextStream& text) {
-  text.print(R"("ellipse": {{"center": )").array(ellipse.center);
-  text.print(R"(, "halfU": )").array(ellipse.half_u);
-  text.print(R"(, "halfV": )").array(ellipse.half_v).print("}}");
-}
-
-void write_shape(const Sun& sun, TextStream& text) {
-  text.print(R"("sun": {{"direction": )").array(sun.direction);
-  text.print(R"(, "angle": )").number(sun.angle).print("}}");
-}
-
-void write_shape(const Pieces& shape, TextStream& text) {
-  text.print(R"("pieces": [)");
-  for (std::size_t i = 0; i < shape.pieces.size(); ++i) {
-    text.print("{}{{", i > 0 ? ", " : "");
-    std::visit([&](const auto& piece) { write_shape(piece, text); }, shape.pieces[i]);
-    text.print("}}");
-  }
-  text.print("]");
-}
-
 /// "key": ["name", …], each name once.
 void write_names(const char* key, const std::set<std::string>& names, TextStream& text) {
   text.print(R"("{}": [)", key);
@@ -92,7 +41,7 @@ void write_names(const char* key, const std::set<std::string>& names, TextStream
 
 void write_light(const Scene& scene, const AreaLight& light, const std::string& texture_file, TextStream& text) {
   text.print(R"({{"name": {}, )", quoted(light.name));
-  std::visit([&](const auto& shape) { write_shape(shape, text); }, light.shape);
+  write_light_shape(light.shape, text);
   const auto* sun = std::get_if<Sun>(&light.shape);
   text.print(R"(, "{}": )", sun != nullptr && sun->angle == 0 ? "irradiance" : "radiance").array(light.radiance);
   text.print(R"(, "twoSided": {})", light.two_sided);
