@@ -6,7 +6,7 @@
 #include "maps/host/look_up.glsl"
 #include "maps/sampling/texel.glsl"
 
-// Schwaerzler, equation 7: how many receivers are there in whose direction two light points' maps hold something at
+// Schwaerzler, equations 3 and 7: how many receivers are there in whose direction two light points' maps hold something at
 // another height? Heights are over the light's plane, the same for all of its points: so two maps that hold the same
 // surface agree about it. What is below the horizon of both has no shadow that could differ.
 
@@ -28,6 +28,7 @@ bool differs(Receiver receiver) {
   const float a = at_a.index == kNoTexel ? 0.0 : height_of(at_a, maps[at_a.index], view_a.far);
   const float b = at_b.index == kNoTexel ? 0.0 : height_of(at_b, maps_b[at_b.index], view_b.far);
   if (a == 0.0 || b == 0.0) return a != b;
+  if (own.of_range != 0) return abs(a - b) >= own.gamma * max(view_a.far, view_b.far);
   return abs(1.0 - a / b) >= own.gamma;
 }
 

@@ -30,9 +30,41 @@ float filtered(LightView view, uint first_map, vec3 d, vec3 m) {
   return first_row + part.y * (second_row - first_row);
 }
 
+// The same for a wider filter: a square `taps` - 1 texels wide around the receiver, of which each texel counts as much as
+// it overlaps (of a square one texel wide that is the bilinear weight). Texels farther away than the receiver's own may lie
+// farther along its plane.
+float widely_filtered(LightView view, uint first_map, vec3 d, vec3 m) {
+  const Texel texel = locate(view, first_map, lookup.size, d);
+  const float h = dot(m, d), half_width = 0.5 * float(own.taps - 1);
+  const int reach = int(ceil(half_width));
+  const float side = d.z < 0.0 ? -1.0 : 1.0;
+  float lit = 0.0, dark = 0.0;
+  for (int j = -reach; j <= reach; ++j) {
+    for (int i = -reach; i <= reach; ++i) {
+      const vec2 from = max(vec2(i, j) - 0.5, texel.off - half_width), to = min(vec2(i, j) + 0.5, texel.off + half_width);
+      const vec2 overlap = max(to - from, vec2(0.0));
+      if (overlap.x * overlap.y == 0.0) continue;
+      const vec3 direction = texel.direction + float(i) * texel.across[0] + float(j) * texel.across[1];
+      bool blocked = false;
+      if (direction.z * side > 0.0) {  // behind the light's plane nothing is between
+        const Tap tap = fetch(view, first_map, lookup.size, texel.along * direction);
+        const float away = float(max(max(abs(i), abs(j)), 1));
+        blocked = blocks(tap, m, h, tap.along * (1.0 + kSteepest * tap.texel * away), lookup.bias);
+      }
+      if (blocked) {
+        dark += overlap.x * overlap.y;
+      } else {
+        lit += overlap.x * overlap.y;
+      }
+    }
+  }
+  return lit / (lit + dark);
+}
+
 float lit_share(LightView view, uint first_map, vec3 d, vec3 m) {
   if (!on_emitting_side(d)) return 0.0;
-  if (own.filter_taps != 0 && dot(m, d) > 0.0) return filtered(view, first_map, d, m);
+  if (own.taps == 2 && dot(m, d) > 0.0) return filtered(view, first_map, d, m);
+  if (own.taps > 2 && dot(m, d) > 0.0) return widely_filtered(view, first_map, d, m);
   return light_point_is_seen(view, first_map, d, m) ? 1.0 : 0.0;
 }
 

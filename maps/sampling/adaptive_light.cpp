@@ -31,16 +31,33 @@ constexpr visibility::IntegerOption kLevels{"levels", 0, 6, 3, "how often a cell
 // 1, and where V is within 1.3 times the error of 128 fixed maps (docs/adaptive-light.md).
 constexpr visibility::RealOption kDifferingShare{
     "epsilon", 0, 1, 0.02, "a cell is split unless fewer pixels differ than this share of what shareOf says"};
-constexpr visibility::RealOption kGamma{"gamma", 0, 1, 0.02,
-                                        "two maps differ at a pixel if their heights do by at least this share"};
+constexpr visibility::RealOption kGamma{
+    "gamma", 0, 1, 0.02, "two maps differ at a pixel if their heights do by at least this share of what gammaOf says"};
+constexpr visibility::ChoiceOption kGammaOf{
+    "gammaOf",
+    {{"height", false}, {"range", true}},
+    false,
+    "what gamma is a share of: the heights compared (equation 7), or all depths that a map can hold (equation 3)"};
 constexpr visibility::ChoiceOption kCompare{
     "compare",
     {{"camera", CompareIn::camera}, {"light", CompareIn::light}},
     CompareIn::camera,
     "where maps are compared: at the view samples, or at the texels of a map from the "
     "light's centre, which does not depend on the camera"};
-constexpr visibility::ChoiceOption kPcf =
-    visibility::flag_option("pcf", true, "filters each map over the 2 x 2 texels around the receiver");
+constexpr visibility::ChoiceOption kPcf{"pcf",
+                                        {{"off", 1u},
+                                         {"on", 2u},
+                                         {"3", 3u},
+                                         {"4", 4u},
+                                         {"5", 5u},
+                                         {"6", 6u},
+                                         {"7", 7u},
+                                         {"8", 8u},
+                                         {"9", 9u},
+                                         {"13", 13u},
+                                         {"17", 17u}},
+                                        2u,
+                                        "filters each map over the n x n texels around the receiver; on: 2 x 2"};
 constexpr visibility::ChoiceOption kForm{"form",
                                          {{"area", LightTree::Shape::area}, {"line", LightTree::Shape::line}},
                                          LightTree::Shape::area,
@@ -76,8 +93,8 @@ visibility::MethodDescription adaptive_light_description() {
       .verdict_on = adaptive_light_verdict,
       .repairs = sampling_repairs};
   for (const visibility::OptionDescription& option :
-       {kLevels.description(), kDifferingShare.description(), kGamma.description(), kCompare.description(),
-        kPcf.description(), kForm.description(), kWeights.description(), kShareOf.description(),
+       {kLevels.description(), kDifferingShare.description(), kGamma.description(), kGammaOf.description(),
+        kCompare.description(), kPcf.description(), kForm.description(), kWeights.description(), kShareOf.description(),
         kMostMaps.description()}) {
     description.options.push_back(option);
   }
@@ -89,11 +106,11 @@ namespace {
 class AdaptiveLight final : public visibility::Method {
  public:
   AdaptiveLight(const render::Device& device, const MapOptions& map, const AdaptiveChoices& choices, CompareIn compare,
-                bool filter)
+                std::uint32_t taps)
       : device_(&device),
         description_(adaptive_light_description()),
         compare_(compare),
-        filter_(filter),
+        taps_(taps),
         maps_(device, map, choices),
         look_up_(device, {.name = "adaptive-light look-up",
                           .spirv = shaders::kAdaptiveLightComp,
@@ -122,7 +139,7 @@ class AdaptiveLight final : public visibility::Method {
   const render::Device* device_;
   visibility::MethodDescription description_;
   CompareIn compare_;
-  bool filter_;
+  std::uint32_t taps_;  ///< texels on a side
   AdaptiveMaps maps_;
   render::ComputePass look_up_;
   Receivers receivers_;
@@ -171,7 +188,7 @@ void AdaptiveLight::evaluate(const visibility::Tile& tile) {
   for (std::uint32_t first = 0; first < points; first += maps_.maps_per_buffer()) {
     const std::uint32_t count = std::min(maps_.maps_per_buffer(), points - first);
     const gpu::AdaptivePush own{
-        .filter_taps = filter_ ? 1u : 0u, .last = first + count == points ? 1u : 0u, .total = maps_.total_weight()};
+        .taps = taps_, .last = first + count == points ? 1u : 0u, .total = maps_.total_weight()};
     for (const Receivers::Part& part : receivers_.parts(tile)) {
       gpu::LookupPush look_up = maps_.push();
       look_up.first_receiver = part.first_receiver;
@@ -198,6 +215,8 @@ std::unique_ptr<visibility::Method> make_adaptive_light(const render::Device& de
                                 .most_maps = parsed[kMostMaps],
                                 .epsilon = parsed[kDifferingShare],
                                 .gamma = parsed[kGamma],
+                                .gamma_of_range = parsed[kGammaOf],
+                                .taps = parsed[kPcf],
                                 .form = parsed[kForm],
                                 .weights = parsed[kWeights],
                                 .share_of_map = parsed[kShareOf]};

@@ -10,12 +10,13 @@ struct AdaptiveComparePush {
   uint map_a, map_b;    // in their buffers, in faces
   uint counter;
   float gamma;
+  uint of_range;  // 1: gamma is a share of all depths of a map (equation 3); 0: of the heights compared (equation 7)
 };
 
 struct AdaptivePush {
-  uint filter_taps;  // 1: percentage-closer filter of 2 x 2 texels; 0: the receiver's own texel
-  uint last;         // of the buffers of maps
-  float total;       // of all weights, summed in the order of points
+  uint taps;    // percentage-closer filter of so many texels a side; 1: the receiver's own texel
+  uint last;    // of the buffers of maps
+  float total;  // of all weights, summed in the order of points
 };
 
 #ifdef __cplusplus

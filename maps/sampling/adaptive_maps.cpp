@@ -77,7 +77,7 @@ void AdaptiveMaps::set_light(const visibility::Light& light) {
       points.push_back(square.at(upright ? glm::dvec2(unit.y, unit.x) : unit));
     }
   }
-  grid_ = fit_views(*scene_, light, basis_, points, {.size = map_.size});
+  grid_ = fit_views(*scene_, light, basis_, points, fit_options());
   const std::uint32_t faces = std::max(grid_.faces, 1u);
   check_faces_fit(*device_, map_.size, faces);
   maps_per_buffer_ = static_cast<std::uint32_t>(
@@ -94,13 +94,20 @@ void AdaptiveMaps::restart() {
   refined_ = false;
 }
 
+/// How wide a texel is depends on what the window holds: no window of receivers is wider than ±kWidestTangent, and the
+/// texel that it has on every side is all that 2 × 2 of them need.
+FitOptions AdaptiveMaps::fit_options() const {
+  const double beside = choices_.taps > 2 ? 2 * kWidestTangent * (choices_.taps / 2) / map_.size : 0;
+  return {.size = map_.size, .beside = glm::dvec2(beside)};
+}
+
 std::size_t AdaptiveMaps::view_of(const glm::uvec2& point) const {
   return point.y * ((std::size_t{1} << choices_.levels) + 1) + point.x;
 }
 
 ComparedReceivers AdaptiveMaps::centre_texels() {
   const glm::vec3 centre(basis_.center);
-  const FittedViews fitted = fit_views(*scene_, *light_, basis_, std::span(&centre, 1), {.size = map_.size});
+  const FittedViews fitted = fit_views(*scene_, *light_, basis_, std::span(&centre, 1), fit_options());
   ComparedReceivers places;
   texels_.clear();
   if (fitted.faces == 0) return places;
@@ -208,7 +215,8 @@ std::vector<std::uint32_t> AdaptiveMaps::compare(std::span<const LightTree::Pair
                                        .map_a = a % maps_per_buffer_ * grid_.faces,
                                        .map_b = b % maps_per_buffer_ * grid_.faces,
                                        .counter = static_cast<std::uint32_t>(i),
-                                       .gamma = static_cast<float>(choices_.gamma)};
+                                       .gamma = static_cast<float>(choices_.gamma),
+                                       .of_range = choices_.gamma_of_range ? 1u : 0u};
     for (const ComparedReceivers::Part& part : places.parts) {
       gpu::LookupPush look_up = push();
       look_up.receiver_count = part.count;

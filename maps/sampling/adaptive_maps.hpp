@@ -24,6 +24,8 @@ namespace penumbra::maps {
 struct AdaptiveChoices {
   std::uint32_t levels, most_maps;
   double epsilon, gamma;
+  bool gamma_of_range;  ///< gamma is a share of all depths of a map; else of the heights compared
+  std::uint32_t taps;   ///< a look-up's texels on a side: windows hold what is that far beside the receivers
   LightTree::Shape form;
   PointWeights weights;
   bool share_of_map;  ///< epsilon is a share of a map's texels; else of all that is compared
@@ -74,6 +76,7 @@ class AdaptiveMaps {
 
  private:
   [[nodiscard]] std::size_t view_of(const glm::uvec2& point) const;
+  [[nodiscard]] FitOptions fit_options() const;
   /// Renders the maps of points that have none yet.
   void add_maps();
   /// At how many places the maps of each pair differ.

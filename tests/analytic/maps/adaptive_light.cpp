@@ -151,6 +151,64 @@ TEST_F(AdaptiveLight, AWiderFilterSmoothsFewMapsAndWidensThePenumbra) {
   EXPECT_GT(last, penumbra(truth));
 }
 
+// One map of a half-plane, from a point: over the floor the filter is a ramp as wide as its texels. A square n - 1
+// texels wide around the receiver, of which each texel counts as much as it overlaps: lit is what of it is beyond the
+// edge, which the map has between two texels.
+TEST_F(AdaptiveLight, AFilterOfNTexelsIsARampOfNLessOne) {
+  scenes::Scene scene = bare_floor(1e-4, 1.5);
+  add_quad(scene, {1.5, 2.5, 0}, {1.5, 0, 0}, {0, 0, -2}).receives_shadow = false;  // from x = 0 on
+  constexpr int kPlaces = 256;
+  std::vector<double> places;
+  for (int i = 0; i < kPlaces; ++i) places.push_back(-0.6 + 1.2 * (i + 0.5) / kPlaces);
+  const Stage stage = along_floor(scene, places, light_samples(1));
+  for (const int n : {3, 4, 5, 9, 17}) {
+    // The window holds the floor (tangents of 0.3 on either side), and boards half the filter beside it: how wide its
+    // texels are is found from the ramp, and is no more than that.
+    const Run found =
+        adaptive(stage, {{"epsilon", "1"}, {"pcf", fmt::format("{}", n)}, {"size", "256"}, {"form", "line"}});
+    std::vector<double> v(found.picture.visibility.begin(), found.picture.visibility.end());
+    double from = 1, to = -1;  // where the ramp is between 1/8 and 7/8
+    for (int i = 0; i < kPlaces; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      EXPECT_LE(v[k], i > 0 ? v[k - 1] + 1e-6 : 1.0) << n;
+      if (v[k] < 0.875) from = std::min(from, places[k]);
+      if (v[k] > 0.125) to = std::max(to, places[k]);
+    }
+    const double width = (to - from) / 0.75, texel = width / (n - 1);  // on the floor
+    fmt::print("{} texels: a ramp {:.3f} wide, of texels {:.4f} wide\n", n, width, texel);
+    const double least = 2 * 1.5 / 256, most = least + 5 * 2.0 * 2 * 4 * (n / 2) / (256.0 * 256);
+    EXPECT_GT(texel, least - 2 * 1.2 / kPlaces / (0.75 * (n - 1)));
+    EXPECT_LT(texel, most + 2 * 1.2 / kPlaces / (0.75 * (n - 1)));
+    for (int i = 0; i < kPlaces; ++i) {  // straight in between
+      const auto k = static_cast<std::size_t>(i);
+      const double expected = std::clamp(0.875 - (places[k] - from) / width, 0.0, 1.0);
+      EXPECT_NEAR(v[k], expected, 2 * 1.2 / kPlaces / width + 1e-4) << n << " at " << places[k];
+    }
+  }
+}
+
+// Equation 3: heights are compared in parts of all that a map can hold, wherever they are. A board 4 below the light
+// and a floor 5 below it differ by 1 / 5 or 1 / 4 of their heights, and by 1 of a range that is no less than the way
+// from the light's corner to the floor's far one.
+TEST_F(AdaptiveLight, GammaIsAShareOfHeightsOrOfAMapsRange) {
+  scenes::Scene scene = bare_floor(1, 1.5);
+  scene.objects.front().casts_shadow = true;
+  add_quad(scene, {1.5, 1, 0}, {1.5, 0, 0}, {0, 0, -2}).receives_shadow = false;
+  const Stage stage = tests::on_floor(scene, 24, light_samples(1));
+  const auto maps = [&](const char* of, double gamma) {
+    return adaptive(stage, {{"gammaOf", of}, {"gamma", fmt::format("{}", gamma)}, {"epsilon", "0.0001"}}).maps;
+  };
+  const std::uint64_t few = maps("height", 0.3), many = maps("height", 0.1);
+  fmt::print("maps: {} and {}\n", few, many);
+  EXPECT_EQ(few, 4U);
+  EXPECT_GT(many, few);
+  const double range = std::sqrt(5 * 5 + 2 * 2.5 * 2.5);  // a map's range is no less
+  EXPECT_EQ(maps("range", 0.05), many);
+  EXPECT_EQ(maps("height", 0.195), many);
+  EXPECT_EQ(maps("range", 1 / range + 0.001), few);
+  EXPECT_LT(1 / range + 0.001, 0.195);
+}
+
 // An edge under one side of the light refines that side alone: equal weights then count it too often.
 TEST_F(AdaptiveLight, ThePapersWeightsAreNearerToTheTruthThanEqualOnes) {
   scenes::Scene scene;
