@@ -37,6 +37,7 @@ penumbra_test(maps FULL MapsTable.*
   analytic/maps/backprojection/contour_ways.cpp
   analytic/maps/backprojection/contour_claims.cpp
   analytic/maps/backprojection/fusion.cpp
+  analytic/maps/backprojection/horizon.cpp
   analytic/maps/backprojection/light_table.cpp
   analytic/maps/backprojection/packet_costs.cpp
   analytic/maps/backprojection/peel.cpp

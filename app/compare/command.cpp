@@ -25,7 +25,8 @@ std::string number(const std::optional<double>& value, const char* format) {
   return value ? fmt::format(fmt::runtime(format), *value) : "-";
 }
 
-/// The result for people, on stdout: one line a method.
+/// The result for people, on stdout: one line a method, and one for its errors at horizon pixels, which the first
+/// leaves out.
 void print_table(const compare::Metrics& metrics) {
   fmt::print("{} judged pixels, {} at the horizon; errors of V against {}{}\n", metrics.judged_pixels,
              metrics.horizon_pixels, metrics.reference.method,
@@ -49,7 +50,12 @@ void print_table(const compare::Metrics& metrics) {
     fmt::print("{:<28} {:>9} {:>9} {:>9} {:>10} {:>12} {:>9}\n", name, rmse, max, bias, differing, pairs,
                number(stats.seconds.shadow(), "{:.3f}"));
   };
-  for (const compare::MethodResult& result : metrics.methods) line(result.entry, result.stats, &result);
+  for (const compare::MethodResult& result : metrics.methods) {
+    line(result.entry, result.stats, &result);
+    if (const auto& error = result.horizon_error) {
+      fmt::print("{:<28} {:>9.6f} {:>9.5f} {:>+9.5f}\n", "  at the horizon", error->rmse, error->max, error->bias);
+    }
+  }
   line("reference " + metrics.reference.method, metrics.reference, nullptr);
   if (std::ranges::none_of(metrics.methods, [](const auto& result) { return result.flicker.has_value(); })) return;
   fmt::print("\n{:<28} {:>9}\n", "from frame to frame", "flicker");

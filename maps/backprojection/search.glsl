@@ -20,7 +20,8 @@ bool behind_all(MapFace face, Kernel kernel, float deepest) {
   const float least_facing = m.z + min(m.x * lower.x, m.x * upper.x) + min(m.y * lower.y, m.y * upper.y);
   const float h = dot(m, asked.e);
   float limit = asked.e.z, slope = 0.0;
-  if (h > 0.0 && lookup.own_depth == 0) {
+  if (lookup.own_depth == 0) {
+    if (h <= 0.0) return false;  // what is in front may be below the receiver's plane (above_plane)
     if (h < limit * facing) limit = h / facing;
     const float across = abs(m.x) + abs(m.y);
     slope = across < kSteepest * least_facing ? across / least_facing : kSteepest;

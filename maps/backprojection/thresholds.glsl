@@ -76,7 +76,9 @@ vec2 thresholds(Bounds group, MapFace face, ivec2 lower, ivec2 upper, float far)
   }
   const vec2 taken = forgiven * (1.0 + slope);
   const float slack = 4.0 * kSlack * (plane.y + taken.y);
-  return min(vec2(nearest_alone ? plane.x - taken.y - slack : -1e30, plane.y - taken.x + slack), far);
+  // Where the centre is below the horizon what is near enough may be below the plane (above_plane).
+  const bool all = nearest_alone && (!planes || group.above > 0);
+  return min(vec2(all ? plane.x - taken.y - slack : -1e30, plane.y - taken.x + slack), far);
 }
 
 // Do all of the group see texels lower ... upper, at depths of at least `near`, beside the light's bounding rectangle? As

@@ -44,6 +44,6 @@ void main() {
     return;
   }
   float v = 1.0;
-  if (receives) v = reached ? min(float(left) / float(kWholeLight), share_above()) : 0.0;
+  if (receives) v = reached ? visible_above(float(left) / float(kWholeLight), share_above()) : 0.0;
   results[result] = floatBitsToUint(v);
 }

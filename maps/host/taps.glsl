@@ -174,6 +174,25 @@ bool blocks_light(Tap tap, vec3 d, vec3 m, float bias) {
   return is_before_depth(tap, limit, bias);
 }
 
+// Where the light's centre is below the receiver's horizon (blocks_light): is what the tap found above the receiver's
+// plane, by more than the bias forgives? What is below the plane, such as the receiver's own surface seen from behind,
+// hides none of the light above the horizon. A direction leads up through the plane where m . c < 0.
+bool above_plane(Tap tap, vec3 d, vec3 m, float bias) {
+  const float h = dot(m, d), rising = -dot(m, tap.direction);
+  if (h > 0.0 || lookup.own_depth != 0) return true;
+  const float across = abs(m.x) + abs(m.y) + abs(m.z) - abs(m[tap.axis]);
+  const float slope = across < kSteepest * rising ? across / rising : kSteepest;
+  const float room = bias * tap.texel * tap.along * (1.0 + slope);
+  return rising > 0.0 && -h < (tap.depth - room) * rising;
+}
+
+// V of a receiver whose horizon leaves `above` of the light, if shadows leave `left` of all of it. What hides light is above
+// the receiver's plane and is seen above its horizon: the two add up. Compared in its own depth, as published, a texel may
+// hide what is below the horizon, too: then no more is known than the smaller of the two.
+float visible_above(float left, float above) {
+  return lookup.own_depth != 0 ? min(left, above) : max(left + (above - 1.0), 0.0);
+}
+
 vec3 to_basis(LightBasis basis, vec3 x) { return vec3(dot(basis.u, x), dot(basis.v, x), dot(basis.n, x)); }
 
 // The hard shadow test: receiver at d from the light point, m as above; both in the light's basis.

@@ -89,7 +89,7 @@ void store_pixel(uint pixel) {
   float v = pixel_state[pixel] == kBehind ? 0.0 : 1.0;
   if (pixel_state[pixel] < kLit) {
     const float hidden = float(clamp(pixel_sum[pixel], 0, kContourWhole)) / float(kContourWhole);
-    v = min(1.0 - hidden, light_above_horizon(pixel_e[pixel], pixel_m[pixel]));
+    v = visible_above(1.0 - hidden, light_above_horizon(pixel_e[pixel], pixel_m[pixel]));
   }
   results[result] = floatBitsToUint(v);
 }

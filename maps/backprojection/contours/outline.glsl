@@ -24,7 +24,8 @@ bool on_map(ivec2 texel) { return all(greaterThanEqual(texel, ivec2(0))) && all(
 bool shades(uint pixel, ivec2 texel) {
   Tap tap = tap_of(view, lookup.size, face, uvec2(texel));
   tap.along = pixel_e[pixel].z / tap.direction.z;
-  return tap.depth < view.far && blocks_light(tap, pixel_e[pixel], pixel_m[pixel], lookup.bias);
+  return tap.depth < view.far && blocks_light(tap, pixel_e[pixel], pixel_m[pixel], lookup.bias) &&
+         above_plane(tap, pixel_e[pixel], pixel_m[pixel], lookup.bias);
 }
 
 // A receiver's own face of a side with so many.

@@ -8,7 +8,8 @@
 Tap texel_at(MapFace face, uint layer, uvec2 cell);
 
 bool hides(Tap tap) {
-  return in_front(asked.e, tap.direction, tap.depth) && blocks_light(tap, asked.e, asked.m, lookup.bias);
+  return in_front(asked.e, tap.direction, tap.depth) && blocks_light(tap, asked.e, asked.m, lookup.bias) &&
+         above_plane(tap, asked.e, asked.m, lookup.bias);
 }
 
 void fill_from(inout Patch one, MapFace face, uint layer, uvec2 cell, ivec2 step, uint fill) {

@@ -44,7 +44,7 @@ void main() {
       v = 0.0;
     } else {
       v = light_above_horizon(vec3(d.xy, abs(d.z)), d.z < 0.0 ? vec3(m.xy, -m.z) : m);
-      if (!on_occluder) v = min(v, soft_shadow(d, views[0].side[d.z < 0.0 ? 1 : 0]));
+      if (!on_occluder) v = visible_above(soft_shadow(d, views[0].side[d.z < 0.0 ? 1 : 0]), v);
     }
   }
   results[lookup.first_result + i] = floatBitsToUint(v);
