@@ -18,6 +18,11 @@ constexpr visibility::IntegerOption kReceiverSize{"receiverSize", 8, 4096, 256,
                                                   "texels on a side of the map of receivers, which holds V"};
 constexpr visibility::ChoiceOption kPasses{
     "passes", {{"1", 1u}, {"2", 2u}}, 1u, "2: the farthest surfaces too, and the smaller V of the two"};
+constexpr visibility::ChoiceOption kPatches{
+    "patches",
+    {{"top", SoftPatches::top}, {"bottom", SoftPatches::bottom}},
+    SoftPatches::top,
+    "of one pass: texels stand for the surfaces nearest to the light, or for the farthest"};
 constexpr visibility::ChoiceOption kPrecision{"precision",
                                               {{"fp32", SoftPrecision::fp32}, {"fp16", SoftPrecision::fp16}},
                                               SoftPrecision::fp32,
@@ -77,8 +82,8 @@ visibility::MethodDescription soft_shadow_map_description() {
       .repairs = repairs,
       .warning = warning};
   for (const visibility::OptionDescription& option :
-       {kDepth.description(), kReceiverSize.description(), kPasses.description(), kPrecision.description(),
-        kForm.description(), kFilter.description(), kSelf.description()}) {
+       {kDepth.description(), kReceiverSize.description(), kPasses.description(), kPatches.description(),
+        kPrecision.description(), kForm.description(), kFilter.description(), kSelf.description()}) {
     description.options.push_back(option);
   }
   return description;
@@ -87,6 +92,7 @@ visibility::MethodDescription soft_shadow_map_description() {
 SoftSettings soft_settings(const visibility::ParsedOptions& parsed) {
   const SoftSettings settings{.receiver_size = parsed[kReceiverSize],
                               .passes = parsed[kPasses],
+                              .patches = parsed[kPatches],
                               .precision = parsed[kPrecision],
                               .form = parsed[kForm],
                               .filter = parsed[kFilter],
@@ -95,6 +101,12 @@ SoftSettings soft_settings(const visibility::ParsedOptions& parsed) {
     throw UsageError(
         "method soft-shadow-map: 16-bit floats depend on the order of sums, and scattered ones have none; take "
         "form=gather, which adds patches in the order of their texels, or precision=fp32");
+  }
+  if (settings.patches == SoftPatches::bottom && settings.passes > 1) {
+    throw UsageError(
+        "method soft-shadow-map: patches=bottom says what one pass draws, and passes=2 draws the farthest surfaces "
+        "anyway; "
+        "take one of the two");
   }
   return settings;
 }

@@ -12,12 +12,14 @@ namespace penumbra::maps {
 enum class SoftPrecision : std::uint8_t { fp32, fp16 };
 enum class SoftForm : std::uint8_t { gather, scatter };
 enum class SoftFilter : std::uint8_t { linear, nearest };
+enum class SoftPatches : std::uint8_t { top, bottom };
 enum class SoftSelf : std::uint8_t { none, backproject };
 
 /// What soft-shadow-map was asked for, beside what all methods with a map are.
 struct SoftSettings {
   std::uint32_t receiver_size;  ///< texels on a side of the map of receivers
   std::uint32_t passes;         ///< 2: with the farthest surfaces
+  SoftPatches patches;          ///< bottom: with the farthest surfaces alone
   SoftPrecision precision;
   SoftForm form;
   SoftFilter filter;

@@ -79,6 +79,10 @@ class SoftShadowMap final : public visibility::Method {
   /// Draws the chosen triangles. Of two layers the second is behind the first in the buffer, and is not read back.
   Map draw(CasterMaps& casters, std::span<const std::uint8_t> chosen, std::uint32_t size, Kept kept,
            std::unique_ptr<render::Buffer>& buffer);
+  /// Whether a pass's texels stand for the farthest surfaces (section 3.5; figure 11b: in one pass, too).
+  [[nodiscard]] bool of_farthest(std::uint32_t pass) const {
+    return pass > 0 || settings_.patches == SoftPatches::bottom;
+  }
   void add_up(const Map& occluders, std::uint32_t pass);
   [[nodiscard]] gpu::SoftMapPush push_for(const Map& occluders, int side, std::uint32_t pass) const;
 
@@ -181,7 +185,8 @@ void SoftShadowMap::prepare_light(const visibility::Light& light) {
   render::grow(*device_, counts_, "fragments", 2 * sizeof(std::uint32_t));
   for (std::uint32_t pass = 0; pass < settings_.passes; ++pass) {
     const Kept nearest = map_.depth == DepthUse::first ? Kept::nearest : Kept::nearest_two;
-    add_up(draw(occluder_maps_, parts_.occluders, map_.size, pass > 0 ? Kept::farthest : nearest, occluders_), pass);
+    add_up(draw(occluder_maps_, parts_.occluders, map_.size, of_farthest(pass) ? Kept::farthest : nearest, occluders_),
+           pass);
   }
   render::grow(*device_, views_, "map views", sizeof(gpu::LightView));
   views_->write<gpu::LightView>(std::span(&receiver_map_.view, 1));
@@ -219,7 +224,7 @@ gpu::SoftMapPush SoftShadowMap::push_for(const Map& occluders, int side, std::ui
   push.half_floats = settings_.precision == SoftPrecision::fp16 ? 1 : 0;
   push.later = pass > 0 ? 1 : 0;
   // The farthest surfaces have none behind them.
-  push.depth_use = pass > 0 ? gpu::kDepthFirst : static_cast<std::uint32_t>(map_.depth);
+  push.depth_use = of_farthest(pass) ? gpu::kDepthFirst : static_cast<std::uint32_t>(map_.depth);
   push.second_first = push.occluder_first + occluders.faces * size * size;
   push.nearest = extremes(std::span(occluders.depths).subspan(push.occluder_first, std::size_t{size} * size)).first *
                  push.occluder_far;

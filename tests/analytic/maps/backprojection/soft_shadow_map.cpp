@@ -4,6 +4,7 @@
 
 #include "base/error.hpp"
 #include "maps/backprojection/patches/methods.hpp"
+#include "tests/analytic/maps/backprojection_scenes.hpp"
 
 #include <fmt/format.h>
 
@@ -377,6 +378,25 @@ TEST_F(SoftShadowMap, DegenerateScenesHaveADefinedV) {
   const auto method = maps::make_soft_shadow_map(device(), {});
   method->prepare_mesh(round.floats);
   EXPECT_THROW(method->prepare_light(round.light), InputError);
+}
+
+// Figure 11b: one pass with the bottom of what casts, its farthest surfaces. Two passes take the smaller V of both.
+TEST_F(SoftShadowMap, BottomPatchesAreTheSecondPassAlone) {
+  const Stage stage = tests::on_floor(box_over_floor(0.3), 16, light_samples(1));
+  const MethodOptions options{{"size", "48"}, {"receiverSize", "48"}, {"filter", "nearest"}};
+  const auto with = [&](const char* key, const char* value) {
+    MethodOptions more = options;
+    more[key] = value;
+    return soft(stage, more).picture.visibility;
+  };
+  const std::vector<float> top = with("patches", "top"), bottom = with("patches", "bottom"), both = with("passes", "2");
+  std::size_t differing = 0;
+  for (std::size_t i = 0; i < top.size(); ++i) {
+    EXPECT_EQ(both[i], std::min(top[i], bottom[i])) << i;
+    differing += std::abs(top[i] - bottom[i]) > 0.01F ? 1 : 0;
+  }
+  EXPECT_GT(differing, 10U);
+  EXPECT_THROW(soft(stage, {{"passes", "2"}, {"patches", "bottom"}}), UsageError);
 }
 
 }  // namespace
