@@ -1,6 +1,7 @@
 // V of each receiver, whose texels a workgroup looks at; see group_kernel.glsl. The shader defines, too,
 //   uint hidden_by(MapFace face, uvec2 cell)    how much of the light a texel hides, in parts of kWholeLight
 //   float share_above()                         the share of the light above the receiver's horizon
+//   Kernel next_kernel(MapFace face, uint turn) a kernel to look at after the first, on turns 1, 2 ...; empty: none
 // Parts are added as integers: their order, and how many rows of the map are looked at at a time, change nothing.
 shared uint sum_low, sum_high;  // sum_low + 2^15 sum_high
 uint sum = 0;                   // of this invocation
@@ -22,7 +23,12 @@ void main() {
   if (reached) {
     for (uint number = 0; number < asked.side.face_count; ++number) {
       const MapFace face = face_of(asked.side, 0, lookup.size, number);
-      look_at_kernel(face, kernel_of(face));
+      Kernel kernel = kernel_of(face);
+      look_at_kernel(face, kernel);
+      for (uint turn = 1; !is_empty(kernel); ++turn) {
+        kernel = next_kernel(face, turn);
+        if (!is_empty(kernel)) look_at_kernel(face, kernel);
+      }
     }
     if (all_hidden) sum = kWholeLight;
     atomicAdd(sum_low, sum & 32767u);

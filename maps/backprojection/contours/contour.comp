@@ -2,6 +2,7 @@
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 #include "maps/backprojection/contours/contour.shared.h"
+#include "maps/backprojection/level_maps.shared.h"
 #define GROUP_A_PACKET
 #define OWN_PUSH ContourPush
 #include "maps/host/look_up.glsl"
@@ -24,10 +25,18 @@ layout(scalar, binding = 7) readonly buffer Tree {  // the pyramid that is walke
 } tree;
 layout(scalar, binding = 8) buffer Work { uint work[]; };
 
+layout(constant_id = 1) const uint kLevels = kFinestLevel;  // kFinestLevel ...
+layout(constant_id = 2) const bool kSearch = true;          // whether a pyramid says which cells a kernel holds
+#define LEVEL_MAPS 9
+#include "maps/backprojection/levels.glsl"
+
 shared vec3 pixel_e[kMostPacketPixels], pixel_m[kMostPacketPixels];
 shared uint pixel_state[kMostPacketPixels];
 shared int pixel_sum[kMostPacketPixels];   // inside - sum, in parts of kContourWhole
 shared int pixel_edges[kMostPacketPixels];  // the sum that is being added up
+shared int pixel_levels[kMostPacketPixels];  // of levels: inside - sum, of those that were looked at
+shared float pixel_wanted[kMostPacketPixels];  // the level that its kernel asks for
+shared uint pixel_inside[kMostPacketPixels];   // 1: the light's centre is seen within a contour
 shared ivec4 pixel_cells[kMostPacketPixels];  // first and last cells of its kernel on the face at hand
 shared ivec2 pixel_own[kMostPacketPixels];    // the light's centre is seen between this texel's centre and the next ones
 shared vec2 pixel_at[kMostPacketPixels];      // so far from that centre, in texels
@@ -45,10 +54,16 @@ shared uint work_done[kWorkCounts];
 
 LightView view;
 uint side_number;
-MapFace face;
+MapFace map_face;  // the face at hand,
+MapFace face;      // and with texels of the level at hand
 uint face_number;
 float face_turn;  // -1 where a turn to the left in the face is one to the right on the light
 WorkNumbers done;  // by this invocation
+
+void begin_level(uint l) {
+  look_at_level(l);
+  face = at_level(map_face);
+}
 
 #include "maps/backprojection/contours/outline.glsl"
 #include "maps/backprojection/contours/packet_kernel.glsl"
@@ -108,10 +123,13 @@ void main() {
   uint looked_for = 0;
   for (side_number = 0; side_number < 1 + lookup.two_sided; ++side_number) {
     for (face_number = 0; face_number < view.side[side_number].face_count; ++face_number) {
-      face = face_of(view.side[side_number], 0, lookup.size, face_number);
+      map_face = face_of(view.side[side_number], 0, lookup.size, face_number);
+      begin_level(0);
       face_turn = face.axis == 2 ? 1.0 : face.axis == 0 ? face.sign : -face.sign;
       for (uint i = gl_LocalInvocationIndex; i < pixels; i += gl_WorkGroupSize.x) {
-        if (pixel_state[i] == side_number) find_kernel(i);
+        if (pixel_state[i] != side_number) continue;
+        find_kernel(i);
+        begin_level(0);
       }
       barrier();
       if (gl_LocalInvocationIndex == 0) choose_members(pixels);

@@ -37,6 +37,8 @@ visibility::MethodDescription contour_description() {
       .repairs = contour_repairs};
   description.options.push_back(kSearch.description());
   description.options.push_back(kTraversal.description());
+  for (const auto& option : {kMapLevel.description(), kTexelBudget.description(), kBlendLevels.description()})
+    description.options.push_back(option);
   description.options.push_back(kSubsample.description());
   description.options.push_back(kSubsampleBy.description());
   return description;
@@ -45,7 +47,8 @@ visibility::MethodDescription contour_description() {
 std::unique_ptr<visibility::Method> make_contour(const render::Device& device,
                                                  const visibility::MethodOptions& options) {
   const visibility::ParsedOptions parsed = visibility::parse_options(contour_description(), options);
-  const ContourChoices choices{.search = parsed[kSearch], .traversal = parsed[kTraversal]};
+  const ContourChoices choices{
+      .search = parsed[kSearch], .traversal = parsed[kTraversal], .levels = level_choice(parsed)};
   return subsampled(device,
                     make_map_method(device, contour_recipe(device, contour_description(), choices, parsed), options),
                     parsed, options);

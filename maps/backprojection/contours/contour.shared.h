@@ -5,13 +5,11 @@
 #ifdef __cplusplus
 #pragma once
 namespace penumbra::maps::gpu {
-inline constexpr uint kNoSearch = 0, kSearch = 1;
 inline constexpr uint kFlat = 0, kHierarchy = 1, kMinMax = 2;
 inline constexpr uint kMostPacketPixels = 64;
 inline constexpr uint kContourWhole = 1u << 22;
 inline constexpr uint kWorkCounts = 8;
 #else
-const uint kNoSearch = 0, kSearch = 1;
 const uint kFlat = 0, kHierarchy = 1, kMinMax = 2;
 const uint kMostPacketPixels = 64;
 // The light's area, in the parts that areas are added up in: a part is a float's rounding of an area, and sums of up to
@@ -22,8 +20,8 @@ const uint kWorkCounts = 8;
 
 struct ContourPush {
   uint packet_width, packet_height;  // pixels; 1 x 1: no packets
-  uint search;                       // kNoSearch or kSearch
   uint traversal;                    // kFlat ...
+  uint level, budget, blend;         // levels.glsl
   float divergence;                  // a packet more likely than this to have pixels with different contours is parted
 };
 

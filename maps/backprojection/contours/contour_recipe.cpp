@@ -8,6 +8,7 @@
 #include "maps/products/nearest_caster.hpp"
 #include "maps/products/work_counts.hpp"
 
+#include <bit>
 #include <string>
 #include <utility>
 #include <vector>
@@ -42,11 +43,13 @@ MapRecipe contour_recipe(const render::Device& device, visibility::MethodDescrip
   recipe.packet_width = choices.packet_width;
   recipe.packet_height = choices.packet_height;
   recipe.sub_lights = choices.sub_lights;
-  recipe.constants = {device.limits().subgroup_size};
 
   // Pyramids hold nearest depths: where a shadow begins behind another surface they say nothing.
   const bool pyramids = options[kDepth] == DepthUse::first;
   const Search search = pyramids ? choices.search : Search::none;
+  recipe.constants = {device.limits().subgroup_size, choices.levels.levels(), search == Search::none ? 0u : 1u,
+                      std::bit_cast<std::uint32_t>(static_cast<float>(choices.edge_cost)),
+                      std::bit_cast<std::uint32_t>(static_cast<float>(choices.area_cost))};
   const bool walks = pyramids && options[kMapSize] + 1 < kMostWalkedCells;
   const Traversal traversal = walks ? choices.traversal : Traversal::flat;
 
@@ -76,14 +79,17 @@ MapRecipe contour_recipe(const render::Device& device, visibility::MethodDescrip
   recipe.products.push_back(std::make_unique<WorkCounts>(
       device, std::vector<std::string>{"nodes", "cells", "edges", "packetsShared", "packetsParted", "packetsDiverged",
                                        "packetsTrivial", "kernelCells"}));
+  recipe.products.push_back(make_level_maps(device, choices.levels));
 
   gpu::ContourPush push{};
   push.packet_width = choices.packet_width;
   push.packet_height = choices.packet_height;
-  push.search = search == Search::none ? gpu::kNoSearch : gpu::kSearch;
   push.traversal = traversal == Traversal::flat        ? gpu::kFlat
                    : traversal == Traversal::hierarchy ? gpu::kHierarchy
                                                        : gpu::kMinMax;
+  push.level = choices.levels.level;
+  push.budget = choices.levels.budget;
+  push.blend = choices.levels.blend ? 1 : 0;
   push.divergence = static_cast<float>(choices.divergence);
   recipe.push_words = sizeof(push) / sizeof(std::uint32_t);
   recipe.push = [push](const visibility::Light&) { return push_words(push); };

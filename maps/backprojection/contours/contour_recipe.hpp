@@ -1,5 +1,6 @@
 #pragma once
 
+#include "maps/backprojection/level_options.hpp"
 #include "maps/host/map_method.hpp"
 #include "maps/products/depth_pyramid.hpp"
 #include "visibility/method.hpp"
@@ -20,7 +21,9 @@ struct ContourChoices {
   Traversal traversal = Traversal::flat;
   std::uint32_t packet_width = 1, packet_height = 1;
   double divergence = 1;
-  std::uint32_t sub_lights = 1;  ///< along each of the light's axes
+  double edge_cost = 1, area_cost = 1;  ///< of an edge and of its area, beside a node (Yang et al. 2009, equation 6)
+  std::uint32_t sub_lights = 1;         ///< along each of the light's axes
+  LevelChoice levels{};
 };
 
 visibility::MeshVerdict contour_verdict(const mesh::Diagnosis& mesh);

@@ -19,10 +19,16 @@ const uint kEdges[16] = uint[16](0x0000, 0x001c, 0x0011, 0x001d, 0x001b, 0x0018,
                                  0x001e, 0x0017, 0x0014, 0x0013, 0x0000);
 const vec2 kSide[4] = vec2[4](vec2(0.5, 0.0), vec2(1.0, 0.5), vec2(0.5, 1.0), vec2(0.0, 0.5));
 
-bool on_map(ivec2 texel) { return all(greaterThanEqual(texel, ivec2(0))) && all(lessThan(texel, ivec2(lookup.size))); }
+bool on_map(ivec2 texel) { return all(greaterThanEqual(texel, ivec2(0))) && all(lessThan(texel, ivec2(level_size()))); }
+
+// The depth of a texel of the level at hand; far where there is nothing.
+float depth_of(ivec2 texel) {
+  if (level() > 0) return level_tap(view, face, 0, uvec2(texel)).depth;
+  return view.far * maps[(face.map * lookup.size + uint(texel.y)) * lookup.size + uint(texel.x)];
+}
 
 bool shades(uint pixel, ivec2 texel) {
-  Tap tap = tap_of(view, lookup.size, face, uvec2(texel));
+  Tap tap = level() > 0 ? level_tap(view, face, 0, uvec2(texel)) : tap_of(view, lookup.size, face, uvec2(texel));
   tap.along = pixel_e[pixel].z / tap.direction.z;
   return tap.depth < view.far && blocks_light(tap, pixel_e[pixel], pixel_m[pixel], lookup.bias) &&
          above_plane(tap, pixel_e[pixel], pixel_m[pixel], lookup.bias);
@@ -66,7 +72,7 @@ void add_edge(uint pixel, ivec2 base, uint edge, float depth_from, float depth_t
 void look_at_cell(ivec2 cell, uint first, uint members_asked) {
   ++done.cells;
   const ivec2 base = cell - 1;
-  const vec2 limits = thresholds(group, face, max(base, ivec2(0)), min(cell, ivec2(lookup.size) - 1), view.far);
+  const vec2 limits = thresholds(group, face, max(base, ivec2(0)), min(cell, ivec2(level_size()) - 1), view.far);
   uint corners = 0;
   vec4 depths;
   bool differs = false;
@@ -74,7 +80,7 @@ void look_at_cell(ivec2 cell, uint first, uint members_asked) {
     const ivec2 texel = base + ivec2(k & 1, k >> 1);
     depths[k] = view.far;
     if (!on_map(texel)) continue;
-    depths[k] = view.far * maps[(face.map * lookup.size + uint(texel.y)) * lookup.size + uint(texel.x)];
+    depths[k] = depth_of(texel);
     if (depths[k] >= limits.y) continue;
     uint shaded = members_asked;
     if (depths[k] >= limits.x) {  // near some receiver's own depth

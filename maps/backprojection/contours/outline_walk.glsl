@@ -86,36 +86,72 @@ void look_below_nodes(ivec4 cells, uint first, uint members_asked) {
   if (gl_LocalInvocationIndex == 0) stack_count = 0;
 }
 
+// Edges of the level at hand, of so many members from first on; false if their contours differ.
+bool look_for_edges_of(uint first, uint members_asked) {
+  barrier();
+  if (gl_LocalInvocationIndex == 0) {
+    group_cells = cells_at_level(members[first]);
+    group = bounds_of(face, pixel_e[members[first]], pixel_m[members[first]]);
+    for (uint i = first; i < first + members_asked; ++i) {
+      const ivec4 cells = cells_at_level(members[i]);
+      group_cells = ivec4(min(group_cells.xy, cells.xy), max(group_cells.zw, cells.zw));
+      group = join(group, bounds_of(face, pixel_e[members[i]], pixel_m[members[i]]));
+      pixel_edges[members[i]] = 0;
+    }
+    diverged = 0;
+  }
+  for (uint i = gl_LocalInvocationIndex; i < members_asked && kLevels != kFinestLevel; i += gl_WorkGroupSize.x) {
+    find_own(members[first + i]);
+  }
+  barrier();
+  const ivec4 cells = cells_now();
+  if (!no_cells(cells)) {
+    if (own.traversal == kFlat || level() > 0) {
+      look_at_all_cells(cells, first, members_asked);
+    } else {
+      look_below_nodes(cells, first, members_asked);
+    }
+  }
+  barrier();
+  return diverged == 0;
+}
+
+// What contours of the level at hand hide of the light counts for so much (levels.glsl).
+void add_level(uint first, uint members_asked, bool coarser) {
+  for (uint i = gl_LocalInvocationIndex; i < members_asked; i += gl_WorkGroupSize.x) {
+    const uint pixel = members[first + i];
+    const float part = coarser_part(pixel_wanted[pixel]), weight = coarser ? part : 1.0 - part;
+    const int inside = pixel_inside[pixel] != 0 && lookup.first_row == 0 ? kContourWhole : 0;
+    pixel_levels[pixel] += int(floor(float(inside - pixel_edges[pixel]) * weight + 0.5));
+  }
+}
+
 // Adds the members' edges on the face at hand to their sums: of all at once if they are coherent, else one by one.
 void look_for_edges() {
   for (uint next = 0; next < member_count;) {
     const bool all = together != 0;
     const uint first = all ? 0 : next, members_asked = all ? member_count : 1;
-    if (gl_LocalInvocationIndex == 0) {
-      group_cells = pixel_cells[members[first]];
-      group = bounds_of(face, pixel_e[members[first]], pixel_m[members[first]]);
-      for (uint i = first; i < first + members_asked; ++i) {
-        const ivec4 cells = pixel_cells[members[i]];
-        group_cells = ivec4(min(group_cells.xy, cells.xy), max(group_cells.zw, cells.zw));
-        group = join(group, bounds_of(face, pixel_e[members[i]], pixel_m[members[i]]));
-        pixel_edges[members[i]] = 0;
+    bool good = true;
+    if (kLevels == kFinestLevel) {
+      good = look_for_edges_of(first, members_asked);
+    } else {
+      bool both = false;
+      for (uint i = gl_LocalInvocationIndex; i < members_asked; i += gl_WorkGroupSize.x) pixel_levels[members[first + i]] = 0;
+      for (uint i = first; i < first + members_asked; ++i) both = both || coarser_part(pixel_wanted[members[i]]) > 0.0;
+      begin_level(finer_level(pixel_wanted[members[first]]));
+      good = look_for_edges_of(first, members_asked);
+      if (good) add_level(first, members_asked, false);
+      if (good && both && level() < kCoarsestLevel) {
+        begin_level(level() + 1);
+        good = look_for_edges_of(first, members_asked);
+        if (good) add_level(first, members_asked, true);
       }
-      diverged = 0;
+      begin_level(0);
     }
-    barrier();
-    const ivec4 cells = cells_now();
-    if (!no_cells(cells)) {
-      if (own.traversal == kFlat) {
-        look_at_all_cells(cells, first, members_asked);
-      } else {
-        look_below_nodes(cells, first, members_asked);
-      }
-    }
-    barrier();
-    const bool good = diverged == 0;
     if (good) {
       for (uint i = gl_LocalInvocationIndex; i < members_asked; i += gl_WorkGroupSize.x) {
-        pixel_sum[members[first + i]] -= pixel_edges[members[first + i]];
+        const uint pixel = members[first + i];
+        pixel_sum[pixel] += kLevels == kFinestLevel ? -pixel_edges[pixel] : pixel_levels[pixel];
       }
       next += members_asked;
     }

@@ -68,6 +68,13 @@ constexpr visibility::RealOption kDivergence{
     "divergence", 0, 1, 0.8,
     "a packet whose pixels are more likely than this to have different contours is done pixel by pixel"};
 
+// As tuned (docs/packet.md).
+constexpr visibility::RealOption kEdgeCost{
+    "edgeCost", 0, 1024, 1, "what an edge of a contour costs, beside a node: decides which packets look together"};
+constexpr visibility::RealOption kAreaCost{
+    "areaCost", 0, 1024, 1,
+    "what an edge's area costs for each pixel, beside a node: decides which packets look together"};
+
 }  // namespace
 
 visibility::MethodDescription packet_description(const visibility::MethodOptions& options) {
@@ -89,6 +96,10 @@ visibility::MethodDescription packet_description(const visibility::MethodOptions
   description.options.push_back(kSubLights.description());
   description.options.push_back(kHierarchy.description());
   description.options.push_back(kDivergence.description());
+  description.options.push_back(kEdgeCost.description());
+  description.options.push_back(kAreaCost.description());
+  for (const auto& option : {kMapLevel.description(), kTexelBudget.description(), kBlendLevels.description()})
+    description.options.push_back(option);
   description.options.push_back(kSubsample.description());
   description.options.push_back(kSubsampleBy.description());
   // Outlines know of their area alone; a texture weighs the parts of the light.
@@ -106,7 +117,10 @@ std::unique_ptr<visibility::Method> make_packet(const render::Device& device,
                                .packet_width = packet.width,
                                .packet_height = packet.height,
                                .divergence = parsed[kDivergence],
-                               .sub_lights = parsed[kSubLights]};
+                               .edge_cost = parsed[kEdgeCost],
+                               .area_cost = parsed[kAreaCost],
+                               .sub_lights = parsed[kSubLights],
+                               .levels = level_choice(parsed)};
   return subsampled(device, make_map_method(device, contour_recipe(device, description, choices, parsed), options),
                     parsed, options);
 }

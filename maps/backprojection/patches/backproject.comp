@@ -2,6 +2,7 @@
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 #include "maps/backprojection/patches/backproject.shared.h"
+#include "maps/backprojection/level_maps.shared.h"
 #define GROUP_A_RECEIVER
 #define OWN_PUSH BackprojectPush
 #include "maps/host/look_up.glsl"
@@ -21,23 +22,42 @@ layout(scalar, binding = 4) readonly buffer Nearest { float nearest[2]; };
 layout(constant_id = 0) const uint kFill = kFillEdges;  // kFillNone ...
 layout(constant_id = 1) const uint kForm = kFormPatch;  // kFormPatch or kFormSphere
 layout(constant_id = 2) const bool kSearch = true;      // whether a pyramid says which texels a kernel holds
+layout(constant_id = 3) const uint kLevels = kFinestLevel;  // kFinestLevel ...
+
+#define LEVEL_MAPS 7
+#include "maps/backprojection/level_kernels.glsl"
+
+float near = 0.0;  // of the kernel
+
+Kernel kernel_at_level(MapFace face) {
+  if (kForm == kFormSphere) return sphere_kernel(at_level(face), level_size(), near, false);
+  return kernel_on(at_level(face), level_size(), asked.e, light.lower, light.upper, near, 0);
+}
 
 Kernel kernel_of(MapFace face) {
-  float near = nearest[asked.number];
-  if (kForm == kFormSphere) return sphere_kernel(face, near, kSearch);
-  if (kSearch) return search_kernel(face, light.lower, light.upper, near, 1.0, 0, true, kFill == kFillDiagonal ? 1 : 0);
-  return kernel_on(face, lookup.size, asked.e, light.lower, light.upper, near, 0);
+  near = nearest[asked.number];
+  begin_levels();
+  Kernel kernel = kNoKernel;
+  if (kSearch) {
+    kernel = kForm == kFormSphere
+                 ? sphere_kernel(face, lookup.size, near, true)
+                 : search_kernel(face, light.lower, light.upper, near, 1.0, 0, true, kFill == kFillDiagonal ? 1 : 0);
+    if (is_empty(kernel)) return kernel;
+  }
+  if (!kSearch || level() > 0) kernel = kernel_at_level(face);
+  return kernel_within_budget(face, kernel);
 }
 
 // Patches reach to their left and lower neighbours' depths; spheres, beyond their texels.
 bool nothing_hides(MapFace face, ivec2 first, ivec2 last) {
   vec2 depths;
-  return none_hides(face, first - 1, last, own.layers, kForm == kFormPatch, depths);
+  const ivec2 from = (first - 1) << level(), to = ((last + 1) << level()) - 1;
+  return none_hides(face, from, to, own.layers, kForm == kFormPatch, depths);
 }
 
 float share_above() { return kForm == kFormSphere && own.ball != 0 ? sphere_above_horizon() : light_above_horizon(asked.e, asked.m); }
 
-Tap texel_at(MapFace face, uint layer, uvec2 cell) { return ask_texel(face, layer, cell); }
+Tap texel_at(MapFace face, uint layer, uvec2 cell) { return ask_level(face, layer, cell); }
 
 uint hidden_by_layer(MapFace face, uint layer, uvec2 cell) {
   const Tap tap = texel_at(face, layer, cell);
@@ -48,11 +68,18 @@ uint hidden_by_layer(MapFace face, uint layer, uvec2 cell) {
   return light_between(in_light_order(face, one.from), in_light_order(face, one.to));
 }
 
+// Between two levels each hides its part of what its texels do.
+uint part_at_level(uint hidden) {
+  if (kLevels != kLevelsByBudget || coarser_share == 0.0) return hidden;
+  return uint(float(hidden) * (coarser ? coarser_share : 1.0 - coarser_share) + 0.5);
+}
+
 // Of several layers the deepest that hides some of the light counts: to add them all would count most bodies twice.
-uint hidden_by(MapFace face, uvec2 cell) {
+uint hidden_by(MapFace fine, uvec2 cell) {
+  const MapFace face = at_level(fine);
   for (uint layer = own.layers; layer-- > 0;) {
     const uint hidden = hidden_by_layer(face, layer, cell);
-    if (hidden > 0) return hidden;
+    if (hidden > 0) return part_at_level(hidden);
   }
   return 0;
 }

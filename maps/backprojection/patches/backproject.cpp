@@ -7,6 +7,7 @@
 
 #include "maps/backprojection/patches/backproject.comp.spv.hpp"
 #include "maps/backprojection/patches/backproject.shared.h"
+#include "maps/backprojection/level_options.hpp"
 #include "maps/backprojection/light_table.hpp"
 #include "maps/backprojection/patches/options.hpp"
 #include "maps/host/map_method.hpp"
@@ -52,6 +53,8 @@ visibility::MethodDescription backproject_description(const visibility::MethodOp
   description.options.push_back(kPatchFill.description());
   description.options.push_back(kForm.description());
   description.options.push_back(kDeepestLayers.description());
+  for (const auto& option : {kMapLevel.description(), kTexelBudget.description(), kBlendLevels.description()})
+    description.options.push_back(option);
   description.options.push_back(kPatchSearch.description());
   description.options.push_back(kSubsample.description());
   description.options.push_back(kSubsampleBy.description());
@@ -76,13 +79,16 @@ std::unique_ptr<visibility::Method> make_backproject(const render::Device& devic
   const Search search = parsed[kPatchSearch];
   recipe.products.push_back(
       std::make_unique<DepthPyramid>(device, search == Search::none ? PyramidKind::hsm : pyramid_of(search)));
+  const LevelChoice levels = level_choice(parsed);
+  recipe.products.push_back(make_level_maps(device, levels));
   recipe.all_casters = parsed[kForm] == gpu::kFormSphere;
-  recipe.constants = {parsed[kPatchFill], parsed[kForm], search == Search::none ? 0u : 1u};
+  recipe.constants = {parsed[kPatchFill], parsed[kForm], search == Search::none ? 0u : 1u, levels.levels()};
   recipe.push_words = sizeof(gpu::BackprojectPush) / sizeof(std::uint32_t);
-  recipe.push = [layers = parsed[kDeepestLayers]](const visibility::Light& light) {
+  recipe.push = [layers = parsed[kDeepestLayers], levels](const visibility::Light& light) {
     // A sphere's area is that of the disk of its radius.
-    return push_words(
-        gpu::BackprojectPush{layers, is_body(light.kind) ? 1u : 0u, static_cast<float>(half_width(light))});
+    return push_words(gpu::BackprojectPush{layers, is_body(light.kind) ? 1u : 0u,
+                                           static_cast<float>(half_width(light)), levels.level, levels.budget,
+                                           levels.blend ? 1u : 0u});
   };
   return subsampled(device, make_map_method(device, std::move(recipe), options), parsed, options);
 }

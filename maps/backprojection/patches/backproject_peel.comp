@@ -50,4 +50,6 @@ uint hidden_by(MapFace face, uvec2 cell) {
   return 0;
 }
 
+Kernel next_kernel(MapFace face, uint turn) { return kNoKernel; }
+
 #include "maps/host/group_scalar_main.glsl"

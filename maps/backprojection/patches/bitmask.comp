@@ -2,6 +2,7 @@
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 #include "maps/backprojection/patches/bitmask.shared.h"
+#include "maps/backprojection/level_maps.shared.h"
 #define GROUP_A_RECEIVER
 #define OWN_PUSH BitmaskPush
 #include "maps/host/look_up.glsl"
@@ -19,7 +20,6 @@
 // triangle of three of them where just three do, or, of a coarse level, the rectangle around what there is in a block.
 
 layout(scalar, binding = 4) readonly buffer Nearest { float nearest[2]; };
-layout(scalar, binding = 8) readonly buffer Levels { uvec2 levels[]; };  // level_maps.comp's
 layout(scalar, binding = 9) buffer Work { uint work[2]; };               // occluders asked, the lower word first
 
 // A pipeline has the code of its own options alone: drivers for processors run both sides of a branch.
@@ -28,54 +28,17 @@ layout(constant_id = 1) const uint kFill = kFillNone;          // kFillNone ...
 layout(constant_id = 2) const bool kSearch = true;             // whether a pyramid says which texels a kernel holds
 layout(constant_id = 3) const uint kLevels = kFinestLevel;     // kFinestLevel ...
 
-uint level_at_hand = 0;
-uint level_start = 0;  // where it begins among those that there are
+#define LEVEL_MAPS 8
+#include "maps/backprojection/level_kernels.glsl"
 
-uint level() { return kLevels == kFinestLevel ? 0 : level_at_hand; }
-
-// Schwarz and Stamminger 2008: where a budget is exceeded coarser levels are looked at, by a number that grows with the
-// kernel without steps. Between two whole ones the coarser decides for so many of the light samples, shared out evenly.
-float wanted_level = 0.0;
-float coarser_share = 1.0;  // samples with a place below this are the coarser level's
-bool coarser = false;       // the coarser of two is looked at now
-
-// Places in [0, 1) that any first n of the samples fill evenly: multiples of the golden ratio.
+// Between two levels the coarser decides for so many of the light samples, shared out evenly: those with a place in [0, 1)
+// below its share. Any first n of the samples fill places evenly: multiples of the golden ratio.
 bool is_mine(uint j) {
-  if (kLevels != kLevelsByBudget || coarser_share >= 1.0) return true;
+  if (kLevels != kLevelsByBudget || coarser_share == 0.0) return true;
   return (float(j * 2654435769u >> 8) / 16777216.0 < coarser_share) == coarser;
 }
 
-uint side_of_level(uint l) { return ((lookup.size - 1) >> l) + 1; }
-uint level_size() { return side_of_level(level()); }
-
-void look_at_level(uint l) {
-  level_at_hand = l;
-  level_start = 0;
-  if (kLevels != kLevelsByBudget) return;  // it is the only one
-  for (uint k = 1; k < l; ++k) level_start += lookup.layers * lookup.faces * side_of_level(k) * side_of_level(k);
-}
-
-// The face with texels of the level.
-MapFace at_level(MapFace face) {
-  face.texel *= float(1u << level());
-  return face;
-}
-
-Tap texel_at(MapFace face, uint layer, uvec2 cell) {
-  if (level() == 0) return ask_texel(face, layer, cell);
-  const uint side = level_size();
-  const uint texel = level_start + ((face.map + layer * lookup.faces) * side + cell.y) * side + cell.x;
-  Tap tap;
-  tap.direction = from_face(face, vec3(face.lower + (vec2(cell) + 0.5) * face.texel, 1.0));
-  tap.far = asked.view.far;
-  tap.depth = tap.far * uintBitsToFloat(levels[texel].x);
-  tap.second = tap.far;
-  if (lookup.depth_use != kDepthFirst) tap.second *= uintBitsToFloat(levels[texel + lookup.faces * side * side].x);
-  tap.along = asked.e.z / tap.direction.z;
-  tap.texel = max(face.texel.x, face.texel.y);
-  tap.axis = face.axis;
-  return tap;
-}
+Tap texel_at(MapFace face, uint layer, uvec2 cell) { return ask_level(face, layer, cell); }
 
 // Quads and triangles lie between centres, of a texel and its right and upper neighbours; patches reach to the left and
 // lower ones.
@@ -113,29 +76,14 @@ Kernel kernel_at_level(MapFace face) {
 Kernel kernel_of(MapFace face) {
   tile_shift = padding();
   near = nearest[asked.number];
-  look_at_level(own.level);
-  coarser_share = 1.0;
+  begin_levels();
   Kernel kernel = kNoKernel;
   if (kSearch) {
     kernel = search_kernel(face, light.lower, light.upper, near, 1.0, padding(), true, kFill == kFillDiagonal ? 1 : 0);
     if (is_empty(kernel)) return kernel;
   }
   if (!kSearch || level() > 0) kernel = kernel_at_level(face);
-  if (kLevels != kLevelsByBudget || is_empty(kernel)) return kernel;
-  const ivec2 extent = kernel.last - kernel.first + 1;
-  wanted_level = float(level()) + max(0.5 * log2(float(extent.x) * float(extent.y) / float(own.budget)), 0.0);
-  wanted_level = min(wanted_level, float(kCoarsestLevel));
-  coarser_share = own.blend != 0 ? fract(wanted_level) : 1.0;
-  coarser = false;
-  look_at_level(uint(own.blend != 0 ? floor(wanted_level) : ceil(wanted_level)));
-  return level() == own.level ? kernel : kernel_at_level(face);
-}
-
-Kernel next_kernel(MapFace face, uint turn) {
-  if (turn > 1 || kLevels != kLevelsByBudget || own.blend == 0 || coarser_share == 0.0 || level() >= kCoarsestLevel) return kNoKernel;
-  coarser = true;
-  look_at_level(level() + 1);
-  return kernel_at_level(face);
+  return kernel_within_budget(face, kernel);
 }
 
 void hide_patch(MapFace face, uint layer, uvec2 cell, Tap tap) {

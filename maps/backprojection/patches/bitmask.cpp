@@ -7,8 +7,8 @@
 
 #include "maps/backprojection/patches/bitmask.comp.spv.hpp"
 #include "maps/backprojection/patches/bitmask.shared.h"
-#include "maps/backprojection/patches/level_maps.hpp"
 #include "maps/backprojection/patches/light_sample_bands.hpp"
+#include "maps/backprojection/level_options.hpp"
 #include "maps/backprojection/light_table.hpp"
 #include "maps/backprojection/patches/options.hpp"
 #include "maps/host/map_method.hpp"
@@ -37,12 +37,6 @@ constexpr visibility::ChoiceOption kOccluder{"occluder",
                                              "around what there is"};
 constexpr auto kBitmaskFill = fill_option(gpu::kFillNone);
 constexpr visibility::IntegerOption kJoinedLayers{"layers", 1, 16, 1, "layers of surfaces that are asked"};
-constexpr visibility::IntegerOption kLevel{"level", 0, 6, 0, "blocks of 2^level texels a side are one texel"};
-constexpr visibility::IntegerOption kBudget{
-    "budget", 0, 1u << 28, 0,
-    "texels of a face that a receiver may look at; where there are more, coarser levels stand for them; 0: no limit"};
-constexpr auto kBlend =
-    visibility::flag_option("blend", true, "with a budget: pass from one level to the next without steps");
 constexpr auto kBitmaskSearch = search_option(Search::mssm);
 
 visibility::MeshVerdict bitmask_verdict(const mesh::Diagnosis& mesh) {
@@ -66,7 +60,7 @@ visibility::MethodDescription bitmask_description(const visibility::MethodOption
       .verdict_on = bitmask_verdict,
       .repairs = bitmask_repairs};
   for (const auto& option : {kOccluder.description(), kBitmaskFill.description(), kJoinedLayers.description(),
-                             kLevel.description(), kBudget.description(), kBlend.description(),
+                             kMapLevel.description(), kTexelBudget.description(), kBlendLevels.description(),
                              kBitmaskSearch.description(), kSubsample.description(), kSubsampleBy.description()}) {
     description.options.push_back(option);
   }
@@ -80,13 +74,12 @@ std::unique_ptr<visibility::Method> make_bitmask(const render::Device& device,
       .description = bitmask_description(), .look_up_name = "bitmask look-up", .look_up = shaders::kBitmaskComp};
   const visibility::ParsedOptions parsed = visibility::parse_options(recipe.description, options);
   const Search search = parsed[kBitmaskSearch];
-  const gpu::BitmaskPush push{parsed[kJoinedLayers], parsed[kLevel], parsed[kBudget], parsed[kBlend] ? 1u : 0u};
+  const LevelChoice levels = level_choice(parsed);
+  const gpu::BitmaskPush push{parsed[kJoinedLayers], levels.level, levels.budget, levels.blend ? 1u : 0u};
   const std::uint32_t occluder = parsed[kOccluder];
   const bool has_patches = occluder == gpu::kOccluderPatch || occluder == gpu::kOccluderRect;
   recipe.constants = {occluder, has_patches ? parsed[kBitmaskFill] : gpu::kFillNone, search == Search::none ? 0u : 1u,
-                      push.budget > 0  ? gpu::kLevelsByBudget
-                      : push.level > 0 ? gpu::kOneLevel
-                                       : gpu::kFinestLevel};
+                      levels.levels()};
   recipe.whole_light = true;
   recipe.group_a_receiver = true;
   recipe.layers.count = push.layers + (parsed[kDepth] == DepthUse::first ? 0 : 1);
@@ -95,8 +88,7 @@ std::unique_ptr<visibility::Method> make_bitmask(const render::Device& device,
   recipe.products.push_back(std::make_unique<LightSampleBands>(device));
   recipe.products.push_back(
       std::make_unique<DepthPyramid>(device, search == Search::none ? PyramidKind::hsm : pyramid_of(search)));
-  recipe.products.push_back(std::make_unique<LevelMaps>(device, push.budget > 0 ? 1 : push.level,
-                                                        push.budget > 0 ? gpu::kCoarsestLevel : push.level));
+  recipe.products.push_back(make_level_maps(device, levels));
   recipe.products.push_back(std::make_unique<WorkCounts>(device, std::vector<std::string>{"occludersAsked"}));
   recipe.push_words = sizeof(push) / sizeof(std::uint32_t);
   recipe.push = [push](const visibility::Light&) { return push_words(push); };

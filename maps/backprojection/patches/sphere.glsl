@@ -45,16 +45,16 @@ void cone_bounds(out vec2 lower, out vec2 upper) {
 // Texels whose spheres may meet that cone, no sphere's middle nearer to the light's plane than `near`. A point of a
 // sphere is up to its radius, half a texel's diagonal, beside its middle and nearer to the light; on the map that is half a
 // diagonal times 1 + the tangent that it is seen under.
-Kernel sphere_kernel(MapFace face, inout float near, bool search) {
+Kernel sphere_kernel(MapFace face, uint size, inout float near, bool search) {
   // Sideways a texel's lowest row reaches down to the light's plane.
-  if (face.axis != 2) return Kernel(ivec2(0), ivec2(int(lookup.size) - 1), true);
+  if (face.axis != 2) return Kernel(ivec2(0), ivec2(int(size) - 1), true);
   vec2 lower, upper;
   cone_bounds(lower, upper);
-  const vec2 widest = max(abs(face.lower), abs(face.lower + float(lookup.size) * face.texel));
+  const vec2 widest = max(abs(face.lower), abs(face.lower + float(size) * face.texel));
   const int padding = 1 + int(ceil(kHalfDiagonal * (1.0 + max(widest.x, widest.y))));
   const float begins = 1.0 - kHalfDiagonal * max(face.texel.x, face.texel.y);
   if (search) return search_kernel(face, lower, upper, near, max(begins, 0.0), padding, true, 0);
-  return kernel_on(face, lookup.size, asked.e, lower, upper, max(begins, 0.0) * near, padding);
+  return kernel_on(face, size, asked.e, lower, upper, max(begins, 0.0) * near, padding);
 }
 
 // Of the light the share above the receiver's horizon, by area of the disk that a sphere is seen as: within the circle

@@ -121,6 +121,57 @@ TEST_F(MapsBackproject, AHemicubesFacesTooToASquareTexel) {
   EXPECT_LT(mean, 0.0001);
 }
 
+// A coarse level is a map of the blocks' nearest depths (Guennebaud et al. 2007), also where blocks reach over its end.
+TEST_F(MapsBackproject, ALevelIsTheSumOfItsBlocks) {
+  const Stage stage(boards_over_floor(), 20, 20, light_samples(1));
+  for (const auto& [size, level] : {std::pair(64U, 1U), std::pair(75U, 2U)}) {
+    const PatchTwin twin(device(), stage, size, level);
+    for (const Fill fill : {Fill::none, Fill::edges, Fill::diagonal}) {
+      const auto [most, mean] = off(stage, twin, size, fill, {{"level", fmt::format("{}", level)}});
+      fmt::print("level {}: off by at most {:.2g}, {:.2g} in the mean\n", level, most, mean);
+      EXPECT_LT(most, 1e-4) << "level " << level;
+    }
+  }
+}
+
+// With a budget each pixel looks at one level, or at two of which the coarser counts for a part (Guennebaud et al.
+// 2007).
+TEST_F(MapsBackproject, ABudgetChoosesLevelsAndBlendsThem) {
+  const Stage stage(boards_over_floor(), 24, 24, light_samples(1));
+  for (const char* form : {"patch", "sphere"}) {
+    const auto with = [&](MethodOptions options) {
+      options.emplace("size", "96");
+      options.emplace("form", form);
+      return run(maps::make_backproject, stage, options).visibility;
+    };
+    std::vector<std::vector<float>> levels;
+    for (const char* level : {"0", "1", "2", "3", "4"}) levels.push_back(with({{"level", level}}));
+    EXPECT_EQ(with({{"budget", "100000"}}), levels[0]);
+    EXPECT_EQ(with({{"budget", "100000"}, {"level", "2"}}), levels[2]);
+    std::size_t between = 0, coarse = 0;
+    for (const char* budget : {"60", "150"}) {
+      const std::vector<float> stepped = with({{"budget", budget}, {"blend", "off"}}),
+                               blended = with({{"budget", budget}});
+      for (std::size_t i = 0; i < stepped.size(); ++i) {
+        bool one = false, two = false;
+        for (std::size_t l = 0; l < levels.size(); ++l) {
+          one = one || stepped[i] == levels[l][i];
+          coarse += l > 0 && stepped[i] == levels[l][i] && stepped[i] != levels[0][i] ? 1 : 0;
+          if (l == 0) continue;
+          // Each part is rounded once a texel, to 2^-30 of the light and a float's 2^-24 of what it hides.
+          const float low = std::min(levels[l - 1][i], levels[l][i]), high = std::max(levels[l - 1][i], levels[l][i]);
+          two = two || (blended[i] >= low - 1e-6F && blended[i] <= high + 1e-6F);
+          between += blended[i] > low + 1e-3F && blended[i] < high - 1e-3F ? 1 : 0;
+        }
+        EXPECT_TRUE(one) << form << " " << budget << ", pixel " << i;
+        EXPECT_TRUE(two) << form << " " << budget << ", pixel " << i;
+      }
+    }
+    EXPECT_GT(coarse, 50U) << form;
+    EXPECT_GT(between, 50U) << form;
+  }
+}
+
 TEST_F(MapsBackproject, BothSidesOfATwoSidedLight) {
   scenes::Scene scene = boards_over_floor();
   add_quad(scene, {0, 9, 0}, {2, 0, 0}, {0, 0, 2}).casts_shadow = false;

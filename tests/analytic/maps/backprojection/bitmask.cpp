@@ -1,7 +1,7 @@
 // Bitmasks of one map: each bit against the occluders one by one, and what must hold between occluders, levels, layers
 // and sums, on every scene or on every scene of a class.
 
-#include "maps/backprojection/patches/level_maps.hpp"
+#include "maps/backprojection/level_maps.hpp"
 #include "tests/analytic/maps/backprojection_scenes.hpp"
 #include "tests/analytic/maps/parallel_square.hpp"
 #include "reference/methods.hpp"

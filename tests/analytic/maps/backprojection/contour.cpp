@@ -18,7 +18,8 @@ class MapsContour : public ContourTest {};
 /// the next texels' centres, projected onto the light.
 class OctagonTwin {
  public:
-  OctagonTwin(const Stage& stage, std::uint32_t size) : stage_(&stage) {
+  /// `level`: blocks of 2^level texels a side are one, which shades if any of them does.
+  OctagonTwin(const Stage& stage, std::uint32_t size, std::uint32_t level = 0) : stage_(&stage) {
     const maps::LightBasis basis = maps::light_basis(stage.light);
     const maps::LightBounds bounds = maps::light_bounds(stage.light, basis);
     const glm::vec3 centre(basis.center);
@@ -34,9 +35,13 @@ class OctagonTwin {
       height_ = corner.z;
     }
     texel_ = (glm::dvec2(side.upper) - glm::dvec2(side.lower)) / static_cast<double>(size);
-    // First and last centres that it holds, and half a texel beyond: the contour.
-    const glm::dvec2 first = glm::ceil((lower - glm::dvec2(side.lower)) / texel_ - 0.5) - 0.5;
-    const glm::dvec2 last = glm::floor((upper - glm::dvec2(side.lower)) / texel_ - 0.5) + 0.5;
+    // First and last texels whose centres it holds, or their blocks, and half a texel beyond: the contour.
+    const double block = 1U << level;
+    glm::dvec2 first = glm::ceil((lower - glm::dvec2(side.lower)) / texel_ - 0.5);
+    glm::dvec2 last = glm::floor((upper - glm::dvec2(side.lower)) / texel_ - 0.5);
+    first = glm::floor(first / block) - 0.5;
+    last = glm::floor(last / block) + 0.5;
+    texel_ *= block;
     const glm::dvec2 a = glm::dvec2(side.lower) + (first + 0.5) * texel_,
                      b = glm::dvec2(side.lower) + (last + 0.5) * texel_;
     const glm::dvec2 half = 0.5 * texel_;
@@ -121,6 +126,74 @@ TEST_F(MapsContour, IsTheOctagonOfTheTexelsThatShade) {
       EXPECT_LT(others, 2 * halved + 4e-5) << "shape " << shape << ", size " << size;
       RecordProperty(fmt::format("shape {} size {}", shape, size), fmt::format("{:.2g}, {:.2g}", halved, others));
     }
+  }
+}
+
+// A coarse level is a map of blocks at their nearest depths (Guennebaud et al. 2007).
+TEST_F(MapsContour, ALevelIsTheOctagonOfItsBlocks) {
+  const Stage stage(parallel_square(), 32, 32, light_samples(1));
+  const ParallelSquare square(stage);
+  for (const std::uint32_t level : {1U, 2U}) {
+    const OctagonTwin twin(stage, 101, level);
+    const Masks found = run(maps::make_contour, stage, {{"size", "101"}, {"level", std::to_string(level)}});
+    std::size_t partly = 0;
+    for (std::size_t i = 0; i < stage.samples.size(); ++i) {
+      if (!square.on_floor(i)) continue;
+      const double expected = twin.visibility(i);
+      partly += expected > 0.01 && expected < 0.99 ? 1 : 0;
+      EXPECT_NEAR(found.visibility[i], expected, 4e-5) << "level " << level;
+    }
+    EXPECT_GT(partly, 100U);
+  }
+}
+
+// Packets, searches and walks find the contours of a level that a pixel finds alone, and of the two levels that a
+// budget asks for; V lies between theirs.
+TEST_F(MapsContour, LevelsAreTheSameForPacketsAndSearches) {
+  for (const auto& scene : {ball_over_floor(1), plate_over_plate()}) {
+    const Stage stage(scene, 24, 24, light_samples(1));
+    const auto differing = [](const std::vector<float>& a, const std::vector<float>& b) {
+      std::size_t count = 0;
+      for (std::size_t i = 0; i < a.size(); ++i) count += a[i] != b[i] ? 1 : 0;
+      return count;
+    };
+    const auto with = [&](const Factory& factory, MethodOptions options) {
+      options.emplace("size", "96");
+      return run(factory, stage, options).visibility;
+    };
+    std::vector<std::vector<float>> levels;
+    for (const char* level : {"0", "1", "2", "3", "4"}) {
+      levels.push_back(with(maps::make_contour, {{"level", level}}));
+      if (levels.size() == 5) continue;  // six texels across: not every edge beside a kernel is seen beside the light
+      EXPECT_EQ(differing(with(maps::make_packet, {{"level", level}}), levels.back()), 0U) << level;
+      EXPECT_EQ(differing(with(maps::make_contour, {{"level", level}, {"search", "none"}}), levels.back()), 0U)
+          << level;
+    }
+    EXPECT_EQ(with(maps::make_contour, {{"budget", "100000"}}), levels[0]);
+    std::size_t between = 0, coarse = 0;
+    for (const char* budget : {"40", "150"}) {
+      const std::vector<float> stepped = with(maps::make_contour, {{"budget", budget}, {"blend", "off"}}),
+                               blended = with(maps::make_contour, {{"budget", budget}});
+      EXPECT_EQ(differing(with(maps::make_packet, {{"budget", budget}}),
+                          with(maps::make_packet, {{"budget", budget}, {"packet", "1x1"}})),
+                0U)
+          << budget;
+      for (std::size_t i = 0; i < stepped.size(); ++i) {
+        bool one = false, two = false;
+        for (std::size_t l = 0; l < levels.size(); ++l) {
+          one = one || stepped[i] == levels[l][i];
+          coarse += l > 0 && stepped[i] == levels[l][i] && stepped[i] != levels[0][i] ? 1 : 0;
+          if (l == 0) continue;
+          const float low = std::min(levels[l - 1][i], levels[l][i]), high = std::max(levels[l - 1][i], levels[l][i]);
+          two = two || (blended[i] >= low - 1e-6F && blended[i] <= high + 1e-6F);
+          between += blended[i] > low + 1e-3F && blended[i] < high - 1e-3F ? 1 : 0;
+        }
+        EXPECT_TRUE(one) << budget << ", pixel " << i;
+        EXPECT_TRUE(two) << budget << ", pixel " << i;
+      }
+    }
+    EXPECT_GT(coarse, 50U);
+    EXPECT_GT(between, 30U);
   }
 }
 

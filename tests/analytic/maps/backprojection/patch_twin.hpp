@@ -12,8 +12,21 @@ enum class Occluder { patch, quad, triangle };
 
 class PatchTwin {
  public:
-  PatchTwin(const render::Device& device, const Stage& stage, std::uint32_t size)
-      : stage_(&stage), maps_(device, stage, size, {0, 0}, {.whole_light = true}), texels_(maps_.read()) {}
+  /// Blocks of 2^level texels a side are one texel at their nearest depth.
+  PatchTwin(const render::Device& device, const Stage& stage, std::uint32_t size, std::uint32_t level = 0)
+      : stage_(&stage),
+        maps_(device, stage, size, {0, 0}, {.whole_light = true}),
+        block_(1U << level),
+        size_((size + block_ - 1) / block_) {
+    const std::vector<float> fine = maps_.read();
+    texels_.assign(std::size_t{maps_.fitted.faces} * size_ * size_, 1);
+    for (std::size_t i = 0; i < fine.size(); ++i) {
+      const std::size_t x = i % size / block_, y = i / size % size / block_, face = i / size / size;
+      if (face >= maps_.fitted.faces) break;
+      float& coarse = texels_[(face * size_ + y) * size_ + x];
+      coarse = std::min(coarse, fine[i]);
+    }
+  }
 
   [[nodiscard]] std::uint32_t faces() const { return maps_.fitted.faces; }
   using Polygon = std::vector<glm::dvec2>;
@@ -40,8 +53,8 @@ class PatchTwin {
     std::vector<Polygon> found;
     for (std::uint32_t number = 0; number < side.face_count; ++number) {
       const Face face = face_of(side, number);
-      for (std::uint32_t y = 0; y < maps_.size; ++y) {
-        for (std::uint32_t x = 0; x < maps_.size; ++x) {
+      for (std::uint32_t y = 0; y < size_; ++y) {
+        for (std::uint32_t x = 0; x < size_; ++x) {
           if (kind == Occluder::patch) {
             const double depth = hiding(side, number, e, x, y);
             if (depth == 0) continue;
@@ -50,7 +63,7 @@ class PatchTwin {
                              on_light(face, e, to, depth), on_light(face, e, {from.x, to.y}, depth)});
             continue;
           }
-          if (x + 1 == maps_.size || y + 1 == maps_.size) continue;
+          if (x + 1 == size_ || y + 1 == size_) continue;
           Polygon centres;
           std::size_t missing = 0;
           const std::array<std::pair<std::uint32_t, std::uint32_t>, 4> at{
@@ -102,8 +115,8 @@ class PatchTwin {
     const glm::dvec3 e(d.x, d.y, std::abs(d.z));
     double sum = 0;
     for (std::uint32_t face = 0; face < side.face_count; ++face) {
-      for (std::uint32_t y = 0; y < maps_.size; ++y) {
-        for (std::uint32_t x = 0; x < maps_.size; ++x) sum += hidden(side, face, e, x, y, fill);
+      for (std::uint32_t y = 0; y < size_; ++y) {
+        for (std::uint32_t x = 0; x < size_; ++x) sum += hidden(side, face, e, x, y, fill);
       }
     }
     return 1 - std::min(sum, 1.0);
@@ -122,13 +135,13 @@ class PatchTwin {
       lower = {-1, number == 0 ? -1 : 0};
       upper = {1, 1};
     }
-    return {lower, (upper - lower) / static_cast<double>(maps_.size), axes[number]};
+    return {lower, static_cast<double>(block_) * (upper - lower) / static_cast<double>(maps_.size), axes[number]};
   }
 
   /// Depth along the face's axis if the texel hides light from e, else 0.
   [[nodiscard]] double hiding(const maps::gpu::SideView& side, std::uint32_t number, const glm::dvec3& e,
                               std::int64_t x, std::int64_t y) const {
-    const auto size = static_cast<std::int64_t>(maps_.size);
+    const auto size = static_cast<std::int64_t>(size_);
     if (x < 0 || y < 0) return 0;
     const auto at = static_cast<std::size_t>(((side.first_face + number) * size + y) * size + x);
     const double depth = texels_[at];
@@ -199,6 +212,7 @@ class PatchTwin {
 
   const Stage* stage_;
   CentreMaps maps_;
+  std::uint32_t block_, size_;  ///< texels of the map in one a side, and how many of those there are
   std::vector<float> texels_;
 };
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "maps/backprojection/patches/level_maps.shared.h"
+#include "maps/backprojection/level_maps.shared.h"
 #include "maps/host/map_method.hpp"
 #include "render/compute_pass.hpp"
 

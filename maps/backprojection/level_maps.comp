@@ -1,7 +1,7 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
-#include "maps/backprojection/patches/level_maps.shared.h"
+#include "maps/backprojection/level_maps.shared.h"
 
 // A coarse level of maps: each texel has the nearest depth of 2^level x 2^level texels, and where among them there is
 // anything: the columns and rows of the box around it, eight bits each: first and last column, first and last row.

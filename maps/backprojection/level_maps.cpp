@@ -1,6 +1,6 @@
-#include "maps/backprojection/patches/level_maps.hpp"
+#include "maps/backprojection/level_maps.hpp"
 
-#include "maps/backprojection/patches/level_maps.comp.spv.hpp"
+#include "maps/backprojection/level_maps.comp.spv.hpp"
 
 #include <algorithm>
 #include <vector>

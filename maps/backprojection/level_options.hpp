@@ -1,0 +1,41 @@
+#pragma once
+
+#include "maps/backprojection/level_maps.hpp"
+#include "visibility/method_options.hpp"
+
+#include <cstdint>
+#include <memory>
+
+/// The options of methods that look at coarse levels of their maps (levels.glsl).
+namespace penumbra::maps {
+
+inline constexpr visibility::IntegerOption kMapLevel{"level", 0, gpu::kCoarsestLevel, 0,
+                                                     "blocks of 2^level texels a side are one texel"};
+inline constexpr visibility::IntegerOption kTexelBudget{
+    "budget", 0, 1u << 28, 0,
+    "texels of a face that a receiver may look at; where there are more, coarser levels stand for them; 0: no limit"};
+inline constexpr visibility::ChoiceOption<bool, 2> kBlendLevels =
+    visibility::flag_option("blend", true, "with a budget: pass from one level to the next without steps");
+
+struct LevelChoice {
+  std::uint32_t level = 0;   ///< with a budget the finest
+  std::uint32_t budget = 0;  ///< 0: none
+  bool blend = true;
+
+  /// gpu::kFinestLevel …: the shader's constant kLevels.
+  [[nodiscard]] std::uint32_t levels() const {
+    return budget > 0 ? gpu::kLevelsByBudget : level > 0 ? gpu::kOneLevel : gpu::kFinestLevel;
+  }
+};
+
+inline LevelChoice level_choice(const visibility::ParsedOptions& parsed) {
+  return {parsed[kMapLevel], parsed[kTexelBudget], parsed[kBlendLevels]};
+}
+
+/// The levels that the choice may ask for.
+inline std::unique_ptr<LevelMaps> make_level_maps(const render::Device& device, const LevelChoice& choice) {
+  if (choice.budget > 0) return std::make_unique<LevelMaps>(device, 1, gpu::kCoarsestLevel);
+  return std::make_unique<LevelMaps>(device, choice.level, choice.level);
+}
+
+}  // namespace penumbra::maps
