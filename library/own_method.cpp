@@ -6,11 +6,10 @@
 #include "base/did_you_mean.hpp"
 #include "base/error.hpp"
 #include "library/float3.hpp"
+#include "scenes/light_kind.hpp"
 #include "visibility/receivers.hpp"
 
 #include <penumbra/own_method.hpp>
-
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -191,21 +190,17 @@ visibility::Family family_of(const OwnMethodInfo& info) {
   throw UsageError("method {}: family \"{}\": expected geometry or image", info.name, info.family);
 }
 
-std::vector<visibility::LightKind> kinds_of(const OwnMethodInfo& info) {
-  const std::vector<visibility::LightKind>& all = app::ray_judge().lights;  // rays do every kind
-  std::vector<visibility::LightKind> kinds;
+scenes::LightKinds kinds_of(const OwnMethodInfo& info) {
+  scenes::LightKinds kinds;
   for (const std::string& name : info.lights) {
-    const auto kind = std::ranges::find_if(all, [&](auto one) { return visibility::name_of(one) == name; });
-    if (kind == all.end()) {
-      const std::vector<std::string> names = [&] {
-        std::vector<std::string> list;
-        for (const visibility::LightKind one : all) list.emplace_back(visibility::name_of(one));
-        return list;
-      }();
+    const auto kind = scenes::LightKinds::with([&](const scenes::LightTraits& row) { return row.name == name; });
+    if (kind == scenes::LightKinds()) {
+      std::vector<std::string> names;
+      for (const scenes::LightTraits& row : scenes::kLightTraits) names.emplace_back(row.name);
       throw UsageError("method {}: there is no kind of light \"{}\"; what is there: {}{}", info.name, name,
-                       fmt::join(names, ", "), did_you_mean(name, names));
+                       scenes::kEveryLight.words(), did_you_mean(name, names));
     }
-    kinds.push_back(*kind);
+    kinds = kinds | kind;
   }
   return kinds;
 }
