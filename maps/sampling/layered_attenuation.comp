@@ -14,18 +14,19 @@ layout(scalar, binding = 4) readonly buffer Entries { LayerEntry entries[]; };
 layout(scalar, binding = 5) readonly buffer Samples { vec3 samples[]; };
 #include "maps/host/share_above.glsl"
 
-// The weight of the surface that the receiver's plane lies on in this texel; 0 for none. The plane may be off by epsilon,
-// and by what the bias forgives.
+// The weight of the surface that the receiver's plane lies on in this texel; 0 for none. The plane may be off by epsilon, by
+// what the bias forgives, and by what the surface's own depth changes within the texel.
 uint weight_in(Texel texel, vec3 m, float h) {
   if (texel.index == kNoTexel) return 0;
   float forgiven;
   const float plane = plane_depth(texel, m, h, lookup.bias, forgiven);
-  float off = own.epsilon * plane + forgiven;
+  float nearest = plane;
   uint weight = 0;
   for (uint e = 0; e < own.layers; ++e) {
     const LayerEntry entry = entries[texel.index * own.layers + e];
-    if (entry.weight == 0 || abs(entry.t - plane) > off) continue;
-    off = abs(entry.t - plane);
+    const float off = abs(entry.t - plane);
+    if (entry.weight == 0 || off > own.epsilon * plane + forgiven + entry.reach || off > nearest) continue;
+    nearest = off;
     weight = entry.weight;
   }
   return weight;

@@ -59,7 +59,7 @@ void LayeredDepth::make(const MapSource& source) {
           layers_, device_->info().name, std::max(8u, static_cast<std::uint32_t>(fits)));
     }
     render::grow(*device_, entries_, "layers", bytes);
-    render::grow(*device_, nodes_, "layer nodes", node_capacity_ * sizeof(glm::uvec2));
+    render::grow(*device_, nodes_, "layer nodes", node_capacity_ * sizeof(gpu::LayerNode));
     if (merge_all(source)) break;
   }
   source.counters["layers"] = layers_;

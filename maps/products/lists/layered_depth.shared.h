@@ -7,9 +7,17 @@ namespace penumbra::maps::gpu {
 
 // One surface in the direction of a texel of the centre's maps.
 struct LayerEntry {
-  float t;      // depth along the face's axis
+  float t;      // depth along the face's axis, where the texel's own centre sees it
+  float reach;  // how much the surface's depth changes within the texel: as far off it is still this surface
   uint weight;  // of the light samples that see it
   uint last;    // the last of them, counted from 1
+};
+
+// What one sample's texel brought to a texel of the centre's.
+struct LayerNode {
+  uint t;       // bits of the depth
+  uint before;  // the node before, counted from 1
+  float reach;
 };
 
 struct WarpPush {

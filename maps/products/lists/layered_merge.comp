@@ -4,11 +4,12 @@
 #include "maps/products/lists/layered_depth.shared.h"
 
 // Agrawala et al. 2000: what one light sample's map brought to a texel, merged into its layers, the nearest first. A depth
-// within epsilon of a layer is that layer, and counts once a sample; another one begins a layer of its own.
+// within epsilon of a layer, and what the surface's slope changes within the texel, is that layer, and counts once a
+// sample; another one begins a layer of its own. Of two nodes at one depth the larger reach counts, whatever their order.
 
 layout(local_size_x = kLookupGroup) in;
 layout(scalar, binding = 0) readonly buffer Heads { uint heads[]; };
-layout(scalar, binding = 1) readonly buffer Nodes { uvec2 nodes[]; };
+layout(scalar, binding = 1) readonly buffer Nodes { LayerNode nodes[]; };
 layout(scalar, binding = 2) readonly buffer Weights { uint weights[]; };
 layout(scalar, binding = 3) buffer Counts { uint counts[]; };
 layout(scalar, binding = 4) buffer Entries { LayerEntry entries[]; };  // a texel's side by side
@@ -22,17 +23,22 @@ void main() {
   uint count = counts[texel], done = 0;  // bits of the depth merged last; depths are positive
   for (;;) {
     uint next = 0xffffffffu;  // the smallest depth beyond
-    for (uint node = heads[texel]; node != 0; node = nodes[node - 1].y) {
-      if (nodes[node - 1].x > done) next = min(next, nodes[node - 1].x);
+    float reach = 0.0;
+    for (uint node = heads[texel]; node != 0; node = nodes[node - 1].before) {
+      const LayerNode found = nodes[node - 1];
+      if (found.t <= done || found.t > next) continue;
+      reach = found.t == next ? max(reach, found.reach) : found.reach;
+      next = found.t;
     }
     if (next == 0xffffffffu) break;
     done = next;
     const float t = uintBitsToFloat(next);
     uint nearest = count;
-    float off = push.epsilon * t;
+    float off = 0.0;
     for (uint e = 0; e < count; ++e) {
       const float from = abs(entries[first + e].t - t);
-      if (from > off || (from == off && nearest < count)) continue;
+      if (from > push.epsilon * t + max(reach, entries[first + e].reach)) continue;
+      if (nearest < count && from >= off) continue;
       nearest = e;
       off = from;
     }
@@ -41,7 +47,7 @@ void main() {
         atomicMax(most, count + 1);
         continue;
       }
-      entries[first + count++] = LayerEntry(t, weights[push.point], push.point + 1);
+      entries[first + count++] = LayerEntry(t, reach, weights[push.point], push.point + 1);
     } else if (entries[first + nearest].last != push.point + 1) {
       entries[first + nearest].weight += weights[push.point];
       entries[first + nearest].last = push.point + 1;

@@ -4,16 +4,18 @@
 #include "maps/products/lists/layered_depth.shared.h"
 
 // Agrawala et al. 2000: every texel of one light sample's maps warped into the maps of the light's centre. A texel covers
-// the centre's texels whose centres lie in its image; neighbours on one surface (depths within epsilon) share the image of
-// their border, so that a surface is covered without gaps. What arrives at a texel is a list; layered_merge.comp reads it
-// in the order of depth, so the order in which it is written changes nothing.
+// the centre's texels whose centres lie in its image; neighbours on one surface (depths within epsilon and what the slope on
+// the other side lets expect) share the image of their border, so that a surface is covered without gaps. The depth is that
+// of the plane through the borders' middles where the centre's texel sees it, not that of the sample's own centre: else
+// what different samples see of one steep surface is as many surfaces. What arrives at a texel is a list;
+// layered_merge.comp reads it in the order of depth, so the order in which it is written changes nothing.
 
 layout(local_size_x = kLookupGroup) in;
 layout(scalar, binding = 0) readonly buffer Centre { LightView centre; };
 layout(scalar, binding = 1) readonly buffer Views { LightView views[]; };
 layout(scalar, binding = 2) readonly buffer Maps { float maps[]; };
 layout(scalar, binding = 3) buffer Heads { uint heads[]; };   // the last node of each texel of the centre, counted from 1
-layout(scalar, binding = 4) buffer Nodes { uvec2 nodes[]; };  // bits of the depth, the node before
+layout(scalar, binding = 4) buffer Nodes { LayerNode nodes[]; };
 layout(scalar, binding = 5) buffer NodeCount { uint node_count; };
 layout(scalar, binding = 6) readonly buffer Casters { float casters[]; };  // what they hide of Maps is left out
 layout(scalar, push_constant) uniform Push { WarpPush push; };
@@ -32,6 +34,30 @@ vec3 off_face(vec3 f, uint k) {
   if (k == 2) return vec3(-f.z, f.x, f.y);
   if (k == 3) return vec3(f.x, f.z, f.y);
   return vec3(f.x, -f.z, f.y);
+}
+
+// A slope is not followed further than this many texels in depth: as for receivers, taps.glsl.
+const float kSteepest = 8.0;
+
+// Where a face sees a plane: 1/depth is affine there. `at`: 1/depth in the middle; `change`: a texel across and up.
+struct Sheet {
+  vec2 middle;
+  float at;
+  vec2 change;
+};
+
+// Through the images of a texel's middle and of the middles of its borders (x, y in texels, and depth): left, right, lower,
+// upper, middle.
+Sheet sheet_through(vec3 image[5]) {
+  const vec2 first = image[1].xy - image[0].xy, second = image[3].xy - image[2].xy;
+  const float rise = 1.0 / image[1].z - 1.0 / image[0].z, climb = 1.0 / image[3].z - 1.0 / image[2].z;
+  const float area = first.x * second.y - first.y * second.x;
+  Sheet sheet = Sheet(image[4].xy, 1.0 / image[4].z, vec2(0.0));
+  // Seen from the side it has no area, and no slope that could be told.
+  if (abs(area) > 1.0 / 256.0 * length(first) * length(second)) {
+    sheet.change = vec2(rise * second.y - climb * first.y, climb * first.x - rise * second.x) / area;
+  }
+  return sheet;
 }
 
 void main() {
@@ -55,14 +81,20 @@ void main() {
   const vec2 middle = lower + (vec2(at) + 0.5) * width, begin = lower + vec2(at) * width, end = lower + vec2(at + 1) * width;
   vec3 places[5];
   places[4] = o + off_face(vec3(middle * w, w), own);
+  float beside[4];  // depths of the neighbours; 0: there is none
   for (uint k = 0; k < 4; ++k) {
     const ivec2 next = at + ivec2(k == 0 ? -1 : (k == 1 ? 1 : 0), k == 2 ? -1 : (k == 3 ? 1 : 0));
-    float border = w;
+    beside[k] = 0.0;
     if (all(greaterThanEqual(next, ivec2(0))) && all(lessThan(next, ivec2(push.size)))) {
-      const float beside = maps[first + (face * push.size + uint(next.y)) * push.size + uint(next.x)];
-      if (beside < 1.0 && abs(beside * view.far - w) <= push.epsilon * max(beside * view.far, w))
-        border = 0.5 * (beside * view.far + w);
+      const float found = maps[first + (face * push.size + uint(next.y)) * push.size + uint(next.x)];
+      if (found < 1.0) beside[k] = found * view.far;
     }
+  }
+  for (uint k = 0; k < 4; ++k) {
+    const float opposite = beside[k ^ 1u];
+    const float slope = opposite > 0.0 ? min(abs(w - opposite), kSteepest * max(width.x, width.y) * w) : 0.0;
+    float border = w;
+    if (beside[k] > 0.0 && abs(beside[k] - w) <= push.epsilon * max(beside[k], w) + slope) border = 0.5 * (beside[k] + w);
     const vec2 on = vec2(k == 0 ? begin.x : (k == 1 ? end.x : middle.x), k == 2 ? begin.y : (k == 3 ? end.y : middle.y));
     places[k] = o + off_face(vec3(on * border, border), own);
   }
@@ -73,15 +105,20 @@ void main() {
     const vec2 texel = (high - low) / float(push.size);
     vec2 from = vec2(1e30), until = vec2(-1e30);
     bool in_front = true;
-    for (uint c = 0; c < 4; ++c) {
+    vec3 image[5];
+    float nearest = 1e30, deepest = 0.0;
+    for (uint c = 0; c < 5; ++c) {
       const vec3 f = on_face(places[c], k);
       in_front = in_front && f.z > 0.0;
-      const vec2 place = (f.xy / f.z - low) / texel;
-      from = min(from, place);
-      until = max(until, place);
+      image[c] = vec3((f.xy / f.z - low) / texel, f.z);
+      nearest = min(nearest, f.z);
+      deepest = max(deepest, f.z);
+      if (c == 4) continue;
+      from = min(from, image[c].xy);
+      until = max(until, image[c].xy);
     }
-    const float t = on_face(places[4], k).z;
-    if (!in_front || !(t > 0.0)) continue;
+    if (!in_front) continue;
+    const Sheet sheet = sheet_through(image);
     // Centres at c + 1/2 in [from, until).
     const ivec2 first_texel = ivec2(ceil(clamp(from - 0.5, vec2(0.0), vec2(push.size))));
     const ivec2 end_texel = ivec2(ceil(clamp(until - 0.5, vec2(0.0), vec2(push.size))));
@@ -90,7 +127,12 @@ void main() {
         const uint node = atomicAdd(node_count, 1);
         if (node >= push.node_capacity) continue;
         const uint place = ((to.first_face + k) * push.size + uint(y)) * push.size + uint(x);
-        nodes[node] = uvec2(floatBitsToUint(t), atomicExchange(heads[place], node + 1));
+        // Within the depths that the texel has: what it sees, not what lies beside it.
+        const float inverse = sheet.at + dot(sheet.change, vec2(x, y) + 0.5 - sheet.middle);
+        const float t = clamp(1.0 / max(inverse, 1.0 / deepest), nearest, deepest);
+        // Half a texel across and up is how far what a texel stands for can be from its centre.
+        const float reach = min(0.5 * t * t * (abs(sheet.change.x) + abs(sheet.change.y)), kSteepest * max(texel.x, texel.y) * t);
+        nodes[node] = LayerNode(floatBitsToUint(t), atomicExchange(heads[place], node + 1), reach);
       }
     }
   }

@@ -130,9 +130,8 @@ TEST_F(LayeredAttenuation, ATiltedBoardIsCoveredWithoutGaps) {
 }
 
 // A sample's texel covers those of the centre's texels whose centres lie in its image, and its image ends where its
-// neighbour's begins: on one plane where the plane crosses their border. So each of the centre's texels holds the depth
-// of that texel of the sample on which its own ray meets the board, to the hundredth of a texel; as long as the texel
-// and its neighbours are no more than the tolerance apart, which is a share of the deeper one.
+// neighbour's begins: on one plane where the plane crosses their border. So each of the centre's texels holds one
+// depth, and that is the board's where its own ray meets it, however steep the board is for the tolerance.
 TEST_F(LayeredAttenuation, ATexelEndsWhereTheSurfaceCrossesItsBorder) {
   constexpr std::uint32_t kSize = 120;
   constexpr double kAside = 0.9;  // the one sample stands so far beside the light's centre
@@ -165,7 +164,6 @@ TEST_F(LayeredAttenuation, ATexelEndsWhereTheSurfaceCrossesItsBorder) {
       const double middle = from.direction(x, y, kSize).x;
       // From the sample it is at (3 - slope aside) / (1 + slope a) in the direction a.
       const auto depth = [&](double a) { return (3 - kAside * slope) / (1 + slope * a); };
-      if (1 - depth(middle) / depth(middle - texel) > 0.999 * epsilon) continue;
       const glm::dvec2 beside = glm::abs(place - glm::round(place));
       if (std::min(beside.x, beside.y) < 0.01) {
         ++on_borders;
@@ -178,8 +176,9 @@ TEST_F(LayeredAttenuation, ATexelEndsWhereTheSurfaceCrossesItsBorder) {
       }
       ++compared;
       ASSERT_EQ(found.size(), 1U) << "texel " << i << ", epsilon " << epsilon;
-      // The next texel's depth is .003 off or more, the rasteriser's by 1/256 of that.
-      EXPECT_NEAR(found.front(), depth(middle), 0.1 * std::abs(depth(middle) - depth(middle - texel)))
+      // The sample's texel's own depth is off by up to half of its difference to the next; the rasteriser's by 1/256 of
+      // that. Depths are means of two at borders: of 1/(1 + slope a) that is off by less than (slope texel)²/4 of them.
+      EXPECT_NEAR(found.front(), std::abs(at.y), 0.02 * std::abs(depth(middle) - depth(middle - texel)))
           << "texel " << i << ", epsilon " << epsilon;
     }
   };
@@ -265,9 +264,10 @@ TEST_F(LayeredAttenuation, EpsilonTradesSpeckleOnCurvedSurfacesForLeaksAtContact
   };
   const double small = shares(round, "0.0003").dark, middle = shares(round, "0.01").dark,
                large = shares(round, "0.04").dark;
-  EXPECT_GT(small, 0.4);
+  EXPECT_GT(small, 0.1);
   EXPECT_LT(middle, 0.5 * small);
-  EXPECT_LT(large, 0.5 * middle);
+  EXPECT_LT(middle, 0.08);  // 0.14 where a texel keeps the depth of its own centre
+  EXPECT_LT(large, middle);
   EXPECT_LT(shares(contact, "0.01").leak, 0.05);
   EXPECT_GT(shares(contact, "0.06").leak, 0.5);
 }
