@@ -8,14 +8,28 @@
 #include "maps/products/prefilter.glsl"
 
 layout(constant_id = 2) const uint kModel = kVariance;
+layout(constant_id = 3) const uint kCuts = 0;  // how often a window is cut in four, at most; of bounds alone
+layout(constant_id = 4) const uint kSubdivision = kUniform;
+layout(constant_id = 5) const uint kWindowTexels = 0;  // a filter of so many texels a side; 0: the light's size decides
+layout(constant_id = 6) const float kOffset = 1.0;     // csm: by how many lobes the step is shifted
+layout(constant_id = 7) const float kDamping = 0.0;    // csm: how fast its coefficients fall off
+layout(constant_id = 8) const uint kSmoothLeak = 0;    // 1: what is left above `leak` is stretched smoothly
+layout(constant_id = 9) const uint kFarthest = 0;      // esm: texel by texel wherever a texel is behind the receiver
 
 layout(scalar, binding = 4) readonly buffer Nearest { float nearest[2]; };
 layout(scalar, binding = 5) readonly buffer Frame { MapFrame frame; };
 layout(scalar, binding = 11) readonly buffer Pattern { vec2 pattern[]; };  // light points in its basis
 #include "maps/filters/horizon.glsl"
 
+#define PYRAMID_BINDING 12
+#include "maps/products/depth_pyramid.glsl"
+
 // Soft shadows as pcss finds them (pcss.comp), from statistics of whole windows in place of taps. Heights are t in
 // [0, 1], see prefilter_value.glsl; "lit" is the share of a window's texels that are not nearer than the receiver.
+//
+// Where the mean of a window is not nearer than the receiver, Chebyshev's bound is 1 and says nothing, though the window may
+// hold blockers: what it sees is not one plane. So windows are cut into parts (Yang et al. 2010, kernel subdivision): those
+// whose mean is nearer are asked for their bound, the others are compared at some of their texels, and all are added.
 
 const float kLog2E = 1.4426950408889634;
 // Means are right to about 2^-23 (24 binary digits, sums of float32): below this a variance is rounding.
@@ -38,6 +52,14 @@ float log2_scale(uint i, float t) {
   return (i < 2 ? up : down) * (i % 2 == 0 ? 1.0 : 2.0);
 }
 
+// The height of what a texel holds.
+float height_of_texel(LightView view, uint face, uvec2 at, uint s) {
+  const float depth = maps[(face * table.size + at.y) * table.size + at.x];
+  const bool sideways = face != view.side[s].first_face;
+  const float height = sideways ? (float(at.y) + 0.5) / float(table.size) : 1.0;
+  return depth < 1.0 ? normalised_height(depth * view.far * height, nearest[s], frame.deepest[s]) : 1.0;
+}
+
 // The exponential where it is below 1, texel by texel (Annen, Mertens et al. 2008, section 3.4); of a large box, some.
 const uint kFallbackTaps = 16;  // along an axis
 float lit_texel_by_texel(LightView view, Box box, float t, uint s) {
@@ -48,19 +70,77 @@ float lit_texel_by_texel(LightView view, Box box, float t, uint s) {
   for (uint j = 0; j < count.y; ++j) {
     for (uint i = 0; i < count.x; ++i) {
       const uvec2 at = uvec2(first + (vec2(i, j) + 0.5) * extent / vec2(count));
-      const uint texel = (box.face * table.size + at.y) * table.size + at.x;
-      const float depth = maps[texel];
-      const bool sideways = box.face != view.side[s].first_face;
-      const float height = sideways ? (float(at.y) + 0.5) / float(table.size) : 1.0;
-      const float q = depth < 1.0 ? normalised_height(depth * view.far * height, nearest[s], frame.deepest[s]) : 1.0;
+      const float q = height_of_texel(view, box.face, at, s);
       sum += min(exp(own.exponent * (q - t)), 1.0);
     }
   }
   return box.inside * sum / float(count.x * count.y) + (1.0 - box.inside);
 }
 
-// The share of the window that is lit; if `search`, `blocker` is the mean height of what is not, in t.
-float lit_share(LightView view, Box box, float t, uint s, bool search, out float blocker) {
+// The receiver, for all windows of a pixel.
+struct Asking {
+  vec3 d, m;
+  uint s;       // its side
+  float t;      // its height, less what the bias forgives
+  float kept;   // the share of a height that the bias leaves
+  float slack;  // of kExpVariance: how much that is
+};
+
+float normalised(Asking asking, float height) {
+  return normalised_height(height, nearest[asking.s], frame.deepest[asking.s]);
+}
+
+// The height of the receiver's plane at a place of a face, in texels, less the bias; no deeper than the receiver, as in
+// blocks_light(). receiverPlane=off: the receiver's own.
+float plane_height(LightView view, Asking asking, uint face, vec2 place) {
+  const float h = dot(asking.m, asking.d);
+  if (lookup.own_depth != 0 || !(h > 0.0)) return asking.t;
+  const SideView side = view.side[asking.s];
+  const MapFace on = face_of(side, 0, table.size, face - side.first_face);
+  vec3 direction = from_face(on, vec3(on.lower + place * on.texel, 1.0));
+  if (asking.s == 1) direction.z = -direction.z;
+  const float facing = dot(asking.m, direction), across = abs(direction.z), own_height = abs(asking.d.z);
+  return h * across < own_height * facing ? normalised(asking, asking.kept * h / facing * across) : asking.t;
+}
+
+// A part of a window that no bound knows, at some of its texels: the share of them that are not nearer than the receiver's
+// plane, and the sum of the others' heights, as a share.
+const uint kPartTaps = 4;  // along an axis
+float lit_at_texels(LightView view, Asking asking, Box box, out float blocked) {
+  blocked = 0.0;
+  if (!(box.inside > 0.0)) return 1.0;
+  const vec2 extent = box.upper - box.lower;
+  const uvec2 count = uvec2(clamp(ceil(extent), vec2(1.0), vec2(kPartTaps)));
+  float lit = 0.0;
+  for (uint k = 0; k < count.x * count.y; ++k) {
+    const vec2 place = box.lower + (vec2(k % count.x, k / count.x) + 0.5) * extent / vec2(count);
+    const uvec2 at = min(uvec2(place), uvec2(table.size - 1));
+    const float q = height_of_texel(view, box.face, at, asking.s);
+    if (q < plane_height(view, asking, box.face, vec2(at) + 0.5)) {
+      blocked += q;
+    } else {
+      lit += 1.0;
+    }
+  }
+  const float share = box.inside / float(count.x * count.y);
+  blocked *= share;
+  return lit * share + (1.0 - box.inside);
+}
+
+// The least and the greatest height that a box may hold, from the pyramid; on a sideways face heights are the distance
+// from the plane along its rows.
+vec2 heights_within(LightView view, Box box, uint s) {
+  if (!(box.inside > 0.0)) return vec2(1.0);
+  const uvec2 first = uvec2(box.lower), last = max(uvec2(ceil(box.upper)), first + 1) - 1;
+  const vec2 depths = depth_range(box.face, first, last) * view.far;
+  const bool sideways = box.face != view.side[s].first_face;
+  const vec2 rows = sideways ? (vec2(first.y, last.y) + 0.5) / float(table.size) : vec2(1.0);
+  return vec2(normalised_height(depths.x * rows.x, nearest[s], frame.deepest[s]),
+              normalised_height(depths.y * rows.y, nearest[s], frame.deepest[s]));
+}
+
+// The share of the window that is lit; if `search`, `blocked` is the sum of the heights of what is not, in t, as a share.
+float lit_share(LightView view, Asking asking, Box box, float t, bool search, out float blocked) {
   // Lauritzen and McCool 2008: the layer that holds t knows nothing of heights beside it. One layer's mean is that of t.
   const float layers = float(own.count);
   const uint layer = kModel == kVariance ? min(uint(t * layers), own.count - 1) : 0;
@@ -83,8 +163,13 @@ float lit_share(LightView view, Box box, float t, uint s, bool search, out float
       // Annen et al. 2007 (Eisemann et al. 2009, equation 4.6): lit = 1/2 + 2 sum of sin(c_k (t_q - t)) / c_k, with heights
       // that span less than half the period, and the sum of (1 - lit) t_q by the same series (Annen et al. 2008). Stored
       // are sin, cos, t sin and t cos.
-      const float c = (2.0 * float(i / 4) + 1.0) * 3.14159265358979, at = c * fourier_span(own.count) * t;
-      const float term = 2.0 / c * (2.0 * found - 1.0) * (i % 2 == 0 ? cos(at) : -sin(at));
+      // The step is shifted by `kOffset` lobes, so that what is level with the receiver is lit, and its coefficients fall
+      // off (Eisemann et al. 2009, figure 4.8).
+      const float number = float(i / 4) + 1.0, c = (2.0 * number - 1.0) * 3.14159265358979;
+      const float span = fourier_span(own.count, kOffset);
+      const float at = c * (span * t - 0.5 * kOffset / float(own.count));
+      const float damped = exp(-kDamping * (number / float(own.count)) * (number / float(own.count)));
+      const float term = damped * (2.0 / c * (2.0 * found - 1.0) * (i % 2 == 0 ? cos(at) : -sin(at)));
       if (i % 4 < 2) {
         lit += term;
       } else {
@@ -95,49 +180,106 @@ float lit_share(LightView view, Box box, float t, uint s, bool search, out float
 
   float height = 0.0;  // mean of t
   if (kModel == kFourier) {
-    blocker = lit < 1.0 ? blockers / (1.0 - lit) : t;
+    blocked = blockers;
     return lit;
   } else if (kModel == kVariance) {
     const float off = mean[0] - 0.5, variance = mean[1] - off * off;
     lit = chebyshev(mean[0], max(variance, kLeastVariance * layers * layers), t * layers - float(layer));
     height = own.count == 1 ? mean[0] : mean[2];
   } else if (kModel == kExpVariance) {
-    const float least = kLeastVariance * own.exponent * own.exponent;
+    const float least = max(kLeastVariance, asking.slack * asking.slack) * own.exponent * own.exponent;
     lit = min(chebyshev(mean[0], max(mean[1] - mean[0] * mean[0], least), 1.0),
               chebyshev(-mean[2], max(mean[3] - mean[2] * mean[2], least), -1.0));
     height = mean[4];
   } else {
     lit = mean[0];
-    if (lit > 1.0 + kBeyondRounding) lit = own.fallback != 0 ? lit_texel_by_texel(view, box, t, s) : 1.0;
+    if (kFarthest != 0 ? heights_within(view, box, asking.s).y > t + kBeyondRounding : lit > 1.0 + kBeyondRounding) {
+      lit = own.fallback != 0 ? lit_texel_by_texel(view, box, t, asking.s) : 1.0;
+    }
     lit = min(lit, 1.0);
     height = mean[1];
   }
   // Yang et al. 2010: what is lit is taken to be at the receiver's height.
-  blocker = lit < 1.0 ? (height - lit * t) / (1.0 - lit) : t;
+  blocked = height - lit * t;
   return lit;
+}
+
+// Part number `index` of those on a level of cuts in four, in Morton order.
+Window part_of(Window window, uint level, uint index) {
+  if (level == 0) return window;
+  uvec2 cell = uvec2(0);
+  for (uint bit = 0; bit < level; ++bit) cell |= uvec2(index >> (2 * bit) & 1, index >> (2 * bit + 1) & 1) << bit;
+  const vec2 extent = window.extent / float(1u << level);
+  const vec2 lower = window.lower + vec2(cell) * extent;
+  return Window(window.face, window.alone, lower, lower + extent, extent);
 }
 
 float visibility_of(LightView view, vec3 d, vec3 m) {
   const uint s = d.z < 0.0 ? 1 : 0;
-  const float horizon = share_above_horizon(d, m, own.horizon_samples), height = abs(d.z);
-  if (!(nearest[s] < height)) return horizon;
-  // An exponential is 1 at the receiver's own height: it needs no bias, and would make light of one.
-  const float t = kModel == kExponential ? normalised_height(height, nearest[s], frame.deepest[s]) - kHeightRounding
-                                         : normalised_height(height_less_bias(view, d, m), nearest[s], frame.deepest[s]);
+  const float height = abs(d.z);
+  // A filter of so many texels knows the light's centre alone.
+  const float horizon = kWindowTexels != 0 ? (dot(m, d) > 0.0 ? 1.0 : 0.0) : share_above_horizon(d, m, own.horizon_samples);
+  if (horizon == 0.0 || !(nearest[s] < height)) return horizon;
 
+  const float kept = height_less_bias(view, d, m) / height;
+  Asking asking = Asking(d, m, s, 0.0, kept, 0.0);
+  const float level = normalised(asking, height);
+  asking.t = normalised(asking, height * kept);
+  // An exponential is 1 at the receiver's own height: a bias would make light of it. Of esm rounding alone is forgiven; of
+  // evsm deviations as large as the bias, as a least variance, which grows with the exponent as they do (Lauritzen and
+  // McCool 2008).
+  const float exact = kModel == kExponential ? level - kHeightRounding : kModel == kExpVariance ? level : asking.t;
+  if (kModel == kExpVariance) asking.slack = level - asking.t;
   const vec2 ends = height_ends(nearest[s], frame.deepest[s]);
 
   // 1. Blockers in the light-receiver pyramid where it passes the near plane, and their mean height. 2, 3. As if all of
-  // them were one plane there: the share of the light seen past it.
-  float z = min(max(nearest[s], frame.smallest_near), height), lit = 1.0;
-  for (uint window = 0; window < 2; ++window) {
-    float blocker;
-    lit = lit_share(view, box_through(view, d, frame.half_box, z), t, s, window == 0, blocker);
-    if (window == 0 && lit >= 1.0) return horizon;
-    z = clamp(ends.x + blocker * (ends.y - ends.x), nearest[s], height);
+  // them were one plane there: the share of the light seen past it. One loop over the parts of both windows.
+  float z = min(max(nearest[s], frame.smallest_near), height), lit = 0.0, blockers = 0.0;
+  bool search = kWindowTexels == 0;
+  Window window = search ? window_through(view, d, frame.half_box, z) : window_of_texels(view, d, kWindowTexels);
+  const uint parts = 1u << (2 * kCuts);
+  uint at = 0, cut = 0;  // the part that is asked, in Morton order: the number of its first smallest one, and how often it is cut
+  for (;;) {
+    const Window part = part_of(window, cut, at >> (2 * (kCuts - cut)));
+    const Box box = box_of(part);
+    float share = 1.0, blocked = 0.0;
+    // Nothing in it is nearer than the receiver: lit, without a mean.
+    const bool open = kModel <= kExpVariance && heights_within(view, box, s).x >= asking.t;
+    const bool may_cut = cut < kCuts && max(part.extent.x, part.extent.y) > 1.0;
+    if (!open && may_cut && kSubdivision == kUniform) {
+      ++cut;
+      continue;
+    }
+    if (!open) {
+      const float t =
+          cut == 0 ? exact : plane_height(view, asking, part.face, 0.5 * (part.lower + part.upper)) + asking.slack;
+      share = lit_share(view, asking, box, t, search, blocked);
+      if (may_cut && share >= 1.0) {
+        ++cut;
+        continue;
+      }
+      if (kCuts != 0 && share >= 1.0) share = lit_at_texels(view, asking, box, blocked);
+    }
+    const float weight = 1.0 / float(1u << (2 * cut));
+    lit += weight * share;
+    blockers += share < 1.0 ? weight * blocked : 0.0;
+    at += parts >> (2 * cut);
+    if (at < parts) {
+      cut = kCuts - uint(findLSB(at)) / 2;  // the largest part that begins here
+      continue;
+    }
+    if (!search) break;
+    if (lit >= 1.0 || (kModel == kFourier && own.scale * lit >= 1.0)) return horizon;
+    z = clamp(ends.x + blockers / (1.0 - lit) * (ends.y - ends.x), nearest[s], height);
+    window = window_through(view, d, frame.half_box, z);
+    search = false;
+    lit = blockers = 0.0;
+    at = cut = 0;
   }
-  if (kModel == kFourier) lit *= own.scale;
-  return min(clamp((lit - own.leak) / (1.0 - own.leak), 0.0, 1.0), horizon);
+  // Of a filter of so many texels the step's scale is the answer's, as published; of a light it would be its penumbra's.
+  if (kModel == kFourier && kWindowTexels != 0) lit *= own.scale;
+  const float v = clamp((lit - own.leak) / (1.0 - own.leak), 0.0, 1.0);
+  return min(kSmoothLeak != 0 ? v * v * (3.0 - 2.0 * v) : v, horizon);
 }
 
 #include "maps/host/scalar_main.glsl"

@@ -1,21 +1,25 @@
 // Soft shadows from prefiltered moments: windows as in Fernando 2005, their statistics by Donnelly and Lauritzen 2006
 // (vsm), Lauritzen and McCool 2008 (lvsm, evsm), Annen et al. 2007 and 2008 (csm, esm), and the mean blocker by Yang et
-// al. 2010 or, with csm, by Annen et al. 2008. docs/vssm.md says where this departs from them, and why.
+// al. 2010 or, with csm, by Annen et al. 2008. Windows whose mean is behind the receiver are cut (Yang et al. 2010).
+// docs/vssm.md says where this departs from them, and why.
 
 #include "maps/filters/methods.hpp"
 
 #include "maps/filters/vssm.comp.spv.hpp"
 #include "maps/filters/vssm.shared.h"
+#include "maps/host/map_fit.hpp"
 #include "maps/host/map_method.hpp"
 #include "maps/host/mesh_verdict.hpp"
 #include "maps/filters/horizon.hpp"
 #include "maps/filters/repairs.hpp"
+#include "maps/products/depth_pyramid.hpp"
 #include "maps/products/light_shape.hpp"
 #include "maps/products/map_frame.hpp"
 #include "maps/products/nearest_caster.hpp"
 #include "maps/products/prefilter.hpp"
 #include "maps/products/shadow_depths.hpp"
 
+#include <bit>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -42,14 +46,49 @@ constexpr visibility::ChoiceOption kFilter{
     "how means over windows are taken: summed areas in integers, mip levels, overlapping squares"};
 constexpr visibility::IntegerOption kLayers{"layers", 1, 16, 4, "lvsm: layers of equal height"};
 constexpr visibility::IntegerOption kTerms{"terms", 1, 16, 16, "csm: terms of the series"};
-constexpr visibility::RealOption kScale{"scale", 1, 16, 2, "csm: how much steeper the step is made; 1: not at all"};
+constexpr visibility::RealOption kOffset{"offset", 0, 8, 1,
+                                         "csm: lobes by which the step is shifted, so that what is level with a "
+                                         "receiver is lit; 1: to the series' first maximum"};
+constexpr visibility::RealOption kDamping{"damping", 0, 16, 1,
+                                          "csm: coefficient k of n is multiplied by exp(-damping (k/n)^2)"};
+constexpr visibility::RealOption kScale{"scale", 1, 16, 1,
+                                        "csm: how much steeper the step is made: of what the search finds, and of V "
+                                        "itself where window is given"};
 constexpr visibility::RealOption kExponent{
     "exponent", 1, 80, 80,
     "esm: how fast the exponential falls over the scene's depth; evsm, which squares it: twice that"};
 constexpr auto kFallback =
     visibility::flag_option("fallback", true, "esm: compare texel by texel where the exponential says more than lit");
+enum class Classifier : std::uint8_t { mean, farthest };
+constexpr visibility::ChoiceOption kClassifier{"classifier",
+                                               {{"mean", Classifier::mean}, {"farthest", Classifier::farthest}},
+                                               Classifier::mean,
+                                               "esm: where texels are compared one by one: where the exponential says "
+                                               "more than lit, or wherever a window may hold "
+                                               "a texel behind the receiver"};
 constexpr visibility::RealOption kLeak{"leak", 0, 0.99, 0,
                                        "V below this is black, and the rest is stretched over 0 … 1"};
+enum class LeakCut : std::uint8_t { linear, smooth };
+constexpr visibility::ChoiceOption kLeakCut{"leakCut",
+                                            {{"linear", LeakCut::linear}, {"smoothstep", LeakCut::smooth}},
+                                            LeakCut::linear,
+                                            "how what is left above leak is stretched"};
+enum class Subdivision : std::uint8_t { automatic, uniform, adaptive, none };
+constexpr visibility::ChoiceOption kSubdivision{
+    "subdivision",
+    {{"auto", Subdivision::automatic},
+     {"uniform", Subdivision::uniform},
+     {"adaptive", Subdivision::adaptive},
+     {"none", Subdivision::none}},
+    Subdivision::automatic,
+    "vsm, lvsm, evsm: windows are cut in the smallest parts, or only where their mean is behind the receiver, or not; "
+    "auto: of vsm and lvsm uniform, of evsm none"};
+constexpr visibility::IntegerOption kCuts{"cuts", 1, 4, 3, "how often a window is cut in four, at most"};
+constexpr visibility::IntegerOption kFixedWindow{
+    "window", 0, 64, 0,
+    "a fixed filter of so many texels a side, as pcf's, for any light; 0: the light's size decides"};
+constexpr auto kSlope = visibility::flag_option(
+    "slope", false, "vsm, lvsm: adds to each texel's square what the surface's slope makes of it within the texel");
 
 visibility::MeshVerdict vssm_verdict(const mesh::Diagnosis& mesh) {
   return judge_for_maps("one map, one mean height for all that shades a pixel, and a bound in place of a count", mesh);
@@ -68,12 +107,14 @@ visibility::MethodDescription vssm_description() {
                                                 "parallel to a rectangle light",
                                             .lights = visibility::kPlanarLights,
                                             .textures = false,
-                                            .options = single_map_option_descriptions(),
+                                            .options = compared_map_option_descriptions(),
                                             .verdict_on = vssm_verdict,
                                             .repairs = vssm_repairs};
   for (const auto& option :
-       {kMoments.description(), kFilter.description(), kLayers.description(), kTerms.description(),
-        kScale.description(), kExponent.description(), kFallback.description(), kLeak.description()}) {
+       {kMoments.description(), kFilter.description(), kSubdivision.description(), kCuts.description(),
+        kFixedWindow.description(), kLayers.description(), kTerms.description(), kOffset.description(),
+        kDamping.description(), kScale.description(), kExponent.description(), kFallback.description(),
+        kClassifier.description(), kLeak.description(), kLeakCut.description(), kSlope.description()}) {
     description.options.push_back(option);
   }
   return description;
@@ -82,7 +123,7 @@ visibility::MethodDescription vssm_description() {
 namespace {
 
 /// What each texel is made into; vssm.comp knows their order.
-std::vector<PrefilterFunction> functions(Moments moments, std::uint32_t count, float exponent) {
+std::vector<PrefilterFunction> functions(Moments moments, std::uint32_t count, float exponent, float offset) {
   std::vector<PrefilterFunction> functions;
   const PrefilterFunction height{};
   // 16 binary digits where an exponential is least, exp(−c): digits in all. (24 are all that a float has.)
@@ -109,7 +150,7 @@ std::vector<PrefilterFunction> functions(Moments moments, std::uint32_t count, f
       break;
     case Moments::csm:
       for (std::uint32_t k = 0; k < count; ++k) {
-        const auto step = static_cast<float>((2 * k + 1) * std::numbers::pi * gpu::fourier_span(count));
+        const auto step = static_cast<float>((2 * k + 1) * std::numbers::pi * gpu::fourier_span(count, offset));
         for (const std::uint32_t power : {gpu::kPlain, gpu::kTimesHeight}) {
           for (const std::uint32_t kind : {gpu::kSine, gpu::kCosine}) {
             // 12 digits: one table each at 1024 texels a side; the series is cut off at 1 / (2 · 16 · π) anyway.
@@ -149,26 +190,44 @@ std::unique_ptr<visibility::Method> make_vssm(const render::Device& device, cons
     model = gpu::kExpVariance;
     push.exponent /= 2;
   }
+  // A bound that is 1 says nothing; a series and an exponential have none.
+  Subdivision subdivision = parsed[kSubdivision];
+  if (subdivision == Subdivision::automatic) {
+    subdivision = model == gpu::kVariance ? Subdivision::uniform : Subdivision::none;
+  }
+  const bool bounds = model == gpu::kVariance || model == gpu::kExpVariance;
+  const std::uint32_t cuts = bounds && subdivision != Subdivision::none ? parsed[kCuts] : 0;
+  const auto offset = static_cast<float>(parsed[kOffset]);
+  const std::uint32_t window = parsed[kFixedWindow];
   MapRecipe recipe{.description = vssm_description(),
                    .look_up_name = "vssm look-up",
                    .look_up = shaders::kVssmComp,
-                   .constants = {model}};
+                   .constants = {model, cuts, subdivision == Subdivision::adaptive ? gpu::kAdaptive : gpu::kUniform,
+                                 window, std::bit_cast<std::uint32_t>(offset),
+                                 std::bit_cast<std::uint32_t>(static_cast<float>(parsed[kDamping])),
+                                 parsed[kLeakCut] == LeakCut::smooth ? 1U : 0U,
+                                 parsed[kClassifier] == Classifier::farthest ? 1U : 0U}};
   // An exponential takes nothing off a receiver's height.
   recipe.products.push_back(
       std::make_unique<ShadowDepths>(device, parsed[kDepth], moments == Moments::esm ? 0 : parsed[kBias]));
   auto nearest = std::make_unique<NearestCaster>(device);
   auto frame = std::make_unique<MapFrame>(device);
-  auto prefilter = std::make_unique<Prefilter>(
-      device, PrefilterOptions{.kind = parsed[kFilter], .functions = functions(moments, push.count, push.exponent)},
-      Prefilter::Sources{.nearest = nearest.get(), .frame = frame.get()});
+  auto prefilter =
+      std::make_unique<Prefilter>(device,
+                                  PrefilterOptions{.kind = parsed[kFilter],
+                                                   .functions = functions(moments, push.count, push.exponent, offset),
+                                                   .slope = parsed[kSlope]},
+                                  Prefilter::Sources{.nearest = nearest.get(), .frame = frame.get()});
   recipe.products.push_back(std::move(nearest));
   recipe.products.push_back(std::move(frame));
   recipe.products.push_back(std::move(prefilter));
   recipe.products.push_back(
       std::make_unique<LightPattern>(device, std::initializer_list<std::uint32_t>{kHorizonSamples}));
-  // As far as the search looks: see pcss.
-  recipe.beside = [](const visibility::Light& light, const LightBasis& basis) {
-    return half_extent(light, basis) / half_width(light);
+  recipe.products.push_back(std::make_unique<DepthPyramid>(device, PyramidKind::hsm));
+  // As far as the search looks: see pcss. A filter of so many texels: see pcf.
+  const double beside = 2 * kWidestTangent * (window / 2) / parsed[kMapSize];
+  recipe.beside = [window, beside](const visibility::Light& light, const LightBasis& basis) {
+    return window != 0 ? glm::dvec2(beside) : half_extent(light, basis) / half_width(light);
   };
   recipe.push_words = sizeof(gpu::VssmPush) / sizeof(std::uint32_t);
   recipe.push = [push](const visibility::Light& /*light*/) { return push_words(push); };

@@ -98,7 +98,8 @@ void Prefilter::record(render::Commands& commands, const MapSet& maps) {
     render::grow(*device_, images_[i], "prefiltered images",
                  std::max<std::uint64_t>(std::uint64_t{blocks_[i]} * table.block, 1) * sizeof(std::uint32_t));
   }
-  const gpu::PrefilterValuesPush push{faces * maps.size * maps.size, options_.of_bits ? 1U : 0U};
+  const gpu::PrefilterValuesPush push{faces * maps.size * maps.size, options_.of_bits ? 1U : 0U,
+                                      options_.slope ? 1U : 0U};
   if (maps.faces == 0) return;  // no receiver will ask
   values_.record(
       commands, push,

@@ -154,9 +154,32 @@ float mean_over(uint index, Box box, float log2_scale) {
 
 // ---- windows
 
+// A window of texels of one face, as a look-up wants it: it may reach beside the map.
+struct Window {
+  uint face;   // of the light point
+  bool alone;  // the face is all of its side: beside it there is nothing
+  vec2 lower, upper, extent;
+};
+
+// The part of a window that is in the map.
+Box box_of(Window window) {
+  Box box;
+  box.face = window.face;
+  box.lower = clamp(window.lower, vec2(0.0), vec2(table.size));
+  box.upper = clamp(window.upper, vec2(0.0), vec2(table.size));
+  const vec2 inside = box.upper - box.lower;
+  // To the bit: what is beside, an exponential of the whole depth, makes light of the last digit of a share.
+  const bool whole = box.lower == window.lower && box.upper == window.upper;
+  // Beside the window of a map there is nothing; beside a face of a hemicube there are the others, of which the part on
+  // this face is taken to be a fair sample.
+  box.inside = inside.x > 0.0 && inside.y > 0.0 ? (window.alone && !whole ? inside.x * inside.y / (window.extent.x * window.extent.y) : 1.0)
+                                                : 0.0;
+  return box;
+}
+
 // The light's box as the receiver d sees it through height z (> 0): around the receiver's own direction, half as wide as
 // half_box (1/z - 1/|d.z|) in x/z and y/z, but no narrower than a texel: then the receiver's own.
-Box box_through(LightView view, vec3 d, vec2 half_box, float z) {
+Window window_through(LightView view, vec3 d, vec2 half_box, float z) {
   const float height = abs(d.z);
   const FaceHit hit = face_hit(view, d);
   const vec2 texel = (hit.upper - hit.lower) / float(table.size);
@@ -169,19 +192,19 @@ Box box_through(LightView view, vec3 d, vec2 half_box, float z) {
   const vec2 own = mix(floor(center) + 0.5, center, min(width, vec2(1.0)));
   const vec2 extent = max(width, vec2(1.0));
   const SideView side = view.side[d.z < 0.0 ? 1 : 0];
-  Box box;
-  box.face = side.first_face + hit.face;
-  const vec2 lower = own - 0.5 * extent, upper = own + 0.5 * extent;
-  box.lower = clamp(lower, vec2(0.0), vec2(table.size));
-  box.upper = clamp(upper, vec2(0.0), vec2(table.size));
-  const vec2 inside = box.upper - box.lower;
-  // To the bit: what is beside, an exponential of the whole depth, makes light of the last digit of a share.
-  const bool whole = box.lower == lower && box.upper == upper;
-  // Beside the window of a map there is nothing; beside a face of a hemicube there are the others, of which the part on
-  // this face is taken to be a fair sample.
-  box.inside = inside.x > 0.0 && inside.y > 0.0 ? (side.face_count == 1 && !whole ? inside.x * inside.y / (extent.x * extent.y) : 1.0)
-                                                : 0.0;
-  return box;
+  return Window(side.first_face + hit.face, side.face_count == 1, own - 0.5 * extent, own + 0.5 * extent, extent);
+}
+
+Box box_through(LightView view, vec3 d, vec2 half_box, float z) { return box_of(window_through(view, d, half_box, z)); }
+
+// So many texels a side around the receiver: an odd window is centred on its texel, an even one on the texel border
+// nearest to it.
+Window window_of_texels(LightView view, vec3 d, uint texels) {
+  const FaceHit hit = face_hit(view, d);
+  const vec2 at = (hit.f.xy / hit.f.z - hit.lower) * float(table.size) / (hit.upper - hit.lower);
+  const vec2 first = floor(at - 0.5 * float(texels) + 0.5);
+  const SideView side = view.side[d.z < 0.0 ? 1 : 0];
+  return Window(side.first_face + hit.face, side.face_count == 1, first, first + float(texels), vec2(float(texels)));
 }
 
 // The receiver's height less what the bias forgives: as in blocks(), bias texels in depth, more on a slope.

@@ -31,6 +31,7 @@ struct PrefilterOptions {
   PrefilterKind kind = PrefilterKind::table;
   std::vector<PrefilterFunction> functions{};
   bool of_bits = false;            ///< texels are words of bits; else the maps' depths
+  bool slope = false;              ///< squares of layers have what the surface's slope adds to them within a texel
   std::uint64_t buffer_bytes = 0;  ///< no buffer is larger; 0: than the device allows
 };
 

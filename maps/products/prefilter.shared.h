@@ -51,6 +51,7 @@ struct PrefilterLevelPush {
 struct PrefilterValuesPush {
   uint texels;   // of all faces
   uint of_bits;  // texels are words of bits; else depths
+  uint slope;    // 1: squares of layers have a slope's share
 };
 
 #ifdef __cplusplus

@@ -21,11 +21,11 @@ float prefilter_value(PrefilterValue value, float t) {
   }
 }
 
-// The heights that are 0 and 1: of the nearest caster and of the deepest receiver of a side, put a little apart, so that a
-// single plane has a range, too.
+// The heights that are 0 and 1: of the nearest caster, a little less, so that a single plane has a range, too; and of the
+// deepest receiver to the bit: what stands for a texel without a caster is no farther than that receiver. Were it, an
+// exponential would count it as more than lit.
 vec2 height_ends(float nearest, float deepest) {
-  const float apart = 1.0 / 1024.0;
-  return vec2(nearest * (1.0 - apart), max(deepest, nearest) * (1.0 + apart));
+  return vec2(nearest * (1.0 - 1.0 / 1024.0), max(deepest, nearest));
 }
 
 // Height in [0, 1] between them.

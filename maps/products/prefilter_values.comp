@@ -38,6 +38,22 @@ float height_of(uint texel, float depth) {
   return normalised_height(depth * view.far * height, nearest[s], frame.deepest[s]);
 }
 
+// How much the height changes from texel to texel across a row and up a column: the smaller of the differences to the
+// neighbours on either side, so that an outline is no slope.
+vec2 slope_of(uint texel, float t) {
+  const ivec2 at = ivec2(texel % table.size, texel / table.size % table.size);
+  vec2 slope = vec2(0.0);
+  for (uint axis = 0; axis < 2; ++axis) {
+    const int stride = axis == 0 ? 1 : int(table.size);
+    if (at[axis] == 0 || at[axis] == int(table.size) - 1) continue;
+    const uint before = uint(int(texel) - stride), behind = uint(int(texel) + stride);
+    const float fall = t - height_of(before, uintBitsToFloat(texels[before]));
+    const float rise = height_of(behind, uintBitsToFloat(texels[behind])) - t;
+    slope[axis] = abs(fall) < abs(rise) ? fall : rise;
+  }
+  return slope;
+}
+
 void main() {
   const uint texel = (gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x) * gl_WorkGroupSize.x +
                      gl_LocalInvocationID.x;
@@ -47,6 +63,12 @@ void main() {
   for (uint i = 0; i < table.value_count; ++i) {
     const PrefilterValue value = values[i];
     float x = prefilter_value(value, push.of_bits != 0 ? float(word >> uint(value.a) & 1) : t);
+    const float layer = value.a * t - value.b;  // beside a layer heights are its border's
+    if (push.slope != 0 && value.kind == kLayer && value.power == kSquared && layer > 0.0 && layer < 1.0) {
+      // Lauritzen 2007 (Eisemann et al. 2009, box "Depth bias"): a quarter of the squared derivatives.
+      const vec2 slope = value.a * slope_of(texel, t);
+      x += 0.25 * dot(slope, slope);
+    }
     if (table.scheme != kTable) {
       write(value.first_block, texel, floatBitsToUint(x));
       continue;

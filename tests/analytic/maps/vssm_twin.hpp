@@ -19,8 +19,16 @@ namespace penumbra::tests {
 struct VssmSettings {
   std::string moments = "vsm";
   std::uint32_t count = 1;  ///< layers of lvsm, terms of csm
-  double exponent = 80, scale = 2, leak = 0, bias = 0.5;
+  double exponent = 80, scale = 1, leak = 0, bias = 0.5;
   bool fallback = true;
+  double offset = 1, damping = 1;
+  std::string subdivision = "none";  ///< none, adaptive, uniform
+  std::uint32_t cuts = 3, window = 0;
+  bool receiver_plane = true, smooth_leak = false;
+
+  [[nodiscard]] std::uint32_t most_cuts() const {
+    return subdivision == "none" || moments == "csm" || moments == "esm" ? 0 : cuts;
+  }
 };
 
 class VssmTwin {
@@ -58,44 +66,58 @@ class VssmTwin {
     const glm::dvec3 m =
         -glm::dvec3(glm::dot(maps_->basis.u, n), glm::dot(maps_->basis.v, n), glm::dot(maps_->basis.n, n));
     Answer answer;
-    const double horizon = share_above_horizon(d, m);
+    const double horizon = settings_.window != 0 ? (glm::dot(m, d) > 0 ? 1 : 0) : share_above_horizon(d, m);
     answer.v = horizon;
     answer.no_blockers = true;
     if (d.z <= nearest_) return answer;
     const double facing = glm::dot(m, d) / d.z, across = std::abs(m.x) + std::abs(m.y);
     const double slope = facing > 0 ? std::min(across / facing, 8.0) : 8.0;
-    const bool biased = settings_.moments != "esm";
-    const double t =
-        normalised(d.z * (1 - (biased ? settings_.bias : 0) * std::max(texel_.x, texel_.y) * (1 + slope))) -
-        (biased ? 0 : 0x1p-20);
-    const double near = std::min(std::max(nearest_, maps::half_width(stage_->light)), d.z);
-    answer.search = box_through(d, near);
-    const Lit search = lit(answer.search, t);
-    answer.blocker = d.z;
-    if (search.share >= 1) return answer;
+    Asking asking{.d = d, .m = m, .kept = 1 - settings_.bias * std::max(texel_.x, texel_.y) * (1 + slope)};
+    asking.biased = normalised(d.z * asking.kept);
+    asking.exact = asking.biased;
+    if (settings_.moments == "esm") asking.exact = normalised(d.z) - 0x1p-20;
+    if (settings_.moments == "evsm") {
+      asking.exact = normalised(d.z);
+      asking.slack = asking.exact - asking.biased;
+    }
+    answer.filter = window_of_texels(d);
+    if (settings_.window == 0) {
+      const double near = std::min(std::max(nearest_, maps::half_width(stage_->light)), d.z);
+      answer.search = box_through(d, near);
+      const Lit search = of_parts(answer.search, asking);
+      answer.blocker = d.z;
+      if (search.share >= 1 || (settings_.moments == "csm" && settings_.scale * search.share >= 1)) return answer;
+      const double low = low_end(), high = high_end();
+      answer.blocker = std::clamp(low + search.blocked / (1 - search.share) * (high - low), nearest_, d.z);
+      answer.filter = box_through(d, answer.blocker);
+    }
     answer.no_blockers = false;
-    const double low = nearest_ * (1 - kApart), high = std::max(deepest_, nearest_) * (1 + kApart);
-    answer.blocker = std::clamp(low + search.blockers * (high - low), nearest_, d.z);
-    answer.filter = box_through(d, answer.blocker);
-    double v = lit(answer.filter, t).share;
-    if (settings_.moments == "csm") v *= settings_.scale;
+    double v = of_parts(answer.filter, asking).share;
+    if (settings_.moments == "csm" && settings_.window != 0) v *= settings_.scale;
     v = std::clamp((v - settings_.leak) / (1 - settings_.leak), 0.0, 1.0);
+    if (settings_.smooth_leak) v = v * v * (3 - 2 * v);
     answer.v = std::min(v, horizon);
-    answer.pcf = mean(answer.filter, [&](double q) { return q >= t - 0x1p-18 ? 1.0 : 0.0; });
+    answer.pcf = mean(clipped(answer.filter), [&](double q) { return q >= asking.exact - 0x1p-18 ? 1.0 : 0.0; });
     return answer;
   }
 
   /// Heights as the method counts them, 0 … 1.
   [[nodiscard]] double normalised(double height) const {
-    const double low = nearest_ * (1 - kApart), high = std::max(deepest_, nearest_) * (1 + kApart);
-    return std::clamp((height - low) / (high - low), 0.0, 1.0);
+    return std::clamp((height - low_end()) / (high_end() - low_end()), 0.0, 1.0);
   }
 
  private:
-  static constexpr double kNothing = 1e300, kApart = 1.0 / 1024, kLeastVariance = 0x1p-22;
+  static constexpr double kNothing = 1e300, kLeastVariance = 0x1p-22;
   struct Lit {
-    double share = 1, blockers = 0;
+    double share = 1, blocked = 0;  ///< the mean of what is not lit, times its share
   };
+  struct Asking {
+    glm::dvec3 d, m;
+    double kept = 1, biased = 0, exact = 0, slack = 0;  ///< the receiver's height with the bias and as it is asked
+  };
+
+  [[nodiscard]] double low_end() const { return nearest_ * (1 - 1.0 / 1024); }
+  [[nodiscard]] double high_end() const { return std::max(deepest_, nearest_); }
 
   [[nodiscard]] double share_above_horizon(const glm::dvec3& d, const glm::dvec3& m) const {
     const auto pattern = maps::light_pattern(stage_->light, maps_->basis, 64);
@@ -103,17 +125,75 @@ class VssmTwin {
     return static_cast<double>(std::ranges::count_if(pattern, above)) / 64;
   }
 
+  /// Windows as they are wanted; `inside` is theirs once they are clipped.
   [[nodiscard]] Box box_through(const glm::dvec3& d, double z) const {
     const glm::dvec2 at = (glm::dvec2(d) / d.z - lower_) / texel_,
                      width = 2.0 * half_ * std::max(1 / z - 1 / d.z, 0.0) / texel_;
     const glm::dvec2 own = glm::mix(glm::floor(at) + 0.5, at, glm::min(width, glm::dvec2(1)));
-    const glm::dvec2 extent = glm::max(width, glm::dvec2(1)), whole(maps_->size);
-    Box box{glm::clamp(own - 0.5 * extent, glm::dvec2(0), whole), glm::clamp(own + 0.5 * extent, glm::dvec2(0), whole),
-            1};
-    const glm::dvec2 inside = box.upper - box.lower;
-    const bool in_map = box.lower == own - 0.5 * extent && box.upper == own + 0.5 * extent;
+    const glm::dvec2 extent = glm::max(width, glm::dvec2(1));
+    return {own - 0.5 * extent, own + 0.5 * extent, 1};
+  }
+  [[nodiscard]] Box window_of_texels(const glm::dvec3& d) const {
+    const double side = settings_.window;
+    const glm::dvec2 first = glm::floor((glm::dvec2(d) / d.z - lower_) / texel_ - 0.5 * side + 0.5);
+    return {first, first + side, 1};
+  }
+  [[nodiscard]] Box clipped(const Box& window) const {
+    const glm::dvec2 whole(maps_->size);
+    Box box{glm::clamp(window.lower, glm::dvec2(0), whole), glm::clamp(window.upper, glm::dvec2(0), whole), 1};
+    const glm::dvec2 inside = box.upper - box.lower, extent = window.upper - window.lower;
+    const bool in_map = box.lower == window.lower && box.upper == window.upper;
     box.inside = in_map ? 1 : inside.x * inside.y / (extent.x * extent.y);
     return box;
+  }
+
+  /// The receiver's plane in the direction of a place of the map, less the bias; no deeper than the receiver.
+  [[nodiscard]] double plane_height(const Asking& asking, const glm::dvec2& place) const {
+    const glm::dvec3 direction(lower_ + place * texel_, 1);
+    const double facing = glm::dot(asking.m, direction), h = glm::dot(asking.m, asking.d);
+    if (!settings_.receiver_plane || h <= 0 || h >= asking.d.z * facing) return asking.biased;
+    return normalised(asking.kept * h / facing);
+  }
+
+  /// The window, or what it is cut into: parts whose bound says something by their bound, the others at some texels.
+  [[nodiscard]] Lit of_parts(const Box& window, const Asking& asking, std::uint32_t cut = 0) const {
+    const Box box = clipped(window);
+    const glm::dvec2 extent = window.upper - window.lower;
+    const bool may_cut = cut < settings_.most_cuts() && std::max(extent.x, extent.y) > 1;
+    const bool open = mean(box, [&](double q) { return q >= asking.biased ? 0.0 : 1.0; }) == 0;
+    if (settings_.moments != "csm" && settings_.moments != "esm" && open) return {};
+    const double t = cut == 0 ? asking.exact : plane_height(asking, 0.5 * (window.lower + window.upper)) + asking.slack;
+    if (!may_cut || settings_.subdivision != "uniform") {
+      const Lit whole = lit(box, t, asking.slack);
+      if (settings_.most_cuts() == 0 || whole.share < 1) return whole;
+      if (!may_cut) return at_texels(box, asking);
+    }
+    Lit sum{0, 0};
+    for (const glm::dvec2 corner : {glm::dvec2(0, 0), glm::dvec2(1, 0), glm::dvec2(0, 1), glm::dvec2(1, 1)}) {
+      const glm::dvec2 lower = window.lower + 0.5 * extent * corner;
+      const Lit part = of_parts({lower, lower + 0.5 * extent, 1}, asking, cut + 1);
+      sum.share += 0.25 * part.share;
+      sum.blocked += 0.25 * part.blocked;
+    }
+    return sum;
+  }
+
+  [[nodiscard]] Lit at_texels(const Box& box, const Asking& asking) const {
+    if (box.inside == 0) return {};
+    const glm::dvec2 extent = box.upper - box.lower,
+                     count = glm::clamp(glm::ceil(extent), glm::dvec2(1), glm::dvec2(4));
+    Lit sum{0, 0};
+    for (double j = 0; j < count.y; ++j) {
+      for (double i = 0; i < count.x; ++i) {
+        const glm::dvec2 at = glm::floor(box.lower + (glm::dvec2(i, j) + 0.5) * extent / count);
+        const double q = heights_[static_cast<std::size_t>(at.y) * maps_->size + static_cast<std::size_t>(at.x)];
+        const bool blocks = q < plane_height(asking, at + 0.5);
+        sum.share += blocks ? 0 : 1;
+        sum.blocked += blocks ? q : 0;
+      }
+    }
+    const double each = box.inside / (count.x * count.y);
+    return {sum.share * each + 1 - box.inside, sum.blocked * each};
   }
 
   [[nodiscard]] double mean(const Box& box, const std::function<double(double)>& f) const {
@@ -150,17 +230,20 @@ class VssmTwin {
     return x <= mean ? 1 : variance / (variance + (x - mean) * (x - mean));
   }
 
-  [[nodiscard]] Lit lit(const Box& box, double t) const {
+  [[nodiscard]] Lit lit(const Box& box, double t, double slack) const {
     Lit result;
     if (settings_.moments == "csm") {
       result.share = 0.5;
-      result.blockers = 0.5 * mean(box, [](double q) { return q; });
+      result.blocked = 0.5 * mean(box, [](double q) { return q; });
+      const double terms = settings_.count, span = std::max(1 - 0.5 * (1 + settings_.offset) / terms, 0.5);
       for (std::uint32_t k = 0; k < settings_.count; ++k) {
-        const double c = (2 * k + 1) * std::numbers::pi, step = c * (1 - 0.5 / settings_.count);
-        result.share += 2 / c * mean(box, [&](double q) { return std::sin(step * (q - t)); });
-        result.blockers -= 2 / c * mean(box, [&](double q) { return q * std::sin(step * (q - t)); });
+        const double c = (2 * k + 1) * std::numbers::pi;
+        const double weight = 2 / c * std::exp(-settings_.damping * std::pow((k + 1) / terms, 2));
+        const auto wave = [&](double q) { return std::sin(c * (span * (q - t) + 0.5 * settings_.offset / terms)); };
+        result.share += weight * mean(box, wave);
+        result.blocked -= weight * mean(box, [&](double q) { return q * wave(q); });
       }
-      result.blockers /= 1 - result.share;
+      if (result.share >= 1) result.blocked = 0;
       return result;
     }
     if (settings_.moments == "vsm" || settings_.moments == "lvsm") {
@@ -169,7 +252,7 @@ class VssmTwin {
       result.share = chebyshev(mean(box, warped), mean(box, [&](double q) { return warped(q) * warped(q); }), warped(t),
                                kLeastVariance * layers * layers);
     } else if (settings_.moments == "evsm") {
-      const double c = settings_.exponent / 2, least = kLeastVariance * c * c;
+      const double c = settings_.exponent / 2, least = std::max(kLeastVariance, slack * slack) * c * c;
       const auto warped = [&](double way) { return [=](double q) { return way * std::exp(way * c * (q - t)); }; };
       const auto bound = [&](const auto& f) {
         return chebyshev(mean(box, f), mean(box, [&](double q) { return f(q) * f(q); }), f(t), least);
@@ -183,7 +266,7 @@ class VssmTwin {
       }
       result.share = std::min(result.share, 1.0);
     }
-    result.blockers = (mean(box, [](double q) { return q; }) - result.share * t) / (1 - result.share);
+    result.blocked = mean(box, [](double q) { return q; }) - result.share * t;
     return result;
   }
 
