@@ -359,6 +359,7 @@ MethodRun run_method(visibility::Method& method, const Session& session, const R
     }
   }
   result.times.runs = static_cast<std::uint32_t>(runs.size());
+  progress.advance(std::uint64_t{session.height} * chosen.size() * (plan.runs - runs.size()));
   const auto median_of = [&](const auto& time) {
     std::vector<double> seconds;
     for (const OneRun& run : runs) seconds.push_back(time(run));

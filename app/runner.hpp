@@ -38,7 +38,7 @@ struct RunPlan {
   /// digit of their neighbours' depends on them.
   std::span<const visibility::Light> lights;
   bool filtered_alone = false;  ///< of a light with filtered_by, those view samples alone; else NaN
-  std::uint32_t runs = 1;       ///< timed runs, the most
+  std::uint32_t runs = 1;       ///< the most timed runs
   double run_seconds = std::numeric_limits<double>::infinity();  ///< no other run begins once these are over
   bool discard_first = false;  ///< one more before them, which warms up and does not count
   bool shades = false;         ///< form factors come with V, in the time of `evaluate` (Method::want_form_factors)

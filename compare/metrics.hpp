@@ -46,7 +46,7 @@ struct PixelClasses {
   std::vector<std::uint32_t> self;  ///< the object that the pixel shows hides some of it
 };
 
-/// Errors over each of these; nullopt over no pixels.
+/// Errors over the pixels of one class; nullopt over no pixels.
 struct ClassError {
   const char* name = "";
   std::uint64_t pixels = 0;

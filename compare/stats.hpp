@@ -82,10 +82,10 @@ struct LightResult {
   std::string name;
   std::uint64_t judged_pixels = 0, horizon_pixels = 0;
   std::optional<VisibilityError> error, horizon_error;
-  std::vector<ClassError> classes = {};     ///< the judged pixels by what happens there
   std::optional<SameSamples> same_samples;  ///< none for a method without masks
   std::optional<ErrorBudget> error_budget =
-      {};  ///< of an image-based method, if it was asked for and pixels are judged
+      {};                                ///< of an image-based method, if it was asked for and pixels are judged
+  std::vector<ClassError> classes = {};  ///< the judged pixels by what happens there
 };
 
 /// One line of metrics.json. What does not apply stays empty and becomes null.

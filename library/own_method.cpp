@@ -2,6 +2,7 @@
 // the program's.
 
 #include "app/methods.hpp"
+#include "app/process/failure.hpp"
 #include "base/assert.hpp"
 #include "base/did_you_mean.hpp"
 #include "base/error.hpp"
@@ -75,6 +76,18 @@ MethodView view_of(const visibility::ViewSamples& samples) {
           .triangle = samples.triangle};
 }
 
+/// Calls code of the calling program. What it throws, but for this library's errors, goes through to the program.
+template <typename Function>
+auto call(const Function& function) {
+  try {
+    return function();
+  } catch (const Error&) {
+    throw;
+  } catch (...) {
+    throw app::ThrownByCaller{std::current_exception()};
+  }
+}
+
 /// Asks the calling program's method about the pixels that the definition leaves open.
 class HostedMethod final : public visibility::Method {
  public:
@@ -87,18 +100,18 @@ class HostedMethod final : public visibility::Method {
   void want_pixels(std::span<const std::uint32_t> pixels) override { wanted_.emplace(pixels.begin(), pixels.end()); }
   void prepare_mesh(const visibility::SceneFloats& scene) override {
     scene_ = &scene;
-    own_->set_scene(scene_of(scene));
+    call([&] { own_->set_scene(scene_of(scene)); });
   }
   void prepare_light(const visibility::Light& light) override {
     visibility::check_light(description_, light);
     light_ = &light;
-    own_->set_light(light_of(light));
+    call([&] { own_->set_light(light_of(light)); });
   }
   void prepare_view(const visibility::ViewSamples& samples) override {
     samples_ = &samples;
-    own_->set_view(view_of(samples));
+    call([&] { own_->set_view(view_of(samples)); });
   }
-  [[nodiscard]] std::uint32_t max_tile_rows() const override { return std::numeric_limits<std::uint32_t>::max(); }
+  [[nodiscard]] std::uint32_t max_tile_rows() const override;
   void evaluate(const visibility::Tile& tile) override;
   void read_masks(std::span<std::uint32_t> masks) override;
   void read_visibility(std::span<float> visibility) override;
@@ -133,6 +146,15 @@ void HostedMethod::choose_pixels(std::size_t first, std::size_t end) {
   }
 }
 
+std::uint32_t HostedMethod::max_tile_rows() const {
+  if (light_ == nullptr || samples_ == nullptr || !light_->points.empty())
+    return std::numeric_limits<std::uint32_t>::max();
+  // A method may want the light samples of all of a tile's pixels at once, which differ from pixel to pixel.
+  constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 28;
+  const std::uint64_t row_bytes = std::uint64_t{samples_->width} * light_->sample_count() * sizeof(Float3);
+  return static_cast<std::uint32_t>(std::clamp<std::uint64_t>(kMostBytes / row_bytes, 1, samples_->height));
+}
+
 void HostedMethod::evaluate(const visibility::Tile& tile) {
   PENUMBRA_ASSERT(scene_ != nullptr && light_ != nullptr && samples_ != nullptr, "the prepare functions come first");
   first_ = std::size_t{tile.first_row} * samples_->width;
@@ -140,13 +162,19 @@ void HostedMethod::evaluate(const visibility::Tile& tile) {
   choose_pixels(first_, first_ + count_);
   if (has_masks()) {
     masks_.assign(pixels_.size() * light_->words_per_mask(), 0);
-    own_->masks(pixels_, masks_);
+    if (!pixels_.empty()) call([&] { own_->masks(pixels_, masks_); });
     const std::uint32_t used = light_->sample_count() % 32, words = light_->words_per_mask();
     for (std::size_t last = words; used != 0 && last <= masks_.size(); last += words)
       masks_[last - 1] &= (1U << used) - 1;
   } else {
     visibility_.assign(pixels_.size(), std::numeric_limits<float>::quiet_NaN());
-    own_->visibility(pixels_, visibility_);
+    if (!pixels_.empty()) call([&] { own_->visibility(pixels_, visibility_); });
+    for (std::size_t i = 0; i < pixels_.size(); ++i) {
+      if (visibility_[i] >= 0 && visibility_[i] <= 1) continue;
+      throw ResourceError("method {}: its function gave V = {} at pixel ({}, {}); expected a number from 0 to 1",
+                          description_.name, visibility_[i], pixels_[i] % samples_->width,
+                          pixels_[i] / samples_->width);
+    }
   }
 }
 
@@ -214,12 +242,13 @@ bool is_method_name(std::string_view name) {
 
 visibility::OptionDescription option_of(const OwnMethodInfo& info, const MethodOption& option) {
   const auto is_possible = [&](double end) {
-    return std::isfinite(end) && (!option.whole || (end >= 0 && std::floor(end) == end));
+    return std::isfinite(end) && (!option.whole || (end >= 0 && end <= 0x1p53 && std::floor(end) == end));
   };
   if (!is_method_name(option.name))
     throw UsageError("method {}: option \"{}\": expected a name of letters, digits, - and _", info.name, option.name);
   if (option.choices.empty() && (!is_possible(option.least) || !is_possible(option.most) || option.least > option.most))
-    throw UsageError("method {}: option {} cannot be from {} to {}", info.name, option.name, option.least, option.most);
+    throw UsageError("method {}: option {} cannot be from {} to {}{}", info.name, option.name, option.least,
+                     option.most, option.whole ? "; whole numbers are from 0 on" : "");
   visibility::OptionDescription described{.name = option.name,
                                           .choices = option.choices,
                                           .least = option.least,
@@ -227,7 +256,9 @@ visibility::OptionDescription option_of(const OwnMethodInfo& info, const MethodO
                                           .whole = option.whole,
                                           .default_value = {},
                                           .help = option.help};
-  described.default_value = option.choices.empty() ? fmt::format("{}", option.least) : option.choices.front();
+  described.default_value = !option.choices.empty() ? option.choices.front()
+                            : option.whole          ? fmt::format("{}", static_cast<std::uint64_t>(option.least))
+                                                    : fmt::format("{}", option.least);
   // Throws if the default cannot be.
   static_cast<void>(visibility::ParsedOptions(info.name, {{described}}, {{option.name, option.default_value}}));
   described.default_value = option.default_value;
@@ -280,7 +311,7 @@ void add_method(const OwnMethodInfo& info, MakeOwnMethod make) {
        .make =
            [describe, make = std::move(make)](const render::Machine&, const MethodOptions& options) {
              MethodDescription with = describe(options);
-             std::unique_ptr<OwnMethod> own = make(visibility::complete_options(with, options));
+             std::unique_ptr<OwnMethod> own = call([&] { return make(visibility::complete_options(with, options)); });
              return std::make_unique<HostedMethod>(std::move(with), std::move(own));
            },
        .on_device = [](const render::Machine&, const MethodOptions&, const visibility::Light&) { return false; }});

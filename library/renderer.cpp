@@ -4,6 +4,7 @@
 #include "app/machine.hpp"
 #include "app/options.hpp"
 #include "app/pictures/frame_render.hpp"
+#include "app/process/failure.hpp"
 #include "app/process/stopwatch.hpp"
 #include "app/whole_lights.hpp"
 #include "base/error.hpp"
@@ -234,6 +235,9 @@ Picture Renderer::render(const RenderOptions& options) {
     static_cast<void>(state.frames.release());
     state.machine = app::make_machine(state.options.device);
     throw ResourceError(error.what());
+  } catch (const app::ThrownByCaller& caller) {
+    state.frames.reset();
+    std::rethrow_exception(caller.thrown);
   } catch (...) {
     state.frames.reset();  // whatever it holds may be half of one scene and half of another
     state.progress.rethrow();

@@ -1,5 +1,6 @@
-// penumbra-repair: repairs one mesh in a process of its own, the one program here that contains CGAL's GPL packages. Not for
-// users: penumbra starts it, gives it the mesh as a file and takes its answer from its standard output (mesh/repair.cpp).
+// penumbra-repair: repairs one mesh in a process of its own, the one program here that contains CGAL's GPL packages.
+// Not for users: penumbra starts it, gives it the mesh as a file and takes its answer from its standard output
+// (mesh/repair.cpp).
 
 #include "base/error.hpp"
 #include "base/memory.hpp"

@@ -207,6 +207,11 @@ class CompareCommand : public Command {
     if (options_.error_budget)
       throw UsageError("--error-budget: causes of errors are told apart in one frame (--frame), not in --frames {}",
                        frames_);
+    const std::string& pixels = options_.sample_pixels;
+    if (pixels != "all" && pixels.find(',') == std::string::npos)
+      throw UsageError(
+          "--sample-pixels {}: frames are compared at the same pixels; expected all, or pixels such as 10,20;30,40",
+          pixels);
     return compare_frames(run_, options_, numbers_of(parse_frames(frames_)), fps, arguments, progress);
   }
 

@@ -17,21 +17,6 @@ namespace {
 
 using visibility::MethodDescription;
 
-std::vector<MethodEntry> with_method_options(const ComparisonOptions& options) {
-  std::vector<MethodEntry> entries = options.methods;
-  for (const auto& [key, value] : options.method_options) {
-    bool known = false;
-    for (MethodEntry& entry : entries) {
-      const auto& has = describe_method(entry.name).options;
-      if (std::ranges::find(has, key, &visibility::OptionDescription::name) == has.end()) continue;
-      entry.options.emplace(key, value);  // an entry's own option stands
-      known = true;
-    }
-    if (!known) throw UsageError("--method-option {}={}: none of the chosen methods has such an option", key, value);
-  }
-  return entries;
-}
-
 /// With its options: they may change what it gives and which lights it can do. Nothing: a group's exact areas, which
 /// --method-option excludes.
 std::optional<Entry> describe_entry(const MethodEntry& chosen, const std::function<void(std::string)>& warn) {
@@ -70,6 +55,21 @@ std::string why_not_there(const MethodEntry& chosen, const render::Machine& mach
 }
 
 }  // namespace
+
+std::vector<MethodEntry> with_method_options(const ComparisonOptions& options) {
+  std::vector<MethodEntry> entries = options.methods;
+  for (const auto& [key, value] : options.method_options) {
+    bool known = false;
+    for (MethodEntry& entry : entries) {
+      const auto& has = describe_method(entry.name).options;
+      if (std::ranges::find(has, key, &visibility::OptionDescription::name) == has.end()) continue;
+      entry.options.emplace(key, value);  // an entry's own option stands
+      known = true;
+    }
+    if (!known) throw UsageError("--method-option {}={}: none of the chosen methods has such an option", key, value);
+  }
+  return entries;
+}
 
 Entry describe_reference(const std::string& text) {
   const std::string name = text.substr(0, text.find(':'));

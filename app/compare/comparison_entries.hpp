@@ -19,6 +19,9 @@ struct Entry {
   visibility::MethodOptions options;
 };
 
+/// The methods with the options that are for all of them (ComparisonOptions::method_options). Throws UsageError for one
+/// that none has.
+std::vector<MethodEntry> with_method_options(const ComparisonOptions& options);
 /// Who judges: a member of the family `reference`, or a method that gives exact areas with these options
 /// (NAME:key=value). Throws UsageError for any other.
 Entry describe_reference(const std::string& text);

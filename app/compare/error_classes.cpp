@@ -16,7 +16,7 @@ void sort_by_visibility(LightTruth& truth) {
   }
 }
 
-/// Those of one of the light's pieces; of a light in one piece, all.
+/// Finds whose triangles hide one piece of the light, or a light in one piece.
 void sort_by_object(const Session& session, std::size_t light, std::span<const std::uint32_t> shadowed,
                     std::vector<reference::HiddenBy>& hidden) {
   const auto found =

@@ -1,13 +1,17 @@
 #include "app/compare/sequence.hpp"
 
+#include "app/compare/comparison_files.hpp"
 #include "app/session.hpp"
 #include "base/atomic_file.hpp"
+#include "base/error.hpp"
 
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
@@ -91,8 +95,34 @@ struct EntrySum {
   ErrorSum errors;
   Squares flicker;
   std::vector<double> light, evaluate;
-  std::vector<float> before;  ///< errors of the frame before
+  std::vector<float> before;                      ///< errors of the frame before
+  std::optional<compare::MethodFailure> failure;  ///< of the first frame in which it failed
+  std::size_t frames = 0;                         ///< in which it was asked
 };
+
+/// What is not added up over the frames is taken out: it is the last frame's alone.
+void take_sum(compare::MethodResult& result, EntrySum& sum, std::size_t frames) {
+  result.horizon_error.reset();
+  result.beauty_error.reset();
+  result.all_lights_error.reset();
+  result.pairs.reset();
+  result.verdicts.reset();
+  result.error.reset();
+  if (!sum.failure && sum.frames < frames)
+    sum.failure = {static_cast<int>(ExitCode::input), "it cannot do the lights of every frame"};
+  result.failure = sum.failure;
+  compare::Seconds& seconds = result.stats.seconds;
+  if (result.failure) {
+    seconds = {};
+    return;
+  }
+  result.error = sum.errors.error();
+  result.flicker = sum.flicker.root();
+  if (!sum.light.empty()) seconds.light = median(sum.light);
+  if (!sum.evaluate.empty()) seconds.evaluate = median(sum.evaluate);
+  seconds.total.reset();
+  seconds.total = seconds.sum();
+}
 
 /// Says each message once, whichever frame it is about first.
 class SayOnce final : public Progress {
@@ -124,7 +154,8 @@ Json frame_json(std::int64_t number, const compare::Metrics& metrics, std::span<
                        {"rmse", result.error ? Json(result.error->rmse) : Json()},
                        {"bias", result.error ? Json(result.error->bias) : Json()},
                        {"flicker", number_or_null(flicker[i].root())},
-                       {"shadow", number_or_null(result.stats.seconds.shadow())}});
+                       {"shadow", number_or_null(result.stats.seconds.shadow())},
+                       {"failure", result.failure ? Json(result.failure->message) : Json()}});
   }
   return {{"frame", number},
           {"judgedPixels", metrics.judged_pixels},
@@ -137,29 +168,34 @@ Json frame_json(std::int64_t number, const compare::Metrics& metrics, std::span<
 compare::Metrics compare_frames(const RunOptions& run, const ComparisonOptions& options,
                                 std::span<const std::int64_t> frames, double fps,
                                 const std::vector<std::string>& arguments, Progress& progress) {
+  // Before anything that takes long; the last frame's comparison claims them again.
+  ComparisonFiles files(run.out, {.png = options.png, .bits = options.bits});
+  files.claim(run.scene, options.methods, options.stats);
   compare::Metrics all;
   SayOnce said(progress);
-  std::vector<EntrySum> sums;
+  std::map<std::string, EntrySum> sums;
   Json rows = Json::array();
   std::uint64_t judged = 0, horizon = 0;
   for (const std::int64_t number : frames) {
     ComparisonOptions of_frame = options;
     of_frame.time = static_cast<double>(number) * (1 / fps);  // as `render` has it
     of_frame.writes = number == frames.back();
-    of_frame.stats.clear();
+    if (!of_frame.writes) of_frame.stats.clear();
     EntryErrors errors;
     all = compare_methods(run, of_frame, arguments, said, &errors);
-    if (sums.empty())
-      sums.resize(errors.size(),
-                  {ErrorSum(std::size_t{all.reference.width} * all.reference.height * frames.size()), {}, {}, {}, {}});
+    const std::size_t most = std::size_t{all.reference.width} * all.reference.height * frames.size();
     std::vector<Squares> flicker(errors.size());
-    for (std::size_t i = 0; i < std::min(errors.size(), sums.size()); ++i) {
-      flicker[i].add(errors[i], sums[i].before);
-      sums[i].flicker += flicker[i];
-      sums[i].errors.add(errors[i]);
-      if (const auto& light = all.methods[i].stats.seconds.light) sums[i].light.push_back(*light);
-      if (const auto& evaluate = all.methods[i].stats.seconds.evaluate) sums[i].evaluate.push_back(*evaluate);
-      sums[i].before = std::move(errors[i]);
+    for (std::size_t i = 0; i < errors.size(); ++i) {
+      const compare::MethodResult& result = all.methods[i];
+      EntrySum& sum = sums.try_emplace(result.entry, EntrySum{ErrorSum(most), {}, {}, {}, {}, {}, 0}).first->second;
+      ++sum.frames;
+      if (result.failure && !sum.failure) sum.failure = result.failure;
+      flicker[i].add(errors[i], sum.before);
+      sum.flicker += flicker[i];
+      sum.errors.add(errors[i]);
+      if (const auto& light = result.stats.seconds.light) sum.light.push_back(*light);
+      if (const auto& evaluate = result.stats.seconds.evaluate) sum.evaluate.push_back(*evaluate);
+      sum.before = std::move(errors[i]);
     }
     rows.push_back(frame_json(number, all, flicker));
     judged += all.judged_pixels;
@@ -167,13 +203,7 @@ compare::Metrics compare_frames(const RunOptions& run, const ComparisonOptions& 
   }
   all.judged_pixels = judged;
   all.horizon_pixels = horizon;
-  for (std::size_t i = 0; i < std::min(all.methods.size(), sums.size()); ++i) {
-    compare::MethodResult& result = all.methods[i];
-    result.error = sums[i].errors.error();
-    result.flicker = sums[i].flicker.root();
-    if (!sums[i].light.empty()) result.stats.seconds.light = median(sums[i].light);
-    if (!sums[i].evaluate.empty()) result.stats.seconds.evaluate = median(sums[i].evaluate);
-  }
+  for (compare::MethodResult& result : all.methods) take_sum(result, sums.at(result.entry), frames.size());
   Json json = compare::to_json(all);
   json["frames"] = rows;
   write_file_atomically(run.out / "metrics.json", compare::json_text(json));

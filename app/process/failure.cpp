@@ -55,6 +55,8 @@ Failure current_failure() {
     throw;
   } catch (const render::DeviceDoesNotAnswer&) {
     throw;  // nothing can go on with that device, and the process must end without destroying it
+  } catch (const ThrownByCaller&) {
+    throw;
   } catch (const Error& error) {
     if (error.code() == ExitCode::interrupted) throw;
   } catch (...) {

@@ -2,6 +2,7 @@
 
 #include "base/error.hpp"
 
+#include <exception>
 #include <string>
 
 namespace penumbra::app {
@@ -12,11 +13,16 @@ struct Failure {
   std::string message;
 };
 
+/// What code of a program that uses the library threw in a shadow method of its own. It goes through to that program.
+struct ThrownByCaller {
+  std::exception_ptr thrown;
+};
+
 /// The exception that is being handled, whatever it is. Only inside of a catch block.
 Failure describe_current_exception();
 
-/// The exception that is being handled, as a failure; an interruption, and a device that
-/// does not answer, are thrown on. Only inside of a catch block.
+/// The exception that is being handled, as a failure; an interruption, a device that does not answer, and
+/// ThrownByCaller are thrown on. Only inside of a catch block.
 Failure current_failure();
 
 }  // namespace penumbra::app

@@ -17,6 +17,7 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <optional>
 
 namespace penumbra::app {
@@ -61,6 +62,7 @@ class SweepCommand : public Command {
             "unit, light.angle of suns in degrees), such as size=256..4096 (doubled), layers=1,2,4, "
             "light.half=0.1..0.5+0.1; methods take the keys that they have; may be given again")
         ->required()
+        ->allow_extra_args(false)
         ->type_name("KEY=VALUES,…");
     cli_.add_option("--reference", reference_,
                     fmt::format("who judges, as `compare` has it (default: {} if it does the lights, else rays)",
@@ -117,6 +119,9 @@ class SweepCommand : public Command {
     const visibility::MethodDescription method = describe_reference(areas).description;
     std::vector<visibility::Light> lights;
     for (std::uint32_t i = 0; i < scene.lights.size(); ++i) {
+      const bool is_chosen =
+          run_.lights.empty() || std::ranges::find(run_.lights, scene.lights[i].name) != run_.lights.end();
+      if (!is_chosen) continue;
       for (visibility::Light& light : visibility::make_light_pieces(scene, i, scene.origin.value_or(glm::dvec3(0)), {}))
         lights.push_back(std::move(light));
     }

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <string_view>
 
 namespace penumbra::app {
@@ -34,7 +35,7 @@ std::vector<std::string> values_of(std::string_view text, std::string_view whole
     const auto n = static_cast<double>(i);
     const double value = *step > 0 ? *first + n * *step : *first * static_cast<double>(std::uint64_t{1} << i % 64);
     // A step such as 0.1 has no exact double: the last value may be beyond the end by rounding.
-    if (value > *last * (1 + 0x1p-40)) return values;
+    if (value > *last + std::abs(*last) * 0x1p-40) return values;
     values.push_back(fmt::format("{:.12g}", value));
     if (i == 63) break;
   }

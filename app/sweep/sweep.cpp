@@ -1,7 +1,9 @@
 #include "app/sweep/sweep.hpp"
 
+#include "app/compare/comparison_entries.hpp"
 #include "app/methods.hpp"
 #include "app/parse.hpp"
+#include "app/session.hpp"
 #include "base/did_you_mean.hpp"
 #include "base/error.hpp"
 
@@ -71,9 +73,7 @@ struct SetHalf {
     const double larger = std::max({extent.x, extent.y, extent.z});
     for (glm::dvec3& vertex : light.vertices) vertex = center + (vertex - center) * (half / larger);
   }
-  void operator()(scenes::Sun& /*light*/) const {
-    throw UsageError("--over {}: light \"{}\" is a sun, whose size is {}", kHalf, name, kAngle);
-  }
+  void operator()(scenes::Sun& /*light*/) const {}  // has no half
   void operator()(scenes::Pieces& /*light*/) const {
     throw UsageError(
         "--over {}: light \"{}\" is a mesh in pieces, which cannot change its size; choose others with --light", kHalf,
@@ -97,12 +97,10 @@ scenes::Scene with_lights(scenes::Scene scene, const Values& sizes, const std::v
     if (std::ranges::any_of(scene.objects, is_body))
       throw UsageError("--over {}: light \"{}\" is an emitting mesh, which keeps its size; choose others with --light",
                        sizes.begin()->first, light.name);
-    if (const auto half = sizes.find(kHalf); half != sizes.end())
+    auto* const sun = std::get_if<scenes::Sun>(&light.shape);
+    if (const auto half = sizes.find(kHalf); half != sizes.end() && sun == nullptr)
       std::visit(SetHalf{positive(kHalf, half->second), light.name}, light.shape);
-    if (const auto angle = sizes.find(kAngle); angle != sizes.end()) {
-      auto* const sun = std::get_if<scenes::Sun>(&light.shape);
-      if (sun == nullptr)
-        throw UsageError("--over {}: light \"{}\" is no sun; its size is {}", kAngle, light.name, kHalf);
+    if (const auto angle = sizes.find(kAngle); angle != sizes.end() && sun != nullptr) {
       sun->angle = positive(kAngle, angle->second);
       if (sun->angle >= 180) throw UsageError("--over {}={}: expected less than 180 degrees", kAngle, angle->second);
     }
@@ -134,17 +132,44 @@ std::vector<MethodEntry> with_swept_options(std::span<const MethodEntry> entries
   return all;
 }
 
-void require_known_keys(std::span<const SweptKey> over, std::span<const MethodEntry> entries) {
+/// Of the sizes of lights: is there a chosen light that has it?
+bool is_size_of_some(const std::string& key, const scenes::Scene& scene, const std::vector<std::string>& chosen) {
+  return std::ranges::any_of(scene.lights, [&](const scenes::AreaLight& light) {
+    const bool is_chosen = chosen.empty() || std::ranges::find(chosen, light.name) != chosen.end();
+    return is_chosen && std::holds_alternative<scenes::Sun>(light.shape) == (key == kAngle);
+  });
+}
+
+bool counts_samples(const MethodEntry& entry) {
+  return describe_method(entry.name, entry.options).counts_light_samples();
+}
+
+/// Refuses a key that would change nothing.
+void require_known_keys(std::span<const SweptKey> over, std::span<const MethodEntry> entries,
+                        const scenes::Scene& scene, const std::vector<std::string>& lights) {
   for (const SweptKey& key : over) {
-    if (is_of_light(key) || key.name == kSamples) continue;
-    if (std::ranges::any_of(entries, [&](const MethodEntry& entry) { return has_option(entry, key.name); })) continue;
+    if (is_of_light(key)) {
+      if (is_size_of_some(key.name, scene, lights)) continue;
+      throw UsageError("--over {}: none of the lights {}", key.name,
+                       key.name == kAngle ? "is a sun" : "is other than a sun, whose size is light.angle");
+    }
+    if (key.name == kSamples) {
+      if (std::ranges::any_of(entries, counts_samples)) continue;
+      throw UsageError("--over {}: none of the methods counts light samples", key.name);
+    }
+    if (std::ranges::any_of(entries, [&](const MethodEntry& entry) {
+          return has_option(entry, key.name) && !entry.options.contains(key.name);
+        }))
+      continue;
     std::vector<std::string> names = {kHalf, kAngle, kSamples};
     for (const MethodEntry& entry : entries) {
-      for (const auto& option : describe_method(entry.name).options) names.push_back(option.name);
+      for (const auto& option : describe_method(entry.name).options) {
+        if (!entry.options.contains(option.name)) names.push_back(option.name);
+      }
     }
     std::ranges::sort(names);
     names.erase(std::unique(names.begin(), names.end()), names.end());
-    throw UsageError("--over {}: none of the methods has such an option; what there is: {}{}", key.name,
+    throw UsageError("--over {}: none of the methods has such an option to vary; what there is: {}{}", key.name,
                      fmt::join(names, ", "), did_you_mean(key.name, names));
   }
 }
@@ -188,7 +213,9 @@ std::vector<SweepSummary> summarize(std::span<const SweepRow> rows) {
 
 Sweep sweep_methods(const scenes::Scene& scene, const RunOptions& run, ComparisonOptions options,
                     std::vector<SweptKey> over, Progress& progress) {
-  require_known_keys(over, options.methods);
+  options.methods = with_method_options(options);
+  options.method_options.clear();
+  require_known_keys(over, options.methods, scene, run.lights);
   Sweep sweep{std::move(over), {}, {}, {}};
   const auto of_light = keys_where(sweep.over, is_of_light);
   const auto samples = keys_where(sweep.over, [](const SweptKey& key) { return key.name == kSamples; });
@@ -196,24 +223,29 @@ Sweep sweep_methods(const scenes::Scene& scene, const RunOptions& run, Compariso
       keys_where(sweep.over, [](const SweptKey& key) { return !is_of_light(key) && key.name != kSamples; });
   const std::vector<MethodEntry> entries = with_swept_options(options.methods, of_methods);
   options.writes = false;
-  for (const Values& light : products(of_light)) {
+  // What is wrong with a value is said before anything that takes long.
+  for (const MethodEntry& entry : entries) static_cast<void>(describe_method(entry.name, entry.options));
+  std::vector<RunOptions> counts;
+  for (const Values& count : products(samples)) {
+    counts.push_back(run);
+    if (!count.empty()) counts.back().light_samples = count.begin()->second;
+    static_cast<void>(parse_light_samples(counts.back()));
+  }
+  const std::vector<Values> sizes = products(of_light);
+  for (const Values& light : sizes) static_cast<void>(with_lights(without_meshes(scene), light, run.lights));
+
+  for (const Values& light : sizes) {
     const scenes::Scene lit = with_lights(scene, light, run.lights);
     const std::size_t first_row = sweep.rows.size();
-    bool is_first = true;
-    for (const Values& count : products(samples)) {
-      RunOptions with = run;
-      if (!count.empty()) with.light_samples = count.begin()->second;
+    for (const RunOptions& with : counts) {
       options.methods.clear();
-      std::ranges::copy_if(entries, std::back_inserter(options.methods), [&](const MethodEntry& entry) {
-        return is_first || describe_method(entry.name, entry.options).counts_light_samples();
-      });
-      is_first = false;
-      if (options.methods.empty()) continue;
+      std::ranges::copy_if(entries, std::back_inserter(options.methods),
+                           [&](const MethodEntry& entry) { return &with == &counts.front() || counts_samples(entry); });
       compare::Metrics metrics = compare_methods(lit, with, options, progress);
       if (sweep.reference.method.empty()) sweep.reference = metrics.reference;
       for (compare::MethodResult& result : metrics.methods) {
-        if (!count.empty() && describe_method(result.stats.method, result.stats.options).counts_light_samples())
-          result.entry += fmt::format(":{}={}", kSamples, count.begin()->second);
+        if (!samples.empty() && describe_method(result.stats.method, result.stats.options).counts_light_samples())
+          result.entry += fmt::format(":{}={}", kSamples, with.light_samples);
         sweep.rows.push_back({light, std::move(result)});
       }
     }

@@ -2,6 +2,7 @@
 
 #include "app/methods.hpp"
 #include "compare/error_plot.hpp"
+#include "compare/report_parts.hpp"
 
 #include <fmt/format.h>
 
@@ -163,7 +164,7 @@ std::string sweep_svg(const Sweep& sweep) {
     const std::string light = name_of(first->light);
     drawings += fmt::format(
         "<g transform=\"translate(0 {})\"><text class=\"title\" x=\"64\" y=\"22\">{}{}{}</text>\n{}</g>\n", 460 * count,
-        sweep.reference.scene, light.empty() ? "" : ", ", light, drawing(std::span(first, end)));
+        compare::escape_html(sweep.reference.scene), light.empty() ? "" : ", ", light, drawing(std::span(first, end)));
     first = end;
   }
   return fmt::format(

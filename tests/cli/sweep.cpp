@@ -27,6 +27,7 @@ TEST(SweepRanges, AreDoubledSteppedOrListed) {
   EXPECT_THAT(values_of("size=3..20"), ElementsAre("3", "6", "12"));
   EXPECT_THAT(values_of("half=0.1..0.4+0.1"), ElementsAre("0.1", "0.2", "0.3", "0.4"));
   EXPECT_THAT(values_of("layers=1,2,4"), ElementsAre("1", "2", "4"));
+  EXPECT_THAT(values_of("x=-3..-1+1"), ElementsAre("-3", "-2", "-1"));
   EXPECT_THAT(values_of("fill=none,edges"), ElementsAre("none", "edges"));
   EXPECT_THAT(values_of("size=64,256..512"), ElementsAre("64", "256", "512"));
   const std::vector<std::string> texts = {"size=1..2,layers=1,2", "light.half=0.5"};
@@ -142,6 +143,18 @@ TEST_F(SweepTest, ConclusionsFollowFromTheRows) {
   }
 }
 
+/// The scene may stand last, and options for all methods reach those of every number of light samples.
+TEST_F(SweepTest, TakesOptionsOfAllMethodsAndTheSceneLast) {
+  const Outcome outcome =
+      run({"sweep", "-o", path("dir"), "--runs", "1", "--size", "16x16", "--methods", "edge-scatter,pcf",
+           "--method-option", "size=32", "--over", "light-samples=4,16", tiny_scene()});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const json rows = json::parse(read("dir/sweep.json")).at("rows");
+  ASSERT_EQ(rows.size(), 3U);
+  EXPECT_EQ(std::ranges::count_if(rows, [](const json& row) { return row.at("options").value("size", "") == "32"; }),
+            1);
+}
+
 TEST_F(SweepTest, RefusesWhatCannotVary) {
   const auto refused = [&](std::vector<std::string> arguments, const char* word, int code = 2) {
     const Outcome outcome = sweep(std::move(arguments));
@@ -150,7 +163,10 @@ TEST_F(SweepTest, RefusesWhatCannotVary) {
     EXPECT_FALSE(std::filesystem::exists(path("dir")));
   };
   refused({"--methods", "pcf", "--over", "windw=3,5"}, "did you mean window");
-  refused({"--methods", "pcf", "--over", "light.angle=3"}, "no sun");
+  refused({"--methods", "pcf", "--over", "light.angle=3"}, "is a sun");
+  refused({"--methods", "pcf", "--over", "light-samples=4"}, "counts light samples");
+  refused({"--methods", "pcf:size=64", "--over", "size=64,128"}, "to vary");
+  refused({"--methods", "edge-scatter", "--over", "light-samples=4,x"}, "light-samples x");
   refused({"--methods", "pcf", "--over", "light.half=0"}, "above 0");
   refused({"--methods", "pcf", "--over", "size=3..4"}, "size");
   refused({"--methods", "pcf", "--over", "size"}, "KEY=VALUE");

@@ -144,6 +144,13 @@ TEST(OwnMethods, AreComparedByNameAndWithTheirFamily) {
 
 TEST(OwnMethods, AreNobodysDefault) {
   add_once();
+  const auto compared = [](const char* group) {
+    return compare_json(
+        floor_under_light(),
+        {.methods = {group}, .reference = "exact", .width = 8, .height = 6, .light_samples = 4, .runs = 1});
+  };
+  EXPECT_THAT(compared("default"), testing::Not(HasSubstr("striped")));
+  EXPECT_THAT(compared("geometry"), HasSubstr("striped"));
   Renderer renderer(floor_under_light());
   EXPECT_NE(renderer.render({.width = 8, .height = 8}).method(), "striped");
   EXPECT_NE(renderer.render({.width = 8, .height = 8, .light_samples = 16}).method(), "striped");
@@ -155,6 +162,8 @@ TEST(OwnMethods, FailAlone) {
   EXPECT_THROW(renderer.render({.width = 8, .height = 8, .method = "constant", .options = {{"value", "2"}}}),
                ResourceError);
   EXPECT_THROW(renderer.render({.width = 8, .height = 8, .method = "constant", .options = {{"value", "7"}}}),
+               std::logic_error);
+  EXPECT_THROW(compare_json(floor_under_light(), {.methods = {"constant:value=7"}, .width = 8, .height = 6, .runs = 1}),
                std::logic_error);
   EXPECT_THROW(renderer.render({.width = 8, .height = 8, .method = "constant", .options = {{"value", "x"}}}),
                UsageError);

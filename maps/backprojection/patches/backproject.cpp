@@ -86,9 +86,8 @@ std::unique_ptr<visibility::Method> make_backproject(const render::Device& devic
   recipe.push_words = sizeof(gpu::BackprojectPush) / sizeof(std::uint32_t);
   recipe.push = [layers = parsed[kDeepestLayers], levels](const visibility::Light& light) {
     // A sphere's area is that of the disk of its radius.
-    return push_words(gpu::BackprojectPush{layers, is_body(light.kind) ? 1u : 0u,
-                                           static_cast<float>(half_width(light)), levels.level, levels.budget,
-                                           levels.blend ? 1u : 0u});
+    return push_words(gpu::BackprojectPush{layers, is_body(light.kind) ? 1u : 0u, static_cast<float>(half_width(light)),
+                                           levels.level, levels.budget, levels.blend ? 1u : 0u});
   };
   return subsampled(device, make_map_method(device, std::move(recipe), options), parsed, options);
 }

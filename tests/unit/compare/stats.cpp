@@ -171,16 +171,23 @@ TEST(MetricsJson, JudgesEachLight) {
   EXPECT_TRUE(method["pairs"].is_null()) << "the reference's alone, which looked at others";
   ASSERT_EQ(method["lights"].size(), 2u);
   EXPECT_EQ(keys_of(method["lights"][0]),
-            (std::vector<std::string>{"name", "judgedPixels", "horizonPixels", "error", "horizonError", "sameSamples",
-                                      "errorBudget", "errorBudgetRuns"}));
+            (std::vector<std::string>{"name", "judgedPixels", "horizonPixels", "error", "horizonError", "classes",
+                                      "sameSamples", "errorBudget", "errorBudgetRuns"}));
+  EXPECT_TRUE(method["lights"][0]["classes"].is_null());
   EXPECT_EQ(method["lights"][0]["horizonError"]["rmse"], 0.75);
   EXPECT_TRUE(method["lights"][0]["sameSamples"].is_null());
+  metrics.methods[0].lights[0].classes = {{"lit", 7, VisibilityError{.rmse = 0.5, .max = 0.75, .bias = -0.25}},
+                                          {"self", 0, {}}};
+  const auto classes = to_json(metrics)["methods"][0]["lights"][0]["classes"];
+  EXPECT_EQ(classes, (nlohmann::ordered_json{
+                         {"lit", {{"pixels", 7}, {"rmse", 0.5}, {"bias", -0.25}, {"max", 0.75}}},
+                         {"self", {{"pixels", 0}, {"rmse", nullptr}, {"bias", nullptr}, {"max", nullptr}}}}));
   metrics.methods[0].stats.lights = {{.name = "key", .method = "exact", .area = true},
                                      {.name = "rim", .method = "pcss"}};
   const auto asked = to_json(metrics)["methods"][0]["lights"];
   EXPECT_EQ(keys_of(asked[1]),
             (std::vector<std::string>{"name", "method", "options", "lightSamples", "samplePattern", "quantity",
-                                      "seconds", "judgedPixels", "horizonPixels", "error", "horizonError",
+                                      "seconds", "judgedPixels", "horizonPixels", "error", "horizonError", "classes",
                                       "sameSamples", "errorBudget", "errorBudgetRuns"}));
   EXPECT_EQ(asked[0]["quantity"], "area");
   EXPECT_EQ(asked[1]["judgedPixels"], 20);
