@@ -31,6 +31,23 @@ Kernel kernel_within_budget(MapFace face, Kernel kernel) {
   return level() == own.level ? kernel : kernel_at_level(face);
 }
 
+// The blocks of the level at hand that can hide some of the light, of which none is nearer to the light than `near`. What a
+// kernel's blocks and those beside them (whose depths patches and quads reach to) leave unhidden is out of it, twice.
+// Defined after the light's `lower` and `upper`, and search.glsl.
+Kernel blocks_on_light(MapFace face, float near, int padding) {
+  // A face seen sideways has blocks whose lower border is many rows below the texel that is nearest.
+  if (face.axis != 2 && level() > 0) return Kernel(ivec2(0), ivec2(level_size()) - 1, false);
+  const int shift = int(level());
+  Kernel kernel = kernel_on(at_level(face), level_size(), asked.e, light.lower, light.upper, near, padding);
+  for (int round = 0; round < 2 && kSearch && shift > 0 && face.axis == 2 && !is_empty(kernel); ++round) {
+    const ivec2 first = max(kernel.first - 1, ivec2(0)) << shift;
+    const ivec2 last = min((kernel.last + 2) << shift, ivec2(lookup.size)) - 1;
+    near = max(near, asked.view.far * depth_range(face.map, uvec2(first), uvec2(last)).x);
+    kernel = kernel_on(at_level(face), level_size(), asked.e, light.lower, light.upper, near, padding);
+  }
+  return kernel;
+}
+
 Kernel next_kernel(MapFace face, uint turn) {
   if (kLevels != kLevelsByBudget || turn > 1 || coarser_share == 0.0 || level() >= kCoarsestLevel) return kNoKernel;
   coarser = true;

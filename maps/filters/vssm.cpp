@@ -82,7 +82,7 @@ constexpr visibility::ChoiceOption kSubdivision{
      {"none", Subdivision::none}},
     Subdivision::automatic,
     "vsm, lvsm, evsm: windows are cut in the smallest parts, or only where their mean is behind the receiver, or not; "
-    "auto: of vsm and lvsm uniform, of evsm none"};
+    "auto: of vsm and lvsm uniform, of evsm and with window none"};
 constexpr visibility::IntegerOption kCuts{"cuts", 1, 4, 3, "how often a window is cut in four, at most"};
 constexpr visibility::IntegerOption kFixedWindow{
     "window", 0, 64, 0,
@@ -193,7 +193,8 @@ std::unique_ptr<visibility::Method> make_vssm(const render::Device& device, cons
   // A bound that is 1 says nothing; a series and an exponential have none.
   Subdivision subdivision = parsed[kSubdivision];
   if (subdivision == Subdivision::automatic) {
-    subdivision = model == gpu::kVariance ? Subdivision::uniform : Subdivision::none;
+    const bool cuts_windows = model == gpu::kVariance && parsed[kFixedWindow] == 0;
+    subdivision = cuts_windows ? Subdivision::uniform : Subdivision::none;
   }
   const bool bounds = model == gpu::kVariance || model == gpu::kExpVariance;
   const std::uint32_t cuts = bounds && subdivision != Subdivision::none ? parsed[kCuts] : 0;

@@ -68,7 +68,7 @@ constexpr visibility::RealOption kDivergence{
     "divergence", 0, 1, 0.8,
     "a packet whose pixels are more likely than this to have different contours is done pixel by pixel"};
 
-// As tuned (docs/packet.md).
+// 1 each, which is not tuned (docs/packet.md).
 constexpr visibility::RealOption kEdgeCost{
     "edgeCost", 0, 1024, 1, "what an edge of a contour costs, beside a node: decides which packets look together"};
 constexpr visibility::RealOption kAreaCost{

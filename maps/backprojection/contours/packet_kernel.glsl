@@ -30,16 +30,17 @@ void find_own(uint pixel) {
   pixel_inside[pixel] = inside ? 1 : 0;
 }
 
-// The cells of the level at hand that can hold contours. A block of texels has the nearest depth of all of them: what is
-// asked for the nearest in a kernel is the nearest in all blocks that it touches, and blocks that a kernel of it does not
-// touch are seen beside the light.
+// The cells of the level at hand that can hold contours. A block of texels has the nearest depth of all of them, and an edge
+// in a cell is between two of its four blocks: what is asked for the nearest depth in a kernel is the nearest of all blocks
+// that it touches and of those beside them.
 ivec4 cells_at_level(uint pixel) {
   if (level() == 0) return pixel_cells[pixel];
   const vec3 e = pixel_e[pixel];
   const int shift = int(level());
   Kernel kernel = kernel_on(map_face, lookup.size, e, light.lower, light.upper, nearest[side_number], 0);
   for (uint round = 0; round < 2 && kSearch && face.axis == 2 && !is_empty(kernel); ++round) {
-    const ivec2 first = (kernel.first >> shift) << shift, last = min(((kernel.last >> shift) + 1) << shift, ivec2(lookup.size)) - 1;
+    const ivec2 first = max((kernel.first >> shift) - 1, ivec2(0)) << shift;
+    const ivec2 last = min(((kernel.last >> shift) + 2) << shift, ivec2(lookup.size)) - 1;
     const float near = view.far * depth_range_of_cells(face.map, uvec2(first), uvec2(last + 1)).x;
     kernel = kernel_on(map_face, lookup.size, e, light.lower, light.upper, near, 0);
   }
@@ -96,7 +97,7 @@ void find_kernel(uint pixel) {
 }
 
 // Yang 2009, equations 4 to 6, for members with kernels that lie in `cells` together: will they have the same contours,
-// and is it cheaper to look for them once? A node costs 1, an edge and an area what they took beside it when they were tuned
+// and is it cheaper to look for them once? A node costs 1; what an edge and an area cost beside it is not tuned
 // (docs/packet.md).
 layout(constant_id = 3) const float kEdgeCost = 1.0;
 layout(constant_id = 4) const float kAreaCost = 1.0;

@@ -27,24 +27,20 @@ layout(constant_id = 3) const uint kLevels = kFinestLevel;  // kFinestLevel ...
 #define LEVEL_MAPS 7
 #include "maps/backprojection/level_kernels.glsl"
 
-float near = 0.0;  // of the kernel
-
 Kernel kernel_at_level(MapFace face) {
+  float near = nearest[asked.number];
   if (kForm == kFormSphere) return sphere_kernel(at_level(face), level_size(), near, false);
-  return kernel_on(at_level(face), level_size(), asked.e, light.lower, light.upper, near, 0);
+  return blocks_on_light(face, near, 0);
 }
 
 Kernel kernel_of(MapFace face) {
-  near = nearest[asked.number];
+  float near = nearest[asked.number];
   begin_levels();
-  Kernel kernel = kNoKernel;
-  if (kSearch) {
-    kernel = kForm == kFormSphere
-                 ? sphere_kernel(face, lookup.size, near, true)
-                 : search_kernel(face, light.lower, light.upper, near, 1.0, 0, true, kFill == kFillDiagonal ? 1 : 0);
-    if (is_empty(kernel)) return kernel;
-  }
-  if (!kSearch || level() > 0) kernel = kernel_at_level(face);
+  // What texels hide or leave says nothing about blocks, which are nearer.
+  if (!kSearch || level() > 0) return kernel_within_budget(face, kernel_at_level(face));
+  const Kernel kernel =
+      kForm == kFormSphere ? sphere_kernel(face, lookup.size, near, true)
+                           : search_kernel(face, light.lower, light.upper, near, 1.0, 0, true, kFill == kFillDiagonal ? 1 : 0);
   return kernel_within_budget(face, kernel);
 }
 

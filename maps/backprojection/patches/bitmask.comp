@@ -67,23 +67,16 @@ bool nothing_hides(MapFace face, ivec2 first, ivec2 last) {
 
 int padding() { return between_centres() ? 1 : 0; }
 
-float near = 0.0;  // of the kernel
-
-Kernel kernel_at_level(MapFace face) {
-  return kernel_on(at_level(face), level_size(), asked.e, light.lower, light.upper, near, padding());
-}
+Kernel kernel_at_level(MapFace face) { return blocks_on_light(face, nearest[asked.number], padding()); }
 
 Kernel kernel_of(MapFace face) {
   tile_shift = padding();
-  near = nearest[asked.number];
   begin_levels();
-  Kernel kernel = kNoKernel;
-  if (kSearch) {
-    kernel = search_kernel(face, light.lower, light.upper, near, 1.0, padding(), true, kFill == kFillDiagonal ? 1 : 0);
-    if (is_empty(kernel)) return kernel;
-  }
-  if (!kSearch || level() > 0) kernel = kernel_at_level(face);
-  return kernel_within_budget(face, kernel);
+  // What texels hide or leave says nothing about blocks, which are nearer.
+  if (!kSearch || level() > 0) return kernel_within_budget(face, kernel_at_level(face));
+  float near = nearest[asked.number];
+  return kernel_within_budget(
+      face, search_kernel(face, light.lower, light.upper, near, 1.0, padding(), true, kFill == kFillDiagonal ? 1 : 0));
 }
 
 void hide_patch(MapFace face, uint layer, uvec2 cell, Tap tap) {

@@ -411,10 +411,16 @@ TEST_F(Vssm, AFilterOfTexelsIsPcf) {
   const Stage stage = floor_stage({{2, -4, 0.1}});
   const Masks counted = run(maps::make_pcf, stage, {{"size", "128"}, {"window", "7"}});
   EXPECT_GT(std::ranges::count(counted.visibility, 0.0F), 100);
-  for (const auto& [moments, bound] : {std::pair("vsm", 1e-3), std::pair("lvsm", 1e-2), std::pair("evsm", 0.08),
-                                       std::pair("esm", 1e-3), std::pair("csm", 0.1)}) {
+  struct Claim {
+    const char *moments, *bias;
+    double bound;
+  };
+  // A bias brings the receiver nearer to the mean, by which a bound grows: none where the bound is derived without one.
+  for (const auto& [moments, bias, bound] :
+       {Claim{"vsm", "0", 1e-3}, Claim{"lvsm", "0", 1e-2}, Claim{"evsm", "0.1", 0.08}, Claim{"esm", "0.1", 1e-3},
+        Claim{"csm", "0.1", 0.1}}) {
     const Masks found =
-        run(maps::make_vssm, stage, {{"size", "128"}, {"window", "7"}, {"moments", moments}, {"bias", "0.1"}});
+        run(maps::make_vssm, stage, {{"size", "128"}, {"window", "7"}, {"moments", moments}, {"bias", bias}});
     double worst = 0;
     for (std::size_t i = 0; i < stage.samples.size(); ++i) {
       worst = std::max(worst, static_cast<double>(std::abs(found.visibility[i] - counted.visibility[i])));

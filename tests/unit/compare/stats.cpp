@@ -53,7 +53,7 @@ TEST(Seconds, AddUpToTheirPhases) {
 TEST(StatsJson, HasTheNamesOfTheInterface) {
   const auto json = to_json(some_stats());
   EXPECT_EQ(keys_of(json), (std::vector<std::string>{"scene", "size", "device", "triangles", "method", "options",
-                                                     "lightSamples", "samplePattern", "seconds", "passes",
+                                                     "lightSamples", "samplePattern", "runs", "seconds", "passes",
                                                      "peakMemoryBytes", "memory", "counters", "warnings", "lights"}));
   EXPECT_EQ(json["size"], nlohmann::ordered_json::array({640, 480}));
   EXPECT_EQ(json["options"]["search"], "16");

@@ -1,6 +1,7 @@
 // Backprojection against every texel one by one, against closed forms, and the identities that hold on every scene.
 
 #include "tests/analytic/maps/parallel_square.hpp"
+#include "tests/analytic/maps/backprojection/contour_scenes.hpp"
 #include "tests/analytic/maps/backprojection/patch_twin.hpp"
 #include "tests/unit/mesh/shuffled.hpp"
 
@@ -132,6 +133,29 @@ TEST_F(MapsBackproject, ALevelIsTheSumOfItsBlocks) {
       EXPECT_LT(most, 1e-4) << "level " << level;
     }
   }
+}
+
+// Blocks are nearer than the texels that a search asks for, most of all on what is curved: a search at a level must not
+// leave one out, nor take what texels hide for what blocks do.
+TEST_F(MapsBackproject, NoSearchChangesALevel) {
+  const Stage stage(ball_over_floor(1), 20, 20, light_samples(8));
+  std::size_t partly = 0;
+  const auto expect_same = [&](const Factory& factory, const MethodOptions& options, const std::string& what) {
+    MethodOptions none = options;
+    none["search"] = "none";
+    const std::vector<float> found = run(factory, stage, options).visibility;
+    EXPECT_EQ(found, run(factory, stage, none).visibility) << what;
+    partly += static_cast<std::size_t>(std::ranges::count_if(found, [](float v) { return v > 0 && v < 1; }));
+  };
+  for (const char* level : {"1", "2", "3", "4"}) {
+    for (const char* fill : {"none", "edges"})
+      expect_same(maps::make_backproject, {{"size", "96"}, {"level", level}, {"fill", fill}, {"search", "hsm"}},
+                  fmt::format("backproject, level {}, fill {}", level, fill));
+    for (const char* occluder : {"patch", "quad"})
+      expect_same(maps::make_bitmask, {{"size", "96"}, {"level", level}, {"occluder", occluder}, {"search", "hsm"}},
+                  fmt::format("bitmask, level {}, {}", level, occluder));
+  }
+  EXPECT_GT(partly, 400U);
 }
 
 // With a budget each pixel looks at one level, or at two of which the coarser counts for a part (Guennebaud et al.
