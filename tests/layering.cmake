@@ -58,12 +58,13 @@ set(may_compare ${all_visibility} scenes mesh base)
 set(may_app/process render base)
 set(may_app app/process selftest compare reference areas engines engines/vectors maps vsm volumes volumes/wedges render/opengl render ${all_visibility}
     scenes/formats scenes mesh/diagnosis mesh base)
-foreach(room commands compare farm inspect pictures wedges)
+foreach(room commands compare farm inspect pictures sweep wedges)
   set(may_app/${room} ${may_app} app)
 endforeach()
 list(APPEND may_app/commands app/pictures)
 list(APPEND may_app/compare app/pictures)
 list(APPEND may_app/farm app/pictures)
+list(APPEND may_app/sweep app/pictures app/compare)
 set(may_library app app/compare app/inspect app/pictures app/process app/wedges compare render ${all_visibility}
     scenes/formats scenes mesh base)
 set(may_python)
@@ -74,7 +75,7 @@ set(rooms base mesh mesh/diagnosis mesh/shapes repair scenes scenes/formats impo
     volumes/wedges volumes/edges/device volumes/edges/vectors volumes/edges volumes/raster volumes/soft volumes/counters volumes/scatter volumes vsm maps/host maps/products maps/products/lists
     maps/filters maps/sampling maps/backprojection maps/backprojection/patches maps/backprojection/contours
     maps/backprojection/soft_shadow_map maps selftest reference compare
-    app/process app app/pictures app/commands app/compare app/farm app/inspect app/wedges library python bench)
+    app/process app app/pictures app/commands app/compare app/sweep app/farm app/inspect app/wedges library python bench)
 set(may_tests import ${rooms})
 list(APPEND rooms tests)
 
