@@ -49,7 +49,7 @@ struct Prefiltered {
     const std::size_t side = face >= view.side[0].first_face + view.side[0].face_count ? 1 : 0;
     const bool sideways = face != view.side[side].first_face;
     const double along = sideways ? (static_cast<double>(row % maps.size) + 0.5) / maps.size : 1;
-    const double low = lowest.at(side) * (1 - 1.0 / 1024), high = found_frame.deepest[side] * (1 + 1.0 / 1024);
+    const double low = lowest.at(side) * (1 - 1.0 / 1024), high = std::max(found_frame.deepest[side], lowest.at(side));
     return std::clamp((depths[texel] * along * view.far - low) / (high - low), 0.0, 1.0);
   }
 

@@ -2,9 +2,20 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cstdint>
 #include <system_error>
 
 namespace penumbra::app {
+
+std::string file_stem(std::string label) {
+  constexpr std::size_t kLongest = 200, kKept = 180;  // of 255 bytes, with room for an ending and a temporary name
+  std::ranges::replace(label, ':', ',');
+  if (label.size() <= kLongest) return label;
+  std::uint64_t digest = 0xcbf29ce484222325;  // FNV-1a, the same on every machine
+  for (const char c : label) digest = (digest ^ static_cast<unsigned char>(c)) * 0x100000001b3;
+  return fmt::format("{}-{:016x}", label.substr(0, kKept), digest);
+}
 
 void ComparisonFiles::claim(const std::filesystem::path& scene, std::span<const MethodEntry> entries,
                             const std::filesystem::path& stats) {

@@ -3,7 +3,6 @@
 #include "app/options.hpp"
 #include "app/process/output_files.hpp"
 
-#include <algorithm>
 #include <filesystem>
 #include <span>
 #include <string>
@@ -15,6 +14,11 @@ namespace penumbra::app {
 struct EntryFiles {
   bool png = false, bits = false;
 };
+
+/// The name of an entry's files, without their endings: the entry with a comma for each colon, which some file systems
+/// and tools do not take in a name. A name that would be too long for them is cut, and ends with digits that only this
+/// entry has.
+std::string file_stem(std::string label);
 
 /// The files in a comparison's folder: DIR/<entry>.exr and so on.
 class ComparisonFiles {
@@ -28,10 +32,8 @@ class ComparisonFiles {
   /// UsageError if a file that is written is one of these.
   void refuse_inputs(std::span<const std::filesystem::path> inputs) const { outputs_.refuse_inputs(inputs); }
 
-  /// DIR/<entry><ending>, with a comma for each colon, which some file systems and tools do not take in a name.
-  [[nodiscard]] std::filesystem::path of(std::string label, const char* ending) const {
-    std::ranges::replace(label, ':', ',');
-    return out_ / (label + ending);
+  [[nodiscard]] std::filesystem::path of(const std::string& label, const char* ending) const {
+    return out_ / (file_stem(label) + ending);
   }
 
   /// Removes the files of an entry that failed: they are of an earlier run, or of one that did not end, and would pass

@@ -6,6 +6,7 @@
 
 #include "tests/cli/options_together.hpp"
 
+#include "app/compare/comparison_files.hpp"
 #include "app/options.hpp"
 #include "base/error.hpp"
 
@@ -288,7 +289,7 @@ class CompareTogether : public OptionsTogether, public testing::WithParamInterfa
     const std::string report = read("out/report.html");
     EXPECT_NE(report.rfind("</html>"), std::string::npos);
     std::vector<std::string> names = {"reference"};
-    for (const json& method : metrics.at("methods")) names.push_back(method.at("entry"));
+    for (const json& method : metrics.at("methods")) names.push_back(app::file_stem(method.at("entry")));
     for (const std::string& name : names) {
       expect_whole_picture(path("out/" + name + ".exr"), row["sample-pixels"] == "all");
       if (!row["png"].empty()) expect_whole_png(path("out/" + name + ".png"));
