@@ -14,7 +14,8 @@ namespace penumbra {
 struct CompareOptions {
   /// Entries NAME:key=value:key=value, or the groups geometry, image, all, default.
   std::vector<std::string> methods = {"default"};
-  std::string reference = "raytrace";      ///< or exact
+  /// Or exact, or an entry whose areas are exact (NAME:key=value).
+  std::string reference = "raytrace";
   std::string reference_samples = "1024";  ///< light samples of the reference, or same
   std::uint32_t width = 0, height = 0;     ///< pixels; 0: the scene's
   std::uint32_t light_samples = 256;       ///< of methods that have them

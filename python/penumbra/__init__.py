@@ -384,7 +384,8 @@ def render(scene, size=None, method="", light_samples=0, options=None, light=Non
 def compare(scene, methods="default", *, reference="raytrace", reference_samples=1024, size=None, light_samples=256,
             sample_pattern="", light=None, camera="", runs=0, error_budget=False, out="", device="", log=None,
             progress=None):
-    """Several methods on the same view samples against a reference ("raytrace" or "exact"): a list of dicts as metrics.json's
+    """Several methods on the same view samples against a reference ("raytrace", "exact", or an entry whose areas are exact,
+    such as "edge-scatter:rows=exact"): a list of dicts as metrics.json's
     `methods` has them. `methods`: entries "NAME:key=value:…", or the groups geometry, image, all, default. `out`: a folder
     for pictures and the report."""
     width, height = _size(size)
