@@ -156,7 +156,8 @@ class Host {
     return watch.seconds();
   }
 
-  /// What lets light through. Gives the seconds that it took, reading masks left out.
+  /// Takes out of masks what surfaces that let light through dim. Returns the seconds that it took, reading masks left
+  /// out.
   double filter(std::size_t light_index, const visibility::ViewSamples& samples, const Tile& tile) {
     const Light& light = plan_.lights[light_index];
     transmittances_.clear();

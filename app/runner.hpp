@@ -82,7 +82,7 @@ void add_run(MethodRun& to, MethodRun&& other);
 /// every method stand the host's rules: background, pixels that carry the light's own body, and receivers with
 /// receivesShadow = false are visible from every light sample, and those that the light does not light (a mesh's
 /// `lights`) from none. Where a light has casters of its own, the method gets the scene in which nothing else casts.
-/// What lets light through takes its part of masks after the method (visibility::AlphaFilter), in the time of
+/// Surfaces that let light through take their part of masks after the method (visibility::AlphaFilter), in the time of
 /// `evaluate`.
 MethodRun run_method(visibility::Method& method, const Session& session, const RunPlan& plan, const TileSink& sink,
                      Progress& progress);

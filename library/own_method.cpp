@@ -7,6 +7,7 @@
 #include "base/did_you_mean.hpp"
 #include "base/error.hpp"
 #include "library/float3.hpp"
+#include "library/light_shape.hpp"
 #include "scenes/light_kind.hpp"
 #include "visibility/receivers.hpp"
 
@@ -25,9 +26,6 @@ using visibility::MethodDescription;
 using visibility::MethodOptions;
 using visibility::Output;
 
-Vector vector_of(const glm::dvec3& v) {
-  return {v.x, v.y, v.z};
-}
 Float3 floats_of(const glm::vec3& v) {
   return {v.x, v.y, v.z};
 }
@@ -48,9 +46,9 @@ MethodLight light_of(const visibility::Light& light) {
       has_frame ? visibility::light_frame(light) : visibility::LightFrame{.center = glm::dvec3(light.center)};
   return {.name = light.name,
           .kind = visibility::name_of(light.kind),
-          .center = vector_of(frame.center),
-          .u = vector_of(frame.u),
-          .v = vector_of(frame.v),
+          .center = from_glm(frame.center),
+          .u = from_glm(frame.u),
+          .v = from_glm(frame.v),
           .radius = light.radius,
           .two_sided = light.two_sided,
           .outline = as_floats(light.outline),

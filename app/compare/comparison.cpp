@@ -26,7 +26,6 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
-#include <limits>
 #include <optional>
 #include <utility>
 
@@ -48,9 +47,8 @@ class Comparison {
  public:
   /// Of all lights' masks by rays, which are kept while the methods run.
   static constexpr std::uint64_t kMostRayBytes = std::uint64_t{1} << 30;
-  /// Where no number of runs is asked for: view samples are found so often, and methods run as often as this allows.
-  static constexpr std::uint32_t kViewRuns = 3, kMostRuns = 5;
-  static constexpr double kRunSeconds = 2;
+  /// How often view samples are found where no number of runs is asked for.
+  static constexpr std::uint32_t kViewRuns = 3;
 
   /// `scene`: nullopt: it is read from the run's file.
   Comparison(const RunOptions& run, const ComparisonOptions& options, std::optional<scenes::Scene> scene,
@@ -120,11 +118,7 @@ class Comparison {
   [[nodiscard]] EntryErrors errors() const {
     EntryErrors all;
     for (const auto& of_lights : visibility_) {
-      std::vector<float>& errors = all.emplace_back();
-      if (of_lights.empty()) continue;  // it failed
-      errors.assign(session_.pixel_count(), std::numeric_limits<float>::quiet_NaN());
-      for (const std::uint32_t pixel : truths_.front().judged)
-        errors[pixel] = of_lights.front()[pixel] - truths_.front().reference[pixel];
+      all.push_back(of_lights.empty() ? std::vector<float>() : judged_errors(of_lights.front(), truths_.front()));
     }
     return all;
   }
@@ -163,7 +157,12 @@ class Comparison {
       if (rays) truths_[light].rays = done.run.visibility[light];
       truths_[light].reference = std::move(done.run.visibility[light]);
     }
-    sort_into_classes(session_, truths_);
+    try {
+      sort_into_classes(session_, truths_, progress_);
+    } catch (const Error& error) {  // a reference of areas does lights that rays do not
+      if (error.code() == ExitCode::interrupted) throw;
+      warn(fmt::format("errors are not told apart by who casts the shadow: {}", error.what()));
+    }
     reference_beauty_ = std::move(done.beauty);
   }
 
@@ -262,19 +261,10 @@ class Comparison {
     BeautyAccumulator beauty(session_, lights);
     std::optional<BitsOutput> bits;
     if (wants_bits(entry)) bits.emplace(files_.of(entry.label, ".bits"), session_, lights.front());
-    RunPlan plan{.lights = lights, .runs = options_.runs, .discard_first = true, .pixels = wanted_};
-    if (options_.runs == 0) {
-      plan.runs = kMostRuns;
-      plan.run_seconds = kRunSeconds;
-    }
+    RunPlan plan = plan_of(entry, &entry == &reference_, options_);
+    plan.lights = lights;
     // Maps answer all pixels in little time, and their pictures are whole.
-    if (description.family == visibility::Family::image) plan.pixels.reset();
-    // A judge without samples is not raced, and it may take minutes: once is enough.
-    const bool is_judge = description.family == visibility::Family::reference || &entry == &reference_;
-    if (is_judge && description.output != Output::mask) {
-      plan.runs = 1;
-      plan.discard_first = false;
-    }
+    if (description.family != visibility::Family::image) plan.pixels = wanted_;
     PackedMasks masks(lights.size());
     Finished done;
     MethodRun run = run_method(
@@ -292,7 +282,7 @@ class Comparison {
     machine_.check_validation();
     progress_.clear();
     if (!options_.writes) return done;
-    const std::vector<MethodLabel> labels = labels_of(entry, lights);
+    const std::vector<MethodLabel> labels = labels_of(entry, lights, machine_);
     for (std::string& warning :
          write_picture(files_.of(entry.label, ".exr"),
                        {session_, {lights, labels}, done.run.visibility, beauty.parts(), done.beauty}, format_))
@@ -304,18 +294,8 @@ class Comparison {
   [[nodiscard]] bool wants_bits(const Entry& entry) const { return app::wants_bits(entry, options_); }
 
   compare::Stats stats_of(const Entry& entry, std::span<const Light> lights, const MethodRun& run) {
-    const std::vector<MethodLabel> labels = labels_of(entry, lights);
+    const std::vector<MethodLabel> labels = labels_of(entry, lights, machine_);
     return make_stats(session_, {lights, labels}, run);
-  }
-
-  /// One a light: where a method runs may depend on it.
-  std::vector<MethodLabel> labels_of(const Entry& entry, std::span<const Light> lights) {
-    std::vector<MethodLabel> labels;
-    for (const Light& light : lights) {
-      labels.push_back(
-          {entry.description, entry.options, device_of(entry.description.name, entry.options, light, machine_)});
-    }
-    return labels;
   }
 
   compare::ReportEntry pictures_of(const Entry& entry, Finished& done) {

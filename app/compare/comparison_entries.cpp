@@ -1,7 +1,6 @@
 #include "app/compare/comparison_entries.hpp"
 
 #include "app/methods.hpp"
-#include "app/output.hpp"
 #include "base/error.hpp"
 #include "render/features.hpp"
 #include "visibility/lights/device_light.hpp"
@@ -145,6 +144,25 @@ void require_explainable(std::span<const MethodEntry> methods) {
   throw UsageError(
       "--error-budget: none of the chosen methods is image-based; it takes the errors of those apart: name one with "
       "--methods (see `penumbra methods`)");
+}
+
+RunPlan plan_of(const Entry& entry, bool is_reference, const ComparisonOptions& options) {
+  const visibility::MethodDescription& method = entry.description;
+  const bool is_judge = is_reference || method.family == visibility::Family::reference;
+  // Areas of a judge are not raced, and they may take minutes.
+  if (is_judge && method.output != visibility::Output::mask) return {.lights = {}, .runs = 1};
+  if (options.runs != 0) return {.lights = {}, .runs = options.runs, .discard_first = true};
+  return {.lights = {}, .runs = 5, .run_seconds = 2, .discard_first = true};
+}
+
+std::vector<MethodLabel> labels_of(const Entry& entry, std::span<const visibility::Light> lights,
+                                   const render::Machine& machine) {
+  std::vector<MethodLabel> labels;
+  for (const visibility::Light& light : lights) {
+    labels.push_back(
+        {entry.description, entry.options, device_of(entry.description.name, entry.options, light, machine)});
+  }
+  return labels;
 }
 
 bool wants_bits(const Entry& entry, const ComparisonOptions& options) {

@@ -29,22 +29,28 @@ void sort_by_object(const Session& session, std::size_t light, std::span<const s
 
 }  // namespace
 
-void sort_into_classes(const Session& session, std::vector<LightTruth>& truths) {
-  const std::vector<WholeLight> wholes = whole_lights(session.lights);
-  for (std::size_t whole = 0; whole < truths.size(); ++whole) {
-    LightTruth& truth = truths[whole];
+void sort_into_classes(const Session& session, std::vector<LightTruth>& truths, Progress& progress) {
+  for (LightTruth& truth : truths) {
     truth.classes = {};
     sort_by_visibility(truth);
+  }
+  const std::vector<WholeLight> wholes = whole_lights(session.lights);
+  progress.begin("who casts the shadows", session.lights.size());
+  for (std::size_t whole = 0; whole < truths.size(); ++whole) {
+    compare::PixelClasses& classes = truths[whole].classes;
     std::vector<std::uint32_t> shadowed;
-    std::ranges::set_union(truth.classes.penumbra, truth.classes.umbra, std::back_inserter(shadowed));
+    std::ranges::set_union(classes.penumbra, classes.umbra, std::back_inserter(shadowed));
     std::vector<reference::HiddenBy> hidden(shadowed.size());
-    for (std::size_t piece = 0; piece < wholes[whole].count; ++piece)
+    for (std::size_t piece = 0; piece < wholes[whole].count; ++piece) {
       sort_by_object(session, wholes[whole].first + piece, shadowed, hidden);
+      progress.advance();
+    }
     for (std::size_t i = 0; i < shadowed.size(); ++i) {
-      if (hidden[i].other) truth.classes.cast.push_back(shadowed[i]);
-      if (hidden[i].own) truth.classes.self.push_back(shadowed[i]);
+      if (hidden[i].other) classes.cast.push_back(shadowed[i]);
+      if (hidden[i].own) classes.self.push_back(shadowed[i]);
     }
   }
+  progress.clear();
 }
 
 }  // namespace penumbra::app

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 namespace penumbra::app {
@@ -94,6 +95,12 @@ void LightJudge::fill(compare::MethodResult& result, const MethodRun& run, bool 
     result.stats.warnings.push_back(fmt::format("{}: {} pairs differ; {} of them, evenly spaced, were decided exactly",
                                                 result.entry, result.pairs->differing, result.verdicts->decided));
   }
+}
+
+std::vector<float> judged_errors(std::span<const float> visibility, const LightTruth& truth) {
+  std::vector<float> errors(visibility.size(), std::numeric_limits<float>::quiet_NaN());
+  for (const std::uint32_t pixel : truth.judged) errors[pixel] = visibility[pixel] - truth.reference[pixel];
+  return errors;
 }
 
 std::optional<compare::VisibilityError> error_of_all_lights(const MethodRun& run, std::span<const LightTruth> truths) {

@@ -50,6 +50,9 @@ class LightJudge {
   bool has_masks_ = false;                            ///< the method's: known once its tiles came
 };
 
+/// V less V of the reference at each pixel; NaN where it is not judged.
+std::vector<float> judged_errors(std::span<const float> visibility, const LightTruth& truth);
+
 /// Over all lights' judged pixels together.
 std::optional<compare::VisibilityError> error_of_all_lights(const MethodRun& run, std::span<const LightTruth> truths);
 

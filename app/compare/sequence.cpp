@@ -1,6 +1,7 @@
 #include "app/compare/sequence.hpp"
 
 #include "app/compare/comparison_files.hpp"
+#include "app/process/say_once.hpp"
 #include "app/session.hpp"
 #include "base/atomic_file.hpp"
 #include "base/error.hpp"
@@ -12,7 +13,6 @@
 #include <functional>
 #include <map>
 #include <optional>
-#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -90,7 +90,7 @@ struct Squares {
   }
 };
 
-/// What is known of one entry after some frames.
+/// Sums of one entry over the frames so far.
 struct EntrySum {
   ErrorSum errors;
   Squares flicker;
@@ -100,7 +100,7 @@ struct EntrySum {
   std::size_t frames = 0;                         ///< in which it was asked
 };
 
-/// What is not added up over the frames is taken out: it is the last frame's alone.
+/// Replaces the last frame's numbers by those of all frames, and takes out what is not added up over the frames.
 void take_sum(compare::MethodResult& result, EntrySum& sum, std::size_t frames) {
   result.horizon_error.reset();
   result.beauty_error.reset();
@@ -123,24 +123,6 @@ void take_sum(compare::MethodResult& result, EntrySum& sum, std::size_t frames) 
   seconds.total.reset();
   seconds.total = seconds.sum();
 }
-
-/// Says each message once, whichever frame it is about first.
-class SayOnce final : public Progress {
- public:
-  explicit SayOnce(Progress& progress) : progress_(progress) {}
-
-  void begin(std::string stage, std::uint64_t steps) override { progress_.begin(std::move(stage), steps); }
-  using Progress::advance;
-  void advance(std::uint64_t steps) override { progress_.advance(steps); }
-  void clear() override { progress_.clear(); }
-  void say(Level level, const std::string& message) override {
-    if (said_.insert(message).second) progress_.say(level, message);
-  }
-
- private:
-  Progress& progress_;
-  std::set<std::string> said_;
-};
 
 Json number_or_null(const std::optional<double>& value) {
   return value ? Json(*value) : Json();

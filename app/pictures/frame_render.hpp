@@ -121,7 +121,7 @@ class FrameRenderer {
     RunOptions options;
     SessionMaker maker;  // refers to these
   };
-  /// What has been said, once.
+  /// Messages that have been said, so that each is said once.
   struct Said {
     std::vector<std::string> warnings;
     bool camera = false;
@@ -129,11 +129,11 @@ class FrameRenderer {
   /// Which method each light gets, of the view samples that are looked at.
   struct Plan {
     std::vector<LightMethod> chosen;
-    // Of lights whose areas are known where nothing that lets light through may be on the way: what counts elsewhere.
+    // The methods that count light samples where something may let light through, of lights that have areas elsewhere.
     std::vector<std::optional<LightMethod>> counting;
     std::vector<visibility::Light> lights;  // as those chosen know them: of areas, without filtered_by
   };
-  /// What the lights of the picture computed last were done with.
+  /// The methods that did the lights of the picture computed last.
   struct Done {
     std::map<std::string, LightMethod> with;  // by name: what counted where anything did, else what gave areas
     std::set<std::string> in_part;            // names of lights that both did

@@ -13,7 +13,7 @@ struct Failure {
   std::string message;
 };
 
-/// What code of a program that uses the library threw in a shadow method of its own. It goes through to that program.
+/// An exception out of a shadow method that a program using the library added. It goes through to that program.
 struct ThrownByCaller {
   std::exception_ptr thrown;
 };

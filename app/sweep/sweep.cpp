@@ -3,6 +3,7 @@
 #include "app/compare/comparison_entries.hpp"
 #include "app/methods.hpp"
 #include "app/parse.hpp"
+#include "app/process/say_once.hpp"
 #include "app/session.hpp"
 #include "base/did_you_mean.hpp"
 #include "base/error.hpp"
@@ -132,7 +133,7 @@ std::vector<MethodEntry> with_swept_options(std::span<const MethodEntry> entries
   return all;
 }
 
-/// Of the sizes of lights: is there a chosen light that has it?
+/// Is there a chosen light that has this size (light.half, light.angle)?
 bool is_size_of_some(const std::string& key, const scenes::Scene& scene, const std::vector<std::string>& chosen) {
   return std::ranges::any_of(scene.lights, [&](const scenes::AreaLight& light) {
     const bool is_chosen = chosen.empty() || std::ranges::find(chosen, light.name) != chosen.end();
@@ -223,7 +224,7 @@ Sweep sweep_methods(const scenes::Scene& scene, const RunOptions& run, Compariso
       keys_where(sweep.over, [](const SweptKey& key) { return !is_of_light(key) && key.name != kSamples; });
   const std::vector<MethodEntry> entries = with_swept_options(options.methods, of_methods);
   options.writes = false;
-  // What is wrong with a value is said before anything that takes long.
+  // Refuses wrong values before anything that takes long.
   for (const MethodEntry& entry : entries) static_cast<void>(describe_method(entry.name, entry.options));
   std::vector<RunOptions> counts;
   for (const Values& count : products(samples)) {
@@ -234,6 +235,7 @@ Sweep sweep_methods(const scenes::Scene& scene, const RunOptions& run, Compariso
   const std::vector<Values> sizes = products(of_light);
   for (const Values& light : sizes) static_cast<void>(with_lights(without_meshes(scene), light, run.lights));
 
+  SayOnce said(progress);
   for (const Values& light : sizes) {
     const scenes::Scene lit = with_lights(scene, light, run.lights);
     const std::size_t first_row = sweep.rows.size();
@@ -241,7 +243,7 @@ Sweep sweep_methods(const scenes::Scene& scene, const RunOptions& run, Compariso
       options.methods.clear();
       std::ranges::copy_if(entries, std::back_inserter(options.methods),
                            [&](const MethodEntry& entry) { return &with == &counts.front() || counts_samples(entry); });
-      compare::Metrics metrics = compare_methods(lit, with, options, progress);
+      compare::Metrics metrics = compare_methods(lit, with, options, said);
       if (sweep.reference.method.empty()) sweep.reference = metrics.reference;
       for (compare::MethodResult& result : metrics.methods) {
         if (!samples.empty() && describe_method(result.stats.method, result.stats.options).counts_light_samples())

@@ -27,7 +27,7 @@ struct SecondsTo {
   std::string entry = {};
 };
 
-/// What a method can do under one size of the lights, over all of its rows.
+/// The best of a method's rows under one size of the lights.
 struct SweepSummary {
   std::map<std::string, std::string> light;
   std::string method;

@@ -51,8 +51,8 @@ struct MethodLight {
   std::function<void(const Float3& p, std::span<Float3> points)> points_for;
 };
 
-/// What the pixels see: the view samples, row by row from the top left. Spans are valid until the method is given
-/// another view.
+/// The view samples, which say what each pixel sees, row by row from the top left. Spans are valid until the method is
+/// given another view.
 struct MethodView {
   static constexpr std::int32_t kBackground = -1;
 

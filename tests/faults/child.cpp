@@ -248,9 +248,9 @@ std::string FaultTest::small_scene(const std::string& name) const {
   return write(name, scene_with(R"({"name": "wedge", "triangles": [[-1,1,-1, 1,1,-1, 0,1.5,1]]})"));
 }
 
-std::string FaultTest::slow_scene() const {
+std::string FaultTest::slow_scene(int faces) const {
   std::string obj = "v 0 1 0\nv 1 1 0\nv 0 1 1\n";
-  for (int i = 0; i < 60'000; ++i) obj += "f 1 2 3\n";
+  for (int i = 0; i < faces; ++i) obj += "f 1 2 3\n";
   write("slow.obj", obj);
   return write("slow.json", scene_with(R"({"name": "slow", "file": "slow.obj"})"));
 }

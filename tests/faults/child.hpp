@@ -97,7 +97,7 @@ class FaultTest : public testing::Test {
   /// Two triangles over a floor under a square light, 48 × 32 pixels.
   [[nodiscard]] std::string small_scene(const std::string& name = "scene.json") const;
   /// A scene as above, with a mesh file beside it that keeps its reader busy for a while.
-  [[nodiscard]] std::string slow_scene() const;
+  [[nodiscard]] std::string slow_scene(int faces = 60'000) const;
 
   std::filesystem::path folder_;
 };

@@ -290,7 +290,13 @@ TEST_F(Library, BuildsWhatAFileSays) {
 }
 
 TEST_F(Library, SaysWhatTheProgramSays) {
-  EXPECT_EQ(methods_json() + "\n", run({"methods", "--json"}).out);
+  // Methods that tests of this process added come last.
+  const auto program = nlohmann::ordered_json::parse(run({"methods", "--json"}).out);
+  auto library = nlohmann::ordered_json::parse(methods_json());
+  ASSERT_GE(library.at("methods").size(), program.at("methods").size());
+  library.at("methods").erase(library.at("methods").begin() + static_cast<std::ptrdiff_t>(program.at("methods").size()),
+                              library.at("methods").end());
+  EXPECT_EQ(library, program);
   EXPECT_EQ(methods().front().name, nlohmann::json::parse(methods_json()).at("methods").at(0).at("name"));
   ASSERT_EQ(run({"wedges", scene_, "--light", "key", "--validate", "--json", path("w.json")}).code, 0);
   EXPECT_EQ(wedges_json(Scene::load(scene_), {.light = "key", .validate = true}), read("w.json"));

@@ -61,6 +61,9 @@ check convert convert "$lights" -o "$work/lights.glb"
 check convert-back convert "$work/lights.glb" -o "$work/lights-again.json"
 check inspect inspect "$work/lights.glb" --json "$work/inspect.json"
 check wedges wedges "$source/scenes/room.json" --validate --json "$work/wedges.json"
+check sweep sweep "$lights" -o "$work/sweep" --size 16x16 --light ball --methods edge-scatter,raytrace --over light-samples=4,16 --over light.half=0.2 \
+  --runs 1 --device cpu
+check frames compare "$source/scenes/leaves.gltf" -o "$work/frames" --size 16x12 --methods edge-scatter,depth-complexity --frames 0-2 --runs 1 --device cpu
 check methods methods --json
 check self-test devices --self-test --device cpu
 exit $failed

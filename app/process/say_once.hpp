@@ -1,0 +1,29 @@
+#pragma once
+
+#include "app/process/progress.hpp"
+
+#include <set>
+#include <string>
+#include <utility>
+
+namespace penumbra::app {
+
+/// Hands everything on, but says each message once: for work that does the same several times.
+class SayOnce final : public Progress {
+ public:
+  explicit SayOnce(Progress& progress) : progress_(progress) {}
+
+  void begin(std::string stage, std::uint64_t steps) override { progress_.begin(std::move(stage), steps); }
+  using Progress::advance;
+  void advance(std::uint64_t steps) override { progress_.advance(steps); }
+  void clear() override { progress_.clear(); }
+  void say(Level level, const std::string& message) override {
+    if (said_.insert(message).second) progress_.say(level, message);
+  }
+
+ private:
+  Progress& progress_;
+  std::set<std::string> said_;
+};
+
+}  // namespace penumbra::app

@@ -1,0 +1,10 @@
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+namespace penumbra {
+
+/// Adds `add_method` to the module: shadow methods that Python functions answer.
+void define_own_methods(pybind11::module_& module);
+
+}  // namespace penumbra
