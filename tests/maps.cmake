@@ -19,6 +19,7 @@ penumbra_test(maps FULL MapsTable.*
   analytic/maps/lists.cpp
   analytic/maps/method.cpp
   analytic/maps/moments.cpp
+  analytic/maps/vssm_windows.cpp
   analytic/maps/pcf.cpp
   analytic/maps/predicates.cpp
   analytic/maps/prefilter.cpp

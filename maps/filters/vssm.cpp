@@ -52,8 +52,8 @@ constexpr visibility::RealOption kOffset{"offset", 0, 8, 1,
 constexpr visibility::RealOption kDamping{"damping", 0, 16, 1,
                                           "csm: coefficient k of n is multiplied by exp(-damping (k/n)^2)"};
 constexpr visibility::RealOption kScale{"scale", 1, 16, 1,
-                                        "csm: how much steeper the step is made: of what the search finds, and of V "
-                                        "itself where window is given"};
+                                        "csm: the search finds nothing where the series says 1 / scale; with window "
+                                        "V is so many times the series"};
 constexpr visibility::RealOption kExponent{
     "exponent", 1, 80, 80,
     "esm: how fast the exponential falls over the scene's depth; evsm, which squares it: twice that"};

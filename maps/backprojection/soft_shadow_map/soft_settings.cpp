@@ -105,7 +105,11 @@ SoftSettings soft_settings(const visibility::ParsedOptions& parsed) {
   if (settings.patches == SoftPatches::bottom && settings.passes > 1) {
     throw UsageError(
         "method soft-shadow-map: patches=bottom says what one pass draws, and passes=2 draws the farthest surfaces "
-        "anyway; "
+        "anyway; take one of the two");
+  }
+  if (settings.patches == SoftPatches::bottom && parsed[kDepth] != DepthUse::first) {
+    throw UsageError(
+        "method soft-shadow-map: patches=bottom draws the farthest surfaces, so that depth= has nothing to choose; "
         "take one of the two");
   }
   return settings;

@@ -397,6 +397,7 @@ TEST_F(SoftShadowMap, BottomPatchesAreTheSecondPassAlone) {
   }
   EXPECT_GT(differing, 10U);
   EXPECT_THROW(soft(stage, {{"passes", "2"}, {"patches", "bottom"}}), UsageError);
+  EXPECT_THROW(soft(stage, {{"depth", "second"}, {"patches", "bottom"}}), UsageError);
 }
 
 }  // namespace

@@ -1,0 +1,52 @@
+#pragma once
+
+// What tests of vssm share: a scene, the method's options out of its twin's settings, the suite.
+
+#include "tests/analytic/maps/vssm_twin.hpp"
+
+#include <fmt/format.h>
+
+namespace penumbra::tests {
+
+inline constexpr std::uint32_t kMapSize = 128;
+
+/// What the methods ask their map to hold beside the receivers.
+inline glm::dvec2 beside(const Stage& stage) {
+  return maps::half_extent(stage.light, maps::light_basis(stage.light)) / maps::half_width(stage.light);
+}
+
+inline visibility::MethodOptions options_of(const VssmSettings& settings, std::uint32_t size = kMapSize) {
+  return {{"size", fmt::format("{}", size)},
+          {"moments", settings.moments},
+          {"layers", fmt::format("{}", settings.moments == "lvsm" ? settings.count : 4)},
+          {"terms", fmt::format("{}", settings.moments == "csm" ? settings.count : 16)},
+          {"exponent", fmt::format("{}", settings.exponent)},
+          {"scale", fmt::format("{}", settings.scale)},
+          {"leak", fmt::format("{}", settings.leak)},
+          {"bias", fmt::format("{}", settings.bias)},
+          {"offset", fmt::format("{}", settings.offset)},
+          {"damping", fmt::format("{}", settings.damping)},
+          {"subdivision", settings.subdivision},
+          {"cuts", fmt::format("{}", settings.cuts)},
+          {"window", fmt::format("{}", settings.window)},
+          {"receiverPlane", settings.receiver_plane ? "on" : "off"},
+          {"leakCut", settings.smooth_leak ? "smoothstep" : "linear"},
+          {"fallback", settings.fallback ? "on" : "off"}};
+}
+
+/// A floor, a sphere and two boards above it, one of them tilted.
+inline scenes::Scene scene_with(const decltype(scenes::AreaLight::shape)& shape) {
+  scenes::Scene scene;
+  add_quad(scene, {0, 0, 0}, {2, 0, 0}, {0, 0, -2});
+  add_object(scene, "sphere", sphere({0.5, 0.8, 0.3}, 0.5, 8));
+  add_quad(scene, {-0.8, 1.5, 0}, {0.4, 0, 0}, {0, 0, 0.9});
+  add_quad(scene, {-0.5, 0.5, -0.6}, {0.5, 0.2, 0}, {0, 0, 0.5});
+  scene.lights.push_back(ceiling_light(4, 0.5));
+  scene.lights.back().shape = shape;
+  scene.cameras.push_back(camera({0, 5, 4}, {0, 0, 0}, 40));
+  return scene;
+}
+
+class Vssm : public MapsTest {};
+
+}  // namespace penumbra::tests
