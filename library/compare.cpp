@@ -1,7 +1,7 @@
 #include "app/compare/comparison.hpp"
 #include "app/options.hpp"
-#include "app/process/failure.hpp"
 #include "compare/stats.hpp"
+#include "library/as_error.hpp"
 #include "library/library_progress.hpp"
 #include "library/scene_state.hpp"
 #include "scenes/formats/checks.hpp"
@@ -36,11 +36,9 @@ std::string compare_json(const Scene& scene, const CompareOptions& options, cons
   const compare::Metrics metrics = [&] {
     try {
       return app::compare_methods(state.scene, run, comparison, progress);
-    } catch (const app::ThrownByCaller& caller) {
-      std::rethrow_exception(caller.thrown);
     } catch (...) {
       progress.rethrow();
-      throw;
+      throw_as_error();
     }
   }();
   progress.rethrow();

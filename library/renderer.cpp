@@ -2,13 +2,14 @@
 
 #include "app/light_methods.hpp"
 #include "app/machine.hpp"
+#include "app/methods.hpp"
 #include "app/options.hpp"
 #include "app/pictures/frame_render.hpp"
-#include "app/process/failure.hpp"
 #include "app/process/stopwatch.hpp"
 #include "app/whole_lights.hpp"
 #include "base/error.hpp"
 #include "compare/stats.hpp"
+#include "library/as_error.hpp"
 #include "library/library_progress.hpp"
 #include "library/picture_state.hpp"
 #include "library/scene_state.hpp"
@@ -215,7 +216,10 @@ Picture Renderer::render(const RenderOptions& options) {
                          .pixel_side = pixel_side(options.pixel_samples),
                          .same_meshes = same_meshes,
                          .keeps_masks = options.masks && options.pixel_samples == 1};
-  static_cast<void>(app::parse_light_samples(run));  // what is wrong with them is said before the renderer's change
+  // What is wrong with options is said before anything changes, so that what is kept stays.
+  static_cast<void>(app::parse_light_samples(run));
+  if (!options.method.empty())
+    static_cast<void>(app::describe_method(options.method, {options.options.begin(), options.options.end()}));
   state.run = std::move(run);
   state.wish = {options.method,
                 {options.options.begin(), options.options.end()},
@@ -235,13 +239,10 @@ Picture Renderer::render(const RenderOptions& options) {
     static_cast<void>(state.frames.release());
     state.machine = app::make_machine(state.options.device);
     throw ResourceError(error.what());
-  } catch (const app::ThrownByCaller& caller) {
-    state.frames.reset();
-    std::rethrow_exception(caller.thrown);
   } catch (...) {
     state.frames.reset();  // whatever it holds may be half of one scene and half of another
     state.progress.rethrow();
-    throw;
+    throw_as_error();
   }
 }
 

@@ -1,4 +1,5 @@
 #include "app/wedges/built_wedges.hpp"
+#include "library/as_error.hpp"
 #include "library/scene_state.hpp"
 #include "scenes/formats/checks.hpp"
 
@@ -7,10 +8,12 @@
 namespace penumbra {
 
 std::string wedges_json(const Scene& scene, const WedgeOptions& options) {
-  const scenes::Scene& built_of = scene.state().scene;
-  scenes::check_scene(built_of, "the scene");
-  const app::BuiltWedges wedges(built_of, {options.light, options.construction, options.from, options.validate});
-  return app::wedges_json(wedges.result());
+  return with_errors([&] {
+    const scenes::Scene& built_of = scene.state().scene;
+    scenes::check_scene(built_of, "the scene");
+    const app::BuiltWedges wedges(built_of, {options.light, options.construction, options.from, options.validate});
+    return app::wedges_json(wedges.result());
+  });
 }
 
 }  // namespace penumbra

@@ -310,18 +310,19 @@ PYBIND11_MODULE(_core, module) {
         const py::gil_scoped_release unlocked;
         return compare_json(scene, options, renderer);
       });
-  module.def(
-      "inspect_file",
-      [](const std::filesystem::path& file, double weld, bool self_intersections, std::size_t list_limit) {
-        return inspect_json(file, {weld, self_intersections, list_limit});
-      },
-      Unlocked());
+  module.def("inspect_file", [](const std::filesystem::path& file, double weld, bool self_intersections,
+                                std::size_t list_limit, py::object log, py::object progress) {
+    const RendererOptions host = options_of({}, std::move(log), std::move(progress));
+    const py::gil_scoped_release unlocked;
+    return inspect_json(file, {weld, self_intersections, list_limit}, host);
+  });
   module.def("inspect_arrays", [](const Doubles& vertices, const Indices& faces, double weld, bool self_intersections,
-                                  std::size_t list_limit) {
+                                  std::size_t list_limit, py::object log, py::object progress) {
     const auto positions = rows_of(vertices);
     const auto triangles = faces_of(faces);
+    const RendererOptions host = options_of({}, std::move(log), std::move(progress));
     const py::gil_scoped_release unlocked;
-    return inspect_json(positions, triangles, {weld, self_intersections, list_limit});
+    return inspect_json(positions, triangles, {weld, self_intersections, list_limit}, host);
   });
   module.def(
       "wedges_json",

@@ -434,13 +434,13 @@ def add_method(name, function, *, family="image", masks=False, lights=tuple(_SHA
     _core.add_method(name, ask, family, paper, exact_for, masks, _names(lights), textures, described)
 
 
-def inspect(mesh, faces=None, *, weld=0.0, self_intersections=True, list_limit=100):
+def inspect(mesh, faces=None, *, weld=0.0, self_intersections=True, list_limit=100, log=None, progress=None):
     """What is wrong with a mesh, and what each method makes of it: a dict as `penumbra inspect --json` prints it. `mesh`: a
-    file, or vertices (V, 3) with `faces` (F, 3)."""
+    file, or vertices (V, 3) with `faces` (F, 3). `log` and `progress` as of Renderer."""
     if faces is None:
-        text = _core.inspect_file(_os.fspath(mesh), weld, self_intersections, list_limit)
+        text = _core.inspect_file(_os.fspath(mesh), weld, self_intersections, list_limit, log, progress)
     else:
-        text = _core.inspect_arrays(mesh, faces, weld, self_intersections, list_limit)
+        text = _core.inspect_arrays(mesh, faces, weld, self_intersections, list_limit, log, progress)
     return _json.loads(text)
 
 

@@ -170,7 +170,11 @@ Context::State::~State() {
   if (context != EGL_NO_CONTEXT) eglDestroyContext(display, context);
 }
 
-Current::Current(Context::State& state) : state_(state), lock_(state.in_use) {
+Current::Current(Context::State& state)
+    : state_(state),
+      lock_(state.in_use),
+      before_{eglQueryAPI(), eglGetCurrentDisplay(), eglGetCurrentContext(), eglGetCurrentSurface(EGL_DRAW),
+              eglGetCurrentSurface(EGL_READ)} {
   eglBindAPI(EGL_OPENGL_API);  // a thread's own setting
   if (eglMakeCurrent(state_.display, EGL_NO_SURFACE, EGL_NO_SURFACE, state_.context) != EGL_TRUE) {
     throw ResourceError("OpenGL on {}: the context cannot be made current: {}", state_.info.name, egl_error());
@@ -179,6 +183,8 @@ Current::Current(Context::State& state) : state_(state), lock_(state.in_use) {
 
 Current::~Current() {
   eglMakeCurrent(state_.display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+  eglBindAPI(before_.api);
+  if (before_.context != EGL_NO_CONTEXT) eglMakeCurrent(before_.display, before_.draw, before_.read, before_.context);
 }
 
 void Current::check(const std::string& doing) const {

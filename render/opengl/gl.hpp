@@ -24,7 +24,8 @@ struct Context::State {
   ~State();
 };
 
-/// While it lives the context is this thread's, and nobody else's. Throws ResourceError if that cannot be.
+/// While it lives the context is this thread's, and nobody else's; then the thread has the EGL context again that it
+/// had before, a calling program's own. Throws ResourceError if that cannot be.
 class Current {
  public:
   explicit Current(Context::State& state);
@@ -38,6 +39,12 @@ class Current {
  private:
   Context::State& state_;
   std::unique_lock<std::mutex> lock_;
+  struct Binding {
+    EGLenum api;
+    EGLDisplay display;
+    EGLContext context;
+    EGLSurface draw, read;
+  } before_;
 };
 
 }  // namespace penumbra::render::opengl

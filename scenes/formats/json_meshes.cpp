@@ -5,6 +5,7 @@
 #include "mesh/import.hpp"
 #include "mesh/shapes/shapes.hpp"
 #include "mesh/soup_memory.hpp"
+#include "mesh/unused_vertices.hpp"
 #include "scenes/formats/package_files.hpp"
 
 #include <fcntl.h>
@@ -74,28 +75,6 @@ mesh::TriangleSoup read_source(const json& mesh, const Place& place, const ReadO
   }
   const std::string name = mesh["file"].get<std::string>();
   return import_file(open_scene_file(name, place / "file", options), name, place / "file", options, scene);
-}
-
-/// Vertices that no triangle uses are no part of the scene: they would move its origin without being seen.
-void drop_unused_vertices(mesh::TriangleSoup& soup, const Place& place, std::vector<std::string>& warnings) {
-  std::vector<std::uint8_t> used(soup.positions.size(), 0);
-  for (const mesh::Triangle& triangle : soup.triangles) {
-    for (const std::uint32_t vertex : triangle) used[vertex] = 1;
-  }
-  if (std::ranges::all_of(used, [](std::uint8_t is_used) { return is_used != 0; })) return;
-  std::vector<std::uint32_t> new_index(soup.positions.size());
-  std::uint32_t kept = 0;
-  for (std::size_t i = 0; i < new_index.size(); ++i) {
-    if (used[i] == 0) continue;
-    soup.positions[kept] = soup.positions[i];
-    new_index[i] = kept++;
-  }
-  warnings.push_back(
-      fmt::format("{}: left out {} vertices that no triangle uses", place.str(), soup.positions.size() - kept));
-  soup.positions.resize(kept);
-  for (mesh::Triangle& triangle : soup.triangles) {
-    for (std::uint32_t& vertex : triangle) vertex = new_index[vertex];
-  }
 }
 
 /// Sine and cosine of degrees; exact for multiples of 90, so that a quarter turn leaves round numbers round.
@@ -248,7 +227,10 @@ void apply_fit(const json& fit, const Place& place, mesh::TriangleSoup& soup) {
 
 mesh::TriangleSoup read_mesh(const json& mesh, const Place& place, const ReadOptions& options, Scene& scene) {
   mesh::TriangleSoup soup = read_source(mesh, place, options, scene);
-  drop_unused_vertices(soup, place, scene.warnings);
+  const std::size_t all = soup.positions.size();
+  if (!mesh::drop_unused_vertices(soup).empty())
+    scene.warnings.push_back(
+        fmt::format("{}: left out {} vertices that no triangle uses", place.str(), all - soup.positions.size()));
   if (mesh.contains("transform")) apply_transform(mesh["transform"], place / "transform", soup);
   if (mesh.contains("fit")) apply_fit(mesh["fit"], place / "fit", soup);
   const auto finite = [](const glm::dvec3& p) {

@@ -259,6 +259,72 @@ TEST_F(Library, MeshesMoveFromWhereTheyWere) {
   EXPECT_EQ(all_bytes(Renderer(scene).render(options)), back);
 }
 
+/// Vertices that no triangle uses are left out with a warning, as of a file, and positions are given as before.
+TEST_F(Library, UnusedVerticesAreNoPartOfAScene) {
+  const std::array<Vector, 5> board = {{{9, 9, 9}, {-1, 1, -1}, {1, 1, -1}, {5, 5, 5}, {0, 1.5, 1}}};
+  const std::array<std::array<std::uint32_t, 3>, 1> one = {{{1, 2, 4}}};
+  const std::array<Vector, 3> used = {board[1], board[2], board[4]};
+  const std::array<std::array<std::uint32_t, 3>, 1> all = {{{0, 1, 2}}};
+  const RenderOptions options{.width = 24, .height = 16};
+  Scene loose = Scene::load(scene_), tight = loose;
+  const MeshId mesh = loose.add_mesh("board", board, one);
+  tight.add_mesh("board", used, all);
+  EXPECT_THAT(loose.warnings(), testing::Contains(HasSubstr("left out 2 vertices")));
+  EXPECT_TRUE(all_bytes(Renderer(loose).render(options)) == all_bytes(Renderer(tight).render(options)));
+  std::array<Vector, 5> higher = board;
+  for (Vector& p : higher) p[1] += 0.5;
+  const std::array<Vector, 3> higher_used = {higher[1], higher[2], higher[4]};
+  EXPECT_THROW(loose.set_positions(mesh, higher_used), InputError);
+  loose.set_positions(mesh, higher);
+  tight.set_positions(tight.mesh("board"), higher_used);
+  EXPECT_TRUE(all_bytes(Renderer(loose).render(options)) == all_bytes(Renderer(tight).render(options)));
+}
+
+TEST_F(Library, InspectionsEndToo) {
+  const std::array<Vector, 3> positions = {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}};
+  const std::array<std::array<std::uint32_t, 3>, 1> triangle = {{{0, 1, 2}}};
+  EXPECT_EQ(nlohmann::json::parse(inspect_json(positions, triangle)).at("triangles"), 1);
+  EXPECT_THROW(static_cast<void>(
+                   inspect_json(positions, triangle, {}, {.progress = [](std::string_view, double) { return false; }})),
+               Cancelled);
+}
+
+/// A mesh with vertices' normals that was turned and then given positions has the normals that it was read with.
+TEST_F(Library, PositionsTakeTheTransformBack) {
+  // Three positions, then three normals, in float.
+  write("roof.gltf", R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0, 1, 2]}],
+    "extensionsUsed": ["KHR_lights_punctual"],
+    "extensions": {"KHR_lights_punctual": {"lights": [{"type": "point", "name": "key", "intensity": 100, "extras": {"radius": 0.3}}]}},
+    "nodes": [{"mesh": 0, "name": "roof"}, {"camera": 0, "translation": [0, 4, 0], "rotation": [-0.70710678, 0, 0, 0.70710678]},
+              {"translation": [1, 3, 0], "extensions": {"KHR_lights_punctual": {"light": 0}}}],
+    "cameras": [{"type": "perspective", "perspective": {"yfov": 0.7, "znear": 0.1, "aspectRatio": 1.5}}],
+    "meshes": [{"name": "roof", "primitives": [{"attributes": {"POSITION": 0, "NORMAL": 1}}]}],
+    "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [-1, 0, -1], "max": [1, 0, 1]},
+                  {"bufferView": 1, "componentType": 5126, "count": 3, "type": "VEC3"}],
+    "bufferViews": [{"buffer": 0, "byteLength": 36}, {"buffer": 0, "byteOffset": 36, "byteLength": 36}],
+    "buffers": [{"byteLength": 72, "uri": "data:application/octet-stream;base64,AACAvwAAAAAAAIA/AACAPwAAAAAAAIA/AAAAAAAAAAAAAIC/mpkZP83MTD8AAAAAAAAAAM3MTD+amRk/mpkZv83MTD8AAAAA"}]})");
+  Scene scene = Scene::load(path("roof.gltf"));
+  const RenderOptions options{.width = 24, .height = 16};
+  const std::string before = all_bytes(Renderer(scene).render(options));
+  EXPECT_FALSE(all_bytes(Renderer(scene).render({.width = 24, .height = 16, .shading_normals = false})) == before);
+  const std::array<Vector, 3> corners = {{{-1, 0, 1}, {1, 0, 1}, {0, 0, -1}}};
+  scene.set_transform(scene.mesh("roof"), {0.8, -0.6, 0, 0, 0.6, 0.8, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1});
+  EXPECT_FALSE(all_bytes(Renderer(scene).render(options)) == before);
+  scene.set_positions(scene.mesh("roof"), corners);
+  EXPECT_TRUE(all_bytes(Renderer(scene).render(options)) == before);
+}
+
+/// Options that a method does not have are said before anything is dropped: the next picture keeps its hierarchies.
+TEST_F(Library, WrongOptionsDropNothing) {
+  Renderer renderer(Scene::load(scene_));
+  const RenderOptions options{.method = "edge-scatter", .light_samples = 16};
+  static_cast<void>(renderer.render(options));
+  EXPECT_THROW(renderer.render({.method = "edge-scatter", .options = {{"colour", "red"}}}), UsageError);
+  EXPECT_THROW(renderer.render({.method = "no-such-method"}), UsageError);
+  const auto stats = nlohmann::json::parse(renderer.render(options).stats_json());
+  EXPECT_EQ(stats.at("counters").at("meshesKept"), 1);
+}
+
 TEST_F(Library, ComparisonsEndToo) {
   int calls = 0;
   const auto end = [&](std::string_view, double) -> bool {

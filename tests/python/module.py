@@ -275,6 +275,8 @@ class Module(unittest.TestCase):
             penumbra.render(ROOM, size=(64, 64), progress=lambda stage, done: 1 // 0)
         with self.assertRaises(ZeroDivisionError):
             penumbra.compare(ROOM, ["edge-scatter", "raytrace"], size=(24, 16), runs=1, progress=lambda stage, done: 1 // 0)
+        with self.assertRaises(ZeroDivisionError):
+            penumbra.inspect([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]], progress=lambda stage, done: 1 // 0)
         threading.Timer(0.3, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
         with self.assertRaises(KeyboardInterrupt):
             for _ in range(1000):

@@ -1,0 +1,27 @@
+#pragma once
+
+#include "base/did_you_mean.hpp"
+#include "base/error.hpp"
+
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace penumbra {
+
+/// The place of the element of that name. Throws UsageError, listing what is there; `what` is its kind.
+template <typename Named>
+std::size_t find_named(const std::vector<Named>& elements, std::string_view name, const char* what) {
+  const auto found = std::ranges::find(elements, name, &Named::name);
+  if (found != elements.end()) return static_cast<std::size_t>(found - elements.begin());
+  std::vector<std::string> names;
+  for (const Named& element : elements) names.push_back(element.name);
+  throw UsageError("the scene has no {} \"{}\"; it has: {}{}", what, name, fmt::join(names, ", "),
+                   did_you_mean(name, names));
+}
+
+}  // namespace penumbra
