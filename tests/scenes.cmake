@@ -5,6 +5,7 @@ penumbra_test(scenes
   unit/scenes/files.cpp
   unit/scenes/float_rounding.cpp
   unit/scenes/json.cpp
+  unit/scenes/json_schema.cpp
   unit/scenes/json_scene.cpp
   unit/scenes/light_kinds.cpp
   unit/scenes/shapes.cpp
@@ -13,3 +14,7 @@ penumbra_test(scenes
   unit/scenes/writer.cpp
   unit/scenes/writer_glb.cpp
   LIBRARIES penumbra_scenes nlohmann_json::nlohmann_json)
+find_path(VALIJSON_INCLUDE_DIR valijson/validator.hpp REQUIRED)  # what the schema of scenes is held against
+target_include_directories(scenes_test SYSTEM PRIVATE ${VALIJSON_INCLUDE_DIR})
+# valijson brings std::regex, of which g++ 12 with sanitizers says falsely that it may be used uninitialised.
+target_compile_options(scenes_test PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)

@@ -7,29 +7,11 @@
 #include <vector>
 
 #include <nlohmann/json.hpp>
-#include <valijson/adapters/nlohmann_json_adapter.hpp>
-#include <valijson/schema.hpp>
-#include <valijson/schema_parser.hpp>
-#include <valijson/validation_results.hpp>
-#include <valijson/validator.hpp>
 
-/// The only file that sees valijson: its templates take long to compile.
 namespace penumbra::scenes {
 namespace {
 
 using nlohmann::json;
-
-/// The library's own words, for what explain_violation has none for. Its context is a list such as "<root>",
-/// "[meshes]", "[0]"; its last error is the outermost, so the first says most.
-std::string librarys_words(valijson::ValidationResults& results, const std::string& file) {
-  valijson::ValidationResults::Error error;
-  if (!results.popError(error)) return file + ": does not fit the schema";
-  std::string pointer;
-  for (const std::string& part : error.context) {
-    if (part.size() > 2 && part.front() == '[') pointer += "/" + part.substr(1, part.size() - 2);
-  }
-  return fmt::format("{}: {}: {}", file, pointer, error.description);
-}
 
 bool is_triangle_list(const json& list) {
   return list.is_array() && !list.empty() && std::all_of(list.begin(), list.end(), [](const json& triangle) {
@@ -38,8 +20,8 @@ bool is_triangle_list(const json& list) {
          });
 }
 
-/// Sets long lists of triangles aside while the rest is validated: a general validator takes a microsecond a number,
-/// and a scene may have millions. Only lists that are what the schema demands of "triangles" are set aside; of each,
+/// Sets long lists of triangles aside while the rest is validated: a number takes a fraction of a microsecond, and a
+/// scene may have millions. Only lists that are what the schema demands of "triangles" are set aside; of each,
 /// one triangle stays. Everything is back when this goes.
 class ShelvedTriangles {
  public:
@@ -66,18 +48,7 @@ class ShelvedTriangles {
 
 void enforce_schema(json& document, const std::string& file) {
   const ShelvedTriangles shelved(document);
-  using Adapter = valijson::adapters::NlohmannJsonAdapter;
-  const json schema_json = json::parse(kSceneSchemaText);
-  valijson::Schema schema;
-  valijson::SchemaParser(valijson::SchemaParser::kDraft7).populateSchema(Adapter(schema_json), schema);
-
-  valijson::Validator validator(valijson::Validator::kStrongTypes);
-  if (validator.validate(schema, Adapter(document), nullptr)) return;
-  // Slower, and only for the message: the same again with a list of what is wrong.
-  if (const auto words = explain_violation(schema_json, document, file)) throw InputError("{}", *words);
-  valijson::ValidationResults results;
-  validator.validate(schema, Adapter(document), &results);
-  throw InputError("{}", librarys_words(results, file));
+  if (const auto words = find_violation(json::parse(kSceneSchemaText), document, file)) throw InputError("{}", *words);
 }
 
 }  // namespace penumbra::scenes

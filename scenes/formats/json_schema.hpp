@@ -18,9 +18,10 @@ extern const std::string_view kSceneSchemaText;
 /// The document is the same afterwards.
 void enforce_schema(nlohmann::json& document, const std::string& file);
 
-/// The first place, in the document's order, where `instance` departs from the schema, in words for people. Knows the
-/// keywords that our schema uses; whether a document is valid is decided by the JSON Schema library, not here.
-std::optional<std::string> explain_violation(const nlohmann::json& schema, const nlohmann::json& instance,
-                                             const std::string& file);
+/// The first place, in the document's order, where `instance` departs from the schema, in words for people; nothing for
+/// a document that is valid. Knows the keywords of JSON Schema that our schema uses, in the forms in which it uses
+/// them; a test holds its verdicts against a JSON Schema library's.
+std::optional<std::string> find_violation(const nlohmann::json& schema, const nlohmann::json& instance,
+                                          const std::string& file);
 
 }  // namespace penumbra::scenes

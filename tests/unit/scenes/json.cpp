@@ -1,8 +1,6 @@
-#include "scenes/formats/json_schema.hpp"
 #include "tests/unit/scenes/support.hpp"
 
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 
 #include <ostream>
 #include <string>
@@ -228,36 +226,6 @@ const BadScene kMeaning[] = {
      "/camera/verticalFov: expected a number above 0 and below 180, found the number 180"},
 };
 INSTANTIATE_TEST_SUITE_P(Meaning, JsonErrors, testing::ValuesIn(kMeaning), [](const auto& p) { return p.param.name; });
-
-/// The library decides and we explain: what it refuses must have an explanation, and what it accepts none.
-TEST(JsonSchema, OurWordsAgreeWithTheLibrary) {
-  const auto schema = nlohmann::json::parse(scenes::kSceneSchemaText);
-  for (const BadScene& bad : kStructure) {
-    auto document = nlohmann::json::parse(bad.text);
-    EXPECT_TRUE(scenes::explain_violation(schema, document, "f").has_value()) << bad.name;
-    EXPECT_THROW(scenes::enforce_schema(document, "f"), InputError) << bad.name;
-  }
-  auto good = nlohmann::json::parse(scene_text());
-  EXPECT_FALSE(scenes::explain_violation(schema, good, "f").has_value());
-  EXPECT_NO_THROW(scenes::enforce_schema(good, "f"));
-}
-
-/// Every object that the schema describes with properties is closed.
-TEST(JsonSchema, NoObjectTakesUnknownKeys) {
-  const auto schema = nlohmann::json::parse(scenes::kSceneSchemaText);
-  int objects = 0;
-  const auto visit = [&](const auto& self, const nlohmann::json& node) -> void {
-    if (node.is_object() && node.value("type", nlohmann::json()) == "object" && node.contains("properties")) {
-      EXPECT_EQ(node.value("additionalProperties", nlohmann::json()), false) << node.dump();
-      ++objects;
-    }
-    if (node.is_structured()) {
-      for (const auto& child : node) self(self, child);
-    }
-  };
-  visit(visit, schema);
-  EXPECT_GT(objects, 20);
-}
 
 }  // namespace
 }  // namespace penumbra::test

@@ -8,9 +8,9 @@
 #include <algorithm>
 #include <limits>
 
-/// From "does not validate" to a sentence that a person can act on. Schema validators report that no branch of a
-/// `oneOf` fits; we know which branch was meant (by the key that is present, or by "type"), go into it and report the
-/// innermost value that is wrong.
+/// What a document violates, in a sentence that a person can act on. General validators report that no branch of a
+/// `oneOf` fits; this one knows which branch was meant (by the key that is present, or by "type"), goes into it and
+/// reports the innermost value that is wrong.
 namespace penumbra::scenes {
 namespace {
 
@@ -18,9 +18,9 @@ using nlohmann::json;
 
 using Words = std::optional<std::string>;
 
-class Explainer {
+class Validator {
  public:
-  explicit Explainer(const json& root) : root_(root) {}
+  explicit Validator(const json& root) : root_(root) {}
 
   Words find(const json& unresolved, const json& instance, const Place& place) const {
     const json& schema = resolve(unresolved);
@@ -48,6 +48,7 @@ class Explainer {
     const json& schema = resolve(unresolved);
     if (schema.contains("title") && &schema != &root_) return schema["title"].get<std::string>();
     if (schema.contains("const")) return schema["const"].dump();
+    if (schema.contains("enum")) return "one of " + schema["enum"].dump();
     if (schema.contains("type")) {
       const std::string type = schema["type"].get<std::string>();
       if (type == "number" || type == "integer") return (type == "number" ? "a number" : "an integer") + bounds(schema);
@@ -114,6 +115,9 @@ class Explainer {
   }
 
   static bool fits_constant(const json& schema, const json& instance) {
+    if (const auto values = schema.find("enum"); values != schema.end()) {
+      if (std::ranges::find(*values, instance) == values->end()) return false;
+    }
     return !schema.contains("const") || schema["const"] == instance;
   }
 
@@ -241,8 +245,8 @@ class Explainer {
 
 }  // namespace
 
-Words explain_violation(const json& schema, const json& instance, const std::string& file) {
-  return Explainer(schema).find(schema, instance, Place{file, {}});
+Words find_violation(const json& schema, const json& instance, const std::string& file) {
+  return Validator(schema).find(schema, instance, Place{file, {}});
 }
 
 }  // namespace penumbra::scenes
