@@ -37,10 +37,21 @@ Tap ask_texel(MapFace face, uint layer, uvec2 cell) {
   return tap;
 }
 
-// Drivers for processors end all loops of an invocation after 65,535 turns together. Then this loop, too, ends at once:
-// the host takes fewer rows at a time. (`layers` is at least 1, which the compiler does not know.)
+// Drivers for processors end all loops of an invocation after 65,535 turns together. Then the loop below, too, ends at
+// once: the host asks this workgroup again, by fewer rows of the map at a time. (`layers` is at least 1, which the compiler
+// does not know.)
 void check_that_loops_ended() {
   uint turns = 0;
   while (turns < lookup.layers + 1) ++turns;
-  if (turns != lookup.layers + 1) results[results.length() - 1] = 1;
+  if (turns == lookup.layers + 1) return;
+  const uint end = results.length() - kCutLoopWords;
+  results[results[end + 2] + lookup.first_result + this_group()] = 1;
+  results[end] = 1;
+}
+
+// Whether this workgroup is asked: at first all are, then those whose loops were cut off.
+bool is_first_pass() { return results[results.length() - kCutLoopWords + 1] == 0; }
+bool is_asked() {
+  const uint asked_from = results[results.length() - kCutLoopWords + 1];
+  return asked_from == 0 || results[asked_from + lookup.first_result + this_group()] != 0;
 }

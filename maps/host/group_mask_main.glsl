@@ -40,7 +40,7 @@ void look_at(MapFace face, uvec2 cell) {
 
 void main() {
   const uint i = this_receiver();
-  if (i >= lookup.receiver_count) return;
+  if (i >= lookup.receiver_count || !is_asked()) return;
   const Receiver receiver = receivers[lookup.first_receiver + i];
   const uint lane = gl_LocalInvocationIndex;
   for (uint word = lane; word < kMaskWords; word += gl_WorkGroupSize.x) hidden_bits[word] = 0;

@@ -13,7 +13,7 @@ void look_at(MapFace face, uvec2 cell) { sum = min(sum + hidden_by(face, cell), 
 
 void main() {
   const uint i = this_receiver();
-  if (i >= lookup.receiver_count) return;
+  if (i >= lookup.receiver_count || !is_asked()) return;
   const Receiver receiver = receivers[lookup.first_receiver + i];
   if (gl_LocalInvocationIndex == 0) sum_low = sum_high = 0;
   barrier();

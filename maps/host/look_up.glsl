@@ -31,13 +31,14 @@ layout(scalar, push_constant) uniform Push {
 
 uint receiver_plane;  // scalar_main.glsl: the receiver's, as Receiver has it
 
+uint this_group() { return gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x; }
+
 // The receiver of this invocation, or of this workgroup, counted from the part's first.
 uint this_receiver() {
-  const uint group = gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x;
 #ifdef GROUP_A_RECEIVER
-  return group;
+  return this_group();
 #else
-  return group * gl_WorkGroupSize.x + gl_LocalInvocationID.x;
+  return this_group() * gl_WorkGroupSize.x + gl_LocalInvocationID.x;
 #endif
 }
 

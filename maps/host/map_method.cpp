@@ -60,9 +60,11 @@ class MapMethod final : public visibility::Method {
   [[nodiscard]] bool gives_masks() const { return recipe_.description.output == visibility::Output::mask; }
   /// Words of results that a pixel has: its mask, or V.
   [[nodiscard]] std::uint32_t words_per_pixel() const { return gives_masks() ? light_->words_per_mask() : 1; }
-  /// Of so many pixels; and a word more, where a workgroup's look-up says that its loops were cut off.
+  /// Of so many pixels; with workgroups that loop, two words a pixel more, in which workgroups whose loops were cut off
+  /// say so to this pass and the next, and the words of CutLoops.
   [[nodiscard]] std::uint64_t result_bytes(std::uint64_t pixels) const {
-    return (pixels * words_per_pixel() + (recipe_.group_a_receiver ? 1 : 0)) * sizeof(std::uint32_t);
+    if (!recipe_.group_a_receiver) return pixels * words_per_pixel() * sizeof(std::uint32_t);
+    return pixels * (words_per_pixel() + 2) * sizeof(std::uint32_t) + sizeof(gpu::CutLoops);
   }
   /// Light points whose maps are asked one after the other for the same bits or V.
   [[nodiscard]] std::uint32_t point_count() const {
@@ -95,13 +97,11 @@ class MapMethod final : public visibility::Method {
   void make_centre_maps(std::uint32_t part);
   /// V of a tile from the maps of the light's parts, one after the other.
   void add_up_parts(const visibility::Tile& tile);
-  /// Asks until the device ran all look-ups to their end.
+  /// Asks, and asks those workgroups again whose loops the device cut off, by fewer rows of a map at a time.
   void ask_all(const visibility::Tile& tile);
-  /// Whether the device ran the last look-ups to their end; else fewer rows of a map are looked at at a time from now
-  /// on.
-  [[nodiscard]] bool loops_ended();
-  /// Records the look-ups of a tile in the maps of these light points.
-  void ask(render::Commands& commands, const visibility::Tile& tile, std::uint32_t first, std::uint32_t count);
+  /// Records the look-ups of a tile in the maps of these light points, so many rows of a map at once.
+  void ask(render::Commands& commands, const visibility::Tile& tile, std::uint32_t first, std::uint32_t count,
+           std::uint32_t rows_at_once);
 
   const render::Device* device_;
   MapRecipe recipe_;
@@ -119,10 +119,9 @@ class MapMethod final : public visibility::Method {
       parts_;  ///< of the light as maps are made for it; one, unless the recipe says otherwise
   FittedViews fitted_;
   std::vector<std::uint32_t> own_push_;
-  std::uint32_t batch_ = 1;         ///< light points at a time
-  std::uint32_t rows_at_once_ = 0;  ///< of a map, that one dispatch looks at
-  visibility::Tile tile_{};         ///< last evaluated
-  std::uint32_t tile_pixels_ = 0;   ///< its pixels
+  std::uint32_t batch_ = 1;        ///< light points at a time
+  visibility::Tile tile_{};        ///< last evaluated
+  std::uint32_t tile_pixels_ = 0;  ///< its pixels
   std::unique_ptr<render::Buffer> views_, depths_, results_;
   std::vector<double> mean_;  ///< V of the tile last evaluated, if the light has several parts
 };
@@ -192,7 +191,6 @@ void MapMethod::prepare_light(const visibility::Light& light) {
   own_push_ = recipe_.push ? recipe_.push(light) : std::vector<std::uint32_t>();
   PENUMBRA_ASSERT(own_push_.size() == recipe_.push_words, "{}: {} words of push constants", recipe_.description.name,
                   own_push_.size());
-  rows_at_once_ = options_.size;
   if (many) {
     counters_["mapsPerBatch"] = batch_;
     return;
@@ -222,7 +220,7 @@ void MapMethod::prepare_view(const visibility::ViewSamples& samples) {
 
 std::uint32_t MapMethod::max_tile_rows() const {
   PENUMBRA_ASSERT(light_ != nullptr, "{}: max_tile_rows before prepare_light", recipe_.description.name);
-  const std::uint64_t pixel_bytes = words_per_pixel() * sizeof(std::uint32_t);
+  const std::uint64_t pixel_bytes = result_bytes(1) - result_bytes(0);
   const std::uint32_t possible = receivers_.max_rows(*device_, pixel_bytes);
   if (recipe_.points == MapPoints::centre) {
     const bool full =
@@ -264,8 +262,8 @@ void MapMethod::render_layers(render::Commands& commands, std::uint32_t part) {
   }
 }
 
-void MapMethod::ask(render::Commands& commands, const visibility::Tile& tile, std::uint32_t first,
-                    std::uint32_t count) {
+void MapMethod::ask(render::Commands& commands, const visibility::Tile& tile, std::uint32_t first, std::uint32_t count,
+                    std::uint32_t rows_at_once) {
   for (const Receivers::Part& part : receivers_.parts(tile)) {
     gpu::LookupPush push{.basis = basis_.rounded(),
                          .bias = static_cast<float>(options_.bias),
@@ -291,9 +289,9 @@ void MapMethod::ask(render::Commands& commands, const visibility::Tile& tile, st
       std::ranges::copy(product->buffers(), std::back_inserter(buffers));
     }
     const std::uint64_t groups = recipe_.group_a_receiver ? packets(part) : part.groups();
-    for (std::uint32_t row = 0; row < options_.size; row += rows_at_once_) {
+    for (std::uint32_t row = 0; row < options_.size; row += rows_at_once) {
       push.first_row = row;
-      push.last_row = std::min(row + rows_at_once_, options_.size) - 1;
+      push.last_row = std::min(row + rows_at_once, options_.size) - 1;
       std::vector<std::uint32_t> words = push_words(push);
       words.insert(words.end(), own_push_.begin(), own_push_.end());
       look_up_.record(commands, std::as_bytes(std::span(words)), buffers, groups);
@@ -323,29 +321,40 @@ void MapMethod::add_up_parts(const visibility::Tile& tile) {
 }
 
 void MapMethod::ask_all(const visibility::Tile& tile) {
-  do {
+  if (!recipe_.group_a_receiver) {
     render::Commands commands(*device_);
-    if (recipe_.group_a_receiver) commands.fill(*results_, 0, results_->bytes() - sizeof(std::uint32_t), 4);
     for (std::uint32_t first = 0; first < point_count(); first += batch_) {
       const std::uint32_t count = std::min(batch_, point_count() - first);
       if (recipe_.points == MapPoints::light_samples) render_maps(commands, first, count);
-      ask(commands, tile, first, count);
+      ask(commands, tile, first, count, options_.size);
       times_.add(commands.submit());
     }
-  } while (!loops_ended());
-}
-
-bool MapMethod::loops_ended() {
-  if (!recipe_.group_a_receiver) return true;
-  std::uint32_t cut = 0;
-  results_->read(std::span(&cut, 1), results_->bytes() - sizeof(cut));
-  if (cut == 0) return true;
-  if (rows_at_once_ == 1) {
-    throw ResourceError("method {}: {} ends the loop over one row of a map before its end; take a smaller size",
-                        recipe_.description.name, device_->info().name);
+    return;
   }
-  rows_at_once_ = (rows_at_once_ + 1) / 2;
-  return false;
+  PENUMBRA_ASSERT(point_count() == 1, "{}: workgroups ask one map", recipe_.description.name);
+  const std::uint64_t end = results_->bytes() / sizeof(std::uint32_t) - sizeof(gpu::CutLoops) / sizeof(std::uint32_t);
+  const auto set = [&](render::Commands& commands, std::uint64_t word, std::uint32_t value) {
+    commands.fill(*results_, value, (end + word) * sizeof(std::uint32_t), sizeof(std::uint32_t));
+  };
+  gpu::CutLoops cut{.any = 0, .asked = 0, .to_ask = tile_pixels_ * words_per_pixel()};
+  for (std::uint32_t rows = options_.size;; rows = (rows + 3) / 4) {
+    render::Commands commands(*device_);
+    set(commands, 0, 0);
+    set(commands, 1, cut.asked);
+    set(commands, 2, cut.to_ask);
+    commands.fill(*results_, 0, std::uint64_t{cut.to_ask} * sizeof(std::uint32_t),
+                  std::uint64_t{tile_pixels_} * sizeof(std::uint32_t));
+    ask(commands, tile, 0, 1, rows);
+    times_.add(commands.submit());
+    results_->read(std::span(&cut.any, 1), end * sizeof(std::uint32_t));
+    if (cut.any == 0) return;
+    if (rows == 1) {
+      throw ResourceError("method {}: {} ends the loop over one row of a map before its end; take a smaller size",
+                          recipe_.description.name, device_->info().name);
+    }
+    const std::uint32_t other = cut.asked != 0 ? cut.asked : cut.to_ask + tile_pixels_;
+    cut.asked = std::exchange(cut.to_ask, other);
+  }
 }
 
 void MapMethod::read_masks(std::span<std::uint32_t> masks) {

@@ -66,6 +66,16 @@ struct PeelPush {
   uint size;
 };
 
+// The last words of the results of look-ups by workgroups, some of whose loops a driver may cut off
+// (group_kernel.glsl). Two lists of a word for each receiver lie before it: of which workgroups are asked, and which
+// are to be asked again.
+struct CutLoops {
+  uint any;     // 1: some workgroup's loops were cut off
+  uint asked;   // where the first list begins; 0: all are asked
+  uint to_ask;  // where the second does
+};
+const uint kCutLoopWords = 3;
+
 // What every look-up needs; its own push constants follow.
 struct LookupPush {
   LightBasis basis;

@@ -69,9 +69,14 @@ void begin_level(uint l) {
 #include "maps/backprojection/contours/packet_kernel.glsl"
 #include "maps/backprojection/contours/outline_walk.glsl"
 
+uint group_count() {
+  const uint rows = lookup.receiver_count / lookup.width;
+  return (lookup.width + own.packet_width - 1) / own.packet_width * ((rows + own.packet_height - 1) / own.packet_height);
+}
+
 // The receiver of a pixel of this packet; false beyond the picture.
 bool receiver_of(uint pixel, out uint receiver) {
-  const uint group_index = gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x;
+  const uint group_index = this_group();
   const uint across = (lookup.width + own.packet_width - 1) / own.packet_width;
   const uint x = group_index % across * own.packet_width + pixel % own.packet_width;
   const uint y = group_index / across * own.packet_height + pixel / own.packet_width;
@@ -113,6 +118,7 @@ void count_work(uint kind, uint amount) { atomicAdd(work_done[kind], amount); }
 
 void main() {
   const uint pixels = own.packet_width * own.packet_height;
+  if (this_group() >= group_count() || !is_asked()) return;
   view = views[0];
   done = WorkNumbers(0, 0, 0, 0, 0, 0, 0, 0);
   if (gl_LocalInvocationIndex == 0) stack_count = diverged = 0;
@@ -144,11 +150,13 @@ void main() {
   count_work(0, done.nodes);
   count_work(1, done.cells);
   count_work(2, done.edges);
-  count_work(3, done.shared_packets);
-  count_work(4, done.parted);
-  count_work(5, done.diverged);
-  count_work(6, done.trivial);
-  count_work(7, done.kernel_cells);
+  if (is_first_pass()) {  // of packets, however often they are asked
+    count_work(3, done.shared_packets);
+    count_work(4, done.parted);
+    count_work(5, done.diverged);
+    count_work(6, done.trivial);
+    count_work(7, done.kernel_cells);
+  }
   barrier();
   for (uint k = gl_LocalInvocationIndex; k < kWorkCounts; k += gl_WorkGroupSize.x) {
     const uint amount = work_done[k];

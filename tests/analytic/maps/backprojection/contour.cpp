@@ -196,6 +196,20 @@ TEST_F(MapsContour, LevelsAreTheSameForPacketsAndSearches) {
   }
 }
 
+// Packets of 64 pixels with kernels of thousands of cells need more turns of loops than drivers for processors let a
+// workgroup have: it is asked again by fewer rows, and neither V nor what is counted of packets shows that.
+TEST_F(MapsContour, LoopsThatADriverCutsOffAreRunAgain) {
+  const Stage stage(ball_over_floor(1), 16, 16, light_samples(1));
+  const auto with = [&](const char* packet) {
+    return counted(maps::make_packet, stage, {{"size", "512"}, {"packet", packet}, {"hierarchy", "off"}});
+  };
+  const auto many = with("8x8"), alone = with("1x1");
+  EXPECT_EQ(many.masks.visibility, alone.masks.visibility);
+  EXPECT_EQ(many.count("kernelCells"), alone.count("kernelCells"));
+  EXPECT_GT(alone.count("kernelCells"), 1e6);
+  EXPECT_LE(many.count("packetsShared") + many.count("packetsParted") + many.count("packetsTrivial"), 4);
+}
+
 TEST_F(MapsContour, TilesDoNotChangeIt) {
   const Stage stage(ball_over_floor(1), 31, 40, light_samples(1));
   for (const char* sub_lights : {"1", "2"}) {
