@@ -198,6 +198,13 @@ visibility::MethodOptions parse_method_options(const std::vector<std::string>& t
   return options;
 }
 
+NamedMethod parse_method(std::string_view text, const std::vector<std::string>& more) {
+  const auto fields = split(text, ':');
+  NamedMethod method{std::string(fields[0]), parse_method_options(more)};
+  for (std::size_t i = 1; i < fields.size(); ++i) insert_option(method.options, fields[i]);
+  return method;
+}
+
 std::vector<MethodEntry> parse_methods(std::string_view text) {
   std::vector<MethodEntry> entries;
   std::set<std::string> labels;

@@ -78,4 +78,13 @@ struct MethodEntry {
 /// each that gives exact areas by an option also with that.
 std::vector<MethodEntry> parse_methods(std::string_view text);
 
+/// A method with its options.
+struct NamedMethod {
+  std::string name;
+  visibility::MethodOptions options;
+};
+/// One method, "NAME" or "NAME:key=value:...", with options that were given apart. Throws UsageError for an option that
+/// is none, or is given twice. Whether there is such a method is not asked.
+NamedMethod parse_method(std::string_view text, const std::vector<std::string>& more = {});
+
 }  // namespace penumbra::app

@@ -218,11 +218,14 @@ Picture Renderer::render(const RenderOptions& options) {
                          .keeps_masks = options.masks && options.pixel_samples == 1};
   // What is wrong with options is said before anything changes, so that what is kept stays.
   static_cast<void>(app::parse_light_samples(run));
-  if (!options.method.empty())
-    static_cast<void>(app::describe_method(options.method, {options.options.begin(), options.options.end()}));
+  app::NamedMethod method = app::parse_method(options.method);
+  for (const auto& [key, value] : options.options) {
+    if (!method.options.emplace(key, value).second)
+      throw UsageError("method {}: option {} is given twice", method.name, key);
+  }
+  if (!method.name.empty()) static_cast<void>(app::describe_method(method.name, method.options));
   state.run = std::move(run);
-  state.wish = {options.method,
-                {options.options.begin(), options.options.end()},
+  state.wish = {std::move(method.name), std::move(method.options),
                 options.light_samples != 0 || !options.sample_pattern.empty()};
   if (!state.frames) {
     state.frames = std::make_unique<app::FrameRenderer>(state.run, state.wish, state.machine, state.progress);

@@ -66,7 +66,8 @@ void add_picture_options(CLI::App& command, PictureOptions& options) {
       ->type_name("OUT.exr");
   command
       .add_option("--method", options.method,
-                  "shadow method, see `penumbra methods` (default: for each light the best one that gives its exact "
+                  "shadow method, see `penumbra methods`, with options if any (NAME:key=value:...; default: for each "
+                  "light the best one that gives its exact "
                   "area; where light samples are asked for, or none does, the best geometry-based one, or rays)")
       ->type_name("NAME");
   command.add_option("--stats", options.stats, "times, counters and warnings as JSON; times of one run, the first")
@@ -114,9 +115,10 @@ void add_picture_options(CLI::App& command, PictureOptions& options) {
 
 PictureRequest parse_request(const PictureOptions& options) {
   PictureRequest request;
-  request.wish.method = options.method;
-  request.wish.options = parse_method_options(options.run.method_options);
-  if (!options.method.empty()) describe_method(options.method, request.wish.options);  // refuses now, not later
+  NamedMethod method = parse_method(options.method, options.run.method_options);
+  if (!method.name.empty()) describe_method(method.name, method.options);  // refuses now, not later
+  request.wish.method = std::move(method.name);
+  request.wish.options = std::move(method.options);
   request.wish.samples =
       !options.run.light_samples.empty() || !options.run.sample_pattern.empty() || !options.bits.empty();
   request.exposure = parse_exposure(options.exposure);

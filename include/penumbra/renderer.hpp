@@ -30,8 +30,8 @@ struct RendererOptions {
 
 struct RenderOptions {
   std::uint32_t width = 0, height = 0;  ///< pixels; 0: the scene's
-  /// A name of methods(). Empty: for each light the best that gives its exact area; where light samples are asked for,
-  /// or no method gives it, the best geometry-based one, else rays.
+  /// A name of methods(), perhaps with options: "pcss:size=512". Empty: for each light the best that gives its exact
+  /// area; where light samples are asked for, or no method gives it, the best geometry-based one, else rays.
   std::string method = {};
   std::map<std::string, std::string> options = {};  ///< of the method
   /// Points on each light, 1 to 4096; 0: exact areas where a method has them, else 256.

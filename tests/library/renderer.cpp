@@ -91,6 +91,20 @@ TEST_F(Library, TheProgramsNumbers) {
               {"--size", "12x8", "--pixel-samples", "4"}, "four view samples a pixel");
 }
 
+TEST_F(Library, OptionsStandBehindAMethodsName) {
+  Renderer renderer(Scene::load(scene_));
+  const Picture apart = renderer.render({.method = "soft-volume", .options = {{"split", "2"}}});
+  const Picture behind = renderer.render({.method = "soft-volume:split=2"});
+  EXPECT_TRUE(all_bytes(behind) == all_bytes(apart));
+  EXPECT_EQ(nlohmann::json::parse(behind.stats_json()).at("options"), nlohmann::json({{"split", "2"}}));
+  expect_same(behind, {"--method", "soft-volume:split=2"}, "soft-volume:split=2");
+  EXPECT_THROW(renderer.render({.method = "soft-volume:split=2", .options = {{"split", "1"}}}), UsageError);
+  EXPECT_EQ(
+      run({"render", scene_, "-o", path("two.exr"), "--method", "soft-volume:split=2", "--method-option", "split=2"})
+          .code,
+      2);
+}
+
 TEST_F(Library, MasksAreTheBitsOfTheProgram) {
   Renderer renderer(Scene::load(scene_));
   const Picture picture = renderer.render({.width = 24, .height = 16, .method = "edge-scatter", .light_samples = 100});

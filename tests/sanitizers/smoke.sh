@@ -37,8 +37,8 @@ check() {
 for scene in "$source"/scenes/*.json; do
   name=$(basename "$scene" .json)
   [[ $name == terrain-1m || $name == *.schema ]] && continue
-  check "$name" compare "$scene" -o "$work/$name" --methods all --size 16x16 --light-samples 16 --reference-samples 16 --runs 1 \
-    --device cpu --png
+  check "$name" compare "$scene" -o "$work/$name" --methods all --method-option size=128 --size 16x16 --light-samples 16 \
+    --reference-samples 16 --runs 1 --device cpu --png
   # All lights, as areas and as samples of each kind.
   check "$name-areas" render "$scene" -o "$work/$name.exr" --size 24x16 --png "$work/$name.png" --stats "$work/$name-stats.json"
   check "$name-exact" render "$scene" -o "$work/$name.exr" --size 24x16 --method exact
@@ -53,7 +53,8 @@ for light in '"rectangle": {"center": [-0.75, 5, 0.25], "halfU": [1, 0, 0], "hal
   {"name": "board", "triangles": [[0, 0.5, 0, 0.5, 0.5, 0, 0, 0.5, 0.5], [-1, 0, -1, -1, 1, 0, -1, 0, 1]]}],
  "lights": [{"name": "k", $light}]}
 JSON
-  check edges compare "$work/edges.json" -o "$work/edges" --methods all --light-samples 16 --reference-samples 16 --runs 1 --device cpu
+  check edges compare "$work/edges.json" -o "$work/edges" --methods all --method-option size=128 --light-samples 16 \
+    --reference-samples 16 --runs 1 --device cpu
 done
 lights=$source/scenes/lights.json
 check samples render "$lights" -o "$work/s.exr" --size 24x16 --sample-pattern sobol --light-samples 16 --pixel-samples 4
