@@ -75,7 +75,10 @@ std::string file_name_of(std::string_view label) {
 }
 
 void add_run_options(CLI::App& command, RunOptions& options) {
-  command.add_option("SCENE", options.scene, "scene file: .json (penumbra-scene/1), .gltf or .glb")->required();
+  command
+      .add_option("SCENE", options.scene,
+                  "scene file: .json (penumbra-scene/1), .gltf or .glb; or a mesh file, around which a studio is put")
+      ->required();
   command
       .add_option("--light-samples", options.light_samples,
                   "light samples: N or LxB, 1 to 4096 points (default: 256, or none where `render` gives exact areas)")
@@ -92,8 +95,11 @@ void add_run_options(CLI::App& command, RunOptions& options) {
                   "all of the scene's)")
       ->type_name("NAME")
       ->allow_extra_args(false);
-  command.add_option("--camera", options.camera, "camera to look through (default: the scene's first)")
-      ->type_name("NAME");
+  command
+      .add_option("--camera", options.camera,
+                  "camera to look through: one of the scene's by its name, fit for one that sees all, or "
+                  "EX,EY,EZ:TX,TY,TZ[:FOV], eye, target and vertical degrees (default: the scene's first)")
+      ->type_name("NAME|fit|E:T[:FOV]");
   command
       .add_option("--device", options.device, "Vulkan device: part of its name, its index, or cpu (default: the best)")
       ->type_name("NAME|INDEX|cpu");
@@ -109,6 +115,7 @@ void add_run_options(CLI::App& command, RunOptions& options) {
       ->type_name("NAME");
   add_lenient(command, options.lenient);
   add_gltf_options(command, options.gltf);
+  add_studio_options(command, options.studio);
   add_format_options(command, options.format);
 }
 

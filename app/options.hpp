@@ -1,5 +1,6 @@
 #pragma once
 
+#include "app/studio_options.hpp"
 #include "scenes/formats/reader.hpp"
 #include "visibility/light_samples.hpp"
 #include "visibility/method.hpp"
@@ -46,6 +47,7 @@ struct RunOptions {
   std::string normals;  ///< empty: shading
   GltfOptions gltf;
   FormatOptions format;
+  StudioOptions studio;
 };
 
 /// Adds --lamp-radius, --sun-angle, --lumens-per-watt and --clip.

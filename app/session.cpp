@@ -253,6 +253,7 @@ scenes::Scene read_session_scene(const RunOptions& options, std::optional<double
   scenes::ReadOptions reading = read_options(options.gltf, options.allow_outside);
   reading.time = time;
   reading.lenient = options.lenient;
+  reading.studio = parse_studio(options.studio, options.camera);
   return scenes::read_scene(options.scene, reading);
 }
 

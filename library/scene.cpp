@@ -38,6 +38,7 @@ scenes::ReadOptions reading(const LoadOptions& options) {
   read.sun_angle = options.sun_angle;
   read.lumens_per_watt = options.lumens_per_watt;
   read.clips = options.clips;
+  read.studio.always = options.studio;
   if (options.frame) {
     if (!(options.fps > 0)) throw UsageError("fps {}: expected frames a second, above 0", options.fps);
     read.time = *options.frame * (1 / options.fps);  // as the command line has it

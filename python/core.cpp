@@ -170,9 +170,9 @@ PYBIND11_MODULE(_core, module) {
           "load",
           [](const std::filesystem::path& file, bool lenient, bool allow_outside, std::optional<double> frame,
              double fps, std::optional<double> lamp_radius, std::optional<double> sun_angle,
-             std::optional<double> lumens_per_watt, std::vector<std::string> clips) {
-            return Scene::load(
-                file, {lenient, allow_outside, frame, fps, lamp_radius, sun_angle, lumens_per_watt, std::move(clips)});
+             std::optional<double> lumens_per_watt, std::vector<std::string> clips, bool studio) {
+            return Scene::load(file, {lenient, allow_outside, frame, fps, lamp_radius, sun_angle, lumens_per_watt,
+                                      std::move(clips), studio});
           },
           Unlocked())
       .def_static(

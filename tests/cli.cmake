@@ -5,6 +5,7 @@ penumbra_test(cli FULL *EveryTriple* SHARDS Part/RenderTogether=2 Part/CompareTo
   cli/bad_input.cpp
   cli/compare.cpp
   cli/compare_further.cpp
+  cli/studio.cpp
   cli/sweep.cpp
   cli/covering_array.cpp
   cli/emitters.cpp

@@ -10,6 +10,7 @@ penumbra_test(scenes
   unit/scenes/light_kinds.cpp
   unit/scenes/shapes.cpp
   unit/scenes/shipped.cpp
+  unit/scenes/studio.cpp
   unit/scenes/wire.cpp
   unit/scenes/writer.cpp
   unit/scenes/writer_glb.cpp

@@ -20,7 +20,7 @@ class ConvertCommand : public Command {
  public:
   explicit ConvertCommand(CLI::App& app)
       : Command(app, "convert", "write the scene as the program understood it, in world space") {
-    cli_.add_option("SCENE", scene_, "scene file: .json (penumbra-scene/1), .gltf or .glb")->required();
+    cli_.add_option("SCENE", scene_, "scene file: .json (penumbra-scene/1), .gltf or .glb; or a mesh file")->required();
     cli_.add_option("-o,--output", out_,
                     "FILE.json (textures of lights go beside it: FILE-light0.exr; no alpha, no pictures), FILE.glb "
                     "(no textures of lights) or FILE.obj (geometry alone)")
@@ -29,6 +29,10 @@ class ConvertCommand : public Command {
     add_allow_outside(cli_, allow_outside_);
     add_lenient(cli_, lenient_);
     add_gltf_options(cli_, gltf_);
+    add_studio_options(cli_, studio_);
+    cli_.add_option("--camera", camera_,
+                    "a camera more, the first: fit for one that sees all, or EX,EY,EZ:TX,TY,TZ[:FOV]")
+        ->type_name("fit|E:T[:FOV]");
   }
 
   int run(const GlobalOptions&) override {
@@ -38,6 +42,9 @@ class ConvertCommand : public Command {
     }
     scenes::ReadOptions reading = read_options(gltf_, allow_outside_);
     reading.lenient = lenient_;
+    reading.studio = parse_studio(studio_, camera_);
+    if (!camera_.empty() && reading.studio.fit_camera.empty() && !reading.studio.camera)
+      throw UsageError("--camera {}: expected fit, or EX,EY,EZ:TX,TY,TZ[:FOV]", camera_);
     reading.needs_light = out_.extension() != ".obj";  // which holds none
     OutputFiles outputs;
     outputs.add("-o", out_);
@@ -57,6 +64,8 @@ class ConvertCommand : public Command {
   std::filesystem::path scene_, out_;
   bool allow_outside_ = false, lenient_ = false;
   GltfOptions gltf_;
+  StudioOptions studio_;
+  std::string camera_;
 };
 
 }  // namespace

@@ -50,7 +50,7 @@ class WedgesCommand : public Command {
  public:
   explicit WedgesCommand(CLI::App& app)
       : Command(app, "wedges", "penumbra wedges of a light: build, prove by exact signs, export") {
-    cli_.add_option("SCENE", scene_, "scene file: .json (penumbra-scene/1), .gltf or .glb")->required();
+    cli_.add_option("SCENE", scene_, "scene file: .json (penumbra-scene/1), .gltf or .glb; or a mesh file")->required();
     cli_.add_option("--light", light_, "the light's name (default: the first)")->type_name("NAME");
     cli_.add_option("--construction", construction_,
                     "original (Assarsson and Akenine-Möller 2003), tight (the penumbra's own facets), or one that is "
@@ -72,19 +72,22 @@ class WedgesCommand : public Command {
             "from the light or gives back, their sum, and the exact area")
         ->type_name("X,Y");
     cli_.add_option("--size", size_, "of that picture (default: as `render` has it)")->type_name("WxH");
-    cli_.add_option("--camera", camera_, "that it is seen by (default: the scene's first)")->type_name("NAME");
+    cli_.add_option("--camera", camera_, "that it is seen by, as `render` has it (default: the scene's first)")
+        ->type_name("NAME|fit|E:T[:FOV]");
     cli_.add_option("--svg", svg_, "the light as seen from there, with projected edges")
         ->type_name("FILE.svg")
         ->needs("--explain");
     add_allow_outside(cli_, allow_outside_);
     add_lenient(cli_, lenient_);
+    add_studio_options(cli_, studio_);
   }
 
   int run(const GlobalOptions&) override {
     OutputFiles outputs = named_outputs();
     outputs.refuse_inputs({&scene_, 1});
     outputs.require_writable();
-    scenes::Scene scene = scenes::read_scene(scene_, {.allow_outside = allow_outside_, .lenient = lenient_});
+    scenes::Scene scene = scenes::read_scene(
+        scene_, {.allow_outside = allow_outside_, .lenient = lenient_, .studio = parse_studio(studio_, camera_)});
     outputs.refuse_inputs(scene.sources);
     for (const std::string& warning : scene.warnings) spdlog::warn("{}", warning);
     look_through(scene, camera_, size_);
@@ -128,6 +131,7 @@ class WedgesCommand : public Command {
   std::filesystem::path scene_, export_, json_, svg_;
   std::string camera_, size_, light_, construction_ = "original", from_ = "centre", explain_;
   bool validate_ = false, allow_outside_ = false, lenient_ = false;
+  StudioOptions studio_;
 };
 
 }  // namespace

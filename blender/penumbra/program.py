@@ -30,7 +30,7 @@ _WITHOUT_LIGHTS = "beauty,V,Z,P,N,Crypto*"
 def arguments(program, scene, picture, size, settings):
     """The command. `settings`: exactness, light_samples, method, pixel_samples, pixel_filter, filter_width,
     shading_normals, lenient, device, light_passes."""
-    command = [program, "render", scene, "-o", picture, "--size", f"{size[0]}x{size[1]}"]
+    command = [program, "render", scene, "-o", picture, "--no-studio", "--size", f"{size[0]}x{size[1]}"]
     if settings.method:
         command += ["--method", settings.method]
     if settings.exactness == SAMPLES:

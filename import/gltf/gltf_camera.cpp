@@ -65,17 +65,4 @@ Camera camera_of(const tinygltf::Model& model, const tinygltf::Node& node, const
   return camera;
 }
 
-Camera camera_that_sees_all(std::span<const glm::dvec3> positions) {
-  glm::dvec3 low = positions.front(), high = low;
-  for (const glm::dvec3& p : positions) low = glm::min(low, p), high = glm::max(high, p);
-  Camera camera;
-  camera.name = "synthesised";
-  camera.target = (low + high) / 2.0;
-  const double radius = glm::distance(low, high) / 2;
-  const double distance =
-      std::max(radius, std::numeric_limits<float>::min() * 1.0) / std::sin(glm::radians(camera.vertical_fov) / 2);
-  camera.eye = camera.target + distance * glm::normalize(glm::dvec3(0.5, 0.5, 1));
-  return camera;
-}
-
 }  // namespace penumbra::scenes

@@ -18,8 +18,4 @@ namespace penumbra::scenes {
 /// that shows nothing.
 Camera camera_of(const tinygltf::Model& model, const tinygltf::Node& node, const PlacedNode& placed, Losses& losses);
 
-/// From above the front right, at the distance at which the bounding sphere just fits into the picture. `positions`:
-/// not empty.
-Camera camera_that_sees_all(std::span<const glm::dvec3> positions);
-
 }  // namespace penumbra::scenes

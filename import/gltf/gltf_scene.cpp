@@ -111,15 +111,17 @@ class GltfScene {
           "fewer than three vertices)",
           skipped_.points_and_lines, skipped_.without_positions, skipped_.without_triangles);
     }
-    if (scene_.lights.empty() && purpose_ == Purpose::lit_scene) {
+    if (scene_.lights.empty() && purpose_ == Purpose::lit_scene && !refused_lights_.empty() && !lenient_) {
       throw InputError(
-          "there is no light in the scene. In Blender, add a plane, turn its front to the scene and give it a "
-          "material with emission (Emission Strength above 0), or add a point, spot or sun lamp and export with "
-          "Punctual Lights (area lamps are lost in glTF){}",
-          refused_lights_.empty() ? "" : "; no lights could be made of " + refused_lights_);
+          "there is no light in the scene: none could be made of {}. In Blender, add a plane, turn its front to the "
+          "scene and give it a material with emission (Emission Strength above 0), or add a point, spot or sun lamp "
+          "and "
+          "export with Punctual Lights (area lamps are lost in glTF); with --lenient a studio's light takes their "
+          "place",
+          refused_lights_);
     }
     if (scene_.cameras.empty() && !is_mesh()) {
-      scene_.cameras.push_back(camera_that_sees_all(scene_.soup.positions));
+      scene_.cameras.push_back(camera_that_sees_all(bounds_of(scene_.soup.positions)));
       scene_.warnings.emplace_back("there is no camera in the file; one that sees the whole scene was put in");
     }
     count_what_came(nodes);

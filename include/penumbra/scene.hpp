@@ -75,6 +75,7 @@ struct LoadOptions {
   double fps = 24;                   ///< frame F is at F / fps seconds
   std::optional<double> lamp_radius = {}, sun_angle = {}, lumens_per_watt = {};  ///< of glTF lamps without their own
   std::vector<std::string> clips = {};  ///< of glTF: animations by name or number; empty: all that can play at once
+  bool studio = false;                  ///< a light and a floor also around a scene that has lights
 };
 
 /// One mesh of one scene.
@@ -94,8 +95,9 @@ class PENUMBRA_API Scene {
   Scene& operator=(Scene&& other) noexcept;
   ~Scene();
 
-  /// Reads .json (penumbra-scene/1), .gltf or .glb. Throws InputError, with the place in the file and what would be
-  /// right, and ResourceError.
+  /// Reads .json (penumbra-scene/1), .gltf or .glb, or a mesh file. Around a mesh, and a glTF scene without lights, a
+  /// studio is put: a soft rectangle light, a floor, a camera (warnings() says so). Throws InputError, with the place
+  /// in the file and what would be right, and ResourceError.
   static Scene load(const std::filesystem::path& file, const LoadOptions& options = {});
   /// Reads the text of a penumbra-scene/1 file whose meshes' files are relative to `folder`. Throws as load().
   static Scene parse(std::string_view json, const std::filesystem::path& folder = ".", const LoadOptions& options = {});

@@ -71,11 +71,12 @@ class Scene:
 
     @classmethod
     def load(cls, file, *, lenient=False, allow_outside=False, frame=None, fps=24.0, lamp_radius=None, sun_angle=None,
-             lumens_per_watt=None, clips=()):
-        """Reads a .json (penumbra-scene/1), .gltf or .glb file. `frame` is at frame / fps seconds of its animation; the
+             lumens_per_watt=None, clips=(), studio=False):
+        """Reads a .json (penumbra-scene/1), .gltf or .glb file, or a mesh file. Around a mesh, and a glTF scene without
+        lights, a studio is put (a light, a floor, a camera); with `studio` around any. `frame` is at frame / fps seconds of its animation; the
         other options are those of `penumbra render`."""
         return cls(_core.Scene.load(_os.fspath(file), lenient, allow_outside, frame, fps, lamp_radius, sun_angle,
-                                    lumens_per_watt, _names(clips)))
+                                    lumens_per_watt, _names(clips), studio))
 
     @classmethod
     def from_dict(cls, scene, folder=".", *, allow_outside=False):

@@ -22,7 +22,8 @@ class Scene:
     @classmethod
     def load(cls, file: _Path, *, lenient: bool = ..., allow_outside: bool = ..., frame: Optional[float] = ...,
              fps: float = ..., lamp_radius: Optional[float] = ..., sun_angle: Optional[float] = ...,
-             lumens_per_watt: Optional[float] = ..., clips: Union[str, Sequence[str]] = ...) -> Scene: ...
+             lumens_per_watt: Optional[float] = ..., clips: Union[str, Sequence[str]] = ...,
+             studio: bool = ...) -> Scene: ...
     @classmethod
     def from_dict(cls, scene: Mapping[str, Any], folder: _Path = ..., *, allow_outside: bool = ...) -> Scene: ...
     def add_mesh(self, name: str, vertices: ArrayLike, faces: ArrayLike, *, color: Sequence[float] = ...,

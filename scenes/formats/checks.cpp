@@ -109,7 +109,9 @@ void check_scene(const Scene& scene, const std::string& where, bool needs_light)
   }
   if (scene.lights.empty() && needs_light) {
     throw InputError(
-        "{}: the scene has no area light; it needs at least one (glTF: a flat mesh with an emissive material)", where);
+        "{}: there is no light in the scene; it needs at least one (glTF: a flat mesh with an emissive material, or a "
+        "point, spot or sun lamp)",
+        where);
   }
   std::set<std::string> names;
   for (const AreaLight& light : scene.lights) {

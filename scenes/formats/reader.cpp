@@ -3,33 +3,75 @@
 #include "base/error.hpp"
 #include "scenes/formats/checks.hpp"
 #include "scenes/formats/gltf_reader.hpp"
+#include "mesh/import.hpp"
+#include "mesh/unused_vertices.hpp"
 #include "scenes/formats/json_reader.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
 #include <string>
+#include <utility>
 
 namespace penumbra::scenes {
+namespace {
+
+/// A mesh file as a scene of one object, without light and camera.
+Scene read_mesh_file(const std::filesystem::path& file) {
+  mesh::ImportedMesh imported = mesh::import_mesh(file);
+  Scene scene;
+  scene.name = file.filename().string();
+  scene.soup = std::move(imported.soup);
+  Object object;
+  object.name = file.stem().string();
+  scene.objects.push_back(std::move(object));
+  scene.warnings = std::move(imported.notes);
+  scene.sources = std::move(imported.sources);
+  if (const std::size_t all = scene.soup.positions.size(); !mesh::drop_unused_vertices(scene.soup).empty())
+    scene.warnings.push_back(
+        fmt::format("left out {} vertices that no triangle uses", all - scene.soup.positions.size()));
+  return scene;
+}
+
+/// Bounds of the scene's meshes at rest: of one that is looked at while it moves, those of its file.
+Bounds rest_bounds(const Scene& scene, const std::filesystem::path& file, const ReadOptions& options) {
+  if (!options.time || !scene.motion) return bounds_of(scene.soup.positions);
+  ReadOptions at_rest = options;
+  at_rest.time.reset();
+  return bounds_of(read_gltf(file, at_rest).soup.positions);
+}
+
+}  // namespace
 
 Scene read_scene(const std::filesystem::path& file, const ReadOptions& options) {
   std::string extension = file.extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
   Scene scene;
-  if (extension == ".json") {
+  const bool is_json = extension == ".json";
+  if (is_json) {
     scene = read_json(file, options);
   } else if (extension == ".gltf" || extension == ".glb") {
-    scene = read_gltf(file, options);
+    ReadOptions reading = options;
+    // With lights of the user's own, lamps that cannot be done leave the scene no darker than it is.
+    reading.needs_light = options.needs_light && !options.studio.always && options.studio.lights.empty();
+    scene = read_gltf(file, reading);
+  } else if (extension == ".blend") {
+    throw InputError("{}: a file of Blender's own; export it as glTF 2.0 (.glb), or render it by Blender's add-on",
+                     file.string());
   } else {
-    std::error_code error;
-    if (!std::filesystem::exists(file, error)) throw InputError("{}: no such file", file.string());
-    if (extension == ".blend")
-      throw InputError("{}: a file of Blender's own; export it as glTF 2.0 (.glb), or render it by Blender's add-on",
-                       file.string());
-    throw InputError(
-        "{}: a scene is a .json (penumbra-scene/1), .gltf or .glb file; a mesh becomes a scene when a "
-        ".json names it as \"file\"",
-        file.string());
+    scene = read_mesh_file(file);
   }
+  const StudioWish& studio = options.studio;
+  const bool wishes = studio.always || !studio.lights.empty() || studio.camera || !studio.fit_camera.empty();
+  const bool lacks =
+      options.needs_light && !is_json && !studio.never && (scene.lights.empty() || scene.cameras.empty());
+  const bool has_room = std::ranges::all_of(scene.soup.positions, [](const glm::dvec3& p) {
+    return std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) <= kLargestCoordinate;  // not NaN
+  });
+  if ((lacks || wishes) && has_room && !scene.soup.triangles.empty())
+    put_in_studio(scene, rest_bounds(scene, file, options), studio);
   check_scene(scene, file.string(), options.needs_light);
   return scene;
 }
