@@ -37,7 +37,7 @@ penumbra_test(volumes
   property/volumes/depth_complexity_counters.cpp
   property/volumes/depth_complexity_lattice.cpp
   property/volumes/edge_cones.cpp
-  property/volumes/hard_volume_exact.cpp
+  property/volumes/hard_volume_exact.cpp property/volumes/hard_volume_variants.cpp
   property/volumes/packed_counters.cpp
   property/volumes/disk_bounds.cpp
   property/volumes/row_bounds.cpp

@@ -11,7 +11,9 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 namespace penumbra::volumes {
@@ -49,16 +51,16 @@ std::optional<bool> in_cone(const LightVolumes& volumes, const VolumeCap& cap, c
   return signs.agree();
 }
 
-/// The sum over caps of what `inside` says, or nothing if it is ever silent.
+/// The sums over the parts' caps of what `inside` says, or nothing if it is ever silent.
 template <typename Inside>
-std::optional<std::int32_t> count(const LightVolumes& volumes, const Inside& inside) {
-  std::int32_t sum = 0;
+std::optional<std::vector<std::int32_t>> count(const LightVolumes& volumes, const Inside& inside) {
+  std::vector<std::int32_t> sums(std::max<std::size_t>(volumes.parts.size(), 1));
   for (const VolumeCap& cap : volumes.caps) {
     const std::optional<bool> is = inside(cap);
     if (!is) return std::nullopt;
-    sum += *is ? 1 : 0;
+    sums[cap.part] += *is ? 1 : 0;
   }
-  return sum;
+  return sums;
 }
 
 }  // namespace
@@ -90,28 +92,57 @@ std::vector<std::uint32_t> ShadowCasters::counted_sides(const glm::vec3& l, cons
 
 LightVolumes ShadowCasters::assembled(const glm::vec3& l, std::span<const std::uint32_t> sides,
                                       std::span<const mesh::SilhouetteEdge> edges) const {
-  LightVolumes volumes{l, {}, {}, {}};
-  if (layers_ == Layers::one_a_solid) volumes.left_out.resize(scene_->triangles.size());
+  LightVolumes volumes{l, {}, {}, {}, {}};
+  const bool all = layers_ == Layers::every_triangle && std::ranges::all_of(sides, [](std::uint32_t side) {
+                     return (side & gpu::kBothBits) == side >> gpu::kCountedShift;
+                   });
+  if (!all) volumes.left_out.resize(scene_->triangles.size());
   volumes.caps.reserve(casters_.size());
   for (std::size_t i = 0; i < casters_.size(); ++i) {
     const std::uint32_t counted = sides[i] >> gpu::kCountedShift;
     if (!volumes.left_out.empty()) volumes.left_out[casters_[i]] = counted != (sides[i] & gpu::kBothBits) ? 1 : 0;
     if (counted == 0) continue;
-    VolumeCap cap{scene_->corners(casters_[i]), scene_->plane[casters_[i]]};
+    VolumeCap cap{scene_->corners(casters_[i]), scene_->plane[casters_[i]], 0, static_cast<std::uint32_t>(i)};
     if (counted == gpu::kBackBit) std::swap(cap.corners[1], cap.corners[2]);
     volumes.caps.push_back(cap);
   }
   volumes.edges.reserve(edges.size());
   for (const mesh::SilhouetteEdge& edge : edges) {
     const auto [a, b] = graph_.edges[edge.edge];
-    volumes.edges.push_back({scene_->positions[a], scene_->positions[b], edge.multiplicity});
+    volumes.edges.push_back(
+        {scene_->positions[a], scene_->positions[b], edge.multiplicity, 0, graph_.around(edge.edge).front().triangle});
   }
   return volumes;
 }
 
+std::vector<std::uint32_t> ShadowCasters::components() const {
+  std::vector<std::uint32_t> root(casters_.size());
+  std::iota(root.begin(), root.end(), 0U);
+  const auto find = [&](std::uint32_t i) {
+    while (root[i] != i) i = root[i] = root[root[i]];
+    return i;
+  };
+  for (std::uint32_t edge = 0; edge < graph_.edges.size(); ++edge) {
+    for (const mesh::Incidence& incidence : graph_.around(edge)) {
+      const std::uint32_t first = find(graph_.around(edge).front().triangle), other = find(incidence.triangle);
+      root[std::max(first, other)] = std::min(first, other);
+    }
+  }
+  std::vector<std::uint32_t> number(casters_.size());
+  std::uint32_t next = 0;
+  for (std::uint32_t i = 0; i < number.size(); ++i) number[i] = root[i] == i ? next++ : number[find(i)];
+  return number;
+}
+
 LightVolumes ShadowCasters::seen_from(const glm::vec3& l, const visibility::Light& light) const {
+  return seen_from(l, light, {});
+}
+
+LightVolumes ShadowCasters::seen_from(const glm::vec3& l, const visibility::Light& light,
+                                      std::span<const std::uint8_t> kept) const {
   std::vector<mesh::Side> facings = mesh::facings({positions_, triangles_}, graph_, l);
-  const std::vector<std::uint32_t> counted = counted_sides(l, light);
+  std::vector<std::uint32_t> counted = counted_sides(l, light);
+  for (std::size_t i = 0; i < kept.size(); ++i) counted[i] = kept[i] != 0 ? counted[i] : 0;
   std::vector<std::uint32_t> sides(facings.size());
   for (std::size_t i = 0; i < sides.size(); ++i) {
     const std::uint32_t side = bits_of(facings[i]);
@@ -129,11 +160,11 @@ LightVolumes ShadowCasters::seen_from(const glm::vec3& l, const visibility::Ligh
   return assembled(l, sides, edges);
 }
 
-std::optional<std::int32_t> count_along(const LightVolumes& volumes, const glm::dvec3& direction) {
+std::optional<std::vector<std::int32_t>> counts_along(const LightVolumes& volumes, const glm::dvec3& direction) {
   return count(volumes, [&](const VolumeCap& cap) { return in_cone(volumes, cap, direction); });
 }
 
-std::optional<std::int32_t> count_at(const LightVolumes& volumes, const glm::dvec3& x) {
+std::optional<std::vector<std::int32_t>> counts_at(const LightVolumes& volumes, const glm::dvec3& x) {
   return count(volumes, [&](const VolumeCap& cap) -> std::optional<bool> {
     const std::optional<bool> cone = in_cone(volumes, cap, x - glm::dvec3(volumes.l));
     if (cone && !*cone) return false;

@@ -5,6 +5,7 @@
 #include "visibility/light_samples.hpp"
 #include "visibility/scene_floats.hpp"
 #include "visibility/closed_casters.hpp"
+#include "volumes/raster/volume_count.shared.h"
 
 #include <glm/vec3.hpp>
 
@@ -20,12 +21,16 @@ namespace penumbra::volumes {
 struct VolumeEdge {
   glm::vec3 a, b;
   std::int32_t multiplicity = 0;  ///< k_e(l), never 0: how many volumes end here, with sign (mesh/silhouettes.hpp)
+  std::uint32_t part = 0;         ///< of LightVolumes::parts
+  std::uint32_t caster = 0;       ///< one of the triangles around it, of ShadowCasters
 };
 
 /// A triangle that bounds its own volume toward the light.
 struct VolumeCap {
   std::array<glm::vec3, 3> corners;  ///< counter-clockwise as seen from l
   std::uint32_t plane = 0;           ///< SceneFloats::plane
+  std::uint32_t part = 0;            ///< of LightVolumes::parts
+  std::uint32_t caster = 0;          ///< of ShadowCasters
 };
 
 /// The boundary of all shadow volumes of one point, the far end left out. Each triangle has a volume of its own, all
@@ -36,6 +41,7 @@ struct LightVolumes {
   std::vector<VolumeCap> caps;         ///< of every triangle whose plane does not hold l
   std::vector<std::uint8_t> left_out;  ///< for each of the scene's triangles: by Layers::one_a_solid, beside the
                                        ///< light's own body; empty: none
+  std::vector<gpu::VolumePart> parts;  ///< each with all edges and caps of some volumes; empty: one without bounds
 };
 
 /// Which triangles have a volume.
@@ -51,6 +57,9 @@ class ShadowCasters {
 
   /// Seen from `l`, without the body of that light. Exact.
   [[nodiscard]] LightVolumes seen_from(const glm::vec3& l, const visibility::Light& light) const;
+  /// The same of some casters alone: `kept` has a word for each, 0 for those that are left out.
+  [[nodiscard]] LightVolumes seen_from(const glm::vec3& l, const visibility::Light& light,
+                                       std::span<const std::uint8_t> kept) const;
 
   /// The part of that which needs no facing: for each caster, the sides on which l must be for it to count (bit 0:
   /// front, bit 1: back).
@@ -62,6 +71,10 @@ class ShadowCasters {
 
   [[nodiscard]] std::size_t size() const { return casters_.size(); }
   [[nodiscard]] std::span<const mesh::Triangle> triangles() const { return triangles_; }
+  /// For each, the number of its component: of what hangs together by edges. They count from 0.
+  [[nodiscard]] std::vector<std::uint32_t> components() const;
+  /// For each, its number among the scene's triangles.
+  [[nodiscard]] std::span<const std::uint32_t> numbers() const { return casters_; }
   [[nodiscard]] const mesh::EdgeGraph& graph() const { return graph_; }
 
  private:
@@ -74,10 +87,10 @@ class ShadowCasters {
   visibility::ClosedCasters parts_;  // for one_a_solid
 };
 
-/// How many triangles the ray from l in this direction meets; nothing if double cannot tell.
-std::optional<std::int32_t> count_along(const LightVolumes& volumes, const glm::dvec3& direction);
+/// Of each part, how many triangles the ray from l in this direction meets; nothing if double cannot tell.
+std::optional<std::vector<std::int32_t>> counts_along(const LightVolumes& volumes, const glm::dvec3& direction);
 
-/// In how many volumes x is; nothing if double cannot tell.
-std::optional<std::int32_t> count_at(const LightVolumes& volumes, const glm::dvec3& x);
+/// Of each part, in how many volumes x is, whatever bounds it has; nothing if double cannot tell.
+std::optional<std::vector<std::int32_t>> counts_at(const LightVolumes& volumes, const glm::dvec3& x);
 
 }  // namespace penumbra::volumes

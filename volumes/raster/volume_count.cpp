@@ -21,12 +21,14 @@
 #include "volumes/raster/volume_count.frag.spv.hpp"
 #include "volumes/raster/volume_count.shared.h"
 #include "volumes/raster/volume_face.vert.spv.hpp"
+#include "volumes/raster/volume_faces.hpp"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <optional>
 #include <utility>
 
@@ -37,20 +39,15 @@ using visibility::SceneFloats;
 using visibility::Tile;
 using visibility::ViewSamples;
 
-enum FaceKind : std::uint32_t { kSide = 0, kFan = 1, kCap = 2 };
+constexpr std::array kNames{"volume sides", "volume far ends", "volume caps", "volume lower ends", "volume upper ends"};
 
-render::RasterPass make_pass(const render::Device& device, const char* name, FaceKind kind, CountVariant variant) {
-  return render::RasterPass(device, {.name = name,
+render::RasterPass make_pass(const render::Device& device, FaceKind kind, bool before, bool parts) {
+  return render::RasterPass(device, {.name = kNames[kind],
                                      .vertex = shaders::kVolumeFaceVert,
                                      .fragment = shaders::kVolumeCountFrag,
                                      .push_bytes = sizeof(gpu::VolumePush),
-                                     .constants = {kind, variant == CountVariant::z_pass ? 1u : 0u},
+                                     .constants = {kind, before ? 1u : 0u, parts ? 1u : 0u},
                                      .triangle_strip = true});
-}
-
-/// Its side, or its fan; no box yet.
-gpu::VolumeFace face_of(const VolumeEdge& edge) {
-  return {edge.a, edge.b, edge.a, edge.multiplicity, 0, {}};
 }
 
 /// Does p appear where its pixel is, and does the place where the line from p to l meets the carrier's plane? Rounding
@@ -66,18 +63,17 @@ bool appears_in_place(const BoxFinder& boxes, const std::array<glm::vec3, 3>& ca
 }  // namespace
 
 struct VolumeCount::State {
-  State(const render::Device& on, CountVariant which, Layers of)
-      : device(&on),
-        variant(which),
-        layers(of),
-        sides(make_pass(on, "volume sides", kSide, which)),
-        fans(make_pass(on, "volume far ends", kFan, which)),
-        caps(make_pass(on, "volume caps", kCap, which)) {}
+  State(const render::Device& on, CountVariant which, Layers of, bool in_parts)
+      : device(&on), variant(which), layers(of) {
+    std::vector<FaceKind> needed{kSide, kFan, kCap};
+    if (in_parts) needed.insert(needed.end(), {kLowerFan, kUpperFan});
+    for (const FaceKind kind : needed) static_cast<void>(pass_of(kind, which != CountVariant::z_fail, in_parts));
+  }
 
   const render::Device* device;
   CountVariant variant;
   Layers layers;
-  render::RasterPass sides, fans, caps;
+  std::array<std::optional<render::RasterPass>, 20> passes;  // made when they are first needed
 
   const SceneFloats* scene = nullptr;
   const visibility::Light* light = nullptr;
@@ -86,18 +82,9 @@ struct VolumeCount::State {
   std::optional<visibility::TriangleTree> tree;  // made for the first doubtful pixel
   LightVolumes volumes;
 
-  /// The faces of one kind that are on the screen.
-  struct Faces {
-    FaceKind kind;
-    std::vector<gpu::VolumeFace> faces;
-  };
-  std::vector<Faces> on_screen;
-  bool boxes_found = false;   // for this light and view
-  glm::dvec3 apex{0};         // where all fans meet
-  std::int32_t at_start = 0;  // what every pixel's count starts from
-  std::int32_t at_eye = 0;    // what z-pass leaves out
+  std::optional<VolumeFaces> faces;  // for this light and view
 
-  std::unique_ptr<render::Buffer> face_buffer, receiver_buffer, count_buffer, doubt_buffer;
+  std::unique_ptr<render::Buffer> face_buffer, receiver_buffer, count_buffer, doubt_buffer, part_buffer;
   std::vector<gpu::VolumeReceiver> receivers;
   std::vector<std::uint32_t> doubts;
   std::vector<std::int32_t> counts;
@@ -105,18 +92,16 @@ struct VolumeCount::State {
   Totals totals;
   visibility::PassTimes times;
 
-  void find_boxes();
-  template <typename Item, typename Make>
-  void add_faces(FaceKind kind, const std::vector<Item>& items, const Make& make);
-  void choose_apex();
+  const render::RasterPass& pass_of(FaceKind kind, bool before, bool parts);
+  void find_faces();
   void classify(const Tile& tile);
   void rasterise(const Tile& tile);
   void count_doubtful(const Tile& tile);
   [[nodiscard]] std::int32_t count_exactly(std::size_t pixel) const;
 };
 
-VolumeCount::VolumeCount(const render::Device& device, CountVariant variant, Layers layers)
-    : state_(std::make_unique<State>(device, variant, layers)) {}
+VolumeCount::VolumeCount(const render::Device& device, CountVariant variant, Layers layers, bool in_parts)
+    : state_(std::make_unique<State>(device, variant, layers, in_parts)) {}
 VolumeCount::~VolumeCount() = default;
 VolumeCount::VolumeCount(VolumeCount&&) noexcept = default;
 VolumeCount& VolumeCount::operator=(VolumeCount&&) noexcept = default;
@@ -146,8 +131,10 @@ void VolumeCount::prepare_light(const visibility::Light& light, LightVolumes vol
   PENUMBRA_ASSERT(s.scene != nullptr && volumes.caps.size() < (1u << 28), "{} triangles", volumes.caps.size());
   s.light = &light;
   s.volumes = std::move(volumes);
-  s.boxes_found = false;
-  s.totals = {.silhouette_edges = s.volumes.edges.size(), .caps = s.volumes.caps.size()};
+  s.faces.reset();
+  s.totals = {};
+  s.totals.silhouette_edges = s.volumes.edges.size();
+  s.totals.caps = s.volumes.caps.size();
 }
 
 void VolumeCount::prepare_view(const ViewSamples& samples) {
@@ -160,7 +147,7 @@ void VolumeCount::prepare_view(const ViewSamples& samples) {
                         s.device->limits().max_image_size);
   }
   s.samples = &samples;
-  s.boxes_found = false;
+  s.faces.reset();
 }
 
 std::uint32_t VolumeCount::max_tile_rows() const {
@@ -171,67 +158,22 @@ std::uint32_t VolumeCount::max_tile_rows() const {
   return static_cast<std::uint32_t>(std::clamp<std::uint64_t>(rows, 1, most));
 }
 
-/// Adds to on_screen what `make` makes of each item and a screen box can be found for.
-template <typename Item, typename Make>
-void VolumeCount::State::add_faces(FaceKind kind, const std::vector<Item>& items, const Make& make) {
-  const BoxFinder boxes(samples->camera);
-  std::vector<gpu::VolumeFace> faces(items.size());
-  mesh::for_each_index(items.size(), [&](std::size_t i) {
-    gpu::VolumeFace& face = faces[i];
-    const auto [corners, size] = make(items[i], face);
-    const std::optional<ScreenBox> box = boxes.around(std::span(corners).first(size));
-    if (!box) face.weight = 0;
-    for (std::size_t j = 0; box && j < 4; ++j) face.corners[j] = box->corners[j];
-  });
-  std::erase_if(faces, [](const gpu::VolumeFace& face) { return face.weight == 0; });
-  totals.faces_on_screen += faces.size();
-  if (kind == kFan) totals.far_ends_on_screen = faces.size();
-  on_screen.push_back({kind, std::move(faces)});
+const render::RasterPass& VolumeCount::State::pass_of(FaceKind kind, bool before, bool parts) {
+  std::optional<render::RasterPass>& pass = passes[4 * kind + (before ? 2U : 0U) + (parts ? 1U : 0U)];
+  if (!pass) pass.emplace(make_pass(*device, kind, before, parts));
+  return *pass;
 }
 
-/// Behind the camera, where fans hardly ever come onto the screen; a little aside if rounding cannot tell what is
-/// there.
-void VolumeCount::State::choose_apex() {
-  constexpr int kTries = 64;
-  const visibility::PinholeCamera& camera = samples->camera;
-  for (int i = 0; i < kTries; ++i) {
-    apex = -camera.forward + 0x1p-10 * i * (camera.right + 0.618 * camera.up);
-    if (const std::optional<std::int32_t> count = count_along(volumes, -apex)) {
-      at_start = *count;
-      return;
-    }
-  }
-  PENUMBRA_ASSERT(false, "no apex for {} volumes", volumes.caps.size());
-}
-
-void VolumeCount::State::find_boxes() {
-  if (boxes_found) return;
-  using Corners = std::pair<std::array<FaceCorner, 4>, std::size_t>;
-  const glm::dvec3 l = volumes.l;
-  totals.faces_on_screen = 0;
-  on_screen.clear();
-  add_faces(kSide, volumes.edges, [&](const VolumeEdge& edge, gpu::VolumeFace& face) -> Corners {
-    face = face_of(edge);
-    const glm::dvec3 a = edge.a, b = edge.b;
-    return {{{{a}, {b}, {b - l, true}, {a - l, true}}}, 4};
-  });
-  add_faces(kCap, volumes.caps, [&](const VolumeCap& cap, gpu::VolumeFace& face) -> Corners {
-    const auto& [a, b, c] = cap.corners;
-    face = {a, b, c, 1, cap.plane, {}};
-    return {{{{a}, {b}, {c}}}, 3};
-  });
-  at_start = 0;
-  at_eye = 0;
-  if (variant == CountVariant::z_fail) {
-    choose_apex();
-    add_faces(kFan, volumes.edges, [&](const VolumeEdge& edge, gpu::VolumeFace& face) -> Corners {
-      face = face_of(edge);
-      return {{{{apex, true}, {glm::dvec3(edge.a) - l, true}, {glm::dvec3(edge.b) - l, true}}}, 3};
-    });
-  } else {
-    at_eye = count_at(volumes, samples->camera.eye).value_or(0);
-  }
-  boxes_found = true;
+void VolumeCount::State::find_faces() {
+  if (faces) return;
+  faces = faces_on_screen(volumes, samples->camera, variant);
+  totals.faces_on_screen =
+      faces->count(kSide) + faces->count(kCap) + faces->count(kFan) + faces->count(kLowerFan) + faces->count(kUpperFan);
+  totals.far_ends_on_screen = faces->count(kFan);
+  totals.fragments = faces->fragments;
+  totals.toggling_parts = static_cast<std::uint64_t>(std::ranges::count_if(
+      faces->parts, [](const gpu::VolumePart& part) { return (part.bounds & gpu::kToggles) != 0; }));
+  totals.from_eye = variant == CountVariant::z_pass_from_eye && faces->before;
 }
 
 void VolumeCount::State::classify(const Tile& tile) {
@@ -256,7 +198,7 @@ void VolumeCount::State::classify(const Tile& tile) {
     if (appears_in_place(boxes, corners, p, volumes.l, center)) {
       receivers[i] = {p, scene->plane[carrier]};
     } else {
-      doubts[i] = 1;
+      doubts[i] = gpu::kDoubtBit;
     }
   });
 }
@@ -271,21 +213,24 @@ void VolumeCount::State::rasterise(const Tile& tile) {
 
   gpu::VolumePush push{};
   store(push.eye, samples->camera.eye);
-  store(push.apex, apex);
+  store(push.apex, faces->apex);
   push.l = volumes.l;
   push.width = samples->width;
   push.first_row = tile.first_row;
   push.row_count = tile.row_count;
   render::Commands commands(*device);
-  commands.fill(*count_buffer, static_cast<std::uint32_t>(at_start));
+  commands.fill(*count_buffer, static_cast<std::uint32_t>(faces->at_start));
+  render::grow(*device, part_buffer, "volume parts",
+               std::max<std::size_t>(faces->parts.size(), 1) * sizeof(gpu::VolumePart));
+  if (!faces->parts.empty()) part_buffer->write<gpu::VolumePart>(faces->parts);
   const std::size_t most = device->limits().max_storage_buffer_range / sizeof(gpu::VolumeFace);
-  for (const Faces& kind : on_screen) {
-    const render::RasterPass& pass = kind.kind == kSide ? sides : kind.kind == kFan ? fans : caps;
+  for (const VolumeFaces::Kind& kind : faces->kinds) {
+    const render::RasterPass& pass = pass_of(kind.kind, faces->before, !faces->parts.empty());
     for (std::size_t first = 0; first < kind.faces.size(); first += most) {
       const std::size_t batch = std::min(most, kind.faces.size() - first);
       render::grow(*device, face_buffer, "volume faces", batch * sizeof(gpu::VolumeFace));
       face_buffer->write<gpu::VolumeFace>(std::span(kind.faces).subspan(first, batch));
-      pass.record(commands, push, {*face_buffer, *receiver_buffer, *count_buffer, *doubt_buffer},
+      pass.record(commands, push, {*face_buffer, *receiver_buffer, *count_buffer, *doubt_buffer, *part_buffer},
                   {.width = samples->width,
                    .height = tile.row_count,
                    .vertices = 4,
@@ -297,6 +242,10 @@ void VolumeCount::State::rasterise(const Tile& tile) {
   counts.resize(pixels);
   count_buffer->read<std::int32_t>(counts);
   doubt_buffer->read<std::uint32_t>(doubts);
+  for (std::uint32_t& word : doubts) {
+    totals.updates += word & ~gpu::kDoubtBit;
+    word = word >> 31;
+  }
 }
 
 std::int32_t VolumeCount::State::count_exactly(std::size_t pixel) const {
@@ -308,7 +257,7 @@ std::int32_t VolumeCount::State::count_exactly(std::size_t pixel) const {
     if (!visibility::may_occlude(*scene, *light, carrier, triangle)) return;
     count += visibility::segment_meets_triangle(p, l, scene->corners(triangle), *light).meets ? 1 : 0;
   });
-  return count - at_eye;
+  return count - faces->at_eye;
 }
 
 void VolumeCount::State::count_doubtful(const Tile& tile) {
@@ -333,7 +282,7 @@ void VolumeCount::count(const Tile& tile) {
   s.counts.clear();
   s.kinds.clear();
   if (tile.row_count == 0 || s.samples->width == 0) return;
-  s.find_boxes();
+  s.find_faces();
   s.classify(tile);
   s.rasterise(tile);
   s.count_doubtful(tile);
@@ -354,6 +303,10 @@ std::span<const std::uint32_t> VolumeCount::doubts() const {
 glm::vec3 VolumeCount::center() const {
   return state_->volumes.l;
 }
+const ShadowCasters& VolumeCount::casters() const {
+  PENUMBRA_ASSERT(state_->casters.has_value(), "casters before prepare_mesh");
+  return *state_->casters;
+}
 const LightVolumes& VolumeCount::volumes() const {
   return state_->volumes;
 }
@@ -366,7 +319,7 @@ std::vector<visibility::PassTime> VolumeCount::take_pass_times() {
 std::uint64_t VolumeCount::memory_bytes() const {
   const State& s = *state_;
   std::uint64_t bytes = 0;
-  for (const auto* buffer : {&s.face_buffer, &s.receiver_buffer, &s.count_buffer, &s.doubt_buffer}) {
+  for (const auto* buffer : {&s.face_buffer, &s.receiver_buffer, &s.count_buffer, &s.doubt_buffer, &s.part_buffer}) {
     if (*buffer) bytes += (*buffer)->bytes();
   }
   return bytes;

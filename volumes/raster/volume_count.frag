@@ -11,13 +11,15 @@
 //
 // P, A, B: p, a, b from l.  D: p from the eye.  (x, y, z): their determinant.
 
-layout(constant_id = 0) const uint kFace = 0;   // 0: side, 1: fan at infinity, 2: cap
+layout(constant_id = 0) const uint kFace = 0;   // 0: side, 1: fan at infinity, 2: cap, 3: fan at lower, 4: at upper
 layout(constant_id = 1) const uint kZPass = 0;
+layout(constant_id = 2) const uint kParts = 0;  // 1: faces belong to parts, whose bounds hold
 
 layout(scalar, binding = 0) readonly buffer Faces { VolumeFace faces[]; };  // the vertex shader's; one set for both
 layout(scalar, binding = 1) readonly buffer Receivers { VolumeReceiver receivers[]; };
 layout(scalar, binding = 2) buffer Counts { int counts[]; };
-layout(scalar, binding = 3) writeonly buffer Doubts { uint doubts[]; };
+layout(scalar, binding = 3) buffer Doubts { uint doubts[]; };  // kDoubtBit; below it, how often the pixel's count changed
+layout(scalar, binding = 4) readonly buffer Parts { VolumePart parts[]; };
 layout(scalar, push_constant) uniform Push { VolumePush push; };
 
 layout(location = 0) flat in vec3 face_a;
@@ -25,9 +27,22 @@ layout(location = 1) flat in vec3 face_b;
 layout(location = 2) flat in vec3 face_c;
 layout(location = 3) flat in int face_weight;
 layout(location = 4) flat in uint face_plane;
+layout(location = 5) flat in uint face_part;
 
 Value negative(Value v) { return Value(-v.value, v.bound); }
 Value difference(Value v, Value w) { return Value(v.value - w.value, v.bound + w.bound); }
+Value sum(Value v, Value w) {
+  precise const double value = v.value + w.value;
+  return Value(value, v.bound + w.bound + kDeterminantError * (abs(v.value) + abs(w.value)));
+}
+Value product(Value v, Value w) {
+  precise const double value = v.value * w.value;
+  return Value(value, abs(v.value) * w.bound + abs(w.value) * v.bound + v.bound * w.bound + kDeterminantError * abs(value));
+}
+Value along(dvec3 n, dvec3 x) {
+  precise const double value = n.x * x.x + n.y * x.y + n.z * x.z;
+  return Value(value, kDeterminantError * norm1(n) * norm1(x));
+}
 
 const uint kUp = 1, kDown = 2, kDoubt = 4;
 
@@ -41,32 +56,72 @@ int agreement(uint seen) {
   return seen == kUp ? 1 : -1;
 }
 
+/// Is it the segment from the eye to p that is followed, not the ray beyond p? The same for all faces of a part.
+bool counts_before(dvec3 P) {
+  if (kParts == 0 || (parts[face_part].bounds & kToggles) == 0) return kZPass != 0;
+  precise const dvec3 b = parts[face_part].barrier * P;
+  precise const double height = b.x + b.y + b.z;
+  return height > 0.0LF;
+}
+
+/// Signs that are h's where the ray meets a side between the planes of its part, at P − (f / h) d.
+uint between_planes(dvec3 P, dvec3 d, Value h, Value f) {
+  if (kParts == 0) return 0;
+  const uint bounds = parts[face_part].bounds;
+  if ((bounds & (kHasLower | kHasUpper)) == 0) return 0;
+  const dvec3 n = parts[face_part].axis;
+  const Value at = along(n, P), way = product(along(n, d), f);
+  uint seen = 0;
+  if ((bounds & kHasUpper) != 0) {
+    seen |= signs(sum(product(sum(Value(parts[face_part].upper, 0.0LF), negative(at)), h), way));
+  }
+  if ((bounds & kHasLower) != 0) {
+    seen |= signs(sum(product(sum(at, Value(-parts[face_part].lower, 0.0LF)), h), negative(way)));
+  }
+  return seen;
+}
+
 /// What a side adds: +1 where the ray leaves the volumes of multiplicity 1, −1 where it enters.
 int side(dvec3 p, dvec3 d, dvec3 l, dvec3 a, dvec3 b) {
   const dvec3 P = p - l, A = a - l, B = b - l;
   const Value h = det(A, B, d), f = det(A, B, P);
   uint seen = signs(h) | signs(det(P, d, A)) | signs(negative(det(P, d, B))) | signs(negative(det(d, a - p, b - p)));
-  if (kZPass == 0) return agreement(seen | signs(negative(f)));
+  seen |= between_planes(P, d, h, f);
+  if (!counts_before(P)) return agreement(seen | signs(negative(f)));
   const int way = agreement(seen | signs(f) | signs(difference(h, f)));
   return way == kUnknown ? kUnknown : -way;
 }
 
 /// What the fan of an edge at infinity adds.
-int fan(dvec3 d, dvec3 l, dvec3 apex, dvec3 a, dvec3 b) {
+int fan(dvec3 P, dvec3 d, dvec3 l, dvec3 apex, dvec3 a, dvec3 b) {
+  if (counts_before(P)) return 0;
   const dvec3 A = a - l, B = b - l;
   const int way =
       agreement(signs(det(apex, A, B)) | signs(det(d, A, B)) | signs(det(apex, d, B)) | signs(det(apex, A, d)));
   return way == kUnknown ? kUnknown : -way;
 }
 
+/// What the fan of an edge adds in the plane n · x = offset, which the ray beyond p meets at Q = (r P + g d) / r.
+int fan_in_plane(dvec3 P, dvec3 d, dvec3 l, double offset, dvec3 a, dvec3 b) {
+  const dvec3 A = a - l, B = b - l, n = parts[face_part].axis;
+  const Value r = along(n, d), g = sum(Value(offset, 0.0LF), negative(along(n, P)));
+  const int ahead = agreement(signs(r) | signs(g));
+  if (ahead == 0 || ahead == kUnknown) return ahead;
+  const Value rr = ahead > 0 ? r : negative(r), gg = ahead > 0 ? g : negative(g);
+  const int way = agreement(signs(det(n, A, B)) | signs(sum(product(det(P, A, B), rr), product(det(d, A, B), gg))) |
+                            signs(sum(product(det(n, P, B), rr), product(det(n, d, B), gg))) |
+                            signs(sum(product(det(n, A, P), rr), product(det(n, A, d), gg))));
+  return way == kUnknown ? kUnknown : -way * ahead;
+}
+
 uint passes(dvec3 p, dvec3 d, dvec3 a, dvec3 b, dvec3 c) {
   return signs(det(d, a - p, b - p)) | signs(det(d, b - p, c - p)) | signs(det(d, c - p, a - p));
 }
 
-int cap(dvec3 p, dvec3 d, dvec3 a, dvec3 b, dvec3 c) {
+int cap(dvec3 p, dvec3 d, dvec3 l, dvec3 a, dvec3 b, dvec3 c) {
   const Value height = det(b - a, c - a, p - a);
   uint seen = passes(p, d, a, b, c);
-  if (kZPass == 0) return agreement(seen | signs(negative(height)));
+  if (!counts_before(p - l)) return agreement(seen | signs(negative(height)));
   const Value fall = det(b - a, c - a, d);
   const int way = agreement(seen | signs(height) | signs(difference(fall, height)));
   return way == kUnknown ? kUnknown : -way;
@@ -80,7 +135,7 @@ int coplanar_cap(dvec3 p, dvec3 d, dvec3 l, dvec3 a, dvec3 b, dvec3 c) {
   if (eye == kUnknown || light == kUnknown || fall != kDown) return kUnknown;
   const int from_eye = abs(eye), from_light = abs(light);
   if (from_eye != from_light && height == kDoubt) return kUnknown;
-  if (kZPass == 0) return height == kDown ? -from_light : -from_eye;
+  if (!counts_before(p - l)) return height == kDown ? -from_light : -from_eye;
   return height == kDown ? from_eye - from_light : 0;
 }
 
@@ -95,15 +150,21 @@ void main() {
   if (kFace == 0) {
     change = side(p, d, l, a, b);
   } else if (kFace == 1) {
-    change = fan(d, l, push.apex, a, b);
+    change = fan(p - l, d, l, push.apex, a, b);
+  } else if (kFace == 3) {
+    change = fan_in_plane(p - l, d, l, parts[face_part].lower, a, b);
+    change = change == kUnknown ? kUnknown : -change;
+  } else if (kFace == 4) {
+    change = fan_in_plane(p - l, d, l, parts[face_part].upper, a, b);
   } else if (face_plane == receiver.plane) {
     change = coplanar_cap(p, d, l, a, b, c);
   } else {
-    change = cap(p, d, a, b, c);
+    change = cap(p, d, l, a, b, c);
   }
   if (change == kUnknown) {
-    doubts[slot] = 1;
+    atomicOr(doubts[slot], kDoubtBit);
   } else if (change != 0) {
     atomicAdd(counts[slot], change * face_weight);
+    atomicAdd(doubts[slot], 1u);
   }
 }

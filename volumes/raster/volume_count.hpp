@@ -6,6 +6,7 @@
 #include "visibility/scene_floats.hpp"
 #include "visibility/view_samples.hpp"
 #include "volumes/raster/light_volumes.hpp"
+#include "volumes/raster/volume_faces.hpp"
 
 #include <glm/vec3.hpp>
 
@@ -16,20 +17,19 @@
 
 namespace penumbra::volumes {
 
-enum class CountVariant {
-  z_fail,  ///< faces beyond p, the far end included
-  z_pass,  ///< faces between the eye and p: what is counted where the eye is stays out
-};
-
 /// How many shadow volumes of the light's centre each view sample is in.
 ///
 /// Exact (z_fail): the count is the number of triangles that the open segment from p to `center()` meets, as
 /// visibility::segment_meets_triangle says, what is coplanar with the carrier left out, and of closed parts what
 /// `layers` leaves out. Any soup, camera and light.
-/// Faces are rasterised and counted in 32-bit integers, so their order cannot matter and nothing wraps.
+/// Faces are rasterised and counted in 32-bit integers, so their order cannot matter and nothing wraps. Volumes may
+/// come in parts (LightVolumes::parts), each cut by planes, or counted before p or beyond it as suits each pixel
+/// (z_fail).
 class VolumeCount {
  public:
-  VolumeCount(const render::Device& device, CountVariant variant, Layers layers = Layers::every_triangle);
+  /// `in_parts`: volumes will come in parts; passes for them are made at once, not when they do.
+  VolumeCount(const render::Device& device, CountVariant variant, Layers layers = Layers::every_triangle,
+              bool in_parts = false);
   ~VolumeCount();
   VolumeCount(VolumeCount&&) noexcept;
   VolumeCount& operator=(VolumeCount&&) noexcept;
@@ -39,7 +39,11 @@ class VolumeCount {
   void prepare_light(const visibility::Light& light);
   void prepare_view(const visibility::ViewSamples& samples);
 
-  /// In place of the first two where someone else finds the volumes of lights (ShadowCasters, with the same layers).
+  /// After prepare_mesh: what it found.
+  [[nodiscard]] const ShadowCasters& casters() const;
+
+  /// In place of the first two, or after prepare_mesh in place of the second, where someone else finds the volumes of
+  /// lights (ShadowCasters, with the same layers).
   void prepare_scene(const visibility::SceneFloats& scene);
   void prepare_light(const visibility::Light& light, LightVolumes volumes);
 
@@ -68,6 +72,10 @@ class VolumeCount {
     std::uint64_t silhouette_edges = 0, caps = 0;
     std::uint64_t faces_on_screen = 0;  ///< sides, fans and caps that were rasterised
     std::uint64_t far_ends_on_screen = 0;
+    std::uint64_t fragments = 0;        ///< that these propose, about: the areas of their boxes on the screen
+    std::uint64_t updates = 0;          ///< of counts: what a stencil would be written for
+    std::uint64_t toggling_parts = 0;   ///< of those that asked for it
+    bool from_eye = false;              ///< z_pass_from_eye, as its name says
     std::uint64_t doubtful_pixels = 0;  ///< counted on the host, because a sign was within its error bound
     std::uint64_t largest_count = 0;
   };

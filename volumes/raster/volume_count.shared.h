@@ -22,8 +22,22 @@ struct VolumeFace {
   vec3 a, b, c;
   int weight;
   uint plane;       // of a cap
+  uint part;        // of VolumePart, where there are any
   vec2 corners[4];  // its screen box
 };
+
+/// Volumes that are counted together and in one way; n is the axis and x is taken from l.
+struct VolumePart {
+  DOUBLE3(axis);
+  double lower, upper;  // what is left of the volumes: lower < n · x < upper
+  DOUBLE3(barrier);     // of a part that toggles: counted before p where barrier · p > 0, else beyond p
+  uint bounds;          // which of these hold: kHasLower, kHasUpper, kToggles
+  uint unused;
+};
+const uint kHasLower = 1, kHasUpper = 2, kToggles = 4;
+
+/// In the word of a pixel that counts how often it was changed.
+const uint kDoubtBit = 0x80000000u;
 
 struct VolumeReceiver {
   vec3 p;

@@ -16,6 +16,7 @@ layout(location = 1) flat out vec3 b;
 layout(location = 2) flat out vec3 c;
 layout(location = 3) flat out int weight;
 layout(location = 4) flat out uint plane;
+layout(location = 5) flat out uint part;
 
 void main() {
   a = faces[gl_InstanceIndex].a;
@@ -23,6 +24,7 @@ void main() {
   c = faces[gl_InstanceIndex].c;
   weight = faces[gl_InstanceIndex].weight;
   plane = faces[gl_InstanceIndex].plane;
+  part = faces[gl_InstanceIndex].part;
   const vec2 at = faces[gl_InstanceIndex].corners[gl_VertexIndex] - vec2(0.0, float(push.first_row));
   gl_Position = vec4(at / vec2(push.width, push.row_count) * 2.0 - 1.0, 0.5, 1.0);
 }

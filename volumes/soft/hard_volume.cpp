@@ -1,11 +1,17 @@
 // Crow 1977, Heidmann 1991, Everitt and Kilgard 2002: V is 1 where no shadow volume of the light's centre is counted.
-// volume_count.cpp says how it counts, and where it departs from them.
+// volume_count.cpp says how it counts, and where it departs from them. ZP+ is S. Hornus, J. Hoberock, S. Lefebvre, J.
+// Hart, ZP+: correct z-pass stencil shadows, I3D 2005: there the counts on the near plane are drawn from the light;
+// here the near plane is at the eye, and there is one count, the host's. volume_culling.cpp names the other variants'
+// papers.
 
 #include "volumes/soft/methods.hpp"
 
 #include "base/assert.hpp"
 #include "base/error.hpp"
 #include "volumes/raster/volume_count.hpp"
+#include "volumes/raster/volume_culling.hpp"
+
+#include <optional>
 
 namespace penumbra::volumes {
 namespace {
@@ -17,11 +23,28 @@ visibility::MeshVerdict hard_volume_verdict(const mesh::Diagnosis& mesh) {
                               mesh, {{mesh.zero_area_triangles.count, "triangles without area, which cast nothing"}})};
 }
 
+enum class Variant { z_fail, z_pass, zp_plus, cc, split, hierarchical };
+
 constexpr visibility::ChoiceOption kVariant{
     "variant",
-    {{"z-fail", CountVariant::z_fail}, {"z-pass", CountVariant::z_pass}},
-    CountVariant::z_fail,
-    "count volumes beyond the surface, or between it and the camera: wrong when the camera is in shadow"};
+    {{"z-fail", Variant::z_fail},
+     {"z-pass", Variant::z_pass},
+     {"zp+", Variant::zp_plus},
+     {"cc", Variant::cc},
+     {"split", Variant::split},
+     {"hierarchical", Variant::hierarchical}},
+    Variant::z_fail,
+    "count volumes beyond the surface; between it and the camera, wrong when the camera is in shadow, or (zp+) from "
+    "the "
+    "count at the camera; without volumes that hide nothing new, cut to where surfaces are (cc); on the side that "
+    "costs "
+    "less (split); without triangles that hide nothing from any pixel (hierarchical)"};
+
+CountVariant count_variant(Variant variant) {
+  return variant == Variant::z_pass    ? CountVariant::z_pass
+         : variant == Variant::zp_plus ? CountVariant::z_pass_from_eye
+                                       : CountVariant::z_fail;
+}
 
 }  // namespace
 
@@ -30,7 +53,7 @@ visibility::MethodDescription hard_volume_description() {
           .family = visibility::Family::geometry,
           .paper = "Crow 1977, Heidmann 1991, Everitt and Kilgard 2002",
           .output = visibility::Output::scalar,
-          .exact_for = "the hard shadow of the light's centre, of any triangle soup (z-fail)",
+          .exact_for = "the hard shadow of the light's centre, of any triangle soup (all variants but z-pass)",
           .lights = visibility::kPlanarLights,
           .options = {kVariant.description()},
           .verdict_on = hard_volume_verdict};
@@ -42,17 +65,32 @@ class HardVolume final : public visibility::Method {
  public:
   HardVolume(const render::Device& device, const visibility::MethodOptions& options)
       : description_(hard_volume_description()),
-        count_(device, visibility::parse_options(description_, options)[kVariant]) {}
+        variant_(visibility::parse_options(description_, options)[kVariant]),
+        count_(device, count_variant(variant_), Layers::every_triangle,
+               variant_ == Variant::cc || variant_ == Variant::split) {}
 
   [[nodiscard]] const visibility::MethodDescription& description() const override { return description_; }
-  void prepare_mesh(const visibility::SceneFloats& scene) override { count_.prepare_mesh(scene); }
+  void prepare_mesh(const visibility::SceneFloats& scene) override {
+    scene_ = &scene;
+    count_.prepare_mesh(scene);
+    if (variant_ == Variant::hierarchical) tree_ = visibility::make_triangle_tree(scene);
+  }
   void prepare_light(const visibility::Light& light) override {
     visibility::check_light(description_, light);
-    count_.prepare_light(light);
+    light_ = &light;
+    planned_ = !is_for_a_view();
+    if (planned_) count_.prepare_light(light);
   }
-  void prepare_view(const visibility::ViewSamples& samples) override { count_.prepare_view(samples); }
+  void prepare_view(const visibility::ViewSamples& samples) override {
+    samples_ = &samples;
+    planned_ = !is_for_a_view();
+    count_.prepare_view(samples);
+  }
   [[nodiscard]] std::uint32_t max_tile_rows() const override { return count_.max_tile_rows(); }
-  void evaluate(const visibility::Tile& tile) override { count_.count(tile); }
+  void evaluate(const visibility::Tile& tile) override {
+    if (!planned_) plan();
+    count_.count(tile);
+  }
 
   void read_visibility(std::span<float> visibility) override {
     using Kind = VolumeCount::Kind;
@@ -69,15 +107,45 @@ class HardVolume final : public visibility::Method {
   std::vector<visibility::PassTime> take_pass_times() override { return count_.take_pass_times(); }
   [[nodiscard]] std::map<std::string, std::uint64_t> counters() const override {
     const VolumeCount::Totals& totals = count_.totals();
-    return {{"silhouetteEdges", totals.silhouette_edges},    {"caps", totals.caps},
-            {"facesOnScreen", totals.faces_on_screen},       {"farEndsOnScreen", totals.far_ends_on_screen},
-            {"pixelsCountedOnHost", totals.doubtful_pixels}, {"largestCount", totals.largest_count}};
+    std::map<std::string, std::uint64_t> all{{"silhouetteEdges", totals.silhouette_edges},
+                                             {"caps", totals.caps},
+                                             {"facesOnScreen", totals.faces_on_screen},
+                                             {"farEndsOnScreen", totals.far_ends_on_screen},
+                                             {"fragments", totals.fragments},
+                                             {"countUpdates", totals.updates},
+                                             {"pixelsCountedOnHost", totals.doubtful_pixels},
+                                             {"largestCount", totals.largest_count}};
+    all.insert(left_out_.begin(), left_out_.end());
+    if (variant_ == Variant::split) all["togglingVolumes"] = totals.toggling_parts;
+    if (variant_ == Variant::zp_plus) all["countedFromEye"] = totals.from_eye ? 1 : 0;
+    return all;
   }
   [[nodiscard]] std::uint64_t memory_bytes() const override { return count_.memory_bytes(); }
 
  private:
+  /// Which volumes there are depends on the view, too.
+  [[nodiscard]] bool is_for_a_view() const {
+    return variant_ == Variant::cc || variant_ == Variant::split || variant_ == Variant::hierarchical;
+  }
+  void plan() {
+    const ShadowCasters& casters = count_.casters();
+    LeanVolumes lean = variant_ == Variant::cc      ? culled_and_clamped(*scene_, casters, *light_, *samples_)
+                       : variant_ == Variant::split ? split_by_planes(casters, *light_, *samples_)
+                                                    : culled_by_hierarchy(*scene_, casters, tree_, *light_, *samples_);
+    count_.prepare_light(*light_, std::move(lean.volumes));
+    left_out_ = std::move(lean.counters);
+    planned_ = true;
+  }
+
   visibility::MethodDescription description_;
+  Variant variant_;
   VolumeCount count_;
+  visibility::TriangleTree tree_;
+  const visibility::SceneFloats* scene_ = nullptr;
+  const visibility::Light* light_ = nullptr;
+  const visibility::ViewSamples* samples_ = nullptr;
+  bool planned_ = false;
+  std::map<std::string, std::uint64_t> left_out_;
 };
 
 }  // namespace
