@@ -30,6 +30,7 @@ penumbra_test(volumes
   agreement/volumes/packed_counters_scenes.cpp
   agreement/volumes/soft_volume_blend.cpp
   agreement/volumes/soft_volume_exact.cpp
+  agreement/volumes/soft_volume_fusion.cpp
   agreement/volumes/soft_volume_measures.cpp
   agreement/volumes/soft_volume_twin.cpp
   agreement/volumes/soft_volume_wedges.cpp

@@ -45,6 +45,14 @@ const double kSumUnit = 1.0 / 4294967296.0;
 
 const uint kRectangle = 0, kDisk = 1;
 
+/// Two points of the light beside its centre, in its frame, for votes on how many layers there are (soft-volume).
+const uint kVoters = 2;
+#ifdef __cplusplus
+inline constexpr double kVoterAt[kVoters][2] = {{0.40625, 0.28125}, {-0.28125, 0.34375}};
+#else
+const dvec2 kVoterAt[kVoters] = dvec2[kVoters](dvec2(0.40625LF, 0.28125LF), dvec2(-0.28125LF, 0.34375LF));
+#endif
+
 /// How much of the light is on a side of an edge: its area; by a table; of a texture, texel by texel.
 const uint kArea = 0, kTable = 1, kTexture = 2;
 

@@ -9,6 +9,7 @@
 #include "base/assert.hpp"
 #include "base/parallel.hpp"
 #include "volumes/soft/coverage_table.hpp"
+#include "volumes/soft/fused_volume.hpp"
 #include "volumes/soft/light_parts.hpp"
 #include "volumes/wedges/soft_visibility.hpp"
 #include "volumes/soft/soft_volume.frag.spv.hpp"
@@ -55,6 +56,19 @@ constexpr visibility::ChoiceOption kTests{
     WedgeTests::both,
     "keep footprints of wedges off pixels by depth, and by orientation, too (Lengyel)"};
 
+enum class Combined { sum, max, product, average, vote };
+constexpr visibility::ChoiceOption kFusion{
+    "fusion",
+    {{"sum", Combined::sum},
+     {"max", Combined::max},
+     {"product", Combined::product},
+     {"average", Combined::average},
+     {"vote", Combined::vote}},
+    Combined::sum,
+    "add what all occluders hide; find it for each object alone and take the "
+    "largest share, all as if independent, or the middle between largest and sum; "
+    "add, with layers by the votes of three points of the light"};
+
 visibility::MeshVerdict soft_volume_verdict(const mesh::Diagnosis& mesh) {
   return {visibility::Verdict::approximate,
           visibility::reason_with(
@@ -77,7 +91,7 @@ visibility::MethodDescription soft_volume_description() {
               "the light's centre sees: planar ones, say",
           .lights = visibility::kPlanarLights - visibility::kPolygons,
           .options = {kSplit.description(), kTable.description(), kConstruction.description(), kWedges.description(),
-                      kTests.description()},
+                      kTests.description(), kFusion.description()},
           .verdict_on = soft_volume_verdict};
 }
 
@@ -88,6 +102,7 @@ struct CountedPart {
   explicit CountedPart(const render::Device& device) : count(device, CountVariant::z_fail, Layers::one_a_solid) {}
 
   VolumeCount count;
+  std::vector<VolumeCount> voters;  // of other points; none: the centre alone decides
   Light light;
   LightOutline outline;
   std::optional<TextureWeights> texture;
@@ -114,8 +129,14 @@ class SoftVolume final : public visibility::Method {
         table_(options[kTable]),
         builder_(device,
                  {.on = options[kWedges], .construction = options[kConstruction], .layers = Layers::one_a_solid}),
-        tests_(options[kTests]) {
-    for (std::uint32_t i = 0; i < split_ * split_; ++i) parts_.push_back(std::make_unique<CountedPart>(device));
+        tests_(options[kTests]),
+        votes_(options[kFusion] == Combined::vote) {
+    for (std::uint32_t i = 0; i < split_ * split_; ++i) {
+      parts_.push_back(std::make_unique<CountedPart>(device));
+      for (std::uint32_t k = 0; votes_ && k < gpu::kVoters; ++k) {
+        parts_.back()->voters.emplace_back(device, CountVariant::z_fail, Layers::one_a_solid);
+      }
+    }
   }
 
   [[nodiscard]] const visibility::MethodDescription& description() const override { return description_; }
@@ -123,7 +144,10 @@ class SoftVolume final : public visibility::Method {
   void prepare_mesh(const SceneFloats& scene) override {
     scene_ = &scene;
     builder_.prepare_mesh(scene);
-    for (const auto& part : parts_) part->count.prepare_scene(scene);
+    for (const auto& part : parts_) {
+      part->count.prepare_scene(scene);
+      for (VolumeCount& voter : part->voters) voter.prepare_mesh(scene);
+    }
   }
 
   void prepare_light(const Light& light) override {
@@ -139,13 +163,14 @@ class SoftVolume final : public visibility::Method {
     for (const auto& part : parts_) whole += part->weight;
     for (const auto& part : parts_) part->weight /= whole;
     prepared_ = nullptr;
-    doubtful_ = 0;
+    doubtful_ = overruled_ = undecided_ = 0;
   }
 
   void prepare_view(const ViewSamples& samples) override {
     samples_ = &samples;
     for (const auto& part : parts_) {
       part->count.prepare_view(samples);
+      for (VolumeCount& voter : part->voters) voter.prepare_view(samples);
       part->faces.reset();
     }
   }
@@ -172,7 +197,10 @@ class SoftVolume final : public visibility::Method {
   [[nodiscard]] std::map<std::string, std::uint64_t> counters() const override;
   [[nodiscard]] std::uint64_t memory_bytes() const override {
     std::uint64_t bytes = builder_.memory_bytes() + (raster_ ? raster_->memory_bytes() : 0);
-    for (const auto& part : parts_) bytes += part->count.memory_bytes();
+    for (const auto& part : parts_) {
+      bytes += part->count.memory_bytes();
+      for (const VolumeCount& voter : part->voters) bytes += voter.memory_bytes();
+    }
     return bytes;
   }
 
@@ -182,6 +210,7 @@ class SoftVolume final : public visibility::Method {
   void add(CountedPart& part);
   void add_doubtful(CountedPart& part, const std::vector<std::size_t>& pixels);
   [[nodiscard]] double share_above(const CountedPart& part, std::size_t pixel) const;
+  std::vector<std::int64_t> layers_by_vote(CountedPart& part);
 
   visibility::MethodDescription description_;
   const render::Device* device_;
@@ -189,6 +218,7 @@ class SoftVolume final : public visibility::Method {
   bool table_;
   WedgeBuilder builder_;
   WedgeTests tests_;
+  bool votes_;
   std::vector<gpu::uint> kind_;            // of raster_: shape and measure
   const CountedPart* prepared_ = nullptr;  // whose table raster_ has
   std::unique_ptr<WedgeRaster> raster_;
@@ -197,16 +227,19 @@ class SoftVolume final : public visibility::Method {
   const ViewSamples* samples_ = nullptr;
   Tile tile_;
   std::vector<double> sums_;  // of V over the parts
-  std::uint64_t doubtful_ = 0;
+  std::uint64_t doubtful_ = 0, overruled_ = 0, undecided_ = 0;
 };
 
 /// The shader's constants depend on the light's shape and texture.
 void SoftVolume::make_raster(const Light& light) {
   const gpu::uint shape = is_round(light.kind) ? gpu::kDisk : gpu::kRectangle;
   const gpu::uint measure = table_ ? gpu::kTable : light.texture ? gpu::kTexture : gpu::kArea;
-  const std::vector<gpu::uint> kind{shape, measure};
+  const std::vector<gpu::uint> kind{shape, measure, votes_ ? 1U : 0U};
   if (raster_ && kind == kind_) return;
-  raster_ = std::make_unique<WedgeRaster>(*device_, WedgeShader{"wedges", shaders::kSoftVolumeFrag, kind});
+  raster_ = std::make_unique<WedgeRaster>(*device_, WedgeShader{.name = "wedges",
+                                                                .fragment = shaders::kSoftVolumeFrag,
+                                                                .constants = kind,
+                                                                .words = votes_ ? 1 + gpu::kVoters : 1});
   kind_ = kind;
 }
 
@@ -224,6 +257,12 @@ void SoftVolume::prepare(CountedPart& part, const Light& light) {
   if (table_ && part.weight > 0) part.table = coverage_table(part.outline, part.texture ? &*part.texture : nullptr);
   WedgeBuilder::Built built = builder_.build(part.light);
   part.count.prepare_light(part.light, std::move(built.volumes));
+  for (std::size_t k = 0; k < part.voters.size(); ++k) {
+    const auto [center, u, v] = visibility::light_frame(part.light);
+    const glm::vec3 l(center + gpu::kVoterAt[k][0] * u + gpu::kVoterAt[k][1] * v);
+    VolumeCount& voter = part.voters[k];
+    voter.prepare_light(part.light, voter.casters().seen_from(l, part.light));
+  }
   part.wedges = std::move(built.wedges);
   part.facings_on_host = built.facings_on_host;
   part.edges_on_host = built.edges_on_host;
@@ -258,13 +297,40 @@ void SoftVolume::add(CountedPart& part) {
     if (kinds[i] == Kind::counted && (away[i] != 0 || raster_->doubts()[i] != 0)) doubtful.push_back(i);
   }
   add_doubtful(part, doubtful);
+  const std::vector<std::int64_t> voted = part.voters.empty() ? std::vector<std::int64_t>() : layers_by_vote(part);
+  const std::size_t words = 1 + part.voters.size();
   for (const std::size_t i : doubtful) away[i] = 1;
   mesh::for_each_index(kinds.size(), [&](std::size_t i) {
     if (kinds[i] == Kind::lit) sums_[i] += part.weight;
     if (kinds[i] != Kind::counted || away[i] != 0) return;
-    const double blocked = part.count.counts()[i] + gpu::kSumUnit * static_cast<double>(raster_->sums()[i]);
+    const auto layers = static_cast<double>(voted.empty() ? part.count.counts()[i] : voted[i]);
+    const double blocked = layers + gpu::kSumUnit * static_cast<double>(raster_->sums()[i * words]);
     sums_[i] += part.weight * std::clamp(1 - blocked, 0.0, share_above(part, first + i));
   });
+}
+
+/// Layers at the light's centre as most of three points say: each by its own count, less the layers between.
+std::vector<std::int64_t> SoftVolume::layers_by_vote(CountedPart& part) {
+  using Kind = VolumeCount::Kind;
+  const std::span<const Kind> kinds = part.count.kinds();
+  const std::size_t words = 1 + part.voters.size();
+  for (VolumeCount& voter : part.voters) voter.count(tile_);
+  std::vector<std::int64_t> layers(kinds.size());
+  for (std::size_t i = 0; i < kinds.size(); ++i) {
+    if (kinds[i] != Kind::counted) continue;
+    std::vector<std::int64_t> votes{part.count.counts()[i]};
+    for (std::size_t k = 0; k < part.voters.size(); ++k) {
+      const VolumeCount& voter = part.voters[k];
+      if (voter.kinds()[i] != Kind::counted) continue;  // below the horizon: no vote
+      votes.push_back(voter.counts()[i] - raster_->sums()[i * words + 1 + k]);
+    }
+    const std::int64_t own = votes.front();
+    std::ranges::sort(votes);
+    layers[i] = votes.size() == 1 + part.voters.size() ? votes[votes.size() / 2] : own;
+    overruled_ += layers[i] != own ? 1 : 0;
+    undecided_ += std::ranges::adjacent_find(votes) == votes.end() && votes.size() > 1 ? 1 : 0;
+  }
+  return layers;
 }
 
 /// By exact signs, and from another point of the light where an edge ends at its centre.
@@ -302,6 +368,10 @@ std::vector<visibility::PassTime> SoftVolume::take_pass_times() {
 
 std::map<std::string, std::uint64_t> SoftVolume::counters() const {
   std::map<std::string, std::uint64_t> result{{"pixelsOnHost", doubtful_}};
+  if (votes_) {
+    result["pixelsOverruled"] = overruled_;
+    result["pixelsWithoutMajority"] = undecided_;
+  }
   for (const auto& part : parts_) {
     const VolumeCount::Totals& totals = part->count.totals();
     result["silhouetteEdges"] += totals.silhouette_edges;
@@ -324,7 +394,26 @@ std::map<std::string, std::uint64_t> SoftVolume::counters() const {
 
 std::unique_ptr<visibility::Method> make_soft_volume(const render::Device& device,
                                                      const visibility::MethodOptions& options) {
-  return std::make_unique<SoftVolume>(device, visibility::parse_options(soft_volume_description(), options));
+  const visibility::ParsedOptions parsed = visibility::parse_options(soft_volume_description(), options);
+  const auto rule = [&]() -> std::optional<Fusion> {
+    switch (parsed[kFusion]) {
+      case Combined::max:
+        return Fusion::max;
+      case Combined::product:
+        return Fusion::product;
+      case Combined::average:
+        return Fusion::average;
+      default:
+        return std::nullopt;
+    }
+  }();
+  if (!rule) return std::make_unique<SoftVolume>(device, parsed);
+  visibility::MethodOptions alone = options;
+  alone.erase("fusion");
+  alone.erase("split");  // each part by itself
+  return make_fused(soft_volume_description(),
+                    std::make_unique<SoftVolume>(device, visibility::parse_options(soft_volume_description(), alone)),
+                    {.rule = *rule, .split = parsed[kSplit]});
 }
 
 }  // namespace penumbra::volumes

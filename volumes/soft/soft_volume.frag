@@ -13,6 +13,7 @@
 
 layout(constant_id = 0) const uint kShape = 0;
 layout(constant_id = 1) const uint kMeasure = 0;
+layout(constant_id = 2) const uint kVote = 0;  // 1: sides as floats round them, and what lies between the centre and the voters
 
 layout(scalar, binding = 0) readonly buffer Faces { WedgeFace faces[]; };  // the vertex shader's; one set for both
 layout(scalar, binding = 1) readonly buffer Receivers { WedgeReceiver receivers[]; };
@@ -50,6 +51,21 @@ double share_of(Cone cone, dvec2 q0, dvec2 q1) {
   return (cone.sector - cone.triangle) / whole;
 }
 
+/// The side of the plane (c, a, b) that p is on, as a fragment of 2003 decides it.
+int rounded_turn_of(dvec3 a, dvec3 b, dvec3 p, Foot foot) {
+  const vec3 A = vec3(a - push.c), B = vec3(b - push.c), P = vec3(p - push.c);
+  return dot(cross(A, B), P) < 0.0 ? -facing_of(foot) : facing_of(foot);
+}
+
+/// How the number of layers changes on the way from the centre to a voter, q, at this edge, which turns around the centre
+/// by `turn`. Half open, so that the way passes a vertex on one side of it.
+int layers_between(Segment cut, int turn, dvec2 q) {
+  const dvec2 from = cut.from.xy - q * cut.from.z, to = cut.to.xy - q * cut.to.z;
+  const int turn_at_q = from.x * to.y - from.y * to.x < 0.0LF ? -1 : 1;
+  const bool above = q.x * cut.from.y - q.y * cut.from.x < 0.0LF, below = q.x * cut.to.y - q.y * cut.to.x < 0.0LF;
+  return turn != turn_at_q && above != below ? turn : 0;
+}
+
 void main() {
   const uvec2 pixel = uvec2(gl_FragCoord.xy);
   const uint slot = pixel.y * push.width + pixel.x;
@@ -60,11 +76,17 @@ void main() {
   const dvec3 from = project(a - p, foot), to = project(b - p, foot);
   const Segment cut = kShape == kDisk ? cut_by_disk(from, to) : cut_by_square(from, to);
   if (!cut.any) return;
-  const Cone cone = cone_of(cut, turn_of(a, b, p, foot), size_of(a, b, p, from, to), kShape == kDisk);
-  if (cone.doubtful) {
+  const int turn = kVote == 0 ? turn_of(a, b, p, foot) : rounded_turn_of(a, b, p, foot);
+  const Cone cone = cone_of(cut, turn, size_of(a, b, p, from, to), kShape == kDisk);
+  if (kVote == 0 && cone.doubtful) {
     doubts[slot] = 1;
     return;
   }
   const double share = share_of(cone, cut.from.xy / cut.from.z, cut.to.xy / cut.to.z);
-  atomicAdd(sums[slot], int64_t(round(share * double(facing_of(foot) * face_weight) / kSumUnit)));
+  const uint words = kVote == 0 ? 1 : 1 + kVoters;
+  for (uint i = 0; kVote != 0 && i < kVoters; ++i) {
+    const int change = layers_between(cut, turn, kVoterAt[i]);
+    if (change != 0) atomicAdd(sums[slot * words + 1 + i], int64_t(change * facing_of(foot) * face_weight));
+  }
+  atomicAdd(sums[slot * words], int64_t(round(share * double(facing_of(foot) * face_weight) / kSumUnit)));
 }
