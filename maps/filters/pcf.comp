@@ -8,18 +8,7 @@
 // Percentage-closer filtering (Reeves, Salesin, Cook 1987; Eisemann et al. 2009, equation 4.1) with equal weights: the
 // share of the window x window texels around the receiver whose depth test says lit.
 
-// The receiver's own texel's neighbour, (a, b) texels along the face's coordinates; one long along the face's axis.
-vec3 neighbour(Tap own, vec2 step, vec2 offset) {
-  const vec2 by = step * offset;
-  if (own.axis == 2) return own.direction + vec3(by, 0.0);
-  if (own.axis == 0) return own.direction + vec3(0.0, by.x, by.y * own.mirrored);
-  return own.direction + vec3(by.x, 0.0, by.y * own.mirrored);
-}
-
-bool texel_blocks(Tap tap, vec3 m, float h, float along, float texels_away) {
-  if (lookup.own_depth != 0) return is_before_depth(tap, along, lookup.bias);
-  return blocks(tap, m, h, along * (1.0 + kSteepest * tap.texel * max(texels_away, 1.0)), lookup.bias);
-}
+#include "maps/host/neighbours.glsl"
 
 float visibility_of(LightView view, vec3 d, vec3 m) {
   const float h = dot(m, d);

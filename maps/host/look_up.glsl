@@ -29,7 +29,7 @@ layout(scalar, push_constant) uniform Push {
 
 #include "maps/host/taps.glsl"
 
-uint receiver_plane;  // scalar_main.glsl: the receiver's, as Receiver has it
+uint receiver_plane, receiver_object;  // scalar_main.glsl: the receiver's, as Receiver has them
 
 uint this_group() { return gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x; }
 

@@ -44,7 +44,8 @@ struct LightBasis {
 // receivesShadow false.
 struct Receiver {
   vec3 p, n;
-  uint plane;  // the number of its triangle's plane (visibility::SceneFloats); all ones where it casts no shadow
+  uint plane;   // the number of its triangle's plane (visibility::SceneFloats); all ones where it casts no shadow
+  uint object;  // the number of its object; all ones where it casts no shadow
 };
 
 // caster.vert, caster.frag: one face.

@@ -28,8 +28,10 @@ void Receivers::upload(const render::Device& device, const visibility::SceneFloa
       if (!visibility::is_receiver(scene, light, samples, first + i)) continue;
       if (wanted_ && left_out_[first + i] != 0) continue;
       const auto triangle = static_cast<std::size_t>(samples.triangle[first + i]);
+      const bool casts = scene.casts_shadow[triangle] != 0;
       receivers[i] = {samples.p[first + i], samples.n[first + i],
-                      scene.casts_shadow[triangle] != 0 ? scene.plane[triangle] : visibility::SceneFloats::kNoPlane};
+                      casts ? scene.plane[triangle] : visibility::SceneFloats::kNoPlane,
+                      casts ? scene.object[triangle] : visibility::SceneFloats::kNoPlane};
     }
     bands_.push_back({render::make_buffer<gpu::Receiver>(device, "map receivers", receivers), row, rows});
   }

@@ -7,6 +7,7 @@ void main() {
   if (receiver.n != vec3(0.0)) {
     const LightView view = views[0];
     receiver_plane = receiver.plane;
+    receiver_object = receiver.object;
     const vec3 d = to_basis(lookup.basis, receiver.p - view.point);
     v = on_emitting_side(d) ? visibility_of(view, d, -to_basis(lookup.basis, receiver.n)) : 0.0;
   }

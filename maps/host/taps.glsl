@@ -92,6 +92,7 @@ struct Tap {
   float texel;      // a texel's width at depth 1
   int axis;         // the face's axis: 0, 1, 2
   float mirrored;   // -1 where the direction is on the light's rear side, else 1
+  uint number;      // of the texel, among all maps' texels
 };
 
 // The texel `cell` of a face, as a tap on the receiver's side of the light's plane. `along` is the caller's.
@@ -106,6 +107,7 @@ Tap tap_of(LightView view, uint size, MapFace face, uvec2 cell) {
   tap.texel = max(face.texel.x, face.texel.y);
   tap.axis = face.axis;
   tap.mirrored = 1.0;
+  tap.number = texel;
   return tap;
 }
 

@@ -19,7 +19,8 @@ namespace penumbra::maps {
 // A block of OpenGL lays out what follows a struct on the next multiple of 16 bytes.
 static_assert(offsetof(gpu::IdsPush, size) == sizeof(gpu::CasterPush));
 
-NearestIds::NearestIds(const render::Device& device, Rasteriser rasteriser) : device_(&device) {
+NearestIds::NearestIds(const render::Device& device, Rasteriser rasteriser, IdsOf compared)
+    : device_(&device), compared_(compared) {
   if (rasteriser == Rasteriser::opengl) {
     opengl_pass_.emplace(device.opengl(), render::opengl::RasterPassOptions{.name = "nearest ids",
                                                                             .vertex = shaders::kNearestIdsVertText,
@@ -35,20 +36,20 @@ NearestIds::NearestIds(const render::Device& device, Rasteriser rasteriser) : de
 
 void NearestIds::record(render::Commands& commands, const MapSet& maps) {
   const std::vector<std::uint32_t> ranks = visibility::ranks(maps.scene);
-  std::vector<std::uint32_t> planes(maps.scene.triangles.size() + 1, gpu::kNoId);
+  std::vector<std::uint32_t> numbers(maps.scene.triangles.size() + 1, gpu::kNoId);
   const std::uint64_t room =
       opengl_pass_ ? device_->opengl().info().max_storage_block : device_->limits().max_storage_buffer_range;
   const std::size_t most = room / (3 * sizeof(glm::vec3));
   std::vector<Casters> casters;
   for (std::uint32_t i = 0; i < maps.scene.triangles.size(); ++i) {
-    planes[ranks[i]] = maps.scene.plane[i];
+    numbers[ranks[i]] = compared_ == IdsOf::objects ? maps.scene.object[i] : maps.scene.plane[i];
     if (maps.scene.casts_shadow[i] == 0 || maps.scene.emits[i] == maps.light.index) continue;
     if (casters.empty() || casters.back().ids.size() == most) casters.emplace_back();
     casters.back().ids.push_back(ranks[i]);
     for (const glm::vec3& corner : maps.scene.corners(i)) casters.back().corners.push_back(corner);
   }
-  render::grow(*device_, planes_, "planes of ids", planes.size() * sizeof(std::uint32_t));
-  planes_->write<std::uint32_t>(planes);
+  render::grow(*device_, compared_numbers_, "numbers of ids", numbers.size() * sizeof(std::uint32_t));
+  compared_numbers_->write<std::uint32_t>(numbers);
   const std::uint64_t texels = std::uint64_t{maps.size} * maps.size;
   render::grow(*device_, ids_, "nearest ids", std::max(maps.faces, 1U) * texels * sizeof(std::uint32_t));
 
@@ -113,7 +114,7 @@ std::uint64_t NearestIds::memory_bytes() const {
     return sum + batch.corners.bytes() + batch.ids.bytes();
   };
   return std::accumulate(uploaded_.begin(), uploaded_.end(),
-                         (ids_ ? ids_->bytes() : 0) + (planes_ ? planes_->bytes() : 0), add);
+                         (ids_ ? ids_->bytes() : 0) + (compared_numbers_ ? compared_numbers_->bytes() : 0), add);
 }
 
 }  // namespace penumbra::maps

@@ -12,15 +12,19 @@
 
 namespace penumbra::maps {
 
+/// What of a triangle a look-up compares with the receiver's.
+enum class IdsOf : std::uint8_t { planes, objects };
+
 /// Which caster a texel of the maps of a light's centre has: for each texel of the nearest layer the triangle's rank
 /// (visibility::ranks), gpu::kNoId where nothing is. Of surfaces at one place (within 2⁻²⁰, as layers have it) the
-/// smallest rank. Behind it, what a look-up compares: of each rank the number of its plane.
+/// smallest rank. Behind it, what a look-up compares: of each rank the number of its plane, or of its object.
 class NearestIds final : public MapProduct {
  public:
-  explicit NearestIds(const render::Device& device, Rasteriser rasteriser = Rasteriser::vulkan);
+  explicit NearestIds(const render::Device& device, Rasteriser rasteriser = Rasteriser::vulkan,
+                      IdsOf compared = IdsOf::planes);
   void record(render::Commands& commands, const MapSet& maps) override;
   [[nodiscard]] const render::Buffer& buffer() const override { return *ids_; }
-  [[nodiscard]] std::vector<render::BufferReference> buffers() const override { return {*ids_, *planes_}; }
+  [[nodiscard]] std::vector<render::BufferReference> buffers() const override { return {*ids_, *compared_numbers_}; }
   [[nodiscard]] std::uint64_t memory_bytes() const override;
 
  private:
@@ -39,10 +43,11 @@ class NearestIds final : public MapProduct {
     std::uint32_t vertices;
   };
   const render::Device* device_;
+  IdsOf compared_;
   std::optional<render::RasterPass> pass_;                 // either this
   std::optional<render::opengl::RasterPass> opengl_pass_;  // or that
   std::vector<Uploaded> uploaded_;
-  std::unique_ptr<render::Buffer> ids_, planes_;
+  std::unique_ptr<render::Buffer> ids_, compared_numbers_;
 };
 
 }  // namespace penumbra::maps

@@ -131,7 +131,7 @@ ComparedReceivers AdaptiveMaps::centre_texels() {
         found.push_back(
             {glm::vec3(glm::dvec3(view.point) + static_cast<double>(depth) * static_cast<double>(view.far) * direction),
              glm::vec3(-glm::normalize(direction)),  // as if it faced the light
-             visibility::SceneFloats::kNoPlane});
+             visibility::SceneFloats::kNoPlane, visibility::SceneFloats::kNoPlane});
       }
     }
   }

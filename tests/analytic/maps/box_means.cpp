@@ -126,7 +126,7 @@ class BoxMeans : public MapsTest {
                                               .push_bytes = sizeof(maps::gpu::LookupPush),
                                               .constants = product.constants(kSize, 1)});
     std::vector<maps::gpu::Receiver> asked;
-    for (const TexelBox& box : boxes) asked.push_back({glm::vec3(box.lower, 1), glm::vec3(box.upper, 0), 0});
+    for (const TexelBox& box : boxes) asked.push_back({glm::vec3(box.lower, 1), glm::vec3(box.upper, 0), 0, 0});
     const render::Buffer receivers = render::make_buffer<maps::gpu::Receiver>(device(), "boxes", asked);
     const render::Buffer results(device(), "means", 2 * boxes.size() * sizeof(std::uint32_t));
     maps::gpu::LookupPush push{};
@@ -248,7 +248,7 @@ TEST_F(BoxMeans, WindowsOnSidewaysFacesHoldTheCornersOfTheLightsBox) {
   for (const glm::vec3& d :
        {glm::vec3(2, 0.3, 1), {-2, 1.8, 0.8}, {1.5, -1.4, 1}, {0.3, 2, 1}, {1.9, -2, 0.9}, {-1, 1.4, 1.2}}) {
     for (const glm::vec2& half : {glm::vec2(6, 6), {6, 0}, {0, 6}})
-      asked.push_back({d, glm::vec3(half, kThrough * d.z), 0});
+      asked.push_back({d, glm::vec3(half, kThrough * d.z), 0, 0});
   }
   const render::Buffer receivers = render::make_buffer<maps::gpu::Receiver>(device(), "receivers", asked),
                        views = render::make_buffer<maps::gpu::LightView>(device(), "views", std::span(&view, 1)),
