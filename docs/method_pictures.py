@@ -31,7 +31,8 @@ STRIPS = {
                           "soft-volume-blend", "wedge-ramp", "hard-volume", "pcss", "accumulate", "shadow-map", "raytrace"]),
     "image": (128, 1, 64, ["pcf:size=256", "vssm:size=256", "convolution:size=256", "occlusion-textures:size=256", "soft-shadow-map:receiverSize=128",
                        "backproject:size=128", "backproject-peel:size=128", "bitmask:size=128", "contour:size=128:traversal=hierarchy",
-                       "packet:size=128:sublights=2", "adaptive-light:size=128", "layered-attenuation:size=128", "deep-penumbra:size=128"]),
+                       "packet:size=128:sublights=2", "adaptive-light:size=128", "layered-attenuation:size=128", "deep-penumbra:size=128", "layer-rays:size=128",
+                       "penumbra-map:size=256", "smoothies:size=256", "parker:size=256", "brabec-seidel:size=256", "kirsch-doellner:size=256", "arvo:size=256"]),
 }
 # Page: scene, light samples, one or two entries. Not `exact`: it is the judge.
 PAGES = {
@@ -52,6 +53,13 @@ PAGES = {
     "pcf": ("contact", 64, ["pcf:size=256"]),
     "pcss": ("papers/fusion-half", 64, ["pcss"]),
     "vssm": ("papers/two-sheets", 64, ["vssm", "vssm:moments=esm"]),
+    "penumbra-map": ("papers/ball", 64, ["penumbra-map"]),
+    "smoothies": ("papers/ball", 64, ["smoothies"]),
+    "brabec-seidel": ("bunny", 64, ["brabec-seidel", "brabec-seidel:ids=off"]),
+    "kirsch-doellner": ("papers/ball", 64, ["kirsch-doellner"]),
+    "parker": ("papers/ball", 64, ["parker"]),
+    "arvo": ("papers/ball", 64, ["arvo"]),
+    "layer-rays": ("papers/gap-closed", 256, ["layer-rays:size=256:layers=1", "layer-rays:size=256:layers=2"]),
     "convolution": ("papers/tower", 64, ["convolution"]),
     "occlusion-textures": ("contact", 64, ["occlusion-textures:size=512"]),
     "accumulate": ("contact", 64, ["accumulate:size=128"]),

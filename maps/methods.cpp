@@ -5,6 +5,7 @@
 #include "maps/backprojection/soft_shadow_map/methods.hpp"
 #include "maps/filters/methods.hpp"
 #include "maps/sampling/methods.hpp"
+#include "maps/single_shadow/methods.hpp"
 
 #include <array>
 
@@ -16,6 +17,7 @@ std::span<const engines::MethodRow> methods() {
       on_device<bitmask_description, make_bitmask>(),
       on_device<backproject_description, make_backproject>(),
       on_device<backproject_peel_description, make_backproject_peel>(),
+      on_device<layer_rays_description, make_layer_rays>(),
       on_device<packet_description, make_packet>(),
       on_device<contour_description, make_contour>(),
       on_device<pcss_description, make_pcss>(),
@@ -27,6 +29,12 @@ std::span<const engines::MethodRow> methods() {
       on_device<layered_attenuation_description, make_layered_attenuation>(),
       on_device<occlusion_textures_description, make_occlusion_textures>(),
       on_device<convolution_description, make_convolution>(),
+      on_device<penumbra_map_description, make_penumbra_map>(),
+      on_device<smoothies_description, make_smoothies>(),
+      on_device<brabec_seidel_description, make_brabec_seidel>(),
+      on_device<kirsch_doellner_description, make_kirsch_doellner>(),
+      on_device<parker_description, make_parker>(),
+      on_device<arvo_description, make_arvo>(),
       on_device<pcf_description, make_pcf>(),
       on_device<shadow_map_description, make_shadow_map>(),
   };

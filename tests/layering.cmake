@@ -45,12 +45,13 @@ set(may_maps/products maps/host render/opengl render ${all_visibility} scenes me
 set(may_maps/products/lists ${may_maps/products} maps/products)
 set(may_maps/filters maps/products maps/host render ${all_visibility} scenes mesh base)
 set(may_maps/sampling maps/products/lists maps/products maps/host render ${all_visibility} scenes mesh base)
+set(may_maps/single_shadow maps/products maps/host render/opengl render ${all_visibility} scenes mesh base)
 set(may_maps/backprojection maps/products maps/host render ${all_visibility} scenes mesh base)
 foreach(room patches contours soft_shadow_map)
   set(may_maps/backprojection/${room} ${may_maps/backprojection} maps/backprojection)
 endforeach()
 list(APPEND may_maps/backprojection/soft_shadow_map maps/backprojection/patches)  # self=backproject
-set(may_maps maps/filters maps/sampling maps/backprojection/patches maps/backprojection/contours maps/backprojection/soft_shadow_map engines render ${all_visibility} scenes mesh base)
+set(may_maps maps/filters maps/sampling maps/single_shadow maps/backprojection/patches maps/backprojection/contours maps/backprojection/soft_shadow_map engines render ${all_visibility} scenes mesh base)
 set(may_selftest maps/products/lists maps/products maps/host vsm engines/vectors volumes/scatter volumes/counters volumes/raster ${signed_edges} volumes/wedges render/opengl render
     ${all_visibility} scenes mesh/shapes mesh base)
 set(may_reference areas engines render ${all_visibility} scenes mesh base)
@@ -73,7 +74,7 @@ set(rooms base mesh mesh/diagnosis mesh/shapes repair scenes scenes/formats impo
     visibility/tree visibility/lights
     visibility/masks visibility/alpha areas render/opengl render engines/device engines/vectors engines/pairs engines
     volumes/wedges volumes/edges/device volumes/edges/vectors volumes/edges volumes/raster volumes/soft volumes/counters volumes/scatter volumes vsm maps/host maps/products maps/products/lists
-    maps/filters maps/sampling maps/backprojection maps/backprojection/patches maps/backprojection/contours
+    maps/filters maps/sampling maps/single_shadow maps/backprojection maps/backprojection/patches maps/backprojection/contours
     maps/backprojection/soft_shadow_map maps selftest reference compare
     app/process app app/pictures app/commands app/compare app/sweep app/farm app/inspect app/wedges library python bench)
 set(may_tests import ${rooms})

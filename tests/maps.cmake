@@ -30,6 +30,8 @@ penumbra_test(maps FULL MapsTable.*
   analytic/maps/repairs.cpp
   analytic/maps/resolution_table.cpp
   analytic/maps/shapes.cpp
+  analytic/maps/single_shadow.cpp
+  analytic/maps/single_shadow_twins.cpp
   analytic/maps/slices.cpp
   analytic/maps/backprojection/backproject.cpp
   analytic/maps/backprojection/bitmask.cpp
@@ -39,6 +41,7 @@ penumbra_test(maps FULL MapsTable.*
   analytic/maps/backprojection/contour_claims.cpp
   analytic/maps/backprojection/fusion.cpp
   analytic/maps/backprojection/horizon.cpp
+  analytic/maps/backprojection/layer_rays.cpp
   analytic/maps/backprojection/light_table.cpp
   analytic/maps/backprojection/packet_costs.cpp
   analytic/maps/backprojection/peel.cpp

@@ -16,6 +16,13 @@ METHODS = {
     "packet": (2009, (915, 325), "pixels together"),
     "backproject-peel": (2006, (680, 410), "layers and midpoints"),
     "bitmask": (2007, (915, 410), "sets of light samples"),
+    "layer-rays": (1999, (915, 475), "rays through layers"),
+    "parker": (1998, (300, 715), "soft edges outside"),
+    "brabec-seidel": (2002, (540, 745), "search, both sides"),
+    "kirsch-doellner": (2003, (770, 745), "distances inside"),
+    "smoothies": (2003, (770, 685), "strips outside"),
+    "penumbra-map": (2003, (540, 685), "cones outside"),
+    "arvo": (2004, (770, 805), "flood on the screen"),
     "accumulate": (1997, (340, 530), "a map a light sample"),
     "layered-attenuation": (2000, (680, 475), "counts in layers"),
     "deep-penumbra": (2005, (680, 545), "V along rays"),
@@ -29,12 +36,15 @@ ARROWS = [
     ("backproject", "backproject-peel", "gaps", RED), ("backproject", "bitmask", "overlaps", RED), ("backproject", "contour", "gaps", RED),
     ("contour", "packet", "time", RED), ("shadow-map", "accumulate", "all of the light", DARK),
     ("accumulate", "layered-attenuation", "time of a view", DARK), ("accumulate", "deep-penumbra", "time of a view", DARK), ("accumulate", "adaptive-light", "fewer maps", DARK),
+    ("backproject-peel", "layer-rays", "all that layers tell", RED), ("shadow-map", "parker", "", INK), ("parker", "penumbra-map", "any receiver", INK),
+    ("penumbra-map", "smoothies", "one width", INK), ("parker", "brabec-seidel", "both sides", INK), ("brabec-seidel", "kirsch-doellner", "time", INK),
+    ("brabec-seidel", "arvo", "the map's resolution", INK),
 ]
 def family_figure():
-    d = Drawing(1000, 640, "The image-based family: who improves on whom",
-                "A graph from shadow-map of 1978 in four branches: filters (pcf, pcss, vssm), images of slices (convolution, occlusion-textures), patches "
-                "projected back onto the light (soft-shadow-map, backproject, backproject-peel, bitmask, contour, packet), and many maps (accumulate, layered-attenuation, "
-                "deep-penumbra, adaptive-light). Each arrow says what the later method repairs.")
+    d = Drawing(1000, 860, "The image-based family: who improves on whom",
+                "A graph from shadow-map of 1978 in five branches: filters (pcf, pcss, vssm), images of slices (convolution, occlusion-textures), patches "
+                "projected back onto the light (soft-shadow-map, backproject, backproject-peel, bitmask, contour, packet, layer-rays), many maps (accumulate, layered-attenuation, "
+                "deep-penumbra, adaptive-light), and penumbrae around one hard shadow (parker, penumbra-map, smoothies, brabec-seidel, kirsch-doellner, arvo). Each arrow says what the later method repairs.")
     assert {name for pair in ARROWS for name in pair[:2]} == set(METHODS)
     for a, b, what, colour in ARROWS:
         (x0, y0), (x1, y1) = METHODS[a][1], METHODS[b][1]
@@ -49,7 +59,7 @@ def family_figure():
         if year:
             d.text((x, y + 32), year, 10, DARK, "middle", halo=True)
     for y, text, colour in ((30, "one map, asked over a window", BLUE), (115, "images of slices", GREEN), (290, "patches of one map, back on the light", RED),
-                            (480, "maps from many points", DARK)):
+                            (480, "maps from many points", DARK), (655, "penumbrae around one hard shadow", INK)):
         d.text((470 if colour == RED else 20, y), text, 12.5, colour, bold=True)
     return d.finish()
 

@@ -24,6 +24,7 @@ import pairs  # noqa: E402
 import papers  # noqa: E402
 import rooms  # noqa: E402
 import scatter  # noqa: E402
+import single_shadow  # noqa: E402
 import texels  # noqa: E402
 import volumes  # noqa: E402
 
@@ -33,7 +34,7 @@ IMAGES = ROOT / "docs" / "images"
 
 def stale_figures(check):
     stale = []
-    for module in (scatter, pairs, disks, volumes, maps, filters, texels, family, lists, rooms):
+    for module in (scatter, pairs, disks, volumes, maps, filters, single_shadow, texels, family, lists, rooms):
         for name, draw in module.FIGURES.items():
             path, text = IMAGES / f"{name}.svg", draw()
             if not check:

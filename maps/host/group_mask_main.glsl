@@ -7,6 +7,8 @@
 //   void clear_squares(), void mark_sample(uint j)            which of them are looked for: all invocations call these
 //   uint occluders_of_a_texel()                               how many hide() asks
 //   void add_work(uint occluders)                             called once a receiver: how many were asked in all
+// With LOOK_AT_KERNEL it defines, in place of hide, clear_squares and mark_sample and after it includes this,
+//   void look_at_kernel(MapFace face, Kernel kernel)          hides what a kernel hides, by all invocations together
 const uint kMaskWords = 128;  // 4096 light samples
 shared uint hidden_bits[kMaskWords];
 shared uint hidden_count;
@@ -22,6 +24,9 @@ uint looked_at = 0;  // texels, by this invocation
 
 bool all_samples_hidden() { return hidden_count >= light_sample_count(); }
 
+#ifdef LOOK_AT_KERNEL
+void look_at_kernel(MapFace face, Kernel kernel);
+#else
 void before_tiles() {
   clear_squares();
   barrier();
@@ -37,6 +42,7 @@ void look_at(MapFace face, uvec2 cell) {
 }
 
 #include "maps/host/group_tiles.glsl"
+#endif
 
 void main() {
   const uint i = this_receiver();

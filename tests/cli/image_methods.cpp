@@ -134,7 +134,18 @@ TEST_F(ImageMethods, OptionsOfFiltersListsAndManyMapsDoWhatTheySay) {
                                    "accumulate:rasteriser=vulkan",
                                    "occlusion-textures:slices=1",
                                    "occlusion-textures:slices=8",
-                                   "convolution"};
+                                   "convolution",
+                                   "layer-rays:layers=2:gap=0:solid=on",
+                                   "layer-rays:layers=2",
+                                   "penumbra-map:filter=nearest",
+                                   "smoothies:width=0.05:filter=nearest",
+                                   "smoothies:width=5:filter=nearest",
+                                   "brabec-seidel:ids=off:radius=140",
+                                   "brabec-seidel:radius=1",
+                                   "kirsch-doellner:radius=140",
+                                   "parker:falloff=linear:depth=dual",
+                                   "parker:falloff=sine:depth=second",
+                                   "arvo"};
   for (const char* moments : {"vsm", "lvsm", "evsm", "csm", "esm"}) {
     for (const char* filter : {"sat", "mip", "n-buffer"}) {
       entries.push_back(std::string("vssm:moments=") + moments + ":subdivision=none:filter=" + filter);
@@ -161,6 +172,13 @@ TEST_F(ImageMethods, OptionsOfFiltersListsAndManyMapsDoWhatTheySay) {
   EXPECT_LT(bias("layered-attenuation:epsilon=0.001"), bias("layered-attenuation:epsilon=0.1")) << "speckle";
   EXPECT_LT(rmse("deep-penumbra:bound=0"), rmse("deep-penumbra:bound=0.2"));
   expect_same("accumulate:rasteriser=vulkan", "accumulate");
+  EXPECT_LT(rmse("layer-rays:layers=2"), rmse("shadow-map:depth=first"));
+  EXPECT_LT(bias("smoothies:width=5:filter=nearest"), bias("smoothies:width=0.05:filter=nearest"));
+  EXPECT_LT(rmse("brabec-seidel:ids=off:radius=140"), rmse("brabec-seidel:radius=1"));
+  EXPECT_LT(bias("penumbra-map:filter=nearest"), bias("shadow-map:depth=first"));
+  EXPECT_LT(bias("parker:falloff=linear:depth=dual"), bias("parker:falloff=sine:depth=second"));
+  EXPECT_GT(bias("kirsch-doellner:radius=140"), bias("shadow-map:depth=first"));
+  EXPECT_LT(rmse("arvo"), rmse("shadow-map:depth=first"));
   EXPECT_GT(rmse("occlusion-textures:slices=1"), rmse("occlusion-textures:slices=8"));
   for (const char* moments : {"vsm", "lvsm", "evsm", "csm", "esm"}) {
     const std::string way = std::string("vssm:moments=") + moments + ":subdivision=none:filter=";

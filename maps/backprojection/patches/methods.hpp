@@ -27,4 +27,9 @@ std::unique_ptr<visibility::Method> make_backproject_peel(const render::Device& 
                                                           const visibility::MethodOptions& options);
 visibility::MethodDescription backproject_peel_description();
 
+/// Keating and Max 1999: rays to the light samples through layers of one map. docs/layer-rays.md.
+std::unique_ptr<visibility::Method> make_layer_rays(const render::Device& device,
+                                                    const visibility::MethodOptions& options);
+visibility::MethodDescription layer_rays_description();
+
 }  // namespace penumbra::maps

@@ -128,4 +128,15 @@ ErrorRepairs bitmask_repairs(const MethodDescription& method, const MethodOption
   return repairs;
 }
 
+ErrorRepairs layer_ray_repairs(const MethodDescription& method, const MethodOptions& given) {
+  ErrorRepairs repairs =
+      map_repairs(method, given,
+                  {.ends_at_points = true,
+                   .fusion = "rays are stopped or not: nothing is added",
+                   .gaps = "walls between neighbouring texels close gaps and may close what is open: no form tells"});
+  of(repairs, ErrorCause::layers) = more_layers(method, given);
+  for (RepairRun& run : repairs.one_view) run.options["layers"] = "16";
+  return repairs;
+}
+
 }  // namespace penumbra::maps

@@ -12,4 +12,7 @@ visibility::ErrorRepairs peel_repairs(const visibility::MethodDescription& metho
 visibility::ErrorRepairs bitmask_repairs(const visibility::MethodDescription& method,
                                          const visibility::MethodOptions& given);
 
+visibility::ErrorRepairs layer_ray_repairs(const visibility::MethodDescription& method,
+                                           const visibility::MethodOptions& given);
+
 }  // namespace penumbra::maps

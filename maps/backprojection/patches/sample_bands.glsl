@@ -1,14 +1,6 @@
 // Light samples, and those in a rectangle or a triangle of the light's plane. Before it is included SAMPLE_BANDS is the
 // binding of LightSampleBands' buffer; hide_sample(j) is group_mask_main.glsl's.
-#include "maps/backprojection/patches/light_sample_bands.shared.h"
-
-layout(scalar, binding = SAMPLE_BANDS) readonly buffer Bands {
-  SampleBandsHead bands;
-  uint band_words[];
-};
-
-uint light_sample_count() { return bands.samples; }
-vec2 light_sample(uint j) { return uintBitsToFloat(uvec2(band_words[2 * j], band_words[2 * j + 1])); }
+#include "maps/backprojection/patches/light_samples.glsl"
 
 uint band_of(float y) {
   precise float from_lower = y - bands.lower;

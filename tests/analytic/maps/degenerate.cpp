@@ -42,6 +42,15 @@ constexpr const char* kDegenerateWays[] = {"shadow-map",
                                            "bitmask:occluder=triangle:search=none:depth=midpoint",
                                            "bitmask:occluder=rect:level=2:budget=20",
                                            "bitmask:subsample=2:subsampleBy=grid",
+                                           "layer-rays",
+                                           "layer-rays:layers=3:solid=on:gap=1e6:bias=0",
+                                           "penumbra-map",
+                                           "smoothies:width=3:bias=0",
+                                           "brabec-seidel",
+                                           "brabec-seidel:ids=off:radius=3:bias=0",
+                                           "kirsch-doellner",
+                                           "parker",
+                                           "arvo",
                                            "contour",
                                            "contour:traversal=flat:search=none:bias=0",
                                            "contour:traversal=minmax:depth=second:subsample=3",
@@ -183,7 +192,8 @@ TEST_F(MapsDegenerate, WhatCastsNoShadowReceivesIt) {
     scene.objects.front().casts_shadow = false;
   };
   const Given both = given("", ceiling_light(2, 0.2), plate), one = given("", ceiling_light(2, 0.2), plate_alone);
-  for (const char* words : {"shadow-map", "pcf", "backproject", "bitmask", "contour", "packet", "accumulate",
+  for (const char* words : {"shadow-map", "pcf", "backproject", "bitmask", "penumbra-map", "smoothies", "brabec-seidel",
+                            "parker", "arvo", "layer-rays", "contour", "packet", "accumulate",
                             "adaptive-light:levels=1", "deep-penumbra", "layered-attenuation"}) {
     const Way way = Way(words).with({{"size", "64"}});
     const Masks expected = run(*way.make(device()), both.stage), found = run(*way.make(device()), one.stage);
@@ -208,9 +218,29 @@ TEST_F(MapsDegenerate, TheScaleOfTheSceneChangesNoByte) {
 }
 
 TEST_F(MapsDegenerate, NoMapIsSmallerThanEightTexels) {
-  for (const char* words : {"shadow-map", "pcf", "pcss", "vssm", "convolution", "occlusion-textures", "soft-shadow-map",
-                            "backproject", "backproject-peel", "bitmask", "contour", "packet", "accumulate",
-                            "adaptive-light", "layered-attenuation", "deep-penumbra"}) {
+  for (const char* words : {"shadow-map",
+                            "pcf",
+                            "pcss",
+                            "vssm",
+                            "convolution",
+                            "occlusion-textures",
+                            "soft-shadow-map",
+                            "backproject",
+                            "backproject-peel",
+                            "bitmask",
+                            "penumbra-map",
+                            "smoothies",
+                            "brabec-seidel",
+                            "kirsch-doellner",
+                            "parker",
+                            "arvo",
+                            "layer-rays",
+                            "contour",
+                            "packet",
+                            "accumulate",
+                            "adaptive-light",
+                            "layered-attenuation",
+                            "deep-penumbra"}) {
     for (const char* size : {"0", "1", "7", "-8", "8.5", "1000000"}) {
       EXPECT_THROW(std::ignore = Way(words).with({{"size", size}}).make(device()), UsageError) << words << " " << size;
     }

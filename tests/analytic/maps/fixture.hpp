@@ -6,6 +6,7 @@
 #include "maps/backprojection/contours/methods.hpp"
 #include "maps/backprojection/soft_shadow_map/methods.hpp"
 #include "maps/sampling/methods.hpp"
+#include "maps/single_shadow/methods.hpp"
 #include "maps/filters/methods.hpp"
 #include "tests/agreement/support.hpp"
 

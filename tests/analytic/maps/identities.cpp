@@ -45,6 +45,9 @@ constexpr Identity kIdentities[] = {
     {"I6", "bitmask:occluder=triangle", Is::no_brighter, "bitmask:occluder=quad"},
     {"I9", "bitmask:layers=3", Is::no_brighter, "bitmask:layers=2"},
     {"I22", "deep-penumbra:bound=0.04", Is::within, "deep-penumbra:bound=0", 0.04},
+    {"walls", "layer-rays:layers=2", Is::no_brighter, "layer-rays:layers=2:gap=0"},
+    {"layers", "layer-rays:layers=3:gap=0", Is::no_brighter, "layer-rays:layers=2:gap=0"},
+    {"insides", "layer-rays:layers=2:solid=on", Is::no_brighter, "layer-rays:layers=2"},
     {"B10", "bitmask:occluder=rect", Is::same, "bitmask:occluder=patch"},
     {"A3", "backproject:fill=edges:search=none", Is::no_brighter, "backproject:fill=none:search=none"},
     {"A3", "backproject:fill=diagonal:search=none", Is::no_brighter, "backproject:fill=edges:search=none"},
@@ -83,6 +86,8 @@ constexpr Identity kMoreIdentities[] = {
     {"one texel", "pcf:window=1", Is::same, "shadow-map"},
     {"dual", "shadow-map:depth=dual:bias=0", Is::same, "shadow-map:bias=0"},
     {"dual", "pcss:depth=dual:bias=0", Is::same, "pcss:bias=0"},
+    {"dual", "parker:depth=dual:bias=0", Is::same, "parker:bias=0"},
+    {"dual", "brabec-seidel:depth=dual:bias=0", Is::same, "brabec-seidel:bias=0"},
     {"dual", "bitmask:depth=dual:bias=0", Is::same, "bitmask:bias=0"},
     {"dual", "backproject:depth=dual:bias=0:search=none", Is::same, "backproject:bias=0:search=none"},
     {"A9", "shadow-map:bias=0", Is::no_brighter, "shadow-map:depth=midpoint:bias=0"},
@@ -100,14 +105,9 @@ struct Levels {
   const char* way;
   std::uint32_t of;
 };
-constexpr Levels kLevels[] = {{"shadow-map", 1},
-                              {"pcf:window=5", 25},
-                              {"pcf:window=4:receiverPlane=off", 16},
-                              {"bitmask", 0},
-                              {"bitmask:occluder=rect:level=1", 0},
-                              {"accumulate", 0},
-                              {"layered-attenuation", 0},
-                              {"deep-penumbra:bound=0", 0}};
+constexpr Levels kLevels[] = {{"shadow-map", 1}, {"pcf:window=5", 25},       {"pcf:window=4:receiverPlane=off", 16},
+                              {"bitmask", 0},    {"layer-rays:layers=2", 0}, {"bitmask:occluder=rect:level=1", 0},
+                              {"accumulate", 0}, {"layered-attenuation", 0}, {"deep-penumbra:bound=0", 0}};
 
 /// What a picture must not depend on is asked of all of these.
 constexpr const char* kWays[] = {"shadow-map",
@@ -124,6 +124,13 @@ constexpr const char* kWays[] = {"shadow-map",
                                  "bitmask",
                                  "bitmask:occluder=patch:layers=3:budget=40",
                                  "bitmask:occluder=rect:level=2:receiverPlane=off",
+                                 "layer-rays:layers=3:solid=on",
+                                 "penumbra-map",
+                                 "smoothies",
+                                 "brabec-seidel",
+                                 "kirsch-doellner",
+                                 "parker",
+                                 "arvo",
                                  "backproject",
                                  "backproject:form=sphere",
                                  "backproject:fill=shared:layers=2:depth=midpoint",

@@ -20,6 +20,12 @@ class ReceiverPlane : public MapsTest {
                                           "backproject-peel:depth=first",
                                           "bitmask",
                                           "bitmask:occluder=patch",
+                                          "layer-rays",
+                                          "penumbra-map",
+                                          "smoothies",
+                                          "brabec-seidel:ids=off",
+                                          "parker",
+                                          "arvo",
                                           "contour",
                                           "packet"};
   static Masks picture(const Stage& stage, const char* words, visibility::MethodOptions more) {

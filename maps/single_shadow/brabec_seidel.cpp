@@ -1,0 +1,61 @@
+// Brabec and Seidel 2002, "Single sample soft shadows using depth maps", as the course notes of Eisemann et al. (2009,
+// section 5.2.1) tell it. Departures: the half penumbra on either side is that of a light of its disk's radius, where
+// the paper scales by hand; distances are to a texel's border.
+
+#include "maps/single_shadow/methods.hpp"
+
+#include "maps/host/mesh_verdict.hpp"
+#include "maps/products/nearest_ids.hpp"
+#include "maps/single_shadow/brabec_seidel.comp.spv.hpp"
+#include "maps/single_shadow/options.hpp"
+#include "maps/single_shadow/repairs.hpp"
+#include "maps/single_shadow/search_recipe.hpp"
+
+#include <utility>
+
+namespace penumbra::maps {
+namespace {
+
+constexpr auto kIds = visibility::flag_option(
+    "ids", true,
+    "what is of a view sample's own object shades nothing of it, so that no bias is needed; off: by depth");
+
+visibility::MeshVerdict brabec_seidel_verdict(const mesh::Diagnosis& mesh) {
+  return judge_for_maps("penumbrae around the hard shadow of the light's centre, of the nearest texel alone", mesh);
+}
+
+}  // namespace
+
+visibility::MethodDescription brabec_seidel_description() {
+  visibility::MethodDescription description{.name = "brabec-seidel",
+                                            .family = visibility::Family::image,
+                                            .paper = "Brabec and Seidel 2002",
+                                            .output = visibility::Output::scalar,
+                                            .exact_for = "nothing",
+                                            .lights = visibility::kPlanarLights,
+                                            .textures = false,
+                                            .options = compared_map_option_descriptions(),
+                                            .verdict_on = brabec_seidel_verdict,
+                                            .repairs = searched_shadow_repairs};
+  for (const auto& option :
+       {kSearchRadius.description(), falloff_option(gpu::kFalloffLinear).description(), kIds.description()}) {
+    description.options.push_back(option);
+  }
+  return description;
+}
+
+std::unique_ptr<visibility::Method> make_brabec_seidel(const render::Device& device,
+                                                       const visibility::MethodOptions& options) {
+  visibility::MethodDescription description = brabec_seidel_description();
+  const visibility::ParsedOptions parsed = visibility::parse_options(description, options);
+  MapRecipe recipe = search_recipe(device,
+                                   {.description = std::move(description),
+                                    .falloff = gpu::kFalloffLinear,
+                                    .look_up_name = "single sample look-up",
+                                    .look_up = shaders::kBrabecSeidelComp},
+                                   parsed, parsed[kIds]);
+  recipe.products.push_back(std::make_unique<NearestIds>(device, parsed[kRasteriser], IdsOf::objects));
+  return make_map_method(device, std::move(recipe), options);
+}
+
+}  // namespace penumbra::maps

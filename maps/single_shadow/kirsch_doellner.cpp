@@ -1,0 +1,60 @@
+// Kirsch and Döllner 2003, "Real-time soft shadows using a single light sample", as the course notes of Eisemann et al.
+// (2009, section 5.2.1) tell it. Departures: distances are Euclidean, made in two passes; black is whatever casts and
+// is not the ground (as in convolution, since the paper is told what occludes and what receives); how far light reaches
+// into the shadow follows from the light's radius.
+
+#include "maps/single_shadow/methods.hpp"
+
+#include "maps/host/map_method.hpp"
+#include "maps/host/mesh_verdict.hpp"
+#include "maps/products/light_shape.hpp"
+#include "maps/single_shadow/kirsch_doellner.comp.spv.hpp"
+#include "maps/single_shadow/kirsch_doellner.shared.h"
+#include "maps/single_shadow/options.hpp"
+#include "maps/single_shadow/repairs.hpp"
+#include "maps/single_shadow/width_map.hpp"
+
+#include <memory>
+#include <utility>
+
+namespace penumbra::maps {
+namespace {
+
+visibility::MeshVerdict kirsch_doellner_verdict(const mesh::Diagnosis& mesh) {
+  return judge_for_maps("the hard shadow of the light's centre, with penumbrae inside of it alone", mesh);
+}
+
+}  // namespace
+
+visibility::MethodDescription kirsch_doellner_description() {
+  visibility::MethodDescription description{.name = "kirsch-doellner",
+                                            .family = visibility::Family::image,
+                                            .paper = "Kirsch and Döllner 2003",
+                                            .output = visibility::Output::scalar,
+                                            .exact_for = "nothing; all is lit outside of the hard shadow",
+                                            .lights = visibility::kPlanarLights,
+                                            .textures = false,
+                                            .options = compared_map_option_descriptions(),
+                                            .verdict_on = kirsch_doellner_verdict,
+                                            .repairs = searched_shadow_repairs};
+  for (const auto& option : {kSearchRadius.description(), falloff_option(gpu::kFalloffLinear).description()}) {
+    description.options.push_back(option);
+  }
+  return description;
+}
+
+std::unique_ptr<visibility::Method> make_kirsch_doellner(const render::Device& device,
+                                                         const visibility::MethodOptions& options) {
+  MapRecipe recipe{.description = kirsch_doellner_description(),
+                   .look_up_name = "shadow width look-up",
+                   .look_up = shaders::kKirschDoellnerComp};
+  const visibility::ParsedOptions parsed = visibility::parse_options(recipe.description, options);
+  recipe.products.push_back(std::make_unique<WidthMap>(device, parsed[kSearchRadius], parsed[kRasteriser]));
+  recipe.push_words = sizeof(gpu::KirschDoellnerPush) / sizeof(std::uint32_t);
+  recipe.push = [falloff = parsed[falloff_option(gpu::kFalloffLinear)]](const visibility::Light& light) {
+    return push_words(gpu::KirschDoellnerPush{falloff, static_cast<float>(half_width(light))});
+  };
+  return make_map_method(device, std::move(recipe), options);
+}
+
+}  // namespace penumbra::maps

@@ -1,0 +1,15 @@
+// One struct, two languages: what kirsch_doellner.comp has behind LookupPush.
+#include "maps/single_shadow/falloff.shared.h"
+#ifdef __cplusplus
+#pragma once
+namespace penumbra::maps::gpu {
+#endif
+
+struct KirschDoellnerPush {
+  uint falloff;  // kFalloffLinear ...
+  float light;   // the light's radius
+};
+
+#ifdef __cplusplus
+}  // namespace penumbra::maps::gpu
+#endif

@@ -1,0 +1,30 @@
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_GOOGLE_include_directive : require
+#include "maps/single_shadow/search.shared.h"
+#define OWN_PUSH SearchPush
+#include "maps/host/look_up.glsl"
+#include "maps/single_shadow/search.glsl"
+
+// Parker et al. 1998: objects with soft edges. No light in the hard shadow; else s(x / b), x the distance from the ray to the
+// light's centre to the object, b that of the soft edge, a D / A: the least over all that is there.
+
+float visibility_of(LightView view, vec3 d, vec3 m) {
+  if (!(dot(m, d) > 0.0)) return 0.0;  // the light's centre is below the receiver's horizon
+  const Search search = begin_search(view, d, m);
+  if (search_blocks(search, search.tap, ivec2(0))) return 0.0;
+  if (search.free) return 1.0;
+  const float most = half_penumbra(search, search.near);
+  float least = 1.0;
+  for (uint k = 0; k < own.offsets; ++k) {
+    const ivec2 offset = offsets[k];
+    if (is_beyond(search, offset, least * most)) break;
+    Tap tap;
+    if (!search_texel(search, offset, tap) || !search_blocks(search, tap, offset)) continue;
+    const float width = half_penumbra(search, tap.depth * abs(tap.direction.z));
+    if (width > 0.0) least = min(least, distance_to(search, tap) / width);
+  }
+  return light_at(own.falloff, least);
+}
+
+#include "maps/host/scalar_main.glsl"

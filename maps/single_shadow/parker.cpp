@@ -1,0 +1,54 @@
+// Parker, Shirley and Smits 1998, "Single sample soft shadows". Departure: the paper asks a ray how closely it passes
+// each object; here texels of the light's map are asked, which are what can be seen of the objects.
+
+#include "maps/single_shadow/methods.hpp"
+
+#include "maps/host/mesh_verdict.hpp"
+#include "maps/single_shadow/options.hpp"
+#include "maps/single_shadow/parker.comp.spv.hpp"
+#include "maps/single_shadow/repairs.hpp"
+#include "maps/single_shadow/search_recipe.hpp"
+
+#include <utility>
+
+namespace penumbra::maps {
+namespace {
+
+visibility::MeshVerdict parker_verdict(const mesh::Diagnosis& mesh) {
+  return judge_for_maps("the hard shadow of the light's centre, with penumbrae outside of it alone", mesh);
+}
+
+}  // namespace
+
+visibility::MethodDescription parker_description() {
+  visibility::MethodDescription description{.name = "parker",
+                                            .family = visibility::Family::image,
+                                            .paper = "Parker et al. 1998",
+                                            .output = visibility::Output::scalar,
+                                            .exact_for = "nothing; its umbra is the whole hard shadow",
+                                            .lights = visibility::kPlanarLights,
+                                            .textures = false,
+                                            .options = compared_map_option_descriptions(),
+                                            .verdict_on = parker_verdict,
+                                            .repairs = searched_shadow_repairs};
+  for (const auto& option : {kSearchRadius.description(), falloff_option(gpu::kFalloffCubic).description()}) {
+    description.options.push_back(option);
+  }
+  return description;
+}
+
+std::unique_ptr<visibility::Method> make_parker(const render::Device& device,
+                                                const visibility::MethodOptions& options) {
+  visibility::MethodDescription description = parker_description();
+  const visibility::ParsedOptions parsed = visibility::parse_options(description, options);
+  return make_map_method(device,
+                         search_recipe(device,
+                                       {.description = std::move(description),
+                                        .falloff = gpu::kFalloffCubic,
+                                        .look_up_name = "soft edges look-up",
+                                        .look_up = shaders::kParkerComp},
+                                       parsed, false),
+                         options);
+}
+
+}  // namespace penumbra::maps

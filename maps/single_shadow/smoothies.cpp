@@ -1,0 +1,54 @@
+// Chan and Durand 2003, "Rendering fake soft shadows with smoothies". Departures: where the paper has one width for
+// all, chosen by hand, the default is the one that is right for an edge at the mean height of the silhouettes; an
+// edge's ends have quarters of disks in place of corners between two edges.
+
+#include "maps/single_shadow/methods.hpp"
+
+#include "maps/host/mesh_verdict.hpp"
+#include "maps/single_shadow/outer_recipe.hpp"
+#include "maps/single_shadow/repairs.hpp"
+#include "maps/single_shadow/options.hpp"
+
+#include <utility>
+
+namespace penumbra::maps {
+namespace {
+
+constexpr visibility::RealOption kWidth{
+    "width", 0, 1e6, 0,
+    "how wide smoothies are, at distance 1 from the light's plane; 0: the light's radius over the mean height of the "
+    "silhouettes that are not the ground's"};
+
+visibility::MeshVerdict smoothies_verdict(const mesh::Diagnosis& mesh) {
+  return judge_for_maps("the hard shadow of the light's centre, with penumbrae outside of it alone", mesh);
+}
+
+}  // namespace
+
+visibility::MethodDescription smoothies_description() {
+  visibility::MethodDescription description{.name = "smoothies",
+                                            .family = visibility::Family::image,
+                                            .paper = "Chan and Durand 2003",
+                                            .output = visibility::Output::scalar,
+                                            .exact_for = "nothing; its umbra is the whole hard shadow",
+                                            .lights = visibility::kPlanarLights,
+                                            .textures = false,
+                                            .options = outer_options(gpu::kFalloffCubic),
+                                            .verdict_on = smoothies_verdict,
+                                            .repairs = single_shadow_repairs};
+  description.options.push_back(kWidth.description());
+  return description;
+}
+
+std::unique_ptr<visibility::Method> make_smoothies(const render::Device& device,
+                                                   const visibility::MethodOptions& options) {
+  visibility::MethodDescription description = smoothies_description();
+  const visibility::ParsedOptions parsed = visibility::parse_options(description, options);
+  return make_map_method(
+      device,
+      outer_recipe(device, std::move(description), parsed,
+                   {.form = OuterForm::smoothies, .width = parsed[kWidth], .rasteriser = parsed[kRasteriser]}),
+      options);
+}
+
+}  // namespace penumbra::maps

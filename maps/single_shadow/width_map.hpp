@@ -1,0 +1,32 @@
+#pragma once
+
+#include "maps/host/caster_maps.hpp"
+#include "maps/host/map_method.hpp"
+#include "render/compute_pass.hpp"
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+
+namespace penumbra::maps {
+
+/// The shadow width map of Kirsch and Döllner 2003: for each texel of the maps of a light's centre that holds an
+/// occluder (a caster that is not the ground, see ground_of) the distance to the nearest texel that holds none, in
+/// coordinates of the face; 0 where there is none, 1e30 where that is farther than `radius` texels.
+class WidthMap final : public MapProduct {
+ public:
+  WidthMap(const render::Device& device, std::uint32_t radius, Rasteriser rasteriser);
+  void record(render::Commands& commands, const MapSet& maps) override;
+  [[nodiscard]] const render::Buffer& buffer() const override { return *widths_; }
+  [[nodiscard]] std::uint64_t memory_bytes() const override;
+
+ private:
+  const render::Device* device_;
+  std::uint32_t radius_;
+  Rasteriser rasteriser_;
+  render::ComputePass pass_;
+  std::optional<CasterMaps> occluder_maps_;
+  std::unique_ptr<render::Buffer> occluders_, rows_, widths_;
+};
+
+}  // namespace penumbra::maps
