@@ -5,12 +5,15 @@
 #include "maps/filters/methods.hpp"
 
 #include "maps/filters/pcf.comp.spv.hpp"
+#include "maps/filters/pcf_fitted.comp.spv.hpp"
 #include "maps/filters/pcf.shared.h"
 #include "maps/host/map_fit.hpp"
 #include "maps/host/map_method.hpp"
 #include "maps/host/mesh_verdict.hpp"
 #include "maps/filters/repairs.hpp"
 
+#include <algorithm>
+#include <iterator>
 #include <utility>
 
 namespace penumbra::maps {
@@ -37,11 +40,14 @@ visibility::MethodDescription pcf_description() {
       .verdict_on = pcf_verdict,
       .repairs = pcf_repairs};
   description.options.push_back(kWindow.description());
+  std::ranges::copy(view_fit_descriptions(), std::back_inserter(description.options));
   return description;
 }
 
 std::unique_ptr<visibility::Method> make_pcf(const render::Device& device, const visibility::MethodOptions& options) {
-  MapRecipe recipe{.description = pcf_description(), .look_up_name = "pcf look-up", .look_up = shaders::kPcfComp};
+  MapRecipe recipe{.description = pcf_description(), .look_up_name = "pcf look-up",
+                   .look_up = shaders::kPcfComp,
+                   .fitted_look_up = shaders::kPcfFittedComp};
   const visibility::ParsedOptions parsed = visibility::parse_options(recipe.description, options);
   const gpu::PcfPush push{parsed[kWindow]};
   // The window reaches half its texels beside a receiver's direction. How wide a texel is depends on what the window
@@ -51,6 +57,7 @@ std::unique_ptr<visibility::Method> make_pcf(const render::Device& device, const
   recipe.beside = [beside](const visibility::Light& /*light*/, const LightBasis& /*basis*/) {
     return glm::dvec2(beside);
   };
+  recipe.beside_texels = reach;
   recipe.push_words = sizeof(gpu::PcfPush) / sizeof(std::uint32_t);
   recipe.push = [push](const visibility::Light& /*light*/) { return push_words(push); };
   return make_map_method(device, std::move(recipe), options);

@@ -12,6 +12,7 @@
 #include "maps/filters/repairs.hpp"
 #include "maps/products/nearest_caster.hpp"
 #include "maps/filters/pcss.comp.spv.hpp"
+#include "maps/filters/pcss_fitted.comp.spv.hpp"
 #include "maps/filters/pcss.shared.h"
 
 #include <glm/mat2x2.hpp>
@@ -20,6 +21,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <iterator>
 #include <span>
 #include <utility>
 #include <vector>
@@ -89,11 +91,14 @@ visibility::MethodDescription pcss_description() {
       .repairs = filter_repairs};
   description.options.push_back(kBlockerSamples.description());
   description.options.push_back(kFilterSamples.description());
+  std::ranges::copy(view_fit_descriptions(), std::back_inserter(description.options));
   return description;
 }
 
 std::unique_ptr<visibility::Method> make_pcss(const render::Device& device, const visibility::MethodOptions& options) {
-  MapRecipe recipe{.description = pcss_description(), .look_up_name = "pcss look-up", .look_up = shaders::kPcssComp};
+  MapRecipe recipe{.description = pcss_description(), .look_up_name = "pcss look-up",
+                   .look_up = shaders::kPcssComp,
+                   .fitted_look_up = shaders::kPcssFittedComp};
   const visibility::ParsedOptions parsed = visibility::parse_options(recipe.description, options);
   const std::uint32_t blocker_samples = parsed[kBlockerSamples], filter_samples = parsed[kFilterSamples];
   recipe.products.push_back(std::make_unique<NearestCaster>(device));

@@ -4,13 +4,17 @@
 
 #include "maps/filters/methods.hpp"
 
+#include "base/error.hpp"
 #include "maps/host/map_method.hpp"
 #include "maps/host/mesh_verdict.hpp"
 #include "maps/filters/repairs.hpp"
 #include "maps/filters/shadow_map.comp.spv.hpp"
+#include "maps/filters/shadow_map_fitted.comp.spv.hpp"
 #include "maps/filters/shadow_map_ids.comp.spv.hpp"
 #include "maps/products/nearest_ids.hpp"
 
+#include <algorithm>
+#include <iterator>
 #include <memory>
 #include <utility>
 
@@ -43,6 +47,7 @@ visibility::MethodDescription shadow_map_description() {
       .verdict_on = shadow_map_verdict,
       .repairs = filter_repairs};
   description.options.push_back(kHardTest.description());
+  std::ranges::copy(view_fit_descriptions(), std::back_inserter(description.options));
   return description;
 }
 
@@ -50,9 +55,13 @@ std::unique_ptr<visibility::Method> make_shadow_map(const render::Device& device
                                                     const visibility::MethodOptions& options) {
   MapRecipe recipe{.description = shadow_map_description(),
                    .look_up_name = "shadow map look-up",
-                   .look_up = shaders::kShadowMapComp};
+                   .look_up = shaders::kShadowMapComp,
+                   .fitted_look_up = shaders::kShadowMapFittedComp};
   const visibility::ParsedOptions parsed = visibility::parse_options(recipe.description, options);
   if (parsed[kHardTest]) {
+    if (view_fit(recipe.description.options, parsed).has_faces()) {
+      throw UsageError("method shadow-map: test=id knows windows alone; take fit=receivers or fit=view");
+    }
     recipe.look_up = shaders::kShadowMapIdsComp;
     recipe.products.push_back(std::make_unique<NearestIds>(device, parsed[kRasteriser]));
   }

@@ -19,8 +19,10 @@
 #include "maps/products/prefilter.hpp"
 #include "maps/products/shadow_depths.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 #include <utility>
 
@@ -117,6 +119,7 @@ visibility::MethodDescription vssm_description() {
         kClassifier.description(), kLeak.description(), kLeakCut.description(), kSlope.description()}) {
     description.options.push_back(option);
   }
+  std::ranges::copy(window_fit_descriptions(), std::back_inserter(description.options));
   return description;
 }
 
@@ -230,6 +233,7 @@ std::unique_ptr<visibility::Method> make_vssm(const render::Device& device, cons
   recipe.beside = [window, beside](const visibility::Light& light, const LightBasis& basis) {
     return window != 0 ? glm::dvec2(beside) : half_extent(light, basis) / half_width(light);
   };
+  recipe.beside_texels = window / 2;
   recipe.push_words = sizeof(gpu::VssmPush) / sizeof(std::uint32_t);
   recipe.push = [push](const visibility::Light& /*light*/) { return push_words(push); };
   return make_map_method(device, std::move(recipe), options);

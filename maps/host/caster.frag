@@ -9,4 +9,4 @@
 
 PUSH_CONSTANTS Push { CasterPush face; };
 
-void main() { gl_FragDepth = 1.0 / (gl_FragCoord.w * face.far); }
+void main() { gl_FragDepth = map_depth(face, gl_FragCoord); }

@@ -1,8 +1,11 @@
 #include "maps/host/caster_maps.hpp"
 
+#include "base/assert.hpp"
 #include "base/error.hpp"
 #include "maps/host/caster.frag.spv.hpp"
 #include "maps/host/caster.vert.spv.hpp"
+#include "maps/host/logarithmic.frag.spv.hpp"
+#include "maps/host/logarithmic.vert.spv.hpp"
 #include "maps/host/map_fit.hpp"
 #include "maps/host/peel.frag.spv.hpp"
 
@@ -38,6 +41,12 @@ float nothing(MapLayer layer) {
   return layer == MapLayer::farthest ? 0.0F : 1.0F;
 }
 
+std::vector<FacePush> pushes(const gpu::LightView& view, const LightBasis& basis) {
+  std::vector<FacePush> faces(view.side[0].face_count + view.side[1].face_count);
+  for (std::uint32_t face = 0; face < faces.size(); ++face) faces[face].plain = face_push(view, basis, face);
+  return faces;
+}
+
 const char* pass_name(MapLayer layer) {
   switch (layer) {
     case MapLayer::nearest:
@@ -57,6 +66,17 @@ CasterMaps::Passes::Passes(const render::Device& device, std::uint32_t size)
       behind(device, behind_options()),
       farthest(device, pass_options("render farthest", render::DepthCompare::greater)),
       target(device, "shadow map", size, size) {}
+
+const render::RasterPass& CasterMaps::Passes::logarithmic_faces(const render::Device& device) const {
+  if (!logarithmic) {
+    render::RasterPassOptions options = pass_options("render logarithmic maps", render::DepthCompare::less);
+    options.vertex = shaders::kLogarithmicVert;
+    options.fragment = shaders::kLogarithmicFrag;
+    options.push_bytes = sizeof(gpu::LogarithmicPush);
+    logarithmic.emplace(device, options);
+  }
+  return *logarithmic;
+}
 
 const render::RasterPass& CasterMaps::Passes::of(MapLayer layer) const {
   return layer == MapLayer::nearest ? nearest : layer == MapLayer::behind ? behind : farthest;
@@ -115,39 +135,49 @@ std::vector<CasterMaps::Range> CasterMaps::ranges(const Batch& batch, std::int32
   return ranges;
 }
 
-void CasterMaps::record_faces(render::Commands& commands, MapLayer layer, const gpu::LightView& view,
-                              const LightBasis& basis, std::int32_t light_index, const Destination& to) const {
-  const std::uint32_t faces = view.side[0].face_count + view.side[1].face_count;
+void CasterMaps::record_faces(render::Commands& commands, MapLayer layer, std::span<const FacePush> faces,
+                              std::int32_t light_index, const Destination& to) const {
   if (!opengl_) {
-    for (std::uint32_t face = 0; face < faces; ++face) {
-      record_on_device(commands, layer, face_push(view, basis, face), light_index, face, to);
+    for (std::uint32_t face = 0; face < faces.size(); ++face) {
+      record_on_device(commands, layer, faces[face], light_index, face, to);
     }
     return;
   }
-  if (faces == 0) return;
+  if (faces.empty()) return;
   commands.host_pass(pass_name(layer), [&] {
-    for (std::uint32_t face = 0; face < faces; ++face) {
-      draw_by_opengl(layer, face_push(view, basis, face), light_index, face, to);
+    for (std::uint32_t face = 0; face < faces.size(); ++face) {
+      PENUMBRA_ASSERT(!faces[face].logarithmic, "OpenGL draws no rows of logarithms");
+      draw_by_opengl(layer, faces[face].plain, light_index, face, to);
     }
   });
 }
 
-void CasterMaps::record_on_device(render::Commands& commands, MapLayer layer, const gpu::CasterPush& push,
+void CasterMaps::record_on_device(render::Commands& commands, MapLayer layer, const FacePush& push,
                                   std::int32_t light_index, std::uint32_t face, const Destination& to) const {
   const std::uint64_t face_texels = std::uint64_t{size_} * size_, face_bytes = face_texels * sizeof(float);
-  gpu::PeelPush words{push, static_cast<std::uint32_t>((to.previous_face + face) * face_texels), size_};
-  const auto push_bytes = std::as_bytes(std::span(&words, 1))
-                              .first(layer == MapLayer::behind ? sizeof(gpu::PeelPush) : sizeof(gpu::CasterPush));
+  const auto previous = static_cast<std::uint32_t>((to.previous_face + face) * face_texels);
   bool clear = true;
   for (const Batch& batch : batches_) {
     for (const Range& range : ranges(batch, light_index)) {
+      render::RasterPass::Draw draw{
+          .width = size_, .height = size_, .vertices = 3 * range.count, .depth = &passes_->target, .clear = clear};
+      clear = false;
+      if (push.logarithmic) {
+        gpu::LogarithmicPush words = *push.logarithmic;
+        words.first_vertex = 3 * range.first;
+        words.peels = layer == MapLayer::behind ? 1 : 0;
+        words.previous = previous;
+        draw.vertices = 6 * range.count;
+        passes_->logarithmic_faces(*device_).record(commands, words, {*batch.corners, to.maps}, draw);
+        continue;
+      }
+      gpu::PeelPush words{push.plain, previous, size_};
       words.face.first_vertex = 3 * range.first;
+      const auto push_bytes = std::as_bytes(std::span(&words, 1))
+                                  .first(layer == MapLayer::behind ? sizeof(gpu::PeelPush) : sizeof(gpu::CasterPush));
       std::vector<render::BufferReference> buffers{*batch.corners};
       if (layer == MapLayer::behind) buffers.emplace_back(to.maps);
-      passes_->of(layer).record(
-          commands, push_bytes, buffers,
-          {.width = size_, .height = size_, .vertices = 3 * range.count, .depth = &passes_->target, .clear = clear});
-      clear = false;
+      passes_->of(layer).record(commands, push_bytes, buffers, draw);
     }
   }
   if (clear) {  // nothing casts shadow: the map is empty
@@ -183,18 +213,29 @@ void CasterMaps::draw_by_opengl(MapLayer layer, const gpu::CasterPush& push, std
 
 void CasterMaps::record(render::Commands& commands, const gpu::LightView& view, const LightBasis& basis,
                         std::int32_t light_index, const render::Buffer& maps, std::uint64_t first_face) const {
-  record_faces(commands, MapLayer::nearest, view, basis, light_index, {maps, first_face, 0});
+  record_faces(commands, MapLayer::nearest, pushes(view, basis), light_index, {maps, first_face, 0});
 }
 
 void CasterMaps::record_behind(render::Commands& commands, const gpu::LightView& view, const LightBasis& basis,
                                std::int32_t light_index, const render::Buffer& maps, std::uint64_t first_face,
                                std::uint64_t previous_face) const {
-  record_faces(commands, MapLayer::behind, view, basis, light_index, {maps, first_face, previous_face});
+  record_faces(commands, MapLayer::behind, pushes(view, basis), light_index, {maps, first_face, previous_face});
 }
 
 void CasterMaps::record_farthest(render::Commands& commands, const gpu::LightView& view, const LightBasis& basis,
                                  std::int32_t light_index, const render::Buffer& maps, std::uint64_t first_face) const {
-  record_faces(commands, MapLayer::farthest, view, basis, light_index, {maps, first_face, 0});
+  record_faces(commands, MapLayer::farthest, pushes(view, basis), light_index, {maps, first_face, 0});
+}
+
+void CasterMaps::record(render::Commands& commands, std::span<const FacePush> faces, std::int32_t light_index,
+                        const render::Buffer& maps, std::uint64_t first_face) const {
+  record_faces(commands, MapLayer::nearest, faces, light_index, {maps, first_face, 0});
+}
+
+void CasterMaps::record_behind(render::Commands& commands, std::span<const FacePush> faces, std::int32_t light_index,
+                               const render::Buffer& maps, std::uint64_t first_face,
+                               std::uint64_t previous_face) const {
+  record_faces(commands, MapLayer::behind, faces, light_index, {maps, first_face, previous_face});
 }
 
 std::uint64_t CasterMaps::memory_bytes() const {

@@ -12,9 +12,16 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace penumbra::maps {
+
+/// A face to draw: as it is, or its rows as logarithms.
+struct FacePush {
+  gpu::CasterPush plain{};
+  std::optional<gpu::LogarithmicPush> logarithmic{};
+};
 
 /// Renders depth maps of everything that casts shadow, all but the body of the light itself: on the device, or by
 /// OpenGL beside it, which fills the same buffers.
@@ -36,6 +43,11 @@ class CasterMaps {
   void record_behind(render::Commands& commands, const gpu::LightView& view, const LightBasis& basis,
                      std::int32_t light_index, const render::Buffer& maps, std::uint64_t first_face,
                      std::uint64_t previous_face) const;
+  /// The same of faces of any kind, on the device alone.
+  void record(render::Commands& commands, std::span<const FacePush> faces, std::int32_t light_index,
+              const render::Buffer& maps, std::uint64_t first_face) const;
+  void record_behind(render::Commands& commands, std::span<const FacePush> faces, std::int32_t light_index,
+                     const render::Buffer& maps, std::uint64_t first_face, std::uint64_t previous_face) const;
   /// The farthest surface of each texel, likewise; 0 where nothing is.
   void record_farthest(render::Commands& commands, const gpu::LightView& view, const LightBasis& basis,
                        std::int32_t light_index, const render::Buffer& maps, std::uint64_t first_face) const;
@@ -56,8 +68,10 @@ class CasterMaps {
   struct Passes {
     Passes(const render::Device& device, std::uint32_t size);
     [[nodiscard]] const render::RasterPass& of(MapLayer layer) const;
+    [[nodiscard]] const render::RasterPass& logarithmic_faces(const render::Device& device) const;
     render::RasterPass nearest, behind, farthest;
     render::DepthTarget target;
+    mutable std::optional<render::RasterPass> logarithmic;  ///< made when it is first drawn with
   };
   /// Where faces go.
   struct Destination {
@@ -67,10 +81,10 @@ class CasterMaps {
   /// The casters of a batch without the body of that light.
   [[nodiscard]] std::vector<Range> ranges(const Batch& batch, std::int32_t light_index) const;
   /// All faces of a light point.
-  void record_faces(render::Commands& commands, MapLayer layer, const gpu::LightView& view, const LightBasis& basis,
+  void record_faces(render::Commands& commands, MapLayer layer, std::span<const FacePush> faces,
                     std::int32_t light_index, const Destination& to) const;
-  void record_on_device(render::Commands& commands, MapLayer layer, const gpu::CasterPush& push,
-                        std::int32_t light_index, std::uint32_t face, const Destination& to) const;
+  void record_on_device(render::Commands& commands, MapLayer layer, const FacePush& push, std::int32_t light_index,
+                        std::uint32_t face, const Destination& to) const;
   void draw_by_opengl(MapLayer layer, const gpu::CasterPush& push, std::int32_t light_index, std::uint32_t face,
                       const Destination& to) const;
 

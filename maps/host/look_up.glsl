@@ -1,5 +1,5 @@
 // What every look-up shader begins with: its bindings, and taps into the maps. A shader of its own push constants
-// defines OWN_PUSH, the struct's name, before it includes this. Products are its own bindings, from 4 on. It then
+// defines OWN_PUSH, the struct's name, before it includes this. Products are its own bindings, from FIRST_PRODUCT on. It then
 // defines one function and includes the main that calls it:
 //   scalar_main.glsl   float visibility_of(LightView view, vec3 d, vec3 m)
 //   mask_main.glsl     bool sees(LightView view, uint first_map, vec3 d, vec3 m)
@@ -20,6 +20,11 @@ layout(scalar, binding = 0) readonly buffer Receivers { Receiver receivers[]; };
 layout(scalar, binding = 1) readonly buffer Views { LightView views[]; };
 layout(scalar, binding = 2) readonly buffer Maps { float maps[]; };
 layout(scalar, binding = 3) buffer Results { uint results[]; };  // masks, or the bits of V
+#ifdef FITTED_FACES
+#define FIRST_PRODUCT 5  // fitted.glsl has the binding before it
+#else
+#define FIRST_PRODUCT 4
+#endif
 layout(scalar, push_constant) uniform Push {
   LookupPush lookup;
 #ifdef OWN_PUSH

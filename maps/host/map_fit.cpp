@@ -11,6 +11,7 @@
 
 #include "visibility/receivers.hpp"
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include <algorithm>
@@ -24,8 +25,6 @@ namespace penumbra::maps {
 namespace {
 
 constexpr std::uint32_t kHemicubeFaces = 5;
-/// Casters nearer to the light point than this share of the scene are not seen; see docs/accumulate.md.
-constexpr float kNearOfFar = 0x1p-20f;
 
 double cross(const glm::dvec2& o, const glm::dvec2& a, const glm::dvec2& b) {
   return (a.x - o.x) * (b.y - o.y) - (a.y - o.y) * (b.x - o.x);
@@ -54,6 +53,14 @@ std::vector<glm::dvec2> convex_hull(std::vector<glm::dvec2> points) {
 struct Window {
   glm::dvec2 lower, upper;
 };
+
+void widen_to_snap(Window& window, std::uint32_t size) {
+  for (int axis = 0; axis < 2; ++axis) {
+    const SnappedSpan span = snapped(window.lower[axis], window.upper[axis], size);
+    window.lower[axis] = span.lower;
+    window.upper[axis] = span.lower + span.texel * size;
+  }
+}
 
 /// The receivers, or the casters, on one side of the light's plane, as far as fitting needs them.
 struct SideTriangles {
@@ -86,6 +93,21 @@ SideTriangles triangles_on_side(const visibility::SceneFloats& scene, const std:
     if (used[i] == 0) continue;
     side.hull_x.emplace_back(local[i].x, sign * local[i].z);
     side.hull_y.emplace_back(local[i].y, sign * local[i].z);
+  }
+  side.hull_x = convex_hull(std::move(side.hull_x));
+  side.hull_y = convex_hull(std::move(side.hull_y));
+  return side;
+}
+
+/// The same of what a camera sees: nothing of it reaches the light's plane.
+SideTriangles body_on_side(std::span<const BodyPoint> body, const LightBasis& basis, double sign) {
+  SideTriangles side;
+  for (const BodyPoint& point : body) {
+    const glm::dvec3 at = basis.local(point.p);
+    if (!(sign * at.z > 0)) continue;
+    side.any = true;
+    side.hull_x.emplace_back(at.x, sign * at.z);
+    side.hull_y.emplace_back(at.y, sign * at.z);
   }
   side.hull_x = convex_hull(std::move(side.hull_x));
   side.hull_y = convex_hull(std::move(side.hull_y));
@@ -180,21 +202,25 @@ FittedViews fit_views(const visibility::SceneFloats& scene, const visibility::Li
   for (int s = 0; s < (both_sides ? 2 : 1); ++s) {
     const double sign = s == 0 ? 1 : -1;
     const SideTriangles receivers =
-        triangles_on_side(scene, local, sign, [&](std::size_t i) { return receives(scene, light, i); });
+        options.body != nullptr
+            ? body_on_side(*options.body, basis, sign)
+            : triangles_on_side(scene, local, sign, [&](std::size_t i) { return receives(scene, light, i); });
     if (!receivers.any) continue;
     const bool beside = options.beside != glm::dvec2(0) || options.reach != glm::dvec2(0);
     const SideTriangles casters = triangles_on_side(scene, local, sign, [&](std::size_t i) {
       return beside && scene.casts_shadow[i] != 0 && scene.emits[i] != light.index;
     });
-    const Contents contents{receivers, casters, options.beside + beside_of(options.reach, receivers, casters),
-                            options.reach != glm::dvec2(0)};
+    glm::dvec2 margin = options.beside + beside_of(options.reach, receivers, casters);
+    if (options.body_reach != glm::dvec2(0)) margin = glm::min(margin, beside_of(options.body_reach, receivers, casters));
+    const Contents contents{receivers, casters, margin, options.reach != glm::dvec2(0)};
     bool windows = true;  // for all points of the light or for none
     for (gpu::LightView& view : fitted.views) {
-      const std::optional<Window> window = fit_window(contents, basis.local(view.point), sign, options.size);
+      std::optional<Window> window = fit_window(contents, basis.local(view.point), sign, options.size);
       if (!window) {
         windows = false;
         break;
       }
+      if (options.snap) widen_to_snap(*window, options.size);
       view.side[s].lower = window->lower;
       view.side[s].upper = window->upper;
     }
@@ -205,6 +231,25 @@ FittedViews fit_views(const visibility::SceneFloats& scene, const visibility::Li
     fitted.faces += windows ? 1 : kHemicubeFaces;
   }
   return fitted;
+}
+
+glm::dvec2 caster_margin(const visibility::SceneFloats& scene, const visibility::Light& light, const LightBasis& basis,
+                         double sign, const glm::dvec2& reach, double deepest) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  double nearest = kInfinity;
+  for (std::uint32_t i = 0; i < scene.triangles.size(); ++i) {
+    if (scene.casts_shadow[i] == 0 || scene.emits[i] == light.index) continue;
+    double lowest = kInfinity, highest = -kInfinity;
+    for (const glm::vec3& corner : scene.corners(i)) {
+      const double height = sign * basis.local(corner).z;
+      lowest = std::min(lowest, height);
+      highest = std::max(highest, height);
+    }
+    if (highest <= 0) continue;
+    if (lowest <= 0) return glm::dvec2(kInfinity);
+    nearest = std::min(nearest, lowest);
+  }
+  return reach * std::max(0.0, 1 / nearest - 1 / deepest);
 }
 
 Face face_of(const gpu::LightView& view, const LightBasis& basis, std::uint32_t face) {
@@ -233,6 +278,7 @@ gpu::CasterPush face_push(const gpu::LightView& view, const LightBasis& basis, s
   push.row_x = scale.x * a - shift.x * w;
   push.row_y = scale.y * b - shift.y * w;
   push.row_w = w;
+  push.depth_row = {0, 0, 1};
   return push;
 }
 

@@ -2,6 +2,7 @@
 
 #include "maps/host/light_basis.hpp"
 #include "maps/host/map_view.shared.h"
+#include "maps/host/view_fit.hpp"
 #include "visibility/light_samples.hpp"
 #include "visibility/scene_floats.hpp"
 
@@ -17,6 +18,8 @@ namespace penumbra::maps {
 /// tan 76°: up to 152° wide a window of receivers has, texel for texel, about the resolution of a hemicube at a fifth
 /// of its cost.
 inline constexpr double kWidestTangent = 4;
+/// Casters nearer to the light point than this share of the scene are not seen; see docs/accumulate.md.
+inline constexpr float kNearOfFar = 0x1p-20f;
 
 /// The views of several points of one light. All have the same faces, so that their maps are equally large.
 struct FittedViews {
@@ -33,15 +36,26 @@ struct FitOptions {
   /// from the point along u and v. Seen from the point, a caster at height z_c shades a receiver at height z from as
   /// far as reach · (1/z_c − 1/z) beside it: windows hold what casters are there, or become hemicubes.
   glm::dvec2 reach{0};
+  /// What the camera sees takes the receivers' place. Null: all receivers.
+  const std::vector<BodyPoint>* body = nullptr;
+  /// With `body`: `beside` is no more than what casters that the light, reaching so far, can shade from; and texels lie
+  /// where they lie for any body.
+  glm::dvec2 body_reach{0};
+  bool snap = false;
 };
 
 /// FitOptions::reach of a light that is so large that every caster shades something.
 glm::dvec2 reach_of_all(const visibility::SceneFloats& scene);
 
 /// Fits each point's maps to the receivers of the scene, so that no receiver on an emitting side is ever outside.
-/// Depends on mesh and light only, not on the camera.
+/// Depends on mesh and light only, not on the camera, unless there is a body.
 FittedViews fit_views(const visibility::SceneFloats& scene, const visibility::Light& light, const LightBasis& basis,
                       std::span<const glm::vec3> points, const FitOptions& options);
+
+/// How far beside what is at heights up to `deepest` over the light's plane a caster of this light can shade it, seen
+/// from its centre: no farther than `beside`.
+glm::dvec2 caster_margin(const visibility::SceneFloats& scene, const visibility::Light& light, const LightBasis& basis,
+                         double sign, const glm::dvec2& reach, double deepest);
 
 /// One face: what lies at `point` + w · (x · a + y · b + axis w) has the coordinates x and y, from `lower` to `upper`.
 struct Face {

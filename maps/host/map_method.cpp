@@ -6,16 +6,20 @@
 
 #include "base/assert.hpp"
 #include "base/error.hpp"
+#include "maps/host/aliasing.hpp"
+#include "maps/host/camera_faces.hpp"
 #include "maps/host/receivers.hpp"
 #include "render/compute_pass.hpp"
 #include "visibility/lights/light_parts.hpp"
 #include "visibility/masks/visible_share.hpp"
 
 #include <glm/common.hpp>
+#include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <bit>
 #include <iterator>
+#include <limits>
 #include <map>
 #include <utility>
 
@@ -35,6 +39,8 @@ class MapMethod final : public visibility::Method {
         casters_(device, options.size, options.rasteriser),
         constants_(constants_for(1)),
         look_up_(make_look_up()) {
+    PENUMBRA_ASSERT(!options_.fit.sees_camera() || (recipe_.points == MapPoints::centre && recipe_.sub_lights == 1),
+                    "{}: only maps from the light's centre are fitted to a camera", recipe_.description.name);
     if (options_.depth != DepthUse::first) recipe_.layers.count = std::max(recipe_.layers.count, 2u);
     PENUMBRA_ASSERT(recipe_.points == MapPoints::centre || total_layers() == 1, "{}: layers of a light sample's map",
                     recipe_.description.name);
@@ -89,6 +95,12 @@ class MapMethod final : public visibility::Method {
            ((rows + recipe_.packet_height - 1) / recipe_.packet_height);
   }
 
+  /// Finds where maps look: for all receivers, or for what the camera sees.
+  void fit_maps();
+  void fit_to_camera(FitOptions fit, const glm::vec3& centre);
+  /// Makes room for the light's maps, and those of its centre.
+  void make_maps();
+  void find_aliasing();
   /// Records maps of light points first … first + count − 1, in submissions that can be timed.
   void render_maps(render::Commands& commands, std::uint32_t first, std::uint32_t count);
   /// Records what is behind the nearest surfaces in the maps of the centre of a part of the light.
@@ -114,10 +126,14 @@ class MapMethod final : public visibility::Method {
   std::map<std::string, std::uint64_t> counters_;
   const visibility::SceneFloats* scene_ = nullptr;
   const visibility::Light* light_ = nullptr;
+  const visibility::ViewSamples* samples_ = nullptr;
   LightBasis basis_;
   std::vector<visibility::LightPart>
       parts_;  ///< of the light as maps are made for it; one, unless the recipe says otherwise
   FittedViews fitted_;
+  CameraFaces faces_;  ///< what a camera's maps are, if they are no windows; fitted_ says how many
+  Aliasing aliasing_;
+  bool maps_are_old_ = false;  ///< made for another view
   std::vector<std::uint32_t> own_push_;
   std::uint32_t batch_ = 1;        ///< light points at a time
   visibility::Tile tile_{};        ///< last evaluated
@@ -139,7 +155,7 @@ render::ComputePass MapMethod::make_look_up() const {
   const std::size_t push_bytes = sizeof(gpu::LookupPush) + sizeof(std::uint32_t) * recipe_.push_words;
   return {*device_,
           {.name = recipe_.look_up_name,
-           .spirv = recipe_.look_up,
+           .spirv = options_.fit.has_faces() ? recipe_.fitted_look_up : recipe_.look_up,
            .push_bytes = static_cast<std::uint32_t>(push_bytes),
            .constants = constants_}};
 }
@@ -155,9 +171,18 @@ void MapMethod::prepare_light(const visibility::Light& light) {
   light_ = &light;
   basis_ = light_basis(light, *scene_);
   parts_ = visibility::light_parts(light, recipe_.sub_lights);
+  counters_ = {};
+  aliasing_ = {};
+  // A camera's maps are made when there are view samples.
+  maps_are_old_ = options_.fit.sees_camera();
+  if (!maps_are_old_) make_maps();
+}
+
+void MapMethod::fit_maps() {
+  const visibility::Light& light = *light_;
+  const bool many = recipe_.points == MapPoints::light_samples;
   std::vector<glm::vec3> centres;
   for (const visibility::LightPart& part : parts_) centres.emplace_back(visibility::center_of(part.light));
-  const bool many = recipe_.points == MapPoints::light_samples;
   FitOptions fit{options_.size, recipe_.beside ? recipe_.beside(light, basis_) : glm::dvec2(0)};
   if (recipe_.whole_light) {
     for (const visibility::LightPart& part : parts_) {
@@ -166,8 +191,34 @@ void MapMethod::prepare_light(const visibility::Light& light) {
     }
   }
   if (recipe_.all_casters) fit.reach = reach_of_all(*scene_);
+  if (options_.fit.sees_camera()) return fit_to_camera(fit, centres.front());
   fitted_ =
       fit_views(*scene_, light, basis_, many ? std::span(light.points) : std::span<const glm::vec3>(centres), fit);
+}
+
+void MapMethod::fit_to_camera(FitOptions fit, const glm::vec3& centre) {
+  const visibility::Light& light = *light_;
+  const LightBounds bounds = light_bounds(light, basis_);
+  if (recipe_.beside && recipe_.beside_texels == 0) fit.body_reach = glm::max(-bounds.lower, bounds.upper);
+  const std::vector<BodyPoint> body = body_points(*scene_, light, *samples_, options_.fit.body, 0,
+                                                  std::numeric_limits<double>::infinity());
+  fit.body = &body;
+  fit.snap = options_.fit.snap;
+  fitted_ = fit_views(*scene_, light, basis_, std::span(&centre, 1), fit);
+  if (!options_.fit.has_faces()) return;
+  FaceFitOptions choices{.fit = options_.fit, .size = options_.size, .spare = 1 + recipe_.beside_texels};
+  if (recipe_.beside_texels == 0) {
+    choices.beside = fit.beside;
+    choices.body_reach = fit.body_reach;
+  }
+  fitted_.faces = faces_.fit(*device_, {*scene_, light, basis_, *samples_}, choices, fitted_.views.front());
+}
+
+void MapMethod::make_maps() {
+  fit_maps();
+  maps_are_old_ = false;
+  const visibility::Light& light = *light_;
+  const bool many = recipe_.points == MapPoints::light_samples;
   const std::uint32_t faces = std::max(fitted_.faces, 1u);
   check_faces_fit(*device_, options_.size, faces * total_layers());
   if (std::vector<std::uint32_t> constants = constants_for(faces); constants != constants_) {
@@ -208,13 +259,17 @@ void MapMethod::make_centre_maps(std::uint32_t part) {
   const LightBasis basis = basis_of(light);
   for (const std::unique_ptr<MapProduct>& product : recipe_.products) {
     product->record(commands,
-                    {*views_, *depths_, fitted_.faces, options_.size, light, basis, *scene_, recipe_.layers.count});
+                    {*views_, *depths_, fitted_.faces, options_.size, light, basis, *scene_, recipe_.layers.count,
+                     options_.fit.has_faces() ? &faces_.table() : nullptr});
   }
   times_.add(commands.submit());
 }
 
 void MapMethod::prepare_view(const visibility::ViewSamples& samples) {
   PENUMBRA_ASSERT(light_ != nullptr, "{}: prepare_view before prepare_light", recipe_.description.name);
+  samples_ = &samples;
+  aliasing_ = {};
+  maps_are_old_ = options_.fit.sees_camera();
   receivers_.upload(*device_, *scene_, *light_, samples);
 }
 
@@ -239,6 +294,10 @@ void MapMethod::render_maps(render::Commands& commands, std::uint32_t first, std
       times_.add(commands.submit());
       recorded = 0;
     }
+    if (options_.fit.has_faces()) {
+      faces_.record(casters_, commands, light_->index, *depths_, times_);
+      continue;
+    }
     casters_.record(commands, fitted_.views[first + k], basis_, light_->index, *depths_,
                     std::uint64_t{k} * fitted_.faces);
     recorded += fitted_.faces;
@@ -252,7 +311,9 @@ void MapMethod::render_layers(render::Commands& commands, std::uint32_t part) {
     times_.add(commands.submit());
     const std::uint64_t first = std::uint64_t{layer} * fitted_.faces;
     const gpu::LightView& view = fitted_.views[part];
-    if (layer < recipe_.layers.count) {
+    if (options_.fit.has_faces()) {
+      faces_.record_behind(casters_, commands, light_->index, *depths_, first, times_);
+    } else if (layer < recipe_.layers.count) {
       casters_.record_behind(commands, view, basis_, light_->index, *depths_, first, first - fitted_.faces);
     } else {
       casters_.record_farthest(commands, view, basis_, light_->index, *depths_, first);
@@ -285,6 +346,7 @@ void MapMethod::ask(render::Commands& commands, const visibility::Tile& tile, st
                          .width = receivers_.width(),
                          .own_depth = options_.receiver_plane ? 0u : 1u};
     std::vector<render::BufferReference> buffers{*part.receivers, *views_, *depths_, *results_};
+    if (options_.fit.has_faces()) buffers.emplace_back(faces_.table());
     for (const std::unique_ptr<MapProduct>& product : recipe_.products) {
       std::ranges::copy(product->buffers(), std::back_inserter(buffers));
     }
@@ -304,6 +366,8 @@ void MapMethod::evaluate(const visibility::Tile& tile) {
   tile_ = tile;
   tile_pixels_ = tile.row_count * receivers_.width();
   if (tile_pixels_ == 0) return;
+  if (maps_are_old_) make_maps();
+  if (options_.fit.aliasing != AliasingUse::off && aliasing_.errors.empty()) find_aliasing();
   render::grow(*device_, results_, gives_masks() ? "map masks" : "map visibility", result_bytes(tile_pixels_));
   if (parts_.size() > 1) return add_up_parts(tile);
   ask_all(tile);
@@ -376,18 +440,30 @@ void MapMethod::read_visibility(std::span<float> visibility) {
     read_masks(masks);
     visibility::visible_shares(*light_, masks, visibility);
   }
+  if (options_.fit.aliasing == AliasingUse::show) {
+    const auto first = aliasing_.errors.begin() + std::ptrdiff_t{tile_.first_row} * receivers_.width();
+    std::transform(first, first + static_cast<std::ptrdiff_t>(visibility.size()), visibility.begin(),
+                   [](float error) { return error > 1 ? 1 / error : 1.0F; });
+  }
   receivers_.leave_out(tile_, visibility);
+}
+
+void MapMethod::find_aliasing() {
+  const std::vector<FittedFace> windows = faces_of(fitted_.views.front());
+  aliasing_ = measure_aliasing(options_.fit.has_faces() ? faces_.faces() : windows, *scene_, *light_, *samples_, basis_,
+                               options_.size);
 }
 
 std::map<std::string, std::uint64_t> MapMethod::counters() const {
   std::map<std::string, std::uint64_t> counters = counters_;
+  counters.insert(aliasing_.counters.begin(), aliasing_.counters.end());
   if (light_ == nullptr) return counters;
   for (const std::unique_ptr<MapProduct>& product : recipe_.products) product->add_counters(counters);
   return counters;
 }
 
 std::uint64_t MapMethod::memory_bytes() const {
-  std::uint64_t bytes = casters_.memory_bytes() + receivers_.memory_bytes();
+  std::uint64_t bytes = casters_.memory_bytes() + receivers_.memory_bytes() + faces_.memory_bytes();
   for (const auto* buffer : {&views_, &depths_, &results_}) bytes += *buffer ? (*buffer)->bytes() : 0;
   for (const std::unique_ptr<MapProduct>& product : recipe_.products) bytes += product->memory_bytes();
   return bytes;

@@ -39,6 +39,7 @@ struct MapSet {
   const LightBasis& basis;
   const visibility::SceneFloats& scene;
   std::uint32_t layers = 1;  ///< MapLayers::count; if there is a farthest one it is the next
+  const render::Buffer* face_table = nullptr;  ///< of fitted faces (face_fit.hpp), which `views` does not describe
 };
 
 /// What is kept of a texel's surfaces, in maps from the light's centre: layer i begins at face i · faces.
@@ -113,10 +114,14 @@ struct MapRecipe {
   /// look_up.glsl names. It reads receivers, views, depths, results and then the products' buffers, in this order.
   std::string look_up_name;
   std::span<const std::uint32_t> look_up{};
+  /// The same with FITTED_FACES, for options `fit` that have other maps than windows. Empty: the method has none.
+  std::span<const std::uint32_t> fitted_look_up{};
   std::vector<std::uint32_t> constants{};  ///< its specialization constants behind those of the products
   std::vector<std::unique_ptr<MapProduct>> products{};
   /// How far beside a receiver's direction the look-up taps (FitOptions::beside), for a light. Empty: not at all.
   std::function<glm::dvec2(const visibility::Light&, const LightBasis&)> beside{};
+  /// It taps so many texels beside a receiver's, and `beside` says no more than how far that is at most.
+  std::uint32_t beside_texels = 0;
   /// The look-up asks for all that stands between a receiver and any point of the light (FitOptions::reach).
   bool whole_light = false;
   /// It asks for casters that stand elsewhere, too: windows hold all that there are, or become hemicubes.

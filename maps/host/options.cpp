@@ -31,6 +31,11 @@ MapOptions map_options(const render::Device& device, const visibility::MethodDes
   };
   if (has(kDepth.name())) chosen.depth = options[kDepth];
   if (has(kReceiverPlane.name())) chosen.receiver_plane = options[kReceiverPlane];
+  chosen.fit = view_fit(method.options, options);
+  if (chosen.fit.has_faces() && chosen.rasteriser == Rasteriser::opengl) {
+    throw UsageError("method {}: option fit={} needs rasteriser=vulkan; OpenGL draws maps of fit=receivers and view",
+                     method.name, kFit.name_of(chosen.fit.fit));
+  }
   if (chosen.size > device.limits().max_image_size) {
     throw UsageError("method {}: option {} is {}; this device draws images of up to {} texels a side", method.name,
                      kMapSize.name(), chosen.size, device.limits().max_image_size);

@@ -2,6 +2,7 @@
 
 #include "maps/host/map_view.shared.h"
 #include "maps/host/opengl_maps.hpp"
+#include "maps/host/view_fit.hpp"
 #include "render/device.hpp"
 #include "visibility/method.hpp"
 
@@ -57,6 +58,7 @@ struct MapOptions {
   DepthUse depth = DepthUse::first;
   bool receiver_plane = true;
   Rasteriser rasteriser = Rasteriser::vulkan;
+  ViewFit fit = {};
 };
 
 /// How `methods` describes them.

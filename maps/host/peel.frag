@@ -11,7 +11,7 @@ STORAGE(1) readonly buffer Maps { float maps[]; };
 PUSH_CONSTANTS Peel { PeelPush push; };  // not Push: blocks of one name are one in both stages
 
 void main() {
-  const float depth = 1.0 / (gl_FragCoord.w * push.face.far);
+  const float depth = map_depth(push.face, gl_FragCoord);
   const uvec2 cell = uvec2(gl_FragCoord.xy);
   if (!(depth > maps[push.previous + cell.y * push.size + cell.x] * (1.0 + 1.0 / 1048576.0))) discard;
   gl_FragDepth = depth;

@@ -8,6 +8,9 @@ void main() {
     const LightView view = views[0];
     receiver_plane = receiver.plane;
     receiver_object = receiver.object;
+#ifdef FITTED_FACES
+    receiver_depth = dot(table_of_faces.forward, receiver.p) + table_of_faces.offset;
+#endif
     const vec3 d = to_basis(lookup.basis, receiver.p - view.point);
     v = on_emitting_side(d) ? visibility_of(view, d, -to_basis(lookup.basis, receiver.n)) : 0.0;
   }

@@ -111,6 +111,9 @@ Tap tap_of(LightView view, uint size, MapFace face, uvec2 cell) {
   return tap;
 }
 
+#ifdef FITTED_FACES
+#include "maps/host/fitted.glsl"
+#else
 // d must not lie in the light's plane.
 Tap fetch(LightView view, uint first_map, uint size, vec3 d) {
   const SideView side = view.side[d.z < 0.0 ? 1 : 0];
@@ -126,6 +129,7 @@ Tap fetch(LightView view, uint first_map, uint size, vec3 d) {
   if (side.face_count == 0 || (side.face_count == 1 && at != cell)) tap.depth = tap.second = view.far;
   return tap;
 }
+#endif
 
 // Where a receiver begins to be behind what the tap found, in depth: at least `forgiven` beyond the nearest surface, or
 // what the option `depth` puts in its place. Wang and Molnar 1994: the second surface; Woo 1992: the middle between the

@@ -3,6 +3,8 @@
 #include "maps/host/map_method.hpp"
 #include "render/compute_pass.hpp"
 
+#include <optional>
+
 namespace penumbra::maps {
 
 /// The smallest distance from the light's plane of what the maps of the light's centre hold: two floats, for the side
@@ -14,7 +16,9 @@ class NearestCaster final : public MapProduct {
   [[nodiscard]] const render::Buffer& buffer() const override { return nearest_; }
 
  private:
+  const render::Device* device_;
   render::ComputePass pass_;
+  std::optional<render::ComputePass> fitted_;  ///< of MapSet::face_table
   render::Buffer nearest_;
 };
 

@@ -1,0 +1,5 @@
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_GOOGLE_include_directive : require
+#define FITTED_FACES
+#include "maps/filters/pcf.glsl"

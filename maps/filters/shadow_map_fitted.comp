@@ -1,0 +1,10 @@
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_GOOGLE_include_directive : require
+#define FITTED_FACES
+#include "maps/host/look_up.glsl"
+
+// shadow_map.comp, asking faces that are fitted to what a camera sees.
+float visibility_of(LightView view, vec3 d, vec3 m) { return light_point_is_seen(view, 0, d, m) ? 1.0 : 0.0; }
+
+#include "maps/host/scalar_main.glsl"

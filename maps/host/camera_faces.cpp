@@ -1,0 +1,64 @@
+#include "maps/host/camera_faces.hpp"
+
+#include "maps/host/map_method.hpp"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+
+namespace penumbra::maps {
+
+std::uint32_t CameraFaces::fit(const render::Device& device, const Source& source, const FaceFitOptions& options,
+                               gpu::LightView& view) {
+  faces_ = fit_faces(source.scene, source.light, source.basis, source.samples, options);
+  std::uint32_t first = 0;
+  for (int side = 0; side < 2; ++side) {
+    const auto count = static_cast<std::uint32_t>(std::ranges::count(faces_, side, &FittedFace::side));
+    view.side[side] = {.lower = {}, .upper = {}, .first_face = first, .face_count = count};
+    first += count;
+  }
+
+  const visibility::PinholeCamera& camera = source.samples.camera;
+  std::vector<std::uint32_t> words =
+      push_words(gpu::FaceTable{.forward = camera.forward,
+                                .offset = static_cast<float>(-glm::dot(camera.forward, camera.eye)),
+                                .count = first});
+  pushes_.clear();
+  for (const FittedFace& face : faces_) {
+    const std::vector<std::uint32_t> more = push_words(face.rounded());
+    words.insert(words.end(), more.begin(), more.end());
+    FacePush& push = pushes_.emplace_back();
+    if (face.ratio > 0) {
+      push.logarithmic = logarithmic_push(face, view, source.basis, options.size);
+    } else {
+      push.plain = face_push(face, view, source.basis, options.size);
+    }
+  }
+  // Look-ups read the first even where there is none.
+  words.resize(std::max(words.size(), (sizeof(gpu::FaceTable) + sizeof(gpu::FittedFace)) / sizeof(std::uint32_t)));
+  render::grow(device, table_, "fitted faces", words.size() * sizeof(std::uint32_t));
+  table_->write<std::uint32_t>(words);
+  return first;
+}
+
+void CameraFaces::record(const CasterMaps& casters, render::Commands& commands, std::int32_t light_index,
+                         const render::Buffer& maps, visibility::PassTimes& times) const {
+  for (std::size_t first = 0; first < pushes_.size(); first += kFacesPerSubmission) {
+    if (first != 0) times.add(commands.submit());
+    const std::size_t count = std::min<std::size_t>(kFacesPerSubmission, pushes_.size() - first);
+    casters.record(commands, std::span(pushes_).subspan(first, count), light_index, maps, first);
+  }
+}
+
+void CameraFaces::record_behind(const CasterMaps& casters, render::Commands& commands, std::int32_t light_index,
+                                const render::Buffer& maps, std::uint64_t first_face,
+                                visibility::PassTimes& times) const {
+  for (std::size_t first = 0; first < pushes_.size(); first += kFacesPerSubmission) {
+    if (first != 0) times.add(commands.submit());
+    const std::size_t count = std::min<std::size_t>(kFacesPerSubmission, pushes_.size() - first);
+    casters.record_behind(commands, std::span(pushes_).subspan(first, count), light_index, maps, first_face + first,
+                          first_face - pushes_.size() + first);
+  }
+}
+
+}  // namespace penumbra::maps

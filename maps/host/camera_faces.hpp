@@ -1,0 +1,46 @@
+#pragma once
+
+#include "maps/host/caster_maps.hpp"
+#include "maps/host/face_fit.hpp"
+#include "render/buffer.hpp"
+#include "render/commands.hpp"
+#include "visibility/pass_times.hpp"
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace penumbra::maps {
+
+/// Faces that are fitted to a camera (face_fit.hpp), as maps are drawn with them and look-ups find them (fitted.glsl).
+class CameraFaces {
+ public:
+  struct Source {
+    const visibility::SceneFloats& scene;
+    const visibility::Light& light;
+    const LightBasis& basis;
+    const visibility::ViewSamples& samples;
+  };
+  /// Fits them, and says in the view of the light's centre how many each side has. Returns how many there are.
+  std::uint32_t fit(const render::Device& device, const Source& source, const FaceFitOptions& options,
+                    gpu::LightView& view);
+
+  /// Records all faces, the first at the beginning of `maps`, in submissions that can be timed.
+  void record(const CasterMaps& casters, render::Commands& commands, std::int32_t light_index,
+              const render::Buffer& maps, visibility::PassTimes& times) const;
+  /// What is behind the layer before, whose faces come just before `first_face`.
+  void record_behind(const CasterMaps& casters, render::Commands& commands, std::int32_t light_index,
+                     const render::Buffer& maps, std::uint64_t first_face, visibility::PassTimes& times) const;
+
+  [[nodiscard]] const std::vector<FittedFace>& faces() const { return faces_; }
+  [[nodiscard]] const render::Buffer& table() const { return *table_; }
+  [[nodiscard]] std::uint64_t memory_bytes() const { return table_ ? table_->bytes() : 0; }
+
+ private:
+  std::vector<FittedFace> faces_;
+  std::vector<FacePush> pushes_;
+  std::unique_ptr<render::Buffer> table_;
+};
+
+}  // namespace penumbra::maps

@@ -1,0 +1,68 @@
+// Taps into faces that are fitted to what a camera sees (face_fit.hpp), in place of a window or a hemicube: for look-ups
+// that define FITTED_FACES. Faces are found in their table; a receiver asks those of its own depths.
+#include "maps/host/fitted_face.glsl"
+
+layout(scalar, binding = 4) readonly buffer Faces {
+  FaceTable table_of_faces;
+  FittedFace fitted_faces[];
+};
+
+// Neighbouring faces meet: what lies on their common border is in both.
+const float kFaceBorder = 1.0 / 65536.0;
+
+float receiver_depth;  // scalar_main.glsl: along the view axis
+
+// b across a face's rows (FittedFace::place).
+float face_row(FittedFace face, float b) {
+  if (face.ratio == 0.0) return b;
+  const float left = 1.0 - b * (1.0 - 1.0 / face.ratio);
+  if (!(left > 0.0)) return 2.0;
+  return face.margin - (1.0 - 2.0 * face.margin) * log(left) / log(face.ratio);
+}
+
+// Where a direction e = (x, y, |z|) is seen: the number of its face, or all of them if it is seen nowhere.
+uint find_face(vec3 e, uint side, out vec2 place) {
+  for (uint i = 0; i < table_of_faces.count; ++i) {
+    const FittedFace face = fitted_faces[i];
+    if (face.side != side || receiver_depth < face.from || receiver_depth >= face.to) continue;
+    const float k = dot(face.row_k, e);
+    if (!(k > 0.0)) continue;
+    place = vec2(dot(face.row_a, e), dot(face.row_b, e)) / k;
+    place.y = face_row(face, place.y);
+    if (all(greaterThanEqual(place, vec2(-kFaceBorder))) && all(lessThanEqual(place, vec2(1.0 + kFaceBorder)))) return i;
+  }
+  return table_of_faces.count;
+}
+
+// d must not lie in the light's plane. A texel's width is what it is there.
+Tap fetch(LightView view, uint first_map, uint size, vec3 d) {
+  const uint side = d.z < 0.0 ? 1 : 0;
+  const vec3 e = vec3(d.xy, abs(d.z));
+  vec2 place;
+  const uint number = find_face(e, side, place);
+  const bool found = number < table_of_faces.count;
+  const FittedFace face = fitted_faces[found ? number : 0];
+  const uvec2 cell = uvec2(clamp(floor((found ? place : vec2(0.0)) * float(size)), vec2(0.0), vec2(float(size - 1))));
+  const vec2 centre = (vec2(cell) + 0.5) / float(size);
+  const float half_texel = 0.5 / float(size);
+  Tap tap;
+  tap.direction = face_direction(face, centre);
+  const vec3 across = face_direction(face, centre + vec2(half_texel, 0.0)) - face_direction(face, centre - vec2(half_texel, 0.0));
+  const vec3 down = face_direction(face, centre + vec2(0.0, half_texel)) - face_direction(face, centre - vec2(0.0, half_texel));
+  const vec3 widest = max(abs(across), abs(down));
+  tap.texel = max(widest.x, max(widest.y, widest.z));
+  const uint texel = ((first_map + number) * size + cell.y) * size + cell.x;
+  tap.far = view.far;
+  tap.along = dot(face.along, e);
+  tap.axis = int(face.axis);
+  tap.mirrored = d.z < 0.0 ? -1.0 : 1.0;
+  tap.depth = tap.second = view.far;
+  if (found && tap.direction != vec3(0.0)) {
+    tap.depth = view.far * maps[texel];
+    if (lookup.depth_use != kDepthFirst) tap.second = view.far * maps[texel + lookup.faces * size * size];
+  } else {
+    tap.direction = e / tap.along;
+  }
+  tap.direction.z *= tap.mirrored;
+  return tap;
+}

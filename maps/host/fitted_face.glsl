@@ -1,0 +1,16 @@
+// Directions in a fitted face.
+#include "maps/host/fitted_face.shared.h"
+
+// Of a row of a face, its b (FittedFace::direction).
+float face_b(FittedFace face, float row) {
+  if (face.ratio == 0.0) return row;
+  const float power = (row - face.margin) / (1.0 - 2.0 * face.margin);
+  return (1.0 - exp(-power * log(face.ratio))) / (1.0 - 1.0 / face.ratio);
+}
+
+// To a place of a face, one long along its axis; 0 if it leads behind the light's plane.
+vec3 face_direction(FittedFace face, vec2 place) {
+  const vec3 d = face.inverse_a * place.x + face.inverse_b * face_b(face, place.y) + face.inverse_1;
+  const float along = dot(face.along, d);
+  return along > 0.0 ? d / along : vec3(0.0);
+}

@@ -1,0 +1,31 @@
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_GOOGLE_include_directive : require
+#include "maps/host/map_view.shared.h"
+#include "render/both.glsl"
+
+// Does the ray through a texel's centre meet the triangle, and how far along the face's axis?
+
+STORAGE(1) readonly buffer Maps { float maps[]; };
+PUSH_CONSTANTS Log { LogarithmicPush push; };  // not Push: blocks of one name are one in both stages
+layout(location = 0) flat in uint first_corner;
+
+void main() {
+  const vec2 at = gl_FragCoord.xy / float(push.size);
+  const float power = (at.y - push.margin) / (1.0 - 2.0 * push.margin);
+  const float b = (1.0 - exp(-power * log(push.ratio))) / (1.0 - 1.0 / push.ratio);
+  const vec3 way = push.inverse_a * at.x + push.inverse_b * b + push.inverse_1;
+  const float along = dot(push.along, way);
+  const vec3 p = corner_at(first_corner) - push.point, q = corner_at(first_corner + 1) - push.point,
+             r = corner_at(first_corner + 2) - push.point;
+  const vec3 normal = cross(q - p, r - p);
+  const vec3 sides = vec3(dot(way, cross(p, q)), dot(way, cross(q, r)), dot(way, cross(r, p)));
+  const bool inside = all(greaterThanEqual(sides, vec3(0.0))) || all(lessThanEqual(sides, vec3(0.0)));
+  const float depth = dot(normal, p) / dot(normal, way) * along / push.far;
+  if (!(along > 0.0 && inside && depth > 1.0 / 1048576.0 && depth < 1.0)) discard;
+  if (push.peels != 0) {
+    const uvec2 cell = uvec2(gl_FragCoord.xy);
+    if (!(depth > maps[push.previous + cell.y * push.size + cell.x] * (1.0 + 1.0 / 1048576.0))) discard;
+  }
+  gl_FragDepth = depth;
+}

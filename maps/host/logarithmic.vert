@@ -1,0 +1,34 @@
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_GOOGLE_include_directive : require
+#include "maps/host/map_view.shared.h"
+#include "render/both.glsl"
+
+// Edges are curves in a face of logarithms, which no rasteriser draws: each triangle is drawn as a rectangle that bounds it
+// (six vertices), and logarithmic.frag decides (Lloyd et al. 2007). Rows grow with b, and b is largest at a corner.
+
+PUSH_CONSTANTS Push { LogarithmicPush push; };
+layout(location = 0) flat out uint first_corner;
+
+void main() {
+  first_corner = push.first_vertex + VERTEX / 6 * 3;
+  vec2 lower = vec2(1.0), upper = vec2(0.0);
+  for (uint i = 0; i < 3; ++i) {
+    const vec3 d = corner_at(first_corner + i) - push.point;
+    const float k = dot(push.row_k, d), b = dot(push.row_b, d) / k, left = 1.0 - b * (1.0 - 1.0 / push.ratio);
+    if (!(k > 0.0 && left > 0.0)) {  // it may be seen anywhere
+      lower = vec2(0.0);
+      upper = vec2(1.0);
+      break;
+    }
+    const vec2 at = vec2(dot(push.row_a, d) / k, push.margin - (1.0 - 2.0 * push.margin) * log(left) / log(push.ratio));
+    lower = min(lower, at);
+    upper = max(upper, at);
+  }
+  // A texel wider on every side: rounding.
+  lower -= 1.0 / float(push.size);
+  upper += 1.0 / float(push.size);
+  const uint corner = VERTEX % 6;
+  const vec2 share = vec2(corner == 1 || corner == 3 || corner == 4 ? 1.0 : 0.0, corner == 2 || corner == 4 || corner == 5 ? 1.0 : 0.0);
+  gl_Position = vec4(2.0 * clamp(mix(lower, upper, share), vec2(0.0), vec2(1.0)) - 1.0, 0.0, 1.0);
+}

@@ -1,0 +1,174 @@
+#include "maps/host/view_fit.hpp"
+
+#include "visibility/receivers.hpp"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <string_view>
+
+namespace penumbra::maps {
+namespace {
+
+/// What is on the inner side: x with dot(normal, x) + offset >= 0.
+struct Plane {
+  glm::dvec3 normal;
+  double offset;
+
+  [[nodiscard]] double of(const glm::dvec3& x) const { return glm::dot(normal, x) + offset; }
+};
+
+/// What a picture holds between two depths.
+std::vector<Plane> frustum(const visibility::PinholeCamera& camera, double from, double to) {
+  const auto through = [&](const glm::dvec3& normal, double offset) {
+    return Plane{normal, offset - glm::dot(normal, camera.eye)};
+  };
+  std::vector<Plane> planes{through(camera.forward, -std::max(from, 0.0))};
+  if (std::isfinite(to)) planes.push_back(through(-camera.forward, to));
+  if (camera.half_height) {
+    const double up = *camera.half_height, across = up * camera.width / std::max(camera.height, 1U);
+    for (const double sign : {-1.0, 1.0}) {
+      planes.push_back(through(sign * camera.right, across));
+      planes.push_back(through(sign * camera.up, up));
+    }
+    return planes;
+  }
+  for (const double sign : {-1.0, 1.0}) {
+    planes.push_back(through(camera.forward + sign * camera.screen_across(), 0));
+    planes.push_back(through(camera.forward + sign * camera.screen_upward(), 0));
+  }
+  return planes;
+}
+
+/// Sutherland and Hodgman 1974: the part of a polygon on a plane's inner side.
+std::vector<glm::dvec3> clipped(const std::vector<glm::dvec3>& polygon, const Plane& plane) {
+  std::vector<glm::dvec3> inside;
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const glm::dvec3 &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
+    const double at_a = plane.of(a), at_b = plane.of(b);
+    if (at_a >= 0) inside.push_back(a);
+    if ((at_a >= 0) != (at_b >= 0)) inside.push_back(a + (b - a) * (at_a / (at_a - at_b)));
+  }
+  return inside;
+}
+
+std::vector<BodyPoint> points_in_frustum(const visibility::SceneFloats& scene, const visibility::Light& light,
+                                         const visibility::PinholeCamera& camera, double from, double to) {
+  const std::vector<Plane> planes = frustum(camera, from, to);
+  std::vector<BodyPoint> points;
+  const auto add = [&](const glm::dvec3& x) { points.push_back({x, glm::dot(camera.forward, x - camera.eye)}); };
+  std::vector<std::uint8_t> whole(scene.positions.size(), 0);
+  for (std::uint32_t i = 0; i < scene.triangles.size(); ++i) {
+    if (!visibility::is_receiver(scene, light, i)) continue;
+    std::vector<glm::dvec3> polygon;
+    for (const glm::vec3& corner : scene.corners(i)) polygon.emplace_back(corner);
+    const bool inside = std::ranges::all_of(planes, [&](const Plane& plane) {
+      return std::ranges::all_of(polygon, [&](const glm::dvec3& corner) { return plane.of(corner) >= 0; });
+    });
+    if (inside) {
+      for (const std::uint32_t corner : scene.triangles[i]) whole[corner] = 1;
+      continue;
+    }
+    for (const Plane& plane : planes) {
+      polygon = clipped(polygon, plane);
+      if (polygon.empty()) break;
+    }
+    std::ranges::for_each(polygon, add);
+  }
+  for (std::size_t i = 0; i < whole.size(); ++i) {
+    if (whole[i] != 0) add(scene.positions[i]);
+  }
+  return points;
+}
+
+}  // namespace
+
+std::vector<visibility::OptionDescription> view_fit_descriptions() {
+  return {kFit.description(),        kViewBody.description(), kSnap.description(),  kCascades.description(), kSplit.description(),
+          kSplitShare.description(), kTiles.description(),    kFocus.description(), kAliasing.description()};
+}
+
+std::vector<visibility::OptionDescription> window_fit_descriptions() {
+  return {kWindowFit.description(), kViewBody.description(), kSnap.description(), kAliasing.description()};
+}
+
+ViewFit view_fit(std::span<const visibility::OptionDescription> options, const visibility::ParsedOptions& parsed) {
+  const auto has = [&](std::string_view name) {
+    return std::ranges::find(options, name, &visibility::OptionDescription::name) != options.end();
+  };
+  ViewFit fit;
+  if (!has(kFit.name())) return fit;
+  fit.body = parsed[kViewBody];
+  fit.snap = parsed[kSnap];
+  fit.aliasing = parsed[kAliasing];
+  fit.fit = has(kCascades.name()) ? parsed[kFit] : parsed[kWindowFit];
+  if (!has(kCascades.name())) return fit;
+  fit.cascades = parsed[kCascades];
+  fit.split = parsed[kSplit];
+  fit.split_share = parsed[kSplitShare];
+  fit.tiles = parsed[kTiles];
+  fit.focus = parsed[kFocus];
+  return fit;
+}
+
+std::vector<BodyPoint> body_points(const visibility::SceneFloats& scene, const visibility::Light& light,
+                                   const visibility::ViewSamples& samples, ViewBody body, double from, double to) {
+  if (body == ViewBody::frustum) return points_in_frustum(scene, light, samples.camera, from, to);
+  std::vector<BodyPoint> points;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    if (!visibility::is_receiver(scene, light, samples, i)) continue;
+    const glm::dvec3 p(samples.p[i]);
+    const double depth = glm::dot(samples.camera.forward, p - samples.camera.eye);
+    if (depth >= from && depth <= to) points.push_back({p, depth});
+  }
+  return points;
+}
+
+std::vector<double> split_depths(const ViewFit& fit, double near, double far, std::uint32_t slices) {
+  std::vector<double> depths{near};
+  const double pseudo = near + fit.split_share * (far - near);
+  for (std::uint32_t i = 1; i < slices; ++i) {
+    const double share = static_cast<double>(i) / slices;
+    const double logarithmic = near * std::pow(far / near, share), uniform = near + (far - near) * share;
+    switch (fit.split) {
+      case Split::logarithmic:
+        depths.push_back(logarithmic);
+        break;
+      case Split::practical:
+        depths.push_back(fit.split_share * logarithmic + (1 - fit.split_share) * uniform);
+        break;
+      case Split::pseudo_near:
+        depths.push_back(pseudo * std::pow(far / pseudo, share));
+        break;
+      case Split::uniform:
+        depths.push_back(uniform);
+        break;
+    }
+  }
+  depths.push_back(far);
+  return depths;
+}
+
+double lispsm_distance(double near, double far, double sine) {
+  return (near + std::sqrt(near * far)) / sine;
+}
+
+double tsm_distance(double length, double focus) {
+  constexpr double kShare = 0.8;
+  if (!(focus < kShare * length)) return std::numeric_limits<double>::infinity();
+  return (1 - kShare) * length * focus / (kShare * length - focus);
+}
+
+SnappedSpan snapped(double lower, double upper, std::uint32_t size) {
+  // A window that begins between two multiples needs one texel more.
+  const double least = (upper - lower) / (size - 1.0);
+  double texel = std::exp2(std::ceil(4 * std::log2(least)) / 4);
+  // The logarithm may have been rounded down.
+  while (!(texel >= least)) texel *= std::exp2(0.25);
+  return {std::floor(lower / texel) * texel, texel};
+}
+
+}  // namespace penumbra::maps

@@ -1,0 +1,141 @@
+#pragma once
+
+#include "visibility/light_samples.hpp"
+#include "visibility/method_options.hpp"
+#include "visibility/scene_floats.hpp"
+#include "visibility/view_samples.hpp"
+
+#include <glm/vec3.hpp>
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+/// What fits maps to what a camera sees (Eisemann et al. 2009, section 3.2; docs/map-fits.md): options, the body that is
+/// fitted, and the closed forms of the papers.
+namespace penumbra::maps {
+
+/// What a map's texels are spread over.
+enum class Fit : std::uint8_t {
+  receivers,  ///< all that receives shadow, whatever the camera sees: map_fit.hpp
+  view,       ///< what the camera sees, in one window
+  cascades,   ///< the same in slices of depth, each with a window (Engel 2006, Zhang et al. 2006)
+  tiles,      ///< a quadtree of windows, finer where pixels ask for more (Giegl and Wimmer 2007, Lefohn et al. 2007)
+  lispsm,     ///< a perspective along the view, n = z_n + sqrt(z_n z_f) (Wimmer et al. 2004)
+  tsm,        ///< the same, n from a region in focus (Martin and Tan 2004)
+  psm,        ///< the camera's own perspective (Stamminger and Drettakis 2002)
+  logpsm,     ///< a perspective from the eye and a logarithm along the view (Lloyd et al. 2008)
+};
+/// Where cascades end.
+enum class Split : std::uint8_t { logarithmic, practical, pseudo_near, uniform };
+/// What a fit holds: what the camera's frustum holds of the receivers, or what pixels show of these.
+enum class ViewBody : std::uint8_t { frustum, visible };
+
+inline constexpr visibility::ChoiceOption kFit{"fit",
+                                               {{"receivers", Fit::receivers},
+                                                {"view", Fit::view},
+                                                {"cascades", Fit::cascades},
+                                                {"tiles", Fit::tiles},
+                                                {"lispsm", Fit::lispsm},
+                                                {"tsm", Fit::tsm},
+                                                {"psm", Fit::psm},
+                                                {"logpsm", Fit::logpsm}},
+                                               Fit::receivers,
+                                               "what texels are spread over: all receivers; what the camera sees, in "
+                                               "one window, in slices of depth or in tiles; or a perspective of it"};
+/// Of a method whose products know windows alone.
+inline constexpr visibility::ChoiceOption kWindowFit{"fit",
+                                                     {{"receivers", Fit::receivers}, {"view", Fit::view}},
+                                                     Fit::receivers,
+                                                     "what texels are spread over: all receivers, or what the camera "
+                                                     "sees; means over windows need even texels, so there are no warps"};
+inline constexpr visibility::ChoiceOption kViewBody{
+    "body",
+    {{"visible", ViewBody::visible}, {"frustum", ViewBody::frustum}},
+    ViewBody::visible,
+    "what a fit holds: what pixels show, or what the camera's frustum holds of the receivers"};
+inline constexpr auto kSnap = visibility::flag_option(
+    "snap", false, "fit=view: texels stay where they are while the camera moves, at up to 1.2 of their width");
+inline constexpr visibility::IntegerOption kCascades{
+    "cascades", 0, 8, 0, "slices of depth, each with a map; 0: 4 of fit=cascades, 1 of the warps"};
+inline constexpr visibility::ChoiceOption kSplit{"split",
+                                                 {{"logarithmic", Split::logarithmic},
+                                                  {"practical", Split::practical},
+                                                  {"pseudo-near", Split::pseudo_near},
+                                                  {"uniform", Split::uniform}},
+                                                 Split::logarithmic,
+                                                 "where slices end: by the logarithm of depth, between that and equal "
+                                                 "ones, by the logarithm from a pseudo-near plane on, or equal"};
+inline constexpr visibility::RealOption kSplitShare{
+    "splitShare", 0, 1, 0.5, "split=practical: the logarithm's share; pseudo-near: how far off, as a share of all depths"};
+inline constexpr visibility::IntegerOption kTiles{"tiles", 1, 64, 16, "fit=tiles: maps, at most"};
+inline constexpr visibility::RealOption kFocus{
+    "focus", 0.01, 0.99, 0.25, "fit=tsm: the nearest share of depths, which gets four fifths of the map"};
+
+/// What is told of a map's aliasing error (aliasing.hpp).
+enum class AliasingUse : std::uint8_t { off, count, show };
+inline constexpr visibility::ChoiceOption kAliasing{
+    "aliasing",
+    {{"off", AliasingUse::off}, {"count", AliasingUse::count}, {"show", AliasingUse::show}},
+    AliasingUse::off,
+    "count: the aliasing error m of the maps in the counters; show: V is 1/m, at most 1, in place of visibility"};
+
+/// A method's choice of all of these.
+struct ViewFit {
+  Fit fit = Fit::receivers;
+  ViewBody body = ViewBody::visible;
+  bool snap = false;
+  std::uint32_t cascades = 0;
+  Split split = Split::logarithmic;
+  double split_share = kSplitShare.otherwise;
+  std::uint32_t tiles = kTiles.otherwise;
+  double focus = kFocus.otherwise;
+  AliasingUse aliasing = AliasingUse::off;
+
+  /// Is the camera asked?
+  [[nodiscard]] bool sees_camera() const { return fit != Fit::receivers; }
+  /// Are there other maps than a window or a hemicube (face_fit.hpp)?
+  [[nodiscard]] bool has_faces() const { return fit != Fit::receivers && fit != Fit::view; }
+  [[nodiscard]] std::uint32_t slices() const {
+    if (fit == Fit::tiles) return 1;
+    return cascades != 0 ? cascades : fit == Fit::cascades ? 4U : 1U;
+  }
+};
+
+/// Of methods that ask texels one by one; and of those that know windows alone.
+std::vector<visibility::OptionDescription> view_fit_descriptions();
+std::vector<visibility::OptionDescription> window_fit_descriptions();
+/// The choice of a method that has some of them, or none.
+ViewFit view_fit(std::span<const visibility::OptionDescription> options, const visibility::ParsedOptions& parsed);
+
+/// A point that a fit must hold.
+struct BodyPoint {
+  glm::dvec3 p;      ///< in scene floats
+  double depth = 0;  ///< along the view axis
+};
+
+/// Points whose convex hull holds all receivers of the light that the camera sees between these depths.
+std::vector<BodyPoint> body_points(const visibility::SceneFloats& scene, const visibility::Light& light,
+                                   const visibility::ViewSamples& samples, ViewBody body, double from, double to);
+
+/// Depths from which on slices go, the first near and the last far (Eisemann et al. 2009, section 3.2.3.1): n + 1 of
+/// them. 0 < near ≤ far.
+std::vector<double> split_depths(const ViewFit& fit, double near, double far, std::uint32_t slices);
+
+/// n_opt of Wimmer et al. 2004: how far before the nearest of what is seen a perspective stands, so that the largest
+/// errors along both axes are equal. 0 < near ≤ far are distances from the eye along the warped axis, and `sine` that of
+/// the angle between the view and the light.
+double lispsm_distance(double near, double far, double sine);
+
+/// The distance that puts what is `focus` of `length` away from the nearest at four fifths of the map (Martin and Tan
+/// 2004, η). Infinite where it is there without a perspective, or nearer.
+double tsm_distance(double length, double focus);
+
+/// A width in texels, made so much wider that it is one of the steps 2^(k/4), and where a window of `size` such texels
+/// begins whose texels lie at multiples of their width.
+struct SnappedSpan {
+  double lower, texel;
+};
+SnappedSpan snapped(double lower, double upper, std::uint32_t size);
+
+}  // namespace penumbra::maps

@@ -1,0 +1,152 @@
+// The perspectives of Wimmer et al. 2004 (LiSPSM), Martin and Tan 2004 (TSM), Stamminger and Drettakis 2002 (PSM) and
+// Lloyd et al. 2008 (LogPSM), for a point light. A face's coordinates (a/w, b/w) are the light's post-perspective space,
+// where its rays are parallel; there the first, second and last put a perspective along the image of the view axis whose
+// centre is n before the nearest of what is seen. Departure: rays through the light are points of its face, and depths are
+// kept as distances along them, so that PSM needs no light in post-perspective space, and turns no depths over.
+
+#include "maps/host/warps.hpp"
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+#include <glm/vec2.hpp>
+#include <glm/vec4.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+namespace penumbra::maps {
+namespace {
+
+/// A matrix with these rows.
+glm::dmat3 with_rows(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& k) {
+  return glm::transpose(glm::dmat3(a, b, k));
+}
+
+glm::dvec2 seen_at(const glm::dvec3& x) { return glm::dvec2(x) / x.z; }
+
+/// A perspective along `along`, a unit vector of the face, whose centre is `distance` before `nearest`; b' runs from 0 to
+/// 1 over `length`.
+glm::dmat3 perspective(const glm::dvec2& along, double nearest, double length, double distance) {
+  const double far = distance + length;
+  const glm::dvec3 a(-along.y, along.x, 0), g(along, 0);
+  const glm::dvec3 b = (g - glm::dvec3(0, 0, nearest)) * (far / length), k = g + glm::dvec3(0, 0, distance - nearest);
+  return with_rows(a, b, k);
+}
+
+/// The distance from the perspective's centre to what is nearest; nothing where there should be no perspective.
+std::optional<double> distance_of(Fit fit, const SeenBody& body, double near, double far, double focus_at) {
+  if (fit == Fit::tsm) return tsm_distance(far - near, focus_at);
+  if (!(near > 0)) return std::nullopt;
+  glm::dvec3 middle(0);
+  for (const glm::dvec3& point : body.points) middle += point;
+  const double sine = glm::length(glm::cross(glm::normalize(middle), glm::normalize(body.forward)));
+  if (!(sine > 0)) return std::nullopt;
+  return fit == Fit::lispsm ? lispsm_distance(near, far, sine) : near / sine;
+}
+
+Warp along_the_view(Fit fit, const SeenBody& body, double focus) {
+  const glm::dvec3 first = body.eye + body.near * body.forward, last = body.eye + body.far * body.forward;
+  if (!(first.z > 0 && last.z > 0 && body.eye.z > 0)) return {};
+  const glm::dvec2 axis = seen_at(last) - seen_at(first);
+  const double length = glm::length(axis);
+  if (!(length > 0)) return {};
+  const glm::dvec2 along = axis / length;
+  double nearest = std::numeric_limits<double>::infinity(), farthest = -nearest;
+  for (const glm::dvec3& point : body.points) {
+    const double at = glm::dot(along, seen_at(point));
+    nearest = std::min(nearest, at);
+    farthest = std::max(farthest, at);
+  }
+  if (!(farthest > nearest)) return {};
+  const double eye = glm::dot(along, seen_at(body.eye));
+  const glm::dvec3 in_focus = body.eye + (body.near + focus * (body.far - body.near)) * body.forward;
+  const double focus_at = std::clamp(glm::dot(along, seen_at(in_focus)) - nearest, 0.01 * (farthest - nearest),
+                                     farthest - nearest);
+  const auto distance = distance_of(fit, body, nearest - eye, farthest - eye, focus_at);
+  // Beyond this a perspective is none.
+  if (!distance || !(*distance < 1e4 * (farthest - nearest))) return {};
+  Warp warp{perspective(along, nearest, farthest - nearest, *distance)};
+  if (fit == Fit::logpsm) warp.ratio = (*distance + farthest - nearest) / *distance;
+  return warp;
+}
+
+/// The camera's perspective, with everything between two depths from −1 to 1: rows of the image of x − eye, and what z has
+/// besides.
+struct CameraMap {
+  glm::dvec3 x, y, z, w;
+  double z_more = 0;
+};
+
+/// The image of rays from 0 on a plane across the light's direction in post-perspective space, through the middle of what
+/// is seen there; nothing if some of it is seen on the other side of the line at infinity.
+std::optional<glm::dmat3> post_perspective(const SeenBody& body, double back) {
+  const glm::dvec3 eye = body.eye - back * body.forward;
+  const double near = body.near + back, far = body.far + back;
+  if (!(far > near)) return std::nullopt;
+  const CameraMap camera{body.across, body.upward, (far + near) / (far - near) * body.forward, body.forward,
+                         -2 * far * near / (far - near)};
+  const auto image = [&](const glm::dvec3& p) {
+    const glm::dvec3 d = p - eye;
+    return glm::dvec4(glm::dot(camera.x, d), glm::dot(camera.y, d), glm::dot(camera.z, d) + camera.z_more,
+                      glm::dot(camera.w, d));
+  };
+  glm::dvec3 lower(std::numeric_limits<double>::infinity()), upper = -lower;
+  for (const glm::dvec3& point : body.points) {
+    const glm::dvec4 at = image(point);
+    if (!(at.w > 0)) return std::nullopt;
+    lower = glm::min(lower, glm::dvec3(at) / at.w);
+    upper = glm::max(upper, glm::dvec3(at) / at.w);
+  }
+  const glm::dvec3 middle = 0.5 * (lower + upper);
+  // The middle of the body in the world, and where its ray leads in the image.
+  const double depth = camera.z_more / (middle.z - (far + near) / (far - near));
+  const glm::dvec3 c =
+      eye + glm::inverse(with_rows(camera.x, camera.y, camera.w)) * glm::dvec3(middle.x * depth, middle.y * depth, depth);
+  const double w_c = glm::dot(camera.w, c);
+  const glm::dvec3 leads = glm::dvec3(glm::dot(camera.x, c), glm::dot(camera.y, c), glm::dot(camera.z, c)) - middle * w_c;
+  if (!(glm::length(leads) > 0)) return std::nullopt;
+  const glm::dvec3 v = glm::normalize(leads);
+  // The plane n . p = q in the world.
+  const glm::dvec3 n = v.x * camera.x + v.y * camera.y + v.z * camera.z - glm::dot(v, middle) * camera.w;
+  const double q = glm::dot(n, eye) - v.z * camera.z_more;
+  const auto row = [&](const glm::dvec3& of, double more) { return q * of + (more - glm::dot(of, eye)) * n; };
+  const glm::dvec3 x = row(camera.x, 0), y = row(camera.y, 0), z = row(camera.z, camera.z_more), w = row(camera.w, 0);
+  const glm::dvec3 up = std::abs(v.z) < 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(0, 1, 0);
+  const glm::dvec3 s = glm::normalize(up - v * glm::dot(up, v)), r = glm::cross(v, s);
+  const glm::dmat3 matrix =
+      with_rows(r.x * x + r.y * y + r.z * z, s.x * x + s.y * y + s.z * z, w);
+  double least = std::numeric_limits<double>::infinity(), most = -least;
+  for (const glm::dvec3& point : body.points) {
+    const double k = glm::dot(w, point) / point.z;
+    least = std::min(least, k);
+    most = std::max(most, k);
+  }
+  // One side of the line at infinity, and not so near it that float32 has nothing left.
+  constexpr double kStrongest = 1e-4;
+  if (least > kStrongest * most && most > 0) return matrix;
+  if (most < kStrongest * least && least < 0) return -matrix;
+  return std::nullopt;
+}
+
+Warp perspective_shadow_map(const SeenBody& body) {
+  // The eye moves back until all of the body is before it, seen along the light's rays (Stamminger and Drettakis 2002,
+  // section 4.1).
+  if (const auto matrix = post_perspective(body, 0)) return {*matrix};
+  double back = (body.far - body.near) / 16;
+  for (int step = 0; step < 12; ++step, back *= 2) {
+    if (const auto matrix = post_perspective(body, back)) return {*matrix};
+  }
+  return {};
+}
+
+}  // namespace
+
+Warp warp_of(Fit fit, const SeenBody& body, double focus) {
+  if (!body.perspective || body.points.empty()) return {};
+  return fit == Fit::psm ? perspective_shadow_map(body) : along_the_view(fit, body, focus);
+}
+
+}  // namespace penumbra::maps

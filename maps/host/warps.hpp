@@ -1,0 +1,33 @@
+#pragma once
+
+#include "maps/host/view_fit.hpp"
+
+#include <glm/mat3x3.hpp>
+#include <glm/vec3.hpp>
+
+#include <span>
+#include <vector>
+
+/// The warps of Eisemann et al. 2009, section 3.2.2, as homographies of a face's plane.
+namespace penumbra::maps {
+
+/// A camera and what it sees, in coordinates (a, b, w) of a face, the light's centre at 0.
+struct SeenBody {
+  std::span<const glm::dvec3> points;  ///< w > 0
+  double near = 0, far = 0;            ///< their depths along the view axis, near > 0
+  glm::dvec3 eye{0}, forward{0};
+  glm::dvec3 across{0}, upward{0};  ///< screen_across, screen_upward
+  bool perspective = true;          ///< an orthographic camera has none to follow
+};
+
+/// A homography from (a, b, w) to (a' k, b' k, k) with k > 0 at all points.
+struct Warp {
+  glm::dmat3 matrix{1};
+  double ratio = 0;  ///< logpsm: b' is from 0 to 1, and the farthest is so many times as far from the eye as the nearest
+};
+
+/// The identity where a warp would not help: where the eye is above what it sees, seen from the light, or looks along its
+/// rays. `focus`: ViewFit::focus.
+Warp warp_of(Fit fit, const SeenBody& body, double focus);
+
+}  // namespace penumbra::maps
