@@ -160,7 +160,7 @@ bool can_do(const MethodDescription& method, const std::vector<Light>& lights) {
   return std::ranges::all_of(lights, [&](const Light& light) {
     return method.lights.contains(light.kind) && (method.textures || !light.texture) &&
            (method.any_pattern || light.rows != 0) &&
-           (light.filtered_by.empty() || method.output == visibility::Output::mask);
+           (left_to_host(method, light).empty() || method.output == visibility::Output::mask);
   });
 }
 

@@ -81,10 +81,9 @@ class Host {
         mesh_ = &floats;
         times.mesh += watch.seconds();
       }
-      if (const visibility::SceneFloats& floats = session_.floats_for(light);
-          !plan_.lights[light].filtered_by.empty() && filtered_ != &floats) {
+      if (const visibility::SceneFloats& floats = session_.floats_for(light); filters(light) && filtered_ != &floats) {
         watch.restart();
-        filter_.emplace(floats);
+        filter_.emplace(floats, !method_.description().draws_holes);
         filtered_ = &floats;
         times.mesh += watch.seconds();
       }
@@ -96,7 +95,7 @@ class Host {
       method_.prepare_view(samples);
       times.view += watch.seconds();
       std::uint32_t rows = std::max(method_.max_tile_rows(), 1u);
-      rows = std::min(rows, most_rows_to_read(plan_.lights[light]));
+      rows = std::min(rows, most_rows_to_read(light));
       for (std::uint32_t row = 0; row < session_.height; row += rows) {
         const Tile tile{row, std::min(rows, session_.height - row)};
         times.lights[light].evaluate += evaluate(tile) + filter(light, samples, tile);
@@ -107,7 +106,7 @@ class Host {
       }
       // Counters start again with each light; what is wanted is their sum.
       for (const auto& [name, count] : method_.counters()) result.counters[name] += count;
-      if (!plan_.lights[light].filtered_by.empty()) {
+      if (filters(light)) {
         result.counters["maskPairs"] += alpha_counts_.mask_pairs;
         result.counters["blendPairs"] += alpha_counts_.blend_pairs;
       }
@@ -117,6 +116,10 @@ class Host {
   }
 
  private:
+  /// Is some of this light's shadow the host's?
+  [[nodiscard]] bool filters(std::size_t light) const {
+    return !visibility::left_to_host(method_.description(), plan_.lights[light]).empty();
+  }
   [[nodiscard]] bool filtered_alone(std::size_t light) const {
     return plan_.filtered_alone && !plan_.lights[light].filtered_by.empty();
   }
@@ -142,10 +145,11 @@ class Host {
     return lights;
   }
   /// Masks of a tile are read back into memory of the host: a quarter of a GiB is plenty, and never more than it.
-  [[nodiscard]] std::uint32_t most_rows_to_read(const Light& light) const {
+  [[nodiscard]] std::uint32_t most_rows_to_read(std::size_t light_index) const {
+    const Light& light = plan_.lights[light_index];
     constexpr std::uint64_t kMostBytes = 1u << 28;
     std::uint64_t row_bytes = std::uint64_t{4} * session_.width * light.words_per_mask();
-    if (!light.filtered_by.empty() && filter_->dims(light))
+    if (filters(light_index) && filter_->dims(light))
       row_bytes += std::uint64_t{4} * session_.width * light.sample_count();
     return static_cast<std::uint32_t>(std::clamp<std::uint64_t>(kMostBytes / row_bytes, 1, session_.height));
   }
@@ -162,7 +166,7 @@ class Host {
     const Light& light = plan_.lights[light_index];
     transmittances_.clear();
     dimmed_.clear();
-    if (light.filtered_by.empty()) return 0;
+    if (!filters(light_index)) return 0;
     const std::size_t count = std::size_t{tile.row_count} * session_.width;
     masks_.resize(count * light.words_per_mask());
     method_.read_masks(masks_);
@@ -195,10 +199,10 @@ class Host {
     const std::size_t count = std::size_t{tile.row_count} * session_.width;
     const std::span<const PixelClass> classes = std::span(session_.classes[light_index]).subspan(first, count);
     const std::span<float> values = std::span(result.visibility[light_index]).subspan(first, count);
-    if (light.filtered_by.empty())
-      method_.read_visibility(values);
-    else
+    if (filters(light_index))
       share_filtered(light, values);
+    else
+      method_.read_visibility(values);
     if (method_.description().output == Output::radiance && visibility::is_round(light.kind)) {
       for (float& v : values) v = v < kLeastRoundShare ? 0 : v;
     }
@@ -208,7 +212,7 @@ class Host {
     }
     require_shares(light, first, values);
     leave_out(light_index, first, values);
-    if (method_.description().output == Output::mask) read_masks(light, classes);
+    if (method_.description().output == Output::mask) read_masks(light_index, classes);
     form_factors_.resize(sink_ && method_.description().output == Output::radiance ? count : 0);
     if (!form_factors_.empty()) {
       method_.read_form_factors(form_factors_);
@@ -257,9 +261,10 @@ class Host {
     }
   }
 
-  void read_masks(const Light& light, std::span<const PixelClass> classes) {
+  void read_masks(std::size_t light_index, std::span<const PixelClass> classes) {
+    const Light& light = plan_.lights[light_index];
     const std::size_t words = light.words_per_mask();
-    if (light.filtered_by.empty()) {
+    if (!filters(light_index)) {
       masks_.resize(classes.size() * words);
       method_.read_masks(masks_);
     }

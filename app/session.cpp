@@ -169,7 +169,7 @@ void SessionMaker::show(scenes::Scene scene, bool changed, const std::string& ca
         std::back_inserter(session_.lights));
   }
   filters_.clear();
-  for (const visibility::Light& light : session_.lights) filters_.push_back(light.filtered_by);
+  for (const visibility::Light& light : session_.lights) filters_.push_back({light.filtered_by, light.dimmed_by});
   if (changed || casters != casters_of(session_.lights)) {
     reaches_.clear();
     link_casters(session_);
@@ -223,13 +223,17 @@ void SessionMaker::classify() {
   for (std::size_t i = 0; i < session_.lights.size(); ++i) {
     visibility::Light& light = session_.lights[i];
     session_.classes.push_back(visibility::classify_pixels(session_.floats, session_.samples, light));
-    light.filtered_by = filters_[i];
+    light.filtered_by = filters_[i].filtered_by;
+    light.dimmed_by = filters_[i].dimmed_by;
     if (light.filtered_by.empty()) continue;
     const Stopwatch watch;
     const visibility::SceneFloats& floats = session_.floats_for(i);
     session_.filtered[i] =
         reaches_.try_emplace(&floats, floats).first->second.reached(session_.samples, light, session_.classes[i]);
-    if (session_.filtered[i].empty()) light.filtered_by.clear();
+    if (session_.filtered[i].empty()) {
+      light.filtered_by.clear();
+      light.dimmed_by.clear();
+    }
     session_.filtered_seconds[i] = watch.seconds();
   }
 }

@@ -32,7 +32,7 @@ struct Session {
                                           ///< (app/whole_lights.hpp) one after the other
   std::vector<std::vector<visibility::PixelClass>> classes;  ///< for each light, each pixel
   /// For each light, each pixel, 1: what lets light through may be on the way (AlphaReach). Empty: nowhere; then the
-  /// light's filtered_by is empty, too.
+  /// light's filtered_by and dimmed_by are empty, too.
   std::vector<std::vector<std::uint8_t>> filtered;
   std::vector<double> filtered_seconds;  ///< finding them, of each light
   bool shading_normals = false;          ///< of beauty: vertices' normals, where there are any
@@ -86,7 +86,10 @@ class SessionMaker {
   const RunOptions& options_;
   render::Machine machine_;
   Session session_;
-  std::vector<std::string> filters_;  // Light::filtered_by as made, whatever is looked at
+  struct Filters {
+    std::string filtered_by, dimmed_by;
+  };
+  std::vector<Filters> filters_;  // of each light as made, whatever is looked at
   std::map<const visibility::SceneFloats*, visibility::AlphaReach> reaches_;  // of session_.floats and of those linked
   std::optional<engines::ViewSampler> sampler_;
   bool is_whole_ = false;                          // the last show() came to its end

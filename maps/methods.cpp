@@ -4,39 +4,58 @@
 #include "maps/backprojection/patches/methods.hpp"
 #include "maps/backprojection/soft_shadow_map/methods.hpp"
 #include "maps/filters/methods.hpp"
+#include "maps/host/every_light.hpp"
 #include "maps/sampling/methods.hpp"
 #include "maps/single_shadow/methods.hpp"
 
 #include <array>
+#include <utility>
 
 namespace penumbra::maps {
 
+namespace {
+
+/// A method of this family, for every light.
+template <auto kDescribe, auto kMake>
+engines::MethodRow row() {
+  engines::MethodRow row = engines::on_device<kDescribe, kMake>();
+  row.description = for_every_light(std::move(row.description));
+  row.describe = [](const visibility::MethodOptions& options) {
+    return for_every_light(engines::describe_with<kDescribe>(options));
+  };
+  row.make = [](const render::Machine& machine, const visibility::MethodOptions& options) {
+    return for_every_light(kMake(machine.device(), options));
+  };
+  return row;
+}
+
+}  // namespace
+
 std::span<const engines::MethodRow> methods() {
-  using engines::on_device;
   static const std::array kRows{
-      on_device<bitmask_description, make_bitmask>(),
-      on_device<backproject_description, make_backproject>(),
-      on_device<backproject_peel_description, make_backproject_peel>(),
-      on_device<layer_rays_description, make_layer_rays>(),
-      on_device<packet_description, make_packet>(),
-      on_device<contour_description, make_contour>(),
-      on_device<pcss_description, make_pcss>(),
-      on_device<vssm_description, make_vssm>(),
-      on_device<soft_shadow_map_description, make_soft_shadow_map>(),
-      on_device<accumulate_description, make_accumulate>(),
-      on_device<adaptive_light_description, make_adaptive_light>(),
-      on_device<deep_penumbra_description, make_deep_penumbra>(),
-      on_device<layered_attenuation_description, make_layered_attenuation>(),
-      on_device<occlusion_textures_description, make_occlusion_textures>(),
-      on_device<convolution_description, make_convolution>(),
-      on_device<penumbra_map_description, make_penumbra_map>(),
-      on_device<smoothies_description, make_smoothies>(),
-      on_device<brabec_seidel_description, make_brabec_seidel>(),
-      on_device<kirsch_doellner_description, make_kirsch_doellner>(),
-      on_device<parker_description, make_parker>(),
-      on_device<arvo_description, make_arvo>(),
-      on_device<pcf_description, make_pcf>(),
-      on_device<shadow_map_description, make_shadow_map>(),
+      row<bitmask_description, make_bitmask>(),
+      row<backproject_description, make_backproject>(),
+      row<backproject_peel_description, make_backproject_peel>(),
+      row<layer_rays_description, make_layer_rays>(),
+      row<packet_description, make_packet>(),
+      row<contour_description, make_contour>(),
+      row<pcss_description, make_pcss>(),
+      row<vssm_description, make_vssm>(),
+      row<soft_shadow_map_description, make_soft_shadow_map>(),
+      row<accumulate_description, make_accumulate>(),
+      row<adaptive_light_description, make_adaptive_light>(),
+      row<deep_penumbra_description, make_deep_penumbra>(),
+      row<layered_attenuation_description, make_layered_attenuation>(),
+      row<occlusion_textures_description, make_occlusion_textures>(),
+      row<convolution_description, make_convolution>(),
+      row<penumbra_map_description, make_penumbra_map>(),
+      row<smoothies_description, make_smoothies>(),
+      row<brabec_seidel_description, make_brabec_seidel>(),
+      row<kirsch_doellner_description, make_kirsch_doellner>(),
+      row<parker_description, make_parker>(),
+      row<arvo_description, make_arvo>(),
+      row<pcf_description, make_pcf>(),
+      row<shadow_map_description, make_shadow_map>(),
   };
   return kRows;
 }

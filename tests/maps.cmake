@@ -6,6 +6,7 @@ penumbra_test(maps FULL MapsTable.*
   analytic/maps/box_means.cpp
   analytic/maps/closed_form.cpp
   analytic/maps/degenerate.cpp
+  analytic/maps/every_light.cpp
   analytic/maps/filters_robust.cpp
   analytic/maps/formulas.cpp
   analytic/maps/identities.cpp

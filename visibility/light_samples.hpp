@@ -84,6 +84,14 @@ struct Light {
   };
   std::optional<Spot> spot = {};
 
+  /// A pyramid of directions from `center`, x · a + y · b + w with x and y from `lower` to `upper`.
+  struct Beam {
+    glm::dvec3 a, b, w;  ///< unit, at right angles
+    glm::dvec2 lower, upper;
+  };
+  /// Of a disk that stands for a sphere (maps/host/lamp_disks.hpp): where the receivers are that maps are made for.
+  std::optional<Beam> beam = {};
+
   SamplePattern pattern = SamplePattern::rows;
   std::uint32_t rows = 0, columns = 0;  ///< rows and grid: sample j = row · columns + column; else rows = 0
   std::vector<double> row_shift;        ///< rows pattern: each row's shift in cells, in (−0.5, 0.5); else empty
@@ -103,6 +111,9 @@ struct Light {
   /// An object with holes, or translucent, that casts shadow of this light; empty: there is none. Its part of the
   /// shadow is the host's business, light sample by light sample (visibility/alpha/).
   std::string filtered_by = {};
+  /// A translucent one of these (alphaMode BLEND); empty: there is none. All that is left to the host by methods that
+  /// draw surfaces with holes themselves (MethodDescription::draws_holes).
+  std::string dimmed_by = {};
   /// For each object, 1: this light does not light it, V = 0. Empty: none such. The host's business, too.
   std::vector<std::uint8_t> unlit = {};
 

@@ -39,6 +39,10 @@ void Method::read_form_factors(std::span<glm::dvec3> form_factors) {
                    form_factors.size());
 }
 
+const std::string& left_to_host(const MethodDescription& description, const Light& light) {
+  return description.draws_holes ? light.dimmed_by : light.filtered_by;
+}
+
 void check_light(const MethodDescription& description, const Light& light) {
   if (light.texture && !description.textures) {
     throw InputError(
@@ -52,13 +56,14 @@ void check_light(const MethodDescription& description, const Light& light) {
         "raytrace take any",
         light.name, description.name, name_of(light.pattern));
   }
-  if (!light.filtered_by.empty() && description.output != Output::mask) {
+  if (const std::string& through = left_to_host(description, light);
+      !through.empty() && description.output != Output::mask) {
     throw InputError(
-        "light \"{}\": its light passes through \"{}\" (alphaMode MASK or BLEND), which is asked light sample by light "
+        "light \"{}\": its light passes through \"{}\" (alphaMode {}BLEND), which is asked light sample by light "
         "sample; method {}{} answers with {} alone. Take a method whose output is a mask (--method: edge-scatter, "
         "view-sample, raytrace; `penumbra methods` has all)",
-        light.name, light.filtered_by, description.name, description.gives_area() ? ", as asked for," : "",
-        description.gives_area() ? "areas" : "V");
+        light.name, through, description.draws_holes ? "" : "MASK or ", description.name,
+        description.gives_area() ? ", as asked for," : "", description.gives_area() ? "areas" : "V");
   }
   require_kind(light, description.lights,
                "; method {}, as asked for, can do: {}. Take another light (--light) or method (--method; edge-scatter "

@@ -55,6 +55,7 @@ struct MethodDescription {
   bool any_pattern = true;         ///< otherwise only light samples in rows (patterns rows and grid)
   bool on_request = false;         ///< takes so long that a comparison has it only by name, or with its whole family
   bool shares_of_samples = false;  ///< V without masks is the share of light samples that are visible, as with masks
+  bool draws_holes = false;        ///< knows surfaces with holes (alphaMode MASK): the host must not ask them again
   /// Memory that it takes at least for each triangle of a mesh. Measured on meshes of one and five million triangles,
   /// and rounded down a good deal: a mesh that is refused for it would not have fitted.
   std::uint64_t bytes_per_triangle = 50;
@@ -135,6 +136,10 @@ class Method {
   /// Bytes of device memory (or, for CPU methods, of their own structures) at their peak.
   [[nodiscard]] virtual std::uint64_t memory_bytes() const { return 0; }
 };
+
+/// An object that lets this light through and whose part of the shadow is the host's, light sample by light sample, if
+/// this method does the rest (Light::filtered_by, Light::dimmed_by). Empty: there is none.
+const std::string& left_to_host(const MethodDescription& description, const Light& light);
 
 /// Refuses a light that the method cannot do, and says what can be done instead.
 void check_light(const MethodDescription& description, const Light& light);

@@ -30,6 +30,9 @@ struct SurfaceAlphas {
   std::vector<Picture> pictures;   ///< of each of the scene's; without texels where no such surface has it
   std::vector<glm::dvec2> places;  ///< in pictures, of each position; empty: no surface has one
   std::vector<float> vertices;     ///< of each position; empty: 1
+  /// Of each position, in a scene in projective coordinates (maps/host/sun_space.hpp): places and vertices times these
+  /// are linear over a triangle there, and so are these. Empty: 1. alpha_at() is of scenes without.
+  std::vector<double> weights;
   /// Triangles (ascending) that cast shadow as their alpha says. SceneFloats::casts_shadow is 0 for them: methods
   /// know only what stops all light, and the host asks these apart (visibility/alpha/).
   std::vector<std::uint32_t> casters;

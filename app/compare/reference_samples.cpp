@@ -28,7 +28,10 @@ std::vector<visibility::Light> with_samples(const Session& session, const visibi
     std::ranges::move(visibility::make_light_pieces(session.scene, index, session.floats.origin, request),
                       std::back_inserter(lights));
   }
-  for (std::size_t i = 0; i < lights.size(); ++i) lights[i].filtered_by = session.lights[i].filtered_by;
+  for (std::size_t i = 0; i < lights.size(); ++i) {
+    lights[i].filtered_by = session.lights[i].filtered_by;
+    lights[i].dimmed_by = session.lights[i].dimmed_by;
+  }
   return lights;
 }
 

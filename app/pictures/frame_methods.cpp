@@ -34,7 +34,10 @@ bool any_seen_openly(std::span<const visibility::PixelClass> classes, std::span<
 void FrameRenderer::choose_methods(const Session& session) {
   const std::vector<visibility::Light>& lights = session.lights;
   plan_.lights = lights;
-  for (visibility::Light& light : plan_.lights) light.filtered_by.clear();
+  for (visibility::Light& light : plan_.lights) {
+    light.filtered_by.clear();
+    light.dimmed_by.clear();
+  }
   plan_.chosen = choose_light_methods(plan_.lights, session.floats, wish_);
   plan_.counting.assign(lights.size(), std::nullopt);
   if (std::ranges::all_of(lights, [](const auto& light) { return light.filtered_by.empty(); })) return;
@@ -47,6 +50,7 @@ void FrameRenderer::choose_methods(const Session& session) {
     } else {
       plan_.chosen[i] = std::move(counting[i]);
       plan_.lights[i].filtered_by = lights[i].filtered_by;
+      plan_.lights[i].dimmed_by = lights[i].dimmed_by;
     }
   }
 }

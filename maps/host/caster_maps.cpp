@@ -4,10 +4,13 @@
 #include "base/error.hpp"
 #include "maps/host/caster.frag.spv.hpp"
 #include "maps/host/caster.vert.spv.hpp"
+#include "maps/host/caster_holes.frag.spv.hpp"
+#include "maps/host/caster_holes.vert.spv.hpp"
 #include "maps/host/logarithmic.frag.spv.hpp"
 #include "maps/host/logarithmic.vert.spv.hpp"
 #include "maps/host/map_fit.hpp"
 #include "maps/host/peel.frag.spv.hpp"
+#include "maps/host/peel_holes.frag.spv.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -19,19 +22,21 @@ namespace penumbra::maps {
 
 namespace {
 
-render::RasterPassOptions pass_options(std::string name, render::DepthCompare compare) {
+render::RasterPassOptions pass_options(std::string name, bool holes,
+                                       render::DepthCompare compare = render::DepthCompare::less) {
+  if (holes) name += " with holes";
   return {.name = std::move(name),
-          .vertex = shaders::kCasterVert,
-          .fragment = shaders::kCasterFrag,
+          .vertex = holes ? std::span<const std::uint32_t>(shaders::kCasterHolesVert) : shaders::kCasterVert,
+          .fragment = holes ? std::span<const std::uint32_t>(shaders::kCasterHolesFrag) : shaders::kCasterFrag,
           .push_bytes = sizeof(gpu::CasterPush),
           .constants = {},
           .depth = true,
           .compare = compare};
 }
 
-render::RasterPassOptions behind_options() {
-  render::RasterPassOptions options = pass_options("peel maps", render::DepthCompare::less);
-  options.fragment = shaders::kPeelFrag;
+render::RasterPassOptions behind_options(bool holes) {
+  render::RasterPassOptions options = pass_options("peel maps", holes);
+  options.fragment = holes ? std::span<const std::uint32_t>(shaders::kPeelHolesFrag) : shaders::kPeelFrag;
   options.push_bytes = sizeof(gpu::PeelPush);
   return options;
 }
@@ -61,15 +66,14 @@ const char* pass_name(MapLayer layer) {
 
 }  // namespace
 
-CasterMaps::Passes::Passes(const render::Device& device, std::uint32_t size)
-    : nearest(device, pass_options("render maps", render::DepthCompare::less)),
-      behind(device, behind_options()),
-      farthest(device, pass_options("render farthest", render::DepthCompare::greater)),
-      target(device, "shadow map", size, size) {}
+CasterMaps::Passes::Passes(const render::Device& device, bool holes)
+    : nearest(device, pass_options("render maps", holes)),
+      behind(device, behind_options(holes)),
+      farthest(device, pass_options("render farthest", holes, render::DepthCompare::greater)) {}
 
 const render::RasterPass& CasterMaps::Passes::logarithmic_faces(const render::Device& device) const {
   if (!logarithmic) {
-    render::RasterPassOptions options = pass_options("render logarithmic maps", render::DepthCompare::less);
+    render::RasterPassOptions options = pass_options("render logarithmic maps", false);
     options.vertex = shaders::kLogarithmicVert;
     options.fragment = shaders::kLogarithmicFrag;
     options.push_bytes = sizeof(gpu::LogarithmicPush);
@@ -87,7 +91,8 @@ CasterMaps::CasterMaps(const render::Device& device, std::uint32_t size, Rasteri
   if (rasteriser == Rasteriser::opengl) {
     opengl_ = std::make_unique<OpenGlMaps>(device.opengl(), size);
   } else {
-    passes_.emplace(device, size);
+    solid_.emplace(device, false);
+    target_.emplace(device, "shadow map", size, size);
   }
 }
 
@@ -96,32 +101,52 @@ void CasterMaps::upload(const visibility::SceneFloats& scene) {
   for (std::uint32_t i = 0; i < scene.triangles.size(); ++i) {
     if (scene.casts_shadow[i] != 0) casters.push_back(i);
   }
-  std::stable_sort(casters.begin(), casters.end(),
-                   [&](std::uint32_t a, std::uint32_t b) { return scene.emits[a] < scene.emits[b]; });
+  std::ranges::stable_sort(casters, {}, [&](std::uint32_t i) { return scene.emits[i]; });
+  const auto holes = std::ranges::stable_partition(casters, [&](std::uint32_t i) { return !has_holes(scene, i); });
   emits_.resize(casters.size());
   std::transform(casters.begin(), casters.end(), emits_.begin(), [&](std::uint32_t i) { return scene.emits[i]; });
 
-  constexpr std::size_t kCornerBytes = 3 * sizeof(glm::vec3);
-  const std::uint64_t room =
-      opengl_ ? device_->opengl().info().max_storage_block : device_->limits().max_storage_buffer_range;
-  const std::size_t most = room / kCornerBytes;
   batches_.clear();
   if (opengl_) opengl_->forget();
+  add_batches(scene, {casters.begin(), holes.begin()}, nullptr);
+  if (holes.empty()) return;
+  const HoleSurfaces surfaces(scene);
+  if (opengl_) {
+    opengl_->set_surfaces(surfaces.words());
+  } else {
+    surfaces_ = render::make_buffer<std::uint32_t>(*device_, "surfaces with holes", surfaces.words());
+    if (!holes_) holes_.emplace(*device_, true);
+  }
+  add_batches(scene, {holes.begin(), holes.end()}, &surfaces);
+}
+
+void CasterMaps::add_batches(const visibility::SceneFloats& scene, std::span<const std::uint32_t> casters,
+                             const HoleSurfaces* surfaces) {
+  const std::size_t corner_bytes =
+      surfaces != nullptr ? std::max(sizeof(glm::vec3), gpu::kPlaceWords * sizeof(std::uint32_t)) : sizeof(glm::vec3);
+  const std::uint64_t room =
+      opengl_ ? device_->opengl().info().max_storage_block : device_->limits().max_storage_buffer_range;
+  const std::size_t most = room / (3 * corner_bytes);
   for (std::size_t first = 0; first < casters.size(); first += most) {
     const std::size_t count = std::min(most, casters.size() - first);
     std::vector<glm::vec3> corners;
+    std::vector<std::uint32_t> places;
     corners.reserve(3 * count);
-    for (const std::uint32_t caster : std::span(casters).subspan(first, count)) {
+    for (const std::uint32_t caster : casters.subspan(first, count)) {
       for (const glm::vec3& corner : scene.corners(caster)) corners.push_back(corner);
+      if (surfaces != nullptr) surfaces->add_corners(caster, places);
     }
+    const std::uint32_t before = batches_.empty() ? 0 : batches_.back().first + batches_.back().count;
     Batch& batch = batches_.emplace_back();
-    batch.first = static_cast<std::uint32_t>(first);
+    batch.first = before;
     batch.count = static_cast<std::uint32_t>(count);
+    batch.holes = surfaces != nullptr;
     if (opengl_) {
-      opengl_->add(corners);
-    } else {
-      batch.corners = render::make_buffer<glm::vec3>(*device_, "map casters", corners);
+      opengl_->add(corners, places);
+      continue;
     }
+    batch.corners = render::make_buffer<glm::vec3>(*device_, "map casters", corners);
+    if (batch.holes) batch.places = render::make_buffer<std::uint32_t>(*device_, "places of casters", places);
   }
 }
 
@@ -160,15 +185,17 @@ void CasterMaps::record_on_device(render::Commands& commands, MapLayer layer, co
   for (const Batch& batch : batches_) {
     for (const Range& range : ranges(batch, light_index)) {
       render::RasterPass::Draw draw{
-          .width = size_, .height = size_, .vertices = 3 * range.count, .depth = &passes_->target, .clear = clear};
+          .width = size_, .height = size_, .vertices = 3 * range.count, .depth = &*target_, .clear = clear};
       clear = false;
       if (push.logarithmic) {
+        if (batch.holes)
+          throw InputError("fit=logpsm draws no surfaces with holes (alphaMode MASK); take another fit");
         gpu::LogarithmicPush words = *push.logarithmic;
         words.first_vertex = 3 * range.first;
         words.peels = layer == MapLayer::behind ? 1 : 0;
         words.previous = previous;
         draw.vertices = 6 * range.count;
-        passes_->logarithmic_faces(*device_).record(commands, words, {*batch.corners, to.maps}, draw);
+        solid_->logarithmic_faces(*device_).record(commands, words, {*batch.corners, to.maps}, draw);
         continue;
       }
       gpu::PeelPush words{push.plain, previous, size_};
@@ -176,15 +203,17 @@ void CasterMaps::record_on_device(render::Commands& commands, MapLayer layer, co
       const auto push_bytes = std::as_bytes(std::span(&words, 1))
                                   .first(layer == MapLayer::behind ? sizeof(gpu::PeelPush) : sizeof(gpu::CasterPush));
       std::vector<render::BufferReference> buffers{*batch.corners};
+      if (batch.holes) buffers.insert(buffers.end(), {*batch.places, *surfaces_});
       if (layer == MapLayer::behind) buffers.emplace_back(to.maps);
-      passes_->of(layer).record(commands, push_bytes, buffers, draw);
+      const Passes& passes = batch.holes ? *holes_ : *solid_;
+      passes.of(layer).record(commands, push_bytes, buffers, draw);
     }
   }
   if (clear) {  // nothing casts shadow: the map is empty
     commands.fill(to.maps, std::bit_cast<std::uint32_t>(nothing(layer)), (to.first_face + face) * face_bytes,
                   face_bytes);
   } else {
-    passes_->target.copy_to(commands, to.maps, (to.first_face + face) * face_bytes);
+    target_->copy_to(commands, to.maps, (to.first_face + face) * face_bytes);
   }
 }
 
@@ -240,7 +269,8 @@ void CasterMaps::record_behind(render::Commands& commands, std::span<const FaceP
 
 std::uint64_t CasterMaps::memory_bytes() const {
   const auto add = [](std::uint64_t sum, const Batch& batch) {
-    return sum + std::uint64_t{batch.count} * 3 * sizeof(glm::vec3);
+    const std::uint64_t place = batch.holes ? gpu::kPlaceWords * sizeof(std::uint32_t) : 0;
+    return sum + std::uint64_t{batch.count} * 3 * (sizeof(glm::vec3) + place);
   };
   return std::accumulate(batches_.begin(), batches_.end(), std::uint64_t{size_} * size_ * sizeof(float), add);
 }

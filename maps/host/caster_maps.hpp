@@ -1,5 +1,6 @@
 #pragma once
 
+#include "maps/host/holes.hpp"
 #include "maps/host/light_basis.hpp"
 #include "maps/host/map_view.shared.h"
 #include "maps/host/opengl_maps.hpp"
@@ -24,7 +25,7 @@ struct FacePush {
 };
 
 /// Renders depth maps of everything that casts shadow, all but the body of the light itself: on the device, or by
-/// OpenGL beside it, which fills the same buffers.
+/// OpenGL beside it, which fills the same buffers. A caster with holes (holes.hpp) is drawn where it has none.
 class CasterMaps {
  public:
   /// `size`: texels on a side. Throws ResourceError for more than the rasteriser's images can have, and where there is
@@ -59,18 +60,19 @@ class CasterMaps {
   /// Triangles that fit into one storage buffer of the rasteriser.
   struct Batch {
     std::optional<render::Buffer> corners;  ///< Vulkan's; OpenGlMaps has its own
+    std::optional<render::Buffer> places;   ///< of casters with holes, likewise
     std::uint32_t first, count;
+    bool holes;
   };
   struct Range {
     std::uint32_t first, count;
   };
   /// What Vulkan draws with.
   struct Passes {
-    Passes(const render::Device& device, std::uint32_t size);
+    Passes(const render::Device& device, bool holes);
     [[nodiscard]] const render::RasterPass& of(MapLayer layer) const;
     [[nodiscard]] const render::RasterPass& logarithmic_faces(const render::Device& device) const;
     render::RasterPass nearest, behind, farthest;
-    render::DepthTarget target;
     mutable std::optional<render::RasterPass> logarithmic;  ///< made when it is first drawn with
   };
   /// Where faces go.
@@ -78,6 +80,9 @@ class CasterMaps {
     const render::Buffer& maps;
     std::uint64_t first_face, previous_face;
   };
+  /// Appends casters, all with holes or all without, as batches. `surfaces`: of those with holes, else null.
+  void add_batches(const visibility::SceneFloats& scene, std::span<const std::uint32_t> casters,
+                   const HoleSurfaces* surfaces);
   /// The casters of a batch without the body of that light.
   [[nodiscard]] std::vector<Range> ranges(const Batch& batch, std::int32_t light_index) const;
   /// All faces of a light point.
@@ -90,10 +95,12 @@ class CasterMaps {
 
   const render::Device* device_;
   std::uint32_t size_;
-  std::optional<Passes> passes_;        // either these
-  std::unique_ptr<OpenGlMaps> opengl_;  // or this
+  std::optional<Passes> solid_, holes_;  // either these
+  std::optional<render::DepthTarget> target_;
+  std::optional<render::Buffer> surfaces_;  // HoleSurfaces::words
+  std::unique_ptr<OpenGlMaps> opengl_;      // or this
   std::vector<Batch> batches_;
-  std::vector<std::int32_t> emits_;  // of each caster as uploaded, ascending: a light's body is one range
+  std::vector<std::int32_t> emits_;  // of each caster as uploaded, ascending in a batch: a light's body is one range
 };
 
 /// How many faces of size² floats one storage buffer of this device can hold.

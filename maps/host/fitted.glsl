@@ -56,6 +56,7 @@ Tap fetch(LightView view, uint first_map, uint size, vec3 d) {
   tap.along = dot(face.along, e);
   tap.axis = int(face.axis);
   tap.mirrored = d.z < 0.0 ? -1.0 : 1.0;
+  tap.number = texel;
   tap.depth = tap.second = view.far;
   if (found && tap.direction != vec3(0.0)) {
     tap.depth = view.far * maps[texel];

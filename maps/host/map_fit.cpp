@@ -74,6 +74,48 @@ bool receives(const visibility::SceneFloats& scene, const visibility::Light& lig
          scene.plane[triangle] != visibility::SceneFloats::kNoPlane;
 }
 
+/// What of a triangle lies in a beam, whose apex is the basis's centre.
+std::vector<glm::dvec3> part_in(const visibility::Light::Beam& beam, const LightBasis& basis,
+                                const std::array<glm::dvec3, 3>& corners) {
+  const auto turned = [&](const glm::dvec3& x) {
+    return glm::dvec3(glm::dot(x, basis.u), glm::dot(x, basis.v), glm::dot(x, basis.n));
+  };
+  std::vector<glm::dvec3> part(corners.begin(), corners.end()), next;
+  for (const glm::dvec3& inward : {beam.a - beam.lower.x * beam.w, beam.upper.x * beam.w - beam.a,
+                                   beam.b - beam.lower.y * beam.w, beam.upper.y * beam.w - beam.b}) {
+    const glm::dvec3 plane = turned(inward);
+    next.clear();
+    for (std::size_t i = 0; i < part.size(); ++i) {
+      const glm::dvec3 &from = part[i], &to = part[(i + 1) % part.size()];
+      const double here = glm::dot(plane, from), there = glm::dot(plane, to);
+      if (here >= 0) next.push_back(from);
+      if ((here >= 0) != (there >= 0)) next.push_back(from + here / (here - there) * (to - from));
+    }
+    std::swap(part, next);
+  }
+  return part;
+}
+
+/// The receivers in a beam on the side that it leads to.
+SideTriangles receivers_in(const visibility::SceneFloats& scene, const visibility::Light& light,
+                           const LightBasis& basis, const std::vector<glm::dvec3>& local) {
+  SideTriangles side;
+  for (std::size_t i = 0; i < scene.triangles.size(); ++i) {
+    if (!receives(scene, light, i)) continue;
+    const visibility::Triangle& corners = scene.triangles[i];
+    for (const glm::dvec3& corner :
+         part_in(*light.beam, basis, {local[corners[0]], local[corners[1]], local[corners[2]]})) {
+      side.any = true;
+      if (!(corner.z > 0)) side.reach_plane = true;
+      side.hull_x.emplace_back(corner.x, corner.z);
+      side.hull_y.emplace_back(corner.y, corner.z);
+    }
+  }
+  side.hull_x = convex_hull(std::move(side.hull_x));
+  side.hull_y = convex_hull(std::move(side.hull_y));
+  return side;
+}
+
 template <typename Counts>
 SideTriangles triangles_on_side(const visibility::SceneFloats& scene, const std::vector<glm::dvec3>& local, double sign,
                                 const Counts& counts) {
@@ -202,9 +244,9 @@ FittedViews fit_views(const visibility::SceneFloats& scene, const visibility::Li
   for (int s = 0; s < (both_sides ? 2 : 1); ++s) {
     const double sign = s == 0 ? 1 : -1;
     const SideTriangles receivers =
-        options.body != nullptr
-            ? body_on_side(*options.body, basis, sign)
-            : triangles_on_side(scene, local, sign, [&](std::size_t i) { return receives(scene, light, i); });
+        options.body != nullptr ? body_on_side(*options.body, basis, sign)
+        : light.beam            ? receivers_in(scene, light, basis, local)
+                                : triangles_on_side(scene, local, sign, [&](std::size_t i) { return receives(scene, light, i); });
     if (!receivers.any) continue;
     const bool beside = options.beside != glm::dvec2(0) || options.reach != glm::dvec2(0);
     const SideTriangles casters = triangles_on_side(scene, local, sign, [&](std::size_t i) {

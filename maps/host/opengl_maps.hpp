@@ -6,6 +6,7 @@
 #include <glm/vec3.hpp>
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -23,8 +24,12 @@ class OpenGlMaps {
   /// `size`: texels on a side. Throws ResourceError for more than its images can have.
   OpenGlMaps(const render::opengl::Context& context, std::uint32_t size);
 
-  /// Corners, three a triangle, of one more batch; or of none any more.
-  void add(std::span<const glm::vec3> corners);
+  /// Corners, three a triangle, of one more batch. `places`: of casters with holes what HoleSurfaces says of each
+  /// corner, else empty.
+  void add(std::span<const glm::vec3> corners, std::span<const std::uint32_t> places = {});
+  /// Takes HoleSurfaces::words for batches with holes.
+  void set_surfaces(std::span<const std::uint32_t> words);
+  /// Drops all batches.
   void forget() { batches_.clear(); }
 
   /// The layer that MapLayer::behind is behind of: size² depths.
@@ -42,10 +47,19 @@ class OpenGlMaps {
  private:
   const render::opengl::Context* context_;
   std::uint32_t size_;
-  render::opengl::RasterPass nearest_, behind_, farthest_;
+  struct Passes {
+    render::opengl::RasterPass nearest, behind, farthest;
+  };
+  struct Batch {
+    render::opengl::Buffer corners;
+    std::optional<render::opengl::Buffer> places;
+  };
+  Passes solid_;
+  std::optional<Passes> holes_;  // of casters with holes
   render::opengl::DepthTarget target_;
   render::opengl::Buffer previous_;
-  std::vector<render::opengl::Buffer> batches_;
+  std::optional<render::opengl::Buffer> surfaces_;
+  std::vector<Batch> batches_;
 };
 
 }  // namespace penumbra::maps

@@ -4,19 +4,9 @@
 #include "maps/products/nearest_ids.shared.h"
 #include "render/both.glsl"
 
-// The triangles whose depth a map has at a texel (Hourcade and Nicolas 1985): of several at one place the smallest id, in
-// whatever order they are drawn. Depth as in caster.frag; as in peel.frag what is within 2^-20 of the nearest is the same
-// surface.
-
 STORAGE(1) readonly buffer Ids { uint id_of[]; };  // the vertex shader's
 STORAGE(2) readonly buffer Maps { float maps[]; };
 STORAGE(3) buffer Nearest { uint nearest[]; };
-PUSH_CONSTANTS IdsBlock { IdsPush push; };  // not Push: blocks of one name are one in both stages
-layout(location = 0) flat in uint id;
+#include "maps/products/nearest_ids.glsl"
 
-void main() {
-  const float depth = 1.0 / (gl_FragCoord.w * push.face.far);
-  const uvec2 cell = uvec2(gl_FragCoord.xy);
-  const uint texel = push.first + cell.y * push.size + cell.x;
-  if (depth <= maps[texel] * (1.0 + 1.0 / 1048576.0)) atomicMin(nearest[texel], id);
-}
+void main() { mark_nearest(); }

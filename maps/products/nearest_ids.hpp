@@ -1,5 +1,6 @@
 #pragma once
 
+#include "maps/host/holes.hpp"
 #include "maps/host/map_method.hpp"
 #include "maps/products/nearest_ids.shared.h"
 #include "render/opengl/raster_pass.hpp"
@@ -32,20 +33,29 @@ class NearestIds final : public MapProduct {
   struct Casters {
     std::vector<glm::vec3> corners;
     std::vector<std::uint32_t> ids;
+    std::vector<std::uint32_t> places;  ///< of casters with holes (HoleSurfaces::add_corners), else empty
   };
+  template <typename Pass>
+  struct PassPair {
+    Pass solid, holes;
+  };
+  using Passes = PassPair<render::RasterPass>;
+  using OpenGlPasses = PassPair<render::opengl::RasterPass>;
   void draw(render::Commands& commands, const MapSet& maps, const std::vector<gpu::IdsPush>& faces,
             const std::vector<Casters>& casters);
-  void draw_by_opengl(const MapSet& maps, const std::vector<gpu::IdsPush>& faces,
-                      const std::vector<Casters>& casters) const;
+  void draw_by_opengl(const MapSet& maps, const std::vector<gpu::IdsPush>& faces, const std::vector<Casters>& casters,
+                      const HoleSurfaces& surfaces) const;
 
   struct Uploaded {
     render::Buffer corners, ids;
+    std::optional<render::Buffer> places;
     std::uint32_t vertices;
   };
   const render::Device* device_;
   IdsOf compared_;
-  std::optional<render::RasterPass> pass_;                 // either this
-  std::optional<render::opengl::RasterPass> opengl_pass_;  // or that
+  std::optional<Passes> passes_;               // either these
+  std::optional<OpenGlPasses> opengl_passes_;  // or those
+  std::optional<render::Buffer> surfaces_;     // HoleSurfaces::words
   std::vector<Uploaded> uploaded_;
   std::unique_ptr<render::Buffer> ids_, compared_numbers_;
 };

@@ -2,9 +2,13 @@
 
 #include "maps/host/caster.vert.glsl.hpp"
 #include "maps/host/caster.vert.spv.hpp"
+#include "maps/host/caster_holes.vert.glsl.hpp"
+#include "maps/host/caster_holes.vert.spv.hpp"
 #include "maps/host/map_fit.hpp"
 #include "maps/products/slices.frag.glsl.hpp"
 #include "maps/products/slices.frag.spv.hpp"
+#include "maps/products/slices_holes.frag.glsl.hpp"
+#include "maps/products/slices_holes.frag.spv.hpp"
 #include "maps/products/slices_moved.comp.spv.hpp"
 #include "visibility/receivers.hpp"
 
@@ -118,41 +122,71 @@ Slices::Slices(const render::Device& device, const SliceOptions& options)
                                                       .constants = {}});
   }
   if (options.rasteriser == Rasteriser::opengl) {
-    opengl_pass_.emplace(device.opengl(), render::opengl::RasterPassOptions{.name = "slices",
-                                                                            .vertex = shaders::kCasterVertText,
-                                                                            .fragment = shaders::kSlicesFragText});
+    opengl_passes_.emplace(OpenGlPasses{
+        {device.opengl(), {.name = "slices", .vertex = shaders::kCasterVertText, .fragment = shaders::kSlicesFragText}},
+        {device.opengl(),
+         {.name = "slices with holes",
+          .vertex = shaders::kCasterHolesVertText,
+          .fragment = shaders::kSlicesHolesFragText}}});
   } else {
-    pass_.emplace(device, render::RasterPassOptions{.name = "slices",
-                                                    .vertex = shaders::kCasterVert,
-                                                    .fragment = shaders::kSlicesFrag,
-                                                    .push_bytes = sizeof(gpu::SlicesPush),
-                                                    .constants = {}});
+    passes_.emplace(Passes{{device,
+                            {.name = "slices",
+                             .vertex = shaders::kCasterVert,
+                             .fragment = shaders::kSlicesFrag,
+                             .push_bytes = sizeof(gpu::SlicesPush)}},
+                           {device,
+                            {.name = "slices with holes",
+                             .vertex = shaders::kCasterHolesVert,
+                             .fragment = shaders::kSlicesHolesFrag,
+                             .push_bytes = sizeof(gpu::SlicesPush)}}});
   }
 }
 
 void Slices::upload(const MapSet& maps) {
   const std::uint32_t ground =
       options_.rule == SliceRule::one_plane ? ground_of(maps.scene, maps.light, maps.basis) : kNoObject;
+  casters_.clear();
+  upload_casters(maps, ground, nullptr);
+  const HoleSurfaces surfaces(maps.scene);
+  if (opengl_passes_) {
+    opengl_surfaces_.emplace(device_->opengl(), "surfaces with holes", std::span(surfaces.words()).size_bytes());
+    opengl_surfaces_->write<std::uint32_t>(surfaces.words());
+  } else {
+    surfaces_ = render::make_buffer<std::uint32_t>(*device_, "surfaces with holes", surfaces.words());
+  }
+  upload_casters(maps, ground, &surfaces);
+}
+
+void Slices::upload_casters(const MapSet& maps, std::uint32_t ground, const HoleSurfaces* surfaces) {
   const std::uint64_t room =
-      opengl_pass_ ? device_->opengl().info().max_storage_block : device_->limits().max_storage_buffer_range;
-  const std::size_t most = room / (3 * sizeof(glm::vec3)) * 3;
+      opengl_passes_ ? device_->opengl().info().max_storage_block : device_->limits().max_storage_buffer_range;
+  const std::size_t most = room / (3 * gpu::kPlaceWords * sizeof(std::uint32_t)) * 3;
   std::vector<glm::vec3> corners;
+  std::vector<std::uint32_t> places;
   const auto flush = [&] {
     if (corners.empty()) return;
     Casters& batch = casters_.emplace_back();
     batch.vertices = static_cast<std::uint32_t>(corners.size());
-    if (opengl_pass_) {
+    batch.holes = surfaces != nullptr;
+    if (opengl_passes_) {
       batch.opengl_corners.emplace(device_->opengl(), "slice casters", corners.size() * sizeof(glm::vec3));
       batch.opengl_corners->write<glm::vec3>(corners);
+      if (batch.holes) {
+        batch.opengl_places.emplace(device_->opengl(), "places of casters", std::span(places).size_bytes());
+        batch.opengl_places->write<std::uint32_t>(places);
+      }
     } else {
       batch.corners = render::make_buffer<glm::vec3>(*device_, "slice casters", corners);
+      if (batch.holes) batch.places = render::make_buffer<std::uint32_t>(*device_, "places of casters", places);
     }
     corners.clear();
+    places.clear();
   };
-  casters_.clear();
   for (std::uint32_t i = 0; i < maps.scene.triangles.size(); ++i) {
     if (!casts(maps, i) || maps.scene.object[i] == ground) continue;
+    if (has_holes(maps.scene, i) != (surfaces != nullptr)) continue;
     for (const glm::vec3& corner : maps.scene.corners(i)) corners.push_back(corner);
+    if (surfaces != nullptr) surfaces->add_corners(i, places);
     if (corners.size() == most) flush();
   }
   flush();
@@ -179,14 +213,18 @@ void Slices::record(render::Commands& commands, const MapSet& maps) {
   const gpu::SlicePlanes planes = slice_planes(maps, options_.rule, options_.count);
   planes_.write<gpu::SlicePlanes>(std::span(&planes, 1));
   upload(maps);
-  if (opengl_pass_) {
+  if (opengl_passes_) {
     commands.host_pass("slices (OpenGL)", [&] { draw_by_opengl(maps, planes); });
   } else {
     commands.fill(*bits_, 0);
     for (const gpu::SlicesPush& push : faces_of(maps)) {
       for (const Casters& casters : casters_) {
-        pass_->record(commands, push, {*casters.corners, planes_, *bits_},
-                      {.width = maps.size, .height = maps.size, .vertices = casters.vertices});
+        const render::RasterPass::Draw draw{.width = maps.size, .height = maps.size, .vertices = casters.vertices};
+        if (casters.holes) {
+          passes_->holes.record(commands, push, {*casters.corners, *casters.places, *surfaces_, planes_, *bits_}, draw);
+        } else {
+          passes_->solid.record(commands, push, {*casters.corners, planes_, *bits_}, draw);
+        }
       }
     }
   }
@@ -227,8 +265,14 @@ void Slices::draw_by_opengl(const MapSet& maps, const gpu::SlicePlanes& planes) 
   bits.write<std::uint32_t>(words);
   for (const gpu::SlicesPush& push : faces_of(maps)) {
     for (const Casters& casters : casters_) {
-      opengl_pass_->draw(push, {*casters.opengl_corners, heights, bits},
-                         {.width = maps.size, .height = maps.size, .vertices = casters.vertices});
+      const render::opengl::RasterPass::Draw draw{
+          .width = maps.size, .height = maps.size, .vertices = casters.vertices};
+      if (casters.holes) {
+        opengl_passes_->holes.draw(
+            push, {*casters.opengl_corners, *casters.opengl_places, *opengl_surfaces_, heights, bits}, draw);
+      } else {
+        opengl_passes_->solid.draw(push, {*casters.opengl_corners, heights, bits}, draw);
+      }
     }
   }
   bits.read<std::uint32_t>(words);

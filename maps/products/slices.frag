@@ -4,20 +4,8 @@
 #include "maps/products/slices.shared.h"
 #include "render/both.glsl"
 
-// Marks the slice that a surface is in at a texel's centre (Eisemann and Décoret 2006). Any number of surfaces: bits are
-// added in any order.
-
 STORAGE(1) readonly buffer Planes { SlicePlanes planes; };
 STORAGE(2) buffer Bits { uint bits[]; };
-PUSH_CONSTANTS SlicePush { SlicesPush push; };
+#include "maps/products/slices.glsl"
 
-void main() {
-  const uvec2 at = uvec2(gl_FragCoord.xy);
-  const float along = 1.0 / gl_FragCoord.w;
-  const float height = push.sideways != 0 ? along * gl_FragCoord.y / float(push.size) : along;
-  for (uint k = 0; k < planes.count; ++k) {
-    if (height > planes.limit[push.side][k]) continue;
-    atomicOr(bits[push.first + at.y * push.size + at.x], 1u << k);
-    return;
-  }
-}
+void main() { mark_slice(); }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "maps/host/caster_maps.hpp"
+#include "maps/host/holes.hpp"
 #include "maps/host/map_method.hpp"
 #include "maps/products/slices.shared.h"
 #include "render/opengl/raster_pass.hpp"
@@ -57,9 +58,20 @@ class Slices final : public MapProduct {
   struct Casters {
     std::optional<render::Buffer> corners;
     std::optional<render::opengl::Buffer> opengl_corners;
+    std::optional<render::Buffer> places;  ///< of casters with holes (HoleSurfaces::add_corners)
+    std::optional<render::opengl::Buffer> opengl_places;
     std::uint32_t vertices;
+    bool holes;
   };
+  template <typename Pass>
+  struct PassPair {
+    Pass solid, holes;
+  };
+  using Passes = PassPair<render::RasterPass>;
+  using OpenGlPasses = PassPair<render::opengl::RasterPass>;
   void upload(const MapSet& maps);
+  /// Uploads the casters, all but the ground, that have holes or have none.
+  void upload_casters(const MapSet& maps, std::uint32_t ground, const HoleSurfaces* surfaces);
   /// All faces, as push constants of slices.frag, whose texels begin at `first` of the words.
   [[nodiscard]] std::vector<gpu::SlicesPush> faces_of(const MapSet& maps) const;
   void draw_by_opengl(const MapSet& maps, const gpu::SlicePlanes& planes) const;
@@ -68,13 +80,15 @@ class Slices final : public MapProduct {
 
   const render::Device* device_;
   SliceOptions options_;
-  std::optional<render::RasterPass> pass_;                 // either this
-  std::optional<render::opengl::RasterPass> opengl_pass_;  // or that
+  std::optional<Passes> passes_;               // either these
+  std::optional<OpenGlPasses> opengl_passes_;  // or those
   std::optional<render::ComputePass> moved_;
   std::optional<CasterMaps> blocker_maps_;          ///< of what is no ground,
   std::unique_ptr<render::Buffer> blocker_depths_;  ///< in two layers
   render::Buffer planes_;
   std::vector<Casters> casters_;
+  std::optional<render::Buffer> surfaces_;  // HoleSurfaces::words
+  std::optional<render::opengl::Buffer> opengl_surfaces_;
   std::unique_ptr<render::Buffer> bits_;
 };
 

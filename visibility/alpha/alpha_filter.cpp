@@ -126,8 +126,20 @@ class Pyramid {
 /// One thread's work on one pixel.
 class PixelFilter {
  public:
-  PixelFilter(const SceneFloats& scene, const TriangleTree& tree, const ViewSamples& samples, const Light& light)
-      : scene_(scene), tree_(tree), samples_(samples), light_(light), points_(light.sample_count()) {}
+  struct Question {
+    const SceneFloats& scene;
+    const TriangleTree& tree;
+    const ViewSamples& samples;
+    const Light& light;
+    bool holes;
+  };
+  explicit PixelFilter(const Question& question)
+      : scene_(question.scene),
+        tree_(question.tree),
+        samples_(question.samples),
+        light_(question.light),
+        holes_(question.holes),
+        points_(question.light.sample_count()) {}
 
   /// Are transmittances touched?
   bool filter(std::size_t pixel, std::span<std::uint32_t> mask, std::span<float> transmittances, AlphaCounts& counts) {
@@ -177,6 +189,7 @@ class PixelFilter {
     pyramid_.emplace(glm::dvec3(samples_.p[pixel]), ways_, !light_.sun);
     tree_.for_each_in(*pyramid_, [&](std::uint32_t i) {
       const std::uint32_t triangle = scene_.alphas.casters[i];
+      if (!holes_ && alpha_mode(scene_, triangle) == scenes::Alpha::Mode::mask) return;
       if (may_filter(scene_, light_, carrier, triangle)) triangles_.push_back(triangle);
     });
     // Products are rounded: in an order that is not the file's, they are the same whatever order that has.
@@ -250,6 +263,7 @@ class PixelFilter {
   const TriangleTree& tree_;
   const ViewSamples& samples_;
   const Light& light_;
+  bool holes_;
   std::vector<glm::vec3> points_;
   std::vector<std::uint32_t> lit_;  // light samples whose bits are set, with their ways
   std::vector<glm::dvec3> ways_;
@@ -261,7 +275,8 @@ class PixelFilter {
 
 }  // namespace
 
-AlphaFilter::AlphaFilter(const SceneFloats& scene) : scene_(scene), tree_(make_tree_over_alphas(scene)) {}
+AlphaFilter::AlphaFilter(const SceneFloats& scene, bool holes)
+    : scene_(scene), holes_(holes), tree_(make_tree_over_alphas(scene)) {}
 
 bool AlphaFilter::dims(const Light& light) const {
   return std::ranges::any_of(scene_.alphas.casters, [&](std::uint32_t triangle) {
@@ -283,7 +298,7 @@ AlphaCounts AlphaFilter::filter(const ViewSamples& samples, const Light& light, 
   tbb::enumerable_thread_specific<Own> threads;
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, pixels, 32), [&](const auto& range) {
     Own& own = threads.local();
-    if (!own.work) own.work.emplace(scene_, tree_, samples, light);
+    if (!own.work) own.work.emplace(PixelFilter::Question{scene_, tree_, samples, light, holes_});
     for (std::size_t i = range.begin(); i != range.end(); ++i) {
       const auto transmittances =
           filtered.transmittances.empty() ? std::span<float>() : filtered.transmittances.subspan(i * pairs, pairs);

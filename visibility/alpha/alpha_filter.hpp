@@ -32,8 +32,8 @@ struct FilteredMasks {
 /// the triangles met are those of segment_meets_triangle.
 class AlphaFilter {
  public:
-  /// `scene` must outlive it.
-  explicit AlphaFilter(const SceneFloats& scene);
+  /// `scene` must outlive it. `holes`: asks surfaces with holes (MASK), too; without, translucent ones alone.
+  explicit AlphaFilter(const SceneFloats& scene, bool holes = true);
 
   /// Does the light meet translucent surfaces?
   [[nodiscard]] bool dims(const Light& light) const;
@@ -43,6 +43,7 @@ class AlphaFilter {
 
  private:
   const SceneFloats& scene_;
+  bool holes_;
   TriangleTree tree_;  // over scene.alphas.casters
 };
 

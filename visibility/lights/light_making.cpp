@@ -34,11 +34,13 @@ void add_links(Light& light, const scenes::Scene& scene, std::uint32_t light_ind
     light.unlit.resize(scene.objects.size());
     light.unlit[object] = 1;
   }
-  for (std::size_t i = 0; i < scene.objects.size() && light.filtered_by.empty(); ++i) {
+  for (std::size_t i = 0; i < scene.objects.size() && light.dimmed_by.empty(); ++i) {
     const scenes::Object& object = scene.objects[i];
     const bool own_body = object.emits == light_index;
     const bool casts = object.casts_shadow && (light.unshaded_by.empty() || light.unshaded_by[i] == 0) && !own_body;
-    if (casts && object.alpha.mode != scenes::Alpha::Mode::opaque) light.filtered_by = object.name;
+    if (!casts || object.alpha.mode == scenes::Alpha::Mode::opaque) continue;
+    if (light.filtered_by.empty()) light.filtered_by = object.name;
+    if (object.alpha.mode == scenes::Alpha::Mode::blend) light.dimmed_by = object.name;
   }
 }
 

@@ -1,0 +1,214 @@
+#include "maps/host/every_light.hpp"
+
+#include "base/assert.hpp"
+#include "maps/host/holes.hpp"
+#include "maps/host/lamp_disks.hpp"
+#include "maps/host/sun_space.hpp"
+#include "visibility/receivers.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+#include <vector>
+
+namespace penumbra::maps {
+namespace {
+
+using visibility::Light;
+using visibility::Output;
+using visibility::SceneFloats;
+using visibility::Tile;
+using visibility::ViewSamples;
+
+class EveryLight final : public visibility::Method {
+ public:
+  explicit EveryLight(std::unique_ptr<Method> method)
+      : method_(std::move(method)), description_(for_every_light(method_->description())) {}
+
+  [[nodiscard]] const visibility::MethodDescription& description() const override { return description_; }
+  void want_pixels(std::span<const std::uint32_t> pixels) override { method_->want_pixels(pixels); }
+  void want_form_factors(bool wanted) override { method_->want_form_factors(wanted); }
+  void expect_frames() override { method_->expect_frames(); }
+  void prepare_mesh(const SceneFloats& scene) override;
+  void prepare_light(const Light& light) override;
+  void prepare_view(const ViewSamples& samples) override;
+  [[nodiscard]] std::uint32_t max_tile_rows() const override { return method_->max_tile_rows(); }
+  void evaluate(const Tile& tile) override;
+  void read_masks(std::span<std::uint32_t> masks) override;
+  void read_visibility(std::span<float> visibility) override;
+  std::vector<visibility::PassTime> take_pass_times() override { return method_->take_pass_times(); }
+  [[nodiscard]] std::map<std::string, std::uint64_t> counters() const override;
+  std::map<std::string, std::uint64_t> take_mesh_counters() override { return method_->take_mesh_counters(); }
+  [[nodiscard]] std::uint64_t memory_bytes() const override { return std::max(memory_, method_->memory_bytes()); }
+
+ private:
+  static constexpr std::uint8_t kNoDisk = 0xff;
+
+  [[nodiscard]] const SceneFloats& drawn() const { return drawn_ ? *drawn_ : *scene_; }
+  /// Gives the method a scene, unless it has that one.
+  void show(const SceneFloats& scene);
+  /// The disk at hand, and the view samples that it lights.
+  void look_from(std::uint32_t number, const std::vector<std::uint8_t>& disks);
+
+  std::unique_ptr<Method> method_;
+  visibility::MethodDescription description_;
+  const SceneFloats* scene_ = nullptr;
+  std::optional<SceneFloats> drawn_;               // with holes as casters, if there are any
+  const SceneFloats* shown_ = nullptr;             // that the method has
+  const Light* light_ = nullptr;                   // as the host has it
+  Light own_;                                      // as the method has it, where that is another
+  std::optional<SunSpace> sun_;                    // of a sun,
+  std::optional<LampDisks> lamp_;                  // of a sphere that the method does not know
+  ViewSamples samples_;                            // as the method has them, under these
+  std::vector<std::int32_t> carriers_;             // of a lamp: of all view samples
+  std::vector<std::uint8_t> disks_;                // of a lamp: of each view sample the disk's number, or kNoDisk
+  std::vector<std::uint32_t> masks_;               // of a lamp: of the tile last evaluated
+  std::vector<float> visibility_;                  // likewise
+  std::map<std::string, std::uint64_t> counters_;  // of a lamp: of disks that were looked from
+  std::uint64_t memory_ = 0;
+};
+
+void EveryLight::prepare_mesh(const SceneFloats& scene) {
+  scene_ = &scene;
+  shown_ = nullptr;
+  sun_.reset();
+  drawn_ = with_holes_drawn(scene);
+  show(drawn());
+}
+
+void EveryLight::show(const SceneFloats& scene) {
+  if (shown_ == &scene) return;
+  method_->prepare_mesh(scene);
+  shown_ = &scene;
+}
+
+void EveryLight::prepare_light(const Light& light) {
+  visibility::check_light(description_, light);
+  PENUMBRA_ASSERT(scene_ != nullptr, "{}: prepare_light before prepare_mesh", description_.name);
+  light_ = &light;
+  lamp_.reset();
+  counters_.clear();
+  own_ = light;
+  if (!method_->description().lights.contains(light.kind)) {
+    if (light.sun) {
+      shown_ = nullptr;  // another sun's scene may lie where this one's will
+      sun_.emplace(drawn(), light);
+      own_ = sun_->light();
+    } else {
+      lamp_.emplace(light);
+      own_ = lamp_->disk(0);
+    }
+  }
+  const bool mapped = light.sun && !method_->description().lights.contains(light.kind);
+  if (!mapped && sun_) {
+    show(drawn());
+    sun_.reset();
+  }
+  // The host asks translucent surfaces alone, and the method knows the others.
+  own_.filtered_by.clear();
+  own_.dimmed_by.clear();
+  show(mapped ? sun_->scene() : drawn());
+  method_->prepare_light(own_);
+}
+
+void EveryLight::prepare_view(const ViewSamples& samples) {
+  PENUMBRA_ASSERT(light_ != nullptr, "{}: prepare_view before prepare_light", description_.name);
+  if (sun_) {
+    samples_ = sun_->mapped(samples);
+    method_->prepare_view(samples_);
+    return;
+  }
+  if (!lamp_) {
+    method_->prepare_view(samples);
+    return;
+  }
+  samples_ = samples;
+  carriers_ = samples.triangle;
+  disks_.assign(samples.size(), kNoDisk);
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    if (!visibility::is_receiver(*scene_, *light_, samples, i)) continue;
+    disks_[i] = static_cast<std::uint8_t>(lamp_->number_of(samples.p[i]));
+  }
+  static_assert(LampDisks::kCount < kNoDisk);
+  const auto first = std::ranges::find_if(disks_, [](std::uint8_t disk) { return disk != kNoDisk; });
+  look_from(first == disks_.end() ? 0 : *first, disks_);  // so that max_tile_rows() has something to go by
+}
+
+void EveryLight::look_from(std::uint32_t number, const std::vector<std::uint8_t>& disks) {
+  own_ = lamp_->disk(number);
+  own_.filtered_by.clear();
+  own_.dimmed_by.clear();
+  for (std::size_t i = 0; i < disks.size(); ++i)
+    samples_.triangle[i] = disks[i] == number ? carriers_[i] : ViewSamples::kBackground;
+  method_->prepare_light(own_);
+  method_->prepare_view(samples_);
+}
+
+void EveryLight::evaluate(const Tile& tile) {
+  if (!lamp_) {
+    method_->evaluate(tile);
+    return;
+  }
+  const std::size_t first = std::size_t{tile.first_row} * samples_.width;
+  const std::size_t count = std::size_t{tile.row_count} * samples_.width;
+  const bool gives_masks = description_.output == Output::mask;
+  const std::size_t words = gives_masks ? light_->words_per_mask() : 0;
+  visibility_.assign(count, 1.0F);
+  masks_.assign(count * words, 0xffffffffU);
+  const std::uint32_t rest = light_->sample_count() % 32;
+  if (rest != 0) {
+    for (std::size_t i = 0; i < count * words; i += words) masks_[i + words - 1] = (1U << rest) - 1;
+  }
+  std::vector<std::uint8_t> here(disks_.size(), kNoDisk);
+  std::copy_n(disks_.begin() + static_cast<std::ptrdiff_t>(first), count,
+              here.begin() + static_cast<std::ptrdiff_t>(first));
+  std::vector<float> visibility(count);
+  std::vector<std::uint32_t> masks(count * words);
+  for (std::uint32_t disk = 0; disk < LampDisks::kCount; ++disk) {
+    if (std::ranges::find(here, static_cast<std::uint8_t>(disk)) == here.end()) continue;
+    look_from(disk, here);
+    method_->evaluate(tile);
+    method_->read_visibility(visibility);
+    if (gives_masks) method_->read_masks(masks);
+    for (std::size_t i = 0; i < count; ++i) {
+      if (here[first + i] != disk) continue;
+      visibility_[i] = visibility[i];
+      std::copy_n(masks.begin() + static_cast<std::ptrdiff_t>(i * words), words,
+                  masks_.begin() + static_cast<std::ptrdiff_t>(i * words));
+    }
+    for (const auto& [name, value] : method_->counters()) counters_[name] += value;
+    counters_["lampDisks"] += 1;
+    memory_ = std::max(memory_, method_->memory_bytes());
+  }
+}
+
+void EveryLight::read_masks(std::span<std::uint32_t> masks) {
+  if (!lamp_) return method_->read_masks(masks);
+  PENUMBRA_ASSERT(masks.size() == masks_.size(), "{} words for masks of {}", masks.size(), masks_.size());
+  std::ranges::copy(masks_, masks.begin());
+}
+
+void EveryLight::read_visibility(std::span<float> visibility) {
+  if (!lamp_) return method_->read_visibility(visibility);
+  PENUMBRA_ASSERT(visibility.size() == visibility_.size(), "{} values for a tile of {} pixels", visibility.size(),
+                  visibility_.size());
+  std::ranges::copy(visibility_, visibility.begin());
+}
+
+std::map<std::string, std::uint64_t> EveryLight::counters() const {
+  return lamp_ ? counters_ : method_->counters();
+}
+
+}  // namespace
+
+std::unique_ptr<visibility::Method> for_every_light(std::unique_ptr<visibility::Method> method) {
+  return std::make_unique<EveryLight>(std::move(method));
+}
+
+visibility::MethodDescription for_every_light(visibility::MethodDescription description) {
+  description.lights = description.lights | visibility::kBodies | visibility::LightKinds{visibility::LightKind::sun};
+  description.draws_holes = true;
+  return description;
+}
+
+}  // namespace penumbra::maps

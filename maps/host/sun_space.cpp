@@ -1,0 +1,88 @@
+#include "maps/host/sun_space.hpp"
+
+#include "base/assert.hpp"
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <limits>
+#include <numbers>
+
+namespace penumbra::maps {
+namespace {
+
+/// How many of its own sizes the scene is away from b: depths bend by 1 / 16 of what they differ, and floats lose four
+/// of their digits to the distance.
+constexpr double kScenesBelow = 4;
+/// The tangent of a sun of one direction.
+constexpr double kLeastTangent = 0x1p-20;
+
+}  // namespace
+
+SunSpace::SunSpace(const visibility::SceneFloats& scene, const visibility::Light& sun) : scene_(scene), light_(sun) {
+  PENUMBRA_ASSERT(sun.sun.has_value(), "light \"{}\" is no sun", sun.name);
+  n_ = glm::normalize(glm::cross(glm::dvec3(sun.sun->axis_u), glm::dvec3(sun.sun->axis_v)));
+  u_ = glm::normalize(glm::cross(glm::dvec3(sun.sun->axis_v), n_));
+  v_ = glm::cross(n_, u_);
+  middle_ = 0.5 * (glm::dvec3(scene.lower) + glm::dvec3(scene.upper));
+  const double size = std::max(glm::length(glm::dvec3(scene.upper) - glm::dvec3(scene.lower)), 1e-30);
+  scale_ = below_ = (kScenesBelow + 0.5) * size;
+
+  scene_.origin = glm::dvec3(0);
+  scene_.lower = glm::vec3(std::numeric_limits<float>::max());
+  scene_.upper = -scene_.lower;
+  for (glm::vec3& position : scene_.positions) {
+    position = mapped(position);
+    scene_.lower = glm::min(scene_.lower, position);
+    scene_.upper = glm::max(scene_.upper, position);
+  }
+  if (!scene_.alphas.empty()) {
+    for (const glm::vec3& position : scene.positions)
+      scene_.alphas.weights.push_back(scale_ / (below_ - local(position).z));
+  }
+
+  const double tangent = std::max(sun.sun->tangent, kLeastTangent), radius = scale_ * tangent;
+  const glm::dvec3 center(0, 0, -scale_), u(radius, 0, 0), v(0, radius, 0);
+  light_.kind = visibility::LightKind::disk;
+  light_.sun.reset();
+  light_.two_sided = false;
+  light_.radius = radius;
+  light_.area = std::numbers::pi * radius * radius;
+  light_.center = center;
+  light_.center_u = center + u;
+  light_.center_v = center + v;
+  light_.outline = {center - u - v, center + u - v, center + u + v, center - u + v};
+  for (std::size_t i = 0; i < light_.points.size(); ++i) {
+    const glm::dvec2 at = sun.coordinates[i];
+    light_.points[i] = center + scale_ * sun.sun->tangent * glm::dvec3(at, 0);
+  }
+}
+
+glm::dvec3 SunSpace::local(const glm::vec3& p) const {
+  const glm::dvec3 d = glm::dvec3(p) - middle_;
+  return {glm::dot(d, u_), glm::dot(d, v_), glm::dot(d, n_)};
+}
+
+/// The plane z = 0 lies at −S: positions keep the digits that they have.
+glm::vec3 SunSpace::mapped(const glm::vec3& p) const {
+  const glm::dvec3 at = local(p);
+  const double share = scale_ / (below_ - at.z);
+  return glm::vec3(share * at.x, share * at.y, share * at.z);  // S² / q − S = S Z / q, since b = S
+}
+
+visibility::ViewSamples SunSpace::mapped(const visibility::ViewSamples& samples) const {
+  visibility::ViewSamples all = samples;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    if (samples.triangle[i] == visibility::ViewSamples::kBackground) continue;
+    const glm::dvec3 at = local(samples.p[i]), n(samples.n[i]);
+    // The plane N · (X − P) = 0 where X = S x / z, Y = S y / z, Z = b − S² / z.
+    const glm::dvec3 normal(glm::dot(n, u_), glm::dot(n, v_), glm::dot(n, n_));
+    all.p[i] = mapped(samples.p[i]);
+    all.n[i] = glm::vec3(
+        glm::normalize(glm::dvec3(scale_ * normal.x, scale_ * normal.y, below_ * normal.z - glm::dot(normal, at))));
+  }
+  return all;
+}
+
+}  // namespace penumbra::maps
