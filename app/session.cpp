@@ -258,6 +258,10 @@ scenes::Scene read_session_scene(const RunOptions& options, std::optional<double
   reading.time = time;
   reading.lenient = options.lenient;
   reading.studio = parse_studio(options.studio, options.camera);
+  if (!options.size.empty()) {
+    const auto [width, height] = parse_size(options.size);
+    reading.studio.aspect = static_cast<double>(width) / height;
+  }
   return scenes::read_scene(options.scene, reading);
 }
 

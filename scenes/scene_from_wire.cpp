@@ -67,7 +67,6 @@ void check(const Scene& scene) {
       if (object >= scene.objects.size()) throw WireError("a light is not shaded by an object that is none");
     }
   }
-  if (scene.cameras.empty()) throw WireError("there is no camera");
 }
 
 /// Gets what Put (scene_wire.cpp) puts: every number finite, every kind one that there is.

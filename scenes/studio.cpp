@@ -127,32 +127,39 @@ const char* name_of(AddedLight::Kind kind) {
 
 }  // namespace
 
-void put_in_studio(Scene& scene, const Bounds& rest, const StudioWish& wish) {
-  const glm::dvec3 middle = rest.middle();
-  const bool was_dark = scene.lights.empty();
+void put_in_studio(Scene& scene, const Scene& rest, const StudioWish& wish) {
+  // Before the scene changes, which may be the one at rest.
+  const Bounds bounds = bounds_of(rest.soup.positions);
+  const bool on_floor = has_floor(rest, bounds);
+  const glm::dvec3 middle = bounds.middle();
+  const bool was_dark = scene.lights.empty(), was_unseen = scene.cameras.empty();
   std::string built;
   const auto put_in = [&](const char* what) { built += (built.empty() ? "" : ", ") + std::string(what); };
   for (const AddedLight& light : wish.lights) add_light(scene, name_of(light.kind), shape_of(light, middle), middle);
-  if (was_dark || wish.always) {
+  if (!wish.never && (was_dark || wish.always)) {
     if (wish.lights.empty()) {
-      const double radius = rest.radius();
+      const double radius = bounds.radius();
       const glm::dvec3 above = middle + radius * glm::dvec3(1, 2.5, 1.25);
       add_light(scene, "studio", facing_square(above, middle, radius), middle);
       put_in("one soft rectangle light");
     }
-    if (wish.floor && !has_floor(scene, rest)) {
-      add_floor(scene, rest);
+    if (wish.floor && !on_floor) {
+      add_floor(scene, bounds);
       put_in("a floor below it");
     }
   }
   if (!wish.fit_camera.empty()) {
-    Camera camera = camera_that_sees_all(rest);
+    Camera camera = camera_that_sees_all(bounds, wish.aspect);
     camera.name = wish.fit_camera;
     scene.cameras.insert(scene.cameras.begin(), std::move(camera));
   }
   if (wish.camera) scene.cameras.insert(scene.cameras.begin(), *wish.camera);
-  if (scene.cameras.empty()) {
-    scene.cameras.push_back(camera_that_sees_all(rest));
+  if (was_unseen && scene.cameras.empty()) {
+    scene.cameras.push_back(camera_that_sees_all(bounds, wish.aspect));
+    if (built.empty()) {
+      scene.warnings.emplace_back("there is no camera in the file; one that sees the whole scene was put in");
+      return;
+    }
     put_in("a camera that frames it");
   }
   if (built.empty()) return;

@@ -26,14 +26,15 @@ struct StudioWish {
   bool always = false;                  ///< also around a scene that has lights
   bool never = false;                   ///< a scene without lights is an error
   bool floor = true;                    ///< of a studio; where it lies on a floor already, none is put in
+  double aspect = 1;                    ///< of the picture, width over height: cameras that see all have it in view
   std::vector<AddedLight> lights = {};  ///< also of a scene that has others
   std::string fit_camera = {};          ///< name of a camera that is put in first and sees all; empty: none is wished
   std::optional<Camera> camera = {};    ///< put in first
 };
 
-/// Adds what was wished, and a studio where the scene has no light or `wish.always`; then a camera, if there is none.
-/// Says so in the scene's warnings. `rest`: bounds of all meshes at rest, so that a studio stays where it is in a
-/// sequence.
-void put_in_studio(Scene& scene, const Bounds& rest, const StudioWish& wish);
+/// Adds what was wished, and a studio where the scene has no light or `wish.always`, unless `wish.never`; then a
+/// camera, if there is none. Says so in the scene's warnings. `rest`: the same scene at rest, around which all is
+/// built, so that a studio stays where it is in a sequence.
+void put_in_studio(Scene& scene, const Scene& rest, const StudioWish& wish);
 
 }  // namespace penumbra::scenes

@@ -4,6 +4,7 @@
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 namespace penumbra::scenes {
@@ -22,11 +23,12 @@ Bounds bounds_of(std::span<const glm::dvec3> positions) {
   return bounds;
 }
 
-Camera camera_that_sees_all(const Bounds& bounds) {
+Camera camera_that_sees_all(const Bounds& bounds, double aspect) {
   Camera camera;
   camera.name = "synthesised";
   camera.target = bounds.middle();
-  const double distance = bounds.radius() / std::sin(glm::radians(camera.vertical_fov) / 2);
+  const double half_height = std::tan(glm::radians(camera.vertical_fov) / 2);
+  const double distance = bounds.radius() / std::sin(std::atan(half_height * std::min(aspect, 1.0)));
   camera.eye = camera.target + distance * glm::normalize(glm::dvec3(0.5, 0.5, 1));
   return camera;
 }

@@ -18,8 +18,8 @@ struct Bounds {
 /// At least one position.
 Bounds bounds_of(std::span<const glm::dvec3> positions);
 
-/// A camera of 45 degrees that has the sphere around the bounds in its picture, seen from its front, right and above;
-/// named "synthesised".
-Camera camera_that_sees_all(const Bounds& bounds);
+/// A camera of 45 degrees, along the picture's height, that has the sphere around the bounds in its picture, seen from
+/// its front, right and above; named "synthesised". `aspect`: the picture's width over its height.
+Camera camera_that_sees_all(const Bounds& bounds, double aspect = 1);
 
 }  // namespace penumbra::scenes

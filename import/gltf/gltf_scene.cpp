@@ -120,10 +120,6 @@ class GltfScene {
           "place",
           refused_lights_);
     }
-    if (scene_.cameras.empty() && !is_mesh()) {
-      scene_.cameras.push_back(camera_that_sees_all(bounds_of(scene_.soup.positions)));
-      scene_.warnings.emplace_back("there is no camera in the file; one that sees the whole scene was put in");
-    }
     count_what_came(nodes);
     complete_looks(scene_);
     judge_extensions(model_, is_mesh(), losses_, scene_.warnings);

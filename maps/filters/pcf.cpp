@@ -45,7 +45,8 @@ visibility::MethodDescription pcf_description() {
 }
 
 std::unique_ptr<visibility::Method> make_pcf(const render::Device& device, const visibility::MethodOptions& options) {
-  MapRecipe recipe{.description = pcf_description(), .look_up_name = "pcf look-up",
+  MapRecipe recipe{.description = pcf_description(),
+                   .look_up_name = "pcf look-up",
                    .look_up = shaders::kPcfComp,
                    .fitted_look_up = shaders::kPcfFittedComp};
   const visibility::ParsedOptions parsed = visibility::parse_options(recipe.description, options);

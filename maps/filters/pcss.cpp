@@ -96,7 +96,8 @@ visibility::MethodDescription pcss_description() {
 }
 
 std::unique_ptr<visibility::Method> make_pcss(const render::Device& device, const visibility::MethodOptions& options) {
-  MapRecipe recipe{.description = pcss_description(), .look_up_name = "pcss look-up",
+  MapRecipe recipe{.description = pcss_description(),
+                   .look_up_name = "pcss look-up",
                    .look_up = shaders::kPcssComp,
                    .fitted_look_up = shaders::kPcssFittedComp};
   const visibility::ParsedOptions parsed = visibility::parse_options(recipe.description, options);

@@ -14,10 +14,12 @@ namespace {
 /// How a view sample moves over its plane as its pixel moves across and down.
 std::array<glm::dvec3, 2> moves_of(const visibility::ViewSamples& samples, std::size_t pixel) {
   const visibility::PinholeCamera& camera = samples.camera;
-  const auto x = static_cast<std::uint32_t>(pixel % samples.width), y = static_cast<std::uint32_t>(pixel / samples.width);
+  const auto x = static_cast<std::uint32_t>(pixel % samples.width),
+             y = static_cast<std::uint32_t>(pixel / samples.width);
   const visibility::ViewRay ray = camera.ray(x, y);
   const glm::dvec3 n(samples.n[pixel]), p(samples.p[pixel]);
-  const double t = glm::dot(camera.forward, p - ray.start), scale = camera.half_height.value_or(t * camera.tan_half_fov);
+  const double t = glm::dot(camera.forward, p - ray.start),
+               scale = camera.half_height.value_or(t * camera.tan_half_fov);
   const std::array screen{(camera.across(x + 1) - camera.across(x)) * scale * camera.right,
                           (camera.upward(y + 1) - camera.upward(y)) * scale * camera.up};
   std::array<glm::dvec3, 2> moves{};

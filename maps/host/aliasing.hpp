@@ -11,15 +11,16 @@
 
 namespace penumbra::maps {
 
-/// How long a texel's two sides are on the screen, in pixels, on the receiver's plane: the aliasing error m of both axes
-/// of a map (Eisemann et al. 2009, equation 3.2, with all its factors; Lloyd et al. 2008). More than 1: undersampled.
+/// How long a texel's two sides are on the screen, in pixels, on the receiver's plane: the aliasing error m of both
+/// axes of a map (Eisemann et al. 2009, equation 3.2, with all its factors; Lloyd et al. 2008). More than 1:
+/// undersampled.
 glm::dvec2 aliasing_error(const FittedFace& face, const SeenReceiver& receiver, const visibility::ViewSamples& samples,
                           std::size_t pixel, const LightBasis& basis, std::uint32_t size);
 
 /// The larger m of each pixel, 0 where nothing is asked; and what counters say of them: aliasingPixels of them all,
-/// undersampledPixels with m > 1, aliasingThousandths and aliasingWorstThousandths, sum and largest m in thousandths, and
-/// neededTexels, the sum over faces of size² · (largest m along a) · (largest m along b): as many texels leave no m > 1.
-/// The last by the first is the storage factor of the course notes' figure 3.13.
+/// undersampledPixels with m > 1, aliasingThousandths and aliasingWorstThousandths, sum and largest m in thousandths,
+/// and neededTexels, the sum over faces of size² · (largest m along a) · (largest m along b): as many texels leave no m
+/// > 1. The last by the first is the storage factor of the course notes' figure 3.13.
 struct Aliasing {
   std::vector<float> errors;
   std::map<std::string, std::uint64_t> counters;

@@ -18,8 +18,9 @@ struct BaseFace {
 
   [[nodiscard]] glm::dmat3 matrix() const {  // e to (a, b, w)
     const glm::dvec3 x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
-    const glm::dmat3 rows = axis == 2 ? glm::dmat3(x, y, z) : axis == 0 ? glm::dmat3(y, z, sign * x)
-                                                                        : glm::dmat3(x, z, sign * y);
+    const glm::dmat3 rows = axis == 2   ? glm::dmat3(x, y, z)
+                            : axis == 0 ? glm::dmat3(y, z, sign * x)
+                                        : glm::dmat3(x, z, sign * y);
     return glm::transpose(rows);
   }
   [[nodiscard]] glm::dvec3 along() const {

@@ -19,10 +19,8 @@ std::uint32_t CameraFaces::fit(const render::Device& device, const Source& sourc
   }
 
   const visibility::PinholeCamera& camera = source.samples.camera;
-  std::vector<std::uint32_t> words =
-      push_words(gpu::FaceTable{.forward = camera.forward,
-                                .offset = static_cast<float>(-glm::dot(camera.forward, camera.eye)),
-                                .count = first});
+  std::vector<std::uint32_t> words = push_words(gpu::FaceTable{
+      .forward = camera.forward, .offset = static_cast<float>(-glm::dot(camera.forward, camera.eye)), .count = first});
   pushes_.clear();
   for (const FittedFace& face : faces_) {
     const std::vector<std::uint32_t> more = push_words(face.rounded());

@@ -90,7 +90,8 @@ class FaceFitter {
     double deepest = 0;
     for (const BodyPoint& point : body) deepest = std::max(deepest, turned(point.p - basis_.center).z);
     if (options_.body_reach != glm::dvec2(0)) {
-      beside_ = glm::min(beside_, caster_margin(scene_, light_, basis_, side_ == 0 ? 1 : -1, options_.body_reach, deepest));
+      beside_ =
+          glm::min(beside_, caster_margin(scene_, light_, basis_, side_ == 0 ? 1 : -1, options_.body_reach, deepest));
     }
     // No tap finds anything beside all casters.
     casters_ = PlaceBounds();
@@ -188,8 +189,8 @@ class FaceFitter {
     }
     face.ratio = warp.ratio;
     face.margin = warp.ratio > 0 ? margin() : 0;
-    face.to_face = (warp.ratio > 0 ? to_unit_across(bounds, margin()) : to_unit(bounds, margin())) * warp.matrix *
-                   base.matrix();
+    face.to_face =
+        (warp.ratio > 0 ? to_unit_across(bounds, margin()) : to_unit(bounds, margin())) * warp.matrix * base.matrix();
     normalise(face);
   }
 

@@ -15,18 +15,18 @@
 #include <span>
 #include <vector>
 
-/// Faces of a light's centre that are windows or perspectives of what a camera sees. A ray through the light's centre is a
-/// point of every one of them: whatever a warp is called, on rays it is a homography, and depths stay distances from the
-/// light. docs/map-fits.md derives them.
+/// Faces of a light's centre that are windows or perspectives of what a camera sees. A ray through the light's centre
+/// is a point of every one of them: whatever a warp is called, on rays it is a homography, and depths stay distances
+/// from the light. docs/map-fits.md derives them.
 namespace penumbra::maps {
 
 struct FittedFace {
-  int side = 0;              ///< of the light's plane
-  int axis = 2;              ///< of the light's basis: along it depths are measured
-  glm::dvec3 along{0, 0, 1}; ///< the same, with its sign; of e = (x, y, |z|)
-  glm::dmat3 to_face{1};     ///< e to (a k, b k, k)
-  double ratio = 0;          ///< LogPSM: rows are logarithms, of distances up to so many times the nearest; 0: none
-  double margin = 0;         ///< of LogPSM: the share of the face on either side of its rows
+  int side = 0;               ///< of the light's plane
+  int axis = 2;               ///< of the light's basis: along it depths are measured
+  glm::dvec3 along{0, 0, 1};  ///< the same, with its sign; of e = (x, y, |z|)
+  glm::dmat3 to_face{1};      ///< e to (a k, b k, k)
+  double ratio = 0;           ///< LogPSM: rows are logarithms, of distances up to so many times the nearest; 0: none
+  double margin = 0;          ///< of LogPSM: the share of the face on either side of its rows
   double from = 0, to = std::numeric_limits<double>::infinity();  ///< depths that ask it, from ≤ z < to
 
   /// Where a direction is seen, from 0 to 1 across the face; nothing if it is seen nowhere.
@@ -48,9 +48,9 @@ gpu::LogarithmicPush logarithmic_push(const FittedFace& face, const gpu::LightVi
 struct FaceFitOptions {
   ViewFit fit;
   std::uint32_t size = 0;
-  std::uint32_t spare = 1;      ///< texels on every side, for what look-ups tap beside a receiver
-  glm::dvec2 beside{0};         ///< FitOptions::beside
-  glm::dvec2 body_reach{0};     ///< FitOptions::body_reach
+  std::uint32_t spare = 1;   ///< texels on every side, for what look-ups tap beside a receiver
+  glm::dvec2 beside{0};      ///< FitOptions::beside
+  glm::dvec2 body_reach{0};  ///< FitOptions::body_reach
 };
 
 /// Faces of the light's centre; those of the side where the light's normal points first.

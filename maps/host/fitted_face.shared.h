@@ -7,8 +7,8 @@
 namespace penumbra::maps::gpu {
 #endif
 
-// With e = (x, y, |z|) in the light's basis, seen from its centre: (a, b) = (row_a . e, row_b . e) / row_k . e, from 0 to 1
-// across the face.
+// With e = (x, y, |z|) in the light's basis, seen from its centre: (a, b) = (row_a . e, row_b . e) / row_k . e, from 0
+// to 1 across the face.
 struct FittedFace {
   vec3 row_a, row_b, row_k;
   vec3 inverse_a, inverse_b, inverse_1;  // inverse_a a + inverse_b b + inverse_1 leads in the direction of (a, b)

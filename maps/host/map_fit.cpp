@@ -246,14 +246,15 @@ FittedViews fit_views(const visibility::SceneFloats& scene, const visibility::Li
     const SideTriangles receivers =
         options.body != nullptr ? body_on_side(*options.body, basis, sign)
         : light.beam            ? receivers_in(scene, light, basis, local)
-                                : triangles_on_side(scene, local, sign, [&](std::size_t i) { return receives(scene, light, i); });
+                     : triangles_on_side(scene, local, sign, [&](std::size_t i) { return receives(scene, light, i); });
     if (!receivers.any) continue;
     const bool beside = options.beside != glm::dvec2(0) || options.reach != glm::dvec2(0);
     const SideTriangles casters = triangles_on_side(scene, local, sign, [&](std::size_t i) {
       return beside && scene.casts_shadow[i] != 0 && scene.emits[i] != light.index;
     });
     glm::dvec2 margin = options.beside + beside_of(options.reach, receivers, casters);
-    if (options.body_reach != glm::dvec2(0)) margin = glm::min(margin, beside_of(options.body_reach, receivers, casters));
+    if (options.body_reach != glm::dvec2(0))
+      margin = glm::min(margin, beside_of(options.body_reach, receivers, casters));
     const Contents contents{receivers, casters, margin, options.reach != glm::dvec2(0)};
     bool windows = true;  // for all points of the light or for none
     for (gpu::LightView& view : fitted.views) {

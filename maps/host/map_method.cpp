@@ -200,8 +200,8 @@ void MapMethod::fit_to_camera(FitOptions fit, const glm::vec3& centre) {
   const visibility::Light& light = *light_;
   const LightBounds bounds = light_bounds(light, basis_);
   if (recipe_.beside && recipe_.beside_texels == 0) fit.body_reach = glm::max(-bounds.lower, bounds.upper);
-  const std::vector<BodyPoint> body = body_points(*scene_, light, *samples_, options_.fit.body, 0,
-                                                  std::numeric_limits<double>::infinity());
+  const std::vector<BodyPoint> body =
+      body_points(*scene_, light, *samples_, options_.fit.body, 0, std::numeric_limits<double>::infinity());
   fit.body = &body;
   fit.snap = options_.fit.snap;
   fitted_ = fit_views(*scene_, light, basis_, std::span(&centre, 1), fit);
@@ -258,9 +258,8 @@ void MapMethod::make_centre_maps(std::uint32_t part) {
   const visibility::Light& light = parts_[part].light;
   const LightBasis basis = basis_of(light);
   for (const std::unique_ptr<MapProduct>& product : recipe_.products) {
-    product->record(commands,
-                    {*views_, *depths_, fitted_.faces, options_.size, light, basis, *scene_, recipe_.layers.count,
-                     options_.fit.has_faces() ? &faces_.table() : nullptr});
+    product->record(commands, {*views_, *depths_, fitted_.faces, options_.size, light, basis, *scene_,
+                               recipe_.layers.count, options_.fit.has_faces() ? &faces_.table() : nullptr});
   }
   times_.add(commands.submit());
 }

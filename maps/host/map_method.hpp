@@ -38,7 +38,7 @@ struct MapSet {
   const visibility::Light& light;
   const LightBasis& basis;
   const visibility::SceneFloats& scene;
-  std::uint32_t layers = 1;  ///< MapLayers::count; if there is a farthest one it is the next
+  std::uint32_t layers = 1;                    ///< MapLayers::count; if there is a farthest one it is the next
   const render::Buffer* face_table = nullptr;  ///< of fitted faces (face_fit.hpp), which `views` does not describe
 };
 

@@ -87,8 +87,9 @@ std::vector<BodyPoint> points_in_frustum(const visibility::SceneFloats& scene, c
 }  // namespace
 
 std::vector<visibility::OptionDescription> view_fit_descriptions() {
-  return {kFit.description(),        kViewBody.description(), kSnap.description(),  kCascades.description(), kSplit.description(),
-          kSplitShare.description(), kTiles.description(),    kFocus.description(), kAliasing.description()};
+  return {kFit.description(),      kViewBody.description(), kSnap.description(),
+          kCascades.description(), kSplit.description(),    kSplitShare.description(),
+          kTiles.description(),    kFocus.description(),    kAliasing.description()};
 }
 
 std::vector<visibility::OptionDescription> window_fit_descriptions() {

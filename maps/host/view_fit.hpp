@@ -11,8 +11,8 @@
 #include <span>
 #include <vector>
 
-/// What fits maps to what a camera sees (Eisemann et al. 2009, section 3.2; docs/map-fits.md): options, the body that is
-/// fitted, and the closed forms of the papers.
+/// What fits maps to what a camera sees (Eisemann et al. 2009, section 3.2; docs/map-fits.md): options, the body that
+/// is fitted, and the closed forms of the papers.
 namespace penumbra::maps {
 
 /// What a map's texels are spread over.
@@ -44,11 +44,12 @@ inline constexpr visibility::ChoiceOption kFit{"fit",
                                                "what texels are spread over: all receivers; what the camera sees, in "
                                                "one window, in slices of depth or in tiles; or a perspective of it"};
 /// Of a method whose products know windows alone.
-inline constexpr visibility::ChoiceOption kWindowFit{"fit",
-                                                     {{"receivers", Fit::receivers}, {"view", Fit::view}},
-                                                     Fit::receivers,
-                                                     "what texels are spread over: all receivers, or what the camera "
-                                                     "sees; means over windows need even texels, so there are no warps"};
+inline constexpr visibility::ChoiceOption kWindowFit{
+    "fit",
+    {{"receivers", Fit::receivers}, {"view", Fit::view}},
+    Fit::receivers,
+    "what texels are spread over: all receivers, or what the camera "
+    "sees; means over windows need even texels, so there are no warps"};
 inline constexpr visibility::ChoiceOption kViewBody{
     "body",
     {{"visible", ViewBody::visible}, {"frustum", ViewBody::frustum}},
@@ -67,7 +68,8 @@ inline constexpr visibility::ChoiceOption kSplit{"split",
                                                  "where slices end: by the logarithm of depth, between that and equal "
                                                  "ones, by the logarithm from a pseudo-near plane on, or equal"};
 inline constexpr visibility::RealOption kSplitShare{
-    "splitShare", 0, 1, 0.5, "split=practical: the logarithm's share; pseudo-near: how far off, as a share of all depths"};
+    "splitShare", 0, 1, 0.5,
+    "split=practical: the logarithm's share; pseudo-near: how far off, as a share of all depths"};
 inline constexpr visibility::IntegerOption kTiles{"tiles", 1, 64, 16, "fit=tiles: maps, at most"};
 inline constexpr visibility::RealOption kFocus{
     "focus", 0.01, 0.99, 0.25, "fit=tsm: the nearest share of depths, which gets four fifths of the map"};
@@ -123,8 +125,8 @@ std::vector<BodyPoint> body_points(const visibility::SceneFloats& scene, const v
 std::vector<double> split_depths(const ViewFit& fit, double near, double far, std::uint32_t slices);
 
 /// n_opt of Wimmer et al. 2004: how far before the nearest of what is seen a perspective stands, so that the largest
-/// errors along both axes are equal. 0 < near ≤ far are distances from the eye along the warped axis, and `sine` that of
-/// the angle between the view and the light.
+/// errors along both axes are equal. 0 < near ≤ far are distances from the eye along the warped axis, and `sine` that
+/// of the angle between the view and the light.
 double lispsm_distance(double near, double far, double sine);
 
 /// The distance that puts what is `focus` of `length` away from the nearest at four fifths of the map (Martin and Tan

@@ -1,8 +1,9 @@
 // The perspectives of Wimmer et al. 2004 (LiSPSM), Martin and Tan 2004 (TSM), Stamminger and Drettakis 2002 (PSM) and
-// Lloyd et al. 2008 (LogPSM), for a point light. A face's coordinates (a/w, b/w) are the light's post-perspective space,
-// where its rays are parallel; there the first, second and last put a perspective along the image of the view axis whose
-// centre is n before the nearest of what is seen. Departure: rays through the light are points of its face, and depths are
-// kept as distances along them, so that PSM needs no light in post-perspective space, and turns no depths over.
+// Lloyd et al. 2008 (LogPSM), for a point light. A face's coordinates (a/w, b/w) are the light's post-perspective
+// space, where its rays are parallel; there the first, second and last put a perspective along the image of the view
+// axis whose centre is n before the nearest of what is seen. Departure: rays through the light are points of its face,
+// and depths are kept as distances along them, so that PSM needs no light in post-perspective space, and turns no
+// depths over.
 
 #include "maps/host/warps.hpp"
 
@@ -25,10 +26,12 @@ glm::dmat3 with_rows(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3&
   return glm::transpose(glm::dmat3(a, b, k));
 }
 
-glm::dvec2 seen_at(const glm::dvec3& x) { return glm::dvec2(x) / x.z; }
+glm::dvec2 seen_at(const glm::dvec3& x) {
+  return glm::dvec2(x) / x.z;
+}
 
-/// A perspective along `along`, a unit vector of the face, whose centre is `distance` before `nearest`; b' runs from 0 to
-/// 1 over `length`.
+/// A perspective along `along`, a unit vector of the face, whose centre is `distance` before `nearest`; b' runs from 0
+/// to 1 over `length`.
 glm::dmat3 perspective(const glm::dvec2& along, double nearest, double length, double distance) {
   const double far = distance + length;
   const glm::dvec3 a(-along.y, along.x, 0), g(along, 0);
@@ -63,8 +66,8 @@ Warp along_the_view(Fit fit, const SeenBody& body, double focus) {
   if (!(farthest > nearest)) return {};
   const double eye = glm::dot(along, seen_at(body.eye));
   const glm::dvec3 in_focus = body.eye + (body.near + focus * (body.far - body.near)) * body.forward;
-  const double focus_at = std::clamp(glm::dot(along, seen_at(in_focus)) - nearest, 0.01 * (farthest - nearest),
-                                     farthest - nearest);
+  const double focus_at =
+      std::clamp(glm::dot(along, seen_at(in_focus)) - nearest, 0.01 * (farthest - nearest), farthest - nearest);
   const auto distance = distance_of(fit, body, nearest - eye, farthest - eye, focus_at);
   // Beyond this a perspective is none.
   if (!distance || !(*distance < 1e4 * (farthest - nearest))) return {};
@@ -73,15 +76,15 @@ Warp along_the_view(Fit fit, const SeenBody& body, double focus) {
   return warp;
 }
 
-/// The camera's perspective, with everything between two depths from −1 to 1: rows of the image of x − eye, and what z has
-/// besides.
+/// The camera's perspective, with everything between two depths from −1 to 1: rows of the image of x − eye, and what z
+/// has besides.
 struct CameraMap {
   glm::dvec3 x, y, z, w;
   double z_more = 0;
 };
 
-/// The image of rays from 0 on a plane across the light's direction in post-perspective space, through the middle of what
-/// is seen there; nothing if some of it is seen on the other side of the line at infinity.
+/// The image of rays from 0 on a plane across the light's direction in post-perspective space, through the middle of
+/// what is seen there; nothing if some of it is seen on the other side of the line at infinity.
 std::optional<glm::dmat3> post_perspective(const SeenBody& body, double back) {
   const glm::dvec3 eye = body.eye - back * body.forward;
   const double near = body.near + back, far = body.far + back;
@@ -103,10 +106,11 @@ std::optional<glm::dmat3> post_perspective(const SeenBody& body, double back) {
   const glm::dvec3 middle = 0.5 * (lower + upper);
   // The middle of the body in the world, and where its ray leads in the image.
   const double depth = camera.z_more / (middle.z - (far + near) / (far - near));
-  const glm::dvec3 c =
-      eye + glm::inverse(with_rows(camera.x, camera.y, camera.w)) * glm::dvec3(middle.x * depth, middle.y * depth, depth);
+  const glm::dvec3 c = eye + glm::inverse(with_rows(camera.x, camera.y, camera.w)) *
+                                 glm::dvec3(middle.x * depth, middle.y * depth, depth);
   const double w_c = glm::dot(camera.w, c);
-  const glm::dvec3 leads = glm::dvec3(glm::dot(camera.x, c), glm::dot(camera.y, c), glm::dot(camera.z, c)) - middle * w_c;
+  const glm::dvec3 leads =
+      glm::dvec3(glm::dot(camera.x, c), glm::dot(camera.y, c), glm::dot(camera.z, c)) - middle * w_c;
   if (!(glm::length(leads) > 0)) return std::nullopt;
   const glm::dvec3 v = glm::normalize(leads);
   // The plane n . p = q in the world.
@@ -116,8 +120,7 @@ std::optional<glm::dmat3> post_perspective(const SeenBody& body, double back) {
   const glm::dvec3 x = row(camera.x, 0), y = row(camera.y, 0), z = row(camera.z, camera.z_more), w = row(camera.w, 0);
   const glm::dvec3 up = std::abs(v.z) < 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(0, 1, 0);
   const glm::dvec3 s = glm::normalize(up - v * glm::dot(up, v)), r = glm::cross(v, s);
-  const glm::dmat3 matrix =
-      with_rows(r.x * x + r.y * y + r.z * z, s.x * x + s.y * y + s.z * z, w);
+  const glm::dmat3 matrix = with_rows(r.x * x + r.y * y + r.z * z, s.x * x + s.y * y + s.z * z, w);
   double least = std::numeric_limits<double>::infinity(), most = -least;
   for (const glm::dvec3& point : body.points) {
     const double k = glm::dot(w, point) / point.z;

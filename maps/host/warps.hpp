@@ -23,11 +23,12 @@ struct SeenBody {
 /// A homography from (a, b, w) to (a' k, b' k, k) with k > 0 at all points.
 struct Warp {
   glm::dmat3 matrix{1};
-  double ratio = 0;  ///< logpsm: b' is from 0 to 1, and the farthest is so many times as far from the eye as the nearest
+  double ratio =
+      0;  ///< logpsm: b' is from 0 to 1, and the farthest is so many times as far from the eye as the nearest
 };
 
-/// The identity where a warp would not help: where the eye is above what it sees, seen from the light, or looks along its
-/// rays. `focus`: ViewFit::focus.
+/// The identity where a warp would not help: where the eye is above what it sees, seen from the light, or looks along
+/// its rays. `focus`: ViewFit::focus.
 Warp warp_of(Fit fit, const SeenBody& body, double focus);
 
 }  // namespace penumbra::maps

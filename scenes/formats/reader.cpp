@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -34,14 +35,6 @@ Scene read_mesh_file(const std::filesystem::path& file) {
   return scene;
 }
 
-/// Bounds of the scene's meshes at rest: of one that is looked at while it moves, those of its file.
-Bounds rest_bounds(const Scene& scene, const std::filesystem::path& file, const ReadOptions& options) {
-  if (!options.time || !scene.motion) return bounds_of(scene.soup.positions);
-  ReadOptions at_rest = options;
-  at_rest.time.reset();
-  return bounds_of(read_gltf(file, at_rest).soup.positions);
-}
-
 }  // namespace
 
 Scene read_scene(const std::filesystem::path& file, const ReadOptions& options) {
@@ -53,25 +46,29 @@ Scene read_scene(const std::filesystem::path& file, const ReadOptions& options) 
   if (is_json) {
     scene = read_json(file, options);
   } else if (extension == ".gltf" || extension == ".glb") {
-    ReadOptions reading = options;
-    // With lights of the user's own, lamps that cannot be done leave the scene no darker than it is.
-    reading.needs_light = options.needs_light && !options.studio.always && options.studio.lights.empty();
-    scene = read_gltf(file, reading);
+    scene = read_gltf(file, options);
   } else if (extension == ".blend") {
     throw InputError("{}: a file of Blender's own; export it as glTF 2.0 (.glb), or render it by Blender's add-on",
                      file.string());
   } else {
     scene = read_mesh_file(file);
   }
-  const StudioWish& studio = options.studio;
+  StudioWish studio = options.studio;
+  studio.never |= !options.needs_light;
   const bool wishes = studio.always || !studio.lights.empty() || studio.camera || !studio.fit_camera.empty();
-  const bool lacks =
-      options.needs_light && !is_json && !studio.never && (scene.lights.empty() || scene.cameras.empty());
+  const bool lacks = !is_json && (scene.cameras.empty() || (scene.lights.empty() && !studio.never));
   const bool has_room = std::ranges::all_of(scene.soup.positions, [](const glm::dvec3& p) {
     return std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) <= kLargestCoordinate;  // not NaN
   });
-  if ((lacks || wishes) && has_room && !scene.soup.triangles.empty())
-    put_in_studio(scene, rest_bounds(scene, file, options), studio);
+  if ((lacks || wishes) && has_room && !scene.soup.triangles.empty()) {
+    std::optional<Scene> rest;
+    if (options.time && scene.motion) {
+      ReadOptions at_rest = options;
+      at_rest.time.reset();
+      rest = read_gltf(file, at_rest);
+    }
+    put_in_studio(scene, rest ? *rest : scene, studio);
+  }
   check_scene(scene, file.string(), options.needs_light);
   return scene;
 }

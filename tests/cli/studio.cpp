@@ -18,7 +18,9 @@ using testing::Not;
 class StudioCommands : public ProgramTest {
  protected:
   StudioCommands() {
-    write("roof.obj", "v -1 1 -1\nv 1 1 -1\nv 1 1 1\nv -1 1 1\nv 0 2 0\nf 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\n");
+    write("roof.obj",
+          "v -1 1 -1\nv 1 1 -1\nv 1 1 1\nv -1 1 1\nv 0 2 0\nf 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\n"
+          "v 0 0 0\nv 0.05 0 0\nv 0 1 0.05\nf 6 7 8\n");  // on a leg
   }
   [[nodiscard]] Outcome render(std::vector<std::string> more, const std::string& scene = "roof.obj") const {
     more.insert(more.begin(), {"render", path(scene), "-o", path("out.exr"), "--size", "32x24"});
@@ -70,9 +72,13 @@ TEST_F(StudioCommands, WhatCannotBeMeantIsRefused) {
   EXPECT_EQ(render({"--camera", "0,1,0:0,1,0"}).code, 2);
   EXPECT_EQ(render({"--camera", "0,1,0:0,2,0:180"}).code, 2);
   EXPECT_EQ(render({"--studio", "--no-studio"}).code, 2);
-  const Outcome dark = render({"--no-studio"});
-  EXPECT_EQ(dark.code, 3);
-  EXPECT_THAT(dark.err, HasSubstr("there is no light in the scene"));
+  for (const std::vector<std::string>& more : {std::vector<std::string>{}, {"--camera", "fit"}}) {
+    std::vector<std::string> arguments = more;
+    arguments.emplace_back("--no-studio");
+    const Outcome dark = render(arguments);
+    EXPECT_EQ(dark.code, 3);
+    EXPECT_THAT(dark.err, HasSubstr("there is no light in the scene"));
+  }
 }
 
 }  // namespace

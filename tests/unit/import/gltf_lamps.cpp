@@ -250,12 +250,12 @@ TEST_F(GltfReader, AreaLampsThatAreNoneAreRefused) {
   expect("size", {1, 0}, ": it has no area");
   expect("radiance", {1, 1, -1}, "/radiance");
   Gltf gltf = with_area_lamp("big");
-  EXPECT_THAT(refusal(gltf), HasSubstr("there is no light")) << "it is another tool's";
+  EXPECT_TRUE(read(gltf).lights.empty()) << "it is another tool's";
 }
 
 TEST_F(GltfReader, ALampThatIsOffIsNoLight) {
   Gltf gltf = with_lamp({{"type", "point"}, {"intensity", 0}, {"extras", {{"radius", 1}}}});
-  EXPECT_THAT(refusal(gltf), HasSubstr("no light"));
+  EXPECT_TRUE(read(gltf).lights.empty());
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "scenes/formats/gltf_reader.hpp"
 
 #include "mesh/import.hpp"
+#include "scenes/formats/reader.hpp"
 #include "tests/unit/import/gltf_reader.hpp"
 
 #include <glm/geometric.hpp>
@@ -169,10 +170,11 @@ TEST_F(GltfReader, NamesAreUniqueAndHarmless) {
   EXPECT_EQ(scene.lights[1].name, "Lamp.2");
 }
 
-TEST_F(GltfReader, PutsInACameraButNoLight) {
+TEST_F(GltfReader, WhatHasNoCameraOrLightIsSeenAndLit) {
   Gltf gltf;
   gltf.at("/scenes/0/nodes") = {0, 1};
-  const Scene scene = read(gltf);
+  const Scene scene = read_scene(write("scene.glb", gltf.glb()));
+  EXPECT_EQ(scene.lights.size(), read(gltf).lights.size());
   ASSERT_EQ(scene.cameras.size(), 1u);
   EXPECT_THAT(scene.warnings, Contains(HasSubstr("there is no camera")));
   const Camera& camera = scene.cameras[0];
@@ -181,7 +183,10 @@ TEST_F(GltfReader, PutsInACameraButNoLight) {
     EXPECT_GT(glm::dot(glm::normalize(p - camera.eye), forward), std::cos(camera.vertical_fov / 2 * M_PI / 180));
   }
   gltf.at("/scenes/0/nodes") = {0, 2};
-  EXPECT_THAT(refusal(gltf), ::testing::AllOf(HasSubstr("no light"), HasSubstr("Blender")));
+  EXPECT_TRUE(read(gltf).lights.empty());
+  const Scene lit = read_scene(write("scene.glb", gltf.glb()));
+  ASSERT_EQ(lit.lights.size(), 1U);
+  EXPECT_EQ(lit.lights[0].name, "studio");
 }
 
 TEST_F(GltfReader, BuffersMayBeExternalButNotOutside) {

@@ -24,7 +24,7 @@ constexpr const char* kTetrahedron = "v 0 5 0\nv -1 4 -1\nv 1 4 -1\nv 0 3 1\nf 1
 
 scenes::Scene read(const char* obj, const scenes::StudioWish& wish = {}) {
   const TemporaryFolder folder;
-  return scenes::read_scene(folder.write("thing.obj", obj), {.studio = wish});
+  return scenes::read_scene(folder.write("thing.obj", obj), {.needs_light = !wish.never, .studio = wish});
 }
 
 TEST(Studio, AMeshGetsALightAFloorAndACamera) {
@@ -55,6 +55,23 @@ TEST(Studio, AMeshGetsALightAFloorAndACamera) {
   EXPECT_EQ(camera.target, middle);
   const double sine = std::sqrt(3.0) / glm::distance(camera.eye, middle);  // of half the box's diagonal
   EXPECT_NEAR(std::asin(sine) * 180 / std::numbers::pi, camera.vertical_fov / 2, 1e-9);
+
+  // Of a picture half as wide as high, within the cone of half the width.
+  const scenes::Camera upright = read(kTetrahedron, {.aspect = 0.5}).cameras[0];
+  EXPECT_NEAR(std::asin(std::sqrt(3.0) / glm::distance(upright.eye, middle)),
+              std::atan(0.5 * std::tan(camera.vertical_fov / 360 * std::numbers::pi)), 1e-12);
+}
+
+// Between keys the floor and the camera stay where they are at rest.
+TEST(Studio, StandsStillWhileASceneMoves) {
+  const scenes::Scene rest = read(kTetrahedron, {.never = true, .fit_camera = "fit"});
+  scenes::Scene moved = rest;
+  moved.cameras.clear();
+  for (glm::dvec3& p : moved.soup.positions) p += glm::dvec3(3, 7, 0);
+  scenes::put_in_studio(moved, rest, {});
+  ASSERT_EQ(moved.soup.triangles.size(), 6U);
+  EXPECT_EQ(moved.soup.positions[moved.soup.triangles[5][0]].y, 3);
+  EXPECT_EQ(moved.cameras.at(0).eye, rest.cameras.at(0).eye);
 }
 
 TEST(Studio, WhatLiesOnAFloorGetsNoOther) {

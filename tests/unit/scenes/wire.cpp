@@ -158,7 +158,6 @@ TEST(SceneWire, WhatNoSceneHasIsRefused) {
   refuses("an emitter", [](Scene& s) { s.objects[0].emits = 7; });
   refuses("a picture", [](Scene& s) { s.objects[0].picture->picture = 1; });
   refuses("a caster", [](Scene& s) { s.lights[0].unshaded_by = {2}; });
-  refuses("no camera", [](Scene& s) { s.cameras.clear(); });
   refuses("a way to wrap", [](Scene& s) { s.objects[0].picture->wrap_t = static_cast<PictureUse::Wrap>(3); });
   refuses("a mode", [](Scene& s) { s.objects[0].alpha.mode = static_cast<Alpha::Mode>(3); });
 }
