@@ -45,6 +45,7 @@ PAGES = {
     "hard-volume": ("room", 64, ["hard-volume"]),
     "wedge-ramp": ("bunny", 64, ["wedge-ramp"]),
     "soft-volume": ("fusion", 64, ["soft-volume", "soft-volume:split=3"]),
+    "plateaus": ("fusion", 64, ["plateaus"]),
     "soft-volume-fusion": ("fusion", 64, ["soft-volume:fusion=max", "soft-volume:fusion=product", "soft-volume:fusion=average", "soft-volume:fusion=vote"]),
     "soft-volume-blend": ("large-penumbra", 64, ["soft-volume-blend"]),
     "soft-irregular": ("fusion", 64, ["soft-irregular", "soft-irregular:umbra=layers"]),

@@ -28,6 +28,7 @@ penumbra_test(volumes
   agreement/volumes/exact_rows.cpp agreement/volumes/exact_rows_shapes.cpp
   agreement/volumes/exact_rows_spheres.cpp
   agreement/volumes/packed_counters_scenes.cpp
+  agreement/volumes/plateaus.cpp
   agreement/volumes/soft_volume_blend.cpp
   agreement/volumes/soft_volume_exact.cpp
   agreement/volumes/soft_volume_fusion.cpp

@@ -17,6 +17,7 @@ std::span<const engines::MethodRow> methods() {
       on_device<soft_volume_blend_description, make_soft_volume_blend>(),
       on_processor<make_soft_irregular>(),
       on_device<wedge_ramp_description, make_wedge_ramp>(),
+      on_device<plateaus_description, make_plateaus>(),
       on_device<hard_volume_description, make_hard_volume>(),
   };
   return kRows;

@@ -1,4 +1,4 @@
-"""docs/hard-volume.md, soft-volume.md, soft-volume-blend.md, wedge-ramp.md, signed-crossings.md."""
+"""docs/hard-volume.md, soft-volume.md, soft-volume-blend.md, wedge-ramp.md, plateaus.md, signed-crossings.md."""
 
 from math import hypot
 
@@ -265,6 +265,56 @@ def ramp_figure():
     return d.finish()
 
 
+def plateaus_figure():
+    lamp, edge = ((-1.0, 5.0), (1.0, 5.0)), (1.9, 2.4)
+    centre, height = mix(*lamp, 0.5), lamp[0][1]
+    hard = meet(centre, edge, (0, 0), (1, 0))[0]
+    reach = 1.0 * edge[1] / (height - edge[1])
+
+    def plateau(x):
+        depth = min(max(1 - (x - hard) / reach, 0), 1) if x > hard else 1
+        return 1 - depth * depth * (3 - 2 * depth)
+
+    def visible(x):
+        """The share of the light that a board from far left to the edge leaves, in closed form."""
+        at = x + (edge[0] - x) * height / (height - (height - edge[1]))  # where the way from x through the edge meets the light
+        return min(max((lamp[1][0] - at) / 2, 0), 1)
+
+    d = Drawing(800, 480, "The outer penumbra of a plateau from the side, beside the true visibility")
+    d.text((20, 26), "An edge from the side, and *V* along the floor", 14, bold=True)
+    view = View(d, (20, 36, 540, 290), (-1.6, 7.2), (-0.25, 5.4), stretch=True)
+    view.polygon([edge, (hard, 0), (hard + reach, 0)], GREEN, opacity=0.15)
+    view.line((-1.5, 0), (7.1, 0), DARK, 2)
+    view.line((-1.5, edge[1]), edge, INK, 4)
+    view.text((-1.4, edge[1]), "occluder", 12.5, (0, -8))
+    view.line(*lamp, stroke=LIGHT, width=6)
+    view.text(lamp[1], "light", 12.5, (10, 4))
+    view.line(centre, (hard, 0), FAINT, 1.5, "5 3")
+    view.line(lamp[0], (hard + reach, 0), BLUE, 1.5)
+    view.dot(centre, 3.5)
+    view.text(centre, "*c*", 13, (-4, 18), anchor="end")
+    view.text((hard, 0), "hard", 12.5, (0, 16), anchor="middle", fill=DARK)
+    view.text((hard + reach, 0), "*b*", 12.5, (0, 16), anchor="middle", fill=BLUE)
+    graph = View(d, (20, 350, 540, 110), (-1.6, 7.2), (-0.1, 1.1), stretch=True)
+    for v in (0, 1):
+        graph.line((-1.6, v), (7.2, v), PALE, 1)
+        graph.text((-1.6, v), v, 12, (-4, 4), anchor="end")
+    xs = [-1.5 + 8.6 * i / 240 for i in range(241)]
+    worst = max(abs(plateau(x) - visible(x)) for x in xs)
+    assert abs(plateau(hard)) < 1e-9 and abs(visible(hard) - 0.5) < 1e-9
+    assert all(plateau(x) <= visible(x) + 1e-9 for x in xs if x < hard + 0.8 * reach)  # too bright in the last fifth
+    graph.path([(x, visible(x)) for x in xs], INK, 2)
+    graph.path([(x, plateau(x)) for x in xs], GREEN, 2.5, dash="6 3")
+    x = 585
+    d.text((x, 90), "*b* = *R* · height of the edge /", 12.5)
+    d.text((x, 107), "its distance below the light", 12.5)
+    d.text((x, 139), "From the hard shadow *V* rises", 12.5)
+    d.text((x, 156), "to 1 at the rim of the plateau.", 12.5)
+    d.legend((x, 380), [("dash", GREEN, "*V* by plateaus"), ("line", INK, "true *V*")])
+    d.text((x, 446), f"off by up to {worst:.3f} here", 12.5)
+    return d.finish()
+
+
 def crossings_figure():
     top, left, right, back = (seen_at(-0.1, 0.72, .62), seen_at(-0.72, -0.5, .6), seen_at(0.42, -0.66, .5),
                               seen_at(-0.2, -0.12, .4))
@@ -318,4 +368,4 @@ def crossings_figure():
 
 
 FIGURES = {"hard-volume": hard_volume_figure, "soft-volume": soft_volume_figure, "soft-volume-blend": blend_figure,
-           "wedge-ramp": ramp_figure, "signed-crossings": crossings_figure}
+           "wedge-ramp": ramp_figure, "plateaus": plateaus_figure, "signed-crossings": crossings_figure}

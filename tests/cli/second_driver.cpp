@@ -59,7 +59,7 @@ TEST_F(SecondDriver, WhatItCannotRunIsSaid) {
     refused.push_back(one.at("method").get<std::string>());
     EXPECT_THAT(one.at("reason").get<std::string>(), HasSubstr("needs shaderFloat64"));
   }
-  EXPECT_THAT(refused, UnorderedElementsAre("hard-volume", "soft-volume", "soft-volume-blend", "wedge-ramp",
+  EXPECT_THAT(refused, UnorderedElementsAre("hard-volume", "soft-volume", "soft-volume-blend", "wedge-ramp", "plateaus",
                                             "depth-complexity:variant=forest"));
   EXPECT_THAT(run({"devices"}, kThere).out,
               AllOf(HasSubstr("yes, with exceptions"), HasSubstr("view samples"), HasSubstr("hard-volume")));

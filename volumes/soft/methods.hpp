@@ -30,6 +30,11 @@ std::unique_ptr<visibility::Method> make_wedge_ramp(const render::Device& device
                                                     const visibility::MethodOptions& options);
 visibility::MethodDescription wedge_ramp_description();
 
+/// Haines 2001: the hard shadow of the light's centre, and outer penumbrae around its silhouettes. docs/plateaus.md.
+std::unique_ptr<visibility::Method> make_plateaus(const render::Device& device,
+                                                  const visibility::MethodOptions& options);
+visibility::MethodDescription plateaus_description();
+
 /// Crow 1977: the hard shadow of the light's centre by shadow volumes. docs/hard-volume.md.
 std::unique_ptr<visibility::Method> make_hard_volume(const render::Device& device,
                                                      const visibility::MethodOptions& options);

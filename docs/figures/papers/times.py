@@ -11,7 +11,7 @@ from experiment import TRUTH, rounded
 
 SCENES = ("bunny", "large-penumbra")
 GEOMETRY = [TRUTH, "edge-scatter", "view-sample", "view-sample:variant=sintorn", "view-sample-planar", "hierarchical-penumbra", "depth-complexity",
-            "depth-complexity:variant=laine", "soft-volume", "soft-volume-blend", "soft-irregular", "wedge-ramp", "hard-volume", "alias-free"]
+            "depth-complexity:variant=laine", "soft-volume", "soft-volume-blend", "soft-irregular", "wedge-ramp", "plateaus", "hard-volume", "alias-free"]
 IMAGE = ["shadow-map", "pcf", "pcss", "vssm", "convolution", "occlusion-textures", "soft-shadow-map", "backproject", "backproject-peel",
          "bitmask", "contour", "packet", "accumulate", "adaptive-light", "layered-attenuation", "deep-penumbra",
          "penumbra-map", "smoothies", "parker", "brabec-seidel", "kirsch-doellner", "arvo", "layer-rays"]
