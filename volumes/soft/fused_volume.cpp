@@ -148,7 +148,7 @@ void FusedVolume::fuse() {
     for (const Part& part : parts) {
       if (part.weight > 0) sum += part.weight * part.share[i].visible(options_.rule, part.whole[i]);
     }
-    visibility_[i] = static_cast<float>(std::clamp(sum / weight, 0.0, 1.0));
+    visibility_[i] = weight > 0 ? static_cast<float>(std::clamp(sum / weight, 0.0, 1.0)) : 0.0F;  // a black texture
   });
 }
 
