@@ -143,6 +143,7 @@ visibility::MethodDescription arvo_description() {
                                             .exact_for = "nothing",
                                             .lights = visibility::kPlanarLights,
                                             .textures = false,
+                                            .on_request = true,
                                             .options = compared_map_option_descriptions(),
                                             .verdict_on = arvo_verdict,
                                             .repairs = single_shadow_repairs};

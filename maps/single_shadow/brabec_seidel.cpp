@@ -34,6 +34,7 @@ visibility::MethodDescription brabec_seidel_description() {
                                             .exact_for = "nothing",
                                             .lights = visibility::kPlanarLights,
                                             .textures = false,
+                                            .on_request = true,
                                             .options = compared_map_option_descriptions(),
                                             .verdict_on = brabec_seidel_verdict,
                                             .repairs = searched_shadow_repairs};

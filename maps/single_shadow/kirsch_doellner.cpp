@@ -34,6 +34,7 @@ visibility::MethodDescription kirsch_doellner_description() {
                                             .exact_for = "nothing; all is lit outside of the hard shadow",
                                             .lights = visibility::kPlanarLights,
                                             .textures = false,
+                                            .on_request = true,
                                             .options = compared_map_option_descriptions(),
                                             .verdict_on = kirsch_doellner_verdict,
                                             .repairs = searched_shadow_repairs};

@@ -14,6 +14,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <optional>
 
 namespace penumbra::maps {
@@ -73,7 +74,7 @@ OuterEdges outer_edges(const visibility::SceneFloats& scene, const visibility::L
   double lengths = 0, heights = 0;
   for (const mesh::SilhouetteEdge& silhouette : mesh::silhouette_edges(mesh, graph, basis.center)) {
     const mesh::Edge& edge = graph.edges[silhouette.edge];
-    for (int side = 0; side < 2; ++side) {
+    for (std::size_t side = 0; side < 2; ++side) {
       glm::dvec3 a = basis.local(positions[edge.a]), b = basis.local(positions[edge.b]);
       if (side == 1) {
         a.z = -a.z;

@@ -5,6 +5,7 @@
 #include "visibility/light_samples.hpp"
 #include "visibility/scene_floats.hpp"
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -21,7 +22,7 @@ enum class OuterForm : std::uint8_t {
 /// any soup), that are on one side of its plane: in the light's basis, z from its plane; what is nearer to the plane
 /// than `near` is cut off. An edge that is seen as a point is left out.
 struct OuterEdges {
-  std::vector<gpu::OuterEdge> sides[2];  ///< where the light's normal points, and behind
+  std::array<std::vector<gpu::OuterEdge>, 2> sides;  ///< where the light's normal points, and behind
   /// The mean height over the light's plane of those that are not the ground's (ground_of), weighted by their lengths
   /// as the light's centre sees them; 0 if there are none.
   double mean_height = 0;

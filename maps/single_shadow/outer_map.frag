@@ -58,6 +58,8 @@ void main() {
     if (!(cone * surface > 1.0)) discard;
     kept = (1.0 / cone - 1.0 / inverse) / (surface - 1.0 / inverse);
   }
-  atomicMin(outer[2 * texel], floatBitsToUint(clamp(kept, 0.0, 1.0)));
-  atomicMin(outer[2 * texel + 1], floatBitsToUint(1.0 / inverse));
+  // Most of what is drawn is not the least: that much is known without waiting for one's turn.
+  const uint least = floatBitsToUint(clamp(kept, 0.0, 1.0)), near = floatBitsToUint(1.0 / inverse);
+  if (least < outer[2 * texel]) atomicMin(outer[2 * texel], least);
+  if (near < outer[2 * texel + 1]) atomicMin(outer[2 * texel + 1], near);
 }

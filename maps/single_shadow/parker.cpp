@@ -28,6 +28,7 @@ visibility::MethodDescription parker_description() {
                                             .exact_for = "nothing; its umbra is the whole hard shadow",
                                             .lights = visibility::kPlanarLights,
                                             .textures = false,
+                                            .on_request = true,
                                             .options = compared_map_option_descriptions(),
                                             .verdict_on = parker_verdict,
                                             .repairs = searched_shadow_repairs};

@@ -56,6 +56,7 @@ visibility::MethodDescription penumbra_map_description() {
           .exact_for = "nothing; its umbra is the whole hard shadow",
           .lights = visibility::kPlanarLights,
           .textures = false,
+          .on_request = true,
           .options = outer_options(gpu::kFalloffCubic),
           .verdict_on = penumbra_map_verdict,
           .repairs = single_shadow_repairs};

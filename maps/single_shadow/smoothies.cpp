@@ -33,6 +33,7 @@ visibility::MethodDescription smoothies_description() {
                                             .exact_for = "nothing; its umbra is the whole hard shadow",
                                             .lights = visibility::kPlanarLights,
                                             .textures = false,
+                                            .on_request = true,
                                             .options = outer_options(gpu::kFalloffCubic),
                                             .verdict_on = smoothies_verdict,
                                             .repairs = single_shadow_repairs};
