@@ -49,11 +49,11 @@ struct MethodDescription {
   Family family = Family::geometry;
   std::string paper;
   Output output = Output::mask;
-  std::string exact_for;           ///< what it is exact for, in words
-  LightKinds lights;               ///< what it can do
-  bool textures = true;            ///< weighs V by a light's texture
-  bool any_pattern = true;         ///< otherwise only light samples in rows (patterns rows and grid)
-  bool on_request = false;         ///< takes so long that a comparison has it only by name, or with its whole family
+  std::string exact_for;    ///< what it is exact for, in words
+  LightKinds lights;        ///< what it can do
+  bool textures = true;     ///< weighs V by a light's texture
+  bool any_pattern = true;  ///< otherwise only light samples in rows (patterns rows and grid)
+  bool on_request = false;  ///< a comparison has it only by name, or with its whole family: it takes long, or is a foil
   bool shares_of_samples = false;  ///< V without masks is the share of light samples that are visible, as with masks
   bool draws_holes = false;        ///< knows surfaces with holes (alphaMode MASK): the host must not ask them again
   /// Memory that it takes at least for each triangle of a mesh. Measured on meshes of one and five million triangles,
