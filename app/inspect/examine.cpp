@@ -83,10 +83,10 @@ std::vector<MethodVerdict> verdicts_on(const mesh::Diagnosis& diagnosis, const I
       verdict = {visibility::Verdict::refused,
                  fmt::format("scenes hold coordinates up to {:g}; scale it down", scenes::kLargestCoordinate)};
     }
-    if (mesh.scene && !mesh.scene->filter.empty() && method->output != visibility::Output::mask) {
-      verdict = {
-          visibility::Verdict::refused,
-          fmt::format("light passes through \"{}\", which is asked light sample by light sample", mesh.scene->filter)};
+    const std::string through = !mesh.scene ? "" : method->draws_holes ? mesh.scene->dimmer : mesh.scene->filter;
+    if (!through.empty() && method->output != visibility::Output::mask) {
+      verdict = {visibility::Verdict::refused,
+                 fmt::format("light passes through \"{}\", which is asked light sample by light sample", through)};
     }
     for (const InspectedMesh::Light& light : mesh.lights) {
       if (method->lights.contains(light.kind)) continue;

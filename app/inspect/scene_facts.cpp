@@ -52,8 +52,10 @@ SceneFacts facts_of(const scenes::Scene& scene) {
   }
   for (const scenes::Camera& camera : scene.cameras) facts.cameras.push_back({camera.name, compare::words_of(camera)});
   for (const scenes::Object& object : scene.objects) {
-    if (object.alpha.mode != Alpha::Mode::opaque && facts.filter.empty() && dims_light(scene, object))
-      facts.filter = object.name;
+    if (object.alpha.mode != Alpha::Mode::opaque && dims_light(scene, object)) {
+      if (facts.filter.empty()) facts.filter = object.name;
+      if (facts.dimmer.empty() && object.alpha.mode == Alpha::Mode::blend) facts.dimmer = object.name;
+    }
     if (object.material.empty()) continue;
     auto same = std::ranges::find(facts.materials, object.material, &SceneFacts::Material::name);
     if (same == facts.materials.end()) {

@@ -29,6 +29,8 @@ struct SceneFacts {
 
   /// The first object with holes, or translucent, that casts shadow; empty: none.
   std::string filter;
+  /// A translucent one of these (alphaMode BLEND); empty: there is none.
+  std::string dimmer;
 };
 
 SceneFacts facts_of(const scenes::Scene& scene);

@@ -47,8 +47,8 @@ class EveryLight final : public visibility::Method {
   [[nodiscard]] const SceneFloats& drawn() const { return drawn_ ? *drawn_ : *scene_; }
   /// Gives the method a scene, unless it has that one.
   void show(const SceneFloats& scene);
-  /// The disk at hand, and the view samples that it lights.
-  void look_from(std::uint32_t number, const std::vector<std::uint8_t>& disks);
+  /// Gives the method a disk of the lamp, and the view samples that it lights.
+  void look_from(std::uint32_t number);
 
   std::unique_ptr<Method> method_;
   visibility::MethodDescription description_;
@@ -131,15 +131,15 @@ void EveryLight::prepare_view(const ViewSamples& samples) {
   }
   static_assert(LampDisks::kCount < kNoDisk);
   const auto first = std::ranges::find_if(disks_, [](std::uint8_t disk) { return disk != kNoDisk; });
-  look_from(first == disks_.end() ? 0 : *first, disks_);  // so that max_tile_rows() has something to go by
+  look_from(first == disks_.end() ? 0 : *first);  // so that max_tile_rows() has something to go by
 }
 
-void EveryLight::look_from(std::uint32_t number, const std::vector<std::uint8_t>& disks) {
+void EveryLight::look_from(std::uint32_t number) {
   own_ = lamp_->disk(number);
   own_.filtered_by.clear();
   own_.dimmed_by.clear();
-  for (std::size_t i = 0; i < disks.size(); ++i)
-    samples_.triangle[i] = disks[i] == number ? carriers_[i] : ViewSamples::kBackground;
+  for (std::size_t i = 0; i < disks_.size(); ++i)
+    samples_.triangle[i] = disks_[i] == number ? carriers_[i] : ViewSamples::kBackground;
   method_->prepare_light(own_);
   method_->prepare_view(samples_);
 }
@@ -159,19 +159,17 @@ void EveryLight::evaluate(const Tile& tile) {
   if (rest != 0) {
     for (std::size_t i = 0; i < count * words; i += words) masks_[i + words - 1] = (1U << rest) - 1;
   }
-  std::vector<std::uint8_t> here(disks_.size(), kNoDisk);
-  std::copy_n(disks_.begin() + static_cast<std::ptrdiff_t>(first), count,
-              here.begin() + static_cast<std::ptrdiff_t>(first));
+  const std::span<const std::uint8_t> here = std::span(disks_).subspan(first, count);
   std::vector<float> visibility(count);
   std::vector<std::uint32_t> masks(count * words);
   for (std::uint32_t disk = 0; disk < LampDisks::kCount; ++disk) {
     if (std::ranges::find(here, static_cast<std::uint8_t>(disk)) == here.end()) continue;
-    look_from(disk, here);
+    look_from(disk);  // with view samples of other tiles, by which some methods choose where to look from
     method_->evaluate(tile);
     method_->read_visibility(visibility);
     if (gives_masks) method_->read_masks(masks);
     for (std::size_t i = 0; i < count; ++i) {
-      if (here[first + i] != disk) continue;
+      if (here[i] != disk) continue;
       visibility_[i] = visibility[i];
       std::copy_n(masks.begin() + static_cast<std::ptrdiff_t>(i * words), words,
                   masks_.begin() + static_cast<std::ptrdiff_t>(i * words));

@@ -12,8 +12,8 @@
 namespace penumbra::maps {
 namespace {
 
-/// How many of its own sizes the scene is away from b: depths bend by 1 / 16 of what they differ, and floats lose four
-/// of their digits to the distance.
+/// How many of its own sizes the scene is away from b. Farther away depths would bend less, but what methods allow
+/// relative to a depth (a slice's end, Slices) would be more of the scene, and floats would lose digits.
 constexpr double kScenesBelow = 4;
 /// The tangent of a sun of one direction.
 constexpr double kLeastTangent = 0x1p-20;

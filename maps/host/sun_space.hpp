@@ -15,7 +15,7 @@ namespace penumbra::maps {
 /// radius is S times the tangent of half the sun's angle. So V of the disk over the mapped scene is V of the sun. The
 /// perspective window of the disk's centre, x / z = X / S, is the orthographic window along the sun's axis, and the
 /// widths of penumbrae, (z_r − z_o) / z_o times the light, are tangent times distance. b is so far below the scene that
-/// the map is nearly a shift: lengths change by about ±3 %, so that biases and mean depths mean there what they mean
+/// the map is close to a shift: lengths change by up to 12 %, so that biases and mean depths mean there what they mean
 /// elsewhere.
 class SunSpace {
  public:

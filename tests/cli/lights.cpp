@@ -68,7 +68,7 @@ TEST_F(LightKinds, EachIsRenderedWithoutAMethodNamed) {
 
 TEST_F(LightKinds, WhatCannotBeDoneIsRefusedWithWhatCan) {
   scene_with(fmt::format(R"({{"name": "key", {}}})", kLowSun));
-  for (const char* method : {"soft-volume", "pcss", "hard-volume"}) {
+  for (const char* method : {"soft-volume", "wedge-ramp", "hard-volume"}) {
     const Outcome outcome = render({"--method", method});
     EXPECT_EQ(outcome.code, 3) << method;
     EXPECT_THAT(outcome.err, testing::AllOf(HasSubstr("is a sun"), HasSubstr("raytrace"))) << method;
