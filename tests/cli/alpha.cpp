@@ -400,7 +400,7 @@ TEST_F(AlphaSurfaces, InspectListsWhatTheSceneHas) {
                     HasSubstr("holes where alpha is below 0.5"), HasSubstr("animation from 0 s to 2 s")));
   EXPECT_THAT(outcome.out, AllOf(HasSubstr("light     \"Star\": 2 pieces: 2 polygons"),
                                  HasSubstr("'Thread' is emissive, but no area light"), HasSubstr("it has no area")));
-  EXPECT_THAT(outcome.out, testing::ContainsRegex("soft-volume +refused +light passes through \"Card\""));
+  EXPECT_THAT(outcome.out, testing::ContainsRegex("hard-volume +refused +light passes through \"Card\""));
   EXPECT_THAT(outcome.out, Not(testing::ContainsRegex("pcss +refused +light passes")));
   // A light's own body dims none of its light.
   gltf.at("/scenes/0/nodes") = {0, 1, 2};
