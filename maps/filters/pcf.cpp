@@ -4,6 +4,7 @@
 
 #include "maps/filters/methods.hpp"
 
+#include "base/error.hpp"
 #include "maps/filters/pcf.comp.spv.hpp"
 #include "maps/filters/pcf_fitted.comp.spv.hpp"
 #include "maps/filters/pcf.shared.h"
@@ -20,6 +21,18 @@ namespace penumbra::maps {
 namespace {
 
 constexpr visibility::IntegerOption kWindow{"window", 1, 64, 7, "texels on a side of the window that is averaged"};
+
+constexpr visibility::ChoiceOption kWeights{
+    "weights",
+    {{"equal", gpu::kEqual}, {"gaussian", gpu::kGaussian}, {"bilinear", gpu::kBilinear}},
+    gpu::kEqual,
+    "what texels count: alike; as a Gaussian whose deviation is a quarter of the window; or by their part in a window "
+    "that "
+    "is centred on the receiver (window=1: the bilinear test of four texels)"};
+constexpr visibility::IntegerOption kTaps{
+    "taps", 0, 256, 0, "so many texels of the window, in a pattern that is turned at every receiver; 0: all of them"};
+constexpr visibility::IntegerOption kStages{"stages", 1, 2, 1,
+                                            "2: the outermost quarter of the taps decide where they agree"};
 
 visibility::MeshVerdict pcf_verdict(const mesh::Diagnosis& mesh) {
   return judge_for_maps("a hard shadow of the light's centre, blurred by a window that knows no light", mesh);
@@ -39,7 +52,13 @@ visibility::MethodDescription pcf_description() {
       .options = compared_map_option_descriptions(),
       .verdict_on = pcf_verdict,
       .repairs = pcf_repairs};
-  description.options.push_back(kWindow.description());
+  for (const auto& option :
+       {kWindow.description(), kWeights.description(), kTaps.description(), kStages.description()}) {
+    description.options.push_back(option);
+  }
+  for (const auto& option : {kOffsetFactor.description(), kOffsetUnits.description()}) {
+    description.options.push_back(option);
+  }
   std::ranges::copy(view_fit_descriptions(), std::back_inserter(description.options));
   return description;
 }
@@ -50,10 +69,14 @@ std::unique_ptr<visibility::Method> make_pcf(const render::Device& device, const
                    .look_up = shaders::kPcfComp,
                    .fitted_look_up = shaders::kPcfFittedComp};
   const visibility::ParsedOptions parsed = visibility::parse_options(recipe.description, options);
-  const gpu::PcfPush push{parsed[kWindow]};
+  const gpu::PcfPush push{parsed[kWindow], parsed[kWeights], parsed[kTaps], parsed[kStages]};
+  if (push.weights == gpu::kBilinear && push.taps != 0) {
+    throw UsageError("method pcf: weights=bilinear counts parts of texels, and taps={} takes whole ones; take taps=0",
+                     push.taps);
+  }
   // The window reaches half its texels beside a receiver's direction. How wide a texel is depends on what the window
   // holds: no window of receivers is wider than ±kWidestTangent.
-  const std::uint32_t reach = push.window / 2;  // in whole texels
+  const std::uint32_t reach = push.window / 2 + (push.weights == gpu::kBilinear ? 1 : 0);  // in whole texels
   const double beside = 2 * kWidestTangent * reach / parsed[kMapSize];
   recipe.beside = [beside](const visibility::Light& /*light*/, const LightBasis& /*basis*/) {
     return glm::dvec2(beside);

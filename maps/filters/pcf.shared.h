@@ -5,8 +5,14 @@
 namespace penumbra::maps::gpu {
 #endif
 
+// PcfPush::weights.
+const uint kEqual = 0, kGaussian = 1, kBilinear = 2;
+
 struct PcfPush {
-  uint window;  // texels on a side
+  uint window;   // texels on a side
+  uint weights;  // kEqual ...
+  uint taps;     // spread over the window, turned at every receiver; 0: all of its texels
+  uint stages;   // of taps; 2: the outermost decide if they agree
 };
 
 #ifdef __cplusplus

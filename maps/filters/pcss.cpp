@@ -91,6 +91,9 @@ visibility::MethodDescription pcss_description() {
       .repairs = filter_repairs};
   description.options.push_back(kBlockerSamples.description());
   description.options.push_back(kFilterSamples.description());
+  for (const auto& option : {kOffsetFactor.description(), kOffsetUnits.description()}) {
+    description.options.push_back(option);
+  }
   std::ranges::copy(view_fit_descriptions(), std::back_inserter(description.options));
   return description;
 }

@@ -47,6 +47,9 @@ visibility::MethodDescription shadow_map_description() {
       .verdict_on = shadow_map_verdict,
       .repairs = filter_repairs};
   description.options.push_back(kHardTest.description());
+  for (const auto& option : {kOffsetFactor.description(), kOffsetUnits.description()}) {
+    description.options.push_back(option);
+  }
   std::ranges::copy(view_fit_descriptions(), std::back_inserter(description.options));
   return description;
 }

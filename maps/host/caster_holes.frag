@@ -4,6 +4,7 @@
 #include "maps/host/map_view.shared.h"
 #include "render/both.glsl"
 #include "maps/host/holes.glsl"
+#include "maps/host/map_depth.glsl"
 
 // caster.frag for surfaces with holes: a texel whose centre sees through one keeps what is behind.
 
@@ -11,5 +12,5 @@ PUSH_CONSTANTS HolesBlock { CasterPush push; };
 
 void main() {
   if (is_hole()) discard;
-  gl_FragDepth = map_depth(push, gl_FragCoord);
+  gl_FragDepth = offset_map_depth(push, gl_FragCoord);
 }

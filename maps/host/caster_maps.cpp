@@ -160,6 +160,12 @@ std::vector<CasterMaps::Range> CasterMaps::ranges(const Batch& batch, std::int32
   return ranges;
 }
 
+gpu::CasterPush CasterMaps::offset(gpu::CasterPush push) const {
+  push.offset_factor = offset_factor_;
+  push.offset_units = offset_units_;
+  return push;
+}
+
 void CasterMaps::record_faces(render::Commands& commands, MapLayer layer, std::span<const FacePush> faces,
                               std::int32_t light_index, const Destination& to) const {
   if (!opengl_) {
@@ -172,7 +178,7 @@ void CasterMaps::record_faces(render::Commands& commands, MapLayer layer, std::s
   commands.host_pass(pass_name(layer), [&] {
     for (std::uint32_t face = 0; face < faces.size(); ++face) {
       PENUMBRA_ASSERT(!faces[face].logarithmic, "OpenGL draws no rows of logarithms");
-      draw_by_opengl(layer, faces[face].plain, light_index, face, to);
+      draw_by_opengl(layer, offset(faces[face].plain), light_index, face, to);
     }
   });
 }
@@ -197,7 +203,7 @@ void CasterMaps::record_on_device(render::Commands& commands, MapLayer layer, co
         solid_->logarithmic_faces(*device_).record(commands, words, {*batch.corners, to.maps}, draw);
         continue;
       }
-      gpu::PeelPush words{push.plain, previous, size_};
+      gpu::PeelPush words{offset(push.plain), previous, size_};
       words.face.first_vertex = 3 * range.first;
       const auto push_bytes = std::as_bytes(std::span(&words, 1))
                                   .first(layer == MapLayer::behind ? sizeof(gpu::PeelPush) : sizeof(gpu::CasterPush));

@@ -32,6 +32,11 @@ class CasterMaps {
   /// no OpenGL.
   CasterMaps(const render::Device& device, std::uint32_t size, Rasteriser rasteriser = Rasteriser::vulkan);
 
+  /// Polygon offset of the nearest surfaces that are drawn from now on (CasterPush).
+  void set_offset(float factor, float units) {
+    offset_factor_ = factor;
+    offset_units_ = units;
+  }
   void upload(const visibility::SceneFloats& scene);
 
   /// Records the faces of one light point of light number `light_index` and copies them, one after the other, to
@@ -85,6 +90,7 @@ class CasterMaps {
                    const HoleSurfaces* surfaces);
   /// The casters of a batch without the body of that light.
   [[nodiscard]] std::vector<Range> ranges(const Batch& batch, std::int32_t light_index) const;
+  [[nodiscard]] gpu::CasterPush offset(gpu::CasterPush push) const;
   /// All faces of a light point.
   void record_faces(render::Commands& commands, MapLayer layer, std::span<const FacePush> faces,
                     std::int32_t light_index, const Destination& to) const;
@@ -95,6 +101,7 @@ class CasterMaps {
 
   const render::Device* device_;
   std::uint32_t size_;
+  float offset_factor_ = 0, offset_units_ = 0;
   std::optional<Passes> solid_, holes_;  // either these
   std::optional<render::DepthTarget> target_;
   std::optional<render::Buffer> surfaces_;  // HoleSurfaces::words

@@ -278,21 +278,14 @@ FittedViews fit_views(const visibility::SceneFloats& scene, const visibility::Li
 
 glm::dvec2 caster_margin(const visibility::SceneFloats& scene, const visibility::Light& light, const LightBasis& basis,
                          double sign, const glm::dvec2& reach, double deepest) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  double nearest = kInfinity;
-  for (std::uint32_t i = 0; i < scene.triangles.size(); ++i) {
-    if (scene.casts_shadow[i] == 0 || scene.emits[i] == light.index) continue;
-    double lowest = kInfinity, highest = -kInfinity;
-    for (const glm::vec3& corner : scene.corners(i)) {
-      const double height = sign * basis.local(corner).z;
-      lowest = std::min(lowest, height);
-      highest = std::max(highest, height);
-    }
-    if (highest <= 0) continue;
-    if (lowest <= 0) return glm::dvec2(kInfinity);
-    nearest = std::min(nearest, lowest);
-  }
-  return reach * std::max(0.0, 1 / nearest - 1 / deepest);
+  std::vector<glm::dvec3> local(scene.positions.size());
+  std::transform(scene.positions.begin(), scene.positions.end(), local.begin(),
+                 [&](const glm::vec3& x) { return basis.local(x); });
+  const SideTriangles casters = triangles_on_side(
+      scene, local, sign, [&](std::size_t i) { return scene.casts_shadow[i] != 0 && scene.emits[i] != light.index; });
+  SideTriangles receivers;
+  receivers.hull_x.emplace_back(0, deepest);
+  return beside_of(reach, receivers, casters);
 }
 
 Face face_of(const gpu::LightView& view, const LightBasis& basis, std::uint32_t face) {

@@ -41,6 +41,7 @@ class MapMethod final : public visibility::Method {
         look_up_(make_look_up()) {
     PENUMBRA_ASSERT(!options_.fit.sees_camera() || (recipe_.points == MapPoints::centre && recipe_.sub_lights == 1),
                     "{}: only maps from the light's centre are fitted to a camera", recipe_.description.name);
+    casters_.set_offset(options_.offset_factor, options_.offset_units);
     if (options_.depth != DepthUse::first) recipe_.layers.count = std::max(recipe_.layers.count, 2u);
     PENUMBRA_ASSERT(recipe_.points == MapPoints::centre || total_layers() == 1, "{}: layers of a light sample's map",
                     recipe_.description.name);

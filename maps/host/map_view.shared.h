@@ -57,20 +57,12 @@ struct CasterPush {
   vec3 row_y;
   uint first_vertex;
   vec3 row_w;
-  uint filler;  // whole 16 bytes, so that what follows lies at the same place in both layouts (render/both.glsl)
+  float offset_factor;  // polygon offset: depths grow by so many times their change across a texel
   vec3
       depth_row;  // depth / clip.w = dot(depth_row, (x, y, 1)) at the pixel (x, y): (0, 0, 1) unless the face is warped
-  uint filler_2;
+  float offset_units;  // and by this. Whole 16 bytes, so that what follows lies at the same place in both layouts
+                       // (render/both.glsl)
 };
-
-#ifndef __cplusplus
-// What a map holds of a fragment: the distance along the face's axis, or that nothing is there, which in a warped face
-// may be seen in directions that lead behind the light's plane.
-float map_depth(CasterPush face, vec4 at) {
-  const float depth = dot(face.depth_row, vec3(at.xy, 1.0)) / (at.w * face.far);
-  return depth > 0.0 ? depth : 1.0;
-}
-#endif
 
 // logarithmic.vert, logarithmic.frag: a face whose rows are logarithms of those of a warped face (Lloyd et al. 2008),
 // with b in [0, 1] across what it holds: -log(1 - b (1 - 1/ratio)) / log(ratio).

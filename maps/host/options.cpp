@@ -31,10 +31,21 @@ MapOptions map_options(const render::Device& device, const visibility::MethodDes
   };
   if (has(kDepth.name())) chosen.depth = options[kDepth];
   if (has(kReceiverPlane.name())) chosen.receiver_plane = options[kReceiverPlane];
+  if (has(kOffsetFactor.name())) {
+    chosen.offset_factor = static_cast<float>(options[kOffsetFactor]);
+    chosen.offset_units = static_cast<float>(options[kOffsetUnits]) * 0x1p-24F;
+    if ((chosen.offset_factor != 0 || chosen.offset_units != 0) && chosen.depth != DepthUse::first) {
+      throw UsageError("method {}: a polygon offset moves the first surface alone; take {}=first", method.name,
+                       kDepth.name());
+    }
+  }
   chosen.fit = view_fit(method.options, options);
   if (chosen.fit.has_faces() && chosen.rasteriser == Rasteriser::opengl) {
     throw UsageError("method {}: option fit={} needs rasteriser=vulkan; OpenGL draws maps of fit=receivers and view",
                      method.name, kFit.name_of(chosen.fit.fit));
+  }
+  if (chosen.fit.fit == Fit::logpsm && (chosen.offset_factor != 0 || chosen.offset_units != 0)) {
+    throw UsageError("method {}: fit=logpsm draws rays, not polygons: it has no polygon offset", method.name);
   }
   if (chosen.size > device.limits().max_image_size) {
     throw UsageError("method {}: option {} is {}; this device draws images of up to {} texels a side", method.name,

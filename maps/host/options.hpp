@@ -50,6 +50,12 @@ inline constexpr auto kDepth = depth_option(DepthUse::first);
 inline constexpr auto kReceiverPlane = visibility::flag_option(
     "receiverPlane", true, "compare each texel with the receiver's plane; off: with the receiver's own depth");
 
+/// Polygon offset: of methods that ask depths and project none.
+inline constexpr visibility::RealOption kOffsetFactor{
+    "offsetFactor", 0, 64, 0, "polygon offset: stored depths grow by so many times their change across a texel"};
+inline constexpr visibility::RealOption kOffsetUnits{"offsetUnits", 0, 1048576, 0,
+                                                     "polygon offset: and by so many steps of a depth of 24 bits"};
+
 /// What all methods here have: texels on a side of a map, the bias in texels, and who draws the maps; `depth` and
 /// `receiverPlane`, if the method has them.
 struct MapOptions {
@@ -59,6 +65,7 @@ struct MapOptions {
   bool receiver_plane = true;
   Rasteriser rasteriser = Rasteriser::vulkan;
   ViewFit fit = {};
+  float offset_factor = 0, offset_units = 0;  ///< as in CasterPush
 };
 
 /// How `methods` describes them.

@@ -3,6 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "maps/host/map_view.shared.h"
 #include "render/both.glsl"
+#include "maps/host/map_depth.glsl"
 
 STORAGE(1) readonly buffer Maps { float maps[]; };
 #include "maps/host/peel.glsl"

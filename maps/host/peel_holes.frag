@@ -4,6 +4,7 @@
 #include "maps/host/map_view.shared.h"
 #include "render/both.glsl"
 #include "maps/host/holes.glsl"
+#include "maps/host/map_depth.glsl"
 
 // peel.frag for surfaces with holes.
 

@@ -172,5 +172,141 @@ TEST_F(Pcf, WindowsGoOnAcrossTheFacesOfAHemicube) {
   EXPECT_GT(floor, 300U);
 }
 
+// Where a board's straight edge runs along the texels V is a sum of weights: of all columns beyond the edge.
+TEST_F(Pcf, WeightsAreThoseOfTheirNames) {
+  constexpr std::uint32_t kSamples = 512, kSize = 64;
+  const auto line = [](const visibility::SceneFloats& floats, const visibility::PinholeCamera& /*camera*/) {
+    visibility::ViewSamples samples;
+    samples.width = kSamples;
+    samples.height = 1;
+    for (std::uint32_t i = 0; i < kSamples; ++i) {
+      samples.triangle.push_back(0);
+      samples.p.emplace_back(glm::dvec3(-0.5 + 1.0 * i / kSamples, 0, 0.003) - floats.origin);
+      samples.n.emplace_back(0, 1, 0);
+      samples.depth.push_back(1);
+      samples.facing.push_back(1);
+    }
+    return samples;
+  };
+  const Stage stage(under_a_board(1, 0.05, 0.1), kSamples, 1, light_samples(1), line);
+  for (const std::uint32_t n : {1U, 4U, 7U}) {
+    const int reach = static_cast<int>(n / 2);
+    for (const bool bilinear : {false, true}) {
+      visibility::MethodOptions options = window(n, kSize);
+      options["weights"] = bilinear ? "bilinear" : "gaussian";
+      const Masks found = run(maps::make_pcf, stage, options);
+      const CentreMaps maps(device(), stage, kSize, glm::dvec2(8.0 * (reach + (bilinear ? 1 : 0)) / kSize));
+      const auto& side = maps.fitted.views.front().side[0];
+      const int axis = std::abs(maps.basis.u.x) > 0.5 ? 0 : 1;
+      const double texel = static_cast<double>(side.upper[axis] - side.lower[axis]) / kSize;
+      const bool forward = (axis == 0 ? maps.basis.u.x : maps.basis.v.x) > 0;
+      const auto column_of = [&](double x_over_z) {
+        return ((forward ? x_over_z : -x_over_z) - static_cast<double>(side.lower[axis])) / texel;
+      };
+      // The board covers columns whose centres are beyond its edge, at 0.05 over 1.
+      const double edge = column_of(0.05);
+      const auto dark = [&](double column) { return forward ? column + 0.5 > edge : column + 0.5 < edge; };
+      std::size_t between = 0;
+      for (std::size_t i = 0; i < stage.samples.size(); ++i) {
+        const glm::dvec3 d = maps.basis.local(glm::dvec3(stage.samples.p[i]));
+        const double at = (d[axis] / d.z - static_cast<double>(side.lower[axis])) / texel;
+        const double to_border = std::abs(at - std::round(at)), to_half = std::abs(at - std::floor(at) - 0.5);
+        if (std::min(to_border, to_half) < 1e-3) continue;  // another column by rounding
+        double lit = 0, all = 0;
+        if (bilinear) {
+          const double first = at - 0.5 * n, last = at + 0.5 * n;
+          for (double c = std::floor(first); c < last; ++c) {
+            const double weight = std::min(c + 1, last) - std::max(c, first);
+            all += weight;
+            lit += dark(c) ? 0 : weight;
+          }
+        } else {
+          const double first = std::floor(at - 0.5 * n + 0.5);
+          for (std::uint32_t k = 0; k < n; ++k) {
+            const double beside = k - 0.5 * (n - 1.0), weight = std::exp(-0.5 * beside * beside / (n * n / 16.0));
+            all += weight;
+            lit += dark(first + k) ? 0 : weight;
+          }
+        }
+        EXPECT_NEAR(static_cast<double>(found.visibility[i]), lit / all, 2e-4) << n << ", sample " << i;
+        between += lit > 0 && lit < all ? 1 : 0;
+      }
+      if (n > 1 || bilinear) EXPECT_GT(between, n * 4) << n;
+    }
+  }
+}
+
+// Uralsky 2005: with stages only what the outermost taps disagree about is asked for more; turned patterns have the
+// window's mean.
+TEST_F(Pcf, SpreadTapsHaveTheWindowsMean) {
+  const Stage stage(sphere_and_wall(1, false), 64, 64, light_samples(1));
+  const auto found = [&](const char* taps, const char* stages) {
+    visibility::MethodOptions options = window(9, 256);
+    options["taps"] = taps;
+    options["stages"] = stages;
+    return run(maps::make_pcf, stage, options).visibility;
+  };
+  const std::vector<float> all = found("0", "1"), few = found("16", "1"), many = found("128", "1"),
+                           staged = found("128", "2");
+  const auto off = [&](const std::vector<float>& a, const std::vector<float>& b) {
+    return rmse(
+        stage, [](std::size_t) { return true; }, [&](std::size_t i) { return static_cast<double>(a[i] - b[i]); });
+  };
+  EXPECT_LT(off(many, all), 0.03);
+  EXPECT_LT(off(many, all), off(few, all));
+  EXPECT_LT(off(staged, many), 0.03);
+  std::size_t changed = 0;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (staged[i] == many[i]) continue;
+    ++changed;  // the outermost agreed, others did not
+    EXPECT_TRUE(staged[i] == 0.0F || staged[i] == 1.0F);
+  }
+  EXPECT_LT(changed, all.size() / 20);
+  EXPECT_EQ(found("16", "1"), few) << "the pattern is the receiver's, whatever the run";
+  EXPECT_THROW(maps::make_pcf(device(), {{"taps", "4"}, {"weights", "bilinear"}}), UsageError);
+}
+
+// A texel's centre is up to half a texel from a receiver along both axes: a polygon offset of factor 1 is what its own
+// depth changes, and a tilted plane no longer shades itself. Where there is a caster at half the height, it still
+// shades.
+TEST_F(Pcf, APolygonOffsetKeepsATiltedPlaneLit) {
+  constexpr std::uint32_t kSide = 40;
+  for (const double tilt : {30.0, 60.0}) {
+    const double angle = tilt * 0.017453292519943295;
+    const glm::dvec3 along(std::cos(angle), std::sin(angle), 0), up(-std::sin(angle), std::cos(angle), 0);
+    scenes::Scene scene;
+    add_quad(scene, {0, 0, 0}, along, {0, 0, -1});
+    scene.lights.push_back(ceiling_light(5, 0.5));
+    scene.cameras.push_back(camera({0, 3, 3}, {0, 0, 0}));
+    const Stage stage(scene, kSide, kSide, light_samples(1),
+                      grid_samples(kSide, {0, 0, 0}, 0.8 * along, {0, 0, 0.8}, up));
+    for (const Factory& make : {Factory(maps::make_shadow_map), Factory(maps::make_pcf)}) {
+      visibility::MethodOptions options{{"size", "256"}, {"receiverPlane", "off"}, {"bias", "0"}, {"offsetUnits", "8"}};
+      const auto mean = [&](const Masks& masks) {
+        double sum = 0;
+        for (const float v : masks.visibility) sum += static_cast<double>(v);
+        return sum / static_cast<double>(masks.visibility.size());
+      };
+      EXPECT_LT(mean(run(make, stage, options)), 0.7) << "units alone";
+      // pcf's window of 7 asks texels three and a half away.
+      options["offsetFactor"] = "4.5";
+      EXPECT_EQ(mean(run(make, stage, options)), 1.0) << tilt;
+      options["rasteriser"] = "opengl";
+      EXPECT_EQ(mean(run(make, stage, options)), 1.0) << tilt << ", OpenGL";
+    }
+    visibility::MethodOptions least{
+        {"size", "256"}, {"receiverPlane", "off"}, {"bias", "0"}, {"offsetUnits", "8"}, {"offsetFactor", "0.51"}};
+    for (const float v : run(maps::make_shadow_map, stage, least).visibility) EXPECT_EQ(v, 1.0F);
+    least["depth"] = "dual";
+    EXPECT_THROW(maps::make_shadow_map(device(), least), UsageError);
+  }
+  // It is no more than that: a board 0.3 over a floor shades it.
+  const auto grid = grid_samples(16, {0.6, 0, 0}, {0.3, 0, 0}, {0, 0, 0.3}, {0, 1, 0});
+  const Stage stage(under_a_board(0.3, 0.05, 0.1), 16, 16, light_samples(1), grid);
+  const Masks found =
+      run(maps::make_shadow_map, stage, {{"size", "256"}, {"receiverPlane", "off"}, {"offsetFactor", "4"}});
+  for (const float v : found.visibility) EXPECT_EQ(v, 0.0F);
+}
+
 }  // namespace
 }  // namespace penumbra::tests

@@ -117,9 +117,9 @@ class TwoPlanes : public MapsTest {
                                      .row_y = {0, 1, 0},
                                      .first_vertex = 0,
                                      .row_w = {0, 0, 1},
-                                     .filler = 0,
+                                     .offset_factor = 0,
                                      .depth_row = {0, 0, 1},
-                                     .filler_2 = 0};
+                                     .offset_units = 0};
     render::Commands commands(device());
     pass.record(commands, push, {triangles},
                 {.width = kMapTexels, .height = kMapTexels, .vertices = 12, .depth = &target});

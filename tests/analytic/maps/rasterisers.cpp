@@ -31,9 +31,9 @@ maps::gpu::CasterPush straight() {
           .row_y = {0, 1, 0},
           .first_vertex = 0,
           .row_w = {0, 0, 1},
-          .filler = 0,
+          .offset_factor = 0,
           .depth_row = {0, 0, 1},
-          .filler_2 = 0};
+          .offset_units = 0};
 }
 
 // The diagonal of a square passes through the centres of a map's own diagonal: those are open, all others certain.

@@ -1,0 +1,76 @@
+#!/usr/bin/env python3
+"""The picture and the table of docs/map-fits.md: map_fits_pictures.py PROGRAM. A long floor with plates over it, a camera
+near its end, a light so small that its shadows are hard: for each fit V's error, and 1/m, the inverse of the aliasing error.
+Python's standard library is all that it needs."""
+import base64
+import json
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+sys.dont_write_bytecode = True
+sys.path.insert(0, str(ROOT / "docs/figures"))
+from png import read_png, write_png  # noqa: E402
+
+# Texels a side, and what there is of each fit at about as many texels in all.
+ROWS = [("receivers", 256), ("view", 256), ("cascades", 128), ("lispsm", 256), ("tsm", 256), ("psm", 256), ("logpsm", 256),
+        ("tiles", 64)]
+COLUMNS = 4
+
+
+def scene():
+    meshes = [{"name": "floor", "color": [0.7, 0.7, 0.7],
+               "quad": {"center": [0, 0, -20], "halfU": [12, 0, 0], "halfV": [0, 0, -24]}}]
+    for z in (2, -1, -4, -8, -14, -22, -34):
+        for x in (-3, 0.3, 3.1):
+            k = len(meshes)
+            meshes.append({"name": f"plate {k}", "color": [0.7, 0.6, 0.4],
+                           "quad": {"center": [x + 0.05 * k, 0.8, z], "halfU": [0.4, 0, 0.1], "halfV": [0.05, 0, -0.4]}})
+    return {"format": "penumbra-scene/1", "size": [192, 144], "meshes": meshes,
+            "camera": {"eye": [0, 1.6, 6], "target": [0, 0.2, 0], "verticalFov": 45},
+            "lights": [{"name": "lamp", "radiance": [1e8, 1e8, 1e8],
+                        "rectangle": {"center": [0, 30, -10], "halfU": [0.001, 0, 0], "halfV": [0, 0, 0.001]}}]}
+
+
+def run(program, folder, aliasing):
+    """Metrics of every fit, and the pictures beside them."""
+    entries = [f"shadow-map:size={size}:fit={fit}:aliasing={aliasing}" for fit, size in ROWS]
+    (folder / "scene.json").write_text(json.dumps(scene()))
+    out = folder / aliasing
+    subprocess.run([program, "-q", "compare", folder / "scene.json", "-o", out, "--methods", ",".join(entries), "--runs", "1",
+                    "--light-samples", "16"], check=True, stdout=subprocess.DEVNULL)
+    pictures = {}
+    for alt, data in re.findall(r'<img alt="([^"]*)"[^>]*src="data:image/png;base64,([^"]*)"', (out / "report.html").read_text()):
+        pictures[alt.partition(": ")[0]] = read_png(base64.b64decode(data))
+    return json.loads((out / "metrics.json").read_text())["methods"], pictures
+
+
+def main():
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        methods, errors = run(sys.argv[1], folder, "count")
+        _, shown = run(sys.argv[1], folder, "show")
+        for (fit, size), method in zip(ROWS, methods):
+            counters = method["counters"]
+            pixels = counters["aliasingPixels"]
+            print(f"| `{fit}` | {counters['mapFaces']} × {size}² | {counters['aliasingThousandths'] / 1000 / pixels:.2f} | "
+                  f"{counters['aliasingWorstThousandths'] / 1000:.1f} | {100 * counters['undersampledPixels'] / pixels:.0f} % | "
+                  f"{counters['neededTexels'] / pixels:.1f} | {method['error']['rmse']:.4f} |")
+        pictures = []
+        for (fit, size) in ROWS:
+            entry = f"shadow-map:size={size}:fit={fit}:aliasing="
+            error, inverse = errors[f"Signed error of V by {entry}count"], shown[f"V by {entry}show"]
+            pictures.append(error + [b"\xff" * len(error[0])] * 3 + inverse)
+        rows = []
+        for first in range(0, len(pictures), COLUMNS):
+            for lines in zip(*pictures[first:first + COLUMNS]):
+                rows.append((b"\xff" * 12).join(lines))
+            rows += [b"\xff" * len(rows[0])] * 8
+        write_png(ROOT / "docs/images/map-fits.png", rows)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,388 @@
+// Maps that are fitted to what a camera sees: closed forms of the papers, the aliasing error, and every fit's shadows
+// texel by texel.
+
+#include "maps/host/aliasing.hpp"
+#include "maps/host/base_face.hpp"
+#include "maps/host/face_fit.hpp"
+#include "maps/host/warps.hpp"
+#include "tests/analytic/maps/centre_maps.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+#include <map>
+#include <set>
+
+namespace penumbra::tests {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// S4 3.2.3.1: C_i = z_n (z_f / z_n)^(i/m); Zhang et al. 2006 mix it with equal slices.
+TEST(MapFits, SlicesEndWhereThePapersSay) {
+  maps::ViewFit fit{.fit = maps::Fit::cascades, .split_share = 0.5};
+  EXPECT_EQ(fit.slices(), 4U);
+  const auto ends = [&](maps::Split split) {
+    fit.split = split;
+    return maps::split_depths(fit, 1, 81, 4);
+  };
+  const auto expect = [](const std::vector<double>& found, const std::vector<double>& right) {
+    ASSERT_EQ(found.size(), right.size());
+    for (std::size_t i = 0; i < right.size(); ++i) EXPECT_NEAR(found[i], right[i], 1e-12 * right[i]);
+  };
+  expect(ends(maps::Split::logarithmic), {1, 3, 9, 27, 81});
+  expect(ends(maps::Split::uniform), {1, 21, 41, 61, 81});
+  expect(ends(maps::Split::practical), {1, 12, 25, 44, 81});
+  fit.split_share = 0.05;  // from 5 on
+  const double step = std::pow(81.0 / 5, 0.25);
+  expect(ends(maps::Split::pseudo_near), {1, 5 * step, 5 * step * step, 5 * step * step * step, 81});
+}
+
+TEST(MapFits, DistancesAreThePapers) {
+  // Wimmer et al. 2004: z_n + sqrt(z_n z_f), over the sine.
+  EXPECT_DOUBLE_EQ(maps::lispsm_distance(1, 16, 1), 5);
+  EXPECT_DOUBLE_EQ(maps::lispsm_distance(1, 16, 0.5), 10);
+  // Martin and Tan 2004: what is in focus comes to four fifths: 0.8 = (n + d)/d · f/(f + n).
+  const double n = maps::tsm_distance(8, 2);
+  EXPECT_NEAR((n + 8) / 8 * 2 / (2 + n), 0.8, 1e-12);
+  EXPECT_EQ(maps::tsm_distance(8, 6.4), kInfinity);
+}
+
+/// An overhead light so far away that its rays are parallel, over an eye at 0 that looks along b: S4 figure 3.7.
+class Overhead : public testing::Test {
+ protected:
+  static constexpr double kHeight = 1e5, kNear = 1, kFar = 25;
+
+  Overhead() {
+    for (const double z : {kNear, kFar}) {
+      for (const double x : {-0.5, 0.5}) points_.emplace_back(x * z, z, kHeight);
+    }
+  }
+  [[nodiscard]] maps::FittedFace face(maps::Fit fit) const {
+    const maps::SeenBody body{.points = points_,
+                              .near = kNear,
+                              .far = kFar,
+                              .eye = {0, 0, kHeight},
+                              .forward = {0, 1, 0},
+                              .across = {2, 0, 0},
+                              .upward = {0, 0, 2}};
+    const maps::Warp warp = fit == maps::Fit::view ? maps::Warp() : maps::warp_of(fit, body, 0.25);
+    maps::PlaceBounds bounds;
+    for (const glm::dvec3& point : points_) {
+      const glm::dvec3 at = warp.matrix * point;
+      bounds.add(glm::dvec2(at) / at.z);
+    }
+    glm::dmat3 unit = maps::to_unit(bounds, 0);
+    if (warp.ratio > 0) {
+      unit[1] = {0, 1, 0};
+      unit[2].y = 0;
+    }
+    return {.to_face = unit * warp.matrix, .ratio = warp.ratio};
+  }
+  /// S4 equation 3.1 with cos α / cos β = 1, across the view and along it: 1/z · dz/ds.
+  static glm::dvec2 errors(const maps::FittedFace& face, double z) {
+    const glm::dvec3 at(0, z, kHeight);
+    const glm::dvec2 across = face.moves(at, {1, 0, 0}), along = face.moves(at, {0, 1, 0});
+    return {1 / (z * glm::length(across)), 1 / (z * glm::length(along))};
+  }
+
+  std::vector<glm::dvec3> points_;
+};
+
+TEST_F(Overhead, ErrorsAlongTheViewAreThoseOfTheNotes) {
+  const double ratio = kFar / kNear, length = kFar - kNear;
+  // Uniform: dz/ds is the length.
+  const maps::FittedFace uniform = face(maps::Fit::view);
+  EXPECT_NEAR(errors(uniform, kNear).y, length / kNear, 1e-6 * length);
+  EXPECT_NEAR(errors(uniform, kFar).y, length / kFar, 1e-6);
+  // PSM: constant across; along, it grows as z.
+  const maps::FittedFace psm = face(maps::Fit::psm);
+  EXPECT_NEAR(errors(psm, kFar).x / errors(psm, kNear).x, 1, 1e-3);
+  EXPECT_NEAR(errors(psm, kFar).y / errors(psm, kNear).y, ratio, 1e-3 * ratio);
+  EXPECT_NEAR(errors(psm, 5).y / errors(psm, kNear).y, 5, 5e-3);
+  // LiSPSM: n_opt is where both ends have the same error, the uniform one times sqrt(z_n / z_f), and less between.
+  const maps::FittedFace lispsm = face(maps::Fit::lispsm);
+  const double most = length / kNear / std::sqrt(ratio);
+  EXPECT_NEAR(errors(lispsm, kNear).y, most, 1e-4 * most);
+  EXPECT_NEAR(errors(lispsm, kFar).y, most, 1e-4 * most);
+  EXPECT_LT(errors(lispsm, 5).y, 0.6 * most);
+  // LogPSM: constant along both, the logarithm of the depths' ratio along the view.
+  const maps::FittedFace logpsm = face(maps::Fit::logpsm);
+  for (const double z : {1.0, 2.0, 7.0, 25.0}) {
+    EXPECT_NEAR(errors(logpsm, z).x, errors(logpsm, kNear).x, 1e-3 * errors(logpsm, kNear).x);
+    EXPECT_NEAR(errors(logpsm, z).y, std::log(ratio), 1e-3) << z;
+  }
+  // TSM: a quarter of the depths has four fifths of the rows.
+  const maps::FittedFace tsm = face(maps::Fit::tsm);
+  const auto row = [&](double z) { return tsm.place({0, z, kHeight})->y; };
+  EXPECT_NEAR((row(kNear + 0.25 * length) - row(kNear + 1e-9)) / (row(kFar - 1e-9) - row(kNear + 1e-9)), 0.8, 1e-4);
+}
+
+TEST_F(Overhead, PlacesAndDirectionsAreInverse) {
+  for (const maps::Fit fit : {maps::Fit::view, maps::Fit::lispsm, maps::Fit::tsm, maps::Fit::psm, maps::Fit::logpsm}) {
+    const maps::FittedFace one = face(fit);
+    for (const glm::dvec2& at : {glm::dvec2(0.1, 0.2), glm::dvec2(0.5, 0.9), glm::dvec2(0.99, 0.01)}) {
+      const auto back = one.place(3.0 * one.direction(at));
+      ASSERT_TRUE(back);
+      EXPECT_NEAR(glm::length(*back - at), 0, 1e-7);
+      EXPECT_NEAR(glm::dot(one.along, one.direction(at)), 1, 1e-12);
+    }
+  }
+}
+
+// A camera that moves by less than a texel, or turns a little, does not move texels: their borders are multiples of a
+// width that takes steps.
+TEST(MapFits, SnappedTexelsStayWhereTheyAre) {
+  std::set<double> widths;
+  for (int i = 0; i < 200; ++i) {
+    const double lower = -0.3 + 0.0001 * i, upper = 0.41 + 0.00013 * i;
+    const maps::SnappedSpan span = maps::snapped(lower, upper, 256);
+    widths.insert(span.texel);
+    EXPECT_LE(span.lower, lower);
+    EXPECT_GE(span.lower + 256 * span.texel, upper);
+    EXPECT_LE(span.texel, (upper - lower) / 255 * std::exp2(0.25) * (1 + 1e-12));
+    const double border = span.lower / span.texel;
+    EXPECT_EQ(border, std::round(border));
+  }
+  EXPECT_EQ(widths.size(), 1U);
+}
+
+class FittedMaps : public MapsTest {
+ protected:
+  static constexpr std::uint32_t kSize = 256;
+
+  struct Plate {
+    glm::dvec3 middle, u, v;
+  };
+  /// A long floor, plates above it, a camera near its end, a light high up.
+  static std::vector<Plate> plates() {
+    std::vector<Plate> plates;
+    int k = 0;
+    for (const double z : {3.0, 0.5, -2.5, -7.0, -13.0}) {
+      for (const double x : {-2.4, 0.3, 2.5}) {
+        plates.push_back({{x + 0.05 * k++, 0.8, z}, {0.4, 0, 0.1}, {0.05, 0.1, -0.4}});
+      }
+    }
+    return plates;
+  }
+  static scenes::Scene floor_and_plates(double half_light = 0.5) {
+    scenes::Scene scene;
+    add_quad(scene, {0, 0, -8}, {9, 0, 0}, {0, 0, -14});
+    for (const Plate& plate : plates()) add_quad(scene, plate.middle, plate.u, plate.v);
+    scene.lights.push_back(ceiling_light(14, half_light));
+    scene.cameras.push_back(camera({0, 1.5, 7}, {0, 0.3, 0}));
+    return scene;
+  }
+  static visibility::MethodOptions options(const std::string& fit, const visibility::MethodOptions& more = {}) {
+    visibility::MethodOptions all = more;
+    all["fit"] = fit;
+    if (!all.contains("size")) all["size"] = fmt::format("{}", kSize);
+    return all;
+  }
+  static std::map<std::string, std::uint64_t> counters(const Stage& stage, visibility::MethodOptions given) {
+    given["aliasing"] = "count";
+    const auto method = maps::make_shadow_map(device(), given);
+    run(*method, stage);
+    return method->counters();
+  }
+  static double storage(const std::map<std::string, std::uint64_t>& counters) {
+    return static_cast<double>(counters.at("neededTexels")) / static_cast<double>(counters.at("aliasingPixels"));
+  }
+};
+
+// What a texel says is what its centre sees: of every fit, every texel's answer on the floor is that of the plates in
+// the direction of its centre, but where an outline passes within the rasteriser's 1/256 texel (and rounding) of it.
+TEST_F(FittedMaps, EveryTexelSaysWhatItsCentreSees) {
+  const Stage stage(floor_and_plates(), 96, 72, light_samples(1));
+  const maps::LightBasis basis = maps::light_basis(stage.light, stage.floats);
+  const glm::dvec3 origin(stage.floats.origin);
+  const auto sees_light = [&](const glm::dvec3& direction, double most) {
+    return std::ranges::none_of(plates(), [&](const Plate& plate) {
+      const glm::dvec3 normal = glm::cross(plate.u, plate.v), middle = plate.middle - origin - basis.center;
+      const double t = glm::dot(normal, middle) / glm::dot(normal, direction);
+      if (!(t > 0 && t < most)) return false;
+      const glm::dvec3 at = t * direction - middle;
+      const double s = glm::dot(glm::cross(at, plate.v), normal), r = glm::dot(glm::cross(plate.u, at), normal);
+      return std::max(std::abs(s), std::abs(r)) <= glm::dot(normal, normal);
+    });
+  };
+  using maps::Fit;
+  const std::map<std::string, Fit> fits{{"view", Fit::view},     {"cascades", Fit::cascades}, {"tiles", Fit::tiles},
+                                        {"lispsm", Fit::lispsm}, {"tsm", Fit::tsm},           {"psm", Fit::psm},
+                                        {"logpsm", Fit::logpsm}};
+  for (const auto& [name, fit] : fits) {
+    for (const std::string body : {"visible", "frustum"}) {
+      const maps::ViewFit choice{.fit = fit,
+                                 .body = body == "visible" ? maps::ViewBody::visible : maps::ViewBody::frustum};
+      std::vector<maps::FittedFace> faces;
+      if (fit == Fit::view) {
+        const auto points = maps::body_points(stage.floats, stage.light, stage.samples, choice.body, 0, kInfinity);
+        const glm::vec3 centre(basis.center);
+        faces = maps::faces_of(
+            maps::fit_views(stage.floats, stage.light, basis, std::span(&centre, 1), {.size = kSize, .body = &points})
+                .views.front());
+      } else {
+        faces = maps::fit_faces(stage.floats, stage.light, basis, stage.samples, {.fit = choice, .size = kSize});
+      }
+      const Masks found = run(maps::make_shadow_map, stage, options(name, {{"body", body}}));
+      std::size_t asked = 0, open = 0, dark = 0, wrong = 0;
+      for (std::size_t i = 0; i < stage.samples.size(); ++i) {
+        if (stage.samples.triangle[i] < 0 || stage.samples.triangle[i] > 1) continue;  // the floor
+        const auto receiver = maps::seen_receiver(stage.samples, i, basis, false);
+        ASSERT_TRUE(receiver);
+        const maps::FittedFace* face = maps::face_for(faces, *receiver);
+        ASSERT_NE(face, nullptr) << name << ", pixel " << i;
+        const glm::dvec2 at = *face->place(receiver->e) * double{kSize};
+        std::set<bool> answers;
+        constexpr double kStep = 1.0 / 128;
+        for (const double x : {-kStep, 0.0, kStep}) {
+          for (const double y : {-kStep, 0.0, kStep}) {
+            const glm::dvec2 cell = glm::floor(at + glm::dvec2(x, y)), centre = cell + 0.5 + glm::dvec2(x, y);
+            const glm::dvec3 e = face->direction(centre / double{kSize});
+            const glm::dvec3 direction = e.x * basis.u + e.y * basis.v + e.z * basis.n;
+            answers.insert(sees_light(direction, 0.99 * receiver->e.z / e.z));
+          }
+        }
+        ++asked;
+        if (answers.size() > 1) {
+          ++open;
+          continue;
+        }
+        dark += *answers.begin() ? 0 : 1;
+        wrong += (found.visibility[i] == 1.0F) != *answers.begin() ? 1 : 0;
+      }
+      EXPECT_EQ(wrong, 0U) << name << ", " << body;
+      EXPECT_GT(asked, 3000U);
+      EXPECT_GT(dark, asked / 50);
+      EXPECT_LT(open, asked / 50) << name;
+    }
+  }
+}
+
+// S4 3.2: fitting spends no texels on what is not seen, slices and warps spend them near the eye, tiles where pixels
+// ask.
+TEST_F(FittedMaps, EveryFitAliasesLessThanTheOneBefore) {
+  const Stage stage(floor_and_plates(), 96, 72, light_samples(1));
+  const auto receivers = counters(stage, options("receivers")), view = counters(stage, options("view"));
+  EXPECT_EQ(receivers.at("aliasingPixels"), view.at("aliasingPixels"));
+  EXPECT_LT(storage(view), 0.97 * storage(receivers));
+  for (const char* fit : {"lispsm", "tsm", "psm", "logpsm", "cascades"}) {
+    const auto found = counters(stage, options(fit));
+    EXPECT_LT(storage(found), 0.5 * storage(view)) << fit;
+    EXPECT_LT(found.at("aliasingWorstThousandths"), view.at("aliasingWorstThousandths")) << fit;
+  }
+  // Slices by the logarithm of depth beat equal ones, and a warp in each beats both.
+  const auto slices = counters(stage, options("cascades")),
+             equal = counters(stage, options("cascades", {{"split", "uniform"}})),
+             warped = counters(stage, options("lispsm", {{"cascades", "4"}}));
+  EXPECT_LT(storage(slices), storage(equal));
+  EXPECT_LT(storage(warped), storage(slices));
+  // Tiles of a quarter of the width, sixteen of them: as many texels as one map has.
+  const visibility::MethodOptions small{{"size", "64"}};
+  const auto tiles = counters(stage, options("tiles", small));
+  EXPECT_LE(tiles.at("mapFaces"), 16U);
+  EXPECT_LT(tiles.at("undersampledPixels"), counters(stage, options("view")).at("undersampledPixels"));
+}
+
+// S4 equation 3.2, its factors one by one, where eye and light are in the plane x = 0 and so is the texel's side.
+TEST_F(FittedMaps, TheAliasingErrorIsEquation32) {
+  const Stage stage(floor_and_plates(), 96, 72, light_samples(1));
+  const maps::LightBasis basis = maps::light_basis(stage.light, stage.floats);
+  const glm::vec3 centre(basis.center);
+  const auto fitted = maps::fit_views(stage.floats, stage.light, basis, std::span(&centre, 1), {.size = kSize});
+  const maps::FittedFace face = maps::faces_of(fitted.views.front()).front();
+  const visibility::PinholeCamera& camera = stage.samples.camera;
+  const auto& side = fitted.views.front().side[0];
+  // The light's axis along world z.
+  const int along = std::abs(basis.u.z) > 0.5 ? 0 : 1;
+  std::size_t checked = 0;
+  for (std::uint32_t y = 0; y < 72; ++y) {
+    const std::size_t pixel = std::size_t{y} * 96 + 47;  // next to the middle column
+    if (stage.samples.triangle[pixel] < 0 || stage.samples.triangle[pixel] > 1) continue;
+    const glm::dvec3 p(stage.samples.p[pixel]), to_eye = camera.eye - p, to_light = basis.center - p;
+    const double resolution = 72.0 / kSize;  // pixels over texels a side
+    const double parametrisation = 1;        // dG/dt of an even map
+    // Widths of both image planes over their distances: W_l n_e / (W_e n_l).
+    const double light_width = static_cast<double>(side.upper[along] - side.lower[along]);
+    const double views = light_width / (2 * camera.tan_half_fov);
+    const double distances = glm::length(to_light) / glm::length(to_eye);
+    const double beams = (-glm::dot(basis.n, to_light) / glm::length(to_light)) /
+                         (-glm::dot(camera.forward, to_eye) / glm::length(to_eye));
+    const double light_cosine = glm::dot(to_light, glm::dvec3(0, 1, 0)) / glm::length(to_light);
+    const double eye_cosine = glm::dot(to_eye, glm::dvec3(0, 1, 0)) / glm::length(to_eye);
+    const double m = resolution * parametrisation * views * distances * beams * eye_cosine / light_cosine;
+    const auto receiver = maps::seen_receiver(stage.samples, pixel, basis, false);
+    ASSERT_TRUE(receiver);
+    const glm::dvec2 found = maps::aliasing_error(face, *receiver, stage.samples, pixel, basis, kSize);
+    EXPECT_NEAR(found[along], m, 0.01 * m) << y;
+    ++checked;
+  }
+  EXPECT_GT(checked, 30U);
+}
+
+/// A floor, a ball, a wall that reaches beyond the light: what the camera sees needs a hemicube.
+scenes::Scene ball_and_wall(bool two_sided) {
+  scenes::Scene scene;
+  add_quad(scene, {0, 0, 0}, {3, 0, 0}, {0, 0, -3});
+  add_object(scene, "ball", sphere({0.3, 1, 0.2}, 0.6, 12));
+  add_quad(scene, {3, 2.5, 0}, {0, 2.5, 0}, {0, 0, 3});
+  scene.lights.push_back(ceiling_light(4, 0.3));
+  scene.lights.back().two_sided = two_sided;
+  scene.cameras.push_back(camera({-3, 3, 6}, {0.5, 1.5, 0}));
+  return scene;
+}
+
+// Whatever a fit, it is the same question: answers differ from those of a window of receivers as much as these do from
+// finer ones.
+TEST_F(FittedMaps, HemicubesFiltersAndLayersAgree) {
+  for (const bool two_sided : {false, true}) {
+    const Stage stage(ball_and_wall(two_sided), 64, 64, light_samples(1));
+    struct Case {
+      Factory make;
+      visibility::MethodOptions more;
+      double tolerance;
+    };
+    // pcf's window is in texels, and texels differ: hard shadows blurred by more or less.
+    const std::vector<Case> cases{{maps::make_shadow_map, {}, 0.12},
+                                  {maps::make_shadow_map, {{"depth", "dual"}}, 0.12},
+                                  {maps::make_pcf, {{"window", "3"}}, 0.12},
+                                  {maps::make_pcss, {}, 0.05}};
+    for (const Case& one : cases) {
+      visibility::MethodOptions fine = one.more;
+      fine["size"] = "512";
+      const Masks right = run(one.make, stage, fine);
+      for (const char* fit : {"view", "cascades", "tiles", "lispsm", "tsm", "psm", "logpsm"}) {
+        visibility::MethodOptions given = fine;
+        given["fit"] = fit;
+        const Masks found = run(one.make, stage, given);
+        const double off = rmse(
+            stage, [](std::size_t) { return true; },
+            [&](std::size_t i) { return static_cast<double>(found.visibility[i] - right.visibility[i]); });
+        EXPECT_LT(off, one.tolerance) << fit << (two_sided ? ", two-sided" : "");
+      }
+    }
+  }
+}
+
+TEST_F(FittedMaps, WhatNoFitCanDoIsRefused) {
+  EXPECT_THROW(maps::make_shadow_map(device(), {{"fit", "psm"}, {"rasteriser", "opengl"}}), UsageError);
+  EXPECT_THROW(maps::make_shadow_map(device(), {{"fit", "tiles"}, {"test", "id"}}), UsageError);
+  EXPECT_THROW(maps::make_vssm(device(), {{"fit", "cascades"}}), UsageError);
+}
+
+// The picture of m: 1/m where it is more than 1.
+TEST_F(FittedMaps, TheErrorsPictureIsItsInverse) {
+  const Stage stage(floor_and_plates(), 48, 36, light_samples(1));
+  const auto method = maps::make_vssm(device(), {{"fit", "view"}, {"size", "64"}, {"aliasing", "show"}});
+  const Masks found = run(*method, stage, 7);
+  const auto under = method->counters().at("undersampledPixels");
+  EXPECT_EQ(static_cast<std::uint64_t>(std::ranges::count_if(found.visibility, [](float v) { return v < 1; })), under);
+  EXPECT_GT(under, 200U);
+  const float darkest = *std::ranges::min_element(found.visibility);
+  EXPECT_NEAR(1000 / static_cast<double>(darkest),
+              static_cast<double>(method->counters().at("aliasingWorstThousandths")), 1);
+}
+
+}  // namespace
+}  // namespace penumbra::tests
