@@ -231,7 +231,9 @@ TEST_F(Pcf, WeightsAreThoseOfTheirNames) {
         EXPECT_NEAR(static_cast<double>(found.visibility[i]), lit / all, 2e-4) << n << ", sample " << i;
         between += lit > 0 && lit < all ? 1 : 0;
       }
-      if (n > 1 || bilinear) EXPECT_GT(between, n * 4) << n;
+      if (n > 1 || bilinear) {
+        EXPECT_GT(between, n * 4) << n;
+      }
     }
   }
 }
