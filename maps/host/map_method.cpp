@@ -41,6 +41,11 @@ class MapMethod final : public visibility::Method {
         look_up_(make_look_up()) {
     PENUMBRA_ASSERT(!options_.fit.sees_camera() || (recipe_.points == MapPoints::centre && recipe_.sub_lights == 1),
                     "{}: only maps from the light's centre are fitted to a camera", recipe_.description.name);
+    if (const std::uint32_t least = 2 * recipe_.beside_texels + 4; options_.fit.has_faces() && options_.size < least) {
+      throw UsageError(
+          "method {}: size={} leaves no room between what is tapped beside a map's ends; take size={} or more",
+          recipe_.description.name, options_.size, least);
+    }
     casters_.set_offset(options_.offset_factor, options_.offset_units);
     if (options_.depth != DepthUse::first) recipe_.layers.count = std::max(recipe_.layers.count, 2u);
     PENUMBRA_ASSERT(recipe_.points == MapPoints::centre || total_layers() == 1, "{}: layers of a light sample's map",

@@ -166,6 +166,15 @@ bool options_exclude(const std::string& method, const std::map<std::string, std:
            ((on_device || is("engine", "vulkan") || searches) && !all_planar) ||
            (searches && (on_device || is("engine", "vulkan")));
   }
+  if (method == "shadow-map" || method == "pcf" || method == "pcss") {
+    const auto is_set = [&](const char* key) { return options.contains(key) && std::stod(options.at(key)) != 0; };
+    const bool faces = options.contains("fit") && !is("fit", "receivers") && !is("fit", "view");
+    const bool offset = is_set("offsetFactor") || is_set("offsetUnits");
+    return (faces && (is("rasteriser", "opengl") || is("test", "id"))) ||
+           (offset && (is("fit", "logpsm") || (options.contains("depth") && !is("depth", "first")))) ||
+           (is("weights", "bilinear") && is_set("taps")) ||
+           (method == "pcf" && faces && is("size", "8") && !options.contains("window"));  // its default is wider
+  }
   if (method == "bitmask") return options.contains("subsample") && !is("subsample", "1") && !row["bits"].empty();
   if (method == "backproject") return is("form", "sphere") && scene.texture;
   if (method == "soft-shadow-map")
