@@ -99,7 +99,7 @@ ReceiverCells::ReceiverCells(const visibility::SceneFloats& scene, const visibil
     const std::size_t pixel = keyed[i].pixel, cell = keyed[i].key / kBuckets;
     const glm::dvec3 x = glm::dvec3(samples.p[pixel]) - glm::dvec3(l);
     const std::uint32_t plane = scene.plane[static_cast<std::uint32_t>(samples.triangle[pixel])];
-    const double depth = seen_on(static_cast<std::uint32_t>(cell / (kSide * kSide)), x).z;
+    const double depth = seen_on(static_cast<std::uint32_t>(cell / (std::size_t{kSide} * kSide)), x).z;
     if (i == 0 || keyed[i - 1].key != keyed[i].key) {
       clusters_.push_back({x, x, depth, plane});
       ++first_[cell + 1];

@@ -4,13 +4,16 @@
 #include "visibility/scene_floats.hpp"
 #include "visibility/view_samples.hpp"
 
+#include <glm/common.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace penumbra::volumes {

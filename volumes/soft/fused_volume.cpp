@@ -44,8 +44,7 @@ class FusedVolume final : public visibility::Method {
       if (scene.casts_shadow[i] != 0) occluders_.push_back(scene.object[i]);
     }
     std::ranges::sort(occluders_);
-    const auto [first, last] = std::ranges::unique(occluders_);
-    occluders_.erase(first, last);
+    occluders_.erase(std::unique(occluders_.begin(), occluders_.end()), occluders_.end());
     visibility_.clear();
   }
   void prepare_light(const Light& light) override {
