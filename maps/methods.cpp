@@ -15,19 +15,32 @@ namespace penumbra::maps {
 
 namespace {
 
-/// A method of this family, for every light.
-template <auto kDescribe, auto kMake>
+/// What a method is given with these options. A camera's view (fit=) is not taken into the space of a sun or of a
+/// lamp's disks, and what looks for a map's place there would find another.
+Given given_with(Given given, const visibility::MethodOptions& options) {
+  const auto fit = options.find("fit");
+  if (fit != options.end() && fit->second != "receivers") given.suns = given.spheres = false;
+  return given;
+}
+
+/// A method of this family, for every light that `kGiven` names.
+template <auto kDescribe, auto kMake, Given kGiven = Given{}>
 engines::MethodRow row() {
   engines::MethodRow row = engines::on_device<kDescribe, kMake>();
-  row.description = for_every_light(std::move(row.description));
+  row.description = for_every_light(std::move(row.description), kGiven);
   row.describe = [](const visibility::MethodOptions& options) {
-    return for_every_light(engines::describe_with<kDescribe>(options));
+    return for_every_light(engines::describe_with<kDescribe>(options), given_with(kGiven, options));
   };
   row.make = [](const render::Machine& machine, const visibility::MethodOptions& options) {
-    return for_every_light(kMake(machine.device(), options));
+    return for_every_light(kMake(machine.device(), options), given_with(kGiven, options));
   };
   return row;
 }
+
+/// Their penumbrae are drawn along the borders of triangles, which are not those of what a surface's holes leave.
+constexpr Given kWithoutHoles{.suns = true, .spheres = true, .holes = false};
+/// Its flood on the screen would end where another disk of a lamp begins.
+constexpr Given kWithoutSpheres{.suns = true, .spheres = false, .holes = true};
 
 }  // namespace
 
@@ -48,12 +61,12 @@ std::span<const engines::MethodRow> methods() {
       row<layered_attenuation_description, make_layered_attenuation>(),
       row<occlusion_textures_description, make_occlusion_textures>(),
       row<convolution_description, make_convolution>(),
-      row<penumbra_map_description, make_penumbra_map>(),
-      row<smoothies_description, make_smoothies>(),
+      row<penumbra_map_description, make_penumbra_map, kWithoutHoles>(),
+      row<smoothies_description, make_smoothies, kWithoutHoles>(),
       row<brabec_seidel_description, make_brabec_seidel>(),
       row<kirsch_doellner_description, make_kirsch_doellner>(),
       row<parker_description, make_parker>(),
-      row<arvo_description, make_arvo>(),
+      row<arvo_description, make_arvo, kWithoutSpheres>(),
       row<pcf_description, make_pcf>(),
       row<shadow_map_description, make_shadow_map>(),
   };

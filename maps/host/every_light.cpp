@@ -22,8 +22,8 @@ using visibility::ViewSamples;
 
 class EveryLight final : public visibility::Method {
  public:
-  explicit EveryLight(std::unique_ptr<Method> method)
-      : method_(std::move(method)), description_(for_every_light(method_->description())) {}
+  EveryLight(std::unique_ptr<Method> method, Given given)
+      : method_(std::move(method)), given_(given), description_(for_every_light(method_->description(), given)) {}
 
   [[nodiscard]] const visibility::MethodDescription& description() const override { return description_; }
   void want_pixels(std::span<const std::uint32_t> pixels) override { method_->want_pixels(pixels); }
@@ -51,6 +51,7 @@ class EveryLight final : public visibility::Method {
   void look_from(std::uint32_t number);
 
   std::unique_ptr<Method> method_;
+  Given given_;
   visibility::MethodDescription description_;
   const SceneFloats* scene_ = nullptr;
   std::optional<SceneFloats> drawn_;               // with holes as casters, if there are any
@@ -72,7 +73,8 @@ void EveryLight::prepare_mesh(const SceneFloats& scene) {
   scene_ = &scene;
   shown_ = nullptr;
   sun_.reset();
-  drawn_ = with_holes_drawn(scene);
+  drawn_.reset();
+  if (given_.holes) drawn_ = with_holes_drawn(scene);
   show(drawn());
 }
 
@@ -105,7 +107,7 @@ void EveryLight::prepare_light(const Light& light) {
     sun_.reset();
   }
   // The host asks translucent surfaces alone, and the method knows the others.
-  own_.filtered_by.clear();
+  if (given_.holes) own_.filtered_by.clear();
   own_.dimmed_by.clear();
   show(mapped ? sun_->scene() : drawn());
   method_->prepare_light(own_);
@@ -136,7 +138,7 @@ void EveryLight::prepare_view(const ViewSamples& samples) {
 
 void EveryLight::look_from(std::uint32_t number) {
   own_ = lamp_->disk(number);
-  own_.filtered_by.clear();
+  if (given_.holes) own_.filtered_by.clear();
   own_.dimmed_by.clear();
   for (std::size_t i = 0; i < disks_.size(); ++i)
     samples_.triangle[i] = disks_[i] == number ? carriers_[i] : ViewSamples::kBackground;
@@ -199,13 +201,14 @@ std::map<std::string, std::uint64_t> EveryLight::counters() const {
 
 }  // namespace
 
-std::unique_ptr<visibility::Method> for_every_light(std::unique_ptr<visibility::Method> method) {
-  return std::make_unique<EveryLight>(std::move(method));
+std::unique_ptr<visibility::Method> for_every_light(std::unique_ptr<visibility::Method> method, Given given) {
+  return std::make_unique<EveryLight>(std::move(method), given);
 }
 
-visibility::MethodDescription for_every_light(visibility::MethodDescription description) {
-  description.lights = description.lights | visibility::kBodies | visibility::LightKinds{visibility::LightKind::sun};
-  description.draws_holes = true;
+visibility::MethodDescription for_every_light(visibility::MethodDescription description, Given given) {
+  if (given.suns) description.lights = description.lights | visibility::LightKinds{visibility::LightKind::sun};
+  if (given.spheres) description.lights = description.lights | visibility::kBodies;
+  description.draws_holes = given.holes;
   return description;
 }
 

@@ -6,13 +6,19 @@
 
 namespace penumbra::maps {
 
+/// What a method of maps is given by for_every_light().
+struct Given {
+  bool suns = true, spheres = true, holes = true;
+};
+
 /// Gives a method of maps the lights that its maps cannot look from, and tells it of surfaces with holes, without its
 /// knowing: under a sun it has the scene in SunSpace, where the sun is a disk; a sphere is LampDisks, one after the
 /// other, each for the view samples in its pyramid; and triangles with holes (alphaMode MASK) are casters, whose holes
 /// CasterMaps leaves out. Lights that the method does itself stay as they are.
-std::unique_ptr<visibility::Method> for_every_light(std::unique_ptr<visibility::Method> method);
+/// `given`: the rest, which the method keeps refusing.
+std::unique_ptr<visibility::Method> for_every_light(std::unique_ptr<visibility::Method> method, Given given = {});
 
 /// What for_every_light() makes of a description.
-visibility::MethodDescription for_every_light(visibility::MethodDescription description);
+visibility::MethodDescription for_every_light(visibility::MethodDescription description, Given given = {});
 
 }  // namespace penumbra::maps

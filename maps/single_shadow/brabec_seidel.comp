@@ -1,6 +1,7 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
+#include "maps/products/nearest_ids.shared.h"
 #include "maps/single_shadow/search.shared.h"
 #define OWN_PUSH SearchPush
 #include "maps/host/look_up.glsl"
@@ -14,7 +15,9 @@ layout(scalar, binding = 8) readonly buffer Objects { uint object_of[]; };
 
 bool shades(Search search, Tap tap, ivec2 offset) {
   if (!search_blocks(search, tap, offset)) return false;
-  return own.ids == 0 || tap.depth >= tap.far || object_of[ids[tap.number]] != receiver_object;
+  if (own.ids == 0 || tap.depth >= tap.far) return true;
+  const uint id = ids[tap.number];
+  return id == kNoId || object_of[id] != receiver_object;
 }
 
 float visibility_of(LightView view, vec3 d, vec3 m) {
@@ -30,8 +33,8 @@ float visibility_of(LightView view, vec3 d, vec3 m) {
     const ivec2 offset = offsets[k];
     if (is_beyond(search, offset, min(best, most))) break;
     Tap tap;
-    const bool there = search_texel(search, offset, tap);
-    if ((there && shades(search, tap, offset)) == shaded) continue;
+    // An offset may lead behind the light's plane, where there is no texel.
+    if (!search_texel(search, offset, tap) || shades(search, tap, offset) == shaded) continue;
     const float away = distance_to(search, tap);
     if (!(away < best)) continue;
     best = away;
