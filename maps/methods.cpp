@@ -45,7 +45,7 @@ constexpr Given kWithoutSpheres{.suns = true, .spheres = false, .holes = true};
 }  // namespace
 
 std::span<const engines::MethodRow> methods() {
-  static const std::array kRows{
+  static const std::array rows{
       row<bitmask_description, make_bitmask>(),
       row<backproject_description, make_backproject>(),
       row<backproject_peel_description, make_backproject_peel>(),
@@ -70,7 +70,7 @@ std::span<const engines::MethodRow> methods() {
       row<pcf_description, make_pcf>(),
       row<shadow_map_description, make_shadow_map>(),
   };
-  return kRows;
+  return rows;
 }
 
 }  // namespace penumbra::maps

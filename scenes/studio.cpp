@@ -1,12 +1,11 @@
 #include "scenes/studio.hpp"
 
-#include "mesh/shapes/shapes.hpp"
-
 #include <fmt/format.h>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -44,15 +43,17 @@ bool has_floor(const Scene& scene, const Bounds& bounds) {
 void add_floor(Scene& scene, const Bounds& bounds) {
   const glm::dvec3 middle = bounds.middle();
   const double half = 4 * bounds.radius();
-  const mesh::TriangleSoup quad = mesh::make_quad({middle.x, bounds.low.y, middle.z}, {half, 0, 0}, {0, 0, -half});
+  const glm::dvec3 corner(middle.x - half, bounds.low.y, middle.z + half), right(2 * half, 0, 0), back(0, 0, -2 * half);
+  const std::array corners = {corner, corner + right, corner + right + back, corner + back};
+  constexpr std::array<mesh::Triangle, 2> kTriangles = {{{0, 1, 2}, {0, 2, 3}}};
   const auto first = static_cast<std::uint32_t>(scene.soup.positions.size());
   const auto object = static_cast<std::uint32_t>(scene.objects.size());
   Object floor;
   floor.name = free_name(scene.objects, "floor");
   scene.objects.push_back(std::move(floor));
-  scene.soup.positions.insert(scene.soup.positions.end(), quad.positions.begin(), quad.positions.end());
-  for (std::uint32_t i = 0; i < quad.triangles.size(); ++i) {
-    const auto& [a, b, c] = quad.triangles[i];
+  scene.soup.positions.insert(scene.soup.positions.end(), corners.begin(), corners.end());
+  for (std::uint32_t i = 0; i < kTriangles.size(); ++i) {
+    const auto& [a, b, c] = kTriangles.at(i);
     scene.soup.triangles.push_back({a + first, b + first, c + first});
     scene.soup.object.push_back(object);
     scene.soup.source_face.push_back(i);
@@ -63,7 +64,7 @@ void add_floor(Scene& scene, const Bounds& bounds) {
   if (!scene.looks.places.empty()) scene.looks.places.resize(count, glm::dvec2(0));
   // The scene's origin is the middle of all meshes at rest, the floor among them.
   if (scene.origin) {
-    const Bounds floor_bounds = bounds_of(quad.positions);
+    const Bounds floor_bounds = bounds_of(corners);
     scene.origin = (glm::min(bounds.low, floor_bounds.low) + glm::max(bounds.high, floor_bounds.high)) / 2.0;
   }
 }

@@ -99,7 +99,11 @@ std::vector<Entry> choose_entries(const ComparisonOptions& options, const Sessio
                                   const render::Machine& machine, const std::function<void(std::string)>& warn) {
   std::vector<Entry> entries;
   const std::string no_device = why_no_device(options, machine);
-  std::vector<std::string> without_device;
+  std::vector<std::string> without_device, costly;
+  std::vector<Entry> costly_entries;
+  // Maps see a sphere as up to 54 disks (maps/host/lamp_disks.hpp).
+  const bool costs_maps_much = std::ranges::any_of(
+      session.lights, [](const visibility::Light& light) { return visibility::kBodies.contains(light.kind); });
   for (const MethodEntry& chosen : with_method_options(options)) {
     std::optional<Entry> described = describe_entry(chosen, warn);
     if (!described) continue;
@@ -123,8 +127,19 @@ std::vector<Entry> choose_entries(const ComparisonOptions& options, const Sessio
     }
     for (const visibility::Light& light : session.lights) check_light(entry.description, light);
     if (wants_bits(entry, options)) check_bits(entry.description, session.lights);
+    if (chosen.from_group && costs_maps_much && entry.description.family == visibility::Family::image) {
+      costly.push_back(entry.label);
+      costly_entries.push_back(std::move(entry));
+      continue;
+    }
     entries.push_back(std::move(entry));
   }
+  if (entries.empty())
+    entries = std::move(costly_entries);
+  else if (!costly.empty())
+    warn(fmt::format(
+        "{} left out: maps see a sphere as up to 54 disks, each with maps of its own; name a method to have it",
+        fmt::join(costly, ", ")));
   if (!without_device.empty()) {
     if (entries.empty()) throw ResourceError("{}: {}", fmt::join(without_device, ", "), no_device);
     warn(fmt::format("{} left out: {}", fmt::join(without_device, ", "), no_device));

@@ -247,7 +247,7 @@ class Programs(unittest.TestCase):
 
     def test_arguments(self):
         plain = program.arguments("p", "s.glb", "o.exr", (3, 2), self.settings())
-        self.assertEqual(plain, ["p", "render", "s.glb", "-o", "o.exr", "--size", "3x2", "--normals", "geometric"])
+        self.assertEqual(plain, ["p", "render", "s.glb", "-o", "o.exr", "--no-studio", "--size", "3x2", "--normals", "geometric"])
         much = program.arguments("p", "s", "o", (3, 2), self.settings(
             method="raytrace", exactness=program.SAMPLES, pixel_samples="16", shading_normals=True, lenient=True, device="cpu"))
         self.assertEqual(much[7:], ["--method", "raytrace", "--light-samples", "64", "--pixel-samples", "16", "--normals",

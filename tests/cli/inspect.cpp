@@ -113,7 +113,7 @@ TEST_F(Inspect, ReadsGltfWithoutALight) {
   ASSERT_NE(emissive, std::string::npos);
   text[emissive] = 'E';  // an unknown member: the light's body becomes plain geometry
   write("unlit.glb", text);
-  EXPECT_EQ(run({"render", path("unlit.glb"), "-o", path("x.exr"), "--method", "raytrace"}).code, 3);
+  EXPECT_EQ(run({"render", path("unlit.glb"), "-o", path("x.exr"), "--method", "raytrace", "--no-studio"}).code, 3);
   EXPECT_EQ(report({path("lit.glb")}).at("triangles"), 4) << "the light has no body";
   EXPECT_EQ(report({path("unlit.glb")}).at("triangles"), 6);
 }

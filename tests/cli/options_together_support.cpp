@@ -151,6 +151,7 @@ bool options_exclude(const std::string& method, const std::map<std::string, std:
   };
   const auto is_planar = [](const std::string& kind) { return kind != "sphere" && kind != "sun"; };
   const bool all_planar = std::ranges::all_of(scene.lights, is_planar);
+  if (options.contains("fit") && !is("fit", "receivers") && !all_planar) return true;  // looks through the camera
   if (method == "edge-scatter") {
     return is("engine", "vulkan") && (is("rows", "exact") || !all_planar);
   }
