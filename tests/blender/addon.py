@@ -250,15 +250,15 @@ class Programs(unittest.TestCase):
         self.assertEqual(plain, ["p", "render", "s.glb", "-o", "o.exr", "--no-studio", "--size", "3x2", "--normals", "geometric"])
         much = program.arguments("p", "s", "o", (3, 2), self.settings(
             method="raytrace", exactness=program.SAMPLES, pixel_samples="16", shading_normals=True, lenient=True, device="cpu"))
-        self.assertEqual(much[7:], ["--method", "raytrace", "--light-samples", "64", "--pixel-samples", "16", "--normals",
+        self.assertEqual(much[8:], ["--method", "raytrace", "--light-samples", "64", "--pixel-samples", "16", "--normals",
                                     "shading", "--lenient", "--device", "cpu"])
         filtered = program.arguments("p", "s", "o", (3, 2), self.settings(
             pixel_samples="4", pixel_filter=program.BLACKMAN_HARRIS, filter_width=1.6000000238))
-        self.assertEqual(filtered[7:], ["--pixel-samples", "4", "--pixel-filter", "blackman-harris", "--filter-width", "1.6",
+        self.assertEqual(filtered[8:], ["--pixel-samples", "4", "--pixel-filter", "blackman-harris", "--filter-width", "1.6",
                                         "--normals", "geometric"])
 
         alone = program.arguments("p", "s", "o", (3, 2), self.settings(light_passes=False))
-        self.assertEqual(alone[9:], ["--layers", "beauty,V,Z,P,N,Crypto*"])
+        self.assertEqual(alone[10:], ["--layers", "beauty,V,Z,P,N,Crypto*"])
 
     def test_matte_groups(self):
         self.assertEqual(passes.matte_groups("CryptoObject", "1"), ["CryptoObject00"])
