@@ -102,14 +102,15 @@ void CasterMaps::upload(const visibility::SceneFloats& scene) {
     if (scene.casts_shadow[i] != 0) casters.push_back(i);
   }
   std::ranges::stable_sort(casters, {}, [&](std::uint32_t i) { return scene.emits[i]; });
-  const auto holes = std::ranges::stable_partition(casters, [&](std::uint32_t i) { return !has_holes(scene, i); });
+  const auto holes =
+      std::stable_partition(casters.begin(), casters.end(), [&](std::uint32_t i) { return !has_holes(scene, i); });
   emits_.resize(casters.size());
   std::transform(casters.begin(), casters.end(), emits_.begin(), [&](std::uint32_t i) { return scene.emits[i]; });
 
   batches_.clear();
   if (opengl_) opengl_->forget();
-  add_batches(scene, {casters.begin(), holes.begin()}, nullptr);
-  if (holes.empty()) return;
+  add_batches(scene, {casters.begin(), holes}, nullptr);
+  if (holes == casters.end()) return;
   const HoleSurfaces surfaces(scene);
   if (opengl_) {
     opengl_->set_surfaces(surfaces.words());
@@ -117,7 +118,7 @@ void CasterMaps::upload(const visibility::SceneFloats& scene) {
     surfaces_ = render::make_buffer<std::uint32_t>(*device_, "surfaces with holes", surfaces.words());
     if (!holes_) holes_.emplace(*device_, true);
   }
-  add_batches(scene, {holes.begin(), holes.end()}, &surfaces);
+  add_batches(scene, {holes, casters.end()}, &surfaces);
 }
 
 void CasterMaps::add_batches(const visibility::SceneFloats& scene, std::span<const std::uint32_t> casters,

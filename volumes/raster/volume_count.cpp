@@ -65,8 +65,8 @@ bool appears_in_place(const BoxFinder& boxes, const std::array<glm::vec3, 3>& ca
 struct VolumeCount::State {
   State(const render::Device& on, CountVariant which, Layers of, bool in_parts)
       : device(&on), variant(which), layers(of) {
-    std::vector<FaceKind> needed{kSide, kFan, kCap};
-    if (in_parts) needed.insert(needed.end(), {kLowerFan, kUpperFan});
+    std::vector<FaceKind> needed{kSideFaces, kFanFaces, kCapFaces};
+    if (in_parts) needed.insert(needed.end(), {kLowerFanFaces, kUpperFanFaces});
     for (const FaceKind kind : needed) static_cast<void>(pass_of(kind, which != CountVariant::z_fail, in_parts));
   }
 
@@ -167,9 +167,9 @@ const render::RasterPass& VolumeCount::State::pass_of(FaceKind kind, bool before
 void VolumeCount::State::find_faces() {
   if (faces) return;
   faces = faces_on_screen(volumes, samples->camera, variant);
-  totals.faces_on_screen =
-      faces->count(kSide) + faces->count(kCap) + faces->count(kFan) + faces->count(kLowerFan) + faces->count(kUpperFan);
-  totals.far_ends_on_screen = faces->count(kFan);
+  totals.faces_on_screen = faces->count(kSideFaces) + faces->count(kCapFaces) + faces->count(kFanFaces) +
+                           faces->count(kLowerFanFaces) + faces->count(kUpperFanFaces);
+  totals.far_ends_on_screen = faces->count(kFanFaces);
   totals.fragments = faces->fragments;
   totals.toggling_parts = static_cast<std::uint64_t>(std::ranges::count_if(
       faces->parts, [](const gpu::VolumePart& part) { return (part.bounds & gpu::kToggles) != 0; }));

@@ -119,7 +119,7 @@ void Finder::stop_toggling_at_eye() {
 
 void Finder::add_sides() {
   const glm::dvec3 l = volumes_.l;
-  add_faces(kSide, volumes_.edges, [&](const VolumeEdge& edge, gpu::VolumeFace& face) -> Corners {
+  add_faces(kSideFaces, volumes_.edges, [&](const VolumeEdge& edge, gpu::VolumeFace& face) -> Corners {
     face = face_of(edge);
     glm::dvec3 a = edge.a, b = edge.b;
     FaceCorner far_a{a - l, true}, far_b{b - l, true};
@@ -138,7 +138,7 @@ void Finder::add_sides() {
 }
 
 void Finder::add_caps() {
-  add_faces(kCap, volumes_.caps, [&](const VolumeCap& cap, gpu::VolumeFace& face) -> Corners {
+  add_faces(kCapFaces, volumes_.caps, [&](const VolumeCap& cap, gpu::VolumeFace& face) -> Corners {
     const auto& [a, b, c] = cap.corners;
     face = {a, b, c, is_bounded(cap.part, gpu::kHasLower) ? 0 : 1, cap.plane, cap.part, {}};
     return {{{{a}, {b}, {c}}}, 3};
@@ -151,12 +151,12 @@ void Finder::add_fans(FaceKind kind) {
   add_faces(kind, volumes_.edges, [&](const VolumeEdge& edge, gpu::VolumeFace& face) -> Corners {
     face = face_of(edge);
     const glm::dvec3 a = glm::dvec3(edge.a) - l, b = glm::dvec3(edge.b) - l;
-    if (is_bounded(edge.part, gpu::kHasUpper) == (kind == kFan)) face.weight = 0;
-    if (kind == kFan) return {{{{found_.apex, true}, {a, true}, {b, true}}}, 3};
-    if (kind == kLowerFan) face.weight = is_bounded(edge.part, gpu::kHasLower) ? edge.multiplicity : 0;
+    if (is_bounded(edge.part, gpu::kHasUpper) == (kind == kFanFaces)) face.weight = 0;
+    if (kind == kFanFaces) return {{{{found_.apex, true}, {a, true}, {b, true}}}, 3};
+    if (kind == kLowerFanFaces) face.weight = is_bounded(edge.part, gpu::kHasLower) ? edge.multiplicity : 0;
     if (face.weight == 0) return {{}, 0};
     const gpu::VolumePart& part = found_.parts[edge.part];
-    const double plane = kind == kLowerFan ? part.lower : part.upper;
+    const double plane = kind == kLowerFanFaces ? part.lower : part.upper;
     const glm::dvec3 n(part.axis[0], part.axis[1], part.axis[2]);
     return {{{{l + n * (plane / glm::dot(n, n))},
               {l + a * offset_of(edge.a, edge.part, plane)},
@@ -178,12 +178,12 @@ VolumeFaces Finder::find(CountVariant variant) {
   }
   add_sides();
   add_caps();
-  if (!found_.before) add_fans(kFan);
+  if (!found_.before) add_fans(kFanFaces);
   const auto some = [&](std::uint32_t bound) {
     return std::ranges::any_of(found_.parts, [&](const gpu::VolumePart& part) { return (part.bounds & bound) != 0; });
   };
-  if (some(gpu::kHasLower)) add_fans(kLowerFan);
-  if (some(gpu::kHasUpper)) add_fans(kUpperFan);
+  if (some(gpu::kHasLower)) add_fans(kLowerFanFaces);
+  if (some(gpu::kHasUpper)) add_fans(kUpperFanFaces);
   return std::move(found_);
 }
 

@@ -17,7 +17,7 @@ enum class CountVariant {
   z_pass_from_eye,  ///< the same, from the count where the eye is; z_fail where that is beyond double
 };
 
-enum FaceKind : std::uint32_t { kSide = 0, kFan = 1, kCap = 2, kLowerFan = 3, kUpperFan = 4 };
+enum FaceKind : std::uint32_t { kSideFaces = 0, kFanFaces = 1, kCapFaces = 2, kLowerFanFaces = 3, kUpperFanFaces = 4 };
 
 /// The faces of shadow volumes that a picture of them needs, and what every pixel's count starts from.
 struct VolumeFaces {

@@ -8,6 +8,8 @@
 #include "reference/methods.hpp"
 #include "tests/analytic/maps/centre_maps.hpp"
 
+#include <glm/trigonometric.hpp>
+
 #include <random>
 
 namespace penumbra::tests {
@@ -455,7 +457,7 @@ TEST_F(EveryLight, LightsFollowOneAnother) {
   }
   const visibility::SceneFloats& floats = stages[0].floats;
   method->prepare_mesh(floats);
-  for (const std::size_t i : {0, 1, 0, 2, 3, 2, 1}) {
+  for (const std::size_t i : {0U, 1U, 0U, 2U, 3U, 2U, 1U}) {
     method->prepare_light(stages[i].light);
     method->prepare_view(stages[i].samples);
     method->evaluate({0, 12});

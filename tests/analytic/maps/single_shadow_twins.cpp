@@ -35,7 +35,7 @@ std::vector<TwinEdge> twin_edges(const Stage& stage, const maps::LightBasis& bas
   for (std::uint32_t i = 0; i < stage.floats.triangles.size(); ++i) {
     if (stage.floats.casts_shadow[i] == 0) continue;
     const auto corners = stage.floats.corners(i);
-    for (int k = 0; k < 3; ++k) {
+    for (std::size_t k = 0; k < 3; ++k) {
       glm::vec3 a = corners[k], b = corners[(k + 1) % 3];
       if (key(b) < key(a)) std::swap(a, b);
       Sides& sides = edges[{key(a), key(b)}];

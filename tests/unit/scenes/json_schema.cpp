@@ -102,7 +102,7 @@ TEST(JsonSchema, DecidesAsALibraryDoes) {
           break;
         case 2:
           if (place.is_object() && !place.empty())
-            place.erase(std::next(place.begin(), random() % place.size()).key());
+            place.erase(std::next(place.begin(), static_cast<std::ptrdiff_t>(random() % place.size())).key());
           else if (place.is_array() && !place.empty())
             place.erase(random() % place.size());
           break;

@@ -18,7 +18,7 @@ class RayTwin {
  public:
   RayTwin(const render::Device& device, const Stage& stage, std::uint32_t size, std::uint32_t layers, double gap,
           bool solid)
-      : stage_(stage), layers_(layers), gap_(gap), solid_(solid), size_(size) {
+      : stage_(stage), gap_(gap), solid_(solid), size_(size) {
     const selftest::CentreMaps maps(device, stage, size, {0, 0}, {.layers = layers, .whole_light = true});
     const maps::gpu::LightView& view = maps.fitted.views.front();
     EXPECT_EQ(maps.fitted.faces, 1U);
@@ -114,7 +114,6 @@ class RayTwin {
   }
 
   const Stage& stage_;
-  std::uint32_t layers_;
   double gap_;
   bool solid_;
   std::uint32_t size_;
