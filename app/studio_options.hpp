@@ -11,7 +11,7 @@ class App;
 
 namespace penumbra::app {
 
-/// What is put around a scene (scenes/studio.hpp), as the user gave it.
+/// The studio around a scene (scenes/studio.hpp), as the user gave it.
 struct StudioOptions {
   bool always = false, never = false;
   std::string floor = "auto";

@@ -20,7 +20,7 @@ namespace penumbra {
   }
 }
 
-/// What `function` returns; whatever it throws is an Error (throw_as_error()).
+/// Returns what `function` returns; its exceptions leave as Error (throw_as_error()).
 template <typename Function>
 decltype(auto) with_errors(const Function& function) {
   try {

@@ -216,7 +216,7 @@ Picture Renderer::render(const RenderOptions& options) {
                          .pixel_side = pixel_side(options.pixel_samples),
                          .same_meshes = same_meshes,
                          .keeps_masks = options.masks && options.pixel_samples == 1};
-  // What is wrong with options is said before anything changes, so that what is kept stays.
+  // Wrong options are refused before anything changes, so that what is kept stays.
   static_cast<void>(app::parse_light_samples(run));
   app::NamedMethod method = app::parse_method(options.method);
   for (const auto& [key, value] : options.options) {

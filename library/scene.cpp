@@ -63,6 +63,7 @@ Scene::~Scene() = default;
 Scene Scene::load(const std::filesystem::path& file, const LoadOptions& options) {
   Scene scene;
   with_errors([&] { scene.state_->scene = scenes::read_scene(file, reading(options)); });
+  scene.state_->file_origin = scene.state_->scene.origin;
   return scene;
 }
 

@@ -112,9 +112,10 @@ glm::dvec3 rest_center(const Scene::State& state, std::span<const glm::dvec3> mo
   return 0.5 * (low + high);
 }
 
-/// Once meshes have moved, the scene's origin stays where it was at rest; before that it follows from the vertices.
+/// The file's, if it gives one. Else, once meshes have moved, the scene's origin stays where it was at rest; before
+/// that it follows from the vertices.
 std::optional<glm::dvec3> settled_origin(const Scene::State& state, std::span<const glm::dvec3> more = {}) {
-  if (!any_has_moved(state)) return std::nullopt;
+  if (state.file_origin || !any_has_moved(state)) return state.file_origin;
   return rest_center(state, more);
 }
 

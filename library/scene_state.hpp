@@ -34,6 +34,8 @@ struct Scene::State {
   std::vector<std::optional<RestMesh>> rest = {};
   /// For each object, or the first of them: those after have all their vertices.
   std::vector<GivenVertices> given = {};
+  /// The origin that the file gives, as of scenes that move: it stays, whatever is added.
+  std::optional<glm::dvec3> file_origin = {};
   /// Another number, other triangles, pictures or vertices' looks: of all scenes of the process.
   std::uint64_t meshes = next_meshes();
   std::optional<std::size_t> camera = {};  ///< the one that looks by default; nullopt: the first

@@ -7,7 +7,7 @@
 #include <memory>
 #include <span>
 
-/// Of each method what makes it, and what it is, which needs no device.
+/// Factory and description of each method; a description needs no device.
 namespace penumbra::vsm {
 
 /// The table of this room's methods; the best come first.

@@ -109,7 +109,7 @@ FrameRenderer::Kept& FrameRenderer::method_for(const LightMethod& wanted) {
     kept.mesh_version = lit().mesh_version;
     return kept;
   }
-  // What a picture does not use waits for one that does, but not without end: each holds its hierarchies.
+  // Idle methods wait for a picture that uses them, but not without end: each holds its hierarchies.
   constexpr std::ptrdiff_t kMostIdle = 8;
   if (std::ranges::count(kept_, false, &Kept::used) >= kMostIdle)
     kept_.erase(std::ranges::find(kept_, false, &Kept::used));  // the oldest

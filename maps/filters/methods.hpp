@@ -5,7 +5,7 @@
 
 #include <memory>
 
-/// Of each method what makes it, and what it is, which needs no device.
+/// Factory and description of each method; a description needs no device.
 namespace penumbra::maps {
 
 /// Williams 1978: the hard shadow from the light's centre. docs/shadow-map.md.

@@ -31,7 +31,7 @@ bool is_lit(LightView view, PcfAsking asking, vec2 offset) {
   return !texel_blocks(tap, asking.m, asking.h, tap.along, max(abs(offset.x), abs(offset.y)));
 }
 
-// What a texel counts, `beside` texels from the middle of the window.
+// The weight of a texel that is `beside` texels from the middle of the window.
 float weight_of(vec2 beside) {
   if (own.weights != kGaussian) return 1.0;
   const float deviation = 0.25 * float(own.window);
@@ -78,7 +78,7 @@ float visibility_of(LightView view, vec3 d, vec3 m) {
 
   const float width = float(own.window);
   const vec2 texel = floor(asking.at);
-  // As many texels on either side of the receiver as there can be: an odd window is centred on the receiver's texel, an
+  // A window has as many texels on either side of the receiver as it can: an odd window is centred on the receiver's texel, an
   // even one on the texel border nearest to it. Bilinear: the window is centred on the receiver, and texels at its border
   // count by their part in it; of one texel these are the four of a bilinear test.
   const bool bilinear = own.weights == kBilinear;

@@ -46,25 +46,29 @@ glm::dvec2 aliasing_error(const FittedFace& face, const SeenReceiver& receiver, 
   return glm::dvec2(width, height) / std::max(std::abs(determinant), 1e-300);
 }
 
+bool faces_away(const visibility::ViewSamples& samples, std::size_t pixel, const LightBasis& basis) {
+  return glm::dot(glm::dvec3(samples.n[pixel]), glm::dvec3(samples.p[pixel]) - basis.center) >= 0;
+}
+
 Aliasing measure_aliasing(std::span<const FittedFace> faces, const visibility::SceneFloats& scene,
                           const visibility::Light& light, const visibility::ViewSamples& samples,
                           const LightBasis& basis, std::uint32_t size) {
-  /// Beyond this a surface is seen edge-on, from the eye or from the light.
-  constexpr double kMost = 1e6;
   Aliasing result{std::vector<float>(samples.size(), 0.0F), {}};
   std::vector<glm::dvec2> largest(faces.size(), glm::dvec2(0));
-  std::uint64_t pixels = 0, under = 0;
+  std::uint64_t pixels = 0, under = 0, outside = 0;
   double sum = 0, worst = 0;
   for (std::size_t i = 0; i < samples.size(); ++i) {
     if (!visibility::is_receiver(scene, light, samples, i)) continue;
     const auto receiver = seen_receiver(samples, i, basis, light.two_sided || is_body(light.kind));
     if (!receiver) continue;
-    // What turns its back to the light's centre is dark without a map.
-    if (glm::dot(glm::dvec3(samples.n[i]), glm::dvec3(samples.p[i]) - basis.center) >= 0) continue;
+    if (faces_away(samples, i, basis)) continue;
     const FittedFace* face = face_for(faces, *receiver);
-    if (face == nullptr) continue;
+    if (face == nullptr) {
+      ++outside;
+      continue;
+    }
     glm::dvec2 errors = aliasing_error(*face, *receiver, samples, i, basis, size);
-    for (int axis = 0; axis < 2; ++axis) errors[axis] = std::min(errors[axis], kMost);
+    for (int axis = 0; axis < 2; ++axis) errors[axis] = std::min(errors[axis], kMostAliasing);
     glm::dvec2& most = largest[static_cast<std::size_t>(face - faces.data())];
     most = glm::max(most, errors);
     const double error = std::max(errors.x, errors.y);
@@ -78,6 +82,7 @@ Aliasing measure_aliasing(std::span<const FittedFace> faces, const visibility::S
   for (const glm::dvec2& most : largest) needed += most.x * most.y * size * size;
   const auto whole = [](double x) { return static_cast<std::uint64_t>(std::llround(std::min(x, 1e18))); };
   result.counters = {{"aliasingPixels", pixels},
+                     {"outsidePixels", outside},
                      {"undersampledPixels", under},
                      {"aliasingThousandths", whole(1000 * sum)},
                      {"aliasingWorstThousandths", whole(1000 * worst)},

@@ -17,10 +17,17 @@ namespace penumbra::maps {
 glm::dvec2 aliasing_error(const FittedFace& face, const SeenReceiver& receiver, const visibility::ViewSamples& samples,
                           std::size_t pixel, const LightBasis& basis, std::uint32_t size);
 
+/// An error beyond this says that a surface is seen edge-on, from the eye or from the light.
+inline constexpr double kMostAliasing = 1e6;
+
+/// Does a view sample turn its back to the light's centre? It is dark without a map.
+bool faces_away(const visibility::ViewSamples& samples, std::size_t pixel, const LightBasis& basis);
+
 /// The larger m of each pixel, 0 where nothing is asked; and what counters say of them: aliasingPixels of them all,
 /// undersampledPixels with m > 1, aliasingThousandths and aliasingWorstThousandths, sum and largest m in thousandths,
-/// and neededTexels, the sum over faces of size² · (largest m along a) · (largest m along b): as many texels leave no m
-/// > 1. The last by the first is the storage factor of the course notes' figure 3.13.
+/// outsidePixels, which no face holds (there are none; they would be lit), and neededTexels, the sum over faces of
+/// size² · (largest m along a) · (largest m along b): as many texels leave no m > 1. The last by the first is the
+/// storage factor of the course notes' figure 3.13.
 struct Aliasing {
   std::vector<float> errors;
   std::map<std::string, std::uint64_t> counters;

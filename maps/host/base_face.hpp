@@ -42,7 +42,7 @@ struct PlaceBounds {
 
 /// From (a' k, b' k, k) to the same from 0 to 1 over bounds, and `margin` of it on every side.
 inline glm::dmat3 to_unit(PlaceBounds bounds, double margin) {
-  // What is seen edge-on leaves no width of its own: then float32's resolution of a tangent decides.
+  // A body seen edge-on leaves no width of its own: then float32's resolution of a tangent decides.
   const glm::dvec2 least = 0x1p-20 * (1.0 + glm::max(glm::abs(bounds.lower), glm::abs(bounds.upper)));
   const glm::dvec2 middle = 0.5 * (bounds.lower + bounds.upper);
   const glm::dvec2 half = glm::max(0.5 * (bounds.upper - bounds.lower), least) / (1 - 2 * margin);

@@ -29,7 +29,7 @@ class CameraFaces {
   /// Records all faces, the first at the beginning of `maps`, in submissions that can be timed.
   void record(const CasterMaps& casters, render::Commands& commands, std::int32_t light_index,
               const render::Buffer& maps, visibility::PassTimes& times) const;
-  /// What is behind the layer before, whose faces come just before `first_face`.
+  /// The layer behind the one before, whose faces come just before `first_face`.
   void record_behind(const CasterMaps& casters, render::Commands& commands, std::int32_t light_index,
                      const render::Buffer& maps, std::uint64_t first_face, visibility::PassTimes& times) const;
 

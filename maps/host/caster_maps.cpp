@@ -195,7 +195,7 @@ void CasterMaps::record_on_device(render::Commands& commands, MapLayer layer, co
           .width = size_, .height = size_, .vertices = 3 * range.count, .depth = &*target_, .clear = clear};
       clear = false;
       if (push.logarithmic) {
-        if (batch.holes) throw InputError("fit=logpsm draws no surfaces with holes (alphaMode MASK); take another fit");
+        PENUMBRA_ASSERT(!batch.holes, "logarithmic faces of surfaces with holes");
         gpu::LogarithmicPush words = *push.logarithmic;
         words.first_vertex = 3 * range.first;
         words.peels = layer == MapLayer::behind ? 1 : 0;

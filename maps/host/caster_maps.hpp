@@ -10,6 +10,7 @@
 #include "render/raster_pass.hpp"
 #include "visibility/scene_floats.hpp"
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -59,6 +60,7 @@ class CasterMaps {
                        std::int32_t light_index, const render::Buffer& maps, std::uint64_t first_face) const;
 
   [[nodiscard]] std::uint64_t caster_count() const { return emits_.size(); }
+  [[nodiscard]] bool have_holes() const { return std::ranges::any_of(batches_, &Batch::holes); }
   [[nodiscard]] std::uint64_t memory_bytes() const;
 
  private:

@@ -6,7 +6,7 @@
 
 namespace penumbra::maps {
 
-/// What a method of maps is given by for_every_light().
+/// The kinds of light and surface that for_every_light() gives a method of maps.
 struct Given {
   bool suns = true, spheres = true, holes = true;
 };
@@ -18,7 +18,7 @@ struct Given {
 /// `given`: the rest, which the method keeps refusing.
 std::unique_ptr<visibility::Method> for_every_light(std::unique_ptr<visibility::Method> method, Given given = {});
 
-/// What for_every_light() makes of a description.
+/// The description of a method that for_every_light() wraps.
 visibility::MethodDescription for_every_light(visibility::MethodDescription description, Given given = {});
 
 }  // namespace penumbra::maps

@@ -47,7 +47,8 @@ class FaceFitter {
 
   void add_side(int side, std::vector<FittedFace>& faces) {
     side_ = side;
-    std::vector<BodyPoint> body = in_front(body_points(scene_, light_, samples_, options_.fit.body, 0, kFarAway));
+    std::vector<BodyPoint> body =
+        in_front(body_points(scene_, light_, basis_, samples_, options_.fit.body, 0, kFarAway));
     if (body.empty()) return;
     const auto [nearest, farthest] = std::ranges::minmax(body, {}, &BodyPoint::depth);
     find_margin(body);
@@ -58,7 +59,8 @@ class FaceFitter {
       const double from = i == 0 ? 0 : depths[i], to = i + 1 == slices ? kFarAway : depths[i + 1];
       const double least = from * (1 - kOverlap), most = to * (1 + kOverlap);
       if (slices > 1 && options_.fit.body == ViewBody::frustum) {
-        add_slice(in_front(body_points(scene_, light_, samples_, ViewBody::frustum, least, most)), from, to, faces);
+        add_slice(in_front(body_points(scene_, light_, basis_, samples_, ViewBody::frustum, least, most)), from, to,
+                  faces);
       } else {
         std::vector<BodyPoint> part;
         std::ranges::copy_if(body, std::back_inserter(part),
@@ -134,8 +136,9 @@ class FaceFitter {
     for (const glm::dvec3& e : all.points) bounds.add(glm::dvec2(e) / e.z);
     const glm::dvec2 widest = glm::max(-bounds.lower, bounds.upper);
     const bool window = std::max(widest.x, widest.y) <= kWidestTangent;
-    // Taps go on on the next face of a hemicube: it is whole, unless there are none.
-    const bool whole = beside_ != glm::dvec2(0) || options_.spare > 1;
+    // Faces of a hemicube are whole where taps go on on the next face, and of a frustum's body, whose polygons may pass
+    // through a face without a corner there.
+    const bool whole = beside_ != glm::dvec2(0) || options_.spare > 1 || options_.fit.body == ViewBody::frustum;
     for (const BaseFace& base : std::span(kHemicube).first(window ? 1 : kHemicube.size())) {
       FittedFace face{.side = side_, .axis = base.axis, .along = base.along(), .from = from, .to = to};
       if (!window && whole) {
@@ -215,11 +218,11 @@ class FaceFitter {
     for (std::size_t i = 0; i < samples_.size(); ++i) {
       if (!visibility::is_receiver(scene_, light_, samples_, i)) continue;
       const auto receiver = seen_receiver(samples_, i, basis_, true);
-      if (!receiver || receiver->side != side_) continue;
+      if (!receiver || receiver->side != side_ || faces_away(samples_, i, basis_)) continue;
       const auto at = whole.place(receiver->e);
       if (!at) continue;
       const glm::dvec2 errors = aliasing_error(whole, *receiver, samples_, i, basis_, options_.size);
-      tiles.front().asked.emplace_back(*at, std::log2(std::max(errors.x, errors.y)));
+      tiles.front().asked.emplace_back(*at, std::log2(std::min(std::max(errors.x, errors.y), kMostAliasing)));
     }
     const std::size_t most_tiles = std::max(options_.fit.tiles / bases, 1U);
     while (tiles.size() + 3 <= most_tiles) {

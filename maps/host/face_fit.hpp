@@ -39,7 +39,7 @@ struct FittedFace {
   [[nodiscard]] gpu::FittedFace rounded() const;
 };
 
-/// What caster.vert or logarithmic.vert needs for a face; `first_vertex` is the caller's.
+/// Push constants of caster.vert or logarithmic.vert for a face; `first_vertex` is the caller's.
 gpu::CasterPush face_push(const FittedFace& face, const gpu::LightView& view, const LightBasis& basis,
                           std::uint32_t size);
 gpu::LogarithmicPush logarithmic_push(const FittedFace& face, const gpu::LightView& view, const LightBasis& basis,

@@ -174,6 +174,9 @@ void MapMethod::prepare_mesh(const visibility::SceneFloats& scene) {
 void MapMethod::prepare_light(const visibility::Light& light) {
   visibility::check_light(recipe_.description, light);
   PENUMBRA_ASSERT(scene_ != nullptr, "{}: prepare_light before prepare_mesh", recipe_.description.name);
+  if (options_.fit.fit == Fit::logpsm && casters_.have_holes())
+    throw InputError("method {}: fit=logpsm draws no surfaces with holes (alphaMode MASK); take another fit",
+                     recipe_.description.name);
   light_ = &light;
   basis_ = light_basis(light, *scene_);
   parts_ = visibility::light_parts(light, recipe_.sub_lights);
@@ -207,7 +210,7 @@ void MapMethod::fit_to_camera(FitOptions fit, const glm::vec3& centre) {
   const LightBounds bounds = light_bounds(light, basis_);
   if (recipe_.beside && recipe_.beside_texels == 0) fit.body_reach = glm::max(-bounds.lower, bounds.upper);
   const std::vector<BodyPoint> body =
-      body_points(*scene_, light, *samples_, options_.fit.body, 0, std::numeric_limits<double>::infinity());
+      body_points(*scene_, light, basis_, *samples_, options_.fit.body, 0, std::numeric_limits<double>::infinity());
   fit.body = &body;
   fit.snap = options_.fit.snap;
   fitted_ = fit_views(*scene_, light, basis_, std::span(&centre, 1), fit);

@@ -73,6 +73,8 @@ glm::vec3 SunSpace::mapped(const glm::vec3& p) const {
 
 visibility::ViewSamples SunSpace::mapped(const visibility::ViewSamples& samples) const {
   visibility::ViewSamples all = samples;
+  // Of an eye so far along the sun's light nothing is in this space.
+  if (below_ - local(samples.eye).z > 0) all.eye = mapped(samples.eye);
   for (std::size_t i = 0; i < samples.size(); ++i) {
     if (samples.triangle[i] == visibility::ViewSamples::kBackground) continue;
     const glm::dvec3 at = local(samples.p[i]), n(samples.n[i]);

@@ -56,8 +56,13 @@ std::vector<glm::dvec3> clipped(const std::vector<glm::dvec3>& polygon, const Pl
 }
 
 std::vector<BodyPoint> points_in_frustum(const visibility::SceneFloats& scene, const visibility::Light& light,
-                                         const visibility::PinholeCamera& camera, double from, double to) {
+                                         const LightBasis& basis, const visibility::PinholeCamera& camera, double from,
+                                         double to) {
   const std::vector<Plane> planes = frustum(camera, from, to);
+  // A polygon that the light's plane cuts is two, each up to this far from the plane.
+  const double gap = 0x1p-20 * glm::length(glm::dvec3(scene.upper) - glm::dvec3(scene.lower));
+  const double height = glm::dot(basis.n, basis.center);
+  const Plane before{basis.n, -height - gap}, behind{-basis.n, height - gap};
   std::vector<BodyPoint> points;
   const auto add = [&](const glm::dvec3& x) { points.push_back({x, glm::dot(camera.forward, x - camera.eye)}); };
   std::vector<std::uint8_t> whole(scene.positions.size(), 0);
@@ -65,10 +70,11 @@ std::vector<BodyPoint> points_in_frustum(const visibility::SceneFloats& scene, c
     if (!visibility::is_receiver(scene, light, i)) continue;
     std::vector<glm::dvec3> polygon;
     for (const glm::vec3& corner : scene.corners(i)) polygon.emplace_back(corner);
-    const bool inside = std::ranges::all_of(planes, [&](const Plane& plane) {
+    const auto lies_within = [&](const Plane& plane) {
       return std::ranges::all_of(polygon, [&](const glm::dvec3& corner) { return plane.of(corner) >= 0; });
-    });
-    if (inside) {
+    };
+    const bool cut = !lies_within(before) && !lies_within(behind);
+    if (!cut && std::ranges::all_of(planes, lies_within)) {
       for (const std::uint32_t corner : scene.triangles[i]) whole[corner] = 1;
       continue;
     }
@@ -76,7 +82,12 @@ std::vector<BodyPoint> points_in_frustum(const visibility::SceneFloats& scene, c
       polygon = clipped(polygon, plane);
       if (polygon.empty()) break;
     }
-    std::ranges::for_each(polygon, add);
+    if (cut) {
+      std::ranges::for_each(clipped(polygon, before), add);
+      std::ranges::for_each(clipped(polygon, behind), add);
+    } else {
+      std::ranges::for_each(polygon, add);
+    }
   }
   for (std::size_t i = 0; i < whole.size(); ++i) {
     if (whole[i] != 0) add(scene.positions[i]);
@@ -116,8 +127,9 @@ ViewFit view_fit(std::span<const visibility::OptionDescription> options, const v
 }
 
 std::vector<BodyPoint> body_points(const visibility::SceneFloats& scene, const visibility::Light& light,
-                                   const visibility::ViewSamples& samples, ViewBody body, double from, double to) {
-  if (body == ViewBody::frustum) return points_in_frustum(scene, light, samples.camera, from, to);
+                                   const LightBasis& basis, const visibility::ViewSamples& samples, ViewBody body,
+                                   double from, double to) {
+  if (body == ViewBody::frustum) return points_in_frustum(scene, light, basis, samples.camera, from, to);
   std::vector<BodyPoint> points;
   for (std::size_t i = 0; i < samples.size(); ++i) {
     if (!visibility::is_receiver(scene, light, samples, i)) continue;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "maps/host/light_basis.hpp"
 #include "visibility/light_samples.hpp"
 #include "visibility/method_options.hpp"
 #include "visibility/scene_floats.hpp"
@@ -116,9 +117,12 @@ struct BodyPoint {
   double depth = 0;  ///< along the view axis
 };
 
-/// Points whose convex hull holds all receivers of the light that the camera sees between these depths.
+/// Points whose convex hull on either side of the light's plane holds all receivers of the light that the camera sees
+/// between these depths. What a frustum holds and the plane cuts has points close to the plane on both of its sides,
+/// whose directions from the light's centre are beyond every window.
 std::vector<BodyPoint> body_points(const visibility::SceneFloats& scene, const visibility::Light& light,
-                                   const visibility::ViewSamples& samples, ViewBody body, double from, double to);
+                                   const LightBasis& basis, const visibility::ViewSamples& samples, ViewBody body,
+                                   double from, double to);
 
 /// Depths from which on slices go, the first near and the last far (Eisemann et al. 2009, section 3.2.3.1): n + 1 of
 /// them. 0 < near ≤ far.

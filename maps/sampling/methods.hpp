@@ -5,7 +5,7 @@
 
 #include <memory>
 
-/// Of each method what makes it, and what it is, which needs no device.
+/// Factory and description of each method; a description needs no device.
 namespace penumbra::maps {
 
 /// Heckbert and Herf 1997: one shadow map a light sample. docs/accumulate.md.

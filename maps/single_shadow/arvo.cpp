@@ -13,7 +13,7 @@
 #include "maps/single_shadow/arvo_probe.comp.spv.hpp"
 #include "maps/single_shadow/flood.hpp"
 #include "maps/single_shadow/options.hpp"
-#include "maps/single_shadow/repairs.hpp"
+#include "maps/single_shadow/descriptions.hpp"
 #include "visibility/receivers.hpp"
 
 #include <algorithm>
@@ -136,17 +136,12 @@ void FloodedShadow::read_visibility(std::span<float> visibility) {
 }  // namespace
 
 visibility::MethodDescription arvo_description() {
-  visibility::MethodDescription description{.name = "arvo",
-                                            .family = visibility::Family::image,
-                                            .paper = "Arvo et al. 2004",
-                                            .output = visibility::Output::scalar,
-                                            .exact_for = "nothing",
-                                            .lights = visibility::kPlanarLights,
-                                            .textures = false,
-                                            .on_request = true,
-                                            .options = compared_map_option_descriptions(),
-                                            .verdict_on = arvo_verdict,
-                                            .repairs = single_shadow_repairs};
+  visibility::MethodDescription description = single_shadow_description({.name = "arvo",
+                                                                         .paper = "Arvo et al. 2004",
+                                                                         .exact_for = "nothing",
+                                                                         .options = compared_map_option_descriptions(),
+                                                                         .verdict_on = arvo_verdict,
+                                                                         .repairs = single_shadow_repairs});
   description.options.push_back(falloff_option(gpu::kFalloffCubic).description());
   return description;
 }

@@ -8,7 +8,7 @@
 #include "maps/products/nearest_ids.hpp"
 #include "maps/single_shadow/brabec_seidel.comp.spv.hpp"
 #include "maps/single_shadow/options.hpp"
-#include "maps/single_shadow/repairs.hpp"
+#include "maps/single_shadow/descriptions.hpp"
 #include "maps/single_shadow/search_recipe.hpp"
 
 #include <utility>
@@ -27,17 +27,12 @@ visibility::MeshVerdict brabec_seidel_verdict(const mesh::Diagnosis& mesh) {
 }  // namespace
 
 visibility::MethodDescription brabec_seidel_description() {
-  visibility::MethodDescription description{.name = "brabec-seidel",
-                                            .family = visibility::Family::image,
-                                            .paper = "Brabec and Seidel 2002",
-                                            .output = visibility::Output::scalar,
-                                            .exact_for = "nothing",
-                                            .lights = visibility::kPlanarLights,
-                                            .textures = false,
-                                            .on_request = true,
-                                            .options = compared_map_option_descriptions(),
-                                            .verdict_on = brabec_seidel_verdict,
-                                            .repairs = searched_shadow_repairs};
+  visibility::MethodDescription description = single_shadow_description({.name = "brabec-seidel",
+                                                                         .paper = "Brabec and Seidel 2002",
+                                                                         .exact_for = "nothing",
+                                                                         .options = compared_map_option_descriptions(),
+                                                                         .verdict_on = brabec_seidel_verdict,
+                                                                         .repairs = searched_shadow_repairs});
   for (const auto& option :
        {kSearchRadius.description(), falloff_option(gpu::kFalloffLinear).description(), kIds.description()}) {
     description.options.push_back(option);

@@ -8,7 +8,7 @@
 
 namespace penumbra::maps {
 
-/// What a flood on the screen knows of a pixel.
+/// A pixel as a flood on the screen knows it.
 struct FloodPixel {
   enum class State : std::uint8_t { nothing, lit, shaded };
   State state = State::nothing;

@@ -11,10 +11,14 @@
 #include "maps/single_shadow/kirsch_doellner.comp.spv.hpp"
 #include "maps/single_shadow/kirsch_doellner.shared.h"
 #include "maps/single_shadow/options.hpp"
-#include "maps/single_shadow/repairs.hpp"
+#include "maps/single_shadow/descriptions.hpp"
 #include "maps/single_shadow/width_map.hpp"
 
+#include <cstdint>
+#include <map>
 #include <memory>
+#include <optional>
+#include <string>
 #include <utility>
 
 namespace penumbra::maps {
@@ -24,20 +28,33 @@ visibility::MeshVerdict kirsch_doellner_verdict(const mesh::Diagnosis& mesh) {
   return judge_for_maps("the hard shadow of the light's centre, with penumbrae inside of it alone", mesh);
 }
 
+/// Where the width map cannot tell occluders from what they shade, shadows have no penumbra.
+std::optional<std::string> kirsch_doellner_warning(const visibility::MethodOptions& /*options*/,
+                                                   const std::map<std::string, std::uint64_t>& counters) {
+  const auto count = [&](const char* name) {
+    const auto found = counters.find(name);
+    return found == counters.end() ? 1U : found->second;
+  };
+  if (count("occludingTriangles") == 0)
+    return "kirsch-doellner: nothing casts but the ground, the largest object: its shadows are hard";
+  if (count("groundObjects") == 0)
+    return "kirsch-doellner: some receiver casts no shadow, so that all casters are taken for occluders: where a "
+           "caster "
+           "lies behind them shadows are hard";
+  return std::nullopt;
+}
+
 }  // namespace
 
 visibility::MethodDescription kirsch_doellner_description() {
-  visibility::MethodDescription description{.name = "kirsch-doellner",
-                                            .family = visibility::Family::image,
-                                            .paper = "Kirsch and Döllner 2003",
-                                            .output = visibility::Output::scalar,
-                                            .exact_for = "nothing; all is lit outside of the hard shadow",
-                                            .lights = visibility::kPlanarLights,
-                                            .textures = false,
-                                            .on_request = true,
-                                            .options = compared_map_option_descriptions(),
-                                            .verdict_on = kirsch_doellner_verdict,
-                                            .repairs = searched_shadow_repairs};
+  visibility::MethodDescription description =
+      single_shadow_description({.name = "kirsch-doellner",
+                                 .paper = "Kirsch and Döllner 2003",
+                                 .exact_for = "nothing; all is lit outside of the hard shadow",
+                                 .options = compared_map_option_descriptions(),
+                                 .verdict_on = kirsch_doellner_verdict,
+                                 .repairs = searched_shadow_repairs});
+  description.warning = kirsch_doellner_warning;
   for (const auto& option : {kSearchRadius.description(), falloff_option(gpu::kFalloffLinear).description()}) {
     description.options.push_back(option);
   }

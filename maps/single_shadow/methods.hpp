@@ -5,7 +5,7 @@
 
 #include <memory>
 
-/// Of each method what makes it, and what it is, which needs no device.
+/// Factory and description of each method; a description needs no device.
 namespace penumbra::maps {
 
 /// Wyman and Hansen 2003: cones and sheets at silhouettes, drawn in a second map. docs/penumbra-map.md.

@@ -3,35 +3,22 @@
 
 #include "maps/single_shadow/methods.hpp"
 
-#include "maps/host/mesh_verdict.hpp"
 #include "maps/single_shadow/options.hpp"
 #include "maps/single_shadow/parker.comp.spv.hpp"
-#include "maps/single_shadow/repairs.hpp"
+#include "maps/single_shadow/descriptions.hpp"
 #include "maps/single_shadow/search_recipe.hpp"
 
 #include <utility>
 
 namespace penumbra::maps {
-namespace {
-
-visibility::MeshVerdict parker_verdict(const mesh::Diagnosis& mesh) {
-  return judge_for_maps("the hard shadow of the light's centre, with penumbrae outside of it alone", mesh);
-}
-
-}  // namespace
-
 visibility::MethodDescription parker_description() {
-  visibility::MethodDescription description{.name = "parker",
-                                            .family = visibility::Family::image,
-                                            .paper = "Parker et al. 1998",
-                                            .output = visibility::Output::scalar,
-                                            .exact_for = "nothing; its umbra is the whole hard shadow",
-                                            .lights = visibility::kPlanarLights,
-                                            .textures = false,
-                                            .on_request = true,
-                                            .options = compared_map_option_descriptions(),
-                                            .verdict_on = parker_verdict,
-                                            .repairs = searched_shadow_repairs};
+  visibility::MethodDescription description =
+      single_shadow_description({.name = "parker",
+                                 .paper = "Parker et al. 1998",
+                                 .exact_for = "nothing; its umbra is the whole hard shadow",
+                                 .options = compared_map_option_descriptions(),
+                                 .verdict_on = outer_verdict,
+                                 .repairs = searched_shadow_repairs});
   for (const auto& option : {kSearchRadius.description(), falloff_option(gpu::kFalloffCubic).description()}) {
     description.options.push_back(option);
   }

@@ -4,12 +4,11 @@
 
 #include "maps/single_shadow/methods.hpp"
 
-#include "maps/host/mesh_verdict.hpp"
 #include "maps/single_shadow/options.hpp"
 #include "maps/single_shadow/outer_look_up.comp.spv.hpp"
 #include "maps/single_shadow/outer_look_up.shared.h"
 #include "maps/single_shadow/outer_recipe.hpp"
-#include "maps/single_shadow/repairs.hpp"
+#include "maps/single_shadow/descriptions.hpp"
 
 #include <utility>
 
@@ -21,10 +20,6 @@ constexpr auto kLinearFilter =
                                       {{"nearest", false}, {"linear", true}},
                                       true,
                                       "V by a view sample's own texel, or between the four nearest"};
-
-visibility::MeshVerdict penumbra_map_verdict(const mesh::Diagnosis& mesh) {
-  return judge_for_maps("the hard shadow of the light's centre, with penumbrae outside of it alone", mesh);
-}
 
 }  // namespace
 
@@ -49,17 +44,12 @@ MapRecipe outer_recipe(const render::Device& device, visibility::MethodDescripti
 }
 
 visibility::MethodDescription penumbra_map_description() {
-  return {.name = "penumbra-map",
-          .family = visibility::Family::image,
-          .paper = "Wyman and Hansen 2003",
-          .output = visibility::Output::scalar,
-          .exact_for = "nothing; its umbra is the whole hard shadow",
-          .lights = visibility::kPlanarLights,
-          .textures = false,
-          .on_request = true,
-          .options = outer_options(gpu::kFalloffCubic),
-          .verdict_on = penumbra_map_verdict,
-          .repairs = single_shadow_repairs};
+  return single_shadow_description({.name = "penumbra-map",
+                                    .paper = "Wyman and Hansen 2003",
+                                    .exact_for = "nothing; its umbra is the whole hard shadow",
+                                    .options = outer_options(gpu::kFalloffCubic),
+                                    .verdict_on = outer_verdict,
+                                    .repairs = single_shadow_repairs});
 }
 
 std::unique_ptr<visibility::Method> make_penumbra_map(const render::Device& device,

@@ -4,9 +4,8 @@
 
 #include "maps/single_shadow/methods.hpp"
 
-#include "maps/host/mesh_verdict.hpp"
 #include "maps/single_shadow/outer_recipe.hpp"
-#include "maps/single_shadow/repairs.hpp"
+#include "maps/single_shadow/descriptions.hpp"
 #include "maps/single_shadow/options.hpp"
 
 #include <utility>
@@ -19,24 +18,16 @@ constexpr visibility::RealOption kWidth{
     "how wide smoothies are, at distance 1 from the light's plane; 0: the light's radius over the mean height of the "
     "silhouettes that are not the ground's"};
 
-visibility::MeshVerdict smoothies_verdict(const mesh::Diagnosis& mesh) {
-  return judge_for_maps("the hard shadow of the light's centre, with penumbrae outside of it alone", mesh);
-}
-
 }  // namespace
 
 visibility::MethodDescription smoothies_description() {
-  visibility::MethodDescription description{.name = "smoothies",
-                                            .family = visibility::Family::image,
-                                            .paper = "Chan and Durand 2003",
-                                            .output = visibility::Output::scalar,
-                                            .exact_for = "nothing; its umbra is the whole hard shadow",
-                                            .lights = visibility::kPlanarLights,
-                                            .textures = false,
-                                            .on_request = true,
-                                            .options = outer_options(gpu::kFalloffCubic),
-                                            .verdict_on = smoothies_verdict,
-                                            .repairs = single_shadow_repairs};
+  visibility::MethodDescription description =
+      single_shadow_description({.name = "smoothies",
+                                 .paper = "Chan and Durand 2003",
+                                 .exact_for = "nothing; its umbra is the whole hard shadow",
+                                 .options = outer_options(gpu::kFalloffCubic),
+                                 .verdict_on = outer_verdict,
+                                 .repairs = single_shadow_repairs});
   description.options.push_back(kWidth.description());
   return description;
 }

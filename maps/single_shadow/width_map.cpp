@@ -32,6 +32,9 @@ void WidthMap::record(render::Commands& commands, const MapSet& maps) {
   for (std::size_t i = 0; i < drawn.casts_shadow.size(); ++i) {
     if (drawn.object[i] == ground) drawn.casts_shadow[i] = 0;
   }
+  grounds_ = std::ranges::find(drawn.object, ground) != drawn.object.end() ? 1 : 0;
+  occluders_count_ =
+      static_cast<std::uint64_t>(std::ranges::count_if(drawn.casts_shadow, [](auto casts) { return casts != 0; }));
   if (!occluder_maps_) occluder_maps_.emplace(*device_, maps.size, rasteriser_);
   occluder_maps_->upload(drawn);
   occluder_maps_->record(commands, view, maps.basis, maps.light.index, *occluders_, 0);
@@ -46,6 +49,11 @@ void WidthMap::record(render::Commands& commands, const MapSet& maps) {
       pass_.record(commands, push, {*occluders_, *rows_, *widths_}, (texels + 63) / 64);
     }
   }
+}
+
+void WidthMap::add_counters(std::map<std::string, std::uint64_t>& counters) const {
+  counters["groundObjects"] = grounds_;
+  counters["occludingTriangles"] = occluders_count_;
 }
 
 std::uint64_t WidthMap::memory_bytes() const {

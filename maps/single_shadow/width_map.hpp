@@ -5,8 +5,10 @@
 #include "render/compute_pass.hpp"
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
+#include <string>
 
 namespace penumbra::maps {
 
@@ -19,6 +21,8 @@ class WidthMap final : public MapProduct {
   void record(render::Commands& commands, const MapSet& maps) override;
   [[nodiscard]] const render::Buffer& buffer() const override { return *widths_; }
   [[nodiscard]] std::uint64_t memory_bytes() const override;
+  /// groundObjects, 0 or 1, and occludingTriangles, all that cast and are not the ground's.
+  void add_counters(std::map<std::string, std::uint64_t>& counters) const override;
 
  private:
   const render::Device* device_;
@@ -26,6 +30,7 @@ class WidthMap final : public MapProduct {
   Rasteriser rasteriser_;
   render::ComputePass pass_;
   std::optional<CasterMaps> occluder_maps_;
+  std::uint64_t grounds_ = 0, occluders_count_ = 0;
   std::unique_ptr<render::Buffer> occluders_, rows_, widths_;
 };
 

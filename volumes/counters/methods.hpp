@@ -5,7 +5,7 @@
 
 #include <memory>
 
-/// Of each method what makes it, and what it is, which needs no device.
+/// Factory and description of each method; a description needs no device.
 namespace penumbra::volumes {
 
 /// `depth-complexity`: an integer counter for each light sample: how many triangles are between p and it. Any

@@ -57,7 +57,7 @@ class ShadowCasters {
 
   /// Seen from `l`, without the body of that light. Exact.
   [[nodiscard]] LightVolumes seen_from(const glm::vec3& l, const visibility::Light& light) const;
-  /// The same of some casters alone: `kept` has a word for each, 0 for those that are left out.
+  /// The volumes of some casters alone: `kept` has a word for each, 0 for those that are left out.
   [[nodiscard]] LightVolumes seen_from(const glm::vec3& l, const visibility::Light& light,
                                        std::span<const std::uint8_t> kept) const;
 
@@ -71,7 +71,7 @@ class ShadowCasters {
 
   [[nodiscard]] std::size_t size() const { return casters_.size(); }
   [[nodiscard]] std::span<const mesh::Triangle> triangles() const { return triangles_; }
-  /// For each, the number of its component: of what hangs together by edges. They count from 0.
+  /// The number of each caster's component, of what hangs together by edges; from 0 on.
   [[nodiscard]] std::vector<std::uint32_t> components() const;
   /// For each, its number among the scene's triangles.
   [[nodiscard]] std::span<const std::uint32_t> numbers() const { return casters_; }
@@ -87,10 +87,10 @@ class ShadowCasters {
   visibility::ClosedCasters parts_;  // for one_a_solid
 };
 
-/// Of each part, how many triangles the ray from l in this direction meets; nothing if double cannot tell.
+/// The number of triangles of each part that the ray from l in this direction meets; nothing if double cannot tell.
 std::optional<std::vector<std::int32_t>> counts_along(const LightVolumes& volumes, const glm::dvec3& direction);
 
-/// Of each part, in how many volumes x is, whatever bounds it has; nothing if double cannot tell.
+/// The number of each part's volumes that x is in, whatever bounds the part has; nothing if double cannot tell.
 std::optional<std::vector<std::int32_t>> counts_at(const LightVolumes& volumes, const glm::dvec3& x);
 
 }  // namespace penumbra::volumes

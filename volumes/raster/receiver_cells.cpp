@@ -47,7 +47,7 @@ struct Keyed {
   std::size_t pixel;
 };
 
-/// Up to eight buckets an octave, about the scene's size.
+/// The logarithmic bucket of a depth: up to eight an octave, around the scene's size.
 std::uint64_t bucket_of(double depth, double size) {
   const double at = 8 * std::log2(std::max(depth, 1e-30) / size) + 0.75 * kBuckets;
   return static_cast<std::uint64_t>(std::clamp(at, 0.0, kBuckets - 1.0));

@@ -18,7 +18,7 @@
 
 namespace penumbra::volumes {
 
-/// Where something appears on one face of the cube of cells: a block of them, and the depths that it has there.
+/// A block of cells on one face of the cube that a shape may cover, and the range of its depths there.
 struct CellBlock {
   std::uint32_t face = 0;
   std::array<std::uint32_t, 2> first{}, last{};  ///< columns and rows, both ends included
@@ -65,7 +65,7 @@ std::vector<CellBlock> blocks_of_box(const glm::dvec3& lower, const glm::dvec3& 
 template <typename Visit>
 void for_each_cell_along(const glm::dvec3& a, const glm::dvec3& b, Visit&& visit);
 
-/// The depths of a plane n · x = d in a cell, of what appears there; wider than they are, but within the block's.
+/// A conservative range of the depths of a plane n · x = d in a cell, no wider than the block's.
 class PlaneDepths {
  public:
   PlaneDepths(const std::array<glm::dvec3, 3>& corners);

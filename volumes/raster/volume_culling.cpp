@@ -117,7 +117,8 @@ class Stretches {
     if (all_.size() > 4096) join(0);
   }
 
-  /// At most `most`, with the narrowest gaps closed, and all that are less than a tenth of what is left.
+  /// Merges stretches until at most `most` remain, the narrowest gaps first; closes gaps below a tenth of what is left,
+  /// too.
   std::vector<std::pair<double, double>> few(std::size_t most) {
     join(0);
     if (all_.empty()) return {};
@@ -189,7 +190,7 @@ std::vector<Caster> casters_in(const LightVolumes& volumes, const std::vector<st
   return casters;
 }
 
-/// The same with the caps and edges of these parts of casters alone.
+/// The volumes with the caps and edges of these parts of casters alone.
 struct PartOf {
   const Caster* caster;
   gpu::VolumePart part;

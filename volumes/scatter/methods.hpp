@@ -5,7 +5,7 @@
 
 #include <memory>
 
-/// Of each method what makes it, and what it is, which needs no device.
+/// Factory and description of each method; a description needs no device.
 namespace penumbra::volumes {
 
 /// `edge-scatter`: signed silhouette edges scattered into a grid of light samples, one running sum a light row.

@@ -15,7 +15,8 @@ enum class Fusion {
   average,  ///< the middle between max and sum
 };
 
-/// Of one view sample; `whole` is V without occluders, `hidden` what each of them takes from it.
+/// Accumulates what occluders hide from one view sample; `whole` is V without occluders, `hidden` an occluder's share
+/// of it.
 class FusedShare {
  public:
   void add(double hidden, double whole) {

@@ -5,7 +5,7 @@
 
 #include <memory>
 
-/// Of each method what makes it, and what it is, which needs no device.
+/// Factory and description of each method; a description needs no device.
 namespace penumbra::volumes {
 
 /// Assarsson and Akenine-Möller 2003: soft shadow volumes. docs/soft-volume.md.

@@ -6,10 +6,8 @@
 
 #include "volumes/soft/methods.hpp"
 
-#include "base/assert.hpp"
 #include "base/parallel.hpp"
-#include "volumes/raster/volume_count.hpp"
-#include "volumes/raster/wedge_raster.hpp"
+#include "volumes/soft/hard_and_wedges.hpp"
 #include "volumes/soft/outer_penumbra.hpp"
 #include "volumes/soft/plateaus.frag.spv.hpp"
 
@@ -19,15 +17,12 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <optional>
 
 namespace penumbra::volumes {
 namespace {
 
 using visibility::Light;
-using visibility::SceneFloats;
 using visibility::Tile;
-using visibility::ViewSamples;
 
 visibility::MeshVerdict plateaus_verdict(const mesh::Diagnosis& mesh) {
   return {
@@ -53,50 +48,14 @@ visibility::MethodDescription plateaus_description() {
 
 namespace {
 
-class Plateaus final : public visibility::Method {
+class Plateaus final : public HardAndWedges {
  public:
   Plateaus(const render::Device& device, const visibility::MethodOptions& options)
-      : description_(plateaus_description()),
-        count_(device, CountVariant::z_fail),
-        raster_(device, {.name = "plateaus", .fragment = shaders::kPlateausFrag}) {
-    visibility::parse_options(description_, options);
-  }
+      : HardAndWedges(plateaus_description(), options, VolumeCount(device, CountVariant::z_fail),
+                      WedgeRaster(device, {.name = "plateaus", .fragment = shaders::kPlateausFrag})) {}
 
-  [[nodiscard]] const visibility::MethodDescription& description() const override { return description_; }
-
-  void prepare_mesh(const SceneFloats& scene) override {
-    scene_ = &scene;
-    count_.prepare_mesh(scene);
-  }
   void prepare_light(const Light& light) override;
-  void prepare_view(const ViewSamples& samples) override {
-    samples_ = &samples;
-    count_.prepare_view(samples);
-    faces_.reset();
-  }
-  [[nodiscard]] std::uint32_t max_tile_rows() const override {
-    return std::min(count_.max_tile_rows(), raster_.max_tile_rows(*samples_));
-  }
   void evaluate(const Tile& tile) override;
-
-  void read_visibility(std::span<float> visibility) override {
-    PENUMBRA_ASSERT(visibility.size() == visibility_.size(), "{} values for a tile of {} pixels", visibility.size(),
-                    visibility_.size());
-    std::ranges::copy(visibility_, visibility.begin());
-  }
-  std::vector<visibility::PassTime> take_pass_times() override {
-    visibility::PassTimes all;
-    all.add(count_.take_pass_times());
-    all.add(raster_.take_pass_times());
-    return all.take();
-  }
-  [[nodiscard]] std::map<std::string, std::uint64_t> counters() const override {
-    return {{"silhouetteEdges", wedges_.edges.size()},
-            {"wedgesOnScreen", faces_ ? faces_->size() : 0},
-            {"fragments", faces_ ? fragments_of(*faces_) : 0},
-            {"pixelsOnHost", on_host_}};
-  }
-  [[nodiscard]] std::uint64_t memory_bytes() const override { return count_.memory_bytes() + raster_.memory_bytes(); }
 
  private:
   [[nodiscard]] glm::dvec3 normal_of(std::uint32_t triangle) const {
@@ -106,17 +65,7 @@ class Plateaus final : public visibility::Method {
   }
   [[nodiscard]] double depth_on_host(std::size_t pixel) const;
 
-  visibility::MethodDescription description_;
-  VolumeCount count_;
-  WedgeRaster raster_;
-  const SceneFloats* scene_ = nullptr;
-  const Light* light_ = nullptr;
-  const ViewSamples* samples_ = nullptr;
   OuterPenumbra penumbra_;
-  LightWedges wedges_;
-  std::optional<std::vector<gpu::WedgeFace>> faces_;
-  std::vector<float> visibility_;
-  std::uint64_t on_host_ = 0;
 };
 
 /// Whatever lies within `radius` times those heights of an edge's projection sees the edge before a point that is no

@@ -5,23 +5,18 @@
 
 #include "volumes/soft/methods.hpp"
 
-#include "base/assert.hpp"
 #include "base/parallel.hpp"
+#include "volumes/soft/hard_and_wedges.hpp"
 #include "volumes/soft/ramp_wedges.hpp"
-#include "volumes/raster/volume_count.hpp"
-#include "volumes/raster/wedge_raster.hpp"
 #include "volumes/soft/wedge_ramp.frag.spv.hpp"
 
 #include <algorithm>
-#include <optional>
 
 namespace penumbra::volumes {
 namespace {
 
 using visibility::Light;
-using visibility::SceneFloats;
 using visibility::Tile;
-using visibility::ViewSamples;
 
 visibility::MeshVerdict wedge_ramp_verdict(const mesh::Diagnosis& mesh) {
   return {
@@ -47,21 +42,12 @@ visibility::MethodDescription wedge_ramp_description() {
 
 namespace {
 
-class WedgeRamp final : public visibility::Method {
+class WedgeRamp final : public HardAndWedges {
  public:
   WedgeRamp(const render::Device& device, const visibility::MethodOptions& options)
-      : description_(wedge_ramp_description()),
-        count_(device, CountVariant::z_fail, Layers::one_a_solid),
-        raster_(device, {"wedge ramps", shaders::kWedgeRampFrag, {}}) {
-    visibility::parse_options(description_, options);
-  }
+      : HardAndWedges(wedge_ramp_description(), options, VolumeCount(device, CountVariant::z_fail, Layers::one_a_solid),
+                      WedgeRaster(device, {"wedge ramps", shaders::kWedgeRampFrag, {}})) {}
 
-  [[nodiscard]] const visibility::MethodDescription& description() const override { return description_; }
-
-  void prepare_mesh(const SceneFloats& scene) override {
-    scene_ = &scene;
-    count_.prepare_mesh(scene);
-  }
   void prepare_light(const Light& light) override {
     visibility::check_light(description_, light);
     light_ = &light;
@@ -70,50 +56,16 @@ class WedgeRamp final : public visibility::Method {
     const std::vector<double> words = ramp_words(wedges_);
     if (!words.empty()) raster_.set_table(words);
     faces_.reset();
-    doubtful_ = 0;
-  }
-  void prepare_view(const ViewSamples& samples) override {
-    samples_ = &samples;
-    count_.prepare_view(samples);
-    faces_.reset();
-  }
-  [[nodiscard]] std::uint32_t max_tile_rows() const override {
-    return std::min(count_.max_tile_rows(), raster_.max_tile_rows(*samples_));
+    on_host_ = 0;
   }
   void evaluate(const Tile& tile) override;
 
-  void read_visibility(std::span<float> visibility) override {
-    PENUMBRA_ASSERT(visibility.size() == visibility_.size(), "{} values for a tile of {} pixels", visibility.size(),
-                    visibility_.size());
-    std::ranges::copy(visibility_, visibility.begin());
-  }
-  std::vector<visibility::PassTime> take_pass_times() override {
-    visibility::PassTimes all;
-    all.add(count_.take_pass_times());
-    all.add(raster_.take_pass_times());
-    return all.take();
-  }
   [[nodiscard]] std::map<std::string, std::uint64_t> counters() const override {
-    const auto hard = std::ranges::count(wedges_.wedges, WedgeOutcome::empty, &Wedge::outcome);
-    return {{"silhouetteEdges", wedges_.edges.size()},
-            {"hardEdges", static_cast<std::uint64_t>(hard)},
-            {"wedgesOnScreen", faces_ ? faces_->size() : 0},
-            {"fragments", faces_ ? fragments_of(*faces_) : 0},
-            {"pixelsOnHost", doubtful_}};
+    auto counters = HardAndWedges::counters();
+    counters["hardEdges"] =
+        static_cast<std::uint64_t>(std::ranges::count(wedges_.wedges, WedgeOutcome::empty, &Wedge::outcome));
+    return counters;
   }
-  [[nodiscard]] std::uint64_t memory_bytes() const override { return count_.memory_bytes() + raster_.memory_bytes(); }
-
- private:
-  visibility::MethodDescription description_;
-  VolumeCount count_;
-  WedgeRaster raster_;
-  const SceneFloats* scene_ = nullptr;
-  const Light* light_ = nullptr;
-  const ViewSamples* samples_ = nullptr;
-  LightWedges wedges_;
-  std::optional<std::vector<gpu::WedgeFace>> faces_;
-  std::vector<float> visibility_;
-  std::uint64_t doubtful_ = 0;
 };
 
 void WedgeRamp::evaluate(const Tile& tile) {
@@ -140,7 +92,7 @@ void WedgeRamp::evaluate(const Tile& tile) {
                                        : gpu::kSumUnit * static_cast<double>(raster_.sums()[i]);
     visibility_[i] = static_cast<float>(std::clamp(1 - count_.counts()[i] - sum, 0.0, 1.0));
   });
-  doubtful_ += static_cast<std::uint64_t>(std::ranges::count(on_host, 1));
+  on_host_ += static_cast<std::uint64_t>(std::ranges::count(on_host, 1));
 }
 
 }  // namespace

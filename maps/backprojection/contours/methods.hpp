@@ -5,7 +5,7 @@
 
 #include <memory>
 
-/// Of each method what makes it, and what it is, which needs no device.
+/// Factory and description of each method; a description needs no device.
 namespace penumbra::maps {
 
 /// Guennebaud, Barthe and Paulin 2007: contours of what shades, on one map. docs/contour.md.

@@ -5,7 +5,7 @@
 
 #include <memory>
 
-/// Of each method what makes it, and what it is, which needs no device.
+/// Factory and description of each method; a description needs no device.
 namespace penumbra::maps {
 
 /// Schwarz and Stamminger 2007: what texels of one map hide, as bits of the light samples. docs/bitmask.md.

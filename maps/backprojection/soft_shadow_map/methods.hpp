@@ -5,7 +5,7 @@
 
 #include <memory>
 
-/// Of each method what makes it, and what it is, which needs no device.
+/// Factory and description of each method; a description needs no device.
 namespace penumbra::maps {
 
 /// Atty et al. 2006: a map of soft shadows from a map of occluders and one of receivers. docs/soft-shadow-map.md.

@@ -217,7 +217,8 @@ TEST_F(FittedMaps, EveryTexelSaysWhatItsCentreSees) {
                                  .body = body == "visible" ? maps::ViewBody::visible : maps::ViewBody::frustum};
       std::vector<maps::FittedFace> faces;
       if (fit == Fit::view) {
-        const auto points = maps::body_points(stage.floats, stage.light, stage.samples, choice.body, 0, kInfinity);
+        const auto points =
+            maps::body_points(stage.floats, stage.light, basis, stage.samples, choice.body, 0, kInfinity);
         const glm::vec3 centre(basis.center);
         faces = maps::faces_of(
             maps::fit_views(stage.floats, stage.light, basis, std::span(&centre, 1), {.size = kSize, .body = &points})
@@ -363,6 +364,47 @@ TEST_F(FittedMaps, HemicubesFiltersAndLayersAgree) {
             [&](std::size_t i) { return static_cast<double>(found.visibility[i] - right.visibility[i]); });
         EXPECT_LT(off, one.tolerance) << fit << (two_sided ? ", two-sided" : "");
       }
+    }
+  }
+}
+
+// In a room whose walls reach through the light's plane, and with something above the light, every receiver is in a
+// map, whatever is fitted, and sees what it sees in the maps of all receivers, but at outlines: no more pixels differ
+// than in maps of all receivers with texels four times as wide.
+TEST_F(FittedMaps, NoReceiverIsOutsideWhereTheLightsPlaneCutsWalls) {
+  scenes::Scene scene;
+  add_quad(scene, {0, 0, 0}, {4, 0, 0}, {0, 0, -4});   // floor
+  add_quad(scene, {-3, 3, 0}, {0, 3, 0}, {0, 0, 4});   // a wall from 0 to 6
+  add_quad(scene, {0, 3, -4}, {0, 3, 0}, {-4, 0, 0});  // another
+  add_quad(scene, {0, 6, 0}, {0, 0, -4}, {4, 0, 0});   // ceiling, above the light
+  for (int k = 0; k < 16; ++k) {                       // small boards, flat and upright
+    const double x = -2.6 + 1.3 * (k % 4), z = -2.7 + 1.2 * (k / 4 % 4);
+    add_quad(scene, {x, 0.9 + 0.1 * (k % 3), z}, {0.25, 0, 0}, {0, 0, -0.25});
+    add_quad(scene, {-2.4, 1.2 + 0.6 * (k % 4), z}, {0, 0.15, 0}, {0, 0, 0.2});
+  }
+  scene.lights.push_back(ceiling_light(4, 0.2));
+  scene.cameras.push_back(camera({3, 2.5, 4}, {-2, 2.2, -2}));
+  const Stage stage(scene, 96, 72, light_samples(1));
+  const Masks all = run(maps::make_shadow_map, stage, {{"size", "256"}});
+  const auto differing = [&](const Masks& found) {
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < stage.samples.size(); ++i) count += found.visibility[i] != all.visibility[i] ? 1 : 0;
+    return count;
+  };
+  const std::size_t most = differing(run(maps::make_shadow_map, stage, {{"size", "64"}}));
+  std::size_t dark = 0, lit = 0;
+  for (std::size_t i = 0; i < stage.samples.size(); ++i) {
+    if (stage.samples.triangle[i] < 0) continue;
+    ++(all.visibility[i] == 0 ? dark : lit);
+  }
+  EXPECT_GT(dark, 400U);
+  EXPECT_GT(lit, 2000U);
+  EXPECT_GT(most, 50U);
+  for (const char* fit : {"view", "cascades", "tiles", "lispsm", "tsm", "psm", "logpsm"}) {
+    for (const char* body : {"visible", "frustum"}) {
+      const visibility::MethodOptions choice = options(fit, {{"body", body}});
+      EXPECT_EQ(counters(stage, choice).at("outsidePixels"), 0U) << fit << ", " << body;
+      EXPECT_LE(differing(run(maps::make_shadow_map, stage, choice)), most) << fit << ", " << body;
     }
   }
 }

@@ -1,6 +1,9 @@
-#include "maps/single_shadow/repairs.hpp"
+#include "maps/single_shadow/descriptions.hpp"
 
 #include "maps/host/error_repairs.hpp"
+#include "maps/host/mesh_verdict.hpp"
+
+#include <utility>
 
 namespace penumbra::maps {
 
@@ -10,10 +13,28 @@ MapRepairs one_edge() {
   return {.ends_at_points = true,
           .layers = "it asks the nearest surfaces; no form of the method asks more",
           .fusion = "one edge alone decides, the nearest: nothing is added or joined",
-          .gaps = "texels are searched, not projected: there is nothing between them"};
+          .gaps = "no texel is projected: there is nothing between them"};
 }
 
 }  // namespace
+
+visibility::MethodDescription single_shadow_description(SingleShadow method) {
+  return {.name = std::move(method.name),
+          .family = visibility::Family::image,
+          .paper = std::move(method.paper),
+          .output = visibility::Output::scalar,
+          .exact_for = std::move(method.exact_for),
+          .lights = visibility::kPlanarLights,
+          .textures = false,
+          .on_request = true,
+          .options = std::move(method.options),
+          .verdict_on = method.verdict_on,
+          .repairs = method.repairs};
+}
+
+visibility::MeshVerdict outer_verdict(const mesh::Diagnosis& mesh) {
+  return judge_for_maps("the hard shadow of the light's centre, with penumbrae outside of it alone", mesh);
+}
 
 visibility::ErrorRepairs single_shadow_repairs(const visibility::MethodDescription& method,
                                                const visibility::MethodOptions& given) {

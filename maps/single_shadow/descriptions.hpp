@@ -1,0 +1,30 @@
+#pragma once
+
+#include "visibility/method.hpp"
+
+#include <string>
+#include <vector>
+
+/// What the descriptions of this room's methods have in common: V from one shadow map of a planar light's centre, left
+/// out of comparisons that do not name them.
+namespace penumbra::maps {
+
+struct SingleShadow {
+  std::string name, paper, exact_for;
+  std::vector<visibility::OptionDescription> options;
+  visibility::MeshVerdict (*verdict_on)(const mesh::Diagnosis& mesh) = nullptr;
+  visibility::ErrorRepairs (*repairs)(const visibility::MethodDescription& method,
+                                      const visibility::MethodOptions& given) = nullptr;
+};
+visibility::MethodDescription single_shadow_description(SingleShadow method);
+
+/// The verdict of methods whose penumbrae lie outside of the hard shadow alone.
+visibility::MeshVerdict outer_verdict(const mesh::Diagnosis& mesh);
+
+/// MethodDescription::repairs of methods whose search is not counted in texels, and of those whose search is.
+visibility::ErrorRepairs single_shadow_repairs(const visibility::MethodDescription& method,
+                                               const visibility::MethodOptions& given);
+visibility::ErrorRepairs searched_shadow_repairs(const visibility::MethodDescription& method,
+                                                 const visibility::MethodOptions& given);
+
+}  // namespace penumbra::maps
