@@ -40,6 +40,11 @@ std::uint32_t pixel_side(std::uint32_t samples) {
   throw UsageError("pixel_samples {}: expected a square number from 1 to 64, such as 4, 9 or 16", samples);
 }
 
+double pixel_tolerance(double tolerance) {
+  if (tolerance >= 0 && tolerance <= 1) return tolerance;
+  throw UsageError("pixel_tolerance {}: expected a number from 0 (every view sample is evaluated) to 1", tolerance);
+}
+
 void check_lights_and_cameras(const scenes::Scene& scene) {
   for (const scenes::AreaLight& light : scene.lights)
     scenes::check_light(light, fmt::format("light \"{}\"", light.name));
@@ -214,6 +219,7 @@ Picture Renderer::render(const RenderOptions& options) {
   const app::Frame frame{.number = {},
                          .camera = run.camera,
                          .pixel_side = pixel_side(options.pixel_samples),
+                         .pixel_tolerance = pixel_tolerance(options.pixel_tolerance),
                          .same_meshes = same_meshes,
                          .keeps_masks = options.masks && options.pixel_samples == 1};
   // Wrong options are refused before anything changes, so that what is kept stays.

@@ -22,6 +22,7 @@ penumbra_test(cli FULL *EveryTriple* SHARDS Part/RenderTogether=2 Part/CompareTo
   cli/animated_meshes.cpp cli/frames.cpp
   cli/image_methods.cpp
   cli/inspect.cpp
+  cli/interpolated_areas.cpp
   cli/interrupt.cpp
   cli/lights.cpp
   cli/options.cpp

@@ -103,7 +103,8 @@ class RenderCommand : public Command {
         }
         const bool is_last = &camera == &cameras.back() && (coming.valid() || next >= frames.size());
         renderer.render(is_last ? std::move(now.scene) : scenes::Scene(now.scene),
-                        {frames[at], camera, request_.pixel_side, request_.filter, moments_of(frames[at], moves)},
+                        {frames[at], camera, request_.pixel_side, request_.filter, request_.pixel_tolerance,
+                         moments_of(frames[at], moves)},
                         files.bits, now.seconds);
         now.seconds = 0;  // once
         const std::string made = summary(renderer.write(files, exposure));

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -160,8 +161,11 @@ MethodRun FrameRenderer::run_lights(BeautyAccumulator& beauty, BitsOutput* bits)
     spent_.make += make.seconds();
     plan.prepared = kept.prepared;
     plan.shades = true;
+    std::optional<InterpolatedAreas> interpolated;
+    if (picture_.frame.pixel_side > 1 && picture_.frame.pixel_tolerance > 0 && method.description.gives_area())
+      interpolated.emplace(*kept.method, lit().floats, picture_.frame.pixel_side, picture_.frame.pixel_tolerance);
     MethodRun run = run_method(
-        *kept.method, lit(), plan,
+        interpolated ? *interpolated : *kept.method, lit(), plan,
         [&](const TileResult& tile) {
           beauty.add(tile);
           if (!plan.filtered_alone) keep_masks(tile);

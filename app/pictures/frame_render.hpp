@@ -4,6 +4,7 @@
 #include "app/output.hpp"
 #include "app/pictures/exposure.hpp"
 #include "app/pictures/frame_files.hpp"
+#include "app/pictures/interpolated_areas.hpp"
 #include "app/pictures/picture_file.hpp"
 #include "app/pictures/picture_mean.hpp"
 #include "app/runner.hpp"
@@ -30,6 +31,8 @@ struct Frame {
   std::string camera;            ///< empty: the first
   std::uint32_t pixel_side = 1;  ///< view samples a pixel along each axis
   PixelFilter filter = {};       ///< of these
+  /// Of exact areas at several view samples a pixel (InterpolatedAreas); 0: each of them is evaluated.
+  double pixel_tolerance = kPixelTolerance;
   /// Scenes at other moments, whose mean the picture is; empty: it is that of the one moment. Each is asked for once.
   std::vector<std::function<scenes::Scene()>> moments = {};
   /// The scene is without_meshes(), and has those of the last picture; of one moment and of pixels' centres.

@@ -31,6 +31,17 @@ void parse_means(const PictureOptions& options, PictureRequest& request) {
   request.filter = parse_filter(options.pixel_filter, options.filter_width);
   if (request.filter.kind != PixelFilter::Kind::box && samples == 1)
     throw UsageError("--pixel-filter {}: of which view samples? --pixel-samples says how many", options.pixel_filter);
+  if (!options.pixel_tolerance.empty()) {
+    const auto tolerance = parse_number(options.pixel_tolerance);
+    if (!tolerance || !(*tolerance >= 0 && *tolerance <= 1))
+      throw UsageError(
+          "--pixel-tolerance {}: expected a number from 0 (every view sample is evaluated) to 1, such as 0.002",
+          options.pixel_tolerance);
+    if (samples == 1)
+      throw UsageError("--pixel-tolerance {}: of which view samples? --pixel-samples says how many",
+                       options.pixel_tolerance);
+    request.pixel_tolerance = *tolerance;
+  }
   request.moments = parse_count(options.motion_samples, "--motion-samples", 256, "a number from 1 to 256");
   const auto shutter = parse_number(options.shutter.empty() ? "0.5" : options.shutter);
   if (!shutter || !(*shutter >= 0 && *shutter <= 100))
@@ -101,6 +112,12 @@ void add_picture_options(CLI::App& command, PictureOptions& options) {
   command
       .add_option("--filter-width", options.filter_width, "of blackman-harris, in pixels (default: 1.5, as Blender's)")
       ->type_name("PIXELS");
+  command
+      .add_option(
+          "--pixel-tolerance", options.pixel_tolerance,
+          "of exact areas at several view samples a pixel: V is interpolated between neighbouring pixels where the "
+          "error that is estimated of it is at most this (default: 1/512; 0: every view sample is evaluated)")
+      ->type_name("V");
   command
       .add_option("--motion-samples", options.motion_samples,
                   "moments of an open shutter, of which R G B A and V are the mean: 1 to 256 (default: 1, the frame's)")

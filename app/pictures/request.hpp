@@ -21,7 +21,8 @@ namespace penumbra::app {
 /// What `render` and `submit` are asked for, as the user gave it; what is empty was not said.
 struct PictureOptions {
   RunOptions run;
-  std::string method, exposure, frames, fps, pixel_samples, pixel_filter, filter_width, motion_samples, shutter;
+  std::string method, exposure, frames, fps, pixel_samples, pixel_filter, filter_width, pixel_tolerance, motion_samples,
+      shutter;
   std::optional<std::string> frame;  ///< of `render` alone
   bool skip_existing = false;
   std::map<std::string, std::string> camera_words;  ///< --camera all: of the scene's cameras, once it is read
@@ -38,6 +39,7 @@ struct PictureRequest {
   double seconds_per_frame = 0;
   std::uint32_t pixel_side = 1, moments = 1;
   PixelFilter filter;
+  double pixel_tolerance = kPixelTolerance;
   double shutter_frames = 0.5;
   /// One entry without a number if no frame was asked for; a sequence's are whole.
   std::vector<std::optional<double>> frames;

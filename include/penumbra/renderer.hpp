@@ -41,8 +41,11 @@ struct RenderOptions {
   std::vector<std::string> lights = {};  ///< these alone, in this order; empty: all
   std::string camera = {};               ///< empty: the one that was set last, else the first
   std::uint32_t pixel_samples = 1;       ///< view samples a pixel, a square number; 1: pixels' centres
-  bool shading_normals = true;           ///< of beauty: vertices' normals where there are any
-  bool masks = true;                     ///< keep Picture::masks of methods that have some
+  /// Of exact areas at several view samples a pixel: V is interpolated between neighbouring pixels where the error that
+  /// is estimated of it is at most this; 0: every view sample is evaluated.
+  double pixel_tolerance = 1.0 / 512;
+  bool shading_normals = true;  ///< of beauty: vertices' normals where there are any
+  bool masks = true;            ///< keep Picture::masks of methods that have some
 };
 
 /// The calling program's progress function asked for the end of a call.

@@ -343,17 +343,19 @@ class Renderer:
         self.scene.set_transform(mesh, matrix)
 
     def render(self, size=None, method="", light_samples=0, options=None, light=None, camera="", *, sample_pattern="",
-               sample_seed=0, pixel_samples=1, normals="shading", masks=True):
+               sample_seed=0, pixel_samples=1, pixel_tolerance=1 / 512, normals="shading", masks=True):
         """A Picture. `size`: (width, height), or None for the scene's. Without `method` each light gets the best one that
         gives its exact area; with `light_samples` (1 to 4096) the best one with samples. `options`: a dict of the method's.
-        `light`: a name or names, for these lights alone. `normals`: "shading" or "geometric", of the beauty."""
+        `light`: a name or names, for these lights alone. `normals`: "shading" or "geometric", of the beauty.
+        `pixel_samples`: view samples a pixel, a square number; of exact areas those are interpolated whose error is estimated
+        to be at most `pixel_tolerance` (0: none)."""
         if normals not in ("shading", "geometric"):
             raise UsageError(f'normals "{normals}": expected shading or geometric')
         width, height = _size(size)
         texts = {str(key): _text(value) for key, value in (options or {}).items()}
         return Picture(self._core.render(width, height, method or "", texts, int(light_samples or 0), sample_pattern,
-                                         sample_seed, _names(light), camera or "", pixel_samples, normals == "shading",
-                                         masks))
+                                         sample_seed, _names(light), camera or "", pixel_samples, pixel_tolerance,
+                                         normals == "shading", masks))
 
 
 def _text(value):

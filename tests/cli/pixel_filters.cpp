@@ -79,8 +79,9 @@ double share_of(std::size_t k, std::size_t i) {
 
 /// The same by another way: every view sample of a large picture, each with its share.
 TEST_F(FilteredPictures, AreWeighedMeans) {
-  const ExrFile filtered = picture("24x16", {"--pixel-samples", "9", "--pixel-filter", "blackman-harris"});
-  const ExrFile box = picture("24x16", {"--pixel-samples", "9", "--pixel-filter", "box"});
+  const ExrFile filtered =
+      picture("24x16", {"--pixel-samples", "9", "--pixel-tolerance", "0", "--pixel-filter", "blackman-harris"});
+  const ExrFile box = picture("24x16", {"--pixel-samples", "9", "--pixel-tolerance", "0", "--pixel-filter", "box"});
   const ExrFile large = picture("72x48"), one = picture("24x16");
   std::size_t different = 0;
   for (const char* name : {"R", "G", "B", "A", "V", "Lamp.V", "Lamp.R"}) {
@@ -104,7 +105,7 @@ TEST_F(FilteredPictures, AreWeighedMeans) {
 
 /// Cryptomatte's coverage is each name's share of the view samples; ranks are in its order.
 TEST_F(FilteredPictures, MattesAreShares) {
-  const ExrFile box = picture("24x16", {"--pixel-samples", "9"}), large = picture("72x48");
+  const ExrFile box = picture("24x16", {"--pixel-samples", "9", "--pixel-tolerance", "0"}), large = picture("72x48");
   const json names = json::parse(large.attributes.at("penumbra.objects"));
   const std::vector<float>& object = large.floats.at("object.X");
   std::size_t mixed = 0;
@@ -133,7 +134,8 @@ TEST_F(FilteredPictures, MattesAreShares) {
     mixed += counts.size() > 1 ? 1 : 0;
   }
   EXPECT_GT(mixed, 5u);
-  const ExrFile filtered = picture("24x16", {"--pixel-samples", "9", "--pixel-filter", "blackman-harris"});
+  const ExrFile filtered =
+      picture("24x16", {"--pixel-samples", "9", "--pixel-tolerance", "0", "--pixel-filter", "blackman-harris"});
   for (std::size_t i = 0; i < kWidth * kHeight; ++i) {
     float sum = 0;
     for (const char* group : {"CryptoObject00.", "CryptoObject01.", "CryptoObject02."})
