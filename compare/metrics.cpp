@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <iterator>
+#include <limits>
 
 namespace penumbra::compare {
 namespace {
@@ -69,6 +71,21 @@ std::vector<ClassError> class_errors(std::span<const float> visibility, std::spa
   return errors;
 }
 
+std::vector<RangeError> range_errors(std::span<const float> visibility, std::span<const float> reference,
+                                     std::span<const std::uint32_t> pixels, std::span<const float> sizes) {
+  std::vector<RangeError> ranges;
+  double from = 0;
+  for (std::size_t i = 0; i <= std::size(kSizeBorders); ++i) {
+    const double to = i < std::size(kSizeBorders) ? kSizeBorders[i] : std::numeric_limits<double>::infinity();
+    std::vector<std::uint32_t> inside;
+    std::ranges::copy_if(pixels, std::back_inserter(inside),
+                         [&](std::uint32_t pixel) { return sizes[pixel] >= from && sizes[pixel] < to; });
+    ranges.push_back({from, to, inside.size(), visibility_error(visibility, reference, inside)});
+    from = to;
+  }
+  return ranges;
+}
+
 std::optional<VisibilityError> visibility_error(std::span<const JudgedVisibility> lights) {
   std::vector<double> magnitudes;
   VisibilityError error;
@@ -122,6 +139,14 @@ std::optional<BeautyError> beauty_error(std::span<const glm::vec3> beauty, std::
   if (!(truth > 0)) return std::nullopt;
   const auto count = static_cast<double>(pixels.size());
   return BeautyError{std::sqrt(squares / count) / (truth / count), sum / truth};
+}
+
+std::optional<Separation> separation(const SeparatedBeauty& beauty, std::span<const std::uint32_t> pixels) {
+  std::vector<glm::vec3> of_v(beauty.reference.begin(), beauty.reference.end());
+  for (const std::uint32_t pixel : pixels) of_v[pixel] += beauty.method[pixel] - beauty.separated[pixel];
+  const auto alone = beauty_error(beauty.separated, beauty.reference, pixels);
+  const auto without = beauty_error(of_v, beauty.reference, pixels);
+  return alone && without ? std::optional(Separation{*alone, *without}) : std::nullopt;
 }
 
 PairCounts& PairCounts::operator+=(const PairCounts& other) {

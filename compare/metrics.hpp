@@ -55,6 +55,18 @@ struct ClassError {
 std::vector<ClassError> class_errors(std::span<const float> visibility, std::span<const float> reference,
                                      const PixelClasses& classes);
 
+/// Errors over the pixels where a size lies from `from` to less than `to`.
+struct RangeError {
+  double from = 0, to = 0;  ///< the last one's `to` is infinite
+  std::uint64_t pixels = 0;
+  std::optional<VisibilityError> error;
+};
+/// The borders between ranges, of widths of penumbrae (in pixels, in texels) and of distances to contact (in pixels).
+inline constexpr double kSizeBorders[] = {4, 16, 64};
+/// `sizes`: of each pixel; where it is no number the pixel is in no range. From 0 to the first border, and so on.
+std::vector<RangeError> range_errors(std::span<const float> visibility, std::span<const float> reference,
+                                     std::span<const std::uint32_t> pixels, std::span<const float> sizes);
+
 /// V by a method and by its reference under one light, and the pixels that count (indices into both).
 struct JudgedVisibility {
   std::span<const float> visibility, reference;
@@ -76,6 +88,20 @@ struct BeautyError {
 /// Over the given pixels; nothing if there are none, or if the reference is black on all of them.
 std::optional<BeautyError> beauty_error(std::span<const glm::vec3> beauty, std::span<const glm::vec3> reference,
                                         std::span<const std::uint32_t> pixels);
+
+/// What a beauty made of V alone loses by V · ∫G in place of ∫G V, beside what it loses by V.
+struct Separation {
+  BeautyError alone;  ///< of V of the reference · ∫G
+  BeautyError of_v;   ///< of (V − V of the reference) · ∫G: without the separation
+
+  bool operator==(const Separation&) const = default;
+};
+
+/// Beauty by a method, as V of the reference alone would make it, and by the reference.
+struct SeparatedBeauty {
+  std::span<const glm::vec3> method, separated, reference;
+};
+std::optional<Separation> separation(const SeparatedBeauty& beauty, std::span<const std::uint32_t> pixels);
 
 /// Masks of one method and of its reference on the same light samples, words_per_mask words a pixel.
 struct MaskPair {

@@ -2,6 +2,7 @@
 
 #include "compare/question.hpp"
 #include "compare/report_budget.hpp"
+#include "compare/report_looks.hpp"
 #include "compare/report_parts.hpp"
 #include "compare/report_plots.hpp"
 
@@ -82,31 +83,6 @@ const LightResult* pixels_under(const ReportInput& in, std::size_t light) {
   return nullptr;
 }
 
-/// Where a method is wrong: RMSE over the judged pixels of each class, and which way.
-std::string classes_html(const ReportInput& in, std::size_t light, const std::string& under) {
-  const LightResult* pixels = pixels_under(in, light);
-  if (pixels == nullptr || pixels->classes.empty()) return {};
-  ReportTable table{"RMSE of V" + under +
-                        " by what happens at the pixel: all, some or none of the light is seen; another object hides "
-                        "some of it (cast), or the one that is seen does (self). + is too bright.",
-                    {"Method"},
-                    {}};
-  for (const ClassError& one : pixels->classes)
-    table.headers.push_back(fmt::format("{} ({})", one.name, count_text(one.pixels)));
-  for (const MethodResult& result : in.metrics.methods) {
-    if (light >= result.lights.size() || result.lights[light].classes.empty()) continue;
-    std::vector<ReportCell> row = {label_html(result.entry, "")};
-    for (const ClassError& one : result.lights[light].classes) {
-      if (!one.error)
-        row.emplace_back("–");
-      else
-        row.emplace_back(fmt::format("{:.4f} ({:+.4f})", one.error->rmse, one.error->bias), one.error->rmse);
-    }
-    table.rows.push_back(std::move(row));
-  }
-  return table_html(table);
-}
-
 std::string errors_html(const ReportInput& in) {
   const std::string against = "Error of V against " + escape_html(in.metrics.reference.method);
   const bool several = in.lights.size() > 1;
@@ -134,6 +110,8 @@ std::string errors_html(const ReportInput& in) {
                                horizon_error_under, light});
   }
   if (!classes.empty()) html += "<details><summary>Errors by class of pixel</summary>\n" + classes + "</details>\n";
+  const std::string looks = looks_html(in);
+  if (!looks.empty()) html += "<details><summary>Errors to the eye</summary>\n" + looks + "</details>\n";
   if (!horizon.empty()) html += "<details><summary>Errors at the horizon</summary>\n" + horizon + "</details>\n";
   return html;
 }
@@ -205,13 +183,14 @@ std::string seconds_html(const ReportInput& in) {
     has_ratios = has_ratios || (!result.failure && same_question(in, in.methods[i], result));
   }
   ReportTable table{
-      "Seconds on the machine below; of repeated runs the median. Shadow = light + evaluate. " +
+      "Seconds on the machine below; of repeated runs the median. Shadow = light + evaluate. Passes are kinds of work, "
+      "each timed. " +
           (has_ratios
                ? std::string("A ratio is given where a method answers the same question as the reference, with as "
                              "many light samples.")
                : "There are no ratios to the reference, which was asked another question: " + asked +
                      (in.sampled_pixels == 0 ? "." : ", chosen pixels.")),
-      {"Method", "Shadow", "against the reference", "Light", "Evaluate", "Mesh (once)", "Warm-up", "Memory"},
+      {"Method", "Shadow", "against the reference", "Light", "Evaluate", "Mesh (once)", "Warm-up", "Memory", "Passes"},
       {}};
   const auto seconds_cell = [](const std::optional<double>& seconds) {
     return ReportCell(seconds_text(seconds), seconds);
@@ -229,7 +208,8 @@ std::string seconds_html(const ReportInput& in) {
                           seconds_cell(stats.seconds.evaluate),
                           seconds_cell(stats.seconds.mesh),
                           seconds_cell(stats.seconds.warmup),
-                          {bytes_text(stats.peak_memory_bytes), static_cast<double>(stats.peak_memory_bytes)}});
+                          {bytes_text(stats.peak_memory_bytes), static_cast<double>(stats.peak_memory_bytes)},
+                          {count_text(stats.passes.size()), static_cast<double>(stats.passes.size())}});
   };
   row(label_html(reference.method, "the reference, " + asked), reference, false, "–");
   const std::vector<const MethodResult*> best =

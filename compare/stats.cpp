@@ -1,5 +1,7 @@
 #include "compare/stats.hpp"
 
+#include <cmath>
+
 namespace penumbra::compare {
 namespace {
 
@@ -65,6 +67,41 @@ Json classes_json(const std::vector<ClassError>& classes) {
   return json;
 }
 
+/// An array of ranges; `to` of the last is null. Null where there are none.
+Json ranges_json(const std::vector<RangeError>& ranges) {
+  Json json;
+  for (const RangeError& one : ranges) {
+    json.push_back({{"from", one.from},
+                    {"to", std::isfinite(one.to) ? Json(one.to) : Json()},
+                    {"pixels", one.pixels},
+                    {"rmse", one.error ? Json(one.error->rmse) : Json()},
+                    {"bias", one.error ? Json(one.error->bias) : Json()},
+                    {"max", one.error ? Json(one.error->max) : Json()}});
+  }
+  return json;
+}
+
+void add_classes(Json& json, const LightResult& light) {
+  json["classes"] = classes_json(light.classes);
+  json["penumbraWidth"] = {{"pixels", ranges_json(light.by_width)}, {"texels", ranges_json(light.by_texels)}};
+  json["contactDistance"] = {{"pixels", ranges_json(light.by_contact)}};
+  Json eye;  // null
+  if (light.eye) eye = {{"over255", light.eye->over255}, {"banding", or_null(light.eye->banding)}};
+  json["eye"] = eye;
+}
+
+Json beauty_json(const std::optional<BeautyError>& error) {
+  return error ? Json{{"relativeRmse", error->relative_rmse}, {"relativeBias", error->relative_bias}} : Json();
+}
+
+Json separation_json(const MethodResult& result) {
+  if (!result.separation || !result.beauty_error) return nullptr;
+  const auto& [alone, of_v] = *result.separation;
+  return {{"alone", beauty_json(alone)},
+          {"ofV", beauty_json(of_v)},
+          {"change", of_v.relative_rmse - result.beauty_error->relative_rmse}};
+}
+
 /// Each light as it was asked, if that is known, and what became of it.
 Json lights_json(const std::vector<LightStats>& asked, const std::vector<LightResult>& lights) {
   Json json = Json::array();
@@ -80,7 +117,7 @@ Json lights_json(const std::vector<LightStats>& asked, const std::vector<LightRe
     row["horizonPixels"] = light.horizon_pixels;
     row["error"] = to_json(light.error);
     row["horizonError"] = to_json(light.horizon_error);
-    row["classes"] = classes_json(light.classes);
+    add_classes(row, light);
     row["sameSamples"] = same;
     add_budget(row, &light);
     json.push_back(std::move(row));
@@ -93,13 +130,14 @@ Json to_json(const MethodResult& result) {
   json["entry"] = result.entry;
   json["error"] = to_json(result.error);
   json["horizonError"] = to_json(result.horizon_error);
-  json["classes"] = classes_json(result.lights.empty() ? std::vector<ClassError>() : result.lights.front().classes);
+  add_classes(json, result.lights.empty() ? LightResult{} : result.lights.front());
+  json["eye"]["flip"] = result.flip ? Json{{"mean", result.flip->mean}, {"max", result.flip->max}} : Json();
   json["errorAllLights"] = to_json(result.all_lights_error);
   if (!result.lights.empty()) json["lights"] = lights_json(result.stats.lights, result.lights);
-  const auto& beauty = result.beauty_error;
-  json["beautyError"] =
-      beauty ? Json{{"relativeRmse", beauty->relative_rmse}, {"relativeBias", beauty->relative_bias}} : Json();
+  json["beautyError"] = beauty_json(result.beauty_error);
+  json["separation"] = separation_json(result);
   if (result.flicker) json["flicker"] = *result.flicker;
+  if (result.pops) json["pops"] = {{"share", result.pops->share}, {"max", result.pops->max}};
   add_pairs(json, result.pairs, result.verdicts);
   add_budget(json, result.lights.empty() ? nullptr : &result.lights.front());
   const auto& failure = result.failure;

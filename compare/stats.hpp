@@ -1,6 +1,7 @@
 #pragma once
 
 #include "compare/error_budget.hpp"
+#include "compare/eye.hpp"
 #include "compare/metrics.hpp"
 #include "visibility/method.hpp"
 
@@ -86,6 +87,16 @@ struct LightResult {
   std::optional<ErrorBudget> error_budget =
       {};                                ///< of an image-based method, if it was asked for and pixels are judged
   std::vector<ClassError> classes = {};  ///< the judged pixels by what happens there
+  /// Pixels in the penumbra by how wide it is there, in pixels and in texels of the method's map (empty: it has none),
+  /// and shadowed pixels by how far what hides the light is, in pixels. Empty: not known.
+  std::vector<RangeError> by_width = {}, by_texels = {}, by_contact = {};
+  std::optional<EyeError> eye = {};  ///< over judged pixels
+};
+
+/// Of a sequence: steps of V from one frame to the next that the reference does not make.
+struct Pops {
+  double share = 0;  ///< of judged pixels' steps: |ΔV − ΔV of the reference| > 0.05
+  double max = 0;    ///< the largest
 };
 
 /// One line of metrics.json. What does not apply stays empty and becomes null.
@@ -98,7 +109,10 @@ struct MethodResult {
   std::optional<VisibilityError> error;          ///< over judged pixels
   std::optional<VisibilityError> horizon_error;  ///< over horizon pixels
   std::optional<BeautyError> beauty_error;       ///< over judged pixels, of all lights
+  std::optional<Separation> separation = {};     ///< likewise, of scalar methods
+  std::optional<Flip> flip = {};                 ///< of the beauty's picture
   std::optional<double> flicker = {};    ///< of a sequence: RMSE of ΔV − ΔV of the reference from frame to frame
+  std::optional<Pops> pops = {};         ///< likewise
   std::optional<PairCounts> pairs;       ///< two sample-based methods on the same samples
   std::optional<PairVerdicts> verdicts;  ///< of all differing pairs, or of an evenly spaced sample of them
   std::optional<MethodFailure> failure;  ///< then there are no seconds, errors and pairs

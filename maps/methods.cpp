@@ -5,6 +5,7 @@
 #include "maps/backprojection/soft_shadow_map/methods.hpp"
 #include "maps/filters/methods.hpp"
 #include "maps/host/every_light.hpp"
+#include "maps/host/texel_widths.hpp"
 #include "maps/sampling/methods.hpp"
 #include "maps/single_shadow/methods.hpp"
 
@@ -28,8 +29,12 @@ template <auto kDescribe, auto kMake, Given kGiven = Given{}>
 engines::MethodRow row() {
   engines::MethodRow row = engines::on_device<kDescribe, kMake>();
   row.description = for_every_light(std::move(row.description), kGiven);
+  row.description.texel_widths = texel_widths;
   row.describe = [](const visibility::MethodOptions& options) {
-    return for_every_light(engines::describe_with<kDescribe>(options), given_with(kGiven, options));
+    visibility::MethodDescription description =
+        for_every_light(engines::describe_with<kDescribe>(options), given_with(kGiven, options));
+    description.texel_widths = texel_widths;
+    return description;
   };
   row.make = [](const render::Machine& machine, const visibility::MethodOptions& options) {
     return for_every_light(kMake(machine.device(), options), given_with(kGiven, options));

@@ -1,5 +1,4 @@
-// Rays that note every object on their way and stop at the second kind: Embree's filter function turns each hit away
-// after looking at it.
+// Rays that note every object on their way: Embree's filter function turns each hit away after looking at it.
 
 #include "reference/hiding_objects.hpp"
 
@@ -8,6 +7,7 @@
 #include "reference/tracing_order.hpp"
 #include "visibility/pair_truth.hpp"
 
+#include <glm/geometric.hpp>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
@@ -31,6 +31,7 @@ struct Context {
   std::int32_t light;              // whose own body hides nothing
   std::uint32_t carrier;
   HiddenBy found;
+  float first;  // of the ray on its way: where something hides first
 };
 
 void note_object(const RTCFilterFunctionNArguments* hits) {
@@ -40,9 +41,11 @@ void note_object(const RTCFilterFunctionNArguments* hits) {
     if (hits->valid[i] == 0) continue;
     const std::uint32_t triangle = context.triangles[RTCHitN_primID(hits->hit, hits->N, i)];
     const bool hides = scene.plane[triangle] != scene.plane[context.carrier] && scene.emits[triangle] != context.light;
-    if (hides)
+    if (hides) {
       (scene.object[triangle] == scene.object[context.carrier] ? context.found.own : context.found.other) = true;
-    if (!(context.found.own && context.found.other)) hits->valid[i] = 0;  // further along
+      context.first = std::min(context.first, RTCRayN_tfar(hits->ray, hits->N, i));
+    }
+    hits->valid[i] = 0;  // further along
   }
 }
 
@@ -62,18 +65,26 @@ HiddenBy hidden_by(const EmbreeScene& embree, Context& context, const Light& lig
   const EmbreeRange& range = embree.range();
   const glm::vec3 origin = range.scaled(p);
   context.found = {};
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    const HiddenBy& found = context.found;
-    if ((found.own && found.other) || (i >= kSpread && (found.own || found.other))) break;
+  constexpr float kNever = std::numeric_limits<float>::infinity();
+  double widening = 0;
+  std::size_t hidden = 0;
+  for (std::size_t i = 0; i < order.size() && (i < kSpread || hidden == 0); ++i) {
     const glm::vec3& point = points[order[i]];
     const glm::vec3 direction = light.sun ? EmbreeRange::direction(point) : range.scaled(point) - origin;
     RTCRay ray{};
     ray.org_x = origin.x, ray.org_y = origin.y, ray.org_z = origin.z;
     ray.dir_x = direction.x, ray.dir_y = direction.y, ray.dir_z = direction.z;
-    ray.tfar = light.sun ? std::numeric_limits<float>::infinity() : 0x1.fffffep-1F;
+    ray.tfar = light.sun ? kNever : 0x1.fffffep-1F;
     ray.mask = 0xffffffffU;
+    context.first = kNever;
     rtcOccluded1(embree.handle(), &context.embree, &ray);
+    if (context.first == kNever) continue;
+    ++hidden;
+    const double share = double{context.first}, way = share * glm::length(glm::dvec3(direction)) / range.scale();
+    context.found.nearest = std::min(context.found.nearest, way);
+    widening += light.sun ? way : share / (1 - share);
   }
+  if (hidden != 0) context.found.widening = widening / static_cast<double>(hidden);
   return context.found;
 }
 

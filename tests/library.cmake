@@ -18,4 +18,7 @@ foreach(twin backprojection filtering)
   add_test(NAME twins.${twin} COMMAND ${Python_EXECUTABLE} ${CMAKE_CURRENT_SOURCE_DIR}/twins/${twin}.py)
   set_tests_properties(twins.${twin} PROPERTIES LABELS full ENVIRONMENT "PYTHONPATH=${PROJECT_BINARY_DIR}/python")
 endforeach()
+add_test(NAME twins.flip COMMAND ${Python_EXECUTABLE} ${CMAKE_CURRENT_SOURCE_DIR}/twins/flip.py $<TARGET_FILE:penumbra>
+                                 ${PROJECT_SOURCE_DIR}/scenes/parallel-square.json)
+set_tests_properties(twins.flip PROPERTIES LABELS full)
 endif()

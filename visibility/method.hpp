@@ -66,6 +66,10 @@ struct MethodDescription {
   MeshVerdict (*verdict_on)(const mesh::Diagnosis& mesh) = nullptr;
   /// Which runs do without each cause of its error, for options that it takes. Image-based methods have one.
   ErrorRepairs (*repairs)(const MethodDescription& method, const MethodOptions& given) = nullptr;
+  /// How wide a texel of the maps that it makes with these options is at each view sample, across the light's normal,
+  /// in scene floats; infinite where none looks. Null: it has no maps. Empty: they cannot be told so.
+  std::vector<float> (*texel_widths)(const SceneFloats& scene, const ViewSamples& samples, const Light& light,
+                                     const MethodOptions& complete) = nullptr;
   /// What a run's options and counters say that a viewer of its picture must know; null: never anything.
   std::optional<std::string> (*warning)(const MethodOptions& options,
                                         const std::map<std::string, std::uint64_t>& counters) = nullptr;

@@ -7,6 +7,7 @@
 #include "app/compare/light_judge.hpp"
 #include "app/compare/reference_samples.hpp"
 #include "app/compare/report_views.hpp"
+#include "app/compare/separated_beauty.hpp"
 #include "app/machine.hpp"
 #include "app/methods.hpp"
 #include "app/output.hpp"
@@ -20,6 +21,7 @@
 #include "base/memory.hpp"
 #include "base/png.hpp"
 #include "compare/error_picture.hpp"
+#include "compare/eye.hpp"
 #include "compare/report.hpp"
 #include "render/device.hpp"
 
@@ -164,6 +166,9 @@ class Comparison {
       warn(fmt::format("errors are not told apart by who casts the shadow: {}", error.what()));
     }
     reference_beauty_ = std::move(done.beauty);
+    if (std::ranges::any_of(entries_, [](const Entry& e) { return e.description.output == Output::scalar; }) &&
+        reference_.description.output != Output::scalar)
+      separated_ = separated_beauty(session_, truths_);
   }
 
   /// Methods with masks are held against rays on their own light samples, whatever else the reference looks at: so one
@@ -247,8 +252,14 @@ class Comparison {
     const auto of_method = std::span(result.stats.warnings).subspan(session_.warnings.size());
     for (const std::string& warning : of_method) progress_.warn(warning);
     judge.fill(result, done.run, pairs_of_reference, progress_);
+    judge.count_texels(result.lights, done.run, entry.description,
+                       visibility::complete_options(entry.description, entry.options));
     result.beauty_error = compare::beauty_error(done.beauty, reference_beauty_, truths_.front().judged);
+    if (entry.description.output == Output::scalar && !separated_.empty()) {
+      result.separation = compare::separation({done.beauty, separated_, reference_beauty_}, truths_.front().judged);
+    }
     compare::ReportEntry pictures = pictures_of(entry, done);
+    if (options_.sample_pixels == "all") result.flip = compare::flip_of(*report_.reference.beauty, *pictures.beauty);
     report_.metrics.methods.push_back(std::move(result));
     report_.methods.push_back(std::move(pictures));
     visibility_.push_back(std::move(done.run.visibility));
@@ -385,6 +396,7 @@ class Comparison {
   std::optional<std::vector<std::uint32_t>>
       wanted_;  ///< all their pixels, if --sample-pixels chose; nothing: every one
   std::vector<glm::vec3> reference_beauty_;
+  std::vector<glm::vec3> separated_;  ///< V of the reference · ∫G; empty: nobody asks, or it is not known
   std::vector<std::vector<std::vector<float>>> visibility_;  ///< of each entry, of each light; empty: it failed
   std::vector<std::string> warnings_;
   compare::ReportInput report_;

@@ -3,7 +3,9 @@
 #include "reference/hiding_objects.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
+#include <limits>
 
 namespace penumbra::app {
 namespace {
@@ -24,7 +26,27 @@ void sort_by_object(const Session& session, std::size_t light, std::span<const s
   for (std::size_t i = 0; i < found.size(); ++i) {
     hidden[i].own |= found[i].own;
     hidden[i].other |= found[i].other;
+    hidden[i].nearest = std::min(hidden[i].nearest, found[i].nearest);
+    hidden[i].widening = std::max(hidden[i].widening, found[i].widening * std::sqrt(session.lights[light].area));
   }
+}
+
+/// `hidden`: of the shadowed pixels, with widths in place of what makes them.
+PenumbraSizes sizes_of(const Session& session, std::span<const std::uint32_t> shadowed,
+                       std::span<const reference::HiddenBy> hidden) {
+  const visibility::PinholeCamera& camera = session.samples.camera;
+  const std::vector<float> unknown(session.pixel_count(), std::numeric_limits<float>::quiet_NaN());
+  PenumbraSizes sizes{unknown, unknown, unknown};
+  for (std::size_t i = 0; i < shadowed.size(); ++i) {
+    const std::uint32_t pixel = shadowed[i];
+    if (!hidden[i].own && !hidden[i].other) continue;
+    const double of_view = camera.half_height.value_or(double{session.samples.depth[pixel]} * camera.tan_half_fov);
+    const double of_pixel = 2 * of_view / camera.height;
+    sizes.width[pixel] = static_cast<float>(hidden[i].widening);
+    sizes.width_pixels[pixel] = static_cast<float>(hidden[i].widening / of_pixel);
+    sizes.contact_pixels[pixel] = static_cast<float>(hidden[i].nearest / of_pixel);
+  }
+  return sizes;
 }
 
 }  // namespace
@@ -32,6 +54,7 @@ void sort_by_object(const Session& session, std::size_t light, std::span<const s
 void sort_into_classes(const Session& session, std::vector<LightTruth>& truths, Progress& progress) {
   for (LightTruth& truth : truths) {
     truth.classes = {};
+    truth.sizes = {};
     sort_by_visibility(truth);
   }
   const std::vector<WholeLight> wholes = whole_lights(session.lights);
@@ -49,6 +72,7 @@ void sort_into_classes(const Session& session, std::vector<LightTruth>& truths, 
       if (hidden[i].other) classes.cast.push_back(shadowed[i]);
       if (hidden[i].own) classes.self.push_back(shadowed[i]);
     }
+    truths[whole].sizes = sizes_of(session, shadowed, hidden);
   }
   progress.clear();
 }

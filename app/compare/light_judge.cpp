@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <limits>
 #include <utility>
 
@@ -65,7 +66,15 @@ std::vector<compare::LightResult> LightJudge::judge(const MethodRun& run, Progre
     result.horizon_pixels = truth.horizon.size();
     result.error = compare::visibility_error(run.visibility[light], truth.reference, truth.judged);
     result.horizon_error = compare::visibility_error(run.visibility[light], truth.reference, truth.horizon);
-    result.classes = compare::class_errors(run.visibility[light], truth.reference, truth.classes);
+    const std::vector<float>& v = run.visibility[light];
+    result.classes = compare::class_errors(v, truth.reference, truth.classes);
+    result.eye = compare::eye_error({v, truth.reference, truth.judged}, truth.classes.penumbra, session_.width);
+    if (!truth.sizes.width.empty()) {
+      std::vector<std::uint32_t> shadowed;
+      std::ranges::set_union(truth.classes.penumbra, truth.classes.umbra, std::back_inserter(shadowed));
+      result.by_width = compare::range_errors(v, truth.reference, truth.classes.penumbra, truth.sizes.width_pixels);
+      result.by_contact = compare::range_errors(v, truth.reference, shadowed, truth.sizes.contact_pixels);
+    }
     if (!has_masks_ || truth.ray_masks.empty()) continue;
     result.same_samples =
         compare::SameSamples{compare::visibility_error(run.visibility[light], truth.rays, truth.judged), {}, {}};
@@ -94,6 +103,23 @@ void LightJudge::fill(compare::MethodResult& result, const MethodRun& run, bool 
   if (!std::ranges::all_of(of_first, [](const auto& piece) { return piece->kept_all(); })) {
     result.stats.warnings.push_back(fmt::format("{}: {} pairs differ; {} of them, evenly spaced, were decided exactly",
                                                 result.entry, result.pairs->differing, result.verdicts->decided));
+  }
+}
+
+void LightJudge::count_texels(std::span<compare::LightResult> results, const MethodRun& run,
+                              const visibility::MethodDescription& description,
+                              const visibility::MethodOptions& options) const {
+  if (description.texel_widths == nullptr) return;
+  for (std::size_t light = 0; light < results.size(); ++light) {
+    const LightTruth& truth = truths_[light];
+    if (truth.sizes.width.empty() || wholes_[light].count > 1) continue;
+    const std::size_t first = wholes_[light].first;
+    std::vector<float> texels =
+        description.texel_widths(session_.floats_for(first), session_.samples, session_.lights[first], options);
+    if (texels.empty()) continue;
+    for (std::size_t i = 0; i < texels.size(); ++i) texels[i] = truth.sizes.width[i] / texels[i];
+    results[light].by_texels =
+        compare::range_errors(run.visibility[light], truth.reference, truth.classes.penumbra, texels);
   }
 }
 

@@ -15,11 +15,19 @@
 
 namespace penumbra::app {
 
+/// How large shadows' parts are at each pixel; no number where that is not known. Empty: nowhere.
+struct PenumbraSizes {
+  std::vector<float> width;           ///< of the penumbra, across the light's normal, in scene floats
+  std::vector<float> width_pixels;    ///< as many pixels wide, seen head-on from the camera
+  std::vector<float> contact_pixels;  ///< so many pixels away is the nearest that hides some of the light
+};
+
 /// What is held against the methods under one of whole_lights.
 struct LightTruth {
   std::vector<std::uint32_t> judged, horizon;  ///< pixels that errors are taken over
   std::vector<float> reference;                ///< V of each pixel
   compare::PixelClasses classes;               ///< of the judged ones, by the reference
+  PenumbraSizes sizes;                         ///< of the shadowed ones
   std::vector<float> rays;                     ///< V of each pixel by rays on the methods' light samples; empty: none
   std::vector<std::vector<std::uint32_t>> ray_masks;  ///< of the same rays, of each piece; empty: none
 };
@@ -41,6 +49,9 @@ class LightJudge {
   std::vector<compare::LightResult> judge(const MethodRun& run, Progress& progress);
   /// Errors and verdicts as metrics.json has them: light by light, of all lights, and of the first light again.
   void fill(compare::MethodResult& result, const MethodRun& run, bool pairs_of_reference, Progress& progress);
+  /// LightResult::by_texels of the method's lights. `options`: all of them.
+  void count_texels(std::span<compare::LightResult> results, const MethodRun& run,
+                    const visibility::MethodDescription& description, const visibility::MethodOptions& options) const;
 
  private:
   const Session& session_;

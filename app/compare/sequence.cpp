@@ -68,22 +68,30 @@ class ErrorSum {
   std::vector<float> largest_;
 };
 
-/// Sum of squares of differences, and how many there are.
-struct Squares {
-  double sum = 0;
-  std::uint64_t count = 0;
+/// Sum of squares of changes of the error from frame to frame, how many there are, and those that pop.
+struct Changes {
+  static constexpr double kPop = 0.05;
+  double sum = 0, largest = 0;
+  std::uint64_t count = 0, pops = 0;
 
   void add(std::span<const float> now, std::span<const float> before) {
     for (std::size_t i = 0; i < std::min(now.size(), before.size()); ++i) {
       const double change = double{now[i]} - before[i];
       if (std::isnan(change)) continue;
       sum += change * change;
+      largest = std::max(largest, std::abs(change));
       ++count;
+      if (std::abs(change) > kPop) ++pops;
     }
   }
-  Squares& operator+=(const Squares& other) {
-    sum += other.sum, count += other.count;
+  Changes& operator+=(const Changes& other) {
+    sum += other.sum, count += other.count, pops += other.pops;
+    largest = std::max(largest, other.largest);
     return *this;
+  }
+  [[nodiscard]] std::optional<compare::Pops> popping() const {
+    if (count == 0) return std::nullopt;
+    return compare::Pops{static_cast<double>(pops) / static_cast<double>(count), largest};
   }
   [[nodiscard]] std::optional<double> root() const {
     return count == 0 ? std::nullopt : std::optional(std::sqrt(sum / static_cast<double>(count)));
@@ -93,7 +101,7 @@ struct Squares {
 /// Sums of one entry over the frames so far.
 struct EntrySum {
   ErrorSum errors;
-  Squares flicker;
+  Changes flicker;
   std::vector<double> light, evaluate;
   std::vector<float> before;                      ///< errors of the frame before
   std::optional<compare::MethodFailure> failure;  ///< of the first frame in which it failed
@@ -104,6 +112,8 @@ struct EntrySum {
 void take_sum(compare::MethodResult& result, EntrySum& sum, std::size_t frames) {
   result.horizon_error.reset();
   result.beauty_error.reset();
+  result.separation.reset();
+  result.flip.reset();
   result.all_lights_error.reset();
   result.pairs.reset();
   result.verdicts.reset();
@@ -118,6 +128,7 @@ void take_sum(compare::MethodResult& result, EntrySum& sum, std::size_t frames) 
   }
   result.error = sum.errors.error();
   result.flicker = sum.flicker.root();
+  result.pops = sum.flicker.popping();
   if (!sum.light.empty()) seconds.light = median(sum.light);
   if (!sum.evaluate.empty()) seconds.evaluate = median(sum.evaluate);
   seconds.total.reset();
@@ -128,7 +139,11 @@ Json number_or_null(const std::optional<double>& value) {
   return value ? Json(*value) : Json();
 }
 
-Json frame_json(std::int64_t number, const compare::Metrics& metrics, std::span<const Squares> flicker) {
+Json pops_json(const std::optional<compare::Pops>& pops) {
+  return pops ? Json{{"share", pops->share}, {"max", pops->max}} : Json();
+}
+
+Json frame_json(std::int64_t number, const compare::Metrics& metrics, std::span<const Changes> flicker) {
   Json methods = Json::array();
   for (std::size_t i = 0; i < metrics.methods.size(); ++i) {
     const compare::MethodResult& result = metrics.methods[i];
@@ -136,6 +151,7 @@ Json frame_json(std::int64_t number, const compare::Metrics& metrics, std::span<
                        {"rmse", result.error ? Json(result.error->rmse) : Json()},
                        {"bias", result.error ? Json(result.error->bias) : Json()},
                        {"flicker", number_or_null(flicker[i].root())},
+                       {"pops", pops_json(flicker[i].popping())},
                        {"shadow", number_or_null(result.stats.seconds.shadow())},
                        {"failure", result.failure ? Json(result.failure->message) : Json()}});
   }
@@ -166,7 +182,7 @@ compare::Metrics compare_frames(const RunOptions& run, const ComparisonOptions& 
     EntryErrors errors;
     all = compare_methods(run, of_frame, arguments, said, &errors);
     const std::size_t most = std::size_t{all.reference.width} * all.reference.height * frames.size();
-    std::vector<Squares> flicker(errors.size());
+    std::vector<Changes> flicker(errors.size());
     for (std::size_t i = 0; i < errors.size(); ++i) {
       const compare::MethodResult& result = all.methods[i];
       EntrySum& sum = sums.try_emplace(result.entry, EntrySum{ErrorSum(most), {}, {}, {}, {}, {}, 0}).first->second;

@@ -6,8 +6,10 @@
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
+#include <vector>
 
 namespace penumbra::tests {
 namespace {
@@ -50,6 +52,78 @@ TEST_F(CompareFurther, ErrorsByClassAddUp) {
   EXPECT_GT(pixels_of("cast"), 0U);
   EXPECT_LE(std::max(pixels_of("cast"), pixels_of("self")), pixels_of("penumbra") + pixels_of("umbra"));
   EXPECT_EQ(method.at("lights").at(0).at("classes"), classes);
+  // Ranges share out the penumbra, and all shadows, where a ray met what hides the light; texels of a map of half the
+  // size are twice as wide but for its border.
+  const auto shared = [](const json& ranges) {
+    std::uint64_t known = 0;
+    double end = 0;
+    for (const json& range : ranges) {
+      EXPECT_EQ(range.at("from"), end);
+      if (!range.at("to").is_null()) end = range.at("to").get<double>();
+      known += range.at("pixels").get<std::uint64_t>();
+    }
+    return known;
+  };
+  for (const char* unit : {"pixels", "texels"}) {
+    const std::uint64_t known = shared(method.at("penumbraWidth").at(unit));
+    EXPECT_LE(known, pixels_of("penumbra"));
+    EXPECT_GT(known, pixels_of("penumbra") * 9 / 10) << unit;
+  }
+  EXPECT_GT(shared(method.at("contactDistance").at("pixels")), pixels_of("umbra"));
+}
+
+/// What an eye sees, and the beauty's parts, computed again from the EXRs. A map with a bias as large as the scene
+/// shows V = 1 everywhere: its beauty is ∫G.
+TEST_F(CompareFurther, EyeAndSeparationAreThoseOfThePictures) {
+  ASSERT_EQ(
+      compare({"--methods", "pcss:size=64,shadow-map:size=8:bias=1024,edge-scatter", "--reference", "exact"}).code, 0);
+  const json all = metrics();
+  const json &method = all.at("methods").at(0), &lit = all.at("methods").at(1);
+  ASSERT_GT(lit.at("error").at("bias").get<double>(), 0);
+  const auto pcss = read_exr(path("dir/pcss,size=64.exr")), truth = read_exr(path("dir/reference.exr")),
+             whole = read_exr(path("dir/shadow-map,size=8,bias=1024.exr"));
+  std::vector<double> e;
+  std::vector<bool> judged, penumbra;
+  double shown = 0, count = 0, mean = 0, alone = 0, of_v = 0;
+  const auto luminance = [](const auto& exr, std::size_t i) {
+    return 0.2126 * exr.floats.at("R")[i] + 0.7152 * exr.floats.at("G")[i] + 0.0722 * exr.floats.at("B")[i];
+  };
+  for (std::size_t i = 0; i < truth.floats.at("A").size(); ++i) {
+    const double v = truth.floats.at("V")[i];
+    judged.push_back(truth.floats.at("A")[i] == 1);
+    penumbra.push_back(judged[i] && v > 0 && v < 1);
+    e.push_back(pcss.floats.at("V")[i] - v);
+    if (!judged[i]) continue;
+    ASSERT_EQ(whole.floats.at("V")[i], 1) << i;
+    count += 1;
+    if (std::abs(e[i]) > 1.0 / 255) shown += 1;
+    mean += luminance(truth, i);
+    alone += std::pow(v * luminance(whole, i) - luminance(truth, i), 2);
+    of_v += std::pow(e[i] * luminance(whole, i), 2);
+  }
+  ASSERT_EQ(count, all.at("judgedPixels").get<double>()) << "no pixel at the horizon here";
+  const std::size_t width = truth.width;
+  double steps = 0, pairs = 0;
+  for (std::size_t i = 0; i < e.size(); ++i) {
+    for (const std::size_t next : {i + 1, i + width}) {
+      if (next >= e.size() || (next == i + 1 && next % width == 0) || !penumbra[i] || !penumbra[next]) continue;
+      steps += std::pow(e[i] - e[next], 2);
+      pairs += 1;
+    }
+  }
+  EXPECT_NEAR(method.at("eye").at("over255").get<double>(), shown / count, 1e-12);
+  EXPECT_NEAR(method.at("eye").at("banding").get<double>(), std::sqrt(steps / pairs), 1e-7);
+  EXPECT_EQ(method.at("lights").at(0).at("eye").at("banding"), method.at("eye").at("banding"));
+  EXPECT_GT(method.at("eye").at("flip").at("mean").get<double>(), 0);
+  const auto relative = [&](double squares) { return std::sqrt(squares / count) / (mean / count); };
+  const json& separation = method.at("separation");
+  EXPECT_GT(relative(alone), 1e-4);
+  EXPECT_NEAR(separation.at("alone").at("relativeRmse").get<double>(), relative(alone), 1e-6);
+  EXPECT_NEAR(separation.at("ofV").at("relativeRmse").get<double>(), relative(of_v), 1e-6);
+  EXPECT_EQ(separation.at("change").get<double>(), separation.at("ofV").at("relativeRmse").get<double>() -
+                                                       method.at("beautyError").at("relativeRmse").get<double>());
+  EXPECT_EQ(lit.at("separation").at("alone"), separation.at("alone"));
+  EXPECT_TRUE(all.at("methods").at(2).at("separation").is_null()) << "a mask integrates cosines itself";
 }
 
 TEST_F(CompareFurther, RunsAreAsManyAsTwoSecondsHoldOrAsAskedFor) {
@@ -100,12 +174,14 @@ TEST_F(CompareFurther, FramesHaveErrorsTogetherAndFlicker) {
     for (const auto& [pixel, e] : error) squares += e * e;
     pixels += static_cast<double>(error.size());
   }
-  double changes = 0, common = 0;
+  double changes = 0, common = 0, pops = 0, largest = 0;
   for (std::size_t i = 0; i < 2; ++i) {
     for (const auto& [pixel, e] : errors[i]) {
       const auto next = errors[i + 1].find(pixel);
       if (next == errors[i + 1].end()) continue;
       changes += std::pow(next->second - e, 2);
+      largest = std::max(largest, std::abs(next->second - e));
+      if (std::abs(next->second - e) > 0.05) pops += 1;
       common += 1;
     }
   }
@@ -122,6 +198,10 @@ TEST_F(CompareFurther, FramesHaveErrorsTogetherAndFlicker) {
   EXPECT_NEAR(method.at("error").at("rmse").get<double>(), std::sqrt(squares / pixels), 1e-7);  // V is float32
   EXPECT_GT(changes, 0);
   EXPECT_NEAR(method.at("flicker").get<double>(), std::sqrt(changes / common), 1e-7);
+  EXPECT_GT(pops, 0);
+  EXPECT_NEAR(method.at("pops").at("share").get<double>(), pops / common, 1e-12);
+  EXPECT_NEAR(method.at("pops").at("max").get<double>(), largest, 1e-7);
+  EXPECT_GT(all.at("frames").at(1).at("methods").at(0).at("pops").at("max").get<double>(), 0);
   EXPECT_EQ(run({"compare", scene, "-o", path("dir"), "--frames", "3-1"}).code, 2);
   EXPECT_EQ(run({"compare", scene, "-o", path("dir"), "--frames", "1-2", "--error-budget"}).code, 2);
 }

@@ -6,7 +6,11 @@
 
 #include <gtest/gtest.h>
 
+#include <glm/geometric.hpp>
+
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <numeric>
 
 namespace penumbra::reference {
@@ -68,6 +72,41 @@ TEST(HidingObjects, AreThoseThatExactPredicatesFind) {
   EXPECT_GT(own, both + 10);
   EXPECT_GT(other, both + 10);
   EXPECT_LT(missed, both / 4);
+}
+
+/// The board is a quarter of the way to the light at height 4, the flap three eighths: penumbrae of 1/3 and 3/5 of the
+/// light; a way is as long as the ray to that light sample, times that share.
+TEST(HidingObjects, AreSoFarAwayAndMakeSoWidePenumbrae) {
+  const Stage setup(board_and_flap(), 40, 30);
+  std::vector<std::uint32_t> pixels;
+  for (std::uint32_t i = 0; i < setup.samples.size(); ++i) {
+    const bool floor = setup.samples.triangle[i] != visibility::ViewSamples::kBackground &&
+                       std::abs(setup.samples.p[i].y - setup.floats.positions[0].y) < 1e-6F;
+    if (floor) pixels.push_back(i);
+  }
+  const std::vector<HiddenBy> found = hiding_objects(setup.floats, setup.samples, setup.light, pixels);
+  int boards = 0, flaps = 0;
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    if (found[i].own && found[i].other) continue;
+    if (!found[i].own && !found[i].other) {
+      EXPECT_TRUE(std::isinf(found[i].nearest));
+      EXPECT_EQ(found[i].widening, 0);
+      continue;
+    }
+    (found[i].own ? flaps : boards) += 1;
+    const double share = found[i].own ? 0.375 : 0.25;
+    EXPECT_NEAR(found[i].widening, share / (1 - share), 1e-5);
+    double shortest = std::numeric_limits<double>::infinity(), longest = 0;
+    for (const glm::vec3& point : setup.light.points) {
+      const double way = share * glm::distance(glm::dvec3(point), glm::dvec3(setup.samples.p[pixels[i]]));
+      shortest = std::min(shortest, way);
+      longest = std::max(longest, way);
+    }
+    EXPECT_GE(found[i].nearest, shortest * (1 - 1e-5));
+    EXPECT_LE(found[i].nearest, longest * (1 + 1e-5));
+  }
+  EXPECT_GT(boards, 20);
+  EXPECT_GT(flaps, 20);
 }
 
 TEST(HidingObjects, AreNoneWhereNothingCasts) {

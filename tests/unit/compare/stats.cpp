@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 namespace penumbra::compare {
 namespace {
 
@@ -154,6 +156,36 @@ TEST(MetricsJson, HasTheNamesOfTheInterface) {
   EXPECT_TRUE(fourth["error"].is_null() && fourth["seconds"]["shadow"].is_null());
 }
 
+TEST(MetricsJson, SaysHowErrorsLookAndWhatSeparationCosts) {
+  Metrics metrics;
+  MethodResult result;
+  result.beauty_error = BeautyError{0.25, 0};
+  result.separation = Separation{{0.125, 0.0625}, {0.5, -0.5}};
+  result.flip = Flip{0.0625, 0.5};
+  result.pops = Pops{0.75, 0.875};
+  LightResult light;
+  light.eye = EyeError{0.5, {}};
+  light.by_width = {{0, 4, 7, VisibilityError{.rmse = 0.5, .max = 0.75, .bias = -0.25}},
+                    {4, std::numeric_limits<double>::infinity(), 0, {}}};
+  result.lights = {light};
+  metrics.methods = {result, MethodResult{}};
+  const auto json = to_json(metrics)["methods"];
+  EXPECT_EQ(json[0]["separation"],
+            (nlohmann::ordered_json{{"alone", {{"relativeRmse", 0.125}, {"relativeBias", 0.0625}}},
+                                    {"ofV", {{"relativeRmse", 0.5}, {"relativeBias", -0.5}}},
+                                    {"change", 0.25}}));
+  EXPECT_EQ(json[0]["eye"].dump(), R"({"over255":0.5,"banding":null,"flip":{"mean":0.0625,"max":0.5}})");
+  EXPECT_EQ(json[0]["lights"][0]["eye"].dump(), R"({"over255":0.5,"banding":null})");
+  EXPECT_EQ(json[0]["pops"].dump(), R"({"share":0.75,"max":0.875})");
+  EXPECT_EQ(json[0]["penumbraWidth"]["pixels"].dump(),
+            R"([{"from":0.0,"to":4.0,"pixels":7,"rmse":0.5,"bias":-0.25,"max":0.75},)"
+            R"({"from":4.0,"to":null,"pixels":0,"rmse":null,"bias":null,"max":null}])");
+  EXPECT_TRUE(json[0]["penumbraWidth"]["texels"].is_null());
+  EXPECT_TRUE(json[0]["contactDistance"]["pixels"].is_null());
+  EXPECT_TRUE(json[1]["separation"].is_null());
+  EXPECT_FALSE(json[1].contains("pops"));
+}
+
 /// Every light, and a method with masks against rays on its own light samples whatever the reference is.
 TEST(MetricsJson, JudgesEachLight) {
   Metrics metrics;
@@ -172,7 +204,8 @@ TEST(MetricsJson, JudgesEachLight) {
   ASSERT_EQ(method["lights"].size(), 2u);
   EXPECT_EQ(keys_of(method["lights"][0]),
             (std::vector<std::string>{"name", "judgedPixels", "horizonPixels", "error", "horizonError", "classes",
-                                      "sameSamples", "errorBudget", "errorBudgetRuns"}));
+                                      "penumbraWidth", "contactDistance", "eye", "sameSamples", "errorBudget",
+                                      "errorBudgetRuns"}));
   EXPECT_TRUE(method["lights"][0]["classes"].is_null());
   EXPECT_EQ(method["lights"][0]["horizonError"]["rmse"], 0.75);
   EXPECT_TRUE(method["lights"][0]["sameSamples"].is_null());
@@ -185,10 +218,10 @@ TEST(MetricsJson, JudgesEachLight) {
   metrics.methods[0].stats.lights = {{.name = "key", .method = "exact", .area = true},
                                      {.name = "rim", .method = "pcss"}};
   const auto asked = to_json(metrics)["methods"][0]["lights"];
-  EXPECT_EQ(keys_of(asked[1]),
-            (std::vector<std::string>{"name", "method", "options", "lightSamples", "samplePattern", "quantity",
-                                      "seconds", "judgedPixels", "horizonPixels", "error", "horizonError", "classes",
-                                      "sameSamples", "errorBudget", "errorBudgetRuns"}));
+  EXPECT_EQ(keys_of(asked[1]), (std::vector<std::string>{
+                                   "name", "method", "options", "lightSamples", "samplePattern", "quantity", "seconds",
+                                   "judgedPixels", "horizonPixels", "error", "horizonError", "classes", "penumbraWidth",
+                                   "contactDistance", "eye", "sameSamples", "errorBudget", "errorBudgetRuns"}));
   EXPECT_EQ(asked[0]["quantity"], "area");
   EXPECT_EQ(asked[1]["judgedPixels"], 20);
   const auto& same = method["lights"][1]["sameSamples"];

@@ -1,0 +1,17 @@
+#pragma once
+
+#include "app/compare/light_judge.hpp"
+#include "app/session.hpp"
+
+#include <glm/vec3.hpp>
+
+#include <span>
+#include <vector>
+
+namespace penumbra::app {
+
+/// The linear beauty that V of the reference alone would make, V · ∫G, light by light (compare::Separation). Empty if a
+/// light is cut in pieces, whose own V are not known.
+std::vector<glm::vec3> separated_beauty(const Session& session, std::span<const LightTruth> truths);
+
+}  // namespace penumbra::app

@@ -1,0 +1,18 @@
+#pragma once
+
+#include "visibility/light_samples.hpp"
+#include "visibility/method_options.hpp"
+#include "visibility/scene_floats.hpp"
+#include "visibility/view_samples.hpp"
+
+#include <vector>
+
+namespace penumbra::maps {
+
+/// MethodDescription::texel_widths of methods with the option `size`: of a map from the light's centre that holds all
+/// receivers, which is what all but fitted ones are about. The two sides' geometric mean. Empty for suns, spheres and
+/// other fits.
+std::vector<float> texel_widths(const visibility::SceneFloats& scene, const visibility::ViewSamples& samples,
+                                const visibility::Light& light, const visibility::MethodOptions& complete);
+
+}  // namespace penumbra::maps
