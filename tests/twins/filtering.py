@@ -10,7 +10,7 @@ import numpy as np
 import penumbra
 
 TOP, LIGHT, FLOOR, SIZE, PIXELS = 5.0, 0.5, 3.0, 160, 28
-BIAS, STEEPEST = 0.5, 8.0  # the program's defaults: maps/README.md
+BIAS, STEEPEST, LAYERS = 0.5, 8.0, 4  # the program's defaults: maps/README.md, docs/vssm.md
 
 
 def plate(height, center, half, rise=0.0):
@@ -55,19 +55,22 @@ class Map:
         self.texel = 2 * FLOOR / TOP / (SIZE - 2)
         self.lower = -FLOOR / TOP - self.texel
         at = self.lower + (np.arange(SIZE) + 0.5) * self.texel
-        rays = np.stack([*np.meshgrid(at, at), np.ones((SIZE, SIZE))], axis=-1)  # [y, x]
-        depth = np.where(np.abs(rays[..., :2]).max(axis=-1) * TOP <= FLOOR, TOP, np.inf)
+        self.rays = np.stack([*np.meshgrid(at, at), np.ones((SIZE, SIZE))], axis=-1)  # [y, x]
+        depth = np.where(np.abs(self.rays[..., :2]).max(axis=-1) * TOP <= FLOOR, TOP, np.inf)
         for quad in quads:
-            center = in_frame(quad["center"])
-            u, v = (in_frame(np.add(quad["center"], quad[k])) - center for k in ("halfU", "halfV"))
-            # center + a u + b v = z ray
-            solved = np.linalg.solve(np.stack(np.broadcast_arrays(rays, -u, -v), axis=-1), np.broadcast_to(center, rays.shape)[..., None])
-            z, a, b = np.moveaxis(solved[..., 0], -1, 0)
-            inside = (np.abs(a) <= 1) & (np.abs(b) <= 1) & (z > 0)
-            depth = np.where(inside & (z < depth), z, depth)
+            depth = np.minimum(depth, self.depth_of(quad))
         self.depth, self.nearest = depth, depth.min()
         self.low, self.high = self.nearest * (1 - 1 / 1024), TOP
         self.t = np.where(np.isfinite(depth), self.normalised(np.where(np.isfinite(depth), depth, TOP)), 1.0)
+
+    def depth_of(self, quad):
+        """Of each texel's centre; infinite beside it."""
+        center, rays = in_frame(quad["center"]), self.rays
+        u, v = (in_frame(np.add(quad["center"], quad[k])) - center for k in ("halfU", "halfV"))
+        # center + a u + b v = z ray
+        solved = np.linalg.solve(np.stack(np.broadcast_arrays(rays, -u, -v), axis=-1), np.broadcast_to(center, rays.shape)[..., None])
+        z, a, b = np.moveaxis(solved[..., 0], -1, 0)
+        return np.where((np.abs(a) <= 1) & (np.abs(b) <= 1) & (z > 0), z, np.inf)
 
     def normalised(self, z):
         return np.clip((z - self.low) / (self.high - self.low), 0, 1)
@@ -140,6 +143,10 @@ class Filter:
         mean = lambda f: self.mean(lower, upper, f)
         if self.moments == "vsm":
             share = self.bound(mean(lambda q: q), mean(lambda q: q * q), t, 2.0**-22)
+        elif self.moments == "lvsm":  # Lauritzen and McCool 2008: the layer that holds t alone
+            layer = min(int(t * LAYERS), LAYERS - 1)
+            warp = lambda q: np.clip(LAYERS * q - layer, 0, 1)
+            share = self.bound(mean(warp), mean(lambda q: warp(q) ** 2), t * LAYERS - layer, 2.0**-22 * LAYERS**2)
         elif self.moments == "evsm":
             least = max(2.0**-22, self.slack**2) * self.c**2
             warps = [(lambda q, s=s: s * np.exp(s * self.c * (q - t))) for s in (1, -1)]
@@ -230,13 +237,54 @@ class Filter:
         return float(np.clip(self.parts(*self.window_through(z))[0], 0, 1))
 
 
+class Slices:
+    """Eisemann and Decoret 2006: casters in equally thick slices, each a picture of bits that the light's box filters; a product."""
+
+    def __init__(self, map_, quads, count=8):
+        self.filter = Filter(map_, "vsm")
+        self.map = map_
+        floor = {"center": [0, 0, 0], "halfU": [FLOOR, 0, 0], "halfV": [0, 0, -FLOOR]}
+        corners = [in_frame(np.add(q["center"], s * np.asarray(q["halfU"]) + t * np.asarray(q["halfV"])))[2]
+                   for q in quads for s in (-1, 1) for t in (-1, 1)]
+        nearest = min(corners)
+        self.planes = nearest + (TOP - nearest) * (np.arange(count) + 1) / count
+        self.nearest = nearest
+        self.bits = np.zeros((count, SIZE, SIZE))
+        for quad in [*quads, floor]:
+            depth = map_.depth_of(quad)
+            number = np.searchsorted(self.planes * (1 + 2.0**-18), depth)
+            for k in range(count):
+                self.bits[k] = np.where(np.isfinite(depth) & (number == k), 1.0, self.bits[k])
+
+    def mean(self, lower, upper, k):
+        x0, y0 = np.maximum(np.floor(lower), 0).astype(int)
+        x1, y1 = np.minimum(np.ceil(upper), SIZE).astype(int)
+        shares = [np.minimum(np.arange(a, b) + 1.0, upper[i]) - np.maximum(np.arange(a, b), lower[i])
+                  for i, (a, b) in enumerate([(x0, x1), (y0, y1)])]
+        return (np.outer(shares[1], shares[0]) * self.bits[k][y0:y1, x0:x1]).sum() / np.prod(upper - lower)
+
+    def __call__(self, receiver):
+        self.filter.receiver = receiver
+        height = receiver.d[2] * max(1 - BIAS * self.map.texel * (1 + receiver.slope), 0)
+        if self.nearest >= height:
+            return 1.0
+        v = 1.0
+        for k, plane in enumerate(self.planes):
+            if plane >= height:
+                break
+            v *= 1 - self.mean(*self.filter.window_through(plane), k)
+        return v
+
+
 class Twins(unittest.TestCase):
     def check(self, method, options, twin, tolerance, most_off=0.01):
         """`most_off`: pixels whose search says blocked or not by a hair, or whose place is a texel's border within float32."""
         for name, quads in SCENES.items():
             picture = penumbra.render(penumbra.Scene.from_dict(scene_of(quads)), size=(PIXELS, PIXELS), method=method,
                                       options={"size": str(SIZE), **options})
-            answer, off, judged, soft = twin(Map(quads)), [], 0, 0
+            map_ = Map(quads)
+            map_.quads = quads
+            answer, off, judged, soft = twin(map_), [], 0, 0
             for y, x in zip(*np.nonzero(picture.A == 1)):
                 receiver = Receiver(picture.P[y, x], picture.N[y, x])
                 if receiver.h <= 0.7:  # the light's centre and all else of it are above the receiver's horizon
@@ -263,6 +311,16 @@ class Twins(unittest.TestCase):
     def test_kernel_subdivision(self):
         self.check("vssm", {}, lambda m: Filter(m, "vsm", cuts=3), 2e-4)
         self.check("vssm", {"cuts": "1"}, lambda m: Filter(m, "vsm", cuts=1), 2e-4)
+
+    # A layer's heights are LAYERS times as far apart, and its variance has the same rounding.
+    def test_layers(self):
+        self.check("vssm", {"moments": "lvsm", "subdivision": "none"}, lambda m: Filter(m, "lvsm"), 2e-4, 0.02)
+        self.check("vssm", {"moments": "lvsm"}, lambda m: Filter(m, "lvsm", cuts=3), 2e-4, 0.02)
+
+    # Means of bits are exact: what is left is float32 of windows' borders.
+    def test_slices(self):
+        for count in (3, 8):
+            self.check("occlusion-textures", {"slices": str(count)}, lambda m: Slices(m, m.quads, count), 1e-4)
 
     def test_fixed_window(self):
         self.check("vssm", {"window": "9", "subdivision": "none"}, lambda m: Filter(m, "vsm", window=9), 2e-4)
