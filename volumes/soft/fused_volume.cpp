@@ -8,7 +8,7 @@
 #include "volumes/soft/light_parts.hpp"
 
 #include <algorithm>
-#include <optional>
+#include <map>
 #include <utility>
 #include <vector>
 
@@ -20,14 +20,35 @@ using visibility::SceneFloats;
 using visibility::Tile;
 using visibility::ViewSamples;
 
-/// The scene in which this object alone casts; none: nothing does.
-SceneFloats with_caster(const SceneFloats& scene, std::optional<std::uint32_t> object) {
-  SceneFloats alone = scene;
-  for (std::size_t i = 0; i < alone.casts_shadow.size(); ++i) {
-    if (!object || alone.object[i] != *object) alone.casts_shadow[i] = 0;
+/// A copy of a scene in which one object casts at a time.
+class OneCaster {
+ public:
+  explicit OneCaster(const SceneFloats& scene) : scene_(scene) {
+    for (std::uint32_t i = 0; i < scene.casts_shadow.size(); ++i) {
+      if (scene.casts_shadow[i] != 0) triangles_[scene.object[i]].push_back(i);
+    }
+    std::ranges::fill(scene_.casts_shadow, std::uint8_t{0});
   }
-  return alone;
-}
+  /// The scene in which nothing casts, or what `cast` chose.
+  [[nodiscard]] const SceneFloats& scene() const& { return scene_; }
+  const SceneFloats& scene() const&& = delete;
+  void cast(std::uint32_t object) {
+    set(casting_, 0);
+    casting_ = object;
+    set(object, 1);
+  }
+
+ private:
+  void set(std::uint32_t object, std::uint8_t casts) {
+    const auto found = triangles_.find(object);
+    if (found == triangles_.end()) return;
+    for (const std::uint32_t triangle : found->second) scene_.casts_shadow[triangle] = casts;
+  }
+
+  SceneFloats scene_;
+  std::map<std::uint32_t, std::vector<std::uint32_t>> triangles_;  // that cast, of each object
+  std::uint32_t casting_ = 0;
+};
 
 class FusedVolume final : public visibility::Method {
  public:
@@ -120,8 +141,8 @@ void FusedVolume::fuse() {
   };
   std::vector<Part> parts;
   double weight = 0;
-  const SceneFloats empty = with_caster(*scene_, std::nullopt);
-  alone_->prepare_mesh(empty);
+  OneCaster casters(*scene_);
+  alone_->prepare_mesh(casters.scene());
   for (const Light& light : parts_) {
     const double own = light.texture ? light.texture->mean_luminance : 1;
     weight += own;
@@ -129,8 +150,8 @@ void FusedVolume::fuse() {
                      std::vector<FusedShare>(samples_->size())});
   }
   for (const std::uint32_t object : occluders_) {
-    const SceneFloats scene = with_caster(*scene_, object);
-    alone_->prepare_mesh(scene);
+    casters.cast(object);
+    alone_->prepare_mesh(casters.scene());
     for (std::size_t k = 0; k < parts.size(); ++k) {
       Part& part = parts[k];
       if (!(part.weight > 0)) continue;
