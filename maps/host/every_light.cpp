@@ -47,8 +47,9 @@ class EveryLight final : public visibility::Method {
   [[nodiscard]] const SceneFloats& drawn() const { return drawn_ ? *drawn_ : *scene_; }
   /// Gives the method a scene, unless it has that one.
   void show(const SceneFloats& scene);
-  /// Gives the method a disk of the lamp, and the view samples that it lights.
+  /// Gives the method a disk of the lamp, unless it has that one, and the view samples that it lights.
   void look_from(std::uint32_t number);
+  void show_lit();
 
   std::unique_ptr<Method> method_;
   Given given_;
@@ -58,14 +59,18 @@ class EveryLight final : public visibility::Method {
   const SceneFloats* shown_ = nullptr;             // that the method has
   const Light* light_ = nullptr;                   // as the host has it
   Light own_;                                      // as the method has it, where that is another
-  std::optional<SunSpace> sun_;                    // of a sun,
+  std::optional<SunSpace> sun_;                    // of the sun last looked from: the next may shine the same way
+  bool in_sun_space_ = false;                      // the light is that sun
   std::optional<LampDisks> lamp_;                  // of a sphere that the method does not know
+  std::uint32_t disk_ = 0;                         // of a lamp: the one that the method has
+  std::uint32_t looked_ = kNoDisk;                 // likewise, with the view samples that it lights
   ViewSamples samples_;                            // as the method has them, under these
   std::vector<std::int32_t> carriers_;             // of a lamp: of all view samples
   std::vector<std::uint8_t> disks_;                // of a lamp: of each view sample the disk's number, or kNoDisk
   std::vector<std::uint32_t> masks_;               // of a lamp: of the tile last evaluated
   std::vector<float> visibility_;                  // likewise
-  std::map<std::string, std::uint64_t> counters_;  // of a lamp: of disks that were looked from
+  std::map<std::string, std::uint64_t> counters_;  // of a lamp: of all disks that were looked from
+  std::map<std::string, std::uint64_t> counted_;   // of these, of the disk that the method has
   std::uint64_t memory_ = 0;
 };
 
@@ -90,32 +95,32 @@ void EveryLight::prepare_light(const Light& light) {
   light_ = &light;
   lamp_.reset();
   counters_.clear();
+  counted_.clear();
   own_ = light;
-  if (!method_->description().lights.contains(light.kind)) {
-    if (light.sun) {
+  const bool knows = method_->description().lights.contains(light.kind);
+  in_sun_space_ = light.sun && !knows;
+  if (in_sun_space_) {
+    if (!sun_ || !sun_->take(light)) {
       shown_ = nullptr;  // another sun's scene may lie where this one's will
       sun_.emplace(drawn(), light);
-      own_ = sun_->light();
-    } else {
-      lamp_.emplace(light);
-      own_ = lamp_->disk(0);
     }
-  }
-  const bool mapped = light.sun && !method_->description().lights.contains(light.kind);
-  if (!mapped && sun_) {
-    show(drawn());
-    sun_.reset();
+    own_ = sun_->light();
+  } else if (!knows) {
+    lamp_.emplace(light);
+    disk_ = 0;
+    looked_ = kNoDisk;
+    own_ = lamp_->disk(disk_);
   }
   // The host asks translucent surfaces alone, and the method knows the others.
   if (given_.holes) own_.filtered_by.clear();
   own_.dimmed_by.clear();
-  show(mapped ? sun_->scene() : drawn());
+  show(in_sun_space_ ? sun_->scene() : drawn());
   method_->prepare_light(own_);
 }
 
 void EveryLight::prepare_view(const ViewSamples& samples) {
   PENUMBRA_ASSERT(light_ != nullptr, "{}: prepare_view before prepare_light", description_.name);
-  if (sun_) {
+  if (in_sun_space_) {
     samples_ = sun_->mapped(samples);
     method_->prepare_view(samples_);
     return;
@@ -132,18 +137,28 @@ void EveryLight::prepare_view(const ViewSamples& samples) {
     disks_[i] = static_cast<std::uint8_t>(lamp_->number_of(samples.p[i]));
   }
   static_assert(LampDisks::kCount < kNoDisk);
-  const auto first = std::ranges::find_if(disks_, [](std::uint8_t disk) { return disk != kNoDisk; });
-  look_from(first == disks_.end() ? 0 : *first);  // so that max_tile_rows() has something to go by
+  looked_ = disk_;
+  show_lit();  // so that max_tile_rows() has something to go by
+}
+
+void EveryLight::show_lit() {
+  for (std::size_t i = 0; i < disks_.size(); ++i)
+    samples_.triangle[i] = disks_[i] == looked_ ? carriers_[i] : ViewSamples::kBackground;
+  method_->prepare_view(samples_);
 }
 
 void EveryLight::look_from(std::uint32_t number) {
-  own_ = lamp_->disk(number);
-  if (given_.holes) own_.filtered_by.clear();
-  own_.dimmed_by.clear();
-  for (std::size_t i = 0; i < disks_.size(); ++i)
-    samples_.triangle[i] = disks_[i] == number ? carriers_[i] : ViewSamples::kBackground;
-  method_->prepare_light(own_);
-  method_->prepare_view(samples_);
+  if (number == looked_) return;
+  looked_ = number;
+  if (number != disk_) {
+    disk_ = number;
+    own_ = lamp_->disk(number);
+    if (given_.holes) own_.filtered_by.clear();
+    own_.dimmed_by.clear();
+    method_->prepare_light(own_);
+    counted_.clear();
+  }
+  show_lit();
 }
 
 void EveryLight::evaluate(const Tile& tile) {
@@ -176,8 +191,11 @@ void EveryLight::evaluate(const Tile& tile) {
       std::copy_n(masks.begin() + static_cast<std::ptrdiff_t>(i * words), words,
                   masks_.begin() + static_cast<std::ptrdiff_t>(i * words));
     }
-    for (const auto& [name, value] : method_->counters()) counters_[name] += value;
-    counters_["lampDisks"] += 1;
+    if (counted_.empty()) counters_["lampDisks"] += 1;
+    for (const auto& [name, value] : method_->counters()) {
+      counters_[name] += value - counted_[name];
+      counted_[name] = value;
+    }
     memory_ = std::max(memory_, method_->memory_bytes());
   }
 }

@@ -20,8 +20,9 @@ constexpr double kLeastTangent = 0x1p-20;
 
 }  // namespace
 
-SunSpace::SunSpace(const visibility::SceneFloats& scene, const visibility::Light& sun) : scene_(scene), light_(sun) {
+SunSpace::SunSpace(const visibility::SceneFloats& scene, const visibility::Light& sun) : scene_(scene) {
   PENUMBRA_ASSERT(sun.sun.has_value(), "light \"{}\" is no sun", sun.name);
+  way_ = *sun.sun;
   n_ = glm::normalize(glm::cross(glm::dvec3(sun.sun->axis_u), glm::dvec3(sun.sun->axis_v)));
   u_ = glm::normalize(glm::cross(glm::dvec3(sun.sun->axis_v), n_));
   v_ = glm::cross(n_, u_);
@@ -42,6 +43,17 @@ SunSpace::SunSpace(const visibility::SceneFloats& scene, const visibility::Light
       scene_.alphas.weights.push_back(scale_ / (below_ - local(position).z));
   }
 
+  make_light(sun);
+}
+
+bool SunSpace::take(const visibility::Light& sun) {
+  if (!sun.sun || sun.sun->axis_u != way_.axis_u || sun.sun->axis_v != way_.axis_v) return false;
+  make_light(sun);
+  return true;
+}
+
+void SunSpace::make_light(const visibility::Light& sun) {
+  light_ = sun;
   const double tangent = std::max(sun.sun->tangent, kLeastTangent), radius = scale_ * tangent;
   const glm::dvec3 center(0, 0, -scale_), u(radius, 0, 0), v(0, radius, 0);
   light_.kind = visibility::LightKind::disk;

@@ -22,6 +22,9 @@ class SunSpace {
   /// `sun` must be one.
   SunSpace(const visibility::SceneFloats& scene, const visibility::Light& sun);
 
+  /// Another sun that shines the same way, whatever its angle and radiance: the scene stays. False if it does not.
+  bool take(const visibility::Light& sun);
+
   [[nodiscard]] const visibility::SceneFloats& scene() const { return scene_; }
   /// The disk. A sun of one direction is one of 2⁻²⁰, less than a texel of any map.
   [[nodiscard]] const visibility::Light& light() const { return light_; }
@@ -33,6 +36,9 @@ class SunSpace {
   [[nodiscard]] glm::dvec3 local(const glm::vec3& p) const;
   [[nodiscard]] glm::vec3 mapped(const glm::vec3& p) const;
 
+  void make_light(const visibility::Light& sun);
+
+  visibility::Light::Directions way_;  // whose axes these are
   glm::dvec3 u_{0}, v_{0}, n_{0}, middle_{0};
   double scale_ = 1, below_ = 1;  // S, and b from the scene's middle
   visibility::SceneFloats scene_;

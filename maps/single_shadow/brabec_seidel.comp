@@ -10,8 +10,8 @@
 // Brabec and Seidel 2002: a lit receiver looks for the nearest texel that would shade it, a shaded one for the nearest that
 // would not. V is a half on the border between them, and rises or falls from there over the half penumbra of the occluder.
 
-layout(scalar, binding = 7) readonly buffer Ids { uint ids[]; };
-layout(scalar, binding = 8) readonly buffer Objects { uint object_of[]; };
+layout(scalar, binding = 8) readonly buffer Ids { uint ids[]; };
+layout(scalar, binding = 9) readonly buffer Objects { uint object_of[]; };
 
 bool shades(Search search, Tap tap, ivec2 offset) {
   if (!search_blocks(search, tap, offset)) return false;
@@ -29,7 +29,8 @@ float visibility_of(LightView view, vec3 d, vec3 m) {
   const float inner = half_penumbra(search, search.tap.depth * abs(search.tap.direction.z));
   const float most = shaded ? inner : half_penumbra(search, search.near);
   float best = 1e30, width = inner;
-  for (uint k = 0; k < own.offsets; ++k) {
+  uint k = 0;
+  for (; k < own.offsets; ++k) {
     const ivec2 offset = offsets[k];
     if (is_beyond(search, offset, min(best, most))) break;
     Tap tap;
@@ -40,6 +41,7 @@ float visibility_of(LightView view, vec3 d, vec3 m) {
     best = away;
     if (!shaded) width = half_penumbra(search, tap.depth * abs(tap.direction.z));
   }
+  count_cut(search, k, min(best, most));
   if (best == 1e30 || !(width > 0.0)) return shaded ? 0.0 : 1.0;
   const float share = min(best / width, 1.0);
   return light_at(own.falloff, shaded ? 0.5 - 0.5 * share : 0.5 + 0.5 * share);

@@ -33,6 +33,7 @@ visibility::MethodDescription brabec_seidel_description() {
                                                                          .options = compared_map_option_descriptions(),
                                                                          .verdict_on = brabec_seidel_verdict,
                                                                          .repairs = searched_shadow_repairs});
+  description.warning = cut_search_warning;
   for (const auto& option :
        {kSearchRadius.description(), falloff_option(gpu::kFalloffLinear).description(), kIds.description()}) {
     description.options.push_back(option);

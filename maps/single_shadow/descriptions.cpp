@@ -2,7 +2,11 @@
 
 #include "maps/host/error_repairs.hpp"
 #include "maps/host/mesh_verdict.hpp"
+#include "maps/single_shadow/options.hpp"
 
+#include <fmt/format.h>
+
+#include <string>
 #include <utility>
 
 namespace penumbra::maps {
@@ -47,6 +51,19 @@ visibility::ErrorRepairs searched_shadow_repairs(const visibility::MethodDescrip
   // The search is counted in texels: as many again go as far.
   repairs.doubled = {"size", "radius"};
   return map_repairs(method, given, repairs);
+}
+
+std::optional<std::string> cut_search_warning(const visibility::MethodOptions& options,
+                                              const std::map<std::string, std::uint64_t>& counters) {
+  const auto found = counters.find("cutSearches");
+  if (found == counters.end() || found->second == 0) return std::nullopt;
+  const auto radius = options.find(kSearchRadius.key);
+  return fmt::format(
+      "penumbrae may reach beyond radius={} texels, where the search ended, at {} view samples: there they are cut; "
+      "take "
+      "a larger radius (at most {}) or a smaller size",
+      radius == options.end() ? std::to_string(kSearchRadius.otherwise) : radius->second, found->second,
+      kSearchRadius.most);
 }
 
 }  // namespace penumbra::maps

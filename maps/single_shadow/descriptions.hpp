@@ -2,6 +2,9 @@
 
 #include "visibility/method.hpp"
 
+#include <cstdint>
+#include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,5 +29,9 @@ visibility::ErrorRepairs single_shadow_repairs(const visibility::MethodDescripti
                                                const visibility::MethodOptions& given);
 visibility::ErrorRepairs searched_shadow_repairs(const visibility::MethodDescription& method,
                                                  const visibility::MethodOptions& given);
+
+/// MethodDescription::warning of methods whose search ends at the option `radius`: where it does, V is cut.
+std::optional<std::string> cut_search_warning(const visibility::MethodOptions& options,
+                                              const std::map<std::string, std::uint64_t>& counters);
 
 }  // namespace penumbra::maps

@@ -16,7 +16,8 @@ float visibility_of(LightView view, vec3 d, vec3 m) {
   if (search.free) return 1.0;
   const float most = half_penumbra(search, search.near);
   float least = 1.0;
-  for (uint k = 0; k < own.offsets; ++k) {
+  uint k = 0;
+  for (; k < own.offsets; ++k) {
     const ivec2 offset = offsets[k];
     if (is_beyond(search, offset, least * most)) break;
     Tap tap;
@@ -24,6 +25,7 @@ float visibility_of(LightView view, vec3 d, vec3 m) {
     const float width = half_penumbra(search, tap.depth * abs(tap.direction.z));
     if (width > 0.0) least = min(least, distance_to(search, tap) / width);
   }
+  count_cut(search, k, least * most);
   return light_at(own.falloff, least);
 }
 

@@ -19,6 +19,7 @@ visibility::MethodDescription parker_description() {
                                  .options = compared_map_option_descriptions(),
                                  .verdict_on = outer_verdict,
                                  .repairs = searched_shadow_repairs});
+  description.warning = cut_search_warning;
   for (const auto& option : {kSearchRadius.description(), falloff_option(gpu::kFalloffCubic).description()}) {
     description.options.push_back(option);
   }

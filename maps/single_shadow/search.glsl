@@ -7,6 +7,7 @@
 
 layout(scalar, binding = 4) readonly buffer Nearest { float nearest[2]; };
 layout(scalar, binding = 5) readonly buffer Offsets { ivec2 offsets[]; };  // by length
+layout(scalar, binding = 7) buffer Counts { uint cut_searches[2]; };       // 64 bits, of which the lower are enough
 
 struct Search {
   LightView view;
@@ -72,6 +73,13 @@ float distance_to(Search search, Tap tap) {
 // Is all that lies behind this offset farther away than `most`? (Sideways, distances are not those on the face.)
 bool is_beyond(Search search, ivec2 offset, float most) {
   return search.tap.axis == 2 && (length(vec2(offset)) - 2.0) * search.smallest_step > most;
+}
+
+// Counts a search that went through all offsets, and may have found more farther away, up to `most`. Only on the face along
+// the light's axis are distances known.
+void count_cut(Search search, uint asked, float most) {
+  const bool ended = search.tap.axis != 2 || (float(own.radius) - 1.0) * search.smallest_step > most;
+  if (asked == own.offsets && !ended) atomicAdd(cut_searches[0], 1);
 }
 
 // How wide the half of a penumbra is, outer or inner, that something at height `z` casts on the receiver: what Parker et al.

@@ -3,10 +3,12 @@
 #include "maps/products/depth_pyramid.hpp"
 #include "maps/products/light_shape.hpp"
 #include "maps/products/nearest_caster.hpp"
+#include "maps/products/work_counts.hpp"
 #include "maps/single_shadow/options.hpp"
 #include "maps/single_shadow/search.shared.h"
 
 #include <algorithm>
+#include <string>
 #include <tuple>
 #include <utility>
 
@@ -49,6 +51,7 @@ MapRecipe search_recipe(const render::Device& device, SearchMethod method, const
   recipe.products.push_back(std::make_unique<NearestCaster>(device));
   recipe.products.push_back(std::make_unique<SearchOffsets>(device, offsets));
   recipe.products.push_back(std::make_unique<DepthPyramid>(device, PyramidKind::ysm));
+  recipe.products.push_back(std::make_unique<WorkCounts>(device, std::vector<std::string>{"cutSearches"}));
   // Casters that receive nothing are searched, too, as far beside a receiver as a penumbra can begin.
   recipe.beside = [](const visibility::Light& light, const LightBasis& basis) {
     return half_extent(light, basis) / half_width(light);

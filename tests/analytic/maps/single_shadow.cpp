@@ -255,5 +255,26 @@ TEST(MapsFlood, ALineIsFilledAsFarAsThePenumbraReaches) {
   EXPECT_TRUE(maps::flood({}, 0, 1).share.empty());
 }
 
+// The outer penumbra under the half plane at height 2 is 0.4 wide on the floor, of whose texels (10 / 510 and more)
+// some 15 fit: a search of eight ends too early, and counters and the warning say so; one of sixty does not.
+TEST_F(MapsSingleShadow, CutSearchesAreCounted) {
+  const Stage stage = along_floor(half_plane(2, 0.3), places(), light_samples(1));
+  for (const auto make : {maps::make_parker, maps::make_brabec_seidel}) {
+    const auto cut_of = [&](const char* radius) {
+      const auto method = make(device(), {{"size", "512"}, {"radius", radius}});
+      static_cast<void>(run(*method, stage));
+      const auto counters = method->counters();
+      const auto warning = method->description().warning({{"radius", radius}}, counters);
+      EXPECT_EQ(warning.has_value(), counters.at("cutSearches") > 0);
+      const std::string said = warning.value_or("radius=" + std::string(radius));
+      EXPECT_NE(said.find(std::string("radius=") + radius), std::string::npos) << said;
+      return counters.at("cutSearches");
+    };
+    EXPECT_EQ(cut_of("60"), 0U);
+    EXPECT_GT(cut_of("4"), 2U);
+    EXPECT_LE(cut_of("4"), stage.samples.size());
+  }
+}
+
 }  // namespace
 }  // namespace penumbra::tests
