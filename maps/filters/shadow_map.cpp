@@ -63,7 +63,10 @@ std::unique_ptr<visibility::Method> make_shadow_map(const render::Device& device
   const visibility::ParsedOptions parsed = visibility::parse_options(recipe.description, options);
   if (parsed[kHardTest]) {
     if (view_fit(recipe.description.options, parsed).has_faces()) {
-      throw UsageError("method shadow-map: test=id knows windows alone; take fit=receivers or fit=view");
+      throw UsageError(
+          "method shadow-map: test=id knows windows and cubes alone; take projection=window or cube with "
+          "fit=receivers, or "
+          "fit=view");
     }
     recipe.look_up = shaders::kShadowMapIdsComp;
     recipe.products.push_back(std::make_unique<NearestIds>(device, parsed[kRasteriser]));

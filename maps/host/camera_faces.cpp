@@ -11,6 +11,24 @@ namespace penumbra::maps {
 std::uint32_t CameraFaces::fit(const render::Device& device, const Source& source, const FaceFitOptions& options,
                                gpu::LightView& view) {
   faces_ = fit_faces(source.scene, source.light, source.basis, source.samples, options);
+  const visibility::PinholeCamera& camera = source.samples.camera;
+  return make(
+      device,
+      {.forward = camera.forward, .offset = static_cast<float>(-glm::dot(camera.forward, camera.eye)), .count = 0},
+      source.basis, options.size, view);
+}
+
+std::uint32_t CameraFaces::take_paraboloids(const render::Device& device, const LightBasis& basis, std::uint32_t size,
+                                            std::uint32_t spare, gpu::LightView& view) {
+  faces_.clear();
+  for (int side = 0; side < 2; ++side) {
+    if (view.side[side].face_count > 0) faces_.push_back(paraboloid_face(side, size, spare));
+  }
+  return make(device, {.forward = glm::vec3(0), .offset = 1, .count = 0}, basis, size, view);  // at any depth
+}
+
+std::uint32_t CameraFaces::make(const render::Device& device, gpu::FaceTable table, const LightBasis& basis,
+                                std::uint32_t size, gpu::LightView& view) {
   std::uint32_t first = 0;
   for (int side = 0; side < 2; ++side) {
     const auto count = static_cast<std::uint32_t>(std::ranges::count(faces_, side, &FittedFace::side));
@@ -18,18 +36,17 @@ std::uint32_t CameraFaces::fit(const render::Device& device, const Source& sourc
     first += count;
   }
 
-  const visibility::PinholeCamera& camera = source.samples.camera;
-  std::vector<std::uint32_t> words = push_words(gpu::FaceTable{
-      .forward = camera.forward, .offset = static_cast<float>(-glm::dot(camera.forward, camera.eye)), .count = first});
+  table.count = first;
+  std::vector<std::uint32_t> words = push_words(table);
   pushes_.clear();
   for (const FittedFace& face : faces_) {
     const std::vector<std::uint32_t> more = push_words(face.rounded());
     words.insert(words.end(), more.begin(), more.end());
     FacePush& push = pushes_.emplace_back();
-    if (face.ratio > 0) {
-      push.logarithmic = logarithmic_push(face, view, source.basis, options.size);
+    if (face.ratio > 0 || face.circle) {
+      push.logarithmic = logarithmic_push(face, view, basis, size);
     } else {
-      push.plain = face_push(face, view, source.basis, options.size);
+      push.plain = face_push(face, view, basis, size);
     }
   }
   // Look-ups read the first even where there is none.

@@ -26,6 +26,10 @@ class CameraFaces {
   std::uint32_t fit(const render::Device& device, const Source& source, const FaceFitOptions& options,
                     gpu::LightView& view);
 
+  /// A paraboloid's circle for each side of the light's plane that the view has maps for, likewise.
+  std::uint32_t take_paraboloids(const render::Device& device, const LightBasis& basis, std::uint32_t size,
+                                 std::uint32_t spare, gpu::LightView& view);
+
   /// Records all faces, the first at the beginning of `maps`, in submissions that can be timed.
   void record(const CasterMaps& casters, render::Commands& commands, std::int32_t light_index,
               const render::Buffer& maps, visibility::PassTimes& times) const;
@@ -38,6 +42,10 @@ class CameraFaces {
   [[nodiscard]] std::uint64_t memory_bytes() const { return table_ ? table_->bytes() : 0; }
 
  private:
+  /// Makes what draws `faces_`, and their table, which begins with `table`.
+  std::uint32_t make(const render::Device& device, gpu::FaceTable table, const LightBasis& basis, std::uint32_t size,
+                     gpu::LightView& view);
+
   std::vector<FittedFace> faces_;
   std::vector<FacePush> pushes_;
   std::unique_ptr<render::Buffer> table_;

@@ -26,7 +26,8 @@ struct FittedFace {
   glm::dvec3 along{0, 0, 1};  ///< the same, with its sign; of e = (x, y, |z|)
   glm::dmat3 to_face{1};      ///< e to (a k, b k, k)
   double ratio = 0;           ///< LogPSM: rows are logarithms, of distances up to so many times the nearest; 0: none
-  double margin = 0;          ///< of LogPSM: the share of the face on either side of its rows
+  double margin = 0;          ///< of LogPSM: the share of the face on either side of its rows; of a circle: around it
+  bool circle = false;        ///< e is seen where a paraboloid reflects it: a half space in a circle (paraboloid_face)
   double from = 0, to = std::numeric_limits<double>::infinity();  ///< depths that ask it, from ≤ z < to
 
   /// Where a direction is seen, from 0 to 1 across the face; nothing if it is seen nowhere.
@@ -57,6 +58,11 @@ struct FaceFitOptions {
 std::vector<FittedFace> fit_faces(const visibility::SceneFloats& scene, const visibility::Light& light,
                                   const LightBasis& basis, const visibility::ViewSamples& samples,
                                   const FaceFitOptions& options);
+
+/// All of a side of the light's plane, `spare` texels of `size` away from the face's sides: e is seen at (x, y) / (|e|
+/// + z), on the unit disk (Brabec, Annen, Seidel 2002, "Shadow mapping for hemispherical and omnidirectional light
+/// sources").
+FittedFace paraboloid_face(int side, std::uint32_t size, std::uint32_t spare);
 
 /// The faces that fit_views made, as such.
 std::vector<FittedFace> faces_of(const gpu::LightView& view);

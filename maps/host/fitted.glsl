@@ -25,10 +25,14 @@ uint find_face(vec3 e, uint side, out vec2 place) {
   for (uint i = 0; i < table_of_faces.count; ++i) {
     const FittedFace face = fitted_faces[i];
     if (face.side != side || receiver_depth < face.from || receiver_depth >= face.to) continue;
-    const float k = dot(face.row_k, e);
-    if (!(k > 0.0)) continue;
-    place = vec2(dot(face.row_a, e), dot(face.row_b, e)) / k;
-    place.y = face_row(face, place.y);
+    if (face.ratio == kCircle) {
+      place = 0.5 + (0.5 - face.margin) * e.xy / (length(e) + e.z);
+    } else {
+      const float k = dot(face.row_k, e);
+      if (!(k > 0.0)) continue;
+      place = vec2(dot(face.row_a, e), dot(face.row_b, e)) / k;
+      place.y = face_row(face, place.y);
+    }
     if (all(greaterThanEqual(place, vec2(-kFaceBorder))) && all(lessThanEqual(place, vec2(1.0 + kFaceBorder)))) return i;
   }
   return table_of_faces.count;

@@ -35,6 +35,10 @@ glm::dvec3 in_world(const glm::dvec3& of_e, int side, const LightBasis& basis) {
 }  // namespace
 
 std::optional<glm::dvec2> FittedFace::place(const glm::dvec3& e) const {
+  if (circle) {
+    if (!(e.z > 0)) return std::nullopt;
+    return 0.5 + (0.5 - margin) * glm::dvec2(e) / (glm::length(e) + e.z);
+  }
   const glm::dvec3 at = to_face * e;
   if (!(at.z > 0)) return std::nullopt;
   glm::dvec2 result = glm::dvec2(at) / at.z;
@@ -47,12 +51,20 @@ std::optional<glm::dvec2> FittedFace::place(const glm::dvec3& e) const {
 }
 
 glm::dvec3 FittedFace::direction(const glm::dvec2& place) const {
+  if (circle) {
+    const glm::dvec2 at = (place - 0.5) / (0.5 - margin);
+    return {2.0 * at / (1 - glm::dot(at, at)), 1};
+  }
   const double b = ratio > 0 ? of_row(*this, place.y) : place.y;
   const glm::dvec3 d = glm::inverse(to_face) * glm::dvec3(place.x, b, 1);
   return d / glm::dot(along, d);
 }
 
 glm::dvec2 FittedFace::moves(const glm::dvec3& e, const glm::dvec3& by) const {
+  if (circle) {
+    const double whole = glm::length(e) + e.z, grows = glm::dot(e, by) / glm::length(e) + by.z;
+    return (0.5 - margin) / whole * (glm::dvec2(by) - glm::dvec2(e) / whole * grows);
+  }
   const glm::dvec3 at = to_face * e, change = to_face * by;
   glm::dvec2 result = (glm::dvec2(change) - glm::dvec2(at) / at.z * change.z) / at.z;
   if (ratio > 0) result.y *= row_change(*this, at.y / at.z);
@@ -70,7 +82,7 @@ gpu::FittedFace FittedFace::rounded() const {
   face.inverse_1 = inverse[2];
   face.along = along;
   face.axis = static_cast<std::uint32_t>(axis);
-  face.ratio = static_cast<float>(ratio);
+  face.ratio = circle ? gpu::kCircle : static_cast<float>(ratio);
   face.margin = static_cast<float>(margin);
   face.from = static_cast<float>(from);
   face.to = static_cast<float>(to);
@@ -104,7 +116,7 @@ gpu::LogarithmicPush logarithmic_push(const FittedFace& face, const gpu::LightVi
   push.row_a = of(rows[0]);
   push.row_b = of(rows[1]);
   push.row_k = of(rows[2]);
-  push.ratio = static_cast<float>(face.ratio);
+  push.ratio = face.circle ? gpu::kCircle : static_cast<float>(face.ratio);
   push.size = size;
   push.inverse_a = of(inverse[0]);
   push.inverse_b = of(inverse[1]);
@@ -112,6 +124,10 @@ gpu::LogarithmicPush logarithmic_push(const FittedFace& face, const gpu::LightVi
   push.margin = static_cast<float>(face.margin);
   push.along = of(face.along);
   return push;
+}
+
+FittedFace paraboloid_face(int side, std::uint32_t size, std::uint32_t spare) {
+  return {.side = side, .margin = static_cast<double>(spare) / size, .circle = true};
 }
 
 std::vector<FittedFace> faces_of(const gpu::LightView& view) {

@@ -10,6 +10,11 @@ float face_b(FittedFace face, float row) {
 
 // To a place of a face, one long along its axis; 0 if it leads behind the light's plane.
 vec3 face_direction(FittedFace face, vec2 place) {
+  if (face.ratio == kCircle) {
+    const vec2 at = (place - 0.5) / (0.5 - face.margin);
+    const float left = 1.0 - dot(at, at);
+    return left > 0.0 ? vec3(2.0 * at / left, 1.0) : vec3(0.0);
+  }
   const vec3 d = face.inverse_a * place.x + face.inverse_b * face_b(face, place.y) + face.inverse_1;
   const float along = dot(face.along, d);
   return along > 0.0 ? d / along : vec3(0.0);

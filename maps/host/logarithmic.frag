@@ -4,17 +4,25 @@
 #include "maps/host/map_view.shared.h"
 #include "render/both.glsl"
 
-// Does the ray through a texel's centre meet the triangle, and how far along the face's axis?
+// Does the ray through a texel's centre meet the triangle, and how far along the face's axis? Of faces of logarithms, and of
+// a paraboloid's circle, whose rows are the face's axes.
 
 STORAGE(1) readonly buffer Maps { float maps[]; };
 PUSH_CONSTANTS Log { LogarithmicPush push; };  // not Push: blocks of one name are one in both stages
 layout(location = 0) flat in uint first_corner;
 
-void main() {
-  const vec2 at = gl_FragCoord.xy / float(push.size);
-  const float power = (at.y - push.margin) / (1.0 - 2.0 * push.margin);
+vec3 way_of(vec2 place) {
+  if (push.ratio == kCircle) {
+    const vec2 at = (place - 0.5) / (0.5 - push.margin);
+    return push.inverse_a * (2.0 * at.x) + push.inverse_b * (2.0 * at.y) + push.inverse_1 * (1.0 - dot(at, at));
+  }
+  const float power = (place.y - push.margin) / (1.0 - 2.0 * push.margin);
   const float b = (1.0 - exp(-power * log(push.ratio))) / (1.0 - 1.0 / push.ratio);
-  const vec3 way = push.inverse_a * at.x + push.inverse_b * b + push.inverse_1;
+  return push.inverse_a * place.x + push.inverse_b * b + push.inverse_1;
+}
+
+void main() {
+  const vec3 way = way_of(gl_FragCoord.xy / float(push.size));
   const float along = dot(push.along, way);
   const vec3 p = corner_at(first_corner) - push.point, q = corner_at(first_corner + 1) - push.point,
              r = corner_at(first_corner + 2) - push.point;

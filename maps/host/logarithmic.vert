@@ -5,14 +5,41 @@
 #include "render/both.glsl"
 
 // Edges are curves in a face of logarithms, which no rasteriser draws: each triangle is drawn as a rectangle that bounds it
-// (six vertices), and logarithmic.frag decides (Lloyd et al. 2007). Rows grow with b, and b is largest at a corner.
+// (six vertices), and logarithmic.frag decides (Lloyd et al. 2007). Rows grow with b, and b is largest at a corner. In a
+// paraboloid's circle edges are arcs; there the cap that holds a triangle's corners holds all of it, and caps are disks.
 
 PUSH_CONSTANTS Push { LogarithmicPush push; };
 layout(location = 0) flat out uint first_corner;
 
-void main() {
-  first_corner = push.first_vertex + VERTEX / 6 * 3;
-  vec2 lower = vec2(1.0), upper = vec2(0.0);
+// The disk of a cap of half angle `around` about the direction c: from the paraboloid's axis an angle is seen at the tangent of
+// its half.
+void bound_circle(out vec2 lower, out vec2 upper) {
+  lower = vec2(0.0);
+  upper = vec2(1.0);
+  vec3 ways[3], middle = vec3(0.0);
+  for (uint i = 0; i < 3; ++i) {
+    const vec3 d = corner_at(first_corner + i) - push.point;
+    ways[i] = normalize(vec3(dot(push.row_a, d), dot(push.row_b, d), dot(push.row_k, d)));
+    middle += ways[i];
+  }
+  if (!(length(middle) > 1.0e-3)) return;
+  middle = normalize(middle);
+  float around = 0.0;
+  for (uint i = 0; i < 3; ++i) around = max(around, acos(clamp(dot(middle, ways[i]), -1.0, 1.0)));
+  const float half_turn = 3.14159265, off = acos(clamp(middle.z, -1.0, 1.0));
+  if (!(around < 0.49 * half_turn) || !(off + around < 0.98 * half_turn)) return;
+  const float least = tan(0.5 * (off - around)), most = tan(0.5 * (off + around));
+  const float across = length(middle.xy);
+  const vec2 towards = across > 0.0 ? middle.xy / across : vec2(1.0, 0.0);
+  const vec2 at = 0.5 + (0.5 - push.margin) * 0.5 * (least + most) * towards;
+  const float wide = (0.5 - push.margin) * 0.5 * (most - least);
+  lower = at - wide;
+  upper = at + wide;
+}
+
+void bound_logarithms(out vec2 lower, out vec2 upper) {
+  lower = vec2(1.0);
+  upper = vec2(0.0);
   for (uint i = 0; i < 3; ++i) {
     const vec3 d = corner_at(first_corner + i) - push.point;
     const float k = dot(push.row_k, d), b = dot(push.row_b, d) / k, left = 1.0 - b * (1.0 - 1.0 / push.ratio);
@@ -24,6 +51,16 @@ void main() {
     const vec2 at = vec2(dot(push.row_a, d) / k, push.margin - (1.0 - 2.0 * push.margin) * log(left) / log(push.ratio));
     lower = min(lower, at);
     upper = max(upper, at);
+  }
+}
+
+void main() {
+  first_corner = push.first_vertex + VERTEX / 6 * 3;
+  vec2 lower, upper;
+  if (push.ratio == kCircle) {
+    bound_circle(lower, upper);
+  } else {
+    bound_logarithms(lower, upper);
   }
   // A texel wider on every side: rounding.
   lower -= 1.0 / float(push.size);

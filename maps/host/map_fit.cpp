@@ -256,8 +256,9 @@ FittedViews fit_views(const visibility::SceneFloats& scene, const visibility::Li
     if (options.body_reach != glm::dvec2(0))
       margin = glm::min(margin, beside_of(options.body_reach, receivers, casters));
     const Contents contents{receivers, casters, margin, options.reach != glm::dvec2(0)};
-    bool windows = true;  // for all points of the light or for none
+    bool windows = !options.hemicube;  // for all points of the light or for none
     for (gpu::LightView& view : fitted.views) {
+      if (!windows) break;
       std::optional<Window> window = fit_window(contents, basis.local(view.point), sign, options.size);
       if (!window) {
         windows = false;

@@ -42,6 +42,7 @@ struct FitOptions {
   /// where they lie for any body.
   glm::dvec2 body_reach{0};
   bool snap = false;
+  bool hemicube = false;  ///< five faces, however narrow a window would do
 };
 
 /// FitOptions::reach of a light that is so large that every caster shades something.

@@ -174,9 +174,9 @@ void MapMethod::prepare_mesh(const visibility::SceneFloats& scene) {
 void MapMethod::prepare_light(const visibility::Light& light) {
   visibility::check_light(recipe_.description, light);
   PENUMBRA_ASSERT(scene_ != nullptr, "{}: prepare_light before prepare_mesh", recipe_.description.name);
-  if (options_.fit.fit == Fit::logpsm && casters_.have_holes())
-    throw InputError("method {}: fit=logpsm draws no surfaces with holes (alphaMode MASK); take another fit",
-                     recipe_.description.name);
+  if (options_.fit.asks_triangles() && casters_.have_holes())
+    throw InputError("method {}: {} draws no surfaces with holes (alphaMode MASK); take another",
+                     recipe_.description.name, words_of(options_.fit));
   light_ = &light;
   basis_ = light_basis(light, *scene_);
   parts_ = visibility::light_parts(light, recipe_.sub_lights);
@@ -201,8 +201,13 @@ void MapMethod::fit_maps() {
   }
   if (recipe_.all_casters) fit.reach = reach_of_all(*scene_);
   if (options_.fit.sees_camera()) return fit_to_camera(fit, centres.front());
+  fit.hemicube = options_.fit.projection == Projection::cube;
   fitted_ =
       fit_views(*scene_, light, basis_, many ? std::span(light.points) : std::span<const glm::vec3>(centres), fit);
+  if (options_.fit.projection == Projection::paraboloid) {
+    fitted_.faces =
+        faces_.take_paraboloids(*device_, basis_, options_.size, 1 + recipe_.beside_texels, fitted_.views.front());
+  }
 }
 
 void MapMethod::fit_to_camera(FitOptions fit, const glm::vec3& centre) {

@@ -13,9 +13,11 @@ using glm::vec3;
 using uint = std::uint32_t;
 inline constexpr uint kLookupGroup = 64;
 inline constexpr uint kWholeLight = 1u << 30;
+inline constexpr float kCircle = -1.0F;
 inline constexpr uint kDepthFirst = 0, kDepthSecond = 1, kDepthMidpoint = 2, kDepthDual = 3;
 #else
 const uint kLookupGroup = 64;       // invocations of a look-up's workgroup
+const float kCircle = -1.0;         // in place of a ratio of logarithms: the face is a paraboloid's circle
 const uint kWholeLight = 1u << 30;  // group_scalar_main.glsl: hidden light is counted in parts of this
 // LookupPush::depth_use: what of a texel's surfaces a receiver must be behind, to be in its shadow.
 const uint kDepthFirst = 0, kDepthSecond = 1, kDepthMidpoint = 2, kDepthDual = 3;

@@ -40,12 +40,18 @@ MapOptions map_options(const render::Device& device, const visibility::MethodDes
     }
   }
   chosen.fit = view_fit(method.options, options);
-  if (chosen.fit.has_faces() && chosen.rasteriser == Rasteriser::opengl) {
-    throw UsageError("method {}: option fit={} needs rasteriser=vulkan; OpenGL draws maps of fit=receivers and view",
-                     method.name, kFit.name_of(chosen.fit.fit));
+  const ViewFit& fit = chosen.fit;
+  if (fit.fit != Fit::receivers && fit.projection != Projection::window) {
+    throw UsageError("method {}: option projection={} is of all receivers; take fit=receivers, not fit={}", method.name,
+                     kProjection.name_of(fit.projection), kFit.name_of(fit.fit));
   }
-  if (chosen.fit.fit == Fit::logpsm && (chosen.offset_factor != 0 || chosen.offset_units != 0)) {
-    throw UsageError("method {}: fit=logpsm draws rays, not polygons: it has no polygon offset", method.name);
+  if (fit.has_faces() && chosen.rasteriser == Rasteriser::opengl) {
+    throw UsageError(
+        "method {}: option {} needs rasteriser=vulkan; OpenGL draws windows and cubes of fit=receivers and view",
+        method.name, words_of(fit));
+  }
+  if (fit.asks_triangles() && (chosen.offset_factor != 0 || chosen.offset_units != 0)) {
+    throw UsageError("method {}: {} draws rays, not polygons: it has no polygon offset", method.name, words_of(fit));
   }
   if (chosen.size > device.limits().max_image_size) {
     throw UsageError("method {}: option {} is {}; this device draws images of up to {} texels a side", method.name,

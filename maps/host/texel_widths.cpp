@@ -34,7 +34,7 @@ std::vector<float> texel_widths(const visibility::SceneFloats& scene, const visi
     return found == complete.end() || found->second == value;
   };
   const auto size = complete.find("size");
-  if (size == complete.end() || !is_planar(light.kind) || !is("fit", "receivers"))
+  if (size == complete.end() || !is_planar(light.kind) || !is("fit", "receivers") || !is("projection", "window"))
     return {};
   const auto texels = static_cast<std::uint32_t>(std::stoul(size->second));
   const LightBasis basis = light_basis(light);

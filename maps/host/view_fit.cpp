@@ -98,13 +98,19 @@ std::vector<BodyPoint> points_in_frustum(const visibility::SceneFloats& scene, c
 }  // namespace
 
 std::vector<visibility::OptionDescription> view_fit_descriptions() {
-  return {kFit.description(),      kViewBody.description(), kSnap.description(),
-          kCascades.description(), kSplit.description(),    kSplitShare.description(),
-          kTiles.description(),    kFocus.description(),    kAliasing.description()};
+  return {kFit.description(),      kViewBody.description(),   kSnap.description(),  kCascades.description(),
+          kSplit.description(),    kSplitShare.description(), kTiles.description(), kFocus.description(),
+          kAliasing.description(), kProjection.description()};
 }
 
 std::vector<visibility::OptionDescription> window_fit_descriptions() {
-  return {kWindowFit.description(), kViewBody.description(), kSnap.description(), kAliasing.description()};
+  return {kWindowFit.description(), kViewBody.description(), kSnap.description(), kAliasing.description(),
+          kEvenProjection.description()};
+}
+
+std::string words_of(const ViewFit& fit) {
+  if (fit.projection != Projection::window) return std::string("projection=") + kProjection.name_of(fit.projection);
+  return std::string("fit=") + kFit.name_of(fit.fit);
 }
 
 ViewFit view_fit(std::span<const visibility::OptionDescription> options, const visibility::ParsedOptions& parsed) {
@@ -117,6 +123,7 @@ ViewFit view_fit(std::span<const visibility::OptionDescription> options, const v
   fit.snap = parsed[kSnap];
   fit.aliasing = parsed[kAliasing];
   fit.fit = has(kCascades.name()) ? parsed[kFit] : parsed[kWindowFit];
+  fit.projection = has(kCascades.name()) ? parsed[kProjection] : parsed[kEvenProjection];
   if (!has(kCascades.name())) return fit;
   fit.cascades = parsed[kCascades];
   fit.split = parsed[kSplit];

@@ -10,6 +10,7 @@
 
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 /// What fits maps to what a camera sees (Eisemann et al. 2009, section 3.2; docs/map-fits.md): options, the body that
@@ -83,9 +84,30 @@ inline constexpr visibility::ChoiceOption kAliasing{
     AliasingUse::off,
     "count: the aliasing error m of the maps in the counters; show: V is 1/m, at most 1, in place of visibility"};
 
+/// What a map is a picture of, as long as it is fitted to receivers.
+enum class Projection : std::uint8_t {
+  window,      ///< a window of directions, or where that would be too wide a hemicube's five faces
+  cube,        ///< five faces of a hemicube, however narrow a window would do
+  paraboloid,  ///< one face, a half space in a circle (Brabec et al. 2002)
+};
+inline constexpr visibility::ChoiceOption kProjection{
+    "projection",
+    {{"window", Projection::window}, {"cube", Projection::cube}, {"paraboloid", Projection::paraboloid}},
+    Projection::window,
+    "fit=receivers: a window of directions (five faces where it would be too wide), always the five faces of half a "
+    "cube, or a half space in the circle of a paraboloid"};
+/// Of a method whose products know even texels alone.
+inline constexpr visibility::ChoiceOption kEvenProjection{
+    "projection",
+    {{"window", Projection::window}, {"cube", Projection::cube}},
+    Projection::window,
+    "fit=receivers: a window of directions (five faces where it would be too wide), or always the five faces of half a "
+    "cube; means over windows need even texels, so there is no paraboloid"};
+
 /// A method's choice of all of these.
 struct ViewFit {
   Fit fit = Fit::receivers;
+  Projection projection = Projection::window;
   ViewBody body = ViewBody::visible;
   bool snap = false;
   std::uint32_t cascades = 0;
@@ -98,7 +120,11 @@ struct ViewFit {
   /// Is the camera asked?
   [[nodiscard]] bool sees_camera() const { return fit != Fit::receivers; }
   /// Are there other maps than a window or a hemicube (face_fit.hpp)?
-  [[nodiscard]] bool has_faces() const { return fit != Fit::receivers && fit != Fit::view; }
+  [[nodiscard]] bool has_faces() const {
+    return (fit != Fit::receivers && fit != Fit::view) || projection == Projection::paraboloid;
+  }
+  /// Are there faces that no rasteriser draws, of which each texel asks each triangle?
+  [[nodiscard]] bool asks_triangles() const { return fit == Fit::logpsm || projection == Projection::paraboloid; }
   [[nodiscard]] std::uint32_t slices() const {
     if (fit == Fit::tiles) return 1;
     return cascades != 0 ? cascades : fit == Fit::cascades ? 4U : 1U;
@@ -108,6 +134,8 @@ struct ViewFit {
 /// Of methods that ask texels one by one; and of those that know windows alone.
 std::vector<visibility::OptionDescription> view_fit_descriptions();
 std::vector<visibility::OptionDescription> window_fit_descriptions();
+/// "fit=tsm", or "projection=paraboloid".
+std::string words_of(const ViewFit& fit);
 /// The choice of a method that has some of them, or none.
 ViewFit view_fit(std::span<const visibility::OptionDescription> options, const visibility::ParsedOptions& parsed);
 

@@ -8,6 +8,7 @@
 #include "tests/analytic/maps/centre_maps.hpp"
 
 #include <fmt/format.h>
+#include <glm/trigonometric.hpp>
 
 #include <cmath>
 #include <limits>
@@ -131,6 +132,27 @@ TEST_F(Overhead, PlacesAndDirectionsAreInverse) {
   }
 }
 
+// Brabec et al. 2002: a direction at the angle θ from the axis is seen tan(θ/2) from the middle; the circle, θ = 90°,
+// is two texels from the sides. Changes are those of places.
+TEST(MapFits, AParaboloidSeesAHalfSpaceInACircle) {
+  const maps::FittedFace face = maps::paraboloid_face(0, 64, 2);
+  for (const double degrees : {0.0, 30.0, 60.0, 89.9}) {
+    const double angle = glm::radians(degrees);
+    for (const double turn : {0.0, 1.0, 4.0}) {
+      const glm::dvec3 e(std::sin(angle) * std::cos(turn), std::sin(angle) * std::sin(turn), std::cos(angle));
+      const auto at = face.place(3.0 * e);
+      ASSERT_TRUE(at);
+      EXPECT_NEAR(glm::length(*at - 0.5), (0.5 - 2.0 / 64) * std::tan(angle / 2), 1e-12);
+      EXPECT_NEAR(glm::length(face.direction(*at) - e / e.z), 0, 1e-9 / e.z);
+      const glm::dvec3 by(0.3, -0.2, 0.15);
+      const glm::dvec2 step = (*face.place(3.0 * e + 1e-6 * by) - *face.place(3.0 * e - 1e-6 * by)) / 2e-6;
+      EXPECT_NEAR(glm::length(face.moves(3.0 * e, by) - step), 0, 1e-8);
+    }
+  }
+  EXPECT_FALSE(face.place({1, 0, 0}));
+  EXPECT_FALSE(face.place({0.1, 0, -1}));
+}
+
 // A camera that moves by less than a texel, or turns a little, does not move texels: their borders are multiples of a
 // width that takes steps.
 TEST(MapFits, SnappedTexelsStayWhereTheyAre) {
@@ -208,25 +230,37 @@ TEST_F(FittedMaps, EveryTexelSaysWhatItsCentreSees) {
     });
   };
   using maps::Fit;
-  const std::map<std::string, Fit> fits{{"view", Fit::view},     {"cascades", Fit::cascades}, {"tiles", Fit::tiles},
-                                        {"lispsm", Fit::lispsm}, {"tsm", Fit::tsm},           {"psm", Fit::psm},
-                                        {"logpsm", Fit::logpsm}};
+  const std::map<std::string, Fit> fits{
+      {"view", Fit::view},     {"cascades", Fit::cascades}, {"tiles", Fit::tiles},
+      {"lispsm", Fit::lispsm}, {"tsm", Fit::tsm},           {"psm", Fit::psm},
+      {"logpsm", Fit::logpsm}, {"cube", Fit::receivers},    {"paraboloid", Fit::receivers}};
   for (const auto& [name, fit] : fits) {
     for (const std::string body : {"visible", "frustum"}) {
+      const bool of_receivers = fit == Fit::receivers;  // whatever the camera sees
+      if (of_receivers && body == "frustum") continue;
       const maps::ViewFit choice{.fit = fit,
                                  .body = body == "visible" ? maps::ViewBody::visible : maps::ViewBody::frustum};
       std::vector<maps::FittedFace> faces;
-      if (fit == Fit::view) {
+      const glm::vec3 centre(basis.center);
+      if (name == "cube") {
+        faces = maps::faces_of(
+            maps::fit_views(stage.floats, stage.light, basis, std::span(&centre, 1), {.size = kSize, .hemicube = true})
+                .views.front());
+        ASSERT_EQ(faces.size(), 5U);
+      } else if (name == "paraboloid") {
+        faces = {maps::paraboloid_face(0, kSize, 1)};
+      } else if (fit == Fit::view) {
         const auto points =
             maps::body_points(stage.floats, stage.light, basis, stage.samples, choice.body, 0, kInfinity);
-        const glm::vec3 centre(basis.center);
         faces = maps::faces_of(
             maps::fit_views(stage.floats, stage.light, basis, std::span(&centre, 1), {.size = kSize, .body = &points})
                 .views.front());
       } else {
         faces = maps::fit_faces(stage.floats, stage.light, basis, stage.samples, {.fit = choice, .size = kSize});
       }
-      const Masks found = run(maps::make_shadow_map, stage, options(name, {{"body", body}}));
+      const Masks found =
+          run(maps::make_shadow_map, stage,
+              of_receivers ? options("receivers", {{"projection", name}}) : options(name, {{"body", body}}));
       std::size_t asked = 0, open = 0, dark = 0, wrong = 0;
       for (std::size_t i = 0; i < stage.samples.size(); ++i) {
         if (stage.samples.triangle[i] < 0 || stage.samples.triangle[i] > 1) continue;  // the floor
@@ -239,8 +273,8 @@ TEST_F(FittedMaps, EveryTexelSaysWhatItsCentreSees) {
         constexpr double kStep = 1.0 / 128;
         for (const double x : {-kStep, 0.0, kStep}) {
           for (const double y : {-kStep, 0.0, kStep}) {
-            const glm::dvec2 cell = glm::floor(at + glm::dvec2(x, y)), centre = cell + 0.5 + glm::dvec2(x, y);
-            const glm::dvec3 e = face->direction(centre / double{kSize});
+            const glm::dvec2 cell = glm::floor(at + glm::dvec2(x, y)), middle = cell + 0.5 + glm::dvec2(x, y);
+            const glm::dvec3 e = face->direction(middle / double{kSize});
             const glm::dvec3 direction = e.x * basis.u + e.y * basis.v + e.z * basis.n;
             answers.insert(sees_light(direction, 0.99 * receiver->e.z / e.z));
           }
@@ -364,6 +398,17 @@ TEST_F(FittedMaps, HemicubesFiltersAndLayersAgree) {
             [&](std::size_t i) { return static_cast<double>(found.visibility[i] - right.visibility[i]); });
         EXPECT_LT(off, one.tolerance) << fit << (two_sided ? ", two-sided" : "");
       }
+      for (const char* projection : {"cube", "paraboloid"}) {
+        visibility::MethodOptions given = fine;
+        given["projection"] = projection;
+        const Masks found = run(one.make, stage, given);
+        const double off = rmse(
+            stage, [](std::size_t) { return true; },
+            [&](std::size_t i) { return static_cast<double>(found.visibility[i] - right.visibility[i]); });
+        EXPECT_LT(off, one.tolerance) << projection << (two_sided ? ", two-sided" : "");
+        const bool same = off == 0;
+        EXPECT_TRUE(same || projection != std::string("cube")) << "the wall makes it one anyway";
+      }
     }
   }
 }
@@ -400,6 +445,9 @@ TEST_F(FittedMaps, NoReceiverIsOutsideWhereTheLightsPlaneCutsWalls) {
   EXPECT_GT(dark, 400U);
   EXPECT_GT(lit, 2000U);
   EXPECT_GT(most, 50U);
+  const visibility::MethodOptions circle = options("receivers", {{"projection", "paraboloid"}});
+  EXPECT_EQ(counters(stage, circle).at("outsidePixels"), 0U);
+  EXPECT_LE(differing(run(maps::make_shadow_map, stage, circle)), most);
   for (const char* fit : {"view", "cascades", "tiles", "lispsm", "tsm", "psm", "logpsm"}) {
     for (const char* body : {"visible", "frustum"}) {
       const visibility::MethodOptions choice = options(fit, {{"body", body}});
@@ -413,6 +461,11 @@ TEST_F(FittedMaps, WhatNoFitCanDoIsRefused) {
   EXPECT_THROW(maps::make_shadow_map(device(), {{"fit", "psm"}, {"rasteriser", "opengl"}}), UsageError);
   EXPECT_THROW(maps::make_shadow_map(device(), {{"fit", "tiles"}, {"test", "id"}}), UsageError);
   EXPECT_THROW(maps::make_vssm(device(), {{"fit", "cascades"}}), UsageError);
+  EXPECT_THROW(maps::make_vssm(device(), {{"projection", "paraboloid"}}), UsageError);
+  EXPECT_THROW(maps::make_pcf(device(), {{"fit", "view"}, {"projection", "cube"}}), UsageError);
+  EXPECT_THROW(maps::make_pcf(device(), {{"projection", "paraboloid"}, {"rasteriser", "opengl"}}), UsageError);
+  EXPECT_THROW(maps::make_pcf(device(), {{"projection", "paraboloid"}, {"offsetUnits", "8"}}), UsageError);
+  EXPECT_THROW(maps::make_shadow_map(device(), {{"projection", "paraboloid"}, {"test", "id"}}), UsageError);
 }
 
 // The picture of m: 1/m where it is more than 1.
