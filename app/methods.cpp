@@ -4,6 +4,7 @@
 #include "base/did_you_mean.hpp"
 #include "base/error.hpp"
 #include "engines/method_row.hpp"
+#include "hybrids/methods.hpp"
 #include "maps/methods.hpp"
 #include "reference/methods.hpp"
 #include "render/features.hpp"
@@ -35,7 +36,8 @@ using visibility::MethodOptions;
 const std::vector<MethodRow>& table() {
   static const std::vector<MethodRow> rows = [] {
     std::vector<MethodRow> all;
-    for (const auto& methods : {volumes::methods(), vsm::methods(), maps::methods(), reference::methods()})
+    for (const auto& methods :
+         {volumes::methods(), vsm::methods(), hybrids::methods(), maps::methods(), reference::methods()})
       std::ranges::copy(methods, std::back_inserter(all));
     std::ranges::stable_sort(all, std::greater(), &MethodRow::precedence);
     return all;

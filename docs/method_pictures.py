@@ -32,7 +32,7 @@ STRIPS = {
     "image": (128, 1, 64, ["pcf:size=256", "vssm:size=256", "convolution:size=256", "occlusion-textures:size=256", "soft-shadow-map:receiverSize=128",
                        "backproject:size=128", "backproject-peel:size=128", "bitmask:size=128", "contour:size=128:traversal=hierarchy",
                        "packet:size=128:sublights=2", "adaptive-light:size=128", "layered-attenuation:size=128", "deep-penumbra:size=128", "layer-rays:size=128",
-                       "penumbra-map:size=256", "smoothies:size=256", "parker:size=256", "brabec-seidel:size=256", "kirsch-doellner:size=256", "arvo:size=256"]),
+                       "penumbra-map:size=256", "smoothies:size=256", "parker:size=256", "brabec-seidel:size=256", "kirsch-doellner:size=256", "arvo:size=256", "silhouette-map:size=256"]),
 }
 # Page: scene, light samples, one or two entries. Not `exact`: it is the judge.
 PAGES = {
@@ -46,11 +46,13 @@ PAGES = {
     "wedge-ramp": ("bunny", 64, ["wedge-ramp"]),
     "soft-volume": ("fusion", 64, ["soft-volume", "soft-volume:split=3"]),
     "plateaus": ("fusion", 64, ["plateaus"]),
+    "hybrid-volume": ("thin", 64, ["hybrid-volume:size=256"]),
     "soft-volume-fusion": ("fusion", 64, ["soft-volume:fusion=max", "soft-volume:fusion=product", "soft-volume:fusion=average", "soft-volume:fusion=vote"]),
     "soft-volume-blend": ("large-penumbra", 64, ["soft-volume-blend"]),
     "soft-irregular": ("fusion", 64, ["soft-irregular", "soft-irregular:umbra=layers"]),
     "raytrace": ("bunny", 64, ["raytrace"]),
     "shadow-map": ("contact", 64, ["shadow-map:size=256"]),
+    "silhouette-map": ("contact", 64, ["silhouette-map:size=256"]),
     "pcf": ("contact", 64, ["pcf:size=256"]),
     "pcss": ("papers/fusion-half", 64, ["pcss"]),
     "vssm": ("papers/two-sheets", 64, ["vssm", "vssm:moments=esm"]),

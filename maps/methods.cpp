@@ -73,6 +73,7 @@ std::span<const engines::MethodRow> methods() {
       row<parker_description, make_parker>(),
       row<arvo_description, make_arvo, kWithoutSpheres>(),
       row<pcf_description, make_pcf>(),
+      row<silhouette_map_description, make_silhouette_map, kWithoutHoles>(),
       row<shadow_map_description, make_shadow_map>(),
   };
   return rows;

@@ -9,6 +9,7 @@ penumbra_test(agreement FULL CorpusSweep.*
   agreement/deep_stacks.cpp
   agreement/mesh/face_counters_binary.cpp
   agreement/mesh/face_counters_text.cpp
+  agreement/hybrid_volume.cpp
   agreement/long_walks.cpp
   agreement/masks_raytrace.cpp
   agreement/mesh_verdicts.cpp
@@ -25,7 +26,7 @@ penumbra_test(agreement FULL CorpusSweep.*
   unit/textured_lights_files.cpp
   unit/textured_lights_weights.cpp
   ${soup_sources}
-  LIBRARIES penumbra_app penumbra_compare penumbra_maps penumbra_volumes penumbra_vsm penumbra_reference penumbra_scenes
+  LIBRARIES penumbra_app penumbra_compare penumbra_hybrids penumbra_maps penumbra_volumes penumbra_vsm penumbra_reference penumbra_scenes
             nlohmann_json::nlohmann_json PkgConfig::MINIZIP TBB::tbb ZLIB::ZLIB gmpxx gmp)
 penumbra_cgal_corpus(agreement_test)
 target_compile_definitions(agreement_test PRIVATE PENUMBRA_PROGRAM="$<TARGET_FILE:penumbra>")

@@ -52,12 +52,13 @@ foreach(room patches contours soft_shadow_map)
 endforeach()
 list(APPEND may_maps/backprojection/soft_shadow_map maps/backprojection/patches)  # self=backproject
 set(may_maps maps/host maps/filters maps/sampling maps/single_shadow maps/backprojection/patches maps/backprojection/contours maps/backprojection/soft_shadow_map engines render ${all_visibility} scenes mesh base)
+set(may_hybrids volumes/soft maps/filters maps/host engines render ${all_visibility} scenes mesh base)
 set(may_selftest maps/products/lists maps/products maps/host vsm engines/vectors volumes/scatter volumes/counters volumes/raster ${signed_edges} volumes/wedges render/opengl render
     ${all_visibility} scenes mesh/shapes mesh base)
 set(may_reference areas engines render ${all_visibility} scenes mesh base)
 set(may_compare ${all_visibility} scenes mesh base)
 set(may_app/process render base)
-set(may_app app/process selftest compare reference areas engines engines/vectors maps vsm volumes volumes/wedges render/opengl render ${all_visibility}
+set(may_app app/process selftest compare reference areas engines engines/vectors hybrids maps vsm volumes volumes/wedges render/opengl render ${all_visibility}
     scenes/formats scenes mesh/diagnosis mesh base)
 foreach(room commands compare farm inspect pictures sweep wedges)
   set(may_app/${room} ${may_app} app)
@@ -75,7 +76,7 @@ set(rooms base mesh mesh/diagnosis mesh/shapes repair scenes scenes/formats impo
     visibility/masks visibility/alpha areas render/opengl render engines/device engines/vectors engines/pairs engines
     volumes/wedges volumes/edges/device volumes/edges/vectors volumes/edges volumes/raster volumes/soft volumes/counters volumes/scatter volumes vsm maps/host maps/products maps/products/lists
     maps/filters maps/sampling maps/single_shadow maps/backprojection maps/backprojection/patches maps/backprojection/contours
-    maps/backprojection/soft_shadow_map maps selftest reference compare
+    maps/backprojection/soft_shadow_map maps hybrids selftest reference compare
     app/process app app/pictures app/commands app/compare app/sweep app/farm app/inspect app/wedges library python bench)
 set(may_tests import ${rooms})
 list(APPEND rooms tests)

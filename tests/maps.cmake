@@ -21,6 +21,7 @@ penumbra_test(maps FULL MapsTable.*
   analytic/maps/map_fits.cpp
   analytic/maps/method.cpp
   analytic/maps/moments.cpp
+  analytic/maps/silhouette_map.cpp
   analytic/maps/texel_widths.cpp
   analytic/maps/vssm_windows.cpp
   analytic/maps/pcf.cpp

@@ -13,6 +13,12 @@ std::unique_ptr<visibility::Method> make_shadow_map(const render::Device& device
                                                     const visibility::MethodOptions& options);
 visibility::MethodDescription shadow_map_description();
 
+/// Sen, Cammarano, Hanrahan 2003: the hard shadow from the light's centre, with the outlines that pass between texels.
+/// docs/silhouette-map.md.
+std::unique_ptr<visibility::Method> make_silhouette_map(const render::Device& device,
+                                                        const visibility::MethodOptions& options);
+visibility::MethodDescription silhouette_map_description();
+
 /// Reeves, Salesin, Cook 1987: the share of a fixed window of texels that do not shade the receiver, in one map from
 /// the light's centre. docs/pcf.md.
 std::unique_ptr<visibility::Method> make_pcf(const render::Device& device, const visibility::MethodOptions& options);

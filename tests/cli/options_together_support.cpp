@@ -152,6 +152,8 @@ bool options_exclude(const std::string& method, const std::map<std::string, std:
   const auto is_planar = [](const std::string& kind) { return kind != "sphere" && kind != "sun"; };
   const bool all_planar = std::ranges::all_of(scene.lights, is_planar);
   if (options.contains("fit") && !is("fit", "receivers") && !all_planar) return true;  // looks through the camera
+  const bool projected = options.contains("projection") && !is("projection", "window");
+  if (projected && options.contains("fit") && !is("fit", "receivers")) return true;  // a picture of all receivers
   if (method == "edge-scatter") {
     return is("engine", "vulkan") && (is("rows", "exact") || !all_planar);
   }
@@ -169,10 +171,11 @@ bool options_exclude(const std::string& method, const std::map<std::string, std:
   }
   if (method == "shadow-map" || method == "pcf" || method == "pcss") {
     const auto is_set = [&](const char* key) { return options.contains(key) && std::stod(options.at(key)) != 0; };
-    const bool faces = options.contains("fit") && !is("fit", "receivers") && !is("fit", "view");
+    const bool circle = is("projection", "paraboloid");
+    const bool faces = circle || (options.contains("fit") && !is("fit", "receivers") && !is("fit", "view"));
     const bool offset = is_set("offsetFactor") || is_set("offsetUnits");
     return (faces && (is("rasteriser", "opengl") || is("test", "id"))) ||
-           (offset && (is("fit", "logpsm") || (options.contains("depth") && !is("depth", "first")))) ||
+           (offset && (circle || is("fit", "logpsm") || (options.contains("depth") && !is("depth", "first")))) ||
            (is("weights", "bilinear") && is_set("taps")) ||
            (method == "pcf" && faces && is("size", "8") && !options.contains("window"));  // its default is wider
   }

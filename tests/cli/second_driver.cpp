@@ -60,7 +60,7 @@ TEST_F(SecondDriver, WhatItCannotRunIsSaid) {
     EXPECT_THAT(one.at("reason").get<std::string>(), HasSubstr("needs shaderFloat64"));
   }
   EXPECT_THAT(refused, UnorderedElementsAre("hard-volume", "soft-volume", "soft-volume-blend", "wedge-ramp", "plateaus",
-                                            "depth-complexity:variant=forest"));
+                                            "hybrid-volume", "depth-complexity:variant=forest"));
   EXPECT_THAT(run({"devices"}, kThere).out,
               AllOf(HasSubstr("yes, with exceptions"), HasSubstr("view samples"), HasSubstr("hard-volume")));
 }

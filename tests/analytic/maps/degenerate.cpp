@@ -42,6 +42,9 @@ constexpr const char* kDegenerateWays[] = {"shadow-map",
                                            "bitmask:occluder=triangle:search=none:depth=midpoint",
                                            "bitmask:occluder=rect:level=2:budget=20",
                                            "bitmask:subsample=2:subsampleBy=grid",
+                                           "silhouette-map",
+                                           "shadow-map:projection=paraboloid",
+                                           "pcf:projection=cube:bias=0",
                                            "layer-rays",
                                            "layer-rays:layers=3:solid=on:gap=1e6:bias=0",
                                            "penumbra-map",
@@ -192,9 +195,10 @@ TEST_F(MapsDegenerate, WhatCastsNoShadowReceivesIt) {
     scene.objects.front().casts_shadow = false;
   };
   const Given both = given("", ceiling_light(2, 0.2), plate), one = given("", ceiling_light(2, 0.2), plate_alone);
-  for (const char* words : {"shadow-map", "pcf", "backproject", "bitmask", "penumbra-map", "smoothies", "brabec-seidel",
-                            "parker", "arvo", "layer-rays", "contour", "packet", "accumulate",
-                            "adaptive-light:levels=1", "deep-penumbra", "layered-attenuation"}) {
+  for (const char* words :
+       {"shadow-map", "pcf", "silhouette-map", "pcf:projection=paraboloid", "backproject", "bitmask", "penumbra-map",
+        "smoothies", "brabec-seidel", "parker", "arvo", "layer-rays", "contour", "packet", "accumulate",
+        "adaptive-light:levels=1", "deep-penumbra", "layered-attenuation"}) {
     const Way way = Way(words).with({{"size", "64"}});
     const Masks expected = run(*way.make(device()), both.stage), found = run(*way.make(device()), one.stage);
     EXPECT_LT(*std::ranges::min_element(expected.visibility), 0.5F) << words;
@@ -235,6 +239,7 @@ TEST_F(MapsDegenerate, NoMapIsSmallerThanEightTexels) {
                             "parker",
                             "arvo",
                             "layer-rays",
+                            "silhouette-map",
                             "contour",
                             "packet",
                             "accumulate",
