@@ -51,6 +51,11 @@ constexpr visibility::ChoiceOption kCounterBits{"counter-bits",
                                                 {{"6", 6U}, {"8", 8U}, {"16", 16U}},
                                                 16U,
                                                 "forest: of a packed counter; where it overflows, pairs are exact"};
+constexpr visibility::ChoiceOption kAs{
+    "as",
+    {{"repaired", false}, {"published", true}},
+    false,
+    "forest: decide exactly where counters overflow and signs are in doubt, or let the counters say what they say"};
 
 visibility::MeshVerdict depth_complexity_verdict(const mesh::Diagnosis& mesh) {
   return {
@@ -86,9 +91,11 @@ visibility::ParsedOptions parse(const visibility::MethodDescription& description
         "variant and crop out",
         kSearch.name_of(options[kSearch]));
   }
-  if (forest ? options.given(kCrop) : options.given(kCounterBits)) {
+  if (forest ? options.given(kCrop) : options.given(kCounterBits) || options.given(kAs)) {
     throw UsageError("depth-complexity: variant={} has no option {}", kVariant.name_of(options[kVariant]),
-                     forest ? kCrop.name() : kCounterBits.name());
+                     forest                        ? kCrop.name()
+                     : options.given(kCounterBits) ? kCounterBits.name()
+                                                   : kAs.name());
   }
   return options;
 }
@@ -289,7 +296,7 @@ visibility::MethodDescription depth_complexity_description(const visibility::Met
       .lights = visibility::kEveryLight,
       .bytes_per_triangle = 400,
       .options = {engines::kEngine.description(), kVariant.description(), kSearch.description(), kCrop.description(),
-                  kCounterBits.description()},
+                  kCounterBits.description(), kAs.description()},
       .span = visibility::kFloatSpan,
       .verdict_on = depth_complexity_verdict};
   const visibility::ParsedOptions parsed = parse(description, options);
@@ -302,7 +309,9 @@ visibility::MethodDescription depth_complexity_description(const visibility::Met
 std::unique_ptr<visibility::Method> make_depth_complexity(const render::Machine& machine,
                                                           const visibility::MethodOptions& given) {
   const visibility::ParsedOptions options = parse(depth_complexity_description(), given);
-  if (options[kVariant] == Variant::forest) return make_packed_counters(machine.device(), options[kCounterBits]);
+  if (options[kVariant] == Variant::forest) {
+    return make_packed_counters(machine.device(), options[kCounterBits], options[kAs]);
+  }
   const auto on_device = [machine, variant = options[kVariant], crops = options[kCrop]] {
     return std::make_unique<DepthComplexity>(machine.device(), variant, crops, false);
   };

@@ -94,10 +94,11 @@ bool touches(const std::array<glm::vec3, 3>& corners, const glm::vec3& center, c
 
 class PackedCounters final : public DepthCounters {
  public:
-  PackedCounters(const render::Device& device, std::uint32_t bits)
+  PackedCounters(const render::Device& device, std::uint32_t bits, bool as_published)
       : description_(depth_complexity_description({{"variant", "forest"}})),
         device_(&device),
         bits_(bits),
+        as_published_(as_published),
         count_(device, CountVariant::z_fail) {}
 
   [[nodiscard]] const visibility::MethodDescription& description() const override { return description_; }
@@ -156,6 +157,7 @@ class PackedCounters final : public DepthCounters {
   visibility::MethodDescription description_;
   const render::Device* device_;
   std::uint32_t bits_;
+  bool as_published_;
   VolumeCount count_;
   visibility::TriangleTree tree_;
   std::vector<std::uint32_t> on_plane_;  // how many triangles are on each SceneFloats::plane
@@ -265,7 +267,8 @@ bool PackedCounters::may_have_overflowed(std::size_t pixel) const {
 
 /// A counted pixel's mask.
 void PackedCounters::resolve(std::size_t pixel) {
-  open_[pixel] |= may_have_overflowed(pixel) ? above_[pixel] : raster_->doubts()[pixel] & above_[pixel];
+  if (!as_published_)
+    open_[pixel] |= may_have_overflowed(pixel) ? above_[pixel] : raster_->doubts()[pixel] & above_[pixel];
   for (std::uint32_t j = 0; j < light_->sample_count(); ++j) {
     const bool visible = count_.counts()[pixel] + change_of(pixel, j) == 0;
     masks_[pixel] |= visible ? above_[pixel] & ~open_[pixel] & 1U << j : 0;
@@ -335,9 +338,10 @@ std::map<std::string, std::uint64_t> PackedCounters::counters() const {
 
 }  // namespace
 
-std::unique_ptr<DepthCounters> make_packed_counters(const render::Device& device, std::uint32_t counter_bits) {
+std::unique_ptr<DepthCounters> make_packed_counters(const render::Device& device, std::uint32_t counter_bits,
+                                                    bool as_published) {
   PENUMBRA_ASSERT(counter_bits == 6 || counter_bits == 8 || counter_bits == 16, "{} bits", counter_bits);
-  return std::make_unique<PackedCounters>(device, counter_bits);
+  return std::make_unique<PackedCounters>(device, counter_bits, as_published);
 }
 
 }  // namespace penumbra::volumes

@@ -17,8 +17,10 @@ namespace penumbra::volumes {
 /// they are on the same side, 0 where c is on its plane. So what it calls blocked is blocked; it may only be too
 /// bright, and only where p→l meets a triangle whose plane passes through c or between c and l.
 ///
-/// `counter_bits`: 6, 8 or 16. Where counters may have overflowed, pairs are decided exactly. read_counters knows only
-/// counters of light samples above the horizon.
-std::unique_ptr<DepthCounters> make_packed_counters(const render::Device& device, std::uint32_t counter_bits);
+/// `counter_bits`: 6, 8 or 16. Where counters may have overflowed, and where signs are in doubt, pairs are decided
+/// exactly; `as_published`: there counters say what they say, polluted by what left a neighbour's bits. read_counters
+/// knows only counters of light samples above the horizon.
+std::unique_ptr<DepthCounters> make_packed_counters(const render::Device& device, std::uint32_t counter_bits,
+                                                    bool as_published = false);
 
 }  // namespace penumbra::volumes

@@ -242,6 +242,27 @@ TEST_F(Packed, OverflowIsSeenAndSetRight) {
   expect_overflow(device(), 6, 24);
   expect_overflow(device(), 8, 24);
 }
+/// As published a counter that edges change by 2^bits is what it was: where the light's centre is seen all of the light
+/// is. Where nothing overflows both are the same.
+TEST_F(Packed, AsPublishedOverflowLetsLightThrough) {
+  for (const std::uint32_t bits : {6U, 8U}) {
+    const auto published = make_packed_counters(device(), bits, true), repaired = make_packed_counters(device(), bits);
+    for (const std::uint32_t count : {((1U << (bits - 1)) - 1) / 3, 1U << bits}) {
+      const Stage stage(stack(count), 24, 24, {16, 0, 0, visibility::SamplePattern::rows, 0});
+      const tests::Masks as_is = tests::run(*published, stage.floats, stage.light, stage.samples),
+                         right = tests::run(*repaired, stage.floats, stage.light, stage.samples);
+      std::size_t brighter = 0, differing = 0;
+      for (std::size_t i = 0; i < stage.samples.size(); ++i) {
+        brighter += as_is.visible_count(i) > right.visible_count(i) ? 1U : 0U;
+        differing += as_is.visible_count(i) != right.visible_count(i) ? 1U : 0U;
+      }
+      const bool overflows = count == 1U << bits;
+      EXPECT_EQ(differing > 0, overflows) << count;
+      EXPECT_EQ(brighter > 3, overflows) << count << ": " << brighter;
+    }
+  }
+}
+
 TEST_F(PackedFull, OverflowOfSixteenBits) {
   expect_overflow(device(), 16, 10);
 }
