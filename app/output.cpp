@@ -95,7 +95,8 @@ float auto_exposure(const Session& session, std::span<const glm::vec3> beauty, s
     const std::int32_t triangle = session.samples.triangle[i];
     const bool body = triangle >= 0 && session.floats.emits[static_cast<std::size_t>(triangle)] >= 0;
     const bool through_body = !lamps.empty() && lamps[i] != 0;
-    bodies[i] = body || through_body ? 1 : 0;
+    const bool sky = triangle < 0 && lamps.empty();  // of antialiased pixels a part is
+    bodies[i] = body || sky || through_body ? 1 : 0;
   }
   return compare::auto_exposure(beauty, bodies);
 }

@@ -183,13 +183,14 @@ class Host {
   }
 
   /// V of masks that filter() has changed.
-  void share_filtered(const Light& light, std::span<float> values) {
-    visibility::visible_shares(light, masks_, values);
+  void share_filtered(const Light& light, std::size_t first, std::span<float> values) {
+    const std::span<const glm::vec3> normals = std::span(session_.samples.n).subspan(first, values.size());
+    visibility::visible_shares(light, masks_, normals, values);
     const std::size_t words = light.words_per_mask(), pairs = light.sample_count();
     for (std::size_t i = 0; i < dimmed_.size(); ++i) {
       if (dimmed_[i] != 0)
         values[i] = visibility::dimmed_share(light, std::span(masks_).subspan(i * words, words),
-                                             std::span(transmittances_).subspan(i * pairs, pairs));
+                                             std::span(transmittances_).subspan(i * pairs, pairs), normals[i]);
     }
   }
 
@@ -200,7 +201,7 @@ class Host {
     const std::span<const PixelClass> classes = std::span(session_.classes[light_index]).subspan(first, count);
     const std::span<float> values = std::span(result.visibility[light_index]).subspan(first, count);
     if (filters(light_index))
-      share_filtered(light, values);
+      share_filtered(light, first, values);
     else
       method_.read_visibility(values);
     if (method_.description().output == Output::radiance && visibility::is_round(light.kind)) {

@@ -33,8 +33,8 @@ scenes::AddedLight parse_light(const std::string& text) {
   const auto parts = split(text, ':');
   const auto refuse = [&](std::string_view why) {
     return UsageError(
-        "--add-light {}: {}; expected rectangle:X,Y,Z:SIZE, sphere:X,Y,Z:RADIUS or sun:X,Y,Z:ANGLE (the direction in "
-        "which its light travels, and its diameter in degrees)",
+        "--add-light {}: {}; expected rectangle:X,Y,Z:SIZE, sphere:X,Y,Z:RADIUS, sun:X,Y,Z:ANGLE (the direction in "
+        "which its light travels, and its diameter in degrees) or dome (all around, of radiance 1)",
         text, why);
   };
   scenes::AddedLight light;
@@ -45,9 +45,13 @@ scenes::AddedLight parse_light(const std::string& text) {
   else if (parts[0] == "sun")
     light.kind = Kind::sun;
   else if (parts[0] == "dome")
-    throw refuse("there are no dome lights yet");
+    light.kind = Kind::dome;
   else
     throw refuse(fmt::format("\"{}\" is no kind of light", parts[0]));
+  if (light.kind == Kind::dome) {
+    if (parts.size() != 1) throw refuse("a dome has neither place nor size");
+    return light;
+  }
   if (parts.size() != 3) throw refuse("it has not three parts");
   const auto at = parse_point(parts[1]);
   if (!at) throw refuse(fmt::format("\"{}\" is not three numbers", parts[1]));
@@ -96,7 +100,7 @@ void add_studio_options(CLI::App& command, StudioOptions& options) {
   command
       .add_option("--add-light", options.lights,
                   "a light more: rectangle:X,Y,Z:SIZE, sphere:X,Y,Z:RADIUS (both in the scene's unit, turned to its "
-                  "middle), sun:X,Y,Z:ANGLE (direction of its light, degrees); may be given again")
+                  "middle), sun:X,Y,Z:ANGLE (direction of its light, degrees), dome (all around); may be given again")
       ->type_name("KIND:…")
       ->allow_extra_args(false);
 }

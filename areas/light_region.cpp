@@ -39,6 +39,7 @@ Region projected_outline(const visibility::Light& light) {
 
 Region light_region(const visibility::Light& light) {
   if (is_polygon(light.kind)) return projected_outline(light);
+  if (light.dome && light.dome->half) return {{-1, 0}, {1, 0}, {1, 1}, {-1, 1}};
   return {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
 }
 

@@ -25,7 +25,8 @@ using Region = std::vector<PlanePoint>;
 
 /// The light in its frame's coordinates, exact for what is stored. rectangle: [−1, 1]², the parallelogram that centre
 /// ± u ± v span (its corners are within rounding of the stored outline). polygon: the stored outline, projected at
-/// right angles onto the frame's plane. Round lights (is_round): the square around the unit disk.
+/// right angles onto the frame's plane. A dome's face: [−1, 1]², or its upper half. Round lights (is_round): the square
+/// around the unit disk.
 Region light_region(const visibility::Light& light);
 
 mpq_class area_of(const Region& region);

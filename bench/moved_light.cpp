@@ -46,6 +46,10 @@ struct Mover {
         glm::normalize(std::cos(turn) * light.direction + std::sin(turn) * perpendicular_to(light.direction));
     return light;
   }
+  scenes::LightShape operator()(scenes::Dome light) const {
+    light.rotate += 360 * kShare;
+    return light;
+  }
   scenes::LightShape operator()(const scenes::Pieces& /*light*/) const {
     throw std::logic_error("a light in pieces is not moved");
   }

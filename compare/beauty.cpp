@@ -52,9 +52,14 @@ double share_of(const visibility::Light& light, const BeautyScene& in, std::size
   return whole > 0 ? std::clamp(seen.form_factors[asked].x / whole, 0.0, 1.0) : v;
 }
 
+/// Has it one radiance everywhere, so that its form factor has a closed form?
+bool is_plain(const visibility::Light& light) {
+  return !light.texture && (!light.dome || light.dome->even);
+}
+
 /// Is all of a plain light seen from the pixel, or is V to be multiplied with what is? Then vectors do it.
 bool takes_whole(const VisibleLight& light, const LightVisibility& seen, std::size_t pixel, std::size_t words) {
-  if (light.light().texture) return false;
+  if (!is_plain(light.light())) return false;
   if (seen.masks.empty()) return true;
   const bool dimmed = !seen.dimmed.empty() && seen.dimmed[pixel] != 0;
   return !dimmed && light.sees_all(seen.masks.subspan(pixel * words, words));
@@ -90,7 +95,7 @@ void add_light(const BeautyScene& in, const VisibleLight& visible, const LightVi
       continue;
     }
     if (shadowed && seen.masks.empty() && seen.visibility[asked] == 0) continue;
-    if (shadowed ? takes_whole(visible, seen, asked, words) : !light.texture) {
+    if (shadowed ? takes_whole(visible, seen, asked, words) : is_plain(light)) {
       wholes.push_back(static_cast<std::uint32_t>(i));
       shares.push_back(shadowed && seen.masks.empty() ? share_of(light, in, i, seen, asked) : 1.0);
       continue;

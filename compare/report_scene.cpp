@@ -32,6 +32,9 @@ struct ShapeText {
   std::string operator()(const scenes::Sun& s) const {
     return fmt::format("a sun of {:.4g}° that shines along {}", s.angle, text_of(s.direction));
   }
+  std::string operator()(const scenes::Dome& d) const {
+    return fmt::format("{} around {}", d.half ? "half a dome" : "a dome", text_of(d.up));
+  }
   std::string operator()(const scenes::Polygon& p) const {
     return fmt::format("a polygon of {} corners", p.vertices.size());
   }

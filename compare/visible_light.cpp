@@ -123,7 +123,24 @@ VisibleLight::Points::Points(std::span<const glm::vec3> points)
 VisibleLight::VisibleLight(const Light& light)
     : light_(&light), points_(light.points), all_(full_mask(light.sample_count())) {}
 
+glm::dvec3 VisibleLight::of_dome(const LitPoint& at, Mask mask, std::span<const float> transmittances) const {
+  const glm::dvec3 n = at.seen.normal();
+  double all = 0;
+  glm::dvec3 some(0);
+  for (std::size_t j = 0; j < light_->points.size(); ++j) {
+    const double cosine = std::max(0.0, n.x * points_.x[j] + n.y * points_.y[j] + n.z * points_.z[j]);
+    all += cosine;
+    if ((mask[j / 32] >> j % 32 & 1u) == 0) continue;
+    const double left = transmittances.empty() ? cosine : cosine * double{transmittances[j]};
+    some += light_->dome->even ? glm::dvec3(left) : left * glm::dvec3(light_->sample_colors[j]);
+  }
+  // A picture's light samples are all that is known of it; of one radiance the whole is.
+  if (!light_->dome->even) return light_->dome->power / static_cast<double>(light_->sample_count()) * some;
+  return all > 0 ? at.seen.whole() * (some / all) : glm::dvec3(0);
+}
+
 glm::dvec3 VisibleLight::unshadowed(const LitPoint& at) const {
+  if (light_->dome && !light_->dome->even) return of_dome(at, all_);
   const double whole = at.seen.whole();
   if (!light_->texture || whole == 0) return glm::dvec3(whole);
   return of_samples(at, whole, all_);
@@ -131,6 +148,7 @@ glm::dvec3 VisibleLight::unshadowed(const LitPoint& at) const {
 
 glm::dvec3 VisibleLight::visible(const LitPoint& at, Mask mask, std::span<const float> transmittances) const {
   PENUMBRA_ASSERT(mask.size() == all_.size(), "{} words of {}", mask.size(), all_.size());
+  if (light_->dome) return of_dome(at, mask, transmittances);
   if (!transmittances.empty()) {
     const std::optional<float> shared = shared_transmittance(mask, transmittances);
     if (shared) return static_cast<double>(*shared) * visible(at, mask);

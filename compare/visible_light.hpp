@@ -34,6 +34,9 @@ struct LitPoint {
 ///
 ///   whole · Σ_j visible_j texel_j w_j / Σ_j w_j,    w_j = max(0, cos θp) cos θl / d² of sample j
 ///
+/// A dome of one radiance likewise, with w_j the cosine at p; one with a picture is the sum of its light samples, which
+/// have equal shares of its light: 1/π ∫ luminance dω / N · Σ_j visible_j (texel / luminance)_j cos θp.
+///
 /// cos θl = h / d with the same h for all samples of a plane, so that h cancels.
 class VisibleLight {
  public:
@@ -62,6 +65,9 @@ class VisibleLight {
   [[nodiscard]] glm::dvec3 of_runs(const LitPoint& at, double whole, std::span<const std::uint32_t> mask) const;
   [[nodiscard]] glm::dvec3 of_samples(const LitPoint& at, double whole, std::span<const std::uint32_t> mask,
                                       std::span<const float> transmittances = {}) const;
+
+  [[nodiscard]] glm::dvec3 of_dome(const LitPoint& at, std::span<const std::uint32_t> mask,
+                                   std::span<const float> transmittances = {}) const;
 
   const visibility::Light* light_;
   Points points_;                   ///< not of a sphere

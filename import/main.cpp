@@ -79,7 +79,7 @@ bool parse(int argc, char** argv, Arguments& arguments) {
     arguments.options.lenient |= flag == "--lenient";
     arguments.options.needs_light &= flag != "--without-light";
   }
-  constexpr std::array<std::string_view, 3> kKinds = {"mesh", "gltf", "texture"};
+  constexpr std::array<std::string_view, 4> kKinds = {"mesh", "gltf", "texture", "sky"};
   return std::ranges::find(kKinds, arguments.kind) != kKinds.end() && parse(argv[2], arguments.milliseconds) &&
          parse(argv[3], arguments.bytes) && parse(argv[4], arguments.asker);
 }
@@ -113,7 +113,7 @@ Answer answer_for(const Arguments& arguments) {
       answer.scene = scenes::import_gltf(input, arguments.options);
       scenes::put_scene(answer.payload, answer.scene);
     } else {
-      answer.texture = scenes::read_texture_file(input);
+      answer.texture = arguments.kind == "sky" ? scenes::read_sky_file(input) : scenes::read_texture_file(input);
       scenes::put_texture(answer.payload, answer.texture);
     }
     answer.head.put_strings(mesh::opened_files());

@@ -3,6 +3,7 @@
 #include "base/error.hpp"
 #include "base/exr.hpp"
 #include "base/png.hpp"
+#include "base/rgbe.hpp"
 
 #include <sys/stat.h>
 
@@ -21,13 +22,13 @@ namespace {
 constexpr std::array kPngMark = {std::byte{0x89}, std::byte{'P'}, std::byte{'N'}, std::byte{'G'}};
 constexpr std::array kExrMark = {std::byte{0x76}, std::byte{0x2f}, std::byte{0x31}, std::byte{0x01}};
 /// The largest picture that is read, uncompressed, with four 32-bit channels, and room for what else a file holds.
-constexpr std::uintmax_t kMostBytes = std::uintmax_t{128} << 20;
+constexpr std::uintmax_t kMostBytes = std::uintmax_t{128} << 20, kMostSkyBytes = std::uintmax_t{640} << 20;
 
-std::string read_bytes(const mesh::InputFile& input) {
+std::string read_bytes(const mesh::InputFile& input, std::uintmax_t most_bytes) {
   struct stat info {};
   const bool known = ::fstat(input.content.get(), &info) == 0;
-  if (known && static_cast<std::uintmax_t>(info.st_size) > kMostBytes) {
-    throw InputError("{} bytes; a texture's file has at most {}", info.st_size, kMostBytes);
+  if (known && static_cast<std::uintmax_t>(info.st_size) > most_bytes) {
+    throw InputError("{} bytes; a picture's file has at most {}", info.st_size, most_bytes);
   }
   return mesh::read_content(input.content.get(), input.name.string());
 }
@@ -43,9 +44,9 @@ std::string list_of(const std::vector<std::string>& names) {
   return fmt::format("{}{}", fmt::join(first, ", "), names.size() > kMost ? ", and others" : "");
 }
 
-LinearImage read_exr_picture(std::span<const std::byte> bytes, const std::string& shown) {
+LinearImage read_exr_picture(std::span<const std::byte> bytes, const std::string& shown, std::uint32_t largest_side) {
   // No more than is used: a file may have thousands of channels, and 16 MiB each in memory.
-  const ExrFile exr = read_exr(bytes, shown, {.largest_side = kLargestTextureSide, .channels = {"R", "G", "B", "Y"}});
+  const ExrFile exr = read_exr(bytes, shown, {.largest_side = largest_side, .channels = {"R", "G", "B", "Y"}});
   const std::array<const char*, 3> names =
       exr.floats.contains("Y") && !exr.floats.contains("R") ? std::array{"Y", "Y", "Y"} : std::array{"R", "G", "B"};
   std::array<const std::vector<float>*, 3> channels{};
@@ -68,14 +69,26 @@ LinearImage read_exr_picture(std::span<const std::byte> bytes, const std::string
 }  // namespace
 
 Texture read_texture_file(const mesh::InputFile& input) {
-  const std::string content = read_bytes(input);
+  const std::string content = read_bytes(input, kMostBytes);
   const std::span<const std::byte> bytes = std::as_bytes(std::span(content));
   const bool is_png = begins_with(bytes, kPngMark);
   if (!is_png && !begins_with(bytes, kExrMark)) {
     throw InputError("it is neither a PNG nor an OpenEXR picture; a texture is one of the two");
   }
-  LinearImage image =
-      is_png ? decode_linear_png(bytes, kLargestTextureSide) : read_exr_picture(bytes, input.name.string());
+  LinearImage image = is_png ? decode_linear_png(bytes, kLargestTextureSide)
+                             : read_exr_picture(bytes, input.name.string(), kLargestTextureSide);
+  return {{}, image.width, image.height, std::move(image.pixels)};
+}
+
+Texture read_sky_file(const mesh::InputFile& input) {
+  const std::string content = read_bytes(input, kMostSkyBytes);
+  const std::span<const std::byte> bytes = std::as_bytes(std::span(content));
+  const bool is_png = begins_with(bytes, kPngMark), is_exr = begins_with(bytes, kExrMark);
+  if (!is_png && !is_exr && !is_rgbe(bytes))
+    throw InputError("it is no Radiance (.hdr), OpenEXR or PNG picture; the picture of a dome is one of these");
+  LinearImage image = is_png   ? decode_linear_png(bytes, kLargestSkySide)
+                      : is_exr ? read_exr_picture(bytes, input.name.string(), kLargestSkySide)
+                               : decode_rgbe(bytes, kLargestSkySide);
   return {{}, image.width, image.height, std::move(image.pixels)};
 }
 

@@ -40,6 +40,9 @@ scenes::LightShape to_scene(const LightShape& shape) {
     scenes::LightShape operator()(const Sun& s) const {
       return scenes::Sun{unit(s.direction, "direction of a sun"), s.angle};
     }
+    scenes::LightShape operator()(const Dome& d) const {
+      return scenes::Dome{unit(d.up, "up of a dome"), d.rotate, d.half, d.image.string()};
+    }
   };
   return std::visit(Convert(), shape);
 }
@@ -62,6 +65,9 @@ std::optional<LightShape> from_scene(const scenes::LightShape& shape) {
     }
     std::optional<LightShape> operator()(const scenes::Sphere& s) const { return Sphere{from_glm(s.center), s.radius}; }
     std::optional<LightShape> operator()(const scenes::Sun& s) const { return Sun{from_glm(s.direction), s.angle}; }
+    std::optional<LightShape> operator()(const scenes::Dome& d) const {
+      return Dome{from_glm(d.up), d.rotate, d.half, d.image};
+    }
     std::optional<LightShape> operator()(const scenes::Pieces&) const { return std::nullopt; }
   };
   return std::visit(Convert(), shape);

@@ -9,6 +9,7 @@
 #include "library/float3.hpp"
 #include "library/light_shape.hpp"
 #include "scenes/light_kind.hpp"
+#include "visibility/masks/visible_share.hpp"
 #include "visibility/receivers.hpp"
 
 #include <penumbra/own_method.hpp>
@@ -196,12 +197,8 @@ void HostedMethod::read_visibility(std::span<float> visibility) {
       v = visibility_[i];
       continue;
     }
-    double sum = 0;
-    for (std::uint32_t j = 0; j < light_->sample_count(); ++j) {
-      const std::uint32_t word = masks_[i * light_->words_per_mask() + j / 32];
-      if ((word >> (j % 32) & 1) != 0) sum += light_->weights.empty() ? 1 : light_->weights[j];
-    }
-    v = static_cast<float>(light_->weights.empty() ? sum / light_->sample_count() : sum);
+    const std::size_t words = light_->words_per_mask();
+    v = visibility::visible_share(*light_, std::span(masks_).subspan(i * words, words), samples_->n[pixels_[i]]);
   }
 }
 

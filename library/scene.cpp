@@ -5,10 +5,12 @@
 #include "library/light_shape.hpp"
 #include "library/named.hpp"
 #include "library/scene_state.hpp"
+#include "mesh/input_file.hpp"
 #include "scenes/formats/checks.hpp"
 #include "scenes/formats/json_reader.hpp"
 #include "scenes/formats/reader.hpp"
 #include "scenes/formats/writer.hpp"
+#include "scenes/light_texture.hpp"
 
 #include <fmt/format.h>
 
@@ -89,6 +91,17 @@ void change_light(scenes::Scene& scene, std::string_view name, Change change) {
   light = std::move(changed);
 }
 
+/// Gives the light a shape; a dome's picture is read unless the light has it already.
+void set_shape(scenes::AreaLight& light, scenes::LightShape shape) {
+  const auto* const before = std::get_if<scenes::Dome>(&light.shape);
+  const auto* const after = std::get_if<scenes::Dome>(&shape);
+  const bool same = before != nullptr && after != nullptr && before->image == after->image;
+  if ((before != nullptr || after != nullptr) && !same) light.texture.reset();
+  if (after != nullptr && !after->image.empty() && !same)
+    light.texture = with_errors([&] { return scenes::read_sky_picture(mesh::open_input(after->image), after->image); });
+  light.shape = std::move(shape);
+}
+
 void set_options(scenes::AreaLight& light, const LightOptions& options) {
   for (const double part : options.radiance) {
     if (!(part >= 0) || !std::isfinite(part))
@@ -106,7 +119,7 @@ void Scene::add_light(std::string name, const LightShape& shape, const LightOpti
     throw UsageError("the scene has a light \"{}\" already", name);
   scenes::AreaLight light;
   light.name = std::move(name);
-  light.shape = to_scene(shape);
+  set_shape(light, to_scene(shape));
   set_options(light, options);
   scenes::check_light(light, fmt::format("light \"{}\"", light.name));
   state_->scene.lights.push_back(std::move(light));
@@ -126,7 +139,7 @@ void Scene::set_light(std::string_view name, const LightShape& shape) {
     const auto* const before = std::get_if<scenes::Sphere>(&light.shape);
     auto* const after = std::get_if<scenes::Sphere>(&made);
     if (before != nullptr && after != nullptr) after->cone = before->cone;  // a spot lamp stays one
-    light.shape = std::move(made);
+    set_shape(light, std::move(made));
   });
 }
 

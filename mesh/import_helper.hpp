@@ -15,7 +15,7 @@ namespace penumbra::mesh {
 /// What the helper is asked to do: `penumbra-import KIND MILLISECONDS BYTES ASKER FILE FLAGS…`. FILE is only a name:
 /// the helper finds the file and its folder opened, as the descriptors below.
 struct HelperJob {
-  std::string kind;  ///< "mesh", "gltf" or "texture"
+  std::string kind;  ///< "mesh", "gltf", "texture" or "sky"
   const InputFile& input;
   std::vector<std::string> flags;
 };

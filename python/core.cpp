@@ -88,6 +88,10 @@ py::dict dict_of(const LightShape& shape) {
     py::dict operator()(const Sun& s) const {
       return py::dict(py::arg("kind") = "sun", py::arg("direction") = s.direction, py::arg("angle") = s.angle);
     }
+    py::dict operator()(const Dome& d) const {
+      return py::dict(py::arg("kind") = "dome", py::arg("up") = d.up, py::arg("rotate") = d.rotate,
+                      py::arg("half") = d.half, py::arg("image") = d.image.string());
+    }
   };
   return std::visit(Convert(), shape);
 }
@@ -114,7 +118,15 @@ LightShape shape_of(const std::string& kind, const py::dict& d) {
   if (kind == "polygon") return Polygon{wanted<std::vector<Vector>>(d, "vertices")};
   if (kind == "sphere") return Sphere{wanted<Vector>(d, "center"), wanted<double>(d, "radius")};
   if (kind == "sun") return Sun{wanted<Vector>(d, "direction"), wanted<double>(d, "angle")};
-  throw UsageError("light of kind \"" + kind + "\": expected rectangle, disk, ellipse, polygon, sphere or sun");
+  if (kind == "dome") {
+    Dome dome;
+    if (d.contains("up")) dome.up = wanted<Vector>(d, "up");
+    if (d.contains("rotate")) dome.rotate = wanted<double>(d, "rotate");
+    if (d.contains("half")) dome.half = wanted<bool>(d, "half");
+    if (d.contains("image")) dome.image = wanted<std::string>(d, "image");
+    return dome;
+  }
+  throw UsageError("light of kind \"" + kind + "\": expected rectangle, disk, ellipse, polygon, sphere, sun or dome");
 }
 
 /// The calling program's functions, called with the interpreter's lock held; Ctrl-C ends the call.

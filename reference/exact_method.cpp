@@ -3,6 +3,7 @@
 #include "base/assert.hpp"
 #include "base/error.hpp"
 #include "areas/exact_area.hpp"
+#include "visibility/masks/dome_method.hpp"
 #include "visibility/receivers.hpp"
 
 #include <tbb/blocked_range.h>
@@ -166,7 +167,7 @@ void Exact::read_form_factors(std::span<glm::dvec3> form_factors) {
 }  // namespace
 
 std::unique_ptr<visibility::Method> make_exact(const visibility::MethodOptions& options) {
-  return std::make_unique<Exact>(options);
+  return visibility::with_domes(std::make_unique<Exact>(options));
 }
 
 }  // namespace penumbra::reference

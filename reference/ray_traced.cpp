@@ -112,7 +112,8 @@ class RayTraced final : public visibility::Method {
   std::vector<std::uint32_t> order_;
   std::vector<std::uint32_t> full_mask_;
   visibility::Bounds bounds_;
-  std::vector<std::uint32_t> masks_;  // of the tile last evaluated
+  Tile tile_;                         // that was last evaluated
+  std::vector<std::uint32_t> masks_;  // of it
   Counts counts_;
 };
 
@@ -293,6 +294,7 @@ void RayTraced::evaluate(const Tile& tile) {
   PENUMBRA_ASSERT(light_ != nullptr && samples_ != nullptr, "prepare_light and prepare_view come first");
   PENUMBRA_ASSERT(tile.row_count <= max_tile_rows() && tile.first_row + tile.row_count <= samples_->height,
                   "rows {} + {} of {}", tile.first_row, tile.row_count, samples_->height);
+  tile_ = tile;
   masks_.assign(std::size_t{tile.row_count} * samples_->width * light_->words_per_mask(), 0u);
   switch (width_ != 0 ? width_ : embree_->native_width()) {
     case 1:
@@ -312,7 +314,8 @@ void RayTraced::read_masks(std::span<std::uint32_t> masks) {
 }
 
 void RayTraced::read_visibility(std::span<float> visibility) {
-  visibility::visible_shares(*light_, masks_, visibility);
+  const std::size_t first = std::size_t{tile_.first_row} * samples_->width;
+  visibility::visible_shares(*light_, masks_, std::span(samples_->n).subspan(first, visibility.size()), visibility);
 }
 
 }  // namespace

@@ -1,5 +1,7 @@
 #include "reference/tracing_order.hpp"
 
+#include "visibility/dome_faces.hpp"
+
 #include <algorithm>
 #include <numeric>
 
@@ -13,8 +15,13 @@ std::vector<std::uint32_t> tracing_order(const visibility::Light& light) {
     x = (x | (x << 2)) & 0x33333333u;
     return (x | (x << 1)) & 0x55555555u;
   };
-  std::vector<std::uint32_t> codes, order(light.sample_count());
+  std::vector<std::uint64_t> codes;
+  std::vector<std::uint32_t> order(light.sample_count());
   for (const glm::dvec2& st : light.coordinates) codes.push_back(spread(st.x) | (spread(st.y) << 1));
+  if (light.dome) {  // face by face
+    for (std::size_t i = 0; i < codes.size(); ++i)
+      codes[i] |= std::uint64_t{visibility::dome_face_of(*light.dome, light.points[i])} << 32U;
+  }
   std::iota(order.begin(), order.end(), 0u);
   std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return codes[a] < codes[b]; });
   return order;

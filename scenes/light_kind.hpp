@@ -16,7 +16,7 @@
 namespace penumbra::scenes {
 
 /// In the order of LightShape, and of lists for people.
-enum class LightKind : std::uint8_t { rectangle, disk, ellipse, polygon, sphere, sun };
+enum class LightKind : std::uint8_t { rectangle, disk, ellipse, polygon, sphere, sun, dome };
 
 /// What the points of a light are.
 enum class LightPlace : std::uint8_t {
@@ -30,6 +30,7 @@ enum class LightRegion : std::uint8_t {
   square,   ///< |s| <= 1 and |t| <= 1
   disk,     ///< s² + t² <= 1
   corners,  ///< a convex polygon with corners of its own
+  faces,    ///< directions all around: the square |s| <= 1 and |t| <= 1 of each face of a cube, or half of it
 };
 
 struct LightTraits {
@@ -48,6 +49,7 @@ inline constexpr std::array kLightTraits{
     LightTraits{LightKind::polygon, "polygon", LightPlace::plane, LightRegion::corners, false},
     LightTraits{LightKind::sphere, "sphere", LightPlace::body, LightRegion::disk, true},
     LightTraits{LightKind::sun, "sun", LightPlace::directions, LightRegion::disk, true},
+    LightTraits{LightKind::dome, "dome", LightPlace::directions, LightRegion::faces, false},
 };
 
 constexpr const LightTraits& traits_of(LightKind kind) {
@@ -114,6 +116,8 @@ inline constexpr LightKinds kRoundLights =
     LightKinds::with([](const LightTraits& row) { return row.region == LightRegion::disk; });
 inline constexpr LightKinds kPolygons =
     LightKinds::with([](const LightTraits& row) { return row.region == LightRegion::corners; });
+inline constexpr LightKinds kDomes =
+    LightKinds::with([](const LightTraits& row) { return row.region == LightRegion::faces; });
 inline constexpr LightKinds kCircles = LightKinds::with([](const LightTraits& row) { return row.circular; });
 
 /// Has it a plane, which stored points span?
@@ -135,6 +139,10 @@ constexpr bool is_round(LightKind kind) {
 /// Is it bounded by corners of its own?
 constexpr bool is_polygon(LightKind kind) {
   return kPolygons.contains(kind);
+}
+/// Is it all around, so that no plane has a picture of it? A method looks at one face of a cube after the other.
+constexpr bool is_dome(LightKind kind) {
+  return kDomes.contains(kind);
 }
 /// Is it round, and a circle in space?
 constexpr bool is_circle(LightKind kind) {

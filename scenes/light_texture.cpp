@@ -17,17 +17,23 @@ namespace {
 
 /// A picture of the largest size takes 200 MB to read; OpenEXR adds lines of all of a file's channels.
 constexpr mesh::ImportLimits kTextureLimits{.memory_bytes = 1ull << 30, .output_bytes = 64ull << 20};
+constexpr mesh::ImportLimits kSkyLimits{.memory_bytes = 4ull << 30, .output_bytes = 512ull << 20};
 
-}  // namespace
+/// What the import helper calls it, and how much that may take.
+struct PictureKind {
+  const char* name;
+  const mesh::ImportLimits& limits;
+  std::uint32_t largest_side;
+};
 
-Texture read_texture(const mesh::InputFile& input, const std::string& shown) {
+Texture read_picture(const mesh::InputFile& input, const std::string& shown, const PictureKind& kind) {
   try {
-    const mesh::HelperAnswer answer = mesh::run_import_helper({"texture", input, {}}, kTextureLimits);
+    const mesh::HelperAnswer answer = mesh::run_import_helper({kind.name, input, {}}, kind.limits);
     mesh::WireReader from(answer.payload());
     Texture texture = get_texture(from);
     from.expect_end();
     texture.file = shown;
-    check_texture(texture, fmt::format("\"{}\"", shown));
+    check_texture(texture, fmt::format("\"{}\"", shown), kind.largest_side);
     return texture;
   } catch (const InputError& error) {
     const std::string name = fmt::format("\"{}\"", shown);
@@ -39,10 +45,20 @@ Texture read_texture(const mesh::InputFile& input, const std::string& shown) {
   }
 }
 
-void check_texture(const Texture& texture, const std::string& where) {
-  if (std::max(texture.width, texture.height) > kLargestTextureSide || texture.width == 0 || texture.height == 0) {
+}  // namespace
+
+Texture read_texture(const mesh::InputFile& input, const std::string& shown) {
+  return read_picture(input, shown, {"texture", kTextureLimits, kLargestTextureSide});
+}
+
+Texture read_sky_picture(const mesh::InputFile& input, const std::string& shown) {
+  return read_picture(input, shown, {"sky", kSkyLimits, kLargestSkySide});
+}
+
+void check_texture(const Texture& texture, const std::string& where, std::uint32_t largest_side) {
+  if (std::max(texture.width, texture.height) > largest_side || texture.width == 0 || texture.height == 0) {
     throw InputError("{}: {}x{} texels; a texture has from 1 to {} a side", where, texture.width, texture.height,
-                     kLargestTextureSide);
+                     largest_side);
   }
   bool black = true;
   for (std::size_t i = 0; i < texture.texels.size(); ++i) {

@@ -95,17 +95,26 @@ inline double irradiance_of_radiance(const Sun& sun) {
   const double sine = std::sin(sun.angle / 360 * std::numbers::pi);
   return std::numbers::pi * sine * sine;
 }
+/// The sky: the directions all around, or those with a positive part along `up`. A picture (AreaLight::texture) is
+/// latitude-longitude: its top row is `up`, its middle column looks along −Z, turned about `up` by `rotate`, and to the
+/// right of that lies +X. (For another `up` than +Y the shortest turn takes +Y there, and −Z and +X along.)
+struct Dome {
+  glm::dvec3 up{0, 1, 0};  ///< unit length
+  double rotate = 0;       ///< degrees, right-handed about `up`
+  bool half = false;
+  std::string image = {};  ///< the picture's file as the scene names it; empty: one radiance everywhere
+};
 /// Several that are one light: an emitter that turns corners or lies apart, cut up.
 struct Pieces {
   using Piece = std::variant<Rectangle, Polygon, Sphere>;
   std::vector<Piece> pieces;  ///< at least one; no cones
 };
 /// In the order of LightKind (scenes/light_kind.hpp); Pieces, which are of several kinds, last.
-using LightShape = std::variant<Rectangle, Disk, Ellipse, Polygon, Sphere, Sun, Pieces>;
+using LightShape = std::variant<Rectangle, Disk, Ellipse, Polygon, Sphere, Sun, Dome, Pieces>;
 
 /// A picture on a rectangle light. It stands upright and unmirrored before who looks at the side that emits, half_u to
 /// the right and half_v upward: texel (0, 0), the picture's top left, lies in the corner −half_u + half_v. Each texel
-/// is constant over its cell; nothing is filtered.
+/// is constant over its cell; nothing is filtered. Of a dome: see there.
 struct Texture {
   std::string file;                     ///< its name, for people
   std::uint32_t width = 0, height = 0;  ///< texels
@@ -118,8 +127,9 @@ struct AreaLight {
   LightShape shape;
   glm::dvec3 radiance{10.0};  ///< of a sun of angle 0, which has none: irradiance of what faces it
   bool two_sided = false;
-  std::optional<Texture> texture = {};          ///< of a rectangle only
+  std::optional<Texture> texture = {};          ///< of a rectangle or a dome only
   std::vector<std::uint32_t> unshaded_by = {};  ///< objects (ascending) that cast no shadow of this light
+  bool visible = false;                         ///< of a dome: the background of pictures shows it
 };
 
 struct Camera {

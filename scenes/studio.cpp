@@ -90,6 +90,7 @@ double radiance_for(const LightShape& shape, const glm::dvec3& target) {
     const double distance = std::max(glm::distance(sphere->center, target), 2 * sphere->radius);
     return over(distance, std::numbers::pi * sphere->radius * sphere->radius);
   }
+  if (std::holds_alternative<Dome>(shape)) return 1;
   const auto& sun = std::get<Sun>(shape);
   return sun.angle > 0 ? std::numbers::pi / irradiance_of_radiance(sun) : std::numbers::pi;
 }
@@ -108,6 +109,8 @@ LightShape shape_of(const AddedLight& light, const glm::dvec3& target) {
       return facing_square(light.at, target, light.size);
     case AddedLight::Kind::sphere:
       return Sphere{light.at, light.size};
+    case AddedLight::Kind::dome:
+      return Dome{};
     case AddedLight::Kind::sun:
       break;
   }
@@ -120,6 +123,8 @@ const char* name_of(AddedLight::Kind kind) {
       return "rectangle";
     case AddedLight::Kind::sphere:
       return "sphere";
+    case AddedLight::Kind::dome:
+      return "dome";
     case AddedLight::Kind::sun:
       break;
   }

@@ -16,9 +16,9 @@ namespace penumbra::scenes {
 
 /// A light that a user adds; it shines to the middle of what is there.
 struct AddedLight {
-  enum class Kind : std::uint8_t { rectangle, sphere, sun };
+  enum class Kind : std::uint8_t { rectangle, sphere, sun, dome };
   Kind kind = Kind::rectangle;
-  glm::dvec3 at{0};  ///< its centre; of a sun the direction in which its light travels
+  glm::dvec3 at{0};  ///< its centre; of a sun the direction in which its light travels; of a dome none
   double size = 0;   ///< a square's side, a sphere's radius, a sun's apparent diameter in degrees
 };
 

@@ -9,6 +9,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -20,11 +21,13 @@ namespace penumbra::visibility {
 // What is true of each kind of light is in scenes/light_kind.hpp.
 using scenes::is_body;
 using scenes::is_circle;
+using scenes::is_dome;
 using scenes::is_parallelogram;
 using scenes::is_planar;
 using scenes::is_polygon;
 using scenes::is_round;
 using scenes::kBodies;
+using scenes::kDomes;
 using scenes::kEveryLight;
 using scenes::kParallelograms;
 using scenes::kPlanarLights;
@@ -76,6 +79,20 @@ struct Light {
   };
   std::optional<Directions> sun = {};
 
+  /// A dome: `sun` says that its points are directions, here unit vectors rounded once. No plane has a picture of it;
+  /// each face of a cube has, as light_faces (dome_faces.hpp) makes them: square, s and t in [−1, 1], or of a
+  /// side of half a dome what has t ≥ 0. Edges are straight on them.
+  struct Dome {
+    std::array<glm::vec3, 3> axes{};  ///< stored; faces look along ± these, the third is `up`. Faces share corners: all
+                                      ///< around is covered once, without gaps
+    bool half = false;       ///< only what is above the first two axes' plane
+    bool even = true;        ///< one radiance everywhere
+    double power = 1;        ///< of radiance 1, 1/π ∫ luminance dω: that of all samples, which have equal shares
+    std::int32_t face = -1;  ///< −1: all of it
+    std::array<std::uint32_t, 7> first{};  ///< of all of it: face i has the samples from first[i] to first[i + 1]
+  };
+  std::optional<Dome> dome = {};
+
   /// Of a spot lamp: what spot_share makes of the cosine between this direction and the way to p.
   struct Spot {
     glm::dvec3 direction{0, -1, 0};
@@ -98,12 +115,13 @@ struct Light {
   std::vector<glm::vec3> points;        ///< the light samples as stored in float32 (a sphere's: empty)
   std::vector<glm::dvec2> coordinates;  ///< the same samples before rounding, in [−1, 1]² along (u − c, v − c)
                                         ///< (rectangle); a disk's, an ellipse's and a sphere's: on the unit disk;
-                                        ///< a polygon's: over its bounding rectangle
+                                        ///< a polygon's: over its bounding rectangle; a dome's: on their faces
 
   std::optional<LightTexture> texture = {};  ///< of a rectangle; none: the radiance is constant
   std::vector<double> weights;           ///< with a texture, of each light sample: V = Σ weight · visible; they add
                                          ///< up to exactly 1 (sample_weights). Else empty: each is 1 / N
-  std::vector<glm::vec3> sample_colors;  ///< with a texture, of each light sample: its texel's colour. Else empty
+  std::vector<glm::vec3> sample_colors;  ///< with a texture, of each light sample: its texel's colour; of a dome with a
+                                         ///< picture, its texel's over that one's luminance. Else empty
 
   /// For each object of the scene, 1: it casts no shadow of this light. Empty: none such. Methods need not look: the
   /// host gives them a scene in which these cast none (cast_for).

@@ -3,6 +3,7 @@
 #include "visibility/pair_truth.hpp"
 
 #include "visibility/certain_meeting.hpp"
+#include "visibility/dome_faces.hpp"
 
 #include "base/assert.hpp"
 
@@ -43,7 +44,8 @@ struct EdgeSign {
 /// det(u, a − p, b − p), and where that vanishes too, of det(v, a − p, b − p). Antisymmetric in a and b: neighbouring
 /// triangles agree about their edge. All three vanish only if p is on the line a b (then p is on the triangle's plane,
 /// and it is not met anyway) or on the light's plane (then condition (2) has already refused the pair). Of a sun l is a
-/// direction and stands for l − p; its axes span a plane that holds no direction to it.
+/// direction and stands for l − p; its axes span a plane that holds no direction to it. Of a dome the axes are those of
+/// the face that l is on.
 EdgeSign edge_sign(const glm::vec3& p, const glm::vec3& l, const glm::vec3& a, const glm::vec3& b, const Light& light) {
   const int sign = static_cast<int>(light.sun ? side_of_direction(p, a, b, l) : side_of_plane(p, l, a, b));
   if (sign != 0) return {sign, false};
@@ -53,6 +55,10 @@ EdgeSign edge_sign(const glm::vec3& p, const glm::vec3& l, const glm::vec3& a, c
     const LightFrame frame = light_frame_from(light, p);
     u = difference(frame.u, glm::dvec3(0));
     v = difference(frame.v, glm::dvec3(0));
+  } else if (light.dome && light.dome->face < 0) {
+    const DomeFace face = dome_face(*light.dome, dome_face_of(*light.dome, l));
+    u = difference(face.u, glm::vec3(0));
+    v = difference(face.v, glm::vec3(0));
   } else if (light.sun) {
     u = difference(light.sun->axis_u, glm::vec3(0));
     v = difference(light.sun->axis_v, glm::vec3(0));

@@ -131,6 +131,7 @@ PixelClass Classifier::operator()(std::size_t pixel) const {
   if (!is_receiver(scene, light, carrier)) return PixelClass::unshadowed;
   if (!in_front(samples.p[pixel])) return PixelClass::behind;
   if (scene.emits[carrier] >= 0) return PixelClass::other_body;
+  if (is_dome(light.kind)) return PixelClass::judged;  // its V is of what is above the plane
   const std::array<glm::vec3, 3> corners = scene.corners(carrier);
   if (light.sun) {
     return cone_above(corners, samples.facing[pixel], light) ? PixelClass::judged : PixelClass::horizon;

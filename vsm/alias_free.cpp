@@ -45,7 +45,7 @@ visibility::MethodDescription describe_alias_free() {
           .paper = "Aila and Laine 2004; Johnson, Lee, Burns and Mark 2005",
           .output = visibility::Output::scalar,
           .exact_for = "the hard shadow of the light's centre, of any triangle soup and every kind of light",
-          .lights = visibility::kEveryLight,
+          .lights = visibility::kEveryLight - visibility::kDomes,
           .options = {kPerPixel.description()},
           .verdict_on = alias_free_verdict};
 }

@@ -42,7 +42,7 @@ visibility::MethodDescription describe_hierarchical_penumbra() {
           .paper = "Laine and Aila 2005",
           .output = visibility::Output::mask,
           .exact_for = "every pair of view sample and light sample, for any triangle soup",
-          .lights = visibility::kEveryLight - visibility::kBodies,
+          .lights = visibility::kEveryLight - visibility::kBodies - visibility::kDomes,
           .on_request = true,
           .options = {},
           .verdict_on = hierarchical_penumbra_verdict};

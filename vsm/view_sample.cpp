@@ -5,6 +5,7 @@
 #include "base/error.hpp"
 #include "engines/engine_by_light.hpp"
 #include "engines/engine_choice.hpp"
+#include "visibility/masks/dome_method.hpp"
 #include "vsm/vectors/view_sample_vectors.hpp"
 #include "vsm/view_sample_lists.hpp"
 #include "vsm/view_sample_vulkan.hpp"
@@ -52,7 +53,7 @@ visibility::MethodDescription view_sample_description(const visibility::MethodOp
   const visibility::ParsedOptions options = visibility::parse_options(description, given);
   const bool published = options[kVariant] == Variant::sintorn,
              on_device = options[engines::kEngine] == engines::Engine::vulkan;
-  if (published) description.lights = description.lights - visibility::kBodies;
+  if (published) description.lights = description.lights - visibility::kBodies - visibility::kDomes;
   if (on_device) description.lights = description.lights & visibility::kPlanarLights;
   return description;
 }
@@ -66,7 +67,7 @@ std::unique_ptr<visibility::Method> make_view_sample(const render::Machine& mach
     }
     return make_view_sample_lists(view_sample_description(given));
   }
-  const auto native = [] { return make_view_sample_on_vectors(view_sample_description()); };
+  const auto native = [] { return visibility::with_domes(make_view_sample_on_vectors(view_sample_description())); };
   if (engines::runs_on_vectors(machine, options[engines::kEngine])) return native();
   if (options[engines::kEngine] == engines::Engine::vulkan) return make_vulkan_view_sample(machine.device());
   return engines::make_engine_by_light(

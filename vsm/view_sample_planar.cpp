@@ -61,7 +61,7 @@ visibility::MethodDescription describe(const visibility::MethodOptions& given) {
       .paper = "Eisemann and Décoret 2007",
       .output = visibility::Output::mask,
       .exact_for = "every pair of view sample and light sample, for any triangle soup (lookup=exact)",
-      .lights = visibility::kEveryLight - visibility::kBodies,
+      .lights = visibility::kEveryLight - visibility::kBodies - visibility::kDomes,
       .on_request = true,
       .options = {kLookup.description(), kMap.description(), kFewest.description()},
       .verdict_on = exact_on};

@@ -38,7 +38,7 @@ std::vector<compare::ReportLight> report_lights(const Session& session, std::spa
     shown.name = light.name;
     const std::vector<visibility::PixelClass> classes = whole_classes(whole, session.classes);
     shown.packed_classes = compare::pack_bytes(std::as_bytes(std::span(classes)));
-    if (whole.count > 1) continue;  // many samples of many shapes: no drawing has them
+    if (whole.count > 1 || light.dome) continue;  // many samples of many shapes: no drawing has them
     shown.round = is_round(light.kind);
     if (!is_circle(light.kind) && !is_polygon(light.kind)) {  // sides or axes of two lengths
       const visibility::LightFrame frame = visibility::light_frame(light);

@@ -2,6 +2,7 @@
 
 #include "app/methods.hpp"
 #include "app/pictures/frame_render.hpp"
+#include "app/pictures/sky.hpp"
 #include "app/process/stopwatch.hpp"
 #include "app/whole_lights.hpp"
 #include "base/assert.hpp"
@@ -144,6 +145,7 @@ void FrameRenderer::run_methods(const std::filesystem::path& bits) {
   picture_.run = run_lights(beauty, picture_.bits ? &*picture_.bits : nullptr);
   watch.restart();
   picture_.beauty = std::move(beauty).parts();
+  add_visible_skies(lit(), picture_.beauty);
   picture_.alpha.resize(lit().samples.size());
   std::ranges::transform(lit().samples.triangle, picture_.alpha.begin(), [](std::int32_t triangle) {
     return triangle == visibility::ViewSamples::kBackground ? 0.0f : 1.0f;

@@ -75,6 +75,9 @@ struct SetHalf {
     for (glm::dvec3& vertex : light.vertices) vertex = center + (vertex - center) * (half / larger);
   }
   void operator()(scenes::Sun& /*light*/) const {}  // has no half
+  void operator()(scenes::Dome& /*light*/) const {
+    throw UsageError("--over {}: light \"{}\" is a dome, which has no size; choose others with --light", kHalf, name);
+  }
   void operator()(scenes::Pieces& /*light*/) const {
     throw UsageError(
         "--over {}: light \"{}\" is a mesh in pieces, which cannot change its size; choose others with --light", kHalf,

@@ -72,7 +72,8 @@ BuiltWedges::BuiltWedges(const scenes::Scene& scene, const WedgeRequest& asked) 
     warnings.push_back(fmt::format(
         "\"{}\" lets light through (alphaMode MASK or BLEND): wedges are of what stops all light", light.filtered_by));
   if (light.sun) {
-    throw InputError("light \"{}\" is a sun; wedges are of lights in the scene: take another (--light)", light.name);
+    throw InputError("light \"{}\" is a {}; wedges are of lights in the scene: take another (--light)", light.name,
+                     visibility::name_of(light.kind));
   }
   hull = volumes::light_hull(light);
   casters = volumes::casters_of(floats, light);

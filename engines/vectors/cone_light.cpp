@@ -131,12 +131,15 @@ SampleClass ConeLight::classify(const ViewInput& view, std::uint32_t pixel, Grid
   const glm::dvec3 above(glm::dot(n, cone.u), glm::dot(n, cone.v), glm::dot(n, cone.middle));
   const double from_p = light_.sun ? 0 : size1(glm::dvec3(at.p));
   const double error = 16 * kRoundingOf * (size1(cone.middle) + size1(cone.u) + size1(cone.v) + from_p) + deviation_;
-  const double span = std::hypot(above.x, above.y) * (1 + 0x1p-20);
+  // Of a dome's face the square, else the disk in it.
+  const double reach = light_.dome ? std::abs(above.x) + std::abs(above.y) : std::hypot(above.x, above.y);
+  const double span = reach * (1 + 0x1p-20);
   at.above = glm::vec3(above);
   at.above_error = static_cast<float>(error);
   if (above.z + span < -error) return SampleClass::none_visible;
   if (!near_.empty() && touches(*view.grid.cones, cone, glm::dvec3(at.p))) return SampleClass::open;
-  at.straddles = above.z - span <= error;
+  // Areas end at the middle of half a face, too.
+  at.straddles = above.z - span <= error || (light_.dome && light_.dome->half && !light_samples_);
   return SampleClass::in_front;
 }
 

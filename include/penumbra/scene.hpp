@@ -48,7 +48,15 @@ struct Sun {
   Vector direction{0, -1, 0};
   double angle = 0.53;
 };
-using LightShape = std::variant<Rectangle, Disk, Ellipse, Polygon, Sphere, Sun>;
+/// The sky: directions all around, or with `half` those with a positive part along `up`, of one radiance or of a
+/// latitude-longitude picture that multiplies it.
+struct Dome {
+  Vector up{0, 1, 0};
+  double rotate = 0;  ///< degrees about `up`: where the picture's middle column, by default along -z, looks
+  bool half = false;
+  std::filesystem::path image = {};  ///< Radiance (.hdr), OpenEXR or PNG; empty: one radiance everywhere
+};
+using LightShape = std::variant<Rectangle, Disk, Ellipse, Polygon, Sphere, Sun, Dome>;
 
 struct LightOptions {
   Vector radiance{10, 10, 10};  ///< linear red green blue; of a sun of angle 0 the irradiance of what faces it

@@ -35,6 +35,7 @@ _SHAPES = {
     "polygon": ("vertices",),
     "sphere": ("center", "radius"),
     "sun": ("direction", "angle"),
+    "dome": ("up", "rotate", "half", "image"),
 }
 _SPELLINGS = {"halfU": "half_u", "halfV": "half_v", "twoSided": "two_sided"}  # of scene files
 
@@ -124,7 +125,7 @@ class Scene:
 
     def add_light(self, name, kind, *, radiance=(10, 10, 10), two_sided=False, **shape):
         """Adds a light of a kind: rectangle(center, half_u, half_v), disk(center, normal, radius), ellipse(center, half_u,
-        half_v), polygon(vertices), sphere(center, radius) or sun(direction, angle)."""
+        half_v), polygon(vertices), sphere(center, radius), sun(direction, angle) or dome(up, rotate, half, image), whose parts all have defaults."""
         self._core.add_light(name, kind, _shape(kind, shape), tuple(radiance), two_sided)
 
     def set_light(self, name, **changes):
@@ -203,6 +204,8 @@ def _shape(kind, given):
     for key in shape:
         if key not in _SHAPES[kind]:
             raise UsageError(f'a {kind} light has no "{key}"; it has {", ".join(_SHAPES[kind])}')
+    if shape.get("image") is not None:
+        shape["image"] = _os.fspath(shape["image"])
     as_tuple = lambda value: value if _np.isscalar(value) else _np.asarray(value, float).tolist()
     return {key: as_tuple(value) for key, value in shape.items()}
 

@@ -42,8 +42,8 @@ void check_position(const glm::dvec3& position, const std::string& where, const 
 
 void check_light(const AreaLight& light, const std::string& where) {
   check_light_shape(light.shape, where);
-  if (light.texture && !std::holds_alternative<Rectangle>(light.shape)) {
-    throw InputError("{}: only a rectangle light can have a texture", where);
+  if (light.texture && !std::holds_alternative<Rectangle>(light.shape) && !std::holds_alternative<Dome>(light.shape)) {
+    throw InputError("{}: only a rectangle or a dome can have a picture", where);
   }
   constexpr double kBrightest = 1e36;  // sums over hundreds of lights stay below a float's largest number
   const auto [least, greatest] = std::minmax({light.radiance.x, light.radiance.y, light.radiance.z});

@@ -295,13 +295,17 @@ void write_glb(const Scene& scene, AtomicFile& file, Losses& losses, Notes& note
       notes.push_back(fmt::format("light \"{}\": each of the {} meshes that are its body is a light of its own in glTF",
                                   scene.lights[i].name, bodies[i]));
     if (bodies[i] > 0) continue;
+    if (std::holds_alternative<Dome>(scene.lights[i].shape)) {
+      losses.refuse("is a dome, which glTF cannot say", scene.lights[i].name);
+      continue;
+    }
     if (scene.lights[i].radiance == glm::dvec3(0))  // its outline would come back as a surface that casts shadow
       notes.push_back(fmt::format("light \"{}\" is dark: glTF has no such lights; left out", scene.lights[i].name));
     else
       add_light(scene, scene.lights[i], glb, notes);
   }
   for (const AreaLight& light : scene.lights) {
-    if (!light.texture) continue;
+    if (!light.texture || std::holds_alternative<Dome>(light.shape)) continue;
     notes.push_back(
         fmt::format("light \"{}\": its texture is left out; its mean colour stands in its place", light.name));
   }

@@ -83,6 +83,14 @@ Texture read_light_texture(const json& value, const Place& place, const ReadOpti
   return texture;
 }
 
+/// The picture of a dome.
+Texture read_sky(const std::string& name, const Place& place, const ReadOptions& options, Scene& scene) {
+  const SceneFile file = open_scene_file(name, place, options);
+  Texture picture = at_place(place, [&] { return read_sky_picture(file.input, name); });
+  scene.sources.push_back(file.path);
+  return picture;
+}
+
 /// What a sun sends, by its radiance or by the irradiance of what faces it. A point has no radiance.
 void read_sun_light(const json& value, const Place& place, AreaLight& light, Scene& scene) {
   const Sun& sun = std::get<Sun>(light.shape);
@@ -102,6 +110,7 @@ AreaLight read_light(const json& value, const Place& place, std::string fallback
   light.name = read_name(value, place, std::move(fallback_name));
   if (value.contains("radiance")) light.radiance = read_vector(value["radiance"]);
   light.two_sided = value.value("twoSided", false);
+  light.visible = value.value("visible", false);
   light.shape = read_light_shape(value);
   const std::string where = (place / key_of(light.shape)).str();
   check_light(light, where);
@@ -113,6 +122,11 @@ AreaLight read_light(const json& value, const Place& place, std::string fallback
   if (value.contains("irradiance") && !value.contains("sun")) {
     throw InputError("{}: only a \"sun\" has an irradiance; expected \"radiance\"", (place / "irradiance").str());
   }
+  const auto* const dome = std::get_if<Dome>(&light.shape);
+  if (dome == nullptr && value.contains("visible"))
+    throw InputError("{}: only a \"dome\" can be visible as the background", (place / "visible").str());
+  if (dome != nullptr && !dome->image.empty())
+    light.texture = read_sky(dome->image, place / "dome" / "image", options, scene);
   if (value.contains("texture")) light.texture = read_light_texture(value, place / "texture", options, scene);
   return light;
 }

@@ -41,11 +41,19 @@ void write_names(const char* key, const std::set<std::string>& names, TextStream
 
 void write_light(const Scene& scene, const AreaLight& light, const std::string& texture_file, TextStream& text) {
   text.print(R"({{"name": {}, )", quoted(light.name));
-  write_light_shape(light.shape, text);
+  if (const auto* dome = std::get_if<Dome>(&light.shape); dome != nullptr && light.texture) {
+    Dome named = *dome;
+    named.image = texture_file;
+    write_light_shape(named, text);
+  } else {
+    write_light_shape(light.shape, text);
+  }
   const auto* sun = std::get_if<Sun>(&light.shape);
   text.print(R"(, "{}": )", sun != nullptr && sun->angle == 0 ? "irradiance" : "radiance").array(light.radiance);
   text.print(R"(, "twoSided": {})", light.two_sided);
-  if (light.texture) text.print(R"(, "texture": {})", quoted(texture_file));
+  if (light.visible) text.print(R"(, "visible": true)");
+  if (light.texture && std::holds_alternative<Rectangle>(light.shape))
+    text.print(R"(, "texture": {})", quoted(texture_file));
   if (!light.unshaded_by.empty()) {
     std::set<std::string> names;
     for (const std::uint32_t object : light.unshaded_by) names.insert(scene.objects[object].name);

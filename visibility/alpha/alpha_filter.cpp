@@ -315,8 +315,17 @@ AlphaCounts AlphaFilter::filter(const ViewSamples& samples, const Light& light, 
   return counts;
 }
 
-float dimmed_share(const Light& light, std::span<const std::uint32_t> mask, std::span<const float> transmittances) {
-  double sum = 0;
+float dimmed_share(const Light& light, std::span<const std::uint32_t> mask, std::span<const float> transmittances,
+                   const glm::vec3& n) {
+  double sum = 0, all = 0;
+  if (light.dome) {
+    for (std::size_t sample = 0; sample < light.points.size(); ++sample) {
+      const double cosine = std::max(0.0, glm::dot(glm::dvec3(n), glm::dvec3(light.points[sample])));
+      all += cosine;
+      if ((mask[sample / 32] >> sample % 32 & 1U) != 0) sum += cosine * double{transmittances[sample]};
+    }
+    return all > 0 ? static_cast<float>(sum / all) : 0.0F;
+  }
   for (std::size_t word = 0; word < mask.size(); ++word) {
     for (std::uint32_t left = mask[word]; left != 0; left &= left - 1) {
       const std::size_t sample = 32 * word + static_cast<std::size_t>(std::countr_zero(left));

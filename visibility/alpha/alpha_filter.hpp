@@ -47,7 +47,9 @@ class AlphaFilter {
   TriangleTree tree_;  // over scene.alphas.casters
 };
 
-/// V of masks whose light is dimmed: each visible light sample counts with its transmittance.
-float dimmed_share(const Light& light, std::span<const std::uint32_t> mask, std::span<const float> transmittances);
+/// V of masks whose light is dimmed: each visible light sample counts with its transmittance. `n`: the view sample's
+/// normal.
+float dimmed_share(const Light& light, std::span<const std::uint32_t> mask, std::span<const float> transmittances,
+                   const glm::vec3& n);
 
 }  // namespace penumbra::visibility

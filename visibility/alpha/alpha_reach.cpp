@@ -48,7 +48,8 @@ struct Wall {
 class Ways {
  public:
   explicit Ways(const Light& light) : light_(light), ends_(!light.sun) {
-    if (light.sun) {
+    if (light.dome) {  // all around: only what is behind the carrier is not met
+    } else if (light.sun) {
       const glm::dvec3 u = light.sun->tangent * glm::dvec3(light.sun->axis_u),
                        v = light.sun->tangent * glm::dvec3(light.sun->axis_v), middle(light.center);
       corners_ = {middle - u - v, middle + u - v, middle + u + v, middle - u + v};
@@ -134,6 +135,7 @@ class Ways {
 
   /// The plane through p and the edge a b: the third corner on one side of it, the light on the other?
   [[nodiscard]] bool is_beside_edge(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& third) const {
+    if (ways_.empty()) return false;
     glm::dvec3 normal = glm::cross(a, b);
     const double size = size1(a) * size1(b), side = glm::dot(normal, third);
     if (!(std::abs(side) > kRounding * size * size1(third))) return false;
@@ -144,6 +146,7 @@ class Ways {
 
   /// p and the light on one side of the triangle's plane?
   [[nodiscard]] bool is_beside_plane(const std::array<glm::dvec3, 3>& to) const {
+    if (ways_.empty()) return false;
     const glm::dvec3 first = to[1] - to[0], second = to[2] - to[0];
     glm::dvec3 normal = glm::cross(first, second);
     const double size = size1(first) * size1(second), height = -glm::dot(normal, to[0]);
@@ -158,7 +161,7 @@ class Ways {
 
   const Light& light_;
   bool ends_;                        // ways are segments, not rays
-  std::vector<glm::dvec3> corners_;  // of a sun, directions
+  std::vector<glm::dvec3> corners_;  // of a sun, directions; of a dome none
   glm::dvec3 normal_{0};             // of the light's plane
   double room_ = 0;
   glm::dvec3 p_{0};
@@ -170,6 +173,11 @@ class Ways {
 class BlockWays {
  public:
   explicit BlockWays(const Light& light) {
+    if (light.dome) {
+      lower_ = glm::vec3(-kEndless);
+      upper_ = glm::vec3(kEndless);
+      return;
+    }
     if (!light.sun) {
       const Bounds points = point_bounds(light);
       add(points.lower);

@@ -88,7 +88,7 @@ Light make_part(const Part& part, const scenes::LightShape& shape, const glm::dv
   }
 
   const std::vector<glm::dvec2> unit = unit_square_samples(request);
-  behaviour_of(*kind).make(shape, {light, origin, unit});
+  behaviour_of(*kind).make(shape, {light, origin, unit, source.texture && is_dome(*kind) ? &*source.texture : nullptr});
   const auto all_finite = [](const std::vector<glm::vec3>& points) {
     return std::all_of(points.begin(), points.end(), is_finite_point);
   };
@@ -97,7 +97,7 @@ Light make_part(const Part& part, const scenes::LightShape& shape, const glm::dv
     throw InputError("light \"{}\": its position relative to the scene's origin ({}, {}, {}) is not finite in float32",
                      light.name, origin.x, origin.y, origin.z);
   }
-  if (source.texture) add_texture(light, *source.texture);
+  if (source.texture && !is_dome(*kind)) add_texture(light, *source.texture);
   add_links(light, scene, light_index);
   return light;
 }

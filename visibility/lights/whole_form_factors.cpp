@@ -257,7 +257,7 @@ HWY_EXPORT(whole_form_factors_here);
 void whole_form_factors(const Light& light, const SurfaceElements& elements, std::span<double> whole) {
   PENUMBRA_ASSERT(elements.which.size() == whole.size(), "{} elements, {} form factors", elements.which.size(),
                   whole.size());
-  if (!is_round(light.kind) || is_circle(light.kind)) {
+  if (!is_dome(light.kind) && (!is_round(light.kind) || is_circle(light.kind))) {
     return HWY_DYNAMIC_DISPATCH(whole_form_factors_here)(light, elements, whole);
   }
   for (std::size_t i = 0; i < whole.size(); ++i) {

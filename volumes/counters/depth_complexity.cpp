@@ -10,6 +10,7 @@
 #include "engines/engine_by_light.hpp"
 #include "engines/engine_choice.hpp"
 #include "render/compute_pass.hpp"
+#include "visibility/masks/dome_method.hpp"
 #include "volumes/counters/count_edges.comp.spv.hpp"
 #include "volumes/counters/depth_complexity.shared.h"
 #include "volumes/counters/packed_counters.hpp"
@@ -316,7 +317,7 @@ std::unique_ptr<visibility::Method> make_depth_complexity(const render::Machine&
     return std::make_unique<DepthComplexity>(machine.device(), variant, crops, false);
   };
   const auto native = [search = options[kSearch]] {
-    return make_depth_complexity_on_vectors(depth_complexity_description(), search);
+    return visibility::with_domes(make_depth_complexity_on_vectors(depth_complexity_description(), search));
   };
   const engines::Engine engine = options[engines::kEngine];
   if (!can_be_native(options) || engine == engines::Engine::vulkan) return on_device();

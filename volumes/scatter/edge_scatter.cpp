@@ -10,6 +10,7 @@
 #include "render/compute_pass.hpp"
 #include "render/features.hpp"
 #include "visibility/lights/device_light.hpp"
+#include "visibility/masks/dome_method.hpp"
 #include "volumes/edges/device/edge_method.hpp"
 #include "volumes/edges/device/edge_scatter.shared.h"
 #include "volumes/scatter/point_rows.hpp"
@@ -294,12 +295,14 @@ std::unique_ptr<visibility::Method> make_edge_scatter(const render::Machine& mac
   const visibility::ParsedOptions options = visibility::parse_options(description, given);
   const bool exact = options[kExactRows];
   const engines::Engine engine = options[engines::kEngine];
-  if (exact || engines::runs_on_vectors(machine, engine))
-    return make_edge_scatter_on_vectors(std::move(description), exact);
+  const auto on_vectors = [](visibility::MethodDescription of, bool of_rows) {
+    return visibility::with_domes(make_edge_scatter_on_vectors(std::move(of), of_rows));
+  };
+  if (exact || engines::runs_on_vectors(machine, engine)) return on_vectors(std::move(description), exact);
   if (engine == engines::Engine::vulkan) return std::make_unique<EdgeScatter>(machine.device(), std::move(description));
   return engines::make_engine_by_light(
       {[machine, description] { return std::make_unique<EdgeScatter>(machine.device(), description); },
-       [description] { return make_edge_scatter_on_vectors(description, false); }, is_planar_light});
+       [on_vectors, description] { return on_vectors(description, false); }, is_planar_light});
 }
 
 bool edge_scatter_on_vectors(const render::Machine& machine, const visibility::MethodOptions& given,

@@ -19,7 +19,7 @@ namespace {
 
 /// In the order of LightShape.
 constexpr std::array kFormats{&kRectangleFormat, &kDiskFormat, &kEllipseFormat, &kPolygonFormat,
-                              &kSphereFormat,    &kSunFormat,  &kPiecesFormat};
+                              &kSphereFormat,    &kSunFormat,  &kDomeFormat,    &kPiecesFormat};
 static_assert(kFormats.size() == std::variant_size_v<LightShape>);
 
 const char* key_at(std::size_t index) {

@@ -58,6 +58,6 @@ void check_radius(double radius, const std::string& where);
 
 // The rows.
 extern const LightFormat kRectangleFormat, kDiskFormat, kEllipseFormat, kPolygonFormat, kSphereFormat, kSunFormat,
-    kPiecesFormat;
+    kDomeFormat, kPiecesFormat;
 
 }  // namespace penumbra::scenes

@@ -194,7 +194,7 @@ struct UnderPanes {
     EXPECT_EQ(filter.dims(light), true);
     filter.filter(samples, light, 0, {mask, transmittances, dimmed});
     EXPECT_EQ(visible_share(light, mask), 1) << "bits ignore what is translucent";
-    return dimmed[0] != 0 ? dimmed_share(light, mask, transmittances) : 1;
+    return dimmed[0] != 0 ? dimmed_share(light, mask, transmittances, glm::vec3(0, 1, 0)) : 1;
   }
 };
 

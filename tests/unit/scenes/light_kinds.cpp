@@ -26,6 +26,7 @@ constexpr std::array kValues{
     R"([[0, 5, 0], [1, 5, 0], [1.25, 5, 1], [0, 5, 1]])",
     R"({"center": [0, 4, -2], "radius": 0.1, "cone": {"direction": [0, -1, 0], "inner": 10, "outer": 25}})",
     R"({"direction": [0, -0.6, -0.8], "angle": 0.53})",
+    R"({"rotate": 30, "up": [0.6, 0.8, 0], "half": true})",
 };
 static_assert(kValues.size() == scenes::kLightTraits.size(), "a value for each kind");
 
@@ -71,6 +72,10 @@ TEST(LightKinds, GoIntoGltfAsLampsOrMeshes) {
   for (std::size_t i = 0; i < kValues.size(); ++i) {
     const scenes::Scene scene = read_text(scene_text(kMesh, light_text(i)));
     const TemporaryFolder folder;
+    if (scenes::is_dome(scenes::kLightTraits[i].kind)) {  // core glTF has no sky
+      EXPECT_THROW(scenes::write_scene(scene, folder / "scene.glb"), InputError);
+      continue;
+    }
     scenes::write_scene(scene, folder / "scene.glb");
     const bool is_lamp = read_file(folder / "scene.glb").find("KHR_lights_punctual") != std::string::npos;
     EXPECT_EQ(is_lamp, !scenes::is_planar(scenes::kLightTraits[i].kind)) << scenes::kLightTraits[i].name;
@@ -79,8 +84,9 @@ TEST(LightKinds, GoIntoGltfAsLampsOrMeshes) {
 
 TEST(LightKinds, APropertyIsTrueOfTheseKinds) {
   using enum LightKind;
-  EXPECT_EQ(scenes::kEveryLight, (LightKinds{rectangle, disk, ellipse, polygon, sphere, sun}));
+  EXPECT_EQ(scenes::kEveryLight, (LightKinds{rectangle, disk, ellipse, polygon, sphere, sun, dome}));
   EXPECT_EQ(scenes::kPlanarLights, (LightKinds{rectangle, disk, ellipse, polygon}));
+  EXPECT_EQ(scenes::kDomes, LightKinds{dome});
   EXPECT_EQ(scenes::kBodies, LightKinds{sphere});
   EXPECT_EQ(scenes::kParallelograms, LightKinds{rectangle});
   EXPECT_EQ(scenes::kPolygons, LightKinds{polygon});
@@ -93,7 +99,7 @@ TEST(LightKinds, SetsAreListedInTheOrderOfTheTable) {
   const LightKinds some{sun, disk};
   EXPECT_EQ(some.list(), (std::vector{disk, sun}));
   EXPECT_EQ((some | LightKinds{polygon}).words(), "disk, polygon, sun");
-  EXPECT_EQ((scenes::kEveryLight - some).words(" or "), "rectangle, ellipse, polygon or sphere");
+  EXPECT_EQ((scenes::kEveryLight - some).words(" or "), "rectangle, ellipse, polygon, sphere or dome");
   EXPECT_EQ((some & scenes::kPlanarLights).words(" or "), "disk");
   EXPECT_EQ(LightKinds().words(), "");
 }

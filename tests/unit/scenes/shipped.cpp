@@ -46,7 +46,7 @@ TEST(ShippedScenes, AllLoadWithoutAWarning) {
 
 TEST(ShippedScenes, EveryLightIsARectangleThatFacesTheScene) {
   for (const std::filesystem::path& file : shipped_files()) {
-    if (file.filename() == "lights.json") continue;
+    if (file.filename() == "lights.json" || file.parent_path().filename() == "skies") continue;
     const scenes::Scene scene = scenes::read_scene(file);
     for (const scenes::AreaLight& light : scene.lights) {
       ASSERT_TRUE(std::holds_alternative<scenes::Rectangle>(light.shape)) << file;

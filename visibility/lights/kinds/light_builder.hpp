@@ -19,7 +19,8 @@ struct NoArea : InputError {
 struct LightBuilder {
   Light& light;
   const glm::dvec3& origin;
-  const std::vector<glm::dvec2>& unit;  ///< the light samples on the unit square
+  const std::vector<glm::dvec2>& unit;       ///< the light samples on the unit square
+  const scenes::Texture* picture = nullptr;  ///< of the sky
 
   [[nodiscard]] glm::vec3 stored(const glm::dvec3& world) const;
   [[noreturn]] void refuse_zero_area(const std::string& detail) const;

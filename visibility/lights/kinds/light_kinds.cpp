@@ -10,8 +10,8 @@ namespace penumbra::visibility {
 namespace {
 
 /// In the order of scenes::kLightTraits.
-constexpr std::array kBehaviours{&kRectangleBehaviour, &kDiskBehaviour,   &kEllipseBehaviour,
-                                 &kPolygonBehaviour,   &kSphereBehaviour, &kSunBehaviour};
+constexpr std::array kBehaviours{&kRectangleBehaviour, &kDiskBehaviour, &kEllipseBehaviour, &kPolygonBehaviour,
+                                 &kSphereBehaviour,    &kSunBehaviour,  &kDomeBehaviour};
 static_assert(kBehaviours.size() == scenes::kLightTraits.size());
 
 }  // namespace

@@ -20,7 +20,7 @@ const LightBehaviour& behaviour_of(LightKind kind);
 
 // The rows, each in a file of its own.
 extern const LightBehaviour kRectangleBehaviour, kDiskBehaviour, kEllipseBehaviour, kPolygonBehaviour, kSphereBehaviour,
-    kSunBehaviour;
+    kSunBehaviour, kDomeBehaviour;
 
 /// Of round lights: is the unit disk of the frame above the element's plane?
 bool is_round_above_horizon(const UnshadowedLight& seen);

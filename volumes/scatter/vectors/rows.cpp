@@ -40,6 +40,10 @@ LightRegion make_light_region(const visibility::Light& light, const LightWindow&
                               float scale) {
   const glm::dvec2 cells(grid.columns, grid.rows);
   LightRegion region{window, LightMeasure(light, cells)};
+  if (light.dome && light.dome->half) {
+    region.upper_half = true;
+    region.measure.set_whole(cells.x * cells.y / 2);
+  }
   if (!is_polygon(light.kind)) return region;
   const double per_length = std::max(glm::length(grid.axes[0]), glm::length(grid.axes[1]));
   double farthest = 0, twice_area = 0;
@@ -361,6 +365,13 @@ std::optional<std::int32_t> RowSum::relative_depth(const glm::dvec2& place, doub
 }
 
 void RowSum::add_horizon(const HorizonLine& line) {
+  at_corner_ = 0;
+  add_line(line);
+  if (region_.upper_half) add_line({{0, 1, 0}, glm::dvec3(0)});
+}
+
+/// What is below it counts as one layer more.
+void RowSum::add_line(const HorizonLine& line) {
   const double width = grid_.columns, height = grid_.rows;
   // above · (s, t, 1) as a X + b Y + c, from the window's corner.
   const LightWindow& window = region_.window;
@@ -379,7 +390,7 @@ void RowSum::add_horizon(const HorizonLine& line) {
     return;
   }
   if (a == 0 && b == 0) {
-    at_corner_ = low > 0 ? 0 : 1;
+    at_corner_ += low > 0 ? 0 : 1;
     return;
   }
   const std::size_t before = left_.size();
@@ -396,7 +407,7 @@ void RowSum::add_horizon(const HorizonLine& line) {
     corner_is_open_ = open;  // the corner's depth is that of triangles
   }
   const std::int32_t change = left_.size() > before ? left_.back().change : 0;
-  at_corner_ = std::abs(high) > std::abs(low) ? (high > 0 ? 0 : 1) - change : low > 0 ? 0 : 1;
+  at_corner_ += std::abs(high) > std::abs(low) ? (high > 0 ? 0 : 1) - change : low > 0 ? 0 : 1;
 }
 
 /// The window's corner and sides are outside of the outline.

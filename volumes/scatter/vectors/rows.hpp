@@ -26,7 +26,8 @@ struct LightRegion {
   LightMeasure measure;
   std::vector<RowEdge> outline = {};  ///< of a polygon: outside there is one layer more
   double outline_error = 0;           ///< of where its corners are
-  double rounding = 1;  ///< a place of the window in the frame's coordinates is off so many times 2⁻⁵³
+  bool upper_half = false;  ///< of half a dome: what is below the middle is none of it, and counts one layer more
+  double rounding = 1;      ///< a place of the window in the frame's coordinates is off so many times 2⁻⁵³
 };
 LightRegion make_light_region(const visibility::Light& light, const LightWindow& window, const LightGrid& grid,
                               float scale);
@@ -65,7 +66,7 @@ class RowSum {
   /// The depth at a place of the light (in cells from its corner) less that at the corner; nothing: an edge is near,
   /// or within `off` of that.
   [[nodiscard]] std::optional<std::int32_t> relative_depth(const glm::dvec2& place, double off = 0) const;
-  /// What lies below the carrier's plane counts as one layer more. After relative_depth.
+  /// What lies below the carrier's plane counts as one layer more, and what is none of the light. After relative_depth.
   void add_horizon(const HorizonLine& line);
   /// The share that is visible; nothing if it is not proven. `parts`: gets what is visible, if given.
   [[nodiscard]] std::optional<double> visible_share(std::int32_t depth_at_corner, std::vector<Trapezoid>* parts);
@@ -99,6 +100,7 @@ class RowSum {
   [[nodiscard]] Way pass_disk(const Way& first, const Way& second) const;
   [[nodiscard]] bool is_beside(const RowEdge& edge, double error) const;
   [[nodiscard]] bool passes_by(const RowEdge& edge, double error) const;
+  void add_line(const HorizonLine& line);
   void add(RowEdge edge, double error);
   void add(const std::optional<Placed>& placed) {
     if (placed) add(placed->edge, placed->error);

@@ -1,0 +1,126 @@
+#include "visibility/dome_picture.hpp"
+
+#include <glm/geometric.hpp>
+#include <glm/trigonometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+
+namespace penumbra::visibility {
+namespace {
+
+double luminance_of(const glm::vec3& color) {
+  const glm::dvec3 c(color);
+  return 0.2126 * c.r + 0.7152 * c.g + 0.0722 * c.b;
+}
+
+/// Of `up_to`, sums that grow: the first that is more than `share` of the last, and how far into its step that is.
+struct Step {
+  std::size_t index = 0;
+  double within = 0;  // [0, 1)
+};
+Step step_at(const std::vector<double>& up_to, double share) {
+  const double wanted = share * up_to.back();
+  auto found = std::upper_bound(up_to.begin(), up_to.end(), wanted);
+  if (found == up_to.end()) found = std::lower_bound(up_to.begin(), up_to.end(), up_to.back());
+  const double before = found == up_to.begin() ? 0 : *(found - 1);
+  return {static_cast<std::size_t>(found - up_to.begin()),
+          std::clamp((wanted - before) / (*found - before), 0.0, 1 - 0x1p-53)};
+}
+
+/// Heights of the upper and lower end of row `row` of `count`, above the horizon if only that counts.
+struct Heights {
+  double upper = 1, lower = -1;
+};
+Heights heights_of(std::size_t row, std::size_t count, bool half) {
+  const auto at = [&](std::size_t border) {
+    if (border == 0) return 1.0;
+    if (border == count) return -1.0;
+    if (2 * border == count) return 0.0;
+    return std::cos(std::numbers::pi * static_cast<double>(border) / static_cast<double>(count));
+  };
+  const Heights heights{at(row), at(row + 1)};
+  return half ? Heights{std::max(heights.upper, 0.0), std::max(heights.lower, 0.0)} : heights;
+}
+
+}  // namespace
+
+glm::dvec3 DomeFrame::direction(const SkyPlace& place) const {
+  const double angle = 2 * std::numbers::pi * (place.turn - 0.5);
+  const double flat = std::sqrt(std::max(0.0, (1 - place.height) * (1 + place.height)));
+  return flat * (std::cos(angle) * ahead + std::sin(angle) * right) + place.height * up;
+}
+
+SkyPlace DomeFrame::place(const glm::dvec3& direction) const {
+  const glm::dvec3 d = glm::normalize(direction);
+  const double angle = std::atan2(glm::dot(d, right), glm::dot(d, ahead));
+  return {std::clamp(glm::dot(d, up), -1.0, 1.0), 0.5 + angle / (2 * std::numbers::pi)};
+}
+
+DomeFrame dome_frame(const glm::dvec3& up, double degrees) {
+  DomeFrame frame;
+  const double length = glm::length(up);
+  frame.up = up / length;
+  const glm::dvec3& c = frame.up;
+  // The shortest turn from +Y to c (Rodrigues, with axis Y × c = (c.z, 0, −c.x)), of +X and of −Z.
+  if (c.y > -1 + 0x1p-40) {
+    const double k = 1 / (1 + c.y);
+    frame.right = {1 - k * c.x * c.x, -c.x, -k * c.x * c.z};
+    frame.ahead = {k * c.x * c.z, c.z, k * c.z * c.z - 1};
+  } else {
+    frame.right = {1, 0, 0};
+    frame.ahead = {0, 0, 1};
+  }
+  if (degrees == 0) return frame;
+  const double turn = glm::radians(std::remainder(degrees, 360.0)), cosine = std::cos(turn), sine = std::sin(turn);
+  const glm::dvec3 right = frame.right, ahead = frame.ahead;
+  frame.right = cosine * right + sine * ahead;
+  frame.ahead = cosine * ahead - sine * right;
+  return frame;
+}
+
+std::size_t sky_texel(const scenes::Texture& picture, const SkyPlace& place) {
+  const auto cell = [](double share, std::uint32_t count) {
+    return static_cast<std::size_t>(std::clamp(std::floor(share * count), 0.0, static_cast<double>(count - 1)));
+  };
+  const std::size_t row = cell(std::acos(place.height) / std::numbers::pi, picture.height);
+  return row * picture.width + cell(place.turn, picture.width);
+}
+
+DomeSamples dome_samples(const scenes::Texture* picture, bool half, const std::vector<glm::dvec2>& unit) {
+  const std::size_t height = picture != nullptr ? picture->height : 1, width = picture != nullptr ? picture->width : 1;
+  const auto luminance = [&](std::size_t row, std::size_t x) {
+    return picture != nullptr ? luminance_of(picture->texels[row * width + x]) : 1.0;
+  };
+  DomeSamples samples;
+  std::vector<double> rows;  // of rows up to each, ∫ luminance dω
+  for (std::size_t row = 0; row < height; ++row) {
+    const auto [upper, lower] = heights_of(row, height, half);
+    double sum = 0;
+    for (std::size_t x = 0; x < width; ++x) sum += luminance(row, x);
+    samples.power += 2 * std::numbers::pi * (upper - lower) * sum / static_cast<double>(width);
+    rows.push_back(samples.power);
+  }
+  if (!(samples.power > 0)) return samples;
+  std::vector<std::vector<double>> columns(height);  // of rows that are asked for, up to each texel
+  for (const glm::dvec2& at : unit) {
+    const auto [row, down] = step_at(rows, at.y);
+    std::vector<double>& sums = columns[row];
+    if (sums.empty()) {
+      double sum = 0;
+      for (std::size_t x = 0; x < width; ++x) sums.push_back(sum += luminance(row, x));
+    }
+    const auto [x, across] = step_at(sums, at.x);
+    const auto [upper, lower] = heights_of(row, height, half);
+    samples.places.push_back(
+        {upper + down * (lower - upper), (static_cast<double>(x) + across) / static_cast<double>(width)});
+    if (picture == nullptr) continue;
+    const glm::vec3& texel = picture->texels[row * width + x];
+    samples.colors.push_back(glm::vec3(glm::dvec3(texel) / luminance_of(texel)));
+  }
+  return samples;
+}
+
+}  // namespace penumbra::visibility
