@@ -76,7 +76,7 @@ LightMethod choose(const Light& light, const SceneFloats& scene, const MethodWis
   LightMethod chosen{describe_method(method.name, options), std::move(options), {}};
   const MethodDescription* nearer = nullptr;  // what does such lights, where they are nearer
   if (wish.samples && wish.method.empty()) nearer = &default_method(light);
-  if (nearer != nullptr && nearer->name != method.name) {
+  if (nearer != nullptr && nearer->name != method.name && !can_span(nearer->span, light, scene)) {
     chosen.note = note_of_span(
         light, nearer->name, chosen.description.gives_area() ? method.name + ", without light samples," : method.name);
   } else if (!wish.samples && !chosen.description.counts_light_samples() && !chosen.description.gives_area()) {

@@ -166,7 +166,20 @@ bool can_do(const MethodDescription& method, const std::vector<Light>& lights) {
   });
 }
 
+namespace {
+
+/// Are rays sooner done than geometry? Never of a light that a plane has a picture of. All around p there are a mesh's
+/// edges on every side, whatever the number of light samples, and so many rays cost as much as there are of them:
+/// measured, they meet at about 40 triangles a light sample (docs/domes.md).
+bool rays_are_quicker(const Light& light, const visibility::SceneFloats* scene) {
+  constexpr std::size_t kTriangles = 32;  // a light sample
+  return light.dome && scene != nullptr && scene->triangles.size() > kTriangles * light.sample_count();
+}
+
+}  // namespace
+
 const MethodDescription& default_method(const Light& light, const visibility::SceneFloats* scene) {
+  const bool by_rays = rays_are_quicker(light, scene);
   const MethodDescription *rays = nullptr, *areas = nullptr;
   bool refused = false;  // is there one that does such lights where they are nearer?
   for (const MethodDescription* method : all_methods()) {
@@ -174,6 +187,7 @@ const MethodDescription& default_method(const Light& light, const visibility::Sc
     // A hard shadow of the light's centre is no answer where rays give one, nor is what takes longer than rays.
     if (method->output == visibility::Output::scalar || method->on_request) continue;
     const bool holds = scene == nullptr || visibility::can_span(method->span, light, *scene);
+    if (method->family == Family::geometry && by_rays) continue;
     if (method->family == Family::geometry && !refused) {
       if (holds) return *method;
       refused = true;

@@ -1,7 +1,13 @@
-# Domes: every method that does them against closed forms, against one another and against the exact decision. No device.
+# Domes: every method that does them against closed forms, against one another and against the exact decision; and as a user
+# meets them. No device.
 penumbra_test(domes
   SOURCES
   agreement/domes.cpp
   analytic/dome_closed_forms.cpp
+  cli/domes.cpp
+  cli/program.cpp
   unit/dome_samples.cpp
-  LIBRARIES penumbra_volumes penumbra_vsm penumbra_reference penumbra_compare penumbra_scenes)
+  LIBRARIES penumbra_app penumbra_volumes penumbra_vsm penumbra_reference penumbra_compare penumbra_scenes
+            nlohmann_json::nlohmann_json)
+target_compile_definitions(domes_test PRIVATE PENUMBRA_PROGRAM="$<TARGET_FILE:penumbra>")
+add_dependencies(domes_test penumbra)

@@ -63,7 +63,7 @@ TEST_F(StudioCommands, OptionsChooseIt) {
 
 TEST_F(StudioCommands, WhatCannotBeMeantIsRefused) {
   for (const char* light : {"cube:0,1,0:1", "rectangle:0,1:1", "sphere:0,1,0:0", "sun:0,0,0:1", "sun:0,-1,0:180",
-                            "dome", "rectangle:0,1,nan:1"}) {
+                            "dome:0,1,0:1", "rectangle:0,1,nan:1"}) {
     const Outcome outcome = render({"--add-light", light});
     EXPECT_EQ(outcome.code, 2) << light;
     EXPECT_THAT(outcome.err, HasSubstr("--add-light")) << light;

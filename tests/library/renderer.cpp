@@ -175,6 +175,8 @@ TEST_F(Library, StaysUsableAfterErrors) {
   EXPECT_THROW(scene.set_light("moon", Sphere{{0, 1, 0}, 1}), UsageError);
   EXPECT_THROW(scene.set_light("key", Sphere{{0, 1, 0}, -1}), InputError);
   EXPECT_THROW(scene.add_light("key", Sphere{{0, 1, 0}, 1}), UsageError);
+  EXPECT_THROW(scene.set_light("key", Dome{.image = "none.hdr"}), InputError);
+  EXPECT_THROW(scene.set_light("key", Dome{.up = {0, 0, 0}}), InputError);
   EXPECT_THROW(scene.set_camera({.eye = {0, 0, 0}, .target = {0, 0, 0}}), InputError);
   EXPECT_THROW(scene.set_transform(scene.mesh("wedge"), {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1}), InputError);
   const std::array<Vector, 3> corners = {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}};

@@ -184,6 +184,18 @@ class Module(unittest.TestCase):
         renderer.set_light("panel", kind="sphere", center=(0, 3, 0), radius=0.25)
         self.assertEqual(renderer.scene.light("panel")["kind"], "sphere")
 
+    def test_domes(self):
+        renderer = penumbra.Renderer(penumbra.load(LIGHTS))
+        renderer.scene.add_light("sky", "dome", half=True, radiance=(1, 1, 1))
+        self.assertEqual(renderer.scene.light("sky")["half"], True)
+        v = renderer.render(size=(24, 16), light="sky").V
+        self.assertGreater(((v > 0) & (v < 1)).mean(), 0.1)
+        renderer.set_light("sky", rotate=30)  # of one radiance that changes nothing
+        np.testing.assert_array_equal(renderer.render(size=(24, 16), light="sky").V, v)
+        with self.assertRaisesRegex(penumbra.InputError, "none.hdr"):
+            renderer.set_light("sky", image="none.hdr")
+        self.assertEqual(renderer.scene.light("sky")["image"], "")
+
     def test_transform_of_arrays(self):
         scene = board_over_floor()
         turned = json.loads(json.dumps(scene, default=lambda a: a.tolist()))

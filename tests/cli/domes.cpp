@@ -1,0 +1,211 @@
+// Domes as a user meets them: what `render` gives by default, files that hold their light samples, pictures and which
+// way these look, refusals.
+
+#include "tests/cli/program.hpp"
+
+#include "base/exr.hpp"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace penumbra::tests {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+
+class DomeCommands : public ProgramTest {
+ protected:
+  /// A floor with a wall at x = 1, seen from above, under this light.
+  void scene(const std::string& light) const {
+    write("scene.json", R"({"format": "penumbra-scene/1", "size": [24, 16],
+      "camera": {"eye": [0, 6, 0.01], "target": [0, 0, 0], "verticalFov": 50},
+      "meshes": [
+        {"name": "floor", "quad": {"center": [0, 0, 0], "halfU": [2, 0, 0], "halfV": [0, 0, -2]}, "color": [0.5, 0.25, 0.75]},
+        {"name": "wall", "quad": {"center": [1, 2, 0], "halfU": [0, 2, 0], "halfV": [0, 0, 8]}}],
+      "lights": [)" + light +
+                            "]}");
+  }
+  [[nodiscard]] Outcome render(std::vector<std::string> more) const {
+    std::vector<std::string> arguments = {"render",        path("scene.json"), "-o",
+                                          path("out.exr"), "--stats",          path("stats.json")};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run(arguments);
+  }
+  [[nodiscard]] ExrFile image() const { return read_exr(path("out.exr")); }
+  [[nodiscard]] json stats() const { return json::parse(read("stats.json")); }
+  /// A Radiance picture of 8 by 4 black pixels, but for one: 1 in red, green and blue.
+  void sky(std::size_t column, std::size_t row) const {
+    std::string text = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 4 +X 8\n";
+    for (std::size_t i = 0; i < 32; ++i)
+      text += i == row * 8 + column ? std::string("\x80\x80\x80\x81", 4) : std::string(4, '\0');
+    write("sky.hdr", text);
+  }
+};
+
+TEST_F(DomeCommands, OfOneRadianceAreExactByDefault) {
+  scene(R"({"name": "sky", "dome": {"half": true}, "radiance": [2, 2, 2]})");
+  ASSERT_EQ(render({}).code, 0);
+  EXPECT_EQ(stats().at("method"), "edge-scatter");
+  EXPECT_EQ(stats().at("lights").at(0).at("quantity"), "area");
+  const ExrFile by_rows = image();
+  ASSERT_EQ(render({"--method", "exact"}).code, 0);
+  const ExrFile exact = image();
+  for (std::size_t i = 0; i < exact.floats.at("V").size(); ++i) {
+    EXPECT_NEAR(by_rows.floats.at("V")[i], exact.floats.at("V")[i], 2e-7);
+    EXPECT_NEAR(by_rows.floats.at("R")[i], exact.floats.at("R")[i], 1e-6);
+    if (exact.floats.at("A")[i] == 0) {
+      EXPECT_EQ(exact.floats.at("V")[i], 1);
+      EXPECT_EQ(exact.floats.at("R")[i], 0);  // no geometry, and not visible
+    } else if (std::abs(exact.floats.at("N.Y")[i] - 1) < 1e-6F) {
+      EXPECT_NEAR(exact.floats.at("R")[i], 2 * 0.5 * exact.floats.at("V")[i], 1e-6);  // irradiance / π times the colour
+    }
+  }
+}
+
+/// --bits has the directions: V of a floor that looks up is the sum of their heights, visible over all above.
+TEST_F(DomeCommands, BitsHoldDirections) {
+  scene(R"({"name": "sky", "dome": {"rotate": 30}})");
+  ASSERT_EQ(render({"--method", "view-sample", "--light-samples", "100", "--sample-pattern", "sobol", "--bits",
+                    path("out.bits")})
+                .code,
+            0);
+  const ExrFile exr = image();
+  const std::string bits = read("out.bits");
+  const std::string line = bits.substr(0, bits.find('\n'));
+  EXPECT_EQ(line, "penumbra-bits/1 24 16 100");
+  std::size_t at = line.size() + 1 + 3 * sizeof(double);
+  const auto next = [&](auto& value) {
+    std::memcpy(&value, bits.data() + at, sizeof(value));
+    at += sizeof(value);
+  };
+  std::vector<std::array<float, 3>> directions(100);
+  for (auto& d : directions) {
+    next(d);
+    EXPECT_NEAR(std::hypot(d[0], d[1], d[2]), 1, 1e-6);
+  }
+  std::size_t partly = 0;
+  for (std::size_t i = 0; i < 24 * 16; ++i) {
+    std::array<float, 3> p{};
+    std::int32_t triangle = 0;
+    std::array<std::uint32_t, 4> mask{};
+    next(p), next(triangle), next(mask);
+    if (triangle < 0 || std::abs(exr.floats.at("N.Y")[i] - 1) > 1e-6F) continue;
+    double some = 0, all = 0;
+    for (std::size_t j = 0; j < 100; ++j) {
+      const double height = std::max(0.0F, directions[j][1]);
+      all += height;
+      if ((mask[j / 32] >> j % 32 & 1U) != 0) {
+        some += height;
+        EXPECT_GT(directions[j][1], 0) << "a direction below the horizon is not visible";
+      }
+    }
+    EXPECT_NEAR(exr.floats.at("V")[i], some / all, 1e-6);
+    partly += some > 0 && some < all ? 1 : 0;
+  }
+  EXPECT_GT(partly, 50U);
+}
+
+/// What is right of the picture's middle lies along +X, where the wall is; turned by half a turn, it does not.
+TEST_F(DomeCommands, APictureLooksWhereItIsTurned) {
+  sky(6, 1);  // turns from 3/4 to 7/8: from +X toward +Z; 0 to 45 degrees high
+  const auto mean_v = [&](const std::string& dome) {
+    scene(fmt::format(R"({{"name": "sky", "dome": {}}})", dome));
+    const Outcome outcome = render({});
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr("no method gives its exact area"));
+    EXPECT_EQ(stats().at("lightSamples"), 256);
+    const ExrFile exr = image();
+    double sum = 0, count = 0;
+    for (std::size_t i = 0; i < exr.floats.at("V").size(); ++i) {
+      if (exr.floats.at("A")[i] == 0 || exr.floats.at("P.X")[i] > 0.9F || exr.floats.at("P.Y")[i] > 0) continue;
+      sum += exr.floats.at("V")[i];
+      ++count;
+    }
+    return sum / count;
+  };
+  EXPECT_LT(mean_v(R"({"image": "sky.hdr"})"), 0.1);
+  EXPECT_EQ(mean_v(R"({"image": "sky.hdr", "rotate": 180})"), 1);
+  EXPECT_EQ(mean_v(R"({"image": "sky.hdr", "rotate": 90})"), 1);  // toward −Z
+  // A texel's radiance 1 over its solid angle, at the mean height: what the floor gets of it.
+  const double pi = 3.14159265358979;
+  const double irradiance = pi / 4 * (0.5 - 0) / 2 * 1;  // ∫ h dh dφ, h from 0 to cos 45°, φ over an eighth of a turn
+  const ExrFile exr = image();
+  EXPECT_NEAR(*std::ranges::max_element(exr.floats.at("B")), 10 * 0.75 * irradiance / pi, 0.05);
+}
+
+TEST_F(DomeCommands, AVisibleOneIsTheBackground) {
+  scene(R"({"name": "sky", "dome": {}, "radiance": [3, 2, 1], "visible": true})");
+  ASSERT_EQ(run({"render", path("scene.json"), "-o", path("out.exr"), "--camera", "0,6,0.01:0,0,0:100"}).code, 0);
+  const ExrFile exr = image();
+  std::size_t background = 0;
+  for (std::size_t i = 0; i < exr.floats.at("A").size(); ++i) {
+    if (exr.floats.at("A")[i] != 0) continue;
+    ++background;
+    EXPECT_EQ(exr.floats.at("R")[i], 3);
+    EXPECT_EQ(exr.floats.at("B")[i], 1);
+  }
+  EXPECT_GT(background, 10U);
+}
+
+TEST_F(DomeCommands, GoThroughJsonWithTheirPicture) {
+  sky(6, 1);
+  scene(R"({"name": "sky", "dome": {"image": "sky.hdr", "rotate": 20, "half": true}, "visible": true})");
+  ASSERT_EQ(render({}).code, 0);
+  const std::vector<float> before = image().floats.at("R");
+  ASSERT_EQ(run({"convert", path("scene.json"), "-o", path("again.json")}).code, 0);
+  ASSERT_EQ(run({"render", path("again.json"), "-o", path("out.exr")}).code, 0);
+  EXPECT_EQ(image().floats.at("R"), before);
+  const Outcome glb = run({"convert", path("scene.json"), "-o", path("again.glb")});
+  EXPECT_EQ(glb.code, 3);
+  EXPECT_THAT(glb.err, HasSubstr("dome"));
+}
+
+TEST_F(DomeCommands, WhatCannotDoThemSaysSo) {
+  scene(R"({"name": "sky", "dome": {}})");
+  for (const char* method :
+       {"view-sample-planar", "alias-free", "hierarchical-penumbra", "view-sample:variant=sintorn"}) {
+    const Outcome outcome = render({"--method", method});
+    EXPECT_EQ(outcome.code, 3) << method;
+    EXPECT_THAT(outcome.err, HasSubstr("light \"sky\" is a dome")) << method;
+  }
+  EXPECT_EQ(run({"wedges", path("scene.json"), "--validate"}).code, 3);
+  sky(6, 1);
+  scene(R"({"name": "sky", "dome": {"image": "sky.hdr"}})");
+  const Outcome exact = render({"--method", "exact"});
+  EXPECT_EQ(exact.code, 3);
+  EXPECT_THAT(exact.err, HasSubstr("dome with a picture"));
+  ASSERT_EQ(render({"--add-light", "dome", "--light", "dome"}).code, 0);
+}
+
+TEST_F(DomeCommands, BadOnesAreRefusedWithTheirPlace) {
+  sky(6, 3);
+  write("text.hdr", "no picture");
+  const std::vector<std::pair<std::string, std::string>> cases{
+      {R"({"dome": {"image": "none.hdr"}})", "none.hdr"},
+      {R"({"dome": {"image": "text.hdr"}})", "no Radiance"},
+      {R"({"dome": {"image": "sky.hdr", "half": true}})", "black above the horizon"},
+      {R"({"dome": {"up": [0, 0, 0]}})", "up is zero"},
+      {R"({"dome": {"radius": 1}})", "radius"},
+      {R"({"sun": {"direction": [0, -1, 0], "angle": 1}, "visible": true})", "only a \"dome\" can be visible"},
+  };
+  for (const auto& [light, words] : cases) {
+    scene(light);
+    const Outcome outcome = render({});
+    EXPECT_EQ(outcome.code, 3) << light;
+    EXPECT_THAT(outcome.err, HasSubstr(words)) << light;
+  }
+}
+
+}  // namespace
+}  // namespace penumbra::tests
