@@ -136,12 +136,12 @@ TEST_F(DomeCommands, APictureLooksWhereItIsTurned) {
   };
   EXPECT_LT(mean_v(R"({"image": "sky.hdr"})"), 0.1);
   EXPECT_EQ(mean_v(R"({"image": "sky.hdr", "rotate": 180})"), 1);
-  EXPECT_EQ(mean_v(R"({"image": "sky.hdr", "rotate": 90})"), 1);  // toward −Z
+  EXPECT_EQ(mean_v(R"({"image": "sky.hdr", "rotate": 270})"), 1);  // from +Z toward −X
   // A texel's radiance 1 over its solid angle, at the mean height: what the floor gets of it.
-  const double pi = 3.14159265358979;
-  const double irradiance = pi / 4 * (0.5 - 0) / 2 * 1;  // ∫ h dh dφ, h from 0 to cos 45°, φ over an eighth of a turn
+  constexpr double kTurn = 2 * 3.14159265358979;
+  const double irradiance = kTurn / 8 * 0.25;  // ∫ h dh dφ, h from 0 to cos 45°, φ over an eighth of a turn
   const ExrFile exr = image();
-  EXPECT_NEAR(*std::ranges::max_element(exr.floats.at("B")), 10 * 0.75 * irradiance / pi, 0.05);
+  EXPECT_NEAR(*std::ranges::max_element(exr.floats.at("B")), 10 * 0.75 * irradiance / (kTurn / 2), 0.05);
 }
 
 TEST_F(DomeCommands, AVisibleOneIsTheBackground) {

@@ -109,7 +109,7 @@ const BadScene kStructure[] = {
      R"(/meshes/0: the keys ["fit","transform"] exclude one another)"},
     {"NoLightShape", light(R"("radiance": [1,1,1])"),
      "/lights/0: expected exactly one of the keys \"rectangle\", \"disk\", \"ellipse\", \"polygon\", \"sphere\", "
-     "\"sun\", \"pieces\", found none"},
+     "\"sun\", \"dome\", \"pieces\", found none"},
     {"EmptyPieces", light(R"("pieces": [])"), "/lights/0/pieces: expected an array of 1 to 1024 pieces"},
     {"PieceOfTwoShapes",
      light(R"("pieces": [{"sphere": {"center": [0,5,0], "radius": 1}, "polygon": [[0,0,0],[1,0,0],[0,1,0]]}])"),
