@@ -79,7 +79,8 @@ std::vector<Light> light_faces(const Light& dome, bool own_samples) {
       constexpr int kSide = 8;
       const double low = face.dome->half ? 0 : -1;
       for (int k = 0; k < kSide * kSide; ++k) {
-        const glm::dvec2 unit((k % kSide + 0.5) / kSide, (k / kSide + 0.5) / kSide);
+        const int row = k / kSide, column = k % kSide;
+        const glm::dvec2 unit((column + 0.5) / kSide, (row + 0.5) / kSide);
         const glm::dvec2 st(2 * unit.x - 1, low + (1 - low) * unit.y);
         face.coordinates.push_back(st);
         face.points.push_back(glm::vec3(glm::dvec3(middle) + st.x * glm::dvec3(u) + st.y * glm::dvec3(v)) + 0.0f);

@@ -118,7 +118,7 @@ DomeSamples dome_samples(const scenes::Texture* picture, bool half, const std::v
         {upper + down * (lower - upper), (static_cast<double>(x) + across) / static_cast<double>(width)});
     if (picture == nullptr) continue;
     const glm::vec3& texel = picture->texels[row * width + x];
-    samples.colors.push_back(glm::vec3(glm::dvec3(texel) / luminance_of(texel)));
+    samples.colors.emplace_back(glm::dvec3(texel) / luminance_of(texel));
   }
   return samples;
 }

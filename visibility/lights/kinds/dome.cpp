@@ -76,9 +76,10 @@ void make_dome(const scenes::LightShape& shape, const LightBuilder& to) {
 
 bool is_dome_above_horizon(const UnshadowedLight& seen) {
   if (seen.light().dome->face < 0) return true;  // what is below plays no part in V
-  const auto [center, u, v, height, height_u, height_v, side] = seen.frame();
-  return std::ranges::all_of(dome_face_corners(seen.light()),
-                             [&](const glm::dvec2& st) { return height + st.x * height_u + st.y * height_v > 0; });
+  const UnshadowedLight::Frame frame = seen.frame();
+  return std::ranges::all_of(dome_face_corners(seen.light()), [&](const glm::dvec2& st) {
+    return frame.height + st.x * frame.height_u + st.y * frame.height_v > 0;
+  });
 }
 
 double dome_whole(const UnshadowedLight& seen) {
