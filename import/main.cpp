@@ -20,6 +20,7 @@
 #include <cstdlib>
 #include <new>
 #include <optional>
+#include <span>
 #include <stdexcept>
 #include <string_view>
 
@@ -41,6 +42,7 @@ struct Arguments {
   std::uint64_t milliseconds = 0, bytes = 0, asker = 0;
   const char* file = nullptr;
   scenes::ReadOptions options;
+  std::optional<double> uv;
 };
 
 bool parse(std::string_view text, std::uint64_t& value) {
@@ -67,7 +69,7 @@ bool parse(int argc, char** argv, Arguments& arguments) {
     if (parse_number(flag, "--lamp-radius=", arguments.options.lamp_radius) ||
         parse_number(flag, "--sun-angle=", arguments.options.sun_angle) ||
         parse_number(flag, "--lumens-per-watt=", arguments.options.lumens_per_watt) ||
-        parse_number(flag, "--time=", arguments.options.time)) {
+        parse_number(flag, "--time=", arguments.options.time) || parse_number(flag, "--uv=", arguments.uv)) {
       continue;
     }
     if (constexpr std::string_view kClip = "--clip="; flag.starts_with(kClip)) {
@@ -90,15 +92,16 @@ struct Answer {
   mesh::ImportedMesh mesh;
   scenes::Scene scene;
   scenes::Texture texture;
+  scenes::LightmapPlaces lightmap;
 };
 
 Answer message(mesh::HelperStatus status) {
-  return {mesh::answer_head(status), {}, {}, {}, {}};
+  return {mesh::answer_head(status), {}, {}, {}, {}, {}};
 }
 
 mesh::ImportedMesh read_mesh(const mesh::InputFile& input, const Arguments& arguments) {
   if (scenes::is_gltf(input.name)) return scenes::import_gltf_mesh(input, arguments.options);
-  return mesh::read_mesh(input);
+  return mesh::read_mesh(input, arguments.uv.has_value());
 }
 
 Answer answer_for(const Arguments& arguments) {
@@ -109,9 +112,14 @@ Answer answer_for(const Arguments& arguments) {
     if (arguments.kind == "mesh") {
       answer.mesh = read_mesh(input, arguments);
       mesh::put_mesh(answer.payload, answer.mesh);
+      if (arguments.uv) answer.payload.put_array(std::span<const glm::dvec2>(answer.mesh.places));
     } else if (arguments.kind == "gltf") {
-      answer.scene = scenes::import_gltf(input, arguments.options);
+      scenes::ReadOptions options = arguments.options;
+      answer.lightmap.set = static_cast<std::uint32_t>(std::clamp(arguments.uv.value_or(0), 0.0, 1e6));
+      if (arguments.uv) options.lightmap = &answer.lightmap;
+      answer.scene = scenes::import_gltf(input, options);
       scenes::put_scene(answer.payload, answer.scene);
+      if (arguments.uv) answer.payload.put_array(std::span<const glm::dvec2>(answer.lightmap.places));
     } else {
       answer.texture = arguments.kind == "sky" ? scenes::read_sky_file(input) : scenes::read_texture_file(input);
       scenes::put_texture(answer.payload, answer.texture);

@@ -3,12 +3,16 @@
 #include "import/faces.hpp"
 #include "import/text.hpp"
 
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
+#include <map>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -25,7 +29,7 @@ constexpr std::array<std::string_view, 13> kFreeForm = {"curv", "curv2", "surf",
 
 class ObjReader {
  public:
-  explicit ObjReader(const std::string& file) : file_(file), faces_(mesh_.soup) {}
+  ObjReader(const std::string& file, bool with_places) : file_(file), with_places_(with_places), faces_(mesh_.soup) {}
 
   ImportedMesh read(std::string_view text) {
     std::string_view line;
@@ -54,6 +58,7 @@ class ObjReader {
     }
     add_faces();
     faces_.require_all(statements_, file_);
+    if (!places_.empty()) place_vertices();
     settle_unused_vertices(mesh_, [&](std::uint32_t v) { refuse_vertex(v); });
     if (mesh_.soup.triangles.empty()) {
       throw InputError("{}: there are no triangles in it ({})", file_, faces_.instead_of_surfaces());
@@ -97,6 +102,7 @@ class ObjReader {
     if (keyword == "p" || keyword == "l") return skip(keyword == "p", rest);
     normals_ += keyword == "vn" ? 1 : 0;
     uvs_ += keyword == "vt" ? 1 : 0;
+    if (with_places_ && keyword == "vt") return place(rest);
     if (std::ranges::find(kSilent, keyword) != kSilent.end()) return;
     if (std::ranges::find(kFreeForm, keyword) != kFreeForm.end()) {
       ++free_form_;
@@ -133,6 +139,56 @@ class ObjReader {
     mesh_.soup.positions.push_back(position);
   }
 
+  /// Texture coordinates; what is no number, or is missing, is kNoPlace.
+  void place(std::string_view line) {
+    const auto u = parse_real(take_word(line)), v = parse_real(take_word(line));
+    const bool is_place = u && v && std::abs(*u) < 1e6 && std::abs(*v) < 1e6;
+    places_.push_back(is_place ? glm::dvec2(*u, *v) : kNoPlace);
+  }
+
+  /// The number, from 0, of the texture coordinates that a corner names after its first slash; or nothing.
+  [[nodiscard]] std::int64_t place_of_corner(std::string_view word) const {
+    const std::size_t slash = word.find('/');
+    if (slash == std::string_view::npos) return kPlaceless;
+    const std::string_view rest = word.substr(slash + 1);
+    const auto index = parse_number<std::int64_t>(rest.substr(0, rest.find('/')));
+    if (!index || *index == 0) return kPlaceless;
+    return *index > 0 ? *index - 1 : static_cast<std::int64_t>(places_.size()) + *index;
+  }
+
+  /// Gives each position its texture coordinates; of a vertex with several, each but the first is a new position.
+  void place_vertices() {
+    TriangleSoup& soup = mesh_.soup;
+    constexpr std::int64_t kNotYet = -2;
+    std::vector<std::int64_t> first(soup.positions.size(), kNotYet);
+    std::map<std::pair<std::uint32_t, std::int64_t>, std::uint32_t> others;
+    mesh_.places.assign(soup.positions.size(), kNoPlace);
+    const auto value = [&](std::int64_t number) {
+      const bool is_there = number >= 0 && static_cast<std::uint64_t>(number) < places_.size();
+      return is_there ? places_[static_cast<std::size_t>(number)] : kNoPlace;
+    };
+    for (std::size_t i = 0; i < soup.triangles.size(); ++i) {
+      const std::size_t face = soup.source_face[i], begin = face == 0 ? 0 : face_ends_[face - 1];
+      const auto corners = std::span(corners_).subspan(begin, face_ends_[face] - begin);
+      for (std::uint32_t& vertex : soup.triangles[i]) {
+        const auto corner = std::ranges::find(corners, vertex) - corners.begin();
+        const std::int64_t number = corner_places_[begin + static_cast<std::size_t>(corner)];
+        if (first[vertex] == kNotYet) {
+          first[vertex] = number;
+          mesh_.places[vertex] = value(number);
+        }
+        if (first[vertex] == number) continue;
+        const auto [other, is_new] =
+            others.try_emplace({vertex, number}, static_cast<std::uint32_t>(soup.positions.size()));
+        if (is_new) {
+          soup.positions.push_back(glm::dvec3(soup.positions[vertex]));
+          mesh_.places.push_back(value(number));
+        }
+        vertex = other->second;
+      }
+    }
+  }
+
   /// The corner's vertex, numbered from 0; texture coordinates and normals after a slash are not looked at.
   std::uint32_t corner(std::string_view word) {
     const auto index = parse_number<std::int64_t>(word.substr(0, word.find('/')));
@@ -156,7 +212,10 @@ class ObjReader {
   void face(std::string_view line) {
     const std::size_t first = corners_.size();
     ++statements_;
-    for (std::string_view word; !(word = take_word(line)).empty();) corners_.push_back(corner(word));
+    for (std::string_view word; !(word = take_word(line)).empty();) {
+      corners_.push_back(corner(word));
+      if (with_places_) corner_places_.push_back(place_of_corner(word));
+    }
     face_ends_.push_back(corners_.size());
     if (corners_.size() - first > std::numeric_limits<std::uint32_t>::max()) fail("too many corners");
   }
@@ -188,7 +247,7 @@ class ObjReader {
       if (count > 0) ignored += fmt::format("{}{} {}", ignored.empty() ? "" : ", ", count, what);
     };
     mention(normals_, "vertex normals");
-    mention(uvs_, "texture coordinates");
+    if (!with_places_) mention(uvs_, "texture coordinates");
     mention(colors_, "vertex colours");
     if (!ignored.empty()) mesh_.notes.push_back("ignored: " + ignored);
     if (longer_ > 0)
@@ -205,11 +264,16 @@ class ObjReader {
     }
   }
 
+  static constexpr std::int64_t kPlaceless = -1;
+
   const std::string& file_;
+  bool with_places_;
   ImportedMesh mesh_;
   FaceCollector faces_;
   std::vector<std::uint32_t> corners_;                       ///< of all faces, one after the other
   std::vector<std::size_t> face_ends_;                       ///< into `corners_`
+  std::vector<glm::dvec2> places_;                           ///< texture coordinates, if they are wanted
+  std::vector<std::int64_t> corner_places_;                  ///< of each of `corners_`, a number of these, or none
   std::vector<std::pair<std::uint32_t, std::size_t>> wild_;  ///< vertices that are not finite, and their lines
   std::uint64_t statements_ = 0;                             ///< that are faces
   std::size_t line_number_ = 0, highest_line_ = 0;
@@ -222,8 +286,8 @@ class ObjReader {
 
 }  // namespace
 
-ImportedMesh read_obj_text(std::string_view text, const std::string& file) {
-  return ObjReader(file).read(text);
+ImportedMesh read_obj_text(std::string_view text, const std::string& file, bool with_places) {
+  return ObjReader(file, with_places).read(text);
 }
 
 }  // namespace penumbra::mesh

@@ -13,6 +13,7 @@ namespace penumbra::mesh {
 /// square of the number of groups.
 ///
 /// What is not a surface is counted in the notes. Throws InputError with the line.
-ImportedMesh read_obj_text(std::string_view text, const std::string& file);
+/// `with_places`: ImportedMesh::places too, where faces name texture coordinates.
+ImportedMesh read_obj_text(std::string_view text, const std::string& file, bool with_places = false);
 
 }  // namespace penumbra::mesh

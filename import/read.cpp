@@ -191,11 +191,12 @@ void note_material_libraries(std::string_view text, const std::filesystem::path&
   }
 }
 
-ImportedMesh read_as(const std::string& extension, const InputFile& input, const std::string& content) {
+ImportedMesh read_as(const std::string& extension, const InputFile& input, const std::string& content,
+                     bool with_places) {
   const std::string file = input.name.string();
   if (extension == ".obj") {
     note_material_libraries(content, std::filesystem::absolute(input.name).parent_path());
-    return read_obj_text(content, file);
+    return read_obj_text(content, file, with_places);
   }
   if (extension == ".ply") return read_ply(content, file);
   if (extension == ".off") return read_off_text(content, file);
@@ -216,12 +217,12 @@ ImportedMesh read_as(const std::string& extension, const InputFile& input, const
 
 }  // namespace
 
-ImportedMesh read_mesh(const InputFile& input) {
+ImportedMesh read_mesh(const InputFile& input, bool with_places) {
   const std::string file = input.name.string(), extension = lower_extension(input.name);
   const std::string content = utf8_content(read_content(input.content.get(), file), extension, file);
   const auto looks_like = sniff(content);
   try {
-    return read_as(extension, input, content);
+    return read_as(extension, input, content, with_places);
   } catch (const InputError& error) {
     if (!looks_like || *looks_like == extension) throw;
     throw InputError("{}; its first bytes look like a {} file: is its name wrong?", error.what(), *looks_like);

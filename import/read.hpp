@@ -8,6 +8,7 @@ namespace penumbra::mesh {
 /// Reads a mesh file (all but glTF, which the scenes' reader does) in this very process: what the import helper does
 /// under its limits. Nobody else should call it, because hostile files crash, hang and exhaust the libraries behind it.
 /// Throws InputError; std::bad_alloc.
-ImportedMesh read_mesh(const InputFile& input);
+/// `with_places`: ImportedMesh::places, of OBJ files.
+ImportedMesh read_mesh(const InputFile& input, bool with_places = false);
 
 }  // namespace penumbra::mesh

@@ -3,6 +3,8 @@
 #include "mesh/input_file.hpp"
 #include "mesh/triangle_soup.hpp"
 
+#include <glm/vec2.hpp>
+
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
@@ -11,10 +13,15 @@
 
 namespace penumbra::mesh {
 
+/// Far outside of any picture: of a position without texture coordinates.
+inline constexpr glm::dvec2 kNoPlace{-1e9};
+
 struct ImportedMesh {
   TriangleSoup soup;                           ///< one object (number 0), node transforms applied; never empty
   std::vector<std::string> notes;              ///< what was skipped or changed on the way, each with its count
   std::vector<std::filesystem::path> sources;  ///< files that were opened on the way, the mesh's own among them
+  /// Texture coordinates of each position, v upward, or kNoPlace, where they were asked for; empty: the file has none.
+  std::vector<glm::dvec2> places = {};
 };
 
 /// What a foreign file may cost before it is refused.
@@ -43,6 +50,9 @@ struct GltfMeshOptions {
 };
 
 /// Reads a mesh file that has been opened already.
-ImportedMesh import_mesh(const InputFile& input, const ImportLimits& limits = {}, GltfMeshOptions gltf = {});
+/// `with_places`: OBJ files' texture coordinates, too; then corners of one vertex that have different ones are
+/// different positions of the soup.
+ImportedMesh import_mesh(const InputFile& input, const ImportLimits& limits = {}, GltfMeshOptions gltf = {},
+                         bool with_places = false);
 
 }  // namespace penumbra::mesh

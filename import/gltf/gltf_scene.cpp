@@ -66,6 +66,11 @@ class GltfScene {
         lamps_(model, request.options, losses_),
         surfaces_(model, scene_.pictures, losses_) {
     scene_.name = request.name;
+    LightmapPlaces* const lightmap = request.options.lightmap;
+    if (lightmap == nullptr || purpose == Purpose::rest || purpose == Purpose::mesh) return;
+    lightmap->places.clear();
+    lightmap_ = &lightmap->places;
+    surfaces_.read_lightmap(lightmap->set);
   }
 
   /// What parsing left out.
@@ -122,6 +127,7 @@ class GltfScene {
     }
     count_what_came(nodes);
     complete_looks(scene_);
+    if (lightmap_ != nullptr) lightmap_->resize(scene_.soup.positions.size(), mesh::kNoPlace);
     judge_extensions(model_, is_mesh(), losses_, scene_.warnings);
     add_warnings();
     if (!lenient_) losses_.throw_refused();
@@ -257,7 +263,7 @@ class GltfScene {
               own_name);
         break;
     }
-    add_object({positions, skinned, look, placed, place}, std::move(mesh->triangles), own_name);
+    add_object({positions, skinned, look, placed, place, lightmap_}, std::move(mesh->triangles), own_name);
   }
 
   void bound(std::span<const glm::dvec3> positions, const PlacedNode& placed) {
@@ -373,6 +379,7 @@ class GltfScene {
   Losses losses_;
   PunctualLights lamps_;
   SurfaceReader surfaces_;
+  std::vector<glm::dvec2>* lightmap_ = nullptr;
   PictureMeans means_{scene_.pictures};
   UniqueNames object_names_, camera_names_, light_names_;
   std::string refused_lights_;

@@ -4,6 +4,7 @@
 #include "import/gltf/gltf_surface.hpp"
 
 #include "base/error.hpp"
+#include "mesh/import.hpp"
 #include "base/image.hpp"
 #include "base/jpeg.hpp"
 #include "base/png.hpp"
@@ -192,7 +193,18 @@ Look SurfaceReader::read(const tinygltf::Primitive& primitive, const std::string
       look.colors.push_back(color);
     }
   }
+  if (lightmap_) read_lightmap_places(owner, look);
   return look;
+}
+
+void SurfaceReader::read_lightmap_places(const Owner& owner, Look& look) {
+  const auto numbers = attribute_of(model_, owner.primitive, fmt::format("TEXCOORD_{}", *lightmap_),
+                                    {TINYGLTF_TYPE_VEC2}, owner.vertices, owner.place);
+  if (!numbers) return;
+  for (std::size_t i = 0; i < owner.vertices; ++i) {
+    const glm::dvec2 place(numbers->values[2 * i], numbers->values[2 * i + 1]);
+    look.lightmap.push_back(std::abs(place.x) < 1e6 && std::abs(place.y) < 1e6 ? place : mesh::kNoPlace);
+  }
 }
 
 std::vector<glm::dvec2> SurfaceReader::places_of(const Owner& owner, const tinygltf::TextureInfo& info, bool decides) {

@@ -6,6 +6,7 @@
 #include <glm/vec3.hpp>
 
 #include <cstddef>
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <span>
@@ -35,6 +36,7 @@ struct Look {
   std::vector<glm::vec4> colors = {};
   std::vector<glm::dvec2> places = {};           ///< in its picture
   std::vector<glm::dvec2> emission_places = {};  ///< in the picture of its emission
+  std::vector<glm::dvec2> lightmap = {};         ///< in a lightmap
 };
 
 /// What its alpha makes of a whole surface: nothing stops light (`gone`), everything does, or neither.
@@ -52,6 +54,9 @@ class SurfaceReader {
   Look read(const tinygltf::Primitive& primitive, const std::string& place, const std::string& object,
             std::size_t vertices);
 
+  /// From now on Look::lightmap is TEXCOORD_N, whatever pictures are there.
+  void read_lightmap(std::uint32_t set) { lightmap_ = set; }
+
   Opacity opacity_of(const Look& look);
 
  private:
@@ -67,6 +72,7 @@ class SurfaceReader {
     std::size_t vertices;
   };
   void read_material(const Owner& owner, Look& look);
+  void read_lightmap_places(const Owner& owner, Look& look);
   void read_emission(const Owner& owner, const std::string& place, Look& look);
   /// What of the material a diffuse surface does not show.
   void mention_unlike(const Owner& owner, const std::string& place, const Look& look);
@@ -78,6 +84,7 @@ class SurfaceReader {
   const tinygltf::Model& model_;
   std::vector<Picture>& pictures_;
   Losses& losses_;
+  std::optional<std::uint32_t> lightmap_;
   std::map<int, std::optional<std::uint32_t>> known_;  // of images
   std::map<int, std::string> unreadable_;
   std::map<std::uint32_t, AlphaRange> ranges_;  // of pictures: leaves share one by the thousand

@@ -1,6 +1,7 @@
 #include "import/gltf/gltf_triangles.hpp"
 
 #include "base/error.hpp"
+#include "mesh/import.hpp"
 
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
@@ -33,6 +34,8 @@ void add_look(Scene& scene, const PrimitiveVertices& vertices, std::uint32_t ind
   }
   if (!look.colors.empty()) put(scene.looks.colors, look.colors[index], glm::vec4(1));
   if (!look.places.empty()) put(scene.looks.places, look.places[index], glm::dvec2(0));
+  if (vertices.lightmap != nullptr && !look.lightmap.empty())
+    put(*vertices.lightmap, look.lightmap[index], mesh::kNoPlace);
 }
 
 }  // namespace

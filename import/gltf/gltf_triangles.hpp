@@ -7,6 +7,7 @@
 #include "scenes/scene.hpp"
 
 #include <glm/mat4x4.hpp>
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
 #include <cstddef>
@@ -24,7 +25,8 @@ struct PrimitiveVertices {
   const std::optional<Skinned>& skinned;  ///< nothing: the node's transform is all
   const Look& look;
   const PlacedNode& placed;
-  const std::string& place;  ///< in the file, for messages
+  const std::string& place;                     ///< in the file, for messages
+  std::vector<glm::dvec2>* lightmap = nullptr;  ///< gets Look::lightmap, of each position of the soup; may be null
 
   [[nodiscard]] const glm::dmat4& to_world(std::uint32_t vertex) const {
     return skinned ? skinned->vertices[vertex] : placed.to_world;

@@ -104,6 +104,8 @@ class Scene:
             vertices = _np.asarray(vertices, float)
             if "transform" in meshes[index]:
                 vertices = _transformed(meshes[index]["transform"], vertices)
+            if "instances" in meshes[index]:
+                vertices, faces = _instanced(meshes[index]["instances"], vertices, _np.asarray(faces))
             core.set_mesh(index, vertices, faces)
         return cls(core)
 
@@ -208,6 +210,14 @@ def _shape(kind, given):
         shape["image"] = _os.fspath(shape["image"])
     as_tuple = lambda value: value if _np.isscalar(value) else _np.asarray(value, float).tolist()
     return {key: as_tuple(value) for key, value in shape.items()}
+
+
+def _instanced(instances, vertices, faces):
+    """The mesh once for each instance: {"transform": ...}, a transform itself, or 16 numbers."""
+    transforms = [i["transform"] if isinstance(i, dict) and "transform" in i else i for i in instances]
+    copies = [_transformed(transform, vertices) for transform in transforms]
+    moved = [faces + number * len(vertices) for number in range(len(copies))]
+    return _np.concatenate(copies), _np.concatenate(moved)
 
 
 def _transformed(transform, vertices):

@@ -21,11 +21,17 @@ Scene read_gltf(const std::filesystem::path& file, const ReadOptions& options) {
   if (options.lumens_per_watt) job.flags.push_back(fmt::format("--lumens-per-watt={}", *options.lumens_per_watt));
   if (options.time) job.flags.push_back(fmt::format("--time={}", *options.time));
   for (const std::string& clip : options.clips) job.flags.push_back("--clip=" + clip);
+  if (options.lightmap != nullptr) job.flags.push_back(fmt::format("--uv={}", options.lightmap->set));
   mesh::HelperAnswer answer = mesh::run_import_helper(job, {});
   try {
     mesh::WireReader from(answer.payload());
     Scene scene = get_scene(from);
     scene.sources = std::move(answer.sources);
+    if (options.lightmap != nullptr) {
+      options.lightmap->places = from.get_array<glm::dvec2>();
+      if (options.lightmap->places.size() != scene.soup.positions.size())
+        throw mesh::WireError("not every vertex has a place");
+    }
     from.expect_end();
     return scene;
   } catch (const mesh::WireError& error) {

@@ -29,16 +29,23 @@ namespace {
 
 using nlohmann::json;
 
-mesh::TriangleSoup import_file(const SceneFile& file, const std::string& shown, const Place& place,
-                               const ReadOptions& options, Scene& scene) {
+/// A mesh with the coordinates of its positions in a lightmap, where they are wanted and there; else empty.
+struct SourceMesh {
+  mesh::TriangleSoup soup;
+  std::vector<glm::dvec2> places = {};
+};
+
+SourceMesh import_file(const SceneFile& file, const std::string& shown, const Place& place, const ReadOptions& options,
+                       Scene& scene) {
   return at_place(place, [&] {
     mesh::ImportedMesh imported = mesh::import_mesh(
-        file.input, {}, {.allow_outside = options.allow_outside, .lenient = options.lenient || !options.needs_light});
+        file.input, {}, {.allow_outside = options.allow_outside, .lenient = options.lenient || !options.needs_light},
+        options.lightmap != nullptr);
     scene.sources.push_back(file.path);
     std::ranges::copy_if(imported.sources, std::back_inserter(scene.sources),
                          [&](const std::filesystem::path& source) { return source != file.path; });
     for (const std::string& note : imported.notes) scene.warnings.push_back(fmt::format("{}: {}", shown, note));
-    return std::move(imported.soup);
+    return SourceMesh{std::move(imported.soup), from_top(std::move(imported.places))};
   });
 }
 
@@ -56,12 +63,14 @@ mesh::TriangleSoup read_triangles(const json& triangles) {
   return soup;
 }
 
-mesh::TriangleSoup read_source(const json& mesh, const Place& place, const ReadOptions& options, Scene& scene) {
-  if (mesh.contains("triangles")) return read_triangles(mesh["triangles"]);
-  if (mesh.contains("shape")) return at_place(place / "shape", [&] { return read_shape(mesh["shape"]); });
+SourceMesh read_source(const json& mesh, const Place& place, const ReadOptions& options, Scene& scene) {
+  if (mesh.contains("triangles")) return {read_triangles(mesh["triangles"])};
+  if (mesh.contains("shape")) return {at_place(place / "shape", [&] { return read_shape(mesh["shape"]); })};
   if (mesh.contains("quad")) {
     const json& quad = mesh["quad"];
-    return mesh::make_quad(read_vector(quad["center"]), read_vector(quad["halfU"]), read_vector(quad["halfV"]));
+    // The picture's lower left lies at its first corner, halfU runs to the right and halfV upward.
+    return {mesh::make_quad(read_vector(quad["center"]), read_vector(quad["halfU"]), read_vector(quad["halfV"])),
+            {{0, 1}, {1, 1}, {1, 0}, {0, 0}}};
   }
   if (mesh.contains("package")) {
     const std::string package = mesh["package"]["name"].get<std::string>();
@@ -136,14 +145,72 @@ Affine read_affine(const json& transform, const Place& place) {
   return affine;
 }
 
-mesh::ShapeSize size_of_mesh(const json& mesh, const Place& place) {
+std::uint64_t instances_of(const json& mesh) {
+  return mesh.contains("instances") ? mesh["instances"].size() : 1;
+}
+
+mesh::ShapeSize size_of_source(const json& mesh, const Place& place) {
   if (mesh.contains("triangles")) return {mesh["triangles"].size(), 3 * mesh["triangles"].size()};
   if (mesh.contains("shape")) return at_place(place / "shape", [&] { return size_of_shape(mesh["shape"]); });
   if (mesh.contains("quad")) return {2, 4};
   return {};
 }
 
+mesh::ShapeSize size_of_mesh(const json& mesh, const Place& place) {
+  mesh::ShapeSize size = size_of_source(mesh, place);
+  size.triangles *= instances_of(mesh);
+  size.vertices *= instances_of(mesh);
+  return size;
+}
+
+/// The transform of an instance: under its key, in its own right, or as 16 numbers.
+const json& transform_of(const json& instance, const Place& place) {
+  if (!instance.is_object() || !instance.contains("transform")) return instance;
+  if (instance.size() > 1)
+    throw InputError("{}: the key \"transform\" stands alone; found {} keys", place.str(), instance.size());
+  return instance["transform"];
+}
+
+/// The mesh once for each instance, one after the other.
+void apply_instances(const json& instances, const Place& place, SourceMesh& mesh) {
+  const std::size_t count = instances.size(), positions = mesh.soup.positions.size(),
+                    triangles = mesh.soup.triangles.size();
+  if (positions * count > std::numeric_limits<std::uint32_t>::max())
+    throw InputError("{}: {} instances of {} vertices are more than 2^32", place.str(), count, positions);
+  at_place(place, [&] {
+    require_memory(mesh::soup_bytes(triangles * count, positions * count),
+                   fmt::format("{} instances of {} triangles", count, triangles), "make them fewer or smaller");
+  });
+  mesh::TriangleSoup all;
+  for (std::size_t i = 0; i < count; ++i) {
+    mesh::TriangleSoup one = mesh.soup;
+    apply_transform(transform_of(instances[i], place / i), place / i, one);
+    const auto first = static_cast<std::uint32_t>(all.positions.size());
+    all.positions.insert(all.positions.end(), one.positions.begin(), one.positions.end());
+    for (const mesh::Triangle& t : one.triangles) all.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+    all.object.insert(all.object.end(), one.object.begin(), one.object.end());
+    all.source_face.insert(all.source_face.end(), one.source_face.begin(), one.source_face.end());
+  }
+  mesh.soup = std::move(all);
+  const std::vector<glm::dvec2> places = mesh.places;
+  for (std::size_t i = 1; i < count; ++i) mesh.places.insert(mesh.places.end(), places.begin(), places.end());
+}
+
 }  // namespace
+
+std::vector<glm::dvec2> from_top(std::vector<glm::dvec2> places) {
+  for (glm::dvec2& place : places) {
+    if (place != kNoPlace) place.y = 1 - place.y;
+  }
+  return places;
+}
+
+std::vector<glm::dvec2> places_of_kept(std::vector<glm::dvec2> places, const std::vector<std::uint32_t>& kept) {
+  if (kept.empty() || places.empty()) return places;
+  std::vector<glm::dvec2> result;
+  for (const std::uint32_t vertex : kept) result.push_back(places[vertex]);
+  return result;
+}
 
 void require_room_for_meshes(const json& meshes, const Place& place) {
   mesh::ShapeSize all, largest;
@@ -226,17 +293,27 @@ void apply_fit(const json& fit, const Place& place, mesh::TriangleSoup& soup) {
 }
 
 mesh::TriangleSoup read_mesh(const json& mesh, const Place& place, const ReadOptions& options, Scene& scene) {
-  mesh::TriangleSoup soup = read_source(mesh, place, options, scene);
+  if (mesh.contains("transform") && mesh.contains("instances"))
+    throw InputError("{}: the keys \"transform\" and \"instances\" exclude one another; remove one", place.str());
+  SourceMesh source = read_source(mesh, place, options, scene);
+  mesh::TriangleSoup& soup = source.soup;
   const std::size_t all = soup.positions.size();
-  if (!mesh::drop_unused_vertices(soup).empty())
+  const std::vector<std::uint32_t> kept = mesh::drop_unused_vertices(soup);
+  source.places = places_of_kept(std::move(source.places), kept);
+  if (!kept.empty())
     scene.warnings.push_back(
         fmt::format("{}: left out {} vertices that no triangle uses", place.str(), all - soup.positions.size()));
   if (mesh.contains("transform")) apply_transform(mesh["transform"], place / "transform", soup);
   if (mesh.contains("fit")) apply_fit(mesh["fit"], place / "fit", soup);
+  if (mesh.contains("instances")) apply_instances(mesh["instances"], place / "instances", source);
+  if (options.lightmap != nullptr) {
+    source.places.resize(soup.positions.size(), kNoPlace);
+    std::ranges::copy(source.places, std::back_inserter(options.lightmap->places));
+  }
   const auto finite = [](const glm::dvec3& p) {
     return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
   };
-  if (std::ranges::all_of(soup.positions, finite)) return soup;
+  if (std::ranges::all_of(soup.positions, finite)) return std::move(soup);
   for (std::size_t i = 0; i < soup.triangles.size(); ++i) {
     for (const std::uint32_t vertex : soup.triangles[i]) {
       const glm::dvec3& p = soup.positions[vertex];
@@ -245,7 +322,7 @@ mesh::TriangleSoup read_mesh(const json& mesh, const Place& place, const ReadOpt
                        soup.source_face[i], p.x, p.y, p.z);
     }
   }
-  return soup;
+  return std::move(soup);
 }
 
 }  // namespace penumbra::scenes

@@ -27,9 +27,15 @@ struct SceneFile {
 /// refused unless the options allow it. InputError also for what does not exist, is no regular file or is empty.
 SceneFile open_scene_file(const std::string& name, const Place& place, const ReadOptions& options);
 
-/// Reads, generates or lists the mesh, and brings it into world space. What was changed on the way goes to
-/// `scene.warnings`, the files that were read to `scene.sources`.
+/// Reads, generates or lists the mesh, and brings it into world space, once for each of its instances. What was changed
+/// on the way goes to `scene.warnings`, the files that were read to `scene.sources`; ReadOptions::lightmap gets the
+/// places of its positions after those that are there.
 mesh::TriangleSoup read_mesh(const nlohmann::json& mesh, const Place& place, const ReadOptions& options, Scene& scene);
+
+/// Coordinates of pictures whose v runs upward, as OBJ has them, with v from the top; kNoPlace stays.
+std::vector<glm::dvec2> from_top(std::vector<glm::dvec2> places);
+/// Those of the vertices that drop_unused_vertices keeps.
+std::vector<glm::dvec2> places_of_kept(std::vector<glm::dvec2> places, const std::vector<std::uint32_t>& kept);
 
 /// What the whole document's "meshes" say of their own size must fit into memory together; asked before the first of
 /// them is made. Files count nothing here: how much is in them is known when they are read. Throws ResourceError with

@@ -5,6 +5,7 @@
 #include "scenes/formats/gltf_reader.hpp"
 #include "mesh/import.hpp"
 #include "mesh/unused_vertices.hpp"
+#include "scenes/formats/json_meshes.hpp"
 #include "scenes/formats/json_reader.hpp"
 
 #include <fmt/format.h>
@@ -19,8 +20,8 @@ namespace penumbra::scenes {
 namespace {
 
 /// A mesh file as a scene of one object, without light and camera.
-Scene read_mesh_file(const std::filesystem::path& file) {
-  mesh::ImportedMesh imported = mesh::import_mesh(file);
+Scene read_mesh_file(const std::filesystem::path& file, LightmapPlaces* lightmap) {
+  mesh::ImportedMesh imported = mesh::import_mesh(mesh::open_input(file), {}, {}, lightmap != nullptr);
   Scene scene;
   scene.name = file.filename().string();
   scene.soup = std::move(imported.soup);
@@ -29,7 +30,10 @@ Scene read_mesh_file(const std::filesystem::path& file) {
   scene.objects.push_back(std::move(object));
   scene.warnings = std::move(imported.notes);
   scene.sources = std::move(imported.sources);
-  if (const std::size_t all = scene.soup.positions.size(); !mesh::drop_unused_vertices(scene.soup).empty())
+  const std::size_t all = scene.soup.positions.size();
+  const std::vector<std::uint32_t> kept = mesh::drop_unused_vertices(scene.soup);
+  if (lightmap != nullptr) lightmap->places = places_of_kept(from_top(std::move(imported.places)), kept);
+  if (!kept.empty())
     scene.warnings.push_back(
         fmt::format("left out {} vertices that no triangle uses", all - scene.soup.positions.size()));
   return scene;
@@ -51,7 +55,7 @@ Scene read_scene(const std::filesystem::path& file, const ReadOptions& options) 
     throw InputError("{}: a file of Blender's own; export it as glTF 2.0 (.glb), or render it by Blender's add-on",
                      file.string());
   } else {
-    scene = read_mesh_file(file);
+    scene = read_mesh_file(file, options.lightmap);
   }
   StudioWish studio = options.studio;
   studio.never |= !options.needs_light;
@@ -64,11 +68,13 @@ Scene read_scene(const std::filesystem::path& file, const ReadOptions& options) 
     std::optional<Scene> rest;
     if (options.time && scene.motion) {
       ReadOptions at_rest = options;
+      at_rest.lightmap = nullptr;
       at_rest.time.reset();
       rest = read_gltf(file, at_rest);
     }
     put_in_studio(scene, rest ? *rest : scene, studio);
   }
+  if (options.lightmap != nullptr) options.lightmap->places.resize(scene.soup.positions.size(), kNoPlace);
   check_scene(scene, file.string(), options.needs_light);
   return scene;
 }

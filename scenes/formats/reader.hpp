@@ -1,8 +1,12 @@
 #pragma once
 
 #include "scenes/scene.hpp"
+#include "mesh/import.hpp"
 #include "scenes/studio.hpp"
 
+#include <glm/vec2.hpp>
+
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -13,6 +17,13 @@ namespace penumbra::scenes {
 /// The size of lamps that a glTF file gives none and the user neither: a light bulb's and the sun's, in the scene's
 /// unit and degrees.
 inline constexpr double kLampRadius = 0.1, kSunAngle = 0.53;
+
+/// Coordinates in a lightmap, for bakes: (0, 0) is its top left, (1, 1) its bottom right.
+struct LightmapPlaces {
+  std::uint32_t set = 0;           ///< glTF: which TEXCOORD_N is read; elsewhere there is one
+  std::vector<glm::dvec2> places;  ///< of each position of the soup; kNoPlace: it has none
+};
+using mesh::kNoPlace;
 
 struct ReadOptions {
   bool allow_outside = false;  ///< may the scene name files outside its folder?
@@ -27,6 +38,8 @@ struct ReadOptions {
   /// glTF: the animations that are played, by name or number from 0; empty: all that can be played at once.
   std::vector<std::string> clips = {};
   StudioWish studio = {};  ///< of scenes that need a light
+  /// Gets the coordinates that glTF files, OBJ files and quads of JSON have in a lightmap; none: they are not read.
+  LightmapPlaces* lightmap = nullptr;
 };
 
 /// Reads .json (penumbra-scene/1), .gltf or .glb by the file's extension; any other file as a mesh. Where a mesh or a
