@@ -26,7 +26,7 @@ std::string json_of(const std::filesystem::path& file, const app::InspectedMesh&
   try {
     const app::FileReport report = app::examine(file, mesh, diagnosis, progress);
     progress.rethrow();
-    return app::report_json({&report, 1}, std::nullopt, options.list_limit)
+    return app::report_json(report, std::nullopt, options.list_limit)
         .dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
   } catch (...) {
     progress.rethrow();

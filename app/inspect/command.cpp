@@ -1,19 +1,24 @@
 #include "app/commands.hpp"
+#include "app/inspect/counts.hpp"
+#include "app/inspect/defect_picture.hpp"
 #include "app/inspect/examine.hpp"
 #include "app/inspect/export.hpp"
+#include "app/inspect/inspected_files.hpp"
+#include "app/inspect/repaired_file.hpp"
 #include "app/inspect/report.hpp"
+#include "app/options.hpp"
 #include "app/process/output_files.hpp"
 #include "app/process/terminal_progress.hpp"
 #include "app/reading_options.hpp"
 #include "base/atomic_file.hpp"
 #include "base/error.hpp"
-#include "mesh/soup_ply.hpp"
+#include "base/png.hpp"
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 #include <spdlog/spdlog.h>
 
-#include <array>
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
@@ -29,14 +34,30 @@ constexpr std::uint32_t kListedInTable = 3;
 class InspectCommand : public Command {
  public:
   explicit InspectCommand(CLI::App& app)
-      : Command(app, "inspect", "what is wrong with a mesh, and what each method will make of it") {
-    cli_.add_option("FILE", files_, "meshes (OBJ, PLY, OFF, STL …) or scenes (.json, .gltf, .glb)")->required();
-    cli_.add_option("--json", json_, "the whole report as JSON; - for stdout, in place of the table")
+      : Command(app, "inspect", "what is wrong with meshes, and what each method will make of them") {
+    cli_.add_option("FILE", named_,
+                    "meshes (OBJ, PLY, OFF, STL …), scenes (.json, .gltf, .glb), or folders of them, taken with the "
+                    "folders below")
+        ->required()
+        ->type_name("FILE|FOLDER");
+    cli_.add_option("--json", json_,
+                    "the whole report as JSON, of several files an array; - for stdout, in place of the table")
         ->type_name("FILE");
+    cli_.add_option("--csv", csv_, "a row a file, with the counts of the JSON; - for stdout, in place of the table")
+        ->type_name("FILE");
+    cli_.add_option("--fail-on", fail_on_text_,
+                    "exit with 1 if one of these counts of the JSON is not 0 in a file: boundaryEdges, needles …, "
+                    "open (not closed), non-manifold (edges and vertices)")
+        ->type_name("NAME,…");
+    cli_.add_flag("--methods", methods_, "list what each method makes of the mesh, and why");
+    cli_.add_option("--png", png_,
+                    "a picture of the mesh with its defects coloured (see below), from two sides; of several files "
+                    "OUT-0001-NAME.png and so on")
+        ->type_name("OUT.png");
     cli_.add_option("--export-defects", defects_, "the mesh with its defects coloured (see below)")
         ->type_name("FILE.ply");
     cli_.add_option("--repair", repaired_, "repair what can be repaired, and say what was done and what was not")
-        ->type_name("OUT.ply");
+        ->type_name("OUT.ply|.obj|.stl|.off|.glb");
     cli_.add_option("--weld", weld_, "vertices at most this far apart (the file's unit) are one")
         ->type_name("T")
         ->default_str("0");
@@ -50,63 +71,132 @@ class InspectCommand : public Command {
     cli_.add_flag("--no-self-intersections", no_intersections_, "do not search them: the search that takes longest");
     cli_.add_option(
             "--list", list_,
-            fmt::format("places listed of each defect (default {} in JSON, {} in the table)", kListed, kListedInTable))
+            fmt::format("places listed of each defect (default: {} in JSON, {} in the table)", kListed, kListedInTable))
         ->type_name("N");
     add_allow_outside(cli_, allow_outside_);
     cli_.footer(
-        "JSON: \"files\" lists every FILE with its \"notes\", \"objects\" and their \"total\"; of a single FILE all "
-        "this\nstands at the top level, too, and so do the total's keys: `penumbra inspect m.ply --json - | jq "
-        ".boundaryEdges`.\nIn \"lists\", \"triangles\" are numbers in the order of `convert`, \"faces\" those of "
-        "the mesh's own file.\nExit code 0 if every file could be read, whatever is wrong with it; 3 if not.\n"
-        "Colours of --export-defects (of two, the lower in this list):\n" +
+        "Of one file the whole report is printed, of several (or of a folder) one table, a row a file; --verbose "
+        "prints "
+        "the\nwhole report of each. A file that cannot be read is a row with the reason; the others are done.\n"
+        "JSON: of one FILE \"notes\", \"objects\", their \"total\" and, at the top level, the total's keys: `penumbra "
+        "inspect m.ply\n--json - | jq .boundaryEdges`; of several an array of such entries. In \"lists\", "
+        "\"triangles\" are numbers in the\norder of `convert`, \"faces\" those of the mesh's own file.\n"
+        "Exit code 0 if every file could be read, whatever is wrong with it; 3 if not; 1 if --fail-on found "
+        "something.\nColours of --export-defects and --png (of two, the lower in this list):\n" +
         defect_legend());
   }
 
   int run(const GlobalOptions& global) override {
+    const FailOn fail_on(fail_on_text_, !no_intersections_);
+    inspected_ = inspected_files(named_);
     const OutputFiles outputs = checked_outputs();
     TerminalProgress progress(!global.quiet);
+    const bool prints = json_ != "-" && csv_ != "-", whole = !inspected_.several || global.verbose;
+    if (prints && !whole) fmt::print("{}", summary_header());
     std::vector<FileReport> reports;
     std::optional<RepairReport> repaired;
-    for (const std::filesystem::path& file : files_) {
-      try {
-        const InspectedMesh mesh = read_inspected(file, allow_outside_);
-        outputs.refuse_inputs(mesh.sources);
-        reports.push_back(examine(file, mesh, diagnosis_options(), progress));
-        if (!defects_.empty()) export_defects(defects_, mesh.soup, reports.back().total);
-        if (!repaired_.empty()) repaired = repair(mesh.soup);
-      } catch (const InputError& error) {
-        progress.clear();
-        spdlog::error("{}", error.what());
-        reports.emplace_back();
-        reports.back().file = file;
-        reports.back().error = error.what();
+    bool failed = false;
+    for (std::size_t i = 0; i < inspected_.files.size(); ++i) {
+      reports.push_back(report_on(i, outputs, repaired, progress));
+      const FileReport& report = reports.back();
+      if (prints) {
+        if (!whole) fmt::print("{}", summary_row(report));
+        if (whole && report.error.empty())
+          fmt::print("{}", report_table(report, {table_limit(), methods_ || global.verbose}));
+        std::fflush(stdout);
       }
-      if (json_ != "-" && reports.back().error.empty()) fmt::print("{}", report_table(reports.back(), table_limit()));
+      const std::string found = fail_on.found_in(report);
+      failed = failed || !found.empty();
+      if (!found.empty()) spdlog::error("{}: {} (--fail-on)", report.file.string(), found);
+      if (inspected_.several && json_.empty()) forget_places(reports.back());
     }
-    if (repaired && json_ != "-") fmt::print("{}", report_table(*repaired));
+    if (repaired && prints) fmt::print("{}", report_table(*repaired));
     if (!json_.empty()) write_json(reports, repaired);
+    if (csv_ == "-")
+      fmt::print("{}", report_csv(reports));
+    else if (!csv_.empty())
+      write_file_atomically(csv_, report_csv(reports));
     const bool all_read = std::ranges::all_of(reports, [](const FileReport& report) { return report.error.empty(); });
-    return static_cast<int>(all_read ? ExitCode::done : ExitCode::input);
+    return static_cast<int>(!all_read ? ExitCode::input : failed ? ExitCode::answer_is_no : ExitCode::done);
   }
 
  private:
+  /// Reads, examines, draws and repairs one file; what is wrong with reading it is in the report.
+  FileReport report_on(std::size_t number, const OutputFiles& outputs, std::optional<RepairReport>& repaired,
+                       Progress& progress) const {
+    const std::filesystem::path& file = inspected_.files[number];
+    try {
+      const InspectedMesh mesh = read_inspected(file, allow_outside_);
+      outputs.refuse_inputs(mesh.sources);
+      FileReport report = examine(file, mesh, diagnosis_options(), progress);
+      if (!defects_.empty()) export_defects(defects_, mesh.soup, report.total);
+      if (!png_.empty()) draw(picture_of(number), mesh, report, progress);
+      if (!repaired_.empty())
+        repaired =
+            repaired_file(repaired_, mesh.soup,
+                          {.weld = weld_, .fill_holes_up_to = fill_holes_, .resolve_self_intersections = resolve_},
+                          {.weld = weld_, .search_intersections = !no_intersections_, .list_limit = 0}, progress);
+      return report;
+    } catch (const InputError& error) {
+      progress.clear();
+      spdlog::error("{}", error.what());
+      FileReport report;
+      report.file = file;
+      report.error = error.what();
+      return report;
+    }
+  }
+
+  static void draw(const std::filesystem::path& picture, const InspectedMesh& mesh, const FileReport& report,
+                   Progress& progress) {
+    constexpr std::uint32_t kSide = 512;
+    try {
+      write_png(picture, defect_picture(mesh.soup, report.total, kSide));
+    } catch (const InputError& error) {
+      progress.clear();
+      spdlog::warn("{}: no picture: {}", report.file.string(), error.what());
+    }
+  }
+
+  /// Places of defects are needed by the JSON alone, and may be many.
+  static void forget_places(FileReport& report) {
+    for (const DefectRow& row : kDefects) (report.total.diagnosis.*row.counted).first = {};
+    if (report.total.diagnosis.self_intersections) report.total.diagnosis.self_intersections->first = {};
+    report.objects = {};
+    report.source_face = {};
+  }
+
+  /// "defects.png" of one file; of several "defects-0001-bunny.png".
+  [[nodiscard]] std::filesystem::path picture_of(std::size_t number) const {
+    if (!inspected_.several) return png_;
+    std::string name = file_name_of(inspected_.files[number].stem().string());
+    std::ranges::replace(name, ':', ',');
+    return png_.parent_path() / fmt::format("{}-{:04}-{}.png", png_.stem().string(), number + 1, name);
+  }
+
   /// What is wrong with the command line is said before anything long begins.
   [[nodiscard]] OutputFiles checked_outputs() const {
     if (!(weld_ >= 0 && std::isfinite(weld_))) {
       throw UsageError("--weld {}: expected a distance, 0 or more, in the file's unit", weld_);
     }
+    if (json_ == "-" && csv_ == "-") throw UsageError("--json - and --csv -: stdout takes one of them");
+    if (!defects_.empty() && defects_.extension() != ".ply")
+      throw UsageError("{}: expected a name that ends in .ply", defects_.string());
+    if (!png_.empty() && png_.extension() != ".png")
+      throw UsageError("--png {}: expected a name that ends in .png", png_.string());
+    if (!repaired_.empty()) require_mesh_ending(repaired_);
     for (const std::filesystem::path* output : {&defects_, &repaired_}) {
-      if (output->empty()) continue;
-      if (output->extension() != ".ply") throw UsageError("{}: expected a name that ends in .ply", output->string());
-      if (files_.size() > 1)
-        throw UsageError("{}: {} FILEs are too many for one output", output->string(), files_.size());
+      if (!output->empty() && inspected_.several)
+        throw UsageError("{}: {} FILEs are too many for one output", output->string(), inspected_.files.size());
     }
     if (!repaired_.empty()) mesh::require_repair();
     OutputFiles outputs;
     if (json_ != "-") outputs.add("--json", json_);
+    if (csv_ != "-") outputs.add("--csv", csv_);
     outputs.add("--export-defects", defects_);
     outputs.add("--repair", repaired_);
-    outputs.refuse_inputs(files_);
+    for (std::size_t i = 0; !png_.empty() && i < inspected_.files.size(); ++i) outputs.add("--png", picture_of(i));
+    outputs.refuse_inputs(inspected_.files);
     outputs.require_writable();
     return outputs;
   }
@@ -117,25 +207,17 @@ class InspectCommand : public Command {
     options.weld = weld_;
     options.search_intersections = !no_intersections_;
     // A picture needs every place.
-    options.list_limit = defects_.empty() ? list_.value_or(kListed) : std::numeric_limits<std::size_t>::max();
+    const bool draws = !defects_.empty() || !png_.empty();
+    options.list_limit = draws ? std::numeric_limits<std::size_t>::max() : list_.value_or(kListed);
     return options;
   }
 
-  [[nodiscard]] RepairReport repair(const mesh::TriangleSoup& soup) const {
-    mesh::Repaired repaired =
-        mesh::repair(soup, {.weld = weld_, .fill_holes_up_to = fill_holes_, .resolve_self_intersections = resolve_});
-    mesh::PlyMesh ply;
-    ply.positions = std::move(repaired.soup.positions);
-    ply.triangles = std::move(repaired.soup.triangles);
-    mesh::write_ply(repaired_, ply);
-    return {repaired_, ply.triangles.size(), std::move(repaired.done), std::move(repaired.left)};
-  }
-
   void write_json(std::span<const FileReport> reports, const std::optional<RepairReport>& repaired) const {
+    const std::size_t limit = list_.value_or(kListed);
+    const nlohmann::ordered_json json =
+        inspected_.several ? report_json(reports, limit) : report_json(reports.front(), repaired, limit);
     // A file's name may hold bytes that are no UTF-8.
-    const std::string text = report_json(reports, repaired, list_.value_or(kListed))
-                                 .dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) +
-                             "\n";
+    const std::string text = json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
     if (json_ == "-") {
       fmt::print("{}", text);
     } else {
@@ -143,12 +225,14 @@ class InspectCommand : public Command {
     }
   }
 
-  std::vector<std::filesystem::path> files_;
-  std::filesystem::path json_, defects_, repaired_;
+  std::vector<std::filesystem::path> named_;
+  InspectedFiles inspected_;
+  std::filesystem::path json_, csv_, png_, defects_, repaired_;
+  std::string fail_on_text_;
   double weld_ = 0;
   std::uint32_t fill_holes_ = 0;
   std::optional<std::uint32_t> list_;
-  bool resolve_ = false, no_intersections_ = false, allow_outside_ = false;
+  bool resolve_ = false, no_intersections_ = false, allow_outside_ = false, methods_ = false;
 };
 
 }  // namespace

@@ -136,6 +136,18 @@ InspectedMesh read_inspected(const std::filesystem::path& file, bool allow_outsi
   return mesh;
 }
 
+scenes::Scene scene_of(const mesh::TriangleSoup& soup, const std::string& name) {
+  scenes::Scene scene;
+  scene.name = name;
+  scene.soup.positions = soup.positions;
+  scene.soup.triangles = soup.triangles;
+  scene.soup.object.assign(soup.triangles.size(), 0);
+  scene.soup.source_face.assign(soup.triangles.size(), 0);
+  scene.objects.resize(1);
+  scene.objects.front().name = name;
+  return scene;
+}
+
 FileReport examine(const std::filesystem::path& file, const InspectedMesh& mesh, const mesh::DiagnosisOptions& options,
                    Progress& progress) {
   FileReport report;

@@ -32,6 +32,9 @@ struct InspectedMesh {
 /// Reads .json, .gltf and .glb as scenes (glTF: with or without a light), anything else as a mesh. Throws InputError.
 InspectedMesh read_inspected(const std::filesystem::path& file, bool allow_outside);
 
+/// A soup as a scene of one object, without light and camera.
+scenes::Scene scene_of(const mesh::TriangleSoup& soup, const std::string& name);
+
 /// How many edges are silhouettes, seen from the eight points that lie one diagonal of the bounds from their centre
 /// toward the corners of a cube. The literature's rule of thumb for closed meshes is n^0.8 of n triangles.
 struct SilhouetteCounts {

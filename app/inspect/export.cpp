@@ -21,7 +21,8 @@ struct Legend {
   mesh::Defect Diagnosis::*counted;
   std::string_view what, color_name;
   Color color;
-  bool faces, edges;  ///< what is coloured
+  bool faces, edges;   ///< what is coloured
+  bool point = false;  ///< is the first point of a place a vertex to be marked?
 };
 
 /// From the harmless to what other programs stumble over.
@@ -34,9 +35,10 @@ constexpr std::array<Legend, 9> kLegend = {{
      "violet",
      {150, 60, 200},
      true,
-     false},
+     false,
+     true},
     {&Diagnosis::zero_area_triangles, "zero-area triangles", "black", {0, 0, 0}, true, true},
-    {&Diagnosis::t_junctions, "T-junctions: the edge", "yellow", {240, 220, 0}, false, true},
+    {&Diagnosis::t_junctions, "T-junctions: the edge", "yellow", {240, 220, 0}, false, true, true},
     {&Diagnosis::inconsistent_windings, "inconsistent windings: the edge", "orange", {250, 140, 0}, false, true},
     {&Diagnosis::boundary_edges, "boundary edges", "red", {255, 0, 0}, false, true},
     {&Diagnosis::non_manifold_edges, "non-manifold edges", "magenta", {255, 0, 200}, false, true},
@@ -60,8 +62,9 @@ void add_edges(mesh::PlyMesh& ply, const mesh::DefectPlace& place, const Legend&
 
 }  // namespace
 
-void export_defects(const std::filesystem::path& file, const mesh::TriangleSoup& soup, const ObjectReport& report) {
-  mesh::PlyMesh ply;
+MarkedMesh mark_defects(const mesh::TriangleSoup& soup, const ObjectReport& report) {
+  MarkedMesh marked;
+  mesh::PlyMesh& ply = marked.ply;
   ply.positions = soup.positions;
   ply.triangles = soup.triangles;
   ply.triangle_colors.assign(soup.triangles.size(), kClean);
@@ -73,11 +76,16 @@ void export_defects(const std::filesystem::path& file, const mesh::TriangleSoup&
   for (const Legend& legend : kLegend) {
     for (const mesh::DefectPlace& place : (report.diagnosis.*legend.counted).first) {
       if (legend.edges) add_edges(ply, place, legend);
+      if (legend.point && !place.points.empty()) marked.points.push_back({place.points.front(), legend.color});
       if (!legend.faces) continue;
       for (const std::uint32_t triangle : place.triangles) ply.triangle_colors[triangle] = legend.color;
     }
   }
-  mesh::write_ply(file, ply);
+  return marked;
+}
+
+void export_defects(const std::filesystem::path& file, const mesh::TriangleSoup& soup, const ObjectReport& report) {
+  mesh::write_ply(file, mark_defects(soup, report).ply);
 }
 
 std::string defect_legend() {

@@ -87,23 +87,32 @@ ordered_json file_json(const FileReport& file, std::size_t list_limit) {
 ordered_json repair_json(const RepairReport& repaired) {
   auto done = ordered_json::array();
   for (const mesh::RepairStep& step : repaired.done) done.push_back({{"what", step.what}, {"count", step.count}});
-  return {{"file", repaired.file.string()}, {"triangles", repaired.triangles}, {"done", done}, {"left", repaired.left}};
+  ordered_json counts = {{"closed", repaired.written.closed}, {"closedAsWound", repaired.written.closed_as_wound}};
+  for (const DefectRow& row : kDefects) counts[row.key] = (repaired.written.*row.counted).count;
+  counts["selfIntersections"] = nullptr;
+  if (repaired.written.self_intersections) counts["selfIntersections"] = repaired.written.self_intersections->count;
+  return {{"file", repaired.file.string()},
+          {"triangles", repaired.triangles},
+          {"done", done},
+          {"left", repaired.left},
+          {"readAgain", counts}};
 }
 
 }  // namespace
 
-ordered_json report_json(std::span<const FileReport> files, const std::optional<RepairReport>& repaired,
-                         std::size_t list_limit) {
-  auto all = ordered_json::array();
-  for (const FileReport& file : files) all.push_back(file_json(file, list_limit));
-  ordered_json json = ordered_json::object();
-  if (all.size() == 1) {
-    json = all.front();
-    if (json.contains("total")) json.update(ordered_json(json["total"]));
-  }
+ordered_json report_json(const FileReport& file, const std::optional<RepairReport>& repaired, std::size_t list_limit) {
+  ordered_json json = file_json(file, list_limit);
+  auto all = ordered_json::array({json});
+  if (json.contains("total")) json.update(ordered_json(json["total"]));
   if (repaired) json["repair"] = repair_json(*repaired);
   json["files"] = std::move(all);
   return json;
+}
+
+ordered_json report_json(std::span<const FileReport> files, std::size_t list_limit) {
+  auto all = ordered_json::array();
+  for (const FileReport& file : files) all.push_back(file_json(file, list_limit));
+  return all;
 }
 
 }  // namespace penumbra::app

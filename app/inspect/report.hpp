@@ -39,15 +39,24 @@ struct RepairReport {
   std::uint64_t triangles = 0;  ///< that were written
   std::vector<mesh::RepairStep> done;
   std::vector<std::string> left;
+  mesh::Diagnosis written;  ///< of the file that was written, read again
 };
 
-/// `inspect`'s JSON: "files" lists every file; a single one's entry, and its total's keys, stand at the top level too.
-/// Of each defect the first `list_limit` places are listed.
-nlohmann::ordered_json report_json(std::span<const FileReport> files, const std::optional<RepairReport>& repaired,
+/// `inspect`'s JSON of one file: its entry, its total's keys at the top level, too, and "files", a list of the entry
+/// alone. Of each defect the first `list_limit` places are listed.
+nlohmann::ordered_json report_json(const FileReport& file, const std::optional<RepairReport>& repaired,
                                    std::size_t list_limit);
+/// Of several files: an array of their entries.
+nlohmann::ordered_json report_json(std::span<const FileReport> files, std::size_t list_limit);
+
+/// How much of a report is printed.
+struct TableOptions {
+  std::size_t list_limit = 3;  ///< places of each defect
+  bool methods = false;        ///< each method's verdict with its reason; else how many say what
+};
 
 /// A FileReport, or what a repair did, as a table for the terminal.
-std::string report_table(const FileReport& file, std::size_t list_limit);
+std::string report_table(const FileReport& file, const TableOptions& options);
 std::string report_table(const RepairReport& repaired);
 
 }  // namespace penumbra::app

@@ -136,22 +136,40 @@ std::string object_rows(const FileReport& file) {
   return text + "  all together:\n";
 }
 
-}  // namespace
+/// "7 exact, 31 approximate".
+std::string verdict_counts(const std::vector<MethodVerdict>& verdicts) {
+  using visibility::Verdict;
+  std::string text;
+  for (const Verdict verdict : {Verdict::exact, Verdict::conservative, Verdict::approximate, Verdict::refused}) {
+    const auto count =
+        std::ranges::count_if(verdicts, [&](const MethodVerdict& said) { return said.verdict.verdict == verdict; });
+    if (count > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, name_of(verdict));
+  }
+  return text;
+}
 
-std::string report_table(const FileReport& file, std::size_t list_limit) {
-  std::string text = fmt::format("{}\n", file.file.string());
-  for (const std::string& note : file.notes) text += fmt::format("  note: {}\n", wrapped(note, 8));
-  if (file.scene) text += facts_table(*file.scene);
-  if (file.objects.size() > 1) text += object_rows(file);
-  text += all_rows(file.total, list_limit);
-  text += "  what each method makes of it\n";
+std::string method_rows(const std::vector<MethodVerdict>& verdicts) {
+  std::string text = "  what each method makes of it\n";
   std::size_t width = 0;
-  for (const MethodVerdict& said : file.total.verdicts) width = std::max(width, said.method.size());
-  for (const MethodVerdict& said : file.total.verdicts) {
+  for (const MethodVerdict& said : verdicts) width = std::max(width, said.method.size());
+  for (const MethodVerdict& said : verdicts) {
     text += fmt::format("    {:<{}}  {:<12}  {}\n", said.method, width, name_of(said.verdict.verdict),
                         wrapped(said.verdict.reason, width + 20));
   }
   return text;
+}
+
+}  // namespace
+
+std::string report_table(const FileReport& file, const TableOptions& options) {
+  std::string text = fmt::format("{}\n", file.file.string());
+  for (const std::string& note : file.notes) text += fmt::format("  note: {}\n", wrapped(note, 8));
+  if (file.scene) text += facts_table(*file.scene);
+  if (file.objects.size() > 1) text += object_rows(file);
+  text += all_rows(file.total, options.list_limit);
+  if (options.methods) return text + method_rows(file.total.verdicts);
+  return text + fmt::format("  {:<{}}{}   --methods says why\n", "methods", kLabelWidth + 2,
+                            verdict_counts(file.total.verdicts));
 }
 
 std::string report_table(const RepairReport& repaired) {
@@ -159,7 +177,8 @@ std::string report_table(const RepairReport& repaired) {
   for (const mesh::RepairStep& step : repaired.done) text += fmt::format("  done: {}\n", wrapped(step.what, 8));
   if (repaired.done.empty()) text += "  done: nothing, there was nothing to do\n";
   for (const std::string& what : repaired.left) text += fmt::format("  left: {}\n", wrapped(what, 8));
-  return text;
+  return text + fmt::format("  read again: watertight {}; what is wrong: {}\n", watertight(repaired.written),
+                            wrapped(what_is_wrong(repaired.written), 14));
 }
 
 }  // namespace penumbra::app

@@ -1,5 +1,6 @@
 #include "app/sweep/sweep_files.hpp"
 
+#include "base/csv.hpp"
 #include "app/methods.hpp"
 #include "compare/error_plot.hpp"
 #include "compare/report_parts.hpp"
@@ -34,13 +35,6 @@ std::string value_of(const SweepRow& row, const std::string& key) {
   const auto& options = row.result.stats.options;
   const auto option = options.find(key);
   return option != options.end() ? option->second : std::string();
-}
-
-std::string quoted(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string all = "\"";
-  for (const char c : text) all += c == '"' ? "\"\"" : std::string(1, c);
-  return all + "\"";
 }
 
 std::string number(const std::optional<double>& value) {
@@ -135,14 +129,14 @@ std::string sweep_csv(const Sweep& sweep) {
     if (key.name != "light-samples") keys.push_back(key.name);
   }
   std::string csv = "method,entry";
-  for (const std::string& key : keys) csv += "," + quoted(key);
+  for (const std::string& key : keys) csv += "," + csv_field(key);
   csv +=
       ",lightSamples,rmse,mean,p999,max,bias,lightSeconds,evaluateSeconds,shadowSeconds,runs,peakMemoryBytes,"
       "pareto\r\n";
   for (const SweepRow& row : sweep.rows) {
     const compare::Stats& stats = row.result.stats;
-    csv += quoted(stats.method) + "," + quoted(row.result.entry);
-    for (const std::string& key : keys) csv += "," + quoted(value_of(row, key));
+    csv += csv_field(stats.method) + "," + csv_field(row.result.entry);
+    for (const std::string& key : keys) csv += "," + csv_field(value_of(row, key));
     csv += fmt::format(",{}", stats.light_samples);
     const auto& error = row.result.all_lights_error;
     for (const auto part :

@@ -1,8 +1,14 @@
 // inspect: what it says of a mesh whose defects are known, in table, JSON and files, and what it refuses.
 #include "tests/cli/program.hpp"
 
+#include "base/png.hpp"
+
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <span>
+#include <sstream>
 
 namespace penumbra::tests {
 namespace {
@@ -37,9 +43,12 @@ TEST_F(Inspect, TheTableSaysWhatIsWrongAndWhatMethodsMakeOfIt) {
   EXPECT_THAT(outcome.out, testing::ContainsRegex("watertight +no\n"));
   EXPECT_THAT(outcome.out, testing::ContainsRegex("boundary edges +3 +loops: 1\n"));
   EXPECT_THAT(outcome.out, HasSubstr("(0, 1, 0) – (0, 1, 1): triangle 8"));
-  EXPECT_THAT(outcome.out, testing::ContainsRegex("view-sample +exact"));
-  EXPECT_THAT(outcome.out, testing::ContainsRegex("raytrace +approximate"));
+  EXPECT_THAT(outcome.out, testing::ContainsRegex("methods +[0-9]+ exact, .*approximate"));
+  EXPECT_EQ(outcome.out.find("raytrace"), std::string::npos) << "methods are listed when asked for";
   EXPECT_TRUE(outcome.err.empty()) << outcome.err;
+  const Outcome with = run({"inspect", cube(), "--methods"});
+  EXPECT_THAT(with.out, testing::ContainsRegex("view-sample +exact"));
+  EXPECT_THAT(with.out, testing::ContainsRegex("raytrace +approximate"));
 }
 
 TEST_F(Inspect, JsonHasItsKeys) {
@@ -96,13 +105,17 @@ TEST_F(Inspect, SeveralFilesAreAllReportedAndTheUnreadableOneCostsExitCode3) {
   const Outcome outcome = run({"inspect", bad, cube(), "--json", path("out.json")});
   EXPECT_EQ(outcome.code, 3);
   EXPECT_THAT(outcome.err, AllOf(HasSubstr("bad.off"), HasSubstr("line 2")));
-  EXPECT_THAT(outcome.out, HasSubstr("cube.off"));
+  EXPECT_THAT(outcome.out, testing::ContainsRegex("- +- +- +- +- +- +unreadable +.*bad.off.*line 2"));
+  EXPECT_THAT(outcome.out, testing::ContainsRegex("11 +no +3 +0 +0 +0 +approximate:[0-9]+ +.*cube.off\n"));
   const json files = json::parse(read("out.json"));
-  EXPECT_FALSE(files.contains("triangles"));
-  EXPECT_THAT(files.at("files")[0].at("error").get<std::string>(), HasSubstr("line 2"));
-  EXPECT_EQ(files.at("files")[1].at("total").at("triangles"), 11);
+  ASSERT_TRUE(files.is_array());
+  EXPECT_THAT(files.at(0).at("error").get<std::string>(), HasSubstr("line 2"));
+  EXPECT_EQ(files.at(1).at("total").at("triangles"), 11);
   EXPECT_EQ(run({"inspect", path("nowhere.off")}).code, 3);
-  EXPECT_EQ(run({"inspect", folder_.string()}).code, 3);
+  std::filesystem::create_directory(path("empty"));
+  const Outcome empty = run({"inspect", path("empty")});
+  EXPECT_EQ(empty.code, 3);
+  EXPECT_THAT(empty.err, HasSubstr("no mesh file"));
 }
 
 TEST_F(Inspect, ReadsGltfWithoutALight) {
@@ -153,6 +166,98 @@ TEST_F(Inspect, RepairsAndTheResultReadsBack) {
   EXPECT_EQ(back.at("boundaryEdges"), 0);
   EXPECT_EQ(back.at("closed"), true);
   EXPECT_DOUBLE_EQ(back.at("volume").get<double>(), 1);
+  for (const char* name : {"a.obj", "a.stl", "a.off", "a.glb"}) {
+    SCOPED_TRACE(name);
+    const json told = report({cube(), "--repair", path(name), "--fill-holes", "3"}).at("repair");
+    EXPECT_EQ(told.at("readAgain").at("boundaryEdges"), 0);
+    const json read_again = report({path(name)});
+    EXPECT_EQ(read_again.at("triangles"), 12);
+    EXPECT_EQ(read_again.at("closed"), true);
+    EXPECT_NEAR(read_again.at("volume").get<double>(), 1, 1e-6);
+  }
+}
+
+/// Two cubes that share an edge: by indices a repair takes them apart, by position they stay joined.
+TEST_F(Inspect, WhatARepairSaysOfItsFileIsWhatInspectSaysOfIt) {
+#ifndef PENUMBRA_WITH_CGAL_GPL
+  GTEST_SKIP() << "penumbra-repair is not built";
+#endif
+  const char* const faces =
+      "0 2 1\n3 0 3 2\n3 4 5 6\n3 4 6 7\n3 0 1 5\n3 0 5 4\n3 1 2 6\n3 1 6 5\n3 2 3 7\n3 2 7 6\n3 3 0 4\n3 3 4 7\n";
+  std::string text = "OFF\n16 24 0\n";
+  for (const int shift : {0, 1}) {
+    for (int i = 0; i < 8; ++i) {
+      const int x = (i & 3) == 1 || (i & 3) == 2, y = (i & 3) >= 2, z = i >= 4;
+      text += std::to_string(x + shift) + ' ' + std::to_string(y + shift) + ' ' + std::to_string(z) + '\n';
+    }
+  }
+  text += std::string("3 ") + faces;
+  std::istringstream lines(std::string("3 ") + faces);
+  for (int n = 0, a = 0, b = 0, c = 0; lines >> n >> a >> b >> c;)
+    text += "3 " + std::to_string(a + 8) + ' ' + std::to_string(b + 8) + ' ' + std::to_string(c + 8) + '\n';
+  write("edge.off", text);
+  ASSERT_EQ(report({path("edge.off")}).at("nonManifoldEdges"), 1);
+  const json told = report({path("edge.off"), "--repair", path("edge.ply")}).at("repair");
+  const json again = report({path("edge.ply")});
+  EXPECT_EQ(again.at("nonManifoldEdges"), 1);
+  for (const auto& [key, value] : told.at("readAgain").items()) EXPECT_EQ(again.at(key), value) << key;
+  EXPECT_THAT(told.at("left").dump(), HasSubstr("1 edges and"));
+}
+
+TEST_F(Inspect, AFolderIsATableWithARowAFileInOrder) {
+  std::filesystem::create_directories(path("meshes/below"));
+  std::filesystem::create_directories(path("meshes/.hidden"));
+  write("meshes/b.off", kHoleyCube);
+  write("meshes/a, 1.off", "OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 2 0 3\n");
+  write("meshes/below/c.OFF", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+  write("meshes/.hidden/d.off", kHoleyCube);
+  write("meshes/notes.txt", "no mesh");
+  write("meshes/settings.json", "{}");
+  const Outcome outcome = run({"inspect", path("meshes"), "--csv", path("out.csv"), "--json", path("out.json"), "--png",
+                               path("defects.png"), "--fail-on", "boundaryEdges"});
+  EXPECT_EQ(outcome.code, 1) << outcome.err;
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("b.off: 3 boundaryEdges"), HasSubstr("c.OFF: 3 boundaryEdges")));
+  EXPECT_EQ(outcome.err.find("a, 1.off"), std::string::npos) << "a tetrahedron is closed";
+  EXPECT_EQ(std::ranges::count(outcome.out, '\n'), 4);
+  const json files = json::parse(read("out.json"));
+  ASSERT_EQ(files.size(), 3u);
+  EXPECT_EQ(files[0].at("file"), path("meshes/a, 1.off"));
+  EXPECT_EQ(files[1].at("file"), path("meshes/b.off"));
+  EXPECT_EQ(files[2].at("file"), path("meshes/below/c.OFF"));
+  const std::string csv = read("out.csv");
+  EXPECT_THAT(csv, testing::StartsWith("file,triangles,vertices,components,closed,closedAsWound,boundaryEdges,"));
+  EXPECT_THAT(csv, HasSubstr("\n\"" + path("meshes/a, 1.off") + "\",4,4,1,true,true,0,"));
+  EXPECT_THAT(csv, HasSubstr("\n" + path("meshes/b.off") + ",11,8,1,false,false,3,"));
+  const auto columns = [](const std::string& line) { return std::ranges::count(line, ','); };
+  const std::string header = csv.substr(0, csv.find('\r')), last = csv.substr(csv.find(path("meshes/b")));
+  EXPECT_EQ(columns(header), columns(last.substr(0, last.find('\r'))));
+  for (const char* picture : {"defects-0001-a__1.png", "defects-0002-b.png", "defects-0003-c.png"})
+    EXPECT_TRUE(std::filesystem::exists(path(picture))) << picture;
+  EXPECT_EQ(run({"inspect", path("meshes/a, 1.off"), "--fail-on", "open,non-manifold,selfIntersections"}).code, 0);
+  EXPECT_EQ(run({"inspect", path("meshes/b.off"), "--fail-on", "open"}).code, 1);
+  EXPECT_EQ(run({"inspect", path("meshes/b.off"), "--fail-on", "needles,duplicateFaces"}).code, 0);
+  EXPECT_EQ(run({"inspect", path("meshes/b.off"), "--fail-on", "closed"}).code, 2);
+  EXPECT_EQ(run({"inspect", path("meshes/b.off"), "--fail-on", "selfIntersections", "--no-self-intersections"}).code,
+            2);
+}
+
+/// Grey surface, white around it; the three edges of the missing triangle red in one view or both.
+TEST_F(Inspect, ThePictureShowsDefectsInTheirColours) {
+  ASSERT_EQ(run({"inspect", cube(), "--png", path("cube.png")}).code, 0);
+  const std::string bytes = read("cube.png");
+  const RgbaImage picture = decode_rgba_png(std::as_bytes(std::span(bytes)), 4096);
+  ASSERT_EQ(picture.width, 1024u);
+  ASSERT_EQ(picture.height, 512u);
+  std::size_t red = 0, white = 0, grey = 0;
+  for (const auto& [r, g, b, a] : picture.pixels) {
+    red += r == 255 && g == 0 && b == 0 ? 1 : 0;
+    white += r == 255 && g == 255 && b == 255 ? 1 : 0;
+    grey += r == g && g == b && r < 201 ? 1 : 0;
+  }
+  EXPECT_GT(red, 200u);
+  EXPECT_LT(red, 6000u);
+  EXPECT_GT(white, 1024u * 512 / 4);
+  EXPECT_GT(grey, 1024u * 512 / 8);
 }
 
 TEST_F(Inspect, RepairWithoutItsProgramSaysWhichIsMissing) {
@@ -203,7 +308,9 @@ TEST_F(Inspect, RefusesWhatCannotBeMeant) {
       {"--weld", "-1"},
       {"--weld", "nan"},
       {"--list", "-3"},
-      {"--repair", path("out.obj")},
+      {"--repair", path("out.3ds")},
+      {"--png", path("out.jpg")},
+      {"--json", "-", "--csv", "-"},
       {"--export-defects", path("out.off")},
       {"--fill-holes", "5"},
       {"--resolve-self-intersections"},
