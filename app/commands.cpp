@@ -1,5 +1,6 @@
 #include "app/commands.hpp"
 
+#include "app/command_words.hpp"
 #include "app/process/process.hpp"
 #include "app/unknown_arguments.hpp"
 #include "base/error.hpp"
@@ -8,8 +9,10 @@
 #include <fmt/format.h>
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
+#include <tbb/global_control.h>
 
 #include <algorithm>
+#include <optional>
 #include <vector>
 
 namespace penumbra::app {
@@ -23,7 +26,7 @@ constexpr const char* kFooter =
     "Exit codes: 0 done; 1 the job ran and the answer is no; 2 wrong usage; 3 bad input; 4 device or resource;\n"
     "130 interrupted. An output file appears whole or not at all; results that stdout does not take (a full disk, a\n"
     "closed pipe) are 4.\n"
-    "`penumbra COMMAND --help` explains a command.";
+    "`penumbra help COMMAND` explains a command, `penumbra methods NAME` a method.";
 
 void start_log(const GlobalOptions& global) {
   auto logger = spdlog::stderr_logger_st("penumbra");
@@ -45,15 +48,20 @@ void refuse_values_of_flags(CLI::App& app) {
 int run_command_line(int argc, char** argv) {
   CLI::App app(kDescription, "penumbra");
   app.footer(kFooter);
-  app.set_version_flag("--version", "penumbra " PENUMBRA_VERSION);
+  app.set_version_flag("-V,--version", "penumbra " PENUMBRA_VERSION, "print the program's version");
+  app.set_help_flag("-h,--help", "print this help");
+  use_grouped_help(app);
   app.require_subcommand(0, 1);  // none is refused below: CLI11 would not name a word that it does not know
   app.fallthrough();             // --quiet and --verbose stand before or after the command's name
-  app.get_formatter()->column_width(34);
 
   GlobalOptions global;
   global.arguments.assign(argv + 1, argv + argc);
   auto* quiet = app.add_flag("-q,--quiet", global.quiet, "only errors on stderr, no progress bar");
   app.add_flag("-v,--verbose", global.verbose, "say what is being done")->excludes(quiet);
+  app.add_option("--threads", global.threads,
+                 "threads that work at once (default: as many as there are processors); results do not depend on it")
+      ->type_name("N")
+      ->check(CLI::Range(1, 4096));
 
   std::vector<std::unique_ptr<Command>> commands;
   commands.push_back(make_render_command(app));
@@ -65,6 +73,11 @@ int run_command_line(int argc, char** argv) {
   commands.push_back(make_convert_command(app));
   commands.push_back(make_wedges_command(app));
   commands.push_back(make_submit_command(app));
+  commands.push_back(make_help_command(app));
+  commands.push_back(make_version_command(app));
+  commands.push_back(make_completion_command(app));
+  commands.push_back(make_man_command(app));
+  group_options(app);
   refuse_values_of_flags(app);
 
   try {
@@ -86,6 +99,8 @@ int run_command_line(int argc, char** argv) {
     return static_cast<int>(ExitCode::usage);
   }
   start_log(global);
+  std::optional<tbb::global_control> threads;
+  if (global.threads > 0) threads.emplace(tbb::global_control::max_allowed_parallelism, global.threads);
   const auto chosen = std::ranges::find_if(commands, [](const auto& command) { return command->chosen(); });
   if (chosen == commands.end()) throw UsageError("no command; `penumbra --help` lists what there is");
   const int code = (*chosen)->run(global);

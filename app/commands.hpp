@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -13,6 +14,7 @@ namespace penumbra::app {
 /// What all commands share.
 struct GlobalOptions {
   bool quiet = false, verbose = false;
+  std::uint32_t threads = 0;           ///< the most that work at once; 0: as many as there are processors
   std::vector<std::string> arguments;  ///< what followed the program's name
 };
 
@@ -41,5 +43,9 @@ std::unique_ptr<Command> make_devices_command(CLI::App& app);
 std::unique_ptr<Command> make_convert_command(CLI::App& app);
 std::unique_ptr<Command> make_wedges_command(CLI::App& app);
 std::unique_ptr<Command> make_submit_command(CLI::App& app);
+std::unique_ptr<Command> make_help_command(CLI::App& app);
+std::unique_ptr<Command> make_version_command(CLI::App& app);
+std::unique_ptr<Command> make_completion_command(CLI::App& app);
+std::unique_ptr<Command> make_man_command(CLI::App& app);
 
 }  // namespace penumbra::app

@@ -21,6 +21,7 @@ penumbra_test(cli FULL *EveryTriple* SHARDS Part/RenderTogether=2 Part/CompareTo
   cli/farm_slurm.cpp
   cli/farm_tasks.cpp
   cli/animated_meshes.cpp cli/frames.cpp
+  cli/habit.cpp
   cli/image_methods.cpp
   cli/inspect.cpp
   cli/interpolated_areas.cpp

@@ -6,8 +6,11 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cstdio>
+#include <string>
 #include <utility>
+#include <vector>
 
 namespace penumbra::app {
 namespace {
@@ -23,7 +26,7 @@ void print_table(const std::vector<const MethodDescription*>& methods) {
                method->paper);
     fmt::print("{:<18} exact for: {}\n", "", method->exact_for);
     for (const OptionDescription& option : method->options) {
-      fmt::print("{:<18} {}={} (default {}): {}\n", "", option.name, option.values(), option.default_value,
+      fmt::print("{:<18} {}={} (default: {}): {}\n", "", option.name, option.values(), option.default_value,
                  option.help);
     }
     for (const auto& [option, value, with] : variants_of(*method)) {
@@ -34,22 +37,68 @@ void print_table(const std::vector<const MethodDescription*>& methods) {
   }
 }
 
+/// One method in full: what the row says, each option on lines of its own, how to ask for it, its page.
+void print_method(const MethodDescription& method) {
+  const auto line = [](const char* label, const std::string& text) { fmt::print("{:<11} {}\n", label, text); };
+  fmt::print("{}\n", method.name);
+  line("family", visibility::name_of(method.family));
+  line("paper", method.paper);
+  line("output", visibility::name_of(method.output));
+  line("exact for", method.exact_for);
+  line("lights", fmt::format("{}{}", fmt::join(light_names(method), ", "), method.textures ? "" : "; no textures"));
+  if (!method.any_pattern) line("samples", "in rows alone (--sample-pattern rows or grid)");
+  if (method.exact_area) {
+    std::string with;
+    for (const auto& [key, value] : method.exact_area->options) with += fmt::format(":{}={}", key, value);
+    line("exact area", fmt::format("--method {}{}", method.name, with));
+  }
+  line("render", fmt::format("penumbra render SCENE -o OUT.exr --method {}{}", method.name,
+                             method.options.empty() ? "" : "[:key=value…]"));
+  line("page", fmt::format("docs/{}.md, with its picture and its error map", method.name));
+  if (!method.options.empty()) fmt::print("options\n");
+  for (const OptionDescription& option : method.options) {
+    fmt::print("  {}={} (default: {})\n      {}\n", option.name, option.values(), option.default_value, option.help);
+  }
+  for (const auto& [option, value, with] : variants_of(method)) {
+    fmt::print("  with {}={}: {}; {}{}{}\n", option, value, visibility::name_of(with.output),
+               fmt::join(light_names(with), ", "), with.textures ? "" : "; no textures",
+               with.any_pattern ? "" : "; light samples in rows alone");
+  }
+}
+
 class MethodsCommand : public Command {
  public:
   explicit MethodsCommand(CLI::App& app)
       : Command(app, "methods", "list the shadow methods: family, paper, output, what each is exact for, options") {
+    cli_.add_option("NAME", names_, "methods that are shown in full; none: a table of all")->type_name("");
     cli_.add_flag("--json", json_, "as JSON");
   }
 
   int run(const GlobalOptions&) override {
-    if (json_)
-      fmt::print("{}\n", methods_json().dump(2));
-    else
+    for (const std::string& name : names_) describe_method(name);  // throws for a name that is not there
+    if (json_) {
+      nlohmann::ordered_json json = methods_json();
+      if (!names_.empty()) {
+        auto chosen = nlohmann::ordered_json::array();
+        for (auto& row : json["methods"]) {
+          if (std::ranges::find(names_, row["name"].get<std::string>()) != names_.end())
+            chosen.push_back(std::move(row));
+        }
+        json["methods"] = std::move(chosen);
+      }
+      fmt::print("{}\n", json.dump(2));
+    } else if (names_.empty()) {
       print_table(all_methods());
+    }
+    for (std::size_t i = 0; !json_ && i < names_.size(); ++i) {
+      if (i > 0) fmt::print("\n");
+      print_method(describe_method(names_[i]));
+    }
     return 0;
   }
 
  private:
+  std::vector<std::string> names_;
   bool json_ = false;
 };
 

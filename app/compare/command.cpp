@@ -92,12 +92,13 @@ class CompareCommand : public Command {
   explicit CompareCommand(CLI::App& app)
       : Command(app, "compare", "several methods on the same view samples against a reference") {
     add_run_options(cli_, run_);
-    cli_.add_option("-o,--output", run_.out, "folder for metrics.json, report.html, and each method's pictures")
+    cli_.add_option("-o,--output", run_.out,
+                    "folder for metrics.json, metrics.csv, report.html, and each method's pictures")
         ->required()
         ->type_name("DIR");
     cli_.add_option(
             "--methods,--method", methods_,
-            "what to compare: names with options of their own, a:key=value,b; or geometry, image, all; default: "
+            "what to compare: names with options of their own, a:key=value,b; or geometry, image, all, or default, "
             "those of geometry and image that do not take minutes")
         ->type_name("LIST")
         ->capture_default_str();
@@ -178,7 +179,7 @@ class CompareCommand : public Command {
     cli_.add_option("--filter-width", filter_width_, "of --pixel-filter; not here")->type_name("PIXELS");
     cli_.add_option("--motion-samples", motion_samples_, "1 alone: errors are of one moment")->type_name("1");
     cli_.add_option("--shutter", shutter_, "of --motion-samples; not here")->type_name("FRAMES");
-    cli_.add_flag("--skip-existing", skip_existing_, "not here: everything is measured anew");
+    cli_.add_flag("--skip-existing", skip_existing_, "not supported by compare: all methods are always measured");
   }
 
   void refuse_means() const {

@@ -22,6 +22,7 @@
 #include "base/png.hpp"
 #include "compare/error_picture.hpp"
 #include "compare/eye.hpp"
+#include "compare/metrics_csv.hpp"
 #include "compare/report.hpp"
 #include "render/device.hpp"
 
@@ -109,6 +110,7 @@ class Comparison {
     }
     const std::string json = compare::json_text(compare::to_json(report_.metrics));
     write_file_atomically(run_.out / "metrics.json", json);
+    write_file_atomically(run_.out / "metrics.csv", compare::metrics_csv(report_.metrics));
     if (!options_.stats.empty()) write_file_atomically(options_.stats, json);
     finish_report(arguments);
     compare::write_report(run_.out / "report.html", report_);

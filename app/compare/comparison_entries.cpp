@@ -1,6 +1,7 @@
 #include "app/compare/comparison_entries.hpp"
 
 #include "app/methods.hpp"
+#include "base/did_you_mean.hpp"
 #include "base/error.hpp"
 #include "render/features.hpp"
 #include "visibility/lights/device_light.hpp"
@@ -74,7 +75,9 @@ Entry describe_reference(const std::string& text) {
   const std::string name = text.substr(0, text.find(':'));
   const auto methods = all_methods();
   if (std::ranges::find(methods, name, &MethodDescription::name) == methods.end())
-    return {"reference", describe_judge(text), {}};  // says what there is
+    throw UsageError(
+        "--reference {}: expected {}, or any method whose areas are exact, with options if it takes any, such as {}{}",
+        text, fmt::join(judge_names(), ", "), exact_area_example(), did_you_mean(name, judge_names()));
   const std::vector<MethodEntry> entries = parse_methods(text);
   if (entries.size() == 1) {
     MethodDescription description = describe_method(name, entries.front().options);

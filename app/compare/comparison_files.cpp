@@ -21,6 +21,7 @@ void ComparisonFiles::claim(const std::filesystem::path& scene, std::span<const 
                             const std::filesystem::path& stats) {
   folder_.make(out_);
   outputs_.add("-o", out_ / "metrics.json");
+  outputs_.add("-o", out_ / "metrics.csv");
   outputs_.add("-o", out_ / "report.html");
   outputs_.add("--stats", stats);
   for (const std::filesystem::path& file : files_of("reference")) outputs_.add("-o", file);

@@ -5,6 +5,7 @@
 #include "app/session.hpp"
 #include "base/atomic_file.hpp"
 #include "base/error.hpp"
+#include "compare/metrics_csv.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -205,6 +206,7 @@ compare::Metrics compare_frames(const RunOptions& run, const ComparisonOptions& 
   Json json = compare::to_json(all);
   json["frames"] = rows;
   write_file_atomically(run.out / "metrics.json", compare::json_text(json));
+  write_file_atomically(run.out / "metrics.csv", compare::metrics_csv(all));
   if (!options.stats.empty()) write_file_atomically(options.stats, compare::json_text(json));
   return all;
 }

@@ -5,6 +5,7 @@
 #include "base/exr.hpp"
 
 #include <cmath>
+#include <string_view>
 #include <system_error>
 
 namespace penumbra::app {
@@ -27,7 +28,7 @@ Exposure parse_exposure(const std::string& text) {
                      is_picture(text) ? "its header does not say how it was exposed (penumbra.exposure)"
                                       : "there is no such picture");
   }
-  const auto stops = parse_number(text);
+  const auto stops = parse_number(text.starts_with('+') ? std::string_view(text).substr(1) : std::string_view(text));
   if (!stops || !(std::abs(*stops) <= 100)) {
     throw UsageError(
         "--exposure {}: expected auto, first, stops from -100 to 100 (0: as it is), or a picture's name "

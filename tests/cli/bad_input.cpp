@@ -175,7 +175,7 @@ std::vector<BadUsage> bad_usages() {
       {"ReferenceThatIsNone",
        {"compare", "SCENE", "-o", "DIR", "--reference", "magic"},
        2,
-       {"--reference magic: expected raytrace or exact"}},
+       {"--reference magic: expected raytrace, exact, or any method"}},
       {"ComparePattern",
        {"compare", "SCENE", "-o", "DIR", "--sample-pattern", "x"},
        2,

@@ -1,0 +1,174 @@
+#include "app/command_words.hpp"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <memory>
+#include <sstream>
+#include <string_view>
+#include <utility>
+
+namespace penumbra::app {
+namespace {
+
+constexpr std::array kGroups = {"Input", "Light", "Picture", "Method", "Output", "General"};
+constexpr std::size_t kHelpColumn = 34, kHelpWidth = 100;
+
+/// The group of each option that several commands have, or that is not about output. Others are outputs.
+const std::map<std::string_view, std::string_view>& groups() {
+  static const std::map<std::string_view, std::string_view> table = [] {
+    std::map<std::string_view, std::string_view> map;
+    const auto add = [&](std::string_view group, std::initializer_list<std::string_view> names) {
+      for (const std::string_view name : names) map.emplace(name, group);
+    };
+    add("Input", {"allow-outside", "lenient", "frame", "frames", "fps", "clip", "studio", "no-studio", "floor", "mesh",
+                  "uv", "vertices", "side", "weld", "no-self-intersections", "scene"});
+    add("Light", {"light", "add-light", "light-samples", "sample-pattern", "sample-seed", "lamp-radius", "sun-angle",
+                  "lumens-per-watt"});
+    add("Picture", {"size", "camera", "normals", "pixel-samples", "pixel-filter", "filter-width", "motion-samples",
+                    "shutter", "exposure", "margin", "sample-pixels"});
+    add("Method", {"method", "methods", "method-option", "device", "reference", "reference-samples", "runs", "over",
+                   "construction", "from", "error-budget"});
+    add("General", {"help", "quiet", "verbose", "threads", "version"});
+    return map;
+  }();
+  return table;
+}
+
+std::string_view group_of(const CLI::Option& option) {
+  for (const std::string& name : option.get_lnames()) {
+    const auto found = groups().find(name);
+    if (found != groups().end()) return found->second;
+  }
+  return "Output";
+}
+
+std::string with_default(const CLI::Option& option) {
+  std::string text = option.get_description();
+  const std::string value = option.get_default_str();
+  if (!value.empty() && text.find("(default") == std::string::npos && option.get_type_size() != 0)
+    text += fmt::format(" (default: {})", value);
+  return text;
+}
+
+/// Breaks a text at blanks into lines of at most `width` letters; words that are longer stand alone.
+std::string in_lines(std::string_view text, std::size_t width) {
+  std::string result;
+  std::size_t column = 0;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find_first_of(" \n"), text.size());
+    if (column > 0 && column + 1 + end > width) {
+      result += '\n';
+      column = 0;
+    } else if (column > 0) {
+      result += ' ';
+      ++column;
+    }
+    result += text.substr(0, end);
+    column += end;
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  return result;
+}
+
+/// What a value is, without what CLI11 adds of the checks on it (":INT in [1 - 4096]").
+std::string value_name(const CLI::Option& option) {
+  const std::string name = option.get_type_name();
+  return name.substr(0, std::min(name.find(":INT in"), name.find(":UINT in")));
+}
+
+class GroupedFormatter : public CLI::Formatter {
+ public:
+  GroupedFormatter() {
+    column_width(kHelpColumn);
+    label("Positionals", "Arguments");
+    label("Subcommands", "Commands");
+    label("SUBCOMMAND", "COMMAND");
+  }
+
+  std::string make_help(const CLI::App* app, std::string name, CLI::AppFormatMode mode) const override {
+    std::stringstream text;
+    text << make_description(app) << make_usage(app, std::move(name)) << make_positionals(app);
+    for (const char* group : kGroups) {
+      const auto options = app->get_options(
+          [&](const CLI::Option* option) { return option->get_group() == group && option->nonpositional(); });
+      if (!options.empty()) text << make_group(group, false, options);
+    }
+    text << make_subcommands(app, mode) << '\n' << make_footer(app);
+    if (app->get_parent() != nullptr)
+      text << "Every command takes --quiet, --verbose and --threads N, too: `penumbra --help`.\n";
+    return text.str();
+  }
+
+  std::string make_option_desc(const CLI::Option* option) const override {
+    return in_lines(with_default(*option), kHelpWidth - kHelpColumn);
+  }
+
+  std::string make_option_opts(const CLI::Option* option) const override {
+    std::string text;
+    const std::string value = option->get_positional() ? "" : value_name(*option);
+    if (option->get_type_size() != 0 && !value.empty()) text += " " + value;
+    if (option->get_expected_max() == CLI::detail::expected_max_vector_size) text += " ...";
+    if (option->get_required()) text += " (required)";
+    return text;
+  }
+};
+
+OptionWords words_of(const CLI::Option& option) {
+  OptionWords words;
+  words.short_names = option.get_snames();
+  words.long_names = option.get_lnames();
+  words.help = with_default(option);
+  words.group = option.get_group();
+  words.required = option.get_required();
+  words.repeats = option.get_expected_max() == CLI::detail::expected_max_vector_size;
+  if (option.get_positional()) words.argument = option.get_name(true, false);
+  if (option.get_items_expected_max() > 0 && option.get_type_size() != 0) words.value = value_name(option);
+  return words;
+}
+
+CommandWords words_of(const CLI::App& command) {
+  CommandWords words{command.get_name(), command.get_description(), command.get_footer(), {}, {}};
+  for (const CLI::Option* option : command.get_options()) {
+    (option->get_positional() ? words.arguments : words.options).push_back(words_of(*option));
+  }
+  const auto place = [](const OptionWords& option) {
+    return std::ranges::find(kGroups, option.group) - kGroups.begin();
+  };
+  std::ranges::stable_sort(words.options, {}, place);
+  return words;
+}
+
+std::vector<const CLI::App*> commands_of(const CLI::App& app) {
+  return app.get_subcommands([](const CLI::App*) { return true; });
+}
+
+}  // namespace
+
+std::vector<CommandWords> words_of_commands(const CLI::App& app) {
+  std::vector<CommandWords> all = {words_of(app)};
+  for (const CLI::App* command : commands_of(app)) all.push_back(words_of(*command));
+  return all;
+}
+
+std::string help_text(const CLI::App& app) {
+  const std::string name = app.get_parent() == nullptr ? app.get_name() : "penumbra " + app.get_name();
+  return app.get_formatter()->make_help(&app, name, CLI::AppFormatMode::Normal);
+}
+
+void use_grouped_help(CLI::App& app) {
+  app.formatter(std::make_shared<GroupedFormatter>());
+}
+
+void group_options(CLI::App& app) {
+  const auto group = [](CLI::App& command) {
+    for (CLI::Option* option : command.get_options()) option->group(std::string(group_of(*option)));
+  };
+  group(app);
+  for (CLI::App* command : app.get_subcommands([](CLI::App*) { return true; })) group(*command);
+}
+
+}  // namespace penumbra::app
