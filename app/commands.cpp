@@ -67,6 +67,7 @@ int run_command_line(int argc, char** argv) {
   commands.push_back(make_render_command(app));
   commands.push_back(make_compare_command(app));
   commands.push_back(make_sweep_command(app));
+  commands.push_back(make_bake_command(app));
   commands.push_back(make_inspect_command(app));
   commands.push_back(make_methods_command(app));
   commands.push_back(make_devices_command(app));

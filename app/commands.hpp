@@ -37,6 +37,7 @@ int run_command_line(int argc, char** argv);
 std::unique_ptr<Command> make_render_command(CLI::App& app);
 std::unique_ptr<Command> make_compare_command(CLI::App& app);
 std::unique_ptr<Command> make_sweep_command(CLI::App& app);
+std::unique_ptr<Command> make_bake_command(CLI::App& app);
 std::unique_ptr<Command> make_inspect_command(CLI::App& app);
 std::unique_ptr<Command> make_methods_command(CLI::App& app);
 std::unique_ptr<Command> make_devices_command(CLI::App& app);

@@ -192,7 +192,7 @@ void SessionMaker::show(scenes::Scene scene, bool changed, const std::string& ca
   std::vector<double> view_seconds = {0};
   for (std::uint32_t run = is_seen ? 1 : 0; run <= runs; ++run) {
     const Stopwatch view;
-    session_.samples = sampler_->find(session_.camera);
+    session_.samples = finder_ ? finder_(session_.floats, session_.camera) : sampler_->find(session_.camera);
     view_seconds.push_back(view.seconds());
     progress.advance();
   }
@@ -253,11 +253,13 @@ scenes::Scene without_meshes(const scenes::Scene& scene) {
   return rest;
 }
 
-scenes::Scene read_session_scene(const RunOptions& options, std::optional<double> time) {
+scenes::Scene read_session_scene(const RunOptions& options, std::optional<double> time,
+                                 scenes::LightmapPlaces* lightmap) {
   scenes::ReadOptions reading = read_options(options.gltf, options.allow_outside);
   reading.time = time;
   reading.lenient = options.lenient;
   reading.studio = parse_studio(options.studio, options.camera);
+  reading.lightmap = lightmap;
   if (!options.size.empty()) {
     const auto [width, height] = parse_size(options.size);
     reading.studio.aspect = static_cast<double>(width) / height;

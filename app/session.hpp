@@ -11,6 +11,7 @@
 #include "visibility/view_samples.hpp"
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -52,6 +53,10 @@ struct Session {
   }
 };
 
+/// Finds view samples in place of a camera's pixels, as many as the camera's picture has: points on surfaces.
+using ViewFinder =
+    std::function<visibility::ViewSamples(const visibility::SceneFloats&, const visibility::PinholeCamera&)>;
+
 /// Makes a session, and makes it again of the same scene at other times or from other cameras: what has not changed
 /// since is kept, where methods look for it too. An object that stays where it is, since its session is looked at.
 class SessionMaker {
@@ -69,6 +74,8 @@ class SessionMaker {
   /// `scene` has the triangles, pictures and vertices' looks of the last one, and comes without them (without_meshes);
   /// after a show() that came to its end.
   void show_again(scenes::Scene scene, const std::string& camera, Progress& progress);
+  /// From now on view samples are what `finder` finds; before the first show().
+  void find_view_by(ViewFinder finder) { finder_ = std::move(finder); }
   /// Whether the last show() came to its end.
   [[nodiscard]] bool is_whole() const { return is_whole_; }
   [[nodiscard]] const Session& session() const { return session_; }
@@ -92,6 +99,7 @@ class SessionMaker {
   std::vector<Filters> filters_;  // of each light as made, whatever is looked at
   std::map<const visibility::SceneFloats*, visibility::AlphaReach> reaches_;  // of session_.floats and of those linked
   std::optional<engines::ViewSampler> sampler_;
+  ViewFinder finder_;                              // empty: the camera's pixels
   bool is_whole_ = false;                          // the last show() came to its end
   std::optional<visibility::PinholeCamera> seen_;  // what session_.samples were found for
 };
@@ -99,8 +107,9 @@ class SessionMaker {
 /// All of a scene but its triangles, pictures and vertices' looks.
 scenes::Scene without_meshes(const scenes::Scene& scene);
 
-/// The scene at a time of its animation; at rest without one.
-scenes::Scene read_session_scene(const RunOptions& options, std::optional<double> time);
+/// The scene at a time of its animation; at rest without one. `lightmap`: ReadOptions::lightmap.
+scenes::Scene read_session_scene(const RunOptions& options, std::optional<double> time,
+                                 scenes::LightmapPlaces* lightmap = nullptr);
 
 /// Reads the scene and finds its view samples; once if `runs` is 0, else `runs` times after a
 /// discarded one. `time`: see read_session_scene.

@@ -60,10 +60,11 @@ set(may_compare ${all_visibility} scenes mesh base)
 set(may_app/process render base)
 set(may_app app/process selftest compare reference areas engines engines/vectors hybrids maps vsm volumes volumes/wedges render/opengl render ${all_visibility}
     scenes/formats scenes mesh/diagnosis mesh base)
-foreach(room commands compare farm inspect pictures sweep wedges)
+foreach(room bake commands compare farm inspect pictures sweep wedges)
   set(may_app/${room} ${may_app} app)
 endforeach()
 list(APPEND may_app/commands app/pictures)
+list(APPEND may_app/bake app/pictures)
 list(APPEND may_app/compare app/pictures)
 list(APPEND may_app/farm app/pictures)
 list(APPEND may_app/sweep app/pictures app/compare)
@@ -77,7 +78,7 @@ set(rooms base mesh mesh/diagnosis mesh/shapes repair scenes scenes/formats impo
     volumes/wedges volumes/edges/device volumes/edges/vectors volumes/edges volumes/raster volumes/soft volumes/counters volumes/scatter volumes vsm maps/host maps/products maps/products/lists
     maps/filters maps/sampling maps/single_shadow maps/backprojection maps/backprojection/patches maps/backprojection/contours
     maps/backprojection/soft_shadow_map maps hybrids selftest reference compare
-    app/process app app/pictures app/commands app/compare app/sweep app/farm app/inspect app/wedges library python bench)
+    app/process app app/pictures app/bake app/commands app/compare app/sweep app/farm app/inspect app/wedges library python bench)
 set(may_tests import ${rooms})
 list(APPEND rooms tests)
 

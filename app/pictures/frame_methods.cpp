@@ -151,7 +151,7 @@ void FrameRenderer::run_methods(const std::filesystem::path& bits) {
     return triangle == visibility::ViewSamples::kBackground ? 0.0f : 1.0f;
   });
   spent_.beauty += watch.seconds();
-  add_panes();
+  if (!surface_) add_panes();
   say_idle_lights();
 }
 

@@ -91,6 +91,11 @@ FrameRenderer::FrameRenderer(const RunOptions& options, const MethodWish& wish, 
       progress_(progress),
       maker_(options, machine) {}
 
+void FrameRenderer::look_at_surface(SurfaceView view) {
+  maker_.find_view_by(view.finder);
+  surface_ = std::move(view);
+}
+
 void FrameRenderer::say_once(const std::vector<std::string>& warnings) {
   progress_.clear();
   for (const std::string& warning : warnings) {
@@ -333,12 +338,14 @@ compare::Stats FrameRenderer::stats() {
 compare::Stats FrameRenderer::write(const FrameFiles& files, Exposure& exposure) {
   const Stopwatch write;
   const LabelledLights lights{session().lights, done_.labels};
-  const RenderedFrame content = take();
+  RenderedFrame content = take();
+  if (surface_) surface_->finish(content, session());
   float stops = exposure.stops;
   if (exposure.kind == Exposure::Kind::automatic || std::isnan(stops))
     stops = std::log2(auto_exposure(session(), content.sum, picture_.lamps));
   if (exposure.kind == Exposure::Kind::first) exposure.stops = stops;
   std::map<std::string, std::string> attributes = {{kExposureAttribute, fmt::format("{}", stops)}};
+  if (surface_) attributes.insert(surface_->attributes.begin(), surface_->attributes.end());
   if (picture_.frame.number) attributes["penumbra.frame"] = fmt::format("{}", *picture_.frame.number);
 
   progress_.clear();

@@ -50,6 +50,13 @@ struct RenderedFrame {
   std::vector<std::vector<std::uint32_t>> masks;
 };
 
+/// View samples that are points on surfaces, and what becomes of their numbers before they are written.
+struct SurfaceView {
+  ViewFinder finder;
+  std::function<void(RenderedFrame&, const Session&)> finish;
+  std::map<std::string, std::string> attributes;  ///< of OUT.exr, by full name
+};
+
 /// Renders pictures of one scene after each other. Methods, and what they prepared, are kept from one to the next.
 class FrameRenderer {
  public:
@@ -58,6 +65,9 @@ class FrameRenderer {
 
   /// Scenes will follow one another as frames of an animation do. Before the first.
   void expect_frames() { expects_frames_ = true; }
+  /// Pictures are of these view samples, one moment and one sample a pixel. Nothing lies before a surface, so that
+  /// translucent ones are not composited. Before the first.
+  void look_at_surface(SurfaceView view);
   /// Looks at a scene and computes all lights' V and beauty: of it, or the mean of `frame.moments`; then positions,
   /// normals, depths and ids are those of `scene` and of pixels' centres. `read_seconds`: what reading the scene took,
   /// perhaps while the picture before was made; of the first, all since the process began.
@@ -172,6 +182,7 @@ class FrameRenderer {
   std::optional<Fine> fine_;
   std::vector<Kept> kept_;
   bool expects_frames_ = false;
+  std::optional<SurfaceView> surface_;  // nothing: what a camera sees
   Said said_;
   Plan plan_;
   Done done_;

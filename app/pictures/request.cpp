@@ -77,7 +77,7 @@ void add_picture_options(CLI::App& command, PictureOptions& options) {
       ->type_name("OUT.exr");
   command
       .add_option("--method", options.method,
-                  "shadow method, see `penumbra methods`, with options if any (NAME:key=value:...; default: for each "
+                  "shadow method, see `penumbra methods`, with options if any (NAME:key=value:...) (default: for each "
                   "light the best one that gives its exact "
                   "area; where light samples are asked for, or none does, the best geometry-based one, or rays)")
       ->type_name("NAME");
@@ -106,8 +106,8 @@ void add_picture_options(CLI::App& command, PictureOptions& options) {
   command
       .add_option(
           "--pixel-filter", options.pixel_filter,
-          "how they are weighed: box (the mean of the pixel's own, the default) or blackman-harris, which takes "
-          "in neighbours, as Blender does")
+          "how they are weighed: box (the mean of the pixel's own) or blackman-harris, which takes in "
+          "neighbours, as Blender does (default: box)")
       ->type_name("NAME");
   command
       .add_option("--filter-width", options.filter_width, "of blackman-harris, in pixels (default: 1.5, as Blender's)")

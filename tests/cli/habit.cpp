@@ -110,7 +110,7 @@ TEST_F(Habit, ManualPagesSayWhatHelpSays) {
   EXPECT_THAT(page.out, AllOf(testing::StartsWith(".TH PENUMBRA-RENDER 1"), HasSubstr(".SS Light\n"),
                               HasSubstr("\\fB\\-\\-light\\-samples\\fR \\fIN|LxB\\fR"), HasSubstr(".SH EXIT STATUS")));
   EXPECT_THAT(run({"man"}).out, AllOf(HasSubstr(".SH COMMANDS"), HasSubstr("\\fBinspect\\fR"), HasSubstr("-V")));
-  for (const char* const command : {"render", "compare", "inspect"}) {
+  for (const char* const command : {"render", "compare", "inspect", "bake"}) {
     // A line that begins with a point is a request: only those of man(7).
     const std::string text = run({"man", command}).out;
     for (std::size_t at = 0; at < text.size(); at = text.find('\n', at) + 1) {

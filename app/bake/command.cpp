@@ -1,0 +1,198 @@
+#include "app/bake/baked_mesh.hpp"
+#include "app/bake/vertex_file.hpp"
+#include "app/commands.hpp"
+#include "app/machine.hpp"
+#include "app/methods.hpp"
+#include "app/parse.hpp"
+#include "app/pictures/frames.hpp"
+#include "app/pictures/request.hpp"
+#include "app/process/output_files.hpp"
+#include "app/process/process.hpp"
+#include "app/process/terminal_progress.hpp"
+#include "base/atomic_file.hpp"
+#include "base/error.hpp"
+
+#include <CLI/CLI.hpp>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <optional>
+#include <tuple>
+#include <utility>
+
+namespace penumbra::app {
+namespace {
+
+constexpr std::uint32_t kDefaultSide = 512, kMostMargin = 1024;
+constexpr std::uint32_t kPointsInARow = 256;  // of vertices: as many as in a small picture
+
+class BakeCommand : public Command {
+ public:
+  explicit BakeCommand(CLI::App& app)
+      : Command(app, "bake", "V and irradiance at texels of a mesh's lightmap, or at its vertices") {
+    add_run_options(cli_, options_.run);
+    cli_.remove_option(cli_.get_option("--camera"));
+    cli_.get_option("--size")
+        ->description(fmt::format("texels of the map: S for a square, or WxH (default: {})", kDefaultSide))
+        ->type_name("S|WxH");
+    cli_.add_option("--mesh", mesh_, "the mesh that is baked, by its name; of several of one name all")
+        ->required()
+        ->type_name("NAME");
+    auto* uv = cli_.add_option("--uv", lightmap_.set,
+                               "the coordinates that lay the mesh out in the map: TEXCOORD_N of glTF; OBJ files and "
+                               "quads of JSON have one set, 0")
+                   ->type_name("N")
+                   ->default_str("0");
+    cli_.add_flag("--vertices", vertices_, "values at vertices in place of a map, as MAP.ply")->excludes(uv);
+    cli_.add_option("-o,--output", options_.run.out,
+                    "MAP.exr: channels as `render` has them, R G B the irradiance, A 1 on texels of the mesh; with "
+                    "--vertices MAP.ply")
+        ->required()
+        ->type_name("MAP.exr|MAP.ply");
+    cli_.add_option("--side", side_,
+                    "which side is baked: front, from which its triangles run counter-clockwise, or back")
+        ->type_name("front|back")
+        ->capture_default_str();
+    cli_.add_option("--margin", margin_, "texels around the mesh's that get the value of the nearest")
+        ->type_name("N")
+        ->check(CLI::Range(0U, kMostMargin))
+        ->capture_default_str();
+    cli_.add_option("--method", options_.method,
+                    "shadow method, see `penumbra methods`, with options if any (NAME:key=value:...) (default: "
+                    "as `render` chooses: exact areas where a method has them)")
+        ->type_name("NAME");
+    cli_.add_option("--stats", options_.stats, "times, counters and warnings as JSON")->type_name("FILE.json");
+    cli_.add_option("--png", options_.png, "the irradiance as a picture for viewing")->type_name("FILE.png");
+    cli_.add_option("--exposure", options_.exposure,
+                    "of the PNG: auto, stops, or a picture whose own it is to have "
+                    "(default: auto)")
+        ->type_name("auto|EV|FILE.exr");
+    cli_.add_option("--frame", options_.frame,
+                    "one frame of the scene's animation, or a moment between two, such as 12.5")
+        ->type_name("F");
+    cli_.add_option("--fps", options_.fps, "frame F is F / fps seconds of a glTF animation (default: 24)")
+        ->type_name("N");
+    cli_.footer(
+        "Each texel whose centre lies on the mesh is a view sample there, on the mesh's own triangle, with its "
+        "geometric "
+        "normal;\nV and irradiance are what `render` finds at such a point. docs/bake.md says the rest.\n");
+  }
+
+  int run(const GlobalOptions& global) override {
+    const PictureRequest request = checked_request();
+    const auto side = parse_side();
+    const OutputFiles outputs = claimed_outputs();
+    TerminalProgress progress(!global.quiet);
+    const render::Machine machine = make_machine(options_.run.device);
+    progress.begin("reading " + options_.run.scene.filename().string(), 1);
+    std::optional<double> time;
+    if (request.frames.front()) time = *request.frames.front() * request.seconds_per_frame;
+    scenes::Scene scene = read_session_scene(options_.run, time, vertices_ ? nullptr : &lightmap_);
+    outputs.refuse_inputs(scene.sources);
+    const BakedMesh mesh = find_baked(scene, mesh_);
+    progress.clear();
+    std::vector<std::string> notes;
+    const std::vector<visibility::SurfacePoint> points = find_points(scene, mesh, notes);
+    for (const std::string& note : notes) spdlog::warn("{}", note);
+    prepare_scene(scene, mesh);
+    const std::vector<glm::dvec3> positions = vertices_ ? scene.soup.positions : std::vector<glm::dvec3>();
+    const std::vector<mesh::Triangle> triangles = scene.soup.triangles;
+
+    FrameRenderer renderer(options_.run, request.wish, machine, progress);
+    const auto sources = visibility::margin_sources(points, width_, vertices_ ? 0 : margin_);
+    renderer.look_at_surface({[&](const visibility::SceneFloats& floats, const visibility::PinholeCamera& camera) {
+                                return visibility::surface_view_samples(floats, triangles, camera, points, side);
+                              },
+                              [&](RenderedFrame& frame, const Session& session) {
+                                make_irradiance(frame, session);
+                                if (!vertices_) fill_margins(frame, sources);
+                              },
+                              {{"penumbra.bake", fmt::format("mesh {}, coordinates {}, side {}: R G B are irradiance",
+                                                             mesh_, lightmap_.set, side_)}}});
+    Frame frame;
+    frame.number = request.frames.front();
+    renderer.render(std::move(scene), frame, {}, seconds_since_start());
+    if (vertices_) {
+      write_vertices(renderer, positions);
+      return 0;
+    }
+    Exposure exposure = request.exposure;
+    const std::string made = summary(renderer.write({options_.run.out, options_.stats, options_.png, {}}, exposure));
+    const auto covered = std::ranges::count_if(points, [](const auto& point) { return point.triangle >= 0; });
+    spdlog::info("{} texels of \"{}\"; {}", covered, mesh_, made);
+    return 0;
+  }
+
+ private:
+  /// What is wrong with the command line is said before anything long begins.
+  [[nodiscard]] PictureRequest checked_request() {
+    std::string& size = options_.run.size;
+    if (size.empty()) size = fmt::format("{}", kDefaultSide);
+    if (parse_integer<std::uint32_t>(size)) size = fmt::format("{0}x{0}", size);
+    std::tie(width_, height_) = parse_size(size);
+    // The rest of the request is that of a picture, whose name ends so.
+    PictureOptions as_picture = options_;
+    if (vertices_) {
+      if (options_.run.out.extension() != ".ply")
+        throw UsageError("-o {}: expected a name that ends in .ply (--vertices)", options_.run.out.string());
+      if (!options_.png.empty() || !options_.stats.empty())
+        throw UsageError("--vertices: {} is of a map; leave it out", options_.png.empty() ? "--stats" : "--png");
+      as_picture.run.out.replace_extension(".exr");
+    }
+    if (options_.exposure == "first")
+      throw UsageError("--exposure first: a bake has one frame; expected auto or stops");
+    return parse_request(as_picture);
+  }
+
+  [[nodiscard]] visibility::SurfaceSide parse_side() const {
+    if (side_ == "front") return visibility::SurfaceSide::front;
+    if (side_ == "back") return visibility::SurfaceSide::back;
+    throw UsageError("--side {}: expected front or back", side_);
+  }
+
+  [[nodiscard]] OutputFiles claimed_outputs() const {
+    check_png_name(options_);
+    OutputFiles outputs;
+    outputs.add("-o", options_.run.out);
+    outputs.add("--stats", options_.stats);
+    outputs.add("--png", options_.png);
+    outputs.refuse_inputs({&options_.run.scene, 1});
+    outputs.require_writable();
+    return outputs;
+  }
+
+  /// Also the size of the picture of view samples.
+  std::vector<visibility::SurfacePoint> find_points(const scenes::Scene& scene, const BakedMesh& mesh,
+                                                    std::vector<std::string>& notes) {
+    if (!vertices_) return lightmap_points(scene, mesh, lightmap_, width_, height_, notes);
+    at_vertices_ = vertex_points(scene, mesh, kPointsInARow);
+    width_ = kPointsInARow;
+    height_ = static_cast<std::uint32_t>(at_vertices_.points.size() / width_);
+    options_.run.size = fmt::format("{}x{}", width_, height_);
+    return at_vertices_.points;
+  }
+
+  void write_vertices(FrameRenderer& renderer, const std::vector<glm::dvec3>& positions) const {
+    RenderedFrame frame = renderer.take();
+    make_irradiance(frame, renderer.session());
+    write_vertex_ply(options_.run.out, positions, at_vertices_,
+                     values_at_vertices(at_vertices_, frame, renderer.session()));
+    spdlog::info("{}: {} vertices of \"{}\", {} points", options_.run.out.string(), at_vertices_.vertices.size(), mesh_,
+                 at_vertices_.weights.size());
+  }
+
+  PictureOptions options_;
+  scenes::LightmapPlaces lightmap_;
+  std::string mesh_, side_ = "front";
+  std::uint32_t margin_ = 8, width_ = 0, height_ = 0;
+  bool vertices_ = false;
+  VertexPoints at_vertices_;
+};
+
+}  // namespace
+
+std::unique_ptr<Command> make_bake_command(CLI::App& app) {
+  return std::make_unique<BakeCommand>(app);
+}
+
+}  // namespace penumbra::app
