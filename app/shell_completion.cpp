@@ -57,7 +57,7 @@ std::string pattern_of(std::span<const CommandWords> commands, ValueKind kind) {
     }
   }
   std::ranges::sort(names);
-  names.erase(std::ranges::unique(names).begin(), names.end());
+  names.erase(std::unique(names.begin(), names.end()), names.end());
   return fmt::format("{}", fmt::join(names, "|"));
 }
 

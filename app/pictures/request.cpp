@@ -104,10 +104,9 @@ void add_picture_options(CLI::App& command, PictureOptions& options) {
                   "become the next of these (default: 1, the pixel's centre)")
       ->type_name("S");
   command
-      .add_option(
-          "--pixel-filter", options.pixel_filter,
-          "how they are weighed: box (the mean of the pixel's own) or blackman-harris, which takes in "
-          "neighbours, as Blender does (default: box)")
+      .add_option("--pixel-filter", options.pixel_filter,
+                  "how they are weighed: box (the mean of the pixel's own) or blackman-harris, which takes in "
+                  "neighbours, as Blender does (default: box)")
       ->type_name("NAME");
   command
       .add_option("--filter-width", options.filter_width, "of blackman-harris, in pixels (default: 1.5, as Blender's)")

@@ -73,7 +73,8 @@ TEST_F(Bake, AnOpenFloorHasTheClosedForm) {
     EXPECT_EQ(map.floats.at("V")[i], 1);
     EXPECT_EQ(map.floats.at("A")[i], 1);
     for (const char* channel : {"R", "G", "B", "key.R"})
-      EXPECT_NEAR(map.floats.at(channel)[i], baked_irradiance(x, z), 1e-5 * baked_irradiance(x, z)) << channel << ' ' << i;
+      EXPECT_NEAR(map.floats.at(channel)[i], baked_irradiance(x, z), 1e-5 * baked_irradiance(x, z))
+          << channel << ' ' << i;
   }
   EXPECT_THAT(map.attributes.at("penumbra.bake"), HasSubstr("floor"));
   const ExrFile back = bake({"--side", "back"});

@@ -92,11 +92,11 @@ TEST_F(Instances, WhatCannotBeMeantIsRefused) {
     return outcome.err;
   };
   const json still = {{"translate", {0, 0, 0}}};
-  EXPECT_THAT(refused({still}, still), HasSubstr("exclude one another"));
+  EXPECT_THAT(refused(json::array({still}), still), HasSubstr("exclude one another"));
   EXPECT_THAT(refused(json::array(), nullptr), HasSubstr("/meshes/1/instances"));
-  EXPECT_THAT(refused({still, {{"scale", 0}}}, nullptr), HasSubstr("/meshes/1/instances/1"));
-  EXPECT_THAT(refused({{{"transform", still}, {"scale", 2}}}, nullptr), HasSubstr("stands alone"));
-  EXPECT_THAT(refused({{{"turn", 2}}}, nullptr), HasSubstr("turn"));
+  EXPECT_THAT(refused(json::array({still, {{"scale", 0}}}), nullptr), HasSubstr("/meshes/1/instances/1"));
+  EXPECT_THAT(refused(json::array({{{"transform", still}, {"scale", 2}}}), nullptr), HasSubstr("stands alone"));
+  EXPECT_THAT(refused(json::array({{{"turn", 2}}}), nullptr), HasSubstr("turn"));
 }
 
 }  // namespace
