@@ -77,8 +77,9 @@ class Host {
       Stopwatch watch;
       if (const visibility::SceneFloats& floats = session_.floats_for(light); mesh_ != &floats) {
         watch.restart();
+        hold(nullptr);
         method_.prepare_mesh(floats);
-        mesh_ = &floats;
+        hold(&floats);
         times.mesh += watch.seconds();
       }
       if (const visibility::SceneFloats& floats = session_.floats_for(light); filters(light) && filtered_ != &floats) {
@@ -95,7 +96,7 @@ class Host {
       method_.prepare_view(samples);
       times.view += watch.seconds();
       std::uint32_t rows = std::max(method_.max_tile_rows(), 1u);
-      rows = std::min(rows, most_rows_to_read(light));
+      rows = std::min({rows, most_rows_to_read(light), plan_.band_rows});
       for (std::uint32_t row = 0; row < session_.height; row += rows) {
         const Tile tile{row, std::min(rows, session_.height - row)};
         times.lights[light].evaluate += evaluate(tile) + filter(light, samples, tile);
@@ -116,6 +117,10 @@ class Host {
   }
 
  private:
+  void hold(const visibility::SceneFloats* floats) {
+    mesh_ = floats;
+    if (plan_.holds != nullptr) *plan_.holds = floats;
+  }
   /// Is some of this light's shadow the host's?
   [[nodiscard]] bool filters(std::size_t light) const {
     return !visibility::left_to_host(method_.description(), plan_.lights[light]).empty();

@@ -47,6 +47,10 @@ struct RunPlan {
   std::vector<std::size_t> only = {};  ///< the lights that are done (indices); empty: all of them
   /// The scene of the last run of this method, if nothing in it has changed: it is not prepared again.
   const visibility::SceneFloats* prepared = nullptr;
+  /// Gets the scene that the method holds, as soon as it holds it: also of a run that does not come to its end.
+  const visibility::SceneFloats** holds = nullptr;
+  /// Rows that are evaluated at once: at most so many. Between them Progress may stop the run.
+  std::uint32_t band_rows = std::numeric_limits<std::uint32_t>::max();
   std::string stage = {};  ///< what the bar of progress says; empty: the method's name
 };
 

@@ -1,4 +1,4 @@
-// libjpeg reports errors by longjmp, which may not jump over destructors: in `decode_jpeg` nothing has one.
+// libjpeg reports errors by longjmp, which may not jump over destructors: in `decode_jpeg` and `write_jpeg` nothing has one.
 #include "base/jpeg.hpp"
 
 #include "base/error.hpp"
@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <csetjmp>
+#include <cstdlib>
 #include <utility>
 #include <vector>
 
@@ -75,7 +76,67 @@ bool decode_jpeg(JpegDecoder& decoder, std::span<const std::byte> bytes) {
   return true;
 }
 
+/// All that outlives a longjmp.
+struct JpegEncoder {
+  JpegEncoder() = default;
+  JpegEncoder(const JpegEncoder&) = delete;
+  JpegEncoder& operator=(const JpegEncoder&) = delete;
+  ~JpegEncoder() {
+    jpeg_destroy_compress(&jpeg);
+    std::free(bytes);
+  }
+
+  jpeg_error_mgr errors{};
+  jpeg_compress_struct jpeg{};
+  std::jmp_buf escape{};
+  std::array<char, JMSG_LENGTH_MAX> message{};
+  unsigned char* bytes = nullptr;  // libjpeg's, by malloc
+  unsigned long size = 0;
+};
+
+void jpeg_not_written(j_common_ptr jpeg) {
+  auto& encoder = *static_cast<JpegEncoder*>(jpeg->client_data);
+  jpeg->err->format_message(jpeg, encoder.message.data());
+  std::longjmp(encoder.escape, 1);
+}
+
+/// False: `message` says why not.
+bool write_jpeg(JpegEncoder& encoder, const Image8& image, int quality) {
+  if (setjmp(encoder.escape) != 0) return false;
+  jpeg_create_compress(&encoder.jpeg);
+  encoder.jpeg.client_data = &encoder;
+  jpeg_mem_dest(&encoder.jpeg, &encoder.bytes, &encoder.size);
+  encoder.jpeg.image_width = image.width;
+  encoder.jpeg.image_height = image.height;
+  encoder.jpeg.input_components = kJpegChannels;
+  encoder.jpeg.in_color_space = JCS_RGB;
+  jpeg_set_defaults(&encoder.jpeg);
+  jpeg_set_quality(&encoder.jpeg, quality, TRUE);
+  encoder.jpeg.comp_info[0].h_samp_factor = 1;  // colours at every pixel, not at every fourth
+  encoder.jpeg.comp_info[0].v_samp_factor = 1;
+  jpeg_start_compress(&encoder.jpeg, TRUE);
+  while (encoder.jpeg.next_scanline < encoder.jpeg.image_height) {
+    // libjpeg's interface is older than const.
+    auto* row = const_cast<JSAMPROW>(image.pixels[std::size_t{encoder.jpeg.next_scanline} * image.width].data());
+    jpeg_write_scanlines(&encoder.jpeg, &row, 1);
+  }
+  jpeg_finish_compress(&encoder.jpeg);
+  return true;
+}
+
 }  // namespace
+
+std::vector<std::byte> encode_jpeg(const Image8& image, int quality) {
+  if (image.pixels.empty()) throw ResourceError("cannot make a JPEG of a picture without pixels");
+  JpegEncoder encoder;
+  encoder.jpeg.err = jpeg_std_error(&encoder.errors);
+  encoder.errors.error_exit = jpeg_not_written;
+  encoder.jpeg.client_data = &encoder;
+  if (!write_jpeg(encoder, image, quality))
+    throw ResourceError("cannot make a JPEG of {}x{} pixels: {}", image.width, image.height, encoder.message.data());
+  const auto* const bytes = reinterpret_cast<const std::byte*>(encoder.bytes);
+  return {bytes, bytes + encoder.size};
+}
 
 bool looks_like_jpeg(std::span<const std::byte> bytes) {
   constexpr std::array kBegin{std::byte{0xff}, std::byte{0xd8}, std::byte{0xff}};

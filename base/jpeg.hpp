@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 namespace penumbra {
 
@@ -15,5 +16,9 @@ bool looks_like_jpeg(std::span<const std::byte> bytes);
 /// damaged, has colours that are neither grey nor RGB (CMYK), or has a side of more than `largest_side` pixels, which
 /// is found out before anything is decoded.
 RgbaImage decode_rgba_jpeg(std::span<const std::byte> bytes, std::uint32_t largest_side);
+
+/// The picture as a JPEG file in memory, without loss of colour's resolution, for eyes; `quality` from 1 to 100. A
+/// picture that JPEG cannot hold (no pixels, or a side over 65,500) is a ResourceError.
+std::vector<std::byte> encode_jpeg(const Image8& image, int quality);
 
 }  // namespace penumbra

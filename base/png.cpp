@@ -21,12 +21,13 @@ struct PngImage {
 };
 
 template <typename Picture>
-std::vector<std::byte> encode(const Picture& image, png_uint_32 format) {
+std::vector<std::byte> encode(const Picture& image, png_uint_32 format, png_uint_32 flags = 0) {
   if (image.pixels.empty()) throw ResourceError("cannot make a PNG of a picture without pixels");
   PngImage png;
   png.image.width = image.width;
   png.image.height = image.height;
   png.image.format = format;
+  png.image.flags = flags;
   std::vector<std::byte> bytes(PNG_IMAGE_PNG_SIZE_MAX(png.image));
   png_alloc_size_t size = bytes.size();
   if (png_image_write_to_memory(&png.image, bytes.data(), &size, 0, image.pixels.data(), 0, nullptr) == 0) {
@@ -41,6 +42,10 @@ std::vector<std::byte> encode(const Picture& image, png_uint_32 format) {
 std::vector<std::byte> encode_png(const Image8& image) {
   static_assert(sizeof(Color8) == 3, "rows are handed to libpng as they lie");
   return encode(image, PNG_FORMAT_RGB);
+}
+
+std::vector<std::byte> encode_png_fast(const Image8& image) {
+  return encode(image, PNG_FORMAT_RGB, PNG_IMAGE_FLAG_FAST);
 }
 
 std::vector<std::byte> encode_rgba_png(const RgbaImage& image) {

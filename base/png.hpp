@@ -14,6 +14,8 @@ namespace penumbra {
 /// The picture as a PNG file in memory: 8-bit RGB, marked as sRGB, no date: the same picture gives the same bytes.
 /// A picture that PNG cannot hold (no pixels, or a side over a million) is a ResourceError.
 std::vector<std::byte> encode_png(const Image8& image);
+/// The same pixels in a third of the time, and some more bytes.
+std::vector<std::byte> encode_png_fast(const Image8& image);
 /// With alpha, which multiplies nothing: decode_rgba_png gives the same texels.
 std::vector<std::byte> encode_rgba_png(const RgbaImage& image);
 

@@ -1,4 +1,5 @@
-# Turns the report's page into a source: cmake -DFOLDER=… -DSTYLE=a;b -DSCRIPT=… -DMARKUP=… -DSOURCE=out.cpp -P embed_text.cmake
+# Turns a page into a source: cmake -DFOLDER=… -DSTYLE=a;b -DSCRIPT=… -DMARKUP=… -DHEADER=… -DNAMESPACE=… -DPREFIX=… -DSOURCE=out.cpp
+# -P embed_text.cmake: the constants k<PREFIX>Style, k<PREFIX>Script and k<PREFIX>Markup, which HEADER declares.
 # Files of one kind follow one another; scripts stand in one strict block, so that none of their names is the window's.
 foreach(kind STYLE SCRIPT MARKUP)
   set(${kind}_text "")
@@ -12,10 +13,10 @@ foreach(kind STYLE SCRIPT MARKUP)
 endforeach()
 set(SCRIPT_text "\"use strict\";\n{\n${SCRIPT_text}}\n")
 file(WRITE ${SOURCE} "// Made by cmake/embed_text.cmake.
-#include \"compare/report_parts.hpp\"
-namespace penumbra::compare {
-const std::string_view kReportStyle = R\"page(${STYLE_text})page\";
-const std::string_view kReportScript = R\"page(${SCRIPT_text})page\";
-const std::string_view kReportViewer = R\"page(${MARKUP_text})page\";
-}  // namespace penumbra::compare
+#include \"${HEADER}\"
+namespace penumbra::${NAMESPACE} {
+const std::string_view k${PREFIX}Style = R\"page(${STYLE_text})page\";
+const std::string_view k${PREFIX}Script = R\"page(${SCRIPT_text})page\";
+const std::string_view k${PREFIX}Markup = R\"page(${MARKUP_text})page\";
+}  // namespace penumbra::${NAMESPACE}
 ")

@@ -263,7 +263,7 @@ std::string report_html(const ReportInput& in) {
       "all "
       "their channels in the <code>.exr</code> files.</p></section>\n";
   html += "</main>\n<footer>Written by penumbra " + escape_html(in.version) + ".</footer>\n";
-  if (!report_data_is_empty(in)) html += kReportViewer;
+  if (!report_data_is_empty(in)) html += kReportMarkup;
   html += report_data_html(in) + "<script>\n";
   html += kReportScript;
   return html + "</script>\n</body>\n</html>\n";

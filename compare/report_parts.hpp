@@ -70,6 +70,6 @@ extern const std::string_view kReportGlossary;
 /// The files of compare/page/: the style sheet, the script, and the viewer's elements.
 extern const std::string_view kReportStyle;
 extern const std::string_view kReportScript;
-extern const std::string_view kReportViewer;
+extern const std::string_view kReportMarkup;
 
 }  // namespace penumbra::compare

@@ -6,6 +6,7 @@ cmake_minimum_required(VERSION 3.25)
 # What each room may include beside itself. A room is a folder; one named with a slash is a room inside another, and a
 # folder that is not named here belongs to the room around it. Families (volumes/…, vsm, maps) never include one another.
 set(may_base)
+set(may_network base)
 set(may_mesh base)
 set(may_mesh/diagnosis mesh base)
 set(may_repair mesh base)
@@ -58,9 +59,9 @@ set(may_selftest maps/products/lists maps/products maps/host vsm engines/vectors
 set(may_reference areas engines render ${all_visibility} scenes mesh base)
 set(may_compare ${all_visibility} scenes mesh base)
 set(may_app/process render base)
-set(may_app app/process selftest compare reference areas engines engines/vectors hybrids maps vsm volumes volumes/wedges render/opengl render ${all_visibility}
+set(may_app app/process network selftest compare reference areas engines engines/vectors hybrids maps vsm volumes volumes/wedges render/opengl render ${all_visibility}
     scenes/formats scenes mesh/diagnosis mesh base)
-foreach(room bake commands compare farm inspect pictures sweep wedges)
+foreach(room bake commands compare farm inspect pictures sweep view wedges)
   set(may_app/${room} ${may_app} app)
 endforeach()
 list(APPEND may_app/commands app/pictures)
@@ -68,17 +69,18 @@ list(APPEND may_app/bake app/pictures)
 list(APPEND may_app/compare app/pictures)
 list(APPEND may_app/farm app/pictures)
 list(APPEND may_app/sweep app/pictures app/compare)
+list(APPEND may_app/view app/pictures)
 set(may_library app app/compare app/inspect app/pictures app/process app/wedges compare render ${all_visibility}
     scenes/formats scenes mesh base)
 set(may_python)
 set(may_bench ${may_app} app app/pictures volumes/raster volumes/edges mesh/shapes)
-set(rooms base mesh mesh/diagnosis mesh/shapes repair scenes scenes/formats import import/gltf import/gltf/emitters visibility
+set(rooms base network mesh mesh/diagnosis mesh/shapes repair scenes scenes/formats import import/gltf import/gltf/emitters visibility
     visibility/tree visibility/lights
     visibility/masks visibility/alpha areas render/opengl render engines/device engines/vectors engines/pairs engines
     volumes/wedges volumes/edges/device volumes/edges/vectors volumes/edges volumes/raster volumes/soft volumes/counters volumes/scatter volumes vsm maps/host maps/products maps/products/lists
     maps/filters maps/sampling maps/single_shadow maps/backprojection maps/backprojection/patches maps/backprojection/contours
     maps/backprojection/soft_shadow_map maps hybrids selftest reference compare
-    app/process app app/pictures app/bake app/commands app/compare app/sweep app/farm app/inspect app/wedges library python bench)
+    app/process app app/pictures app/bake app/commands app/compare app/sweep app/view app/farm app/inspect app/wedges library python bench)
 set(may_tests import ${rooms})
 list(APPEND rooms tests)
 
@@ -101,9 +103,10 @@ set(kept_libdeflate base)
 set(kept_png base)
 set(kept_jpeglib base)
 set(kept_CLI app)
+set(kept_boost network)
 set(kept_gmpxx volumes areas)
 set(kept_hwy visibility/lights visibility/tree engines/vectors engines/pairs volumes/edges volumes/scatter volumes/counters vsm tests)
-set(libraries vulkan spirv_cross EGL GL CGAL OpenMesh embree3 assimp pugixml minizip tiny_gltf valijson OpenEXR libdeflate png jpeglib CLI gmpxx hwy)
+set(libraries vulkan spirv_cross EGL GL CGAL OpenMesh embree3 assimp pugixml minizip tiny_gltf valijson OpenEXR libdeflate png jpeglib CLI boost gmpxx hwy)
 
 # room_of(folder result): the innermost room that the folder is, or lies in; empty if none.
 function(room_of folder result)

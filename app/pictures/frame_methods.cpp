@@ -161,7 +161,10 @@ MethodRun FrameRenderer::run_lights(BeautyAccumulator& beauty, BitsOutput* bits)
     const Stopwatch make;
     Kept& kept = method_for(method);
     spent_.make += make.seconds();
-    plan.prepared = kept.prepared;
+    const visibility::SceneFloats* const before = kept.prepared;
+    plan.prepared = before;
+    plan.holds = &kept.prepared;
+    plan.band_rows = picture_.frame.band_rows;
     plan.shades = true;
     std::optional<InterpolatedAreas> interpolated;
     if (picture_.frame.pixel_side > 1 && picture_.frame.pixel_tolerance > 0 && method.description.gives_area())
@@ -178,8 +181,7 @@ MethodRun FrameRenderer::run_lights(BeautyAccumulator& beauty, BitsOutput* bits)
         },
         progress_);
     // Whatever was made for a mesh is counted by who made it (Method::take_mesh_counters).
-    if (!std::exchange(kept.used, true) && kept.prepared == run.prepared) ++run.counters["meshesKept"];
-    kept.prepared = run.prepared;
+    if (!std::exchange(kept.used, true) && before == run.prepared) ++run.counters["meshesKept"];
     // Whatever is no phase of the method's is about its answers.
     const RunTimes& times = run.times;
     spent_.beauty += times.total - times.mesh - times.light - times.evaluate - times.view;

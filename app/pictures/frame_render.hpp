@@ -15,6 +15,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
@@ -38,6 +39,8 @@ struct Frame {
   /// The scene is without_meshes(), and has those of the last picture; of one moment and of pixels' centres.
   bool same_meshes = false;
   bool keeps_masks = false;  ///< RenderedFrame::masks; of a picture of one moment and of pixels' centres
+  /// Methods evaluate so many rows at once, and no more (RunPlan::band_rows).
+  std::uint32_t band_rows = std::numeric_limits<std::uint32_t>::max();
 };
 
 /// The numbers of a picture, for each whole light and for all together. Row by row from the top.
@@ -57,7 +60,8 @@ struct SurfaceView {
   std::map<std::string, std::string> attributes;  ///< of OUT.exr, by full name
 };
 
-/// Renders pictures of one scene after each other. Methods, and what they prepared, are kept from one to the next.
+/// Renders pictures of one scene after each other. Methods, and what they prepared, are kept from one to the next; so
+/// they are where `progress` throws between bands of rows, which gives a picture up.
 class FrameRenderer {
  public:
   /// All must outlive it. Options and wish may change from one picture to the next.

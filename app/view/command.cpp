@@ -1,0 +1,128 @@
+#include "app/commands.hpp"
+#include "app/options.hpp"
+#include "app/process/process.hpp"
+#include "app/process/terminal_progress.hpp"
+#include "app/reading_options.hpp"
+#include "app/session.hpp"
+#include "app/view/file_watch.hpp"
+#include "app/view/live_view.hpp"
+#include "base/child.hpp"
+#include "base/descriptor.hpp"
+#include "base/error.hpp"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <spdlog/spdlog.h>
+
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include <fcntl.h>
+#include <unistd.h>
+
+namespace penumbra::app {
+namespace {
+
+/// Where a shell would find a program; empty: nowhere.
+std::string program_path(const std::string& name) {
+  const char* const variable = std::getenv("PATH");
+  std::string rest = variable == nullptr ? "" : variable;
+  while (!rest.empty()) {
+    const std::string folder = rest.substr(0, rest.find(':'));
+    rest.erase(0, folder.size() + 1);
+    const std::string path = folder + "/" + name;
+    if (!folder.empty() && access(path.c_str(), X_OK) == 0) return path;
+  }
+  return "";
+}
+
+class ViewCommand : public Command {
+ public:
+  explicit ViewCommand(CLI::App& app)
+      : Command(app, "view",
+                "see the scene in a browser, and move camera and lights there: serves one page on 127.0.0.1, and prints its "
+                "address") {
+    cli_.add_option("SCENE", run_.scene,
+                    "scene file: .json (penumbra-scene/1), .gltf or .glb; or a mesh file, around which a studio is put")
+        ->required();
+    cli_.add_option("--port", port_, "port on 127.0.0.1; 0: any that is free")
+        ->type_name("N")
+        ->check(CLI::Range(0, 65535))
+        ->capture_default_str();
+    cli_.add_flag("--no-browser", no_browser_, "do not open the address in a browser");
+    cli_.add_flag("--watch", watch_, "read the scene again when its file, or one that it names, changes");
+    cli_.add_option("--method", method_, "method to begin with, NAME:key=value:... (default: exact areas)")->type_name("NAME");
+    cli_.add_option("--light-samples", samples_, "light samples to begin with, 1 to 4096 (default: exact areas)")
+        ->type_name("N")
+        ->check(CLI::Range(1, 4096));
+    cli_.add_option("--size", run_.size, "image size in pixels (default: the scene's)")->type_name("WxH");
+    cli_.add_option("--camera", run_.camera,
+                    "camera to look through: one of the scene's by its name, fit for one that sees all, or "
+                    "EX,EY,EZ:TX,TY,TZ[:FOV], eye, target and vertical degrees (default: the scene's first)")
+        ->type_name("NAME|fit|E:T[:FOV]");
+    cli_.add_option("--device", run_.device, "Vulkan device: part of its name, its index, or cpu (default: the best)")
+        ->type_name("NAME|INDEX|cpu");
+    add_allow_outside(cli_, run_.allow_outside);
+    add_lenient(cli_, run_.lenient);
+    add_gltf_options(cli_, run_.gltf);
+    add_studio_options(cli_, run_.studio);
+  }
+
+  int run(const GlobalOptions& global) override {
+    if (!run_.size.empty()) static_cast<void>(parse_size(run_.size));
+    TerminalProgress progress(!global.quiet);
+    progress.begin("reading " + run_.scene.filename().string(), 1);
+    scenes::Scene scene = read_session_scene(run_, {});
+    progress.clear();
+    for (const std::string& warning : scene.warnings) spdlog::warn("{}", warning);
+    FileWatch files(scene.sources);
+    LiveView view(run_, std::move(scene), static_cast<std::uint16_t>(port_));
+    if (!method_.empty()) view.renderer().apply({{"type", "method"}, {"slot", "a"}, {"entry", method_}}, 0);
+    if (samples_ != 0) view.renderer().apply({{"type", "samples"}, {"count", samples_}}, 0);
+    fmt::print("{}\n", view.address());
+    std::fflush(stdout);
+    check_stdout();
+    spdlog::info("serving {}; Ctrl-C ends it", run_.scene.filename().string());
+    const std::optional<Child> browser = no_browser_ ? std::nullopt : open_browser(view.address());
+    for (;;) {  // until a signal ends the process
+      view.renderer().watch(std::chrono::milliseconds(200));
+      if (!watch_) continue;
+      files.look_at(view.renderer().sources());
+      if (!files.changed()) continue;
+      spdlog::info("{} has changed: reading it again", run_.scene.filename().string());
+      view.renderer().reload();
+    }
+  }
+
+ private:
+  /// Without a display there is none to open.
+  static std::optional<Child> open_browser(const std::string& address) {
+    const bool has_display = std::getenv("DISPLAY") != nullptr || std::getenv("WAYLAND_DISPLAY") != nullptr;
+    const std::string opener = has_display ? program_path("xdg-open") : "";
+    if (opener.empty()) return std::nullopt;
+    const Descriptor nothing(open("/dev/null", O_RDWR | O_CLOEXEC));
+    const ChildStart start = start_child({{opener, address}, {nothing.get(), nothing.get(), nothing.get()}});
+    if (start.error != 0) return std::nullopt;
+    return std::optional<Child>(std::in_place, start.pid);
+  }
+
+  RunOptions run_;
+  int port_ = 0;
+  std::uint32_t samples_ = 0;
+  bool no_browser_ = false, watch_ = false;
+  std::string method_;
+};
+
+}  // namespace
+
+std::unique_ptr<Command> make_view_command(CLI::App& app) {
+  return std::make_unique<ViewCommand>(app);
+}
+
+}  // namespace penumbra::app

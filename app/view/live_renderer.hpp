@@ -1,0 +1,134 @@
+#pragma once
+
+#include "app/light_methods.hpp"
+#include "app/options.hpp"
+#include "app/pictures/frame_render.hpp"
+#include "app/view/live_picture.hpp"
+#include "app/view/live_state.hpp"
+#include "render/machine.hpp"
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <condition_variable>
+#include <cstdint>
+#include <exception>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <string_view>
+#include <thread>
+#include <vector>
+
+namespace penumbra::app {
+
+/// How much of a picture is made while something moves.
+struct LiveQuality {
+  std::uint32_t divisor = 2;         ///< of width and height
+  std::uint32_t light_samples = 16;  ///< at most, of methods that have them
+};
+
+/// Chooses the best quality that keeps about fifteen pictures a second.
+class LivePace {
+ public:
+  [[nodiscard]] LiveQuality quality() const;
+  /// Notes what a picture of that quality took.
+  void took(double milliseconds);
+
+ private:
+  std::size_t level_ = 2;
+  int quick_ = 0;  // pictures in a row that left time for more
+};
+
+/// What the renderer tells; called on its thread.
+struct LiveEvents {
+  std::function<void(std::shared_ptr<const std::string>)> frame;  ///< frame_message()
+  std::function<void(std::string_view level, const std::string& text)> say;
+  std::function<void()> reloaded;  ///< the state is that of another version of the file
+};
+
+/// Makes pictures of a state that changes meanwhile, on a thread of its own: quick ones as long as it changes, then a
+/// final one, which is given up when the state changes again. Meshes, view samples and methods are kept from picture to
+/// picture. Functions may be called on any thread.
+class LiveRenderer {
+ public:
+  /// `scene`: read as `options` say.
+  LiveRenderer(RunOptions options, scenes::Scene scene, LiveEvents events);
+  LiveRenderer(const LiveRenderer&) = delete;
+  LiveRenderer& operator=(const LiveRenderer&) = delete;
+  ~LiveRenderer();
+
+  /// Changes the state as a message says; `client` and its `stamp` come back with the first picture that shows it.
+  LiveChange apply(const nlohmann::json& message, std::uint64_t client);
+  [[nodiscard]] nlohmann::ordered_json state() const;
+  /// Shows what there is once more: to a client that is new.
+  void show_again();
+  /// Reads the scene's file again.
+  void reload();
+  /// All files that the scene was read from.
+  [[nodiscard]] std::vector<std::filesystem::path> sources() const;
+  [[nodiscard]] nlohmann::ordered_json pixel(std::uint32_t x, std::uint32_t y) const;
+  /// The scene as it has been changed, in the form of `convert`; lights that are off have no radiance.
+  [[nodiscard]] std::string scene_text() const;
+  /// Waits so long. Throws what ended the thread, if something did.
+  void watch(std::chrono::milliseconds time) const;
+
+ private:
+  struct Order {
+    LiveState state;
+    std::uint64_t revision = 0;
+    LiveQuality quality;
+    bool is_final = false;
+    std::map<std::uint64_t, double> stamps = {};
+  };
+  class GivenUp;
+  class Steps;
+
+  void work();
+  void work_on(std::unique_lock<std::mutex>& lock);
+  [[nodiscard]] bool has_work() const;
+  void read_again();
+  void make_picture(const Order& order);
+  void make_masks(const Order& order);
+  /// Has something come that makes the picture at work on useless?
+  [[nodiscard]] bool is_overtaken(std::uint64_t revision) const;
+  LiveAnswer answer(const Order& order, const std::string& entry, scenes::Scene& scene);
+  MethodWish wish_for(const Order& order, const std::string& entry);
+  [[nodiscard]] scenes::Scene scene_of(const LiveState& state) const;
+  void render(scenes::Scene scene, bool keeps_masks);
+  void publish(std::shared_ptr<LivePicture> picture);
+  void show();
+  void failed(std::uint64_t revision, const std::string& message);
+
+  RunOptions options_;
+  LiveEvents events_;
+  render::Machine machine_;
+
+  mutable std::mutex mutex_;
+  mutable std::condition_variable wake_, ended_;
+  bool ending_ = false, wants_reload_ = false, wants_show_ = false;
+  LiveState state_;
+  std::uint64_t revision_ = 1;  // of state_; another number, another picture
+  std::map<std::uint64_t, double> stamps_;  // of each client, of its last change
+  std::shared_ptr<const scenes::Scene> whole_, file_;  // with meshes, as read; without
+  std::shared_ptr<const LivePicture> picture_;
+  std::shared_ptr<const LiveMasks> masks_;
+  std::uint64_t failed_ = 0, masks_failed_ = 0;  // the revision that cannot be shown
+  std::exception_ptr thrown_;
+
+  // Of the thread alone:
+  RunOptions run_;
+  MethodWish wish_;
+  std::unique_ptr<Steps> steps_;
+  std::unique_ptr<FrameRenderer> frames_;  // refers to run_, wish_ and steps_
+  std::shared_ptr<const scenes::Scene> rendered_;  // whose meshes frames_ has
+  LivePace pace_;
+  double final_milliseconds_ = 1000;
+  float automatic_stops_ = 0;
+  bool has_stops_ = false;
+  std::uint64_t frame_ = 0;
+  std::thread thread_;
+};
+
+}  // namespace penumbra::app

@@ -1,0 +1,96 @@
+#include "app/view/live_view.hpp"
+
+#include "app/method_list.hpp"
+#include "app/view/page.hpp"
+#include "base/error.hpp"
+#include "network/requests.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <utility>
+
+namespace penumbra::app {
+
+using nlohmann::json;
+using nlohmann::ordered_json;
+
+namespace {
+
+std::string text_of(const ordered_json& message) {
+  return message.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+}
+
+ordered_json saying(std::string_view level, const std::string& text) {
+  return {{"type", "say"}, {"level", level}, {"text", text}};
+}
+
+}  // namespace
+
+std::string view_page() {
+  return fmt::format(
+      "<!DOCTYPE html>\n<html lang=\"en\" data-frame=\"0\" data-exact=\"false\" data-ms=\"\" data-method=\"\">\n<head>\n"
+      "<meta charset=\"utf-8\">\n<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
+      "<title>Penumbra</title>\n<link rel=\"icon\" href=\"data:,\">\n<style nonce=\"@NONCE@\">\n{}</style>\n</head>\n<body>\n{}"
+      "<script nonce=\"@NONCE@\">\n{}</script>\n</body>\n</html>\n",
+      kViewStyle, kViewMarkup, kViewScript);
+}
+
+LiveView::LiveView(RunOptions options, scenes::Scene scene, std::uint16_t port)
+    : methods_(text_of(methods_json()["methods"])) {
+  network::ServerOptions serving;
+  serving.port = port;
+  serving.token = network::make_token();
+  serving.page = view_page();
+  serving.files.push_back({"/scene.json", "application/json", "scene.json", [this] { return renderer_->scene_text(); }});
+  server_ = std::make_unique<network::PageServer>(std::move(serving), *this);
+  renderer_ = std::make_unique<LiveRenderer>(
+      std::move(options), std::move(scene),
+      LiveEvents{.frame = [this](std::shared_ptr<const std::string> frame) { server_->send_frame(std::move(frame)); },
+                 .say = [this](std::string_view level,
+                               const std::string& text) { server_->send_to_all(text_of(saying(level, text))); },
+                 .reloaded = [this] { send_state(0); }});
+}
+
+/// Nobody but who reads the address knows the token, and that is printed once all is there: renderer_ is.
+void LiveView::opened(network::ClientId client) {
+  server_->send(client, fmt::format(R"({{"type": "hello", "client": {}, "methods": {}}})", client, methods_));
+  server_->send(client, text_of(renderer_->state()));
+  renderer_->show_again();
+}
+
+void LiveView::send_state(network::ClientId except) {
+  server_->send_newest(text_of(renderer_->state()), except);
+}
+
+void LiveView::message(network::ClientId client, std::string_view text) {
+  try {
+    const json message = json::parse(text, nullptr, false);
+    if (message.is_discarded()) throw InputError("a message is JSON");
+    do_message(client, message);
+  } catch (const Error& error) {
+    server_->send(client, text_of(saying("error", error.what())));
+    server_->send(client, text_of(renderer_->state()));
+  }
+}
+
+void LiveView::do_message(network::ClientId client, const json& message) {
+  const auto type = message.find("type");
+  if (message.is_object() && type != message.end() && *type == "taken") return server_->taken(client);
+  if (message.is_object() && type != message.end() && *type == "pixel") {
+    const auto place = [&](const char* key) {
+      const auto found = message.find(key);
+      if (found == message.end() || !found->is_number_unsigned() || found->get<std::uint64_t>() > UINT32_MAX)
+        throw InputError("message \"pixel\": {} is a pixel's number", key);
+      return found->get<std::uint32_t>();
+    };
+    return server_->send(client, text_of(renderer_->pixel(place("x"), place("y"))));
+  }
+  if (renderer_->apply(message, client) == LiveChange::nothing) return;
+  const auto moving = message.find("moving");
+  const bool is_moving = moving != message.end() && moving->is_boolean() && moving->get<bool>();
+  if (*type == "still") return;
+  send_state(is_moving ? client : 0);  // who drags knows
+}
+
+}  // namespace penumbra::app

@@ -1,0 +1,45 @@
+#pragma once
+
+#include "app/options.hpp"
+#include "app/view/live_renderer.hpp"
+#include "network/page_server.hpp"
+#include "scenes/scene.hpp"
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+
+namespace penumbra::app {
+
+/// A scene in a browser: the page's server, and the renderer that makes its pictures. All pages that are open show, and
+/// change, one state.
+class LiveView final : public network::PageHandler {
+ public:
+  /// `port`: 0 for any that is free.
+  LiveView(RunOptions options, scenes::Scene scene, std::uint16_t port);
+
+  LiveView(const LiveView&) = delete;
+  LiveView& operator=(const LiveView&) = delete;
+  ~LiveView() override { server_->stop(); }
+
+  [[nodiscard]] std::string address() const { return server_->address(); }
+  [[nodiscard]] LiveRenderer& renderer() { return *renderer_; }
+
+  void opened(network::ClientId client) override;
+  void message(network::ClientId client, std::string_view text) override;
+  void closed(network::ClientId) override {}
+
+ private:
+  void do_message(network::ClientId client, const nlohmann::json& message);
+  void send_state(network::ClientId except);
+
+  std::string methods_;  // JSON
+  std::unique_ptr<network::PageServer> server_;
+  std::unique_ptr<LiveRenderer> renderer_;  // tells the server, so it goes first
+};
+
+/// The page as it is served.
+std::string view_page();
+
+}  // namespace penumbra::app

@@ -1,0 +1,192 @@
+// Lights by numbers: what a light is, changes of it, and the way back.
+let lights = [], off = [], solo = "", history = [], undone = [], lightsBefore = "[]";
+const kinds = ["rectangle", "ellipse", "disk", "polygon", "sphere", "sun"];
+const kindOf = (light) => kinds.find((kind) => kind in light);
+const chosenLight = () => lights.find((light) => light.name === byId("light").value) || lights[0];
+const snapshot = () => JSON.stringify([lights, off, solo]);
+
+function centreOf(light) {
+  const kind = kindOf(light);
+  if (!kind || kind === "sun") return null;
+  if (kind === "polygon") return times(light.polygon.reduce(add), 1 / light.polygon.length);
+  return light[kind].center;
+}
+/// To where a flat light shines; toward a sun.
+function axisOf(light) {
+  const kind = kindOf(light);
+  if (kind === "rectangle" || kind === "ellipse") return unit(cross(light[kind].halfU, light[kind].halfV));
+  if (kind === "disk") return unit(light.disk.normal);
+  if (kind === "sun") return unit(times(light.sun.direction, -1));
+  if (kind !== "polygon") return null;
+  const [first, ...rest] = light.polygon;
+  let sum = [0, 0, 0];
+  for (let i = 0; i + 1 < rest.length; ++i) sum = add(sum, cross(sub(rest[i], first), sub(rest[i + 1], first)));
+  return unit(sum);
+}
+/// A copy of the light whose places and directions have been changed.
+function mapLight(light, place, direction) {
+  const made = structuredClone(light), kind = kindOf(light), shape = made[kind];
+  if (kind === "polygon") made.polygon = shape.map(place);
+  if (shape.center) shape.center = place(shape.center);
+  for (const key of ["halfU", "halfV", "normal", "direction"]) if (shape[key]) shape[key] = direction(shape[key]);
+  return made;
+}
+const movedLight = (light, by) => mapLight(light, (p) => add(p, by), (d) => d);
+function turnedLight(light, turning) {
+  const centre = centreOf(light) || [0, 0, 0];
+  return mapLight(light, (p) => add(centre, turning(sub(p, centre))), turning);
+}
+function scaledLight(light, factor) {
+  const centre = centreOf(light), made = mapLight(light, (p) => add(centre, times(sub(p, centre), factor)), (d) => d), shape = made[kindOf(light)];
+  for (const key of ["halfU", "halfV"]) if (shape[key]) shape[key] = times(shape[key], factor);
+  if (shape.radius) shape.radius *= factor;
+  return made;
+}
+
+/// Takes another version of a light, and sends it.
+function setLight(light, moving) {
+  lights = lights.map((one) => (one.name === light.name ? light : one));
+  const { fixed, textured, ...words } = light;
+  change("light " + light.name, { type: "light", name: light.name, light: words, moving });
+  tell("moved");
+}
+function setLightsOn() {
+  change("lights", { type: "lights", off, solo });
+  showLight();
+}
+/// Call when a change is complete: it can then be undone.
+function keepLights() {
+  const now = snapshot();
+  if (now === lightsBefore) return;
+  history.push(lightsBefore);
+  undone = [];
+  lightsBefore = now;
+  showLight();
+}
+function goTo(from, to) {
+  if (!from.length) return;
+  to.push(snapshot());
+  const [then, thenOff, thenSolo] = JSON.parse(from.pop());
+  for (const light of then) {
+    const now = lights.find((one) => one.name === light.name);
+    if (now && JSON.stringify(now) !== JSON.stringify(light)) setLight(light, false);
+  }
+  if (JSON.stringify([off, solo]) !== JSON.stringify([thenOff, thenSolo])) {
+    off = thenOff;
+    solo = thenSolo;
+    setLightsOn();
+  }
+  lightsBefore = snapshot();
+  showLight();
+}
+
+/// Rows of numbers: a name, and what reads and changes them.
+function numbersOf(light) {
+  const kind = kindOf(light), shape = light[kind], rows = [];
+  const row = (name, values, set, step, more = {}) => rows.push({ name, values, set, step, ...more });
+  const put = (key) => (value) => ({ ...light, [kind]: { ...shape, [key]: value } });
+  const centre = centreOf(light);
+  if (centre) row("position", centre, (value) => movedLight(light, sub(value, centre)), 0.05);
+  if (kind === "rectangle" || kind === "ellipse") {
+    row("half size", [length(shape.halfU), length(shape.halfV)], (value) => ({ ...light, [kind]: { ...shape,
+      halfU: times(unit(shape.halfU), value[0]), halfV: times(unit(shape.halfV), value[1]) } }), 0.05, { least: 1e-6 });
+  }
+  if (shape && shape.radius !== undefined) row("radius", [shape.radius], (value) => put("radius")(value[0]), 0.05, { least: 1e-6 });
+  if (kind === "disk") row("normal", shape.normal, put("normal"), 0.1);
+  if (kind === "polygon") row("scale by", [1], (value) => scaledLight(light, value[0]), 0.1, { least: 1e-3 });
+  if (kind === "sun") {
+    row("direction", shape.direction, put("direction"), 0.05);
+    row("angle \u00b0", [shape.angle], (value) => put("angle")(value[0]), 0.1, { least: 0, most: 179 });
+  }
+  if (kind && kind !== "sphere") {
+    row("turn by \u00b0", [0, 0, 0], (value) => turnedLight(light, (d) => value.reduce((v, angle, i) =>
+      turn(v, [[1, 0, 0], [0, 1, 0], [0, 0, 1]][i], angle * Math.PI / 180), d)), 5);
+  }
+  const bright = light.irradiance ? "irradiance" : "radiance";
+  row(bright, light[bright], (value) => ({ ...light, [bright]: value }), 0.5, { least: 0 });
+  row("by stops", [0], (value) => ({ ...light, [bright]: times(light[bright], 2 ** value[0]) }), 0.5);
+  return rows;
+}
+
+function showLight() {
+  const light = chosenLight();
+  if (!light) return;
+  byId("light-on").checked = !off.includes(light.name);
+  byId("light-solo").checked = solo === light.name;
+  byId("light-two-sided").checked = light.twoSided;
+  byId("light-two-sided").disabled = ["sphere", "sun", undefined].includes(kindOf(light));
+  byId("undo").disabled = !history.length;
+  byId("redo").disabled = !undone.length;
+  const box = byId("light-numbers");
+  if (box.contains(document.activeElement) && box.dataset.light === light.name) return showNumbers(light, box);
+  box.dataset.light = light.name;
+  box.replaceChildren();
+  numbersOf(light).forEach((row, number) => {
+    const set = document.createElement("div");
+    set.className = "triple";
+    set.setAttribute("role", "group");
+    set.setAttribute("aria-label", row.name);
+    set.append(Object.assign(document.createElement("span"), { textContent: row.name }));
+    row.values.forEach((value, i) => {
+      const input = document.createElement("input");
+      Object.assign(input, { type: "number", step: row.step });
+      input.setAttribute("aria-label", `${row.name}${row.values.length > 1 ? " " + (row.name.includes("size") ? "uv" : row.name.includes("radiance") ? "rgb" : "xyz")[i] : ""}`);
+      if (row.least !== undefined) input.min = row.least;
+      if (row.most !== undefined) input.max = row.most;
+      input.disabled = light.fixed && !/radiance|stops/.test(row.name);
+      input.addEventListener("change", () => {
+        const fresh = numbersOf(chosenLight())[number], values = [...fresh.values];
+        values[i] = Number(input.value);
+        if (!Number.isFinite(values[i]) || values[i] < (row.least ?? -Infinity) || values[i] > (row.most ?? Infinity)) return showLight();
+        setLight(fresh.set(values), false);
+        keepLights();
+        showNumbers(chosenLight(), box);
+      });
+      set.append(input);
+    });
+    box.append(set);
+  });
+  showNumbers(light, box);
+}
+function showNumbers(light, box) {
+  const values = numbersOf(light).flatMap((row) => row.values);
+  [...box.querySelectorAll("input")].forEach((input, i) => { input.value = Number(values[i].toPrecision(6)); });
+}
+
+async function save() {
+  const answer = await fetch(`/scene.json?token=${encodeURIComponent(token)}`);
+  if (!answer.ok) return trouble(await answer.text());
+  const link = document.createElement("a");
+  link.href = URL.createObjectURL(await answer.blob());
+  link.download = byId("scene-name").textContent.replace(/\.[^.]*$/, "") + "-view.json";
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 10000);
+}
+
+byId("light").addEventListener("change", () => { showLight(); tell("moved"); showDisplay(); });
+byId("light-on").addEventListener("change", () => {
+  const name = chosenLight().name;
+  off = byId("light-on").checked ? off.filter((one) => one !== name) : [...off, name];
+  setLightsOn();
+  keepLights();
+});
+byId("light-solo").addEventListener("change", () => {
+  solo = byId("light-solo").checked ? chosenLight().name : "";
+  setLightsOn();
+  keepLights();
+});
+byId("light-two-sided").addEventListener("change", () => {
+  setLight({ ...chosenLight(), twoSided: byId("light-two-sided").checked }, false);
+  keepLights();
+});
+byId("undo").addEventListener("click", () => goTo(history, undone));
+byId("redo").addEventListener("click", () => goTo(undone, history));
+byId("save").addEventListener("click", save);
+document.addEventListener("keydown", (event) => {
+  if (!(event.ctrlKey || event.metaKey) || event.target.matches("input[type=number]")) return;
+  const key = event.key.toLowerCase();
+  if (key !== "z" && key !== "y") return;
+  event.preventDefault();
+  if (key === "y" || event.shiftKey) goTo(undone, history);
+  else goTo(history, undone);
+});

@@ -1,0 +1,79 @@
+// The state that the server tells, and the controls that are not a room of their own.
+function trouble(text, lasting = true) {
+  byId("trouble").textContent = text;
+  clearTimeout(trouble.timer);
+  if (!lasting) trouble.timer = setTimeout(() => { byId("trouble").textContent = ""; }, 8000);
+}
+function fill(select, values, words = (value) => value) {
+  const texts = values.map(String);
+  if (JSON.stringify([...select.options].map((option) => option.value)) === JSON.stringify(texts)) return;
+  select.replaceChildren(...values.map((value) => new Option(words(value), value)));
+}
+function showDisplay() {
+  change("display", { type: "display", channel: byId("channel").value, light: chosenLight().name,
+    stops: byId("auto-stops").checked ? null : Number(byId("stops").value) });
+}
+
+on("hello", (message) => {
+  methods = message.methods;
+  fillMethods();
+});
+let firstState = true;
+on("state", (state) => {
+  byId("scene-name").textContent = state.scene;
+  document.title = `${state.scene} \u2013 Penumbra`;
+  const light = byId("light").value;
+  fill(byId("light"), state.lights.map((one) => one.name));
+  byId("light").value = state.lights.some((one) => one.name === light) ? light : state.display.light;
+  fill(byId("camera"), state.cameras.map((one) => one.name));
+  byId("camera").value = state.camera.name;
+  const [width, height] = state.ownSize, sizes = [1, 0.5, 0.25, 2].map((factor) => `${Math.round(width * factor)}x${Math.round(height * factor)}`);
+  const size = state.size.join("x");
+  fill(byId("size"), [...new Set([...sizes, size])]);
+  byId("size").value = size;
+  takeMethods(state);
+  if (!dragging && !waiting.has("camera")) {
+    view = state.camera;
+    pictureSize = state.size;
+  }
+  if (!held && ![...waiting.keys()].some((key) => key.startsWith("light"))) {
+    lights = state.lights;
+    off = state.off;
+    solo = state.solo;
+    if (firstState) lightsBefore = snapshot();
+  }
+  firstState = false;
+  byId("channel").value = state.display.channel;
+  byId("auto-stops").checked = state.display.stops === null;
+  if (state.display.stops !== null) byId("stops").value = state.display.stops;
+  showLight();
+  tell("moved");
+});
+on("say", (message) => {
+  if (message.level === "error") trouble(message.text);
+  else if (message.level === "warning") trouble(message.text, false);
+});
+on("frame", (header) => { if (header.exact) trouble(byId("trouble").textContent, false); });
+on("connected", () => trouble(""));
+on("lost", () => trouble("The connection to `penumbra view` is lost; trying again."));
+
+byId("channel").addEventListener("change", showDisplay);
+byId("auto-stops").addEventListener("change", showDisplay);
+byId("stops").addEventListener("change", () => { byId("auto-stops").checked = false; showDisplay(); });
+byId("size").addEventListener("change", () => {
+  const [width, height] = byId("size").value.split("x").map(Number);
+  change("size", { type: "size", width, height });
+});
+for (const id of ["home", "camera"]) byId(id).addEventListener(id === "home" ? "click" : "change", () =>
+  change("camera", { type: "camera", name: byId("camera").value }));
+byId("copy-camera").addEventListener("click", async () => {
+  const text = JSON.stringify({ name: byId("camera").value, ...cameraWords() });
+  byId("copy-camera").dataset.copied = text;
+  try {
+    await navigator.clipboard.writeText(text);
+    trouble("The camera is in the clipboard.", false);
+  } catch {
+    prompt("The camera as JSON:", text);
+  }
+});
+connect();

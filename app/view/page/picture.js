@@ -1,0 +1,85 @@
+// The picture on its canvas, which has the final picture's pixels; one or two answers, by wipe or side by side.
+let shown = null;  // header, and bitmaps by what they show
+const canvas = byId("picture"), overlay = byId("overlay");
+const mode = () => (shown && shown.by.a && shown.by.b ? byId("compare").value : "a");
+
+function draw() {
+  if (!shown) return;
+  const { header, by } = shown, how = mode(), [width, height] = [header.width, header.height];
+  const wide = how === "side" ? 2 * width : width;
+  if (canvas.width !== wide || canvas.height !== height) {
+    canvas.width = wide;
+    canvas.height = height;
+  }
+  const pen = canvas.getContext("2d"), one = by.a || by.difference || by.all;
+  pen.imageSmoothingEnabled = !header.exact;
+  if (how === "side") {
+    pen.drawImage(by.a, 0, 0, width, height);
+    pen.drawImage(by.b, width, 0, width, height);
+  } else if (how === "wipe") {
+    const at = Math.round(width * byId("wipe").value / 100);
+    pen.drawImage(by.b, 0, 0, width, height);
+    pen.save();
+    pen.beginPath();
+    pen.rect(0, 0, at, height);
+    pen.clip();
+    pen.drawImage(by.a, 0, 0, width, height);
+    pen.restore();
+    pen.fillStyle = "#fff";
+    pen.fillRect(at - 0.5, 0, 1, height);
+  } else {
+    pen.drawImage(how === "b" ? by.b : one, 0, 0, width, height);
+  }
+  fit();
+}
+
+/// Gives the canvas as much of the stage as its shape allows.
+function fit() {
+  const room = byId("frame").getBoundingClientRect(), scale = Math.min(room.width / canvas.width, room.height / canvas.height);
+  const width = canvas.width * scale, height = canvas.height * scale;
+  for (const element of [canvas, overlay]) {
+    Object.assign(element.style, { width: `${width}px`, height: `${height}px`, left: `${(room.width - width) / 2}px`, top: `${(room.height - height) / 2}px` });
+  }
+  tell("moved");
+}
+
+/// Width and height of one answer's picture in the page.
+function stageSize() {
+  const box = canvas.getBoundingClientRect();
+  return [mode() === "side" ? box.width / 2 : box.width, box.height];
+}
+
+/// Where the pointer is in the picture, 0 to 1 each way, of whichever answer it is over.
+function placeOf(event) {
+  const box = canvas.getBoundingClientRect(), [width, height] = stageSize();
+  let x = (event.clientX - box.left) / width;
+  if (x >= 1 && mode() === "side") x -= 1;
+  return [x, (event.clientY - box.top) / height];
+}
+
+on("frame", (header, images) => {
+  if (shown) for (const image of Object.values(shown.by)) image.close();
+  shown = { header, by: Object.fromEntries(images.map((image, i) => [header.images[i].shows, image])) };
+  pictureSize = [header.width, header.height];
+  draw();
+  const root = document.documentElement.dataset, stamp = header.stamps[clientId];
+  root.frame = String(Number(root.frame || 0) + 1);
+  root.exact = String(header.exact && !(sentStamp > (stamp ?? 0)));
+  root.ms = (stamp === undefined ? header.milliseconds : performance.now() - stamp).toFixed(1);
+  root.method = header.answers.map((answer) => answer.method).join(" | ");
+  const words = (answer) => answer.method + (answer.lightSamples ? `, ${answer.lightSamples} light samples` : "");
+  const reduced = header.images[0].width < header.width ? `, ${header.images[0].width}\u00d7${header.images[0].height}` : "";
+  byId("shown").textContent = `${words(header.answers[0])}${header.answers[1] ? " | " + words(header.answers[1]) : ""}: ` +
+    `${header.exact ? "final" : "preview" + reduced}, ${Math.round(root.ms)} ms`;
+  byId("wipe-row").hidden = mode() !== "wipe";
+  const two = header.answers.length > 1 && shown.by.b;
+  byId("label-a").textContent = two && mode() !== "b" ? "A: " + words(header.answers[0]) : "";
+  byId("label-b").textContent = two && mode() !== "a" ? "B: " + words(header.answers[1]) : "";
+  byId("difference").textContent = header.difference
+    ? `V of A \u2212 B: RMSE ${header.difference.rmse.toFixed(5)}, bias ${header.difference.bias.toFixed(5)}, largest ${header.difference.largest.toFixed(3)}; ` +
+      `shadow ${header.answers.map((answer) => answer.milliseconds.toFixed(1)).join(" and ")} ms` : "";
+  if (byId("auto-stops").checked && document.activeElement !== byId("stops")) byId("stops").value = header.stops.toFixed(2);
+});
+byId("wipe").addEventListener("input", draw);
+byId("compare").addEventListener("change", () => { draw(); byId("wipe-row").hidden = mode() !== "wipe"; });
+new ResizeObserver(fit).observe(byId("frame"));

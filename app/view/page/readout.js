@@ -1,0 +1,94 @@
+// What a pixel says, and what pictures cost.
+let asking = null, wanted = null, pointed = null;
+const frameTimes = [];
+
+/// One question at a time, of the newest place.
+function askPixel(x, y, then) {
+  const place = { x: Math.min(Math.max(Math.floor(x * pictureSize[0]), 0), pictureSize[0] - 1), y: Math.min(Math.max(Math.floor(y * pictureSize[1]), 0), pictureSize[1] - 1), then };
+  if (asking) {
+    wanted = place;
+    return;
+  }
+  asking = place;
+  post({ type: "pixel", x: place.x, y: place.y });
+}
+on("pixel", (pixel) => {
+  const then = asking && asking.then;
+  asking = null;
+  if (then) then(pixel);
+  else showPixel(pixel);
+  if (wanted) {
+    const { x, y, then: after } = wanted;
+    wanted = null;
+    askPixel((x + 0.5) / pictureSize[0], (y + 0.5) / pictureSize[1], after);
+  }
+});
+on("lost", () => { asking = wanted = null; });
+on("pointed", (place) => {
+  if (place.some((part) => part < 0 || part >= 1)) return;
+  pointed = place;
+  askPixel(...place);
+});
+on("frame", () => { if (pointed && !pointers.size) askPixel(...pointed); });
+
+function showPixel(pixel) {
+  const box = byId("readout"), lines = [`Pixel ${pixel.x}, ${pixel.y}${pixel.exact ? "" : " (preview)"}${pixel.surface ? `: ${pixel.object}, triangle ${pixel.id}` : ": background"}`];
+  for (const [i, answer] of (pixel.answers || []).entries()) {
+    const of = Object.entries(answer.V).map(([light, v]) => `V ${light} = ${v.toPrecision(6)}`).join(", ");
+    lines.push(`${pixel.answers.length > 1 ? "AB"[i] + ", " : ""}${answer.method}${answer.lightSamples ? `, ${answer.lightSamples} light samples` : ""}: ${of}`);
+  }
+  if (pixel.position) lines.push(`at ${pixel.position.map((value) => value.toFixed(4)).join(", ")}; depth ${pixel.depth.toFixed(4)}`);
+  box.replaceChildren(...lines.map((line) => Object.assign(document.createElement("p"), { textContent: line })));
+  box.dataset.pixel = `${pixel.x},${pixel.y}`;
+  drawSeen(pixel.seen);
+}
+/// The light samples on the light, those that the pixel sees bright.
+function drawSeen(seen) {
+  const sheet = byId("seen"), pen = sheet.getContext("2d"), size = sheet.width;
+  sheet.hidden = !byId("show-seen").checked;
+  pen.clearRect(0, 0, size, size);
+  if (!seen) return;
+  const cell = 0.8 * size / Math.sqrt(seen.places.length);
+  seen.places.forEach(([s, t], i) => {
+    pen.fillStyle = seen.bits[i] === "1" ? "#ffd27a" : "#454a55";
+    pen.fillRect((1 + s) / 2 * (size - cell), (1 - t) / 2 * (size - cell), cell, cell);
+  });
+  sheet.dataset.bits = seen.bits;
+  sheet.setAttribute("aria-label", `${[...seen.bits].filter((bit) => bit === "1").length} of ${seen.bits.length} light samples of ${seen.light} are seen`);
+}
+byId("show-seen").addEventListener("change", () => {
+  change("masks", { type: "masks", wanted: byId("show-seen").checked });
+  byId("seen").hidden = !byId("show-seen").checked;
+  for (const after of [400, 1500]) setTimeout(() => { if (pointed) askPixel(...pointed); }, after);
+});
+
+const phases = ["load", "mesh", "view", "light", "evaluate", "beauty"];
+on("frame", (header) => {
+  const row = (cells, tag) => {
+    const line = document.createElement("tr");
+    cells.forEach((cell, i) => line.append(Object.assign(document.createElement(i ? tag : "th"), { textContent: cell })));
+    return line;
+  };
+  const two = header.answers.length > 1;
+  byId("times").tHead.replaceChildren(...(two ? [row(["", "A", "B"], "th")] : []));
+  byId("times").tBodies[0].replaceChildren(...phases.map((phase) => row([phase, ...header.answers.map((answer) => (1000 * (answer.seconds[phase] || 0)).toFixed(1))], "td")),
+    row(["all", header.milliseconds.toFixed(1)].concat(two ? [""] : []), "td"));
+  byId("size-facts").textContent = `${header.triangles.toLocaleString("en")} triangles, ${header.width}\u00d7${header.height} pixels`;
+  frameTimes.push({ at: performance.now(), ms: Number(document.documentElement.dataset.ms), exact: header.exact });
+  if (frameTimes.length > 100) frameTimes.shift();
+  drawPlot();
+});
+function drawPlot() {
+  const sheet = byId("plot"), pen = sheet.getContext("2d"), most = Math.max(100, ...frameTimes.map((one) => Math.min(one.ms, 1000)));
+  const style = getComputedStyle(document.documentElement);
+  pen.clearRect(0, 0, sheet.width, sheet.height);
+  const high = (ms) => sheet.height * (1 - Math.min(ms, most) / most);
+  frameTimes.forEach((one, i) => {
+    pen.fillStyle = style.getPropertyValue(one.exact ? "--accent" : "--soft");
+    pen.fillRect(i * 3, high(one.ms), 2, sheet.height - high(one.ms));
+  });
+  pen.fillStyle = style.getPropertyValue("--bad");
+  pen.fillRect(0, high(67), sheet.width, 1);
+  const recent = frameTimes.filter((one) => one.at > performance.now() - 1000).length;
+  byId("plot-facts").textContent = `${recent} pictures in the last second; from input to picture, up to ${Math.round(most)} ms; the line is 67 ms`;
+}

@@ -1,0 +1,61 @@
+#include "network/requests.hpp"
+
+#include "base/error.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cstdint>
+
+#include <sys/random.h>
+
+namespace penumbra::network {
+
+std::string make_token() {
+  std::array<std::uint8_t, 16> bytes{};
+  if (getrandom(bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size()))
+    throw ResourceError("the system gives no random bytes for the address of the page");
+  std::string token;
+  for (const std::uint8_t byte : bytes) token += fmt::format("{:02x}", byte);
+  return token;
+}
+
+std::string_view path_of(std::string_view target) {
+  return target.substr(0, target.find('?'));
+}
+
+bool has_token(std::string_view target, std::string_view token) {
+  const std::size_t question = target.find('?');
+  if (question == std::string_view::npos) return false;
+  std::string_view rest = target.substr(question + 1);
+  constexpr std::string_view kKey = "token=";
+  while (!rest.empty()) {
+    const std::string_view part = rest.substr(0, rest.find('&'));
+    rest.remove_prefix(part.size() < rest.size() ? part.size() + 1 : rest.size());
+    if (!part.starts_with(kKey)) continue;
+    const std::string_view given = part.substr(kKey.size());
+    if (given.size() != token.size()) return false;
+    int differing = 0;
+    for (std::size_t i = 0; i < token.size(); ++i) differing |= given[i] ^ token[i];
+    return differing == 0;
+  }
+  return false;
+}
+
+bool is_loopback_host(std::string_view host) {
+  for (const std::string_view name : {"127.0.0.1", "localhost", "[::1]"}) {
+    if (!host.starts_with(name)) continue;
+    const std::string_view port = host.substr(name.size());
+    if (port.empty()) return true;
+    return port.front() == ':' && port.find_first_not_of("0123456789", 1) == std::string_view::npos;
+  }
+  return false;
+}
+
+bool is_own_origin(std::string_view origin, std::string_view host) {
+  if (origin.empty()) return true;
+  constexpr std::string_view kScheme = "http://";
+  return origin.starts_with(kScheme) && origin.substr(kScheme.size()) == host;
+}
+
+}  // namespace penumbra::network
