@@ -115,6 +115,7 @@ class PageServer::State::Socket : public std::enable_shared_from_this<Socket> {
     timeout.idle_timeout = server_.options_.limits.silence;
     timeout.keep_alive_pings = true;
     stream_.set_option(timeout);
+    stream_.auto_fragment(false);
     stream_.read_message_max(server_.options_.limits.message_bytes);
     stream_.async_accept(request, [self = this->shared_from_this()](beast::error_code error) {
       if (!error) self->open();

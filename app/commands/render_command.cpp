@@ -5,6 +5,7 @@
 #include "app/pictures/frame_render.hpp"
 #include "app/pictures/frames.hpp"
 #include "app/pictures/request.hpp"
+#include "app/pictures/tev_pictures.hpp"
 #include "app/process/interrupt.hpp"
 #include "app/process/output_files.hpp"
 #include "app/process/process.hpp"
@@ -40,6 +41,7 @@ class RenderCommand : public Command {
             "their names say so alone")
         ->type_name("F")
         ->excludes(cli_.get_option("--frames"));
+    add_tev(cli_, tev_);
   }
 
   int run(const GlobalOptions& global) override {
@@ -53,7 +55,10 @@ class RenderCommand : public Command {
     if (!all_cameras) outputs = claim(cameras);
     TerminalProgress progress(!global.quiet);
     const render::Machine machine = make_machine(options_.run.device);
+    std::optional<TevPictures> tev;
+    if (!tev_.empty()) tev.emplace(tev_);
     FrameRenderer renderer(options_.run, request_.wish, machine, progress);
+    if (tev) renderer.show_in(*tev);
 
     progress.begin("reading " + options_.run.scene.filename().string(), 1);
     std::size_t at = all_cameras ? 0 : next_wanted(cameras, 0);
@@ -156,6 +161,7 @@ class RenderCommand : public Command {
 
   PictureOptions options_;
   PictureRequest request_;
+  std::string tev_;  // HOST:PORT
 };
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include "app/parse.hpp"
 #include "app/pictures/frame_render.hpp"
 #include "app/pictures/frames.hpp"
+#include "app/pictures/tev_pictures.hpp"
 #include "base/error.hpp"
 
 #include <CLI/CLI.hpp>
@@ -139,6 +140,7 @@ class CompareCommand : public Command {
                     "of the pictures for eyes: auto and first (the reference's lit surfaces fill them) or stops "
                     "(default: auto)")
         ->type_name("auto|first|EV");
+    add_tev(cli_, tev_);
     add_refused_options();
   }
 
@@ -158,6 +160,8 @@ class CompareCommand : public Command {
     if (run_.camera == "all")
       throw UsageError("--camera all: errors are of one camera's pixels; name one, and compare once for each");
     TerminalProgress progress(!global.quiet);
+    std::optional<TevPictures> tev;
+    if (!tev_.empty()) options_.tev = &tev.emplace(tev_);
     const compare::Metrics metrics = compared(global.arguments, fps, progress);
     print_table(metrics);
     print_budgets(metrics);
@@ -234,7 +238,7 @@ class CompareCommand : public Command {
   std::string methods_ = "default";
   std::optional<double> max_rmse_;
   std::optional<std::string> frame_;
-  std::string max_rmse_text_, fps_, exposure_, shutter_, frames_;
+  std::string max_rmse_text_, fps_, exposure_, shutter_, frames_, tev_;
   std::string pixel_samples_ = "1", motion_samples_ = "1", pixel_filter_ = "box", filter_width_;
   bool skip_existing_ = false;
 };

@@ -12,6 +12,7 @@
 #include "app/methods.hpp"
 #include "app/output.hpp"
 #include "app/pictures/picture_file.hpp"
+#include "app/pictures/tev_pictures.hpp"
 #include "app/process/failure.hpp"
 #include "app/runner.hpp"
 #include "app/session.hpp"
@@ -296,10 +297,10 @@ class Comparison {
     progress_.clear();
     if (!options_.writes) return done;
     const std::vector<MethodLabel> labels = labels_of(entry, lights, machine_);
-    for (std::string& warning :
-         write_picture(files_.of(entry.label, ".exr"),
-                       {session_, {lights, labels}, done.run.visibility, beauty.parts(), done.beauty}, format_))
-      warn(std::move(warning));
+    const PictureContent written{session_, {lights, labels}, done.run.visibility, beauty.parts(), done.beauty};
+    const std::filesystem::path file = files_.of(entry.label, ".exr");
+    for (std::string& warning : write_picture(file, written, format_)) warn(std::move(warning));
+    if (options_.tev != nullptr) options_.tev->show(file.filename().string(), written);
     if (bits) bits->commit();
     return done;
   }

@@ -12,6 +12,8 @@
 
 namespace penumbra::app {
 
+class TevPictures;
+
 /// What `compare` was asked beside RunOptions.
 struct ComparisonOptions {
   std::vector<MethodEntry> methods;
@@ -23,6 +25,7 @@ struct ComparisonOptions {
   bool bits = false, png = false;
   bool error_budget = false;      ///< why each image-based method is wrong
   std::filesystem::path stats;    ///< empty: only DIR/metrics.json
+  TevPictures* tev = nullptr;     ///< shows each picture that is written
   bool writes = true;             ///< all of DIR; else nothing is written, and what is returned is all
   std::optional<double> time;     ///< when the scene is looked at, in seconds; nothing: at rest
   std::optional<float> exposure;  ///< of pictures for eyes, in stops; nothing: the reference's fill them

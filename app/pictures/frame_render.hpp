@@ -7,6 +7,7 @@
 #include "app/pictures/interpolated_areas.hpp"
 #include "app/pictures/picture_file.hpp"
 #include "app/pictures/picture_mean.hpp"
+#include "app/pictures/tev_pictures.hpp"
 #include "app/runner.hpp"
 #include "app/session.hpp"
 
@@ -72,6 +73,8 @@ class FrameRenderer {
   /// Pictures are of these view samples, one moment and one sample a pixel. Nothing lies before a surface, so that
   /// translucent ones are not composited. Before the first.
   void look_at_surface(SurfaceView view);
+  /// Pictures that are written are shown there as well; it must outlive this object.
+  void show_in(TevPictures& tev) { tev_ = &tev; }
   /// Looks at a scene and computes all lights' V and beauty: of it, or the mean of `frame.moments`; then positions,
   /// normals, depths and ids are those of `scene` and of pixels' centres. `read_seconds`: what reading the scene took,
   /// perhaps while the picture before was made; of the first, all since the process began.
@@ -187,6 +190,7 @@ class FrameRenderer {
   std::vector<Kept> kept_;
   bool expects_frames_ = false;
   std::optional<SurfaceView> surface_;  // nothing: what a camera sees
+  TevPictures* tev_ = nullptr;  // none: they are only written
   Said said_;
   Plan plan_;
   Done done_;

@@ -22,6 +22,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -81,7 +82,9 @@ class ViewCommand : public Command {
     scenes::Scene scene = read_session_scene(run_, {});
     progress.clear();
     for (const std::string& warning : scene.warnings) spdlog::warn("{}", warning);
-    FileWatch files(scene.sources);
+    std::vector<std::filesystem::path> sources = scene.sources;
+    sources.push_back(run_.scene);
+    FileWatch files(std::move(sources));
     LiveView view(run_, std::move(scene), static_cast<std::uint16_t>(port_));
     if (!method_.empty()) view.renderer().apply({{"type", "method"}, {"slot", "a"}, {"entry", method_}}, 0);
     if (samples_ != 0) view.renderer().apply({{"type", "samples"}, {"count", samples_}}, 0);

@@ -162,7 +162,9 @@ void LiveRenderer::reload() {
 
 std::vector<std::filesystem::path> LiveRenderer::sources() const {
   const std::lock_guard lock(mutex_);
-  return file_->sources;
+  std::vector<std::filesystem::path> files = file_->sources;
+  files.push_back(options_.scene);  // of a JSON scene those that it names alone are listed
+  return files;
 }
 
 ordered_json LiveRenderer::pixel(std::uint32_t x, std::uint32_t y) const {

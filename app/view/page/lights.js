@@ -181,6 +181,17 @@ byId("light-two-sided").addEventListener("change", () => {
 });
 byId("undo").addEventListener("click", () => goTo(history, undone));
 byId("redo").addEventListener("click", () => goTo(undone, history));
+/// Goes away from the pivot until the light is in the picture as well.
+byId("see-light").addEventListener("click", () => {
+  const centre = centreOf(chosenLight());
+  if (!centre) return;
+  const inside = () => { const at = project(centre); return at && at.x > 0.08 && at.x < 0.92 && at.y > 0.08 && at.y < 0.92; };
+  for (let i = 0; i < 60 && !inside(); ++i) {
+    if (view.orthographicHeight) view = { ...view, orthographicHeight: view.orthographicHeight * 1.1 };
+    else view = { ...view, eye: add(view.target, times(sub(view.eye, view.target), 1.1)) };
+  }
+  sendCamera(false);
+});
 byId("save").addEventListener("click", save);
 document.addEventListener("keydown", (event) => {
   if (!(event.ctrlKey || event.metaKey) || event.target.matches("input[type=number]")) return;

@@ -78,6 +78,7 @@ on("frame", (header, images) => {
   byId("difference").textContent = header.difference
     ? `V of A \u2212 B: RMSE ${header.difference.rmse.toFixed(5)}, bias ${header.difference.bias.toFixed(5)}, largest ${header.difference.largest.toFixed(3)}; ` +
       `shadow ${header.answers.map((answer) => answer.milliseconds.toFixed(1)).join(" and ")} ms` : "";
+  byId("stops").dataset.stops = header.stops;
   if (byId("auto-stops").checked && document.activeElement !== byId("stops")) byId("stops").value = header.stops.toFixed(2);
 });
 byId("wipe").addEventListener("input", draw);

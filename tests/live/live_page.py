@@ -1,0 +1,293 @@
+#!/usr/bin/env python3
+"""The page of `penumbra view` in headless Chromium, by pointer and by keys, against what the program writes.
+  live_page.py PROGRAM SCENES [PHOTOGRAPHS]   PHOTOGRAPHS: a folder for pictures of the page, for people to look at"""
+import base64
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+import time
+
+sys.path.insert(0, str(pathlib.Path(__file__).parent))
+sys.path.insert(0, str(pathlib.Path(__file__).parent.parent / "browser"))
+from browser import Browser  # noqa: E402
+from exr import read_exr  # noqa: E402
+from live_client import LIGHTS, Client, Server, png_pixels  # noqa: E402
+
+PROGRAM, SCENES = sys.argv[1], pathlib.Path(sys.argv[2])
+PHOTOGRAPHS = pathlib.Path(sys.argv[3]) if len(sys.argv) > 3 else None
+ROOT = "document.documentElement.dataset"
+failures = 0
+
+
+def expect(claim, what):
+    global failures
+    if not claim:
+        failures += 1
+        print(f"FAILED: {what}")
+
+
+def same(found, wanted, what):
+    expect(found == wanted, f"{what}: {found!r}, not {wanted!r}")
+
+
+class Page:
+    def __init__(self, browser, server, **window):
+        self.browser, self.server = browser, server
+        browser.open(server.url, **window)
+        self.exact()
+
+    def ask(self, expression):
+        return self.browser.ask(expression)
+
+    def exact(self, seconds=60):
+        self.browser.wait(f"{ROOT}.exact === 'true'", seconds)
+
+    def frames(self):
+        return int(self.ask(f"{ROOT}.frame"))
+
+    def choose(self, control, value):
+        """Sets a control as a user does; waits for the final picture."""
+        before = self.frames()
+        self.ask(f"(() => {{ const c = document.getElementById('{control}'); c.value = {json.dumps(value)}; "
+                 "c.dispatchEvent(new Event('change')); })()")
+        self.browser.wait(f"{ROOT}.frame > {before} && {ROOT}.exact === 'true'")
+
+    def tick(self, control):
+        before = self.frames()
+        self.ask(f"document.getElementById('{control}').click()")
+        self.browser.wait(f"{ROOT}.frame > {before} && {ROOT}.exact === 'true'")
+
+    def box(self, selector):
+        return self.ask(f"(() => {{ const b = document.querySelector({json.dumps(selector)}).getBoundingClientRect(); "
+                        "return [b.x, b.y, b.width, b.height]; })()")
+
+    def place(self, x, y):
+        """Where a part of the picture is in the window."""
+        left, top, width, height = self.box("#picture")
+        return left + x * width, top + y * height
+
+    def drag(self, start, end, steps=20, button="left"):
+        held = {"left": 1, "right": 2}[button]
+        self.browser.pointer("mouseMoved", *start)
+        self.browser.pointer("mousePressed", *start, button=button, buttons=held, clickCount=1)
+        for i in range(1, steps + 1):
+            self.browser.pointer("mouseMoved", start[0] + (end[0] - start[0]) * i / steps, start[1] + (end[1] - start[1]) * i / steps,
+                                 button=button, buttons=held)
+            time.sleep(0.02)
+        self.browser.pointer("mouseReleased", *end, button=button, clickCount=1)
+        self.exact()
+
+    def canvas(self):
+        """The picture's pixels, as png_pixels() has them."""
+        data = self.ask("""(() => { const c = document.getElementById('picture'); const p = c.getContext('2d').getImageData(0, 0, c.width, c.height).data;
+            let text = ''; for (let i = 0; i < p.length; i += 4) text += String.fromCharCode(p[i], p[i + 1], p[i + 2]);
+            return [c.width, c.height, btoa(text)]; })()""")
+        width, height, bytes_ = data[0], data[1], base64.b64decode(data[2])
+        return width, height, [bytes_[3 * width * y:3 * width * (y + 1)] for y in range(height)]
+
+    def camera(self):
+        self.ask("document.getElementById('copy-camera').click()")
+        return json.loads(self.ask("document.getElementById('copy-camera').dataset.copied"))
+
+    def state(self):
+        client = Client(self.server).begin()
+        client.socket.close()
+        return client.state
+
+    def picture(self, name):
+        if PHOTOGRAPHS:
+            PHOTOGRAPHS.mkdir(parents=True, exist_ok=True)
+            self.browser.photograph(PHOTOGRAPHS / f"{name}.png")
+
+
+def rendered(page, folder, name, *arguments):
+    """What `render` makes of the saved scene, exposed as the page is."""
+    scene = folder / f"{name}.json"
+    scene.write_bytes(page.server.get("/scene.json")[2])
+    stops = page.ask("document.getElementById('stops').dataset.stops")
+    subprocess.run([PROGRAM, "render", str(scene), "-o", str(folder / f"{name}.exr"), "--png", str(folder / f"{name}.png"), "-q",
+                    "--exposure", str(stops), *arguments], check=True)
+    return read_exr(folder / f"{name}.exr")[0], png_pixels((folder / f"{name}.png").read_bytes())
+
+
+def check_camera(page, folder):
+    before = page.camera()
+    same(page.canvas(), rendered(page, folder, "first")[1], "the first picture is that of `render`")
+    frames = page.frames()
+    page.drag(page.place(0.3, 0.8), page.place(0.6, 0.75))
+    moved = page.camera()
+    expect(page.frames() > frames + 2, "pictures come while the pointer drags")
+    distance = lambda camera: sum((a - b) ** 2 for a, b in zip(camera["eye"], camera["target"])) ** 0.5  # noqa: E731
+    expect(moved["eye"] != before["eye"] and moved["target"] == before["target"], "dragging orbits")
+    expect(abs(distance(moved) - distance(before)) < 1e-9, "at the same distance")
+    same(page.canvas(), rendered(page, folder, "orbit")[1], "what is shown in the end is what `render` writes")
+    page.drag(page.place(0.5, 0.5), page.place(0.6, 0.5), button="right")
+    panned = page.camera()
+    shift = [a - b for a, b in zip(panned["eye"], moved["eye"])]
+    expect(max(abs(value) for value in shift) > 0.1 and all(abs(a - b - c) < 1e-9 for a, b, c in zip(panned["target"], moved["target"], shift)),
+           "the right button pans eye and pivot alike")
+    page.browser.call("Input.dispatchMouseEvent", type="mouseWheel", x=page.place(0.5, 0.5)[0], y=page.place(0.5, 0.5)[1], deltaX=0, deltaY=-200)
+    page.browser.wait(f"{ROOT}.exact === 'false'")
+    page.exact()
+    expect(distance(page.camera()) < 0.9 * distance(panned), "the wheel comes nearer")
+    near = page.camera()
+    page.browser.key("w")
+    page.browser.wait(f"{ROOT}.exact === 'false'")
+    page.exact()
+    expect(page.camera()["target"] != near["target"], "W walks")
+    page.tick("home")
+    same(page.camera(), before, "home is where the file has it")
+    x, y = page.place(0.5, 0.9)
+    for count in (1, 2):
+        page.browser.pointer("mousePressed", x, y, button="left", clickCount=count)
+        page.browser.pointer("mouseReleased", x, y, button="left", clickCount=count)
+    page.browser.wait(f"{ROOT}.exact === 'false'")
+    page.exact()
+    target = page.camera()["target"]
+    expect(abs(target[1]) < 1e-3, f"a double click on the floor sets the pivot there: {target}")
+    page.tick("home")
+
+
+def check_lights(page, folder):
+    before = page.state()["lights"]
+    page.ask("document.getElementById('see-light').click()")
+    page.browser.wait(f"{ROOT}.exact === 'true' && document.querySelector('[data-handle=\"move along X\"]')")
+    time.sleep(0.3)
+    handle = page.box("[data-handle='move along Y']")
+    start = (handle[0] + handle[2] / 2, handle[1] + handle[3] / 2)
+    page.drag(start, (start[0], start[1] - 40))
+    moved = page.state()["lights"]
+    was, now = before[0]["rectangle"]["center"], moved[0]["rectangle"]["center"]
+    expect(now[1] > was[1] + 0.05 and abs(now[0] - was[0]) < 1e-9 and abs(now[2] - was[2]) < 1e-9, f"the handle moves along Y alone: {now}")
+    same(page.canvas(), rendered(page, folder, "lit")[1], "and what is shown is what `render` writes")
+    page.picture("gizmo")
+    handle = page.box("[data-handle='aim']")
+    start = (handle[0] + handle[2] / 2, handle[1] + handle[3] / 2)
+    page.drag(start, (start[0] + 50, start[1]))
+    aimed = page.state()["lights"][0]["rectangle"]
+    expect(aimed["center"] == now and abs(aimed["halfU"][1]) + abs(aimed["halfV"][1]) > 0.02, "the light has been turned")
+    handle = page.box("[data-handle='size along halfU']")
+    start, middle = (handle[0] + handle[2] / 2, handle[1] + handle[3] / 2), page.box("[data-handle='move']")
+    centre = (middle[0] + middle[2] / 2, middle[1] + middle[3] / 2)
+    page.drag(start, (start[0] + (start[0] - centre[0]), start[1] + (start[1] - centre[1])))
+    length = lambda v: sum(value ** 2 for value in v) ** 0.5  # noqa: E731
+    sized = page.state()["lights"][0]["rectangle"]
+    expect(length(sized["halfU"]) > 1.3 * length(aimed["halfU"]) and sized["halfV"] == aimed["halfV"], "one side has grown")
+    for wanted in (aimed, moved[0]["rectangle"], before[0]["rectangle"]):
+        page.tick("undo")
+        same(page.state()["lights"][0]["rectangle"], wanted, "undone")
+    expect(page.ask("document.getElementById('undo').disabled"), "nothing more to undo")
+    page.tick("redo")
+    same(page.state()["lights"], moved, "redone")
+    # Numbers.
+    page.ask("(() => { const i = document.querySelector('[aria-label=\"position x\"]'); i.value = '1.25'; i.dispatchEvent(new Event('change')); })()")
+    page.browser.wait(f"{ROOT}.exact === 'false' || true")
+    page.exact()
+    same(page.state()["lights"][0]["rectangle"]["center"][0], 1.25, "a number that was typed")
+    page.choose("light", "sun")
+    page.ask("(() => { const i = document.querySelector('[aria-label=\"by stops\"]'); i.value = '1'; i.dispatchEvent(new Event('change')); })()")
+    page.exact()
+    same(page.state()["lights"][2]["irradiance"], [2 * value for value in before[2]["irradiance"]], "a stop more")
+    page.tick("light-solo")
+    same(page.state()["solo"], "sun", "solo")
+    page.tick("light-solo")
+    page.tick("light-on")
+    same(page.state()["off"], ["sun"], "off")
+    same(page.canvas(), rendered(page, folder, "off")[1], "what is saved has no light of it")
+    page.tick("light-on")
+    page.choose("light", "key")
+    page.tick("home")
+
+
+def check_methods(page, folder):
+    page.choose("method", "view-sample")
+    same(page.ask(f"{ROOT}.method"), "view-sample", "the method that was chosen")
+    page.choose("method-b", "edge-scatter")
+    expect(" | edge-scatter" in page.ask(f"{ROOT}.method"), "two methods")
+    expect("RMSE 0.0" in page.ask("document.getElementById('difference').textContent"), "their difference")
+    names = page.ask("[...document.querySelectorAll('#options-a [data-option]')].map(input => input.dataset.option)")
+    known = json.loads(subprocess.run([PROGRAM, "methods", "--json"], capture_output=True, text=True, check=True).stdout)["methods"]
+    same(names, [option["name"] for method in known if method["name"] == "view-sample" for option in method["options"]], "its options")
+    entries = page.ask("[...document.querySelectorAll('#method option')].map(option => option.value).filter(Boolean)")
+    same(sorted(entries), sorted(method["name"] for method in known), "every method")
+    same(page.ask("document.querySelector('#method-b').options[0].value"), "", "the second may be none")
+    page.choose("channel", "v")
+    page.ask("document.getElementById('compare').value = 'side'; document.getElementById('compare').dispatchEvent(new Event('change'))")
+    same(page.canvas()[0], 128, "side by side")
+    page.picture("side")
+    page.ask("document.getElementById('compare').value = 'wipe'; document.getElementById('compare').dispatchEvent(new Event('change'))")
+    page.choose("channel", "error")
+    page.picture("error")
+    for channel in ("ids", "normals", "depth"):
+        page.choose("channel", channel)
+    page.choose("channel", "beauty")
+    page.choose("method-b", "")
+    page.choose("method", "")
+
+
+def check_pixel(page, folder):
+    exr, _ = rendered(page, folder, "pixel")
+    for x, y in ((20, 40), (40, 50)):
+        page.browser.pointer("mouseMoved", *page.place((x + 0.5) / 64, (y + 0.5) / 64))
+        page.browser.wait(f"document.getElementById('readout').dataset.pixel === '{x},{y}'")
+        text = page.ask("document.getElementById('readout').textContent")
+        v = exr["key.V"][y * 64 + x]
+        found = float(text.split("V key = ")[1].split(",")[0].split("at ")[0])
+        expect(abs(found - v) < 1e-5, f"V at {x},{y}: {found}, not {v}")
+    page.ask("document.getElementById('show-seen').click()")
+    page.browser.wait("document.getElementById('seen').dataset.bits !== undefined", 20)
+    bits = page.ask("document.getElementById('seen').dataset.bits")
+    expect(len(bits) == 256 and abs(bits.count("1") / 256 - found) < 0.1, f"{bits.count('1')} of 256 light samples are seen, V = {found}")
+    page.ask("document.getElementById('show-seen').click()")
+
+
+def check_reach(page):
+    """Tab reaches every control, and each has a name."""
+    page.ask("document.activeElement.blur()")
+    reached = set()
+    for _ in range(60):
+        page.browser.key("Tab")
+        reached.add(page.ask("document.activeElement.id"))
+    for control in ("picture", "method", "method-b", "light-samples", "compare", "channel", "stops", "auto-stops", "size", "camera", "home",
+                    "copy-camera", "light", "light-on", "light-solo", "show-lights", "save", "see-light", "show-seen"):
+        expect(control in reached, f"Tab reaches {control}")
+    for node in page.browser.call("Accessibility.getFullAXTree")["nodes"]:
+        if not node.get("ignored") and node["role"]["value"] in ("button", "slider", "combobox", "spinbutton", "checkbox", "application", "image"):
+            expect(node.get("name", {}).get("value"), f"a {node['role']['value']} without a name")
+
+
+def main():
+    with tempfile.TemporaryDirectory(prefix="penumbra-page-") as name, Browser() as browser:
+        folder = pathlib.Path(name)
+        scene = folder / "scene.json"
+        scene.write_text(LIGHTS)
+        with Server(PROGRAM, scene) as server:
+            page = Page(browser, server, width=1400, height=900)
+            check_camera(page, folder)
+            check_lights(page, folder)
+            check_methods(page, folder)
+            check_pixel(page, folder)
+            check_reach(page)
+        if PHOTOGRAPHS:
+            with Server(PROGRAM, SCENES / "room.json") as server:
+                for name, window in (("wide", {"width": 1400, "height": 900}), ("dark", {"width": 1400, "height": 900, "dark": True}),
+                                     ("narrow", {"width": 420, "height": 900, "phone": True})):
+                    page = Page(browser, server, **window)
+                    if name == "wide":
+                        page.choose("light", "sky")
+                        page.ask("document.getElementById('see-light').click()")
+                        page.choose("method-b", "shadow-map")
+                        browser.pointer("mouseMoved", *page.place(0.35, 0.7))
+                        time.sleep(1)
+                    page.exact()
+                    page.picture(name)
+        problems = [problem for problem in browser.problems if not problem.startswith("asks for http://127.0.0.1:")]
+        same(problems, [], "problems of the page")
+    print("failed" if failures else "all as documented")
+    return 1 if failures else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

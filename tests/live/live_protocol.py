@@ -1,0 +1,270 @@
+#!/usr/bin/env python3
+"""`penumbra view` as a bare client meets it: who is let in, what is refused, and that what it shows in the end is what
+`render` writes.   live_protocol.py PROGRAM"""
+import json
+import math
+import pathlib
+import signal
+import socket
+import subprocess
+import sys
+import tempfile
+import time
+
+sys.path.insert(0, str(pathlib.Path(__file__).parent))
+sys.path.insert(0, str(pathlib.Path(__file__).parent.parent / "browser"))
+from exr import read_bits, read_exr  # noqa: E402
+from live_client import LIGHTS, Client, Closed, Server, png_pixels  # noqa: E402
+
+PROGRAM = sys.argv[1]
+SIZE = 64
+
+failures = 0
+
+
+def expect(claim, what):
+    global failures
+    if not claim:
+        failures += 1
+        print(f"FAILED: {what}")
+
+
+def same(found, wanted, what):
+    expect(found == wanted, f"{what}: {found!r}, not {wanted!r}")
+
+
+def render(scene, folder, name, *arguments):
+    """What `render` writes: the EXR's channels, and the PNG's pixels."""
+    exr, png = folder / f"{name}.exr", folder / f"{name}.png"
+    subprocess.run([PROGRAM, "render", str(scene), "-o", str(exr), "--png", str(png), "-q", *map(str, arguments)], check=True)
+    return read_exr(exr)[0], png_pixels(png.read_bytes())
+
+
+def check_who_is_let_in(server):
+    same(server.get()[0], 200, "the page with its token")
+    same(server.get(method="HEAD")[2], b"", "HEAD has no body")
+    for what, answer in (("no token", server.get(token="")), ("a wrong token", server.get(token="0" * 32)),
+                         ("a part of the token", server.get(token=server.token[:-1])),
+                         ("no token for the scene", server.get("/scene.json", token="")),
+                         ("no token for nothing", server.get("/nothing", token="")),
+                         ("another host", server.get(Host="evil.example")),
+                         ("a host that begins alike", server.get(Host="localhost.evil.example:80")),
+                         ("another origin", server.get(Origin="http://evil.example")),
+                         ("a file as origin", server.get(Origin="null"))):
+        same(answer[0], 403, what)
+    same(server.get(Host="localhost:9999")[0], 200, "a tunnel's port")
+    same(server.get(Host="localhost:9999", Origin="http://localhost:9999")[0], 200, "the page's own origin")
+    same(server.get(method="POST")[0], 405, "POST")
+    same(server.get("/../etc/passwd")[0], 404, "a file of the system")
+    headers = server.get()[1]
+    policy = headers["Content-Security-Policy"]
+    expect("default-src 'none'" in policy and "frame-ancestors 'none'" in policy, f"the policy of the page: {policy}")
+    same(headers["Cache-Control"], "no-store", "nothing is kept")
+    expect("http" not in server.get()[2].decode().replace("http://www.w3.org/2000/svg", ""), "the page asks nobody else")
+    same(Client(server, token="x").status, 403, "a socket without the token")
+    same(Client(server, Origin="http://evil.example").status, 403, "a socket of another page")
+    same(Client(server, Host="evil.example").status, 403, "a socket by another name")
+    with socket.create_connection((server.parts.hostname, server.parts.port)) as raw:
+        raw.sendall(b"GET / HTTP/1.1\r\nX: " + b"x" * 20000)
+        raw.settimeout(20)
+        try:
+            expect(raw.recv(100) == b"", "a header without end is not answered")
+        except ConnectionResetError:
+            pass
+
+
+def check_refusals(server):
+    """What a message cannot say changes nothing, and is answered; what no page would send ends the connection."""
+    client = Client(server).begin()
+    client.final()
+    rectangle = {"center": [0, 4, 0], "halfU": [0.5, 0, 0], "halfV": [0, 0, 0.5]}
+    for what, message in (("no JSON", b"{"), ("no object", b"[1]"), ("no type", b"{}"), ("a type that is none", b'{"type": "shutdown"}'),
+                          ("a light that is none", {"type": "light", "name": "moon", "light": {}}),
+                          ("another kind of light", {"type": "light", "name": "key", "light": {"sphere": {"center": [0, 1, 0], "radius": 1}}}),
+                          ("no size", {"type": "light", "name": "ball", "light": {"sphere": {"center": [0, 1, 0], "radius": -1}}}),
+                          ("a file", {"type": "light", "name": "key", "light": {"rectangle": rectangle, "texture": "/etc/passwd"}}),
+                          ("negative light", {"type": "light", "name": "key", "light": {"rectangle": rectangle, "radiance": [-1, 0, 0]}}),
+                          ("a camera that sees nothing", {"type": "camera", "camera": {"eye": [0, 0, 0], "target": [0, 0, 0]}}),
+                          ("a camera of words", {"type": "camera", "camera": {"eye": "here"}}),
+                          ("a method that is none", {"type": "method", "slot": "a", "entry": "magic"}),
+                          ("an option that is none", {"type": "method", "slot": "a", "entry": "edge-scatter:x=1"}),
+                          ("too many samples", {"type": "samples", "count": 5000}), ("a size", {"type": "size", "width": 1e9, "height": 4}),
+                          ("a channel", {"type": "display", "channel": "smell"}), ("a pixel outside", {"type": "pixel", "x": 64, "y": 0}),
+                          ("half a pixel", {"type": "pixel", "x": 0.5, "y": 0}), ("missing members", {"type": "lights"})):
+        client.send_bytes(message if isinstance(message, bytes) else json.dumps(message).encode())
+        expect(client.kind("say")["level"] == "error", what)
+        same(client.kind("state"), client.state, f"the state after {what}")
+
+    def ends(what, code, send):
+        other = Client(server).begin()
+        try:
+            send(other)
+            other.until(lambda _: False, 30)
+        except Closed as closed:
+            expect(closed.code in (code, None), f"{what} ends the connection with {closed.code}, not {code}")
+            return
+        except (ConnectionResetError, BrokenPipeError):
+            return
+        expect(False, f"{what} ends the connection")
+
+    ends("a message of 70,000 bytes", 1009, lambda other: other.send_bytes(b" " * 70000))
+    ends("a binary message", 1008, lambda other: other.send_bytes(b"x", 2))
+    ends("a flood", 1008, lambda other: [other.send(type="still") for _ in range(2000)])
+    client.pixel(1, 1)  # the others are still there
+
+
+def check_final_pictures(server, scene, folder):
+    """What is shown in the end is what `render` writes: of the scene as it is, and as it was changed by hand."""
+    client = Client(server).begin()
+    frame = client.final()
+    exr, png = render(scene, folder, "first", "--exposure", frame["stops"])
+    same(frame["images"][0]["type"], "image/png", "the final picture is lossless")
+    same(png_pixels(frame["files"][0]), png, "the picture of the scene")
+    for x, y in ((5, 60), (30, 40), (40, 20), (0, 0), (63, 63)):
+        answer = client.pixel(x, y)["answers"][0]
+        for light in ("key", "ball", "sun"):
+            same(answer["V"][light], exr[f"{light}.V"][y * SIZE + x], f"V of {light} at {x},{y}")
+
+    client.send(type="camera", camera={"eye": [3, 2, 5], "target": [0, 1, 0], "up": [0, 1, 0], "verticalFov": 40}, stamp=1)
+    client.send(type="light", name="key", stamp=2, light={
+        "rectangle": {"center": [1, 4, 0.5], "halfU": [0.8, 0, 0], "halfV": [0, 0.2, 0.5]}, "radiance": [8, 9, 10], "twoSided": True})
+    client.send(type="light", name="sun", stamp=3, light={"sun": {"direction": [-1, -2, 0.5], "angle": 12}, "irradiance": [2, 1, 1]})
+    client.send(type="lights", off=["ball"], solo="", stamp=4)
+    frame = client.final(4)
+    status, headers, saved = server.get("/scene.json")
+    same(status, 200, "the scene is saved")
+    expect("attachment" in headers["Content-Disposition"], "as a file")
+    file = folder / "saved.json"
+    file.write_bytes(saved)
+    exr, png = render(file, folder, "changed", "--exposure", frame["stops"])
+    same(png_pixels(frame["files"][0]), png, "the picture of the changed scene, by `render` of the saved one")
+    for x, y in ((5, 60), (30, 40), (40, 20)):
+        same(client.pixel(x, y)["answers"][0]["V"]["key"], exr["key.V"][y * SIZE + x], f"V of the moved light at {x},{y}")
+    subprocess.run([PROGRAM, "convert", str(file), "-o", str(folder / "again.json"), "-q"], check=True)
+    client.send(type="lights", off=[], solo="", stamp=5)
+    client.final(5)
+
+
+def check_comparing(server, scene, folder):
+    """Two methods: each has its own V, the difference is theirs; masks are those of --bits."""
+    client = Client(server).begin()
+    client.send(type="method", slot="b", entry="view-sample", none=False, stamp=10)
+    client.send(type="samples", count=16, stamp=11)
+    frame = client.final(11)
+    same([answer["method"] for answer in frame["answers"]], ["edge-scatter", "view-sample"], "the methods")
+    same([answer["lightSamples"] for answer in frame["answers"]], [16, 16], "light samples")
+    same(frame["difference"]["rmse"], 0, "two methods that are exact on the same light samples")
+    client.send(type="display", channel="error", light="ball")
+    client.send(type="samples", count=0, stamp=12)
+    client.send(type="method", slot="b", entry="depth-complexity", none=False, stamp=13)
+    frame = client.final(13)
+    same([image["shows"] for image in frame["images"]], ["difference"], "one picture of the error")
+    file = folder / "compared.json"
+    file.write_bytes(server.get("/scene.json")[2])
+    a, _ = render(file, folder, "a")
+    b, _ = render(file, folder, "b", "--method", "depth-complexity")
+    off = [p - q for p, q, number in zip(a["ball.V"], b["ball.V"], a["id"]) if number != 0xffffffff]
+    wanted = math.sqrt(sum(value * value for value in off) / len(off))
+    expect(wanted > 1e-4 and abs(frame["difference"]["rmse"] - wanted) < 1e-9, f"RMSE {frame['difference']['rmse']}, not {wanted}")
+    client.send(type="display", channel="beauty", light="key")
+    client.send(type="method", slot="b", entry="", none=True, stamp=14)
+    client.final(14)
+    client.send(type="masks", wanted=True)
+    subprocess.run([PROGRAM, "render", str(file), "-o", str(folder / "bits.exr"), "--bits", str(folder / "m.bits"), "--light", "key",
+                    "--light-samples", "256", "-q"], check=True)
+    masks = read_bits(folder / "m.bits")
+    mixed = next(i for i, bits in enumerate(masks) if 40 < bits.count("1") < 200)
+    end, seen = time.monotonic() + 30, None
+    while seen is None and time.monotonic() < end:
+        time.sleep(0.1)
+        seen = client.pixel(mixed % SIZE, mixed // SIZE).get("seen")
+    same(seen and seen["bits"], masks[mixed], "the light as a pixel sees it")
+    client.send(type="masks", wanted=False)
+
+
+def check_moving(server):
+    """While something moves, quick pictures of newer and newer states; then the final one; for all clients, whether one of
+    them reads or not."""
+    client, other = Client(server).begin(), Client(server).begin()
+    silent = Client(server, lazy=True)  # never reads again
+    client.final()
+    began, came = time.monotonic(), []
+    for i in range(60):
+        angle = 0.5 + i / 60
+        client.send(type="camera", moving=True, stamp=100 + i, camera={
+            "eye": [6 * math.sin(angle), 3, 6 * math.cos(angle)], "target": [0, 0.5, 0], "up": [0, 1, 0], "verticalFov": 45})
+        silent.send(type="pixel", x=1, y=1)
+        came += client.wait(0.02)
+    client.send(type="still")
+    frame = client.final(159)
+    frames = [message for message in came + client.seen if message["type"] == "frame" and str(client.number) in message["stamps"]]
+    stamps = [message["stamps"][str(client.number)] for message in frames]
+    expect(stamps == sorted(stamps), f"pictures of newer and newer states: {stamps}")
+    expect(len(set(stamps)) >= 5, f"pictures come while the camera moves: {stamps}")
+    for message in frames:
+        same(message["images"][0]["type"], "image/png" if message["exact"] else "image/jpeg", "how pictures come")
+        expect(message["files"][0][:2] == (b"\x89P" if message["exact"] else b"\xff\xd8"), "and what they are")
+    theirs = other.until(lambda message: message["type"] == "frame" and message["exact"] and
+                         message["stamps"].get(str(client.number)) == 159)
+    same(theirs["files"], frame["files"], "the other client's picture")
+    state = [message for message in other.seen if message["type"] == "state"]
+    other.send(type="samples", count=0, stamp=1)
+    last = other.kind("state")
+    expect(state and last["camera"]["eye"] == [6 * math.sin(0.5 + 59 / 60), 3, 6 * math.cos(0.5 + 59 / 60)], "the other client's camera")
+    expect(time.monotonic() - began < 60, "nobody waits for who does not read")
+    other.socket.close()  # in the middle of everything
+    client.pixel(1, 1)
+
+
+def check_ending(folder):
+    scene = folder / "watched.json"
+    scene.write_text(LIGHTS)
+    with Server(PROGRAM, scene, "--watch") as server:
+        taken = subprocess.run([PROGRAM, "view", str(scene), "--no-browser", "--port", str(server.parts.port)], capture_output=True, text=True)
+        same(taken.returncode, 4, "a port that is taken")
+        expect("--port" in taken.stderr and taken.stdout == "", f"what is said of it: {taken.stderr}")
+        client = Client(server).begin()
+        client.final()
+        client.send(type="camera", camera={"eye": [3, 2, 5], "target": [0, 1, 0]}, stamp=1)
+        client.final(1)
+        scene.write_text(LIGHTS.replace('"center": [0, 4, 0]', '"center": [1, 4, 1]').replace('"radius": 0.6', '"radius": 0.5'))
+        state = client.until(lambda message: message["type"] == "state" and message["lights"][0]["rectangle"]["center"] == [1, 4, 1])
+        same(state["camera"]["eye"], [3, 2, 5], "the camera stays where it was put by hand")
+        saved = folder / "reloaded.json"
+        frame = client.final()
+        saved.write_bytes(server.get("/scene.json")[2])
+        same(png_pixels(frame["files"][0]), render(saved, folder, "reloaded", "--exposure", frame["stops"])[1], "the mesh has changed, too")
+        scene.write_text(LIGHTS.replace('"lights"', '"lamps"'))
+        expect("lamps" in client.until(lambda message: message["type"] == "say" and message["level"] == "error")["text"], "a faulty file")
+        client.pixel(3, 3)
+        client.send(type="camera", camera={"eye": [3, 2, 4], "target": [0, 1, 0]}, moving=True)
+        began = time.monotonic()
+        server.process.send_signal(signal.SIGINT)
+        same(server.process.wait(10), 130, "Ctrl-C")
+        expect(time.monotonic() - began < 2, "at once")
+    same(subprocess.run([PROGRAM, "view", str(folder / "none.json"), "--no-browser"], capture_output=True).returncode, 3, "no such scene")
+    same(subprocess.run([PROGRAM, "view", str(scene), "--port", "70000"], capture_output=True).returncode, 2, "no such port")
+
+
+def main():
+    with tempfile.TemporaryDirectory(prefix="penumbra-live-") as name:
+        folder = pathlib.Path(name)
+        scene = folder / "scene.json"
+        scene.write_text(LIGHTS)
+        with Server(PROGRAM, scene) as server:
+            expect(server.url.startswith("http://127.0.0.1:"), f"the address: {server.url}")
+            check_who_is_let_in(server)
+            check_final_pictures(server, scene, folder)
+            check_refusals(server)
+            check_comparing(server, scene, folder)
+            check_moving(server)
+            server.process.send_signal(signal.SIGTERM)
+            out, _ = server.process.communicate(timeout=10)
+            same(out, "", "nothing but the address is on stdout")
+        check_ending(folder)
+    print("failed" if failures else "all as documented")
+    return 1 if failures else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,36 @@
+// The quality of quick pictures follows what they take.
+#include "app/view/live_renderer.hpp"
+
+#include <gtest/gtest.h>
+
+namespace penumbra::app {
+namespace {
+
+/// Milliseconds of a picture of 512 × 512 pixels on a machine that takes so long for a light sample of a pixel.
+double cost(LiveQuality quality, double nanoseconds) {
+  return 512.0 * 512.0 / (quality.divisor * quality.divisor) * (20 + quality.light_samples) * nanoseconds * 1e-6;
+}
+
+TEST(LivePace, SettlesWherePicturesTakeAFifteenthOfASecondAtMost) {
+  for (const double nanoseconds : {0.1, 1.0, 5.0, 20.0, 60.0}) {
+    LivePace pace;
+    for (int i = 0; i < 60; ++i) pace.took(cost(pace.quality(), nanoseconds));
+    EXPECT_LE(cost(pace.quality(), nanoseconds), 67) << nanoseconds;
+  }
+}
+
+TEST(LivePace, AFastMachineGetsTheBest) {
+  LivePace pace;
+  for (int i = 0; i < 60; ++i) pace.took(5);
+  EXPECT_EQ(pace.quality().divisor, 1U);
+  EXPECT_EQ(pace.quality().light_samples, 64U);
+}
+
+TEST(LivePace, ASlowMachineStaysAtTheLeast) {
+  LivePace pace;
+  for (int i = 0; i < 60; ++i) pace.took(5000);
+  EXPECT_EQ(pace.quality().divisor, 8U);
+}
+
+}  // namespace
+}  // namespace penumbra::app
