@@ -22,6 +22,7 @@ import lists  # noqa: E402
 import maps  # noqa: E402
 import pairs  # noqa: E402
 import papers  # noqa: E402
+import ranking  # noqa: E402
 import rooms  # noqa: E402
 import scatter  # noqa: E402
 import single_shadow  # noqa: E402
@@ -41,7 +42,7 @@ def stale_figures(check):
                 path.write_text(text, encoding="utf-8")
             elif not path.is_file() or path.read_text(encoding="utf-8") != text:
                 stale.append(f"{path.name}: not what docs/figures/make.py draws; run it")
-    return stale + papers.stale(check)
+    return stale + papers.stale(check) + ranking.stale(check)
 
 
 def anchor_of(heading):
