@@ -116,15 +116,16 @@ Image8 defect_picture(const mesh::TriangleSoup& soup, const ObjectReport& report
       view.draw(point - scene.origin, point - scene.origin, color, 2 * kHalfWidth);
     }
     view.finish();
-    for (std::uint32_t y = 0; y < side; ++y) {
-      for (std::uint32_t x = 0; x < side; ++x) {
+    const std::size_t row = std::size_t{kFine} * side;  // pixels of the view
+    for (std::size_t y = 0; y < side; ++y) {
+      for (std::size_t x = 0; x < side; ++x) {
         glm::vec3 sum(0);
-        for (std::uint32_t i = 0; i < kFine * kFine; ++i)
-          sum += view.colors()[std::size_t{kFine * y + i / kFine} * kFine * side + kFine * x + i % kFine];
+        for (std::size_t i = 0; i < std::size_t{kFine} * kFine; ++i)
+          sum += view.colors()[(kFine * y + i / kFine) * row + kFine * x + i % kFine];
         const glm::vec3 mean = glm::round(sum / static_cast<float>(kFine * kFine));
-        for (int c = 0; c < 3; ++c)
-          image.pixels[std::size_t{y} * image.width + half * side + x][static_cast<std::size_t>(c)] =
-              static_cast<std::uint8_t>(mean[c]);
+        Color8& pixel = image.pixels[y * image.width + std::size_t{half} * side + x];
+        pixel = {static_cast<std::uint8_t>(mean.x), static_cast<std::uint8_t>(mean.y),
+                 static_cast<std::uint8_t>(mean.z)};
       }
     }
     camera.eye = camera.target - (camera.eye - camera.target);
