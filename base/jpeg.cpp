@@ -1,4 +1,5 @@
-// libjpeg reports errors by longjmp, which may not jump over destructors: in `decode_jpeg` and `write_jpeg` nothing has one.
+// libjpeg reports errors by longjmp, which may not jump over destructors: in `decode_jpeg` and `write_jpeg` nothing has
+// one.
 #include "base/jpeg.hpp"
 
 #include "base/error.hpp"

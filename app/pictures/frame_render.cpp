@@ -360,14 +360,9 @@ compare::Stats FrameRenderer::write(const FrameFiles& files, Exposure& exposure)
       return encode_png(to_srgb(session().width, session().height, content.sum, std::exp2(stops)));
     });
   }
-  const PictureContent written{session(),
-                               lights,
-                               content.visibility,
-                               content.beauty,
-                               content.sum,
-                               content.alpha,
-                               std::move(attributes),
-                               picture_.mattes ? &*picture_.mattes : nullptr};
+  const PictureContent written{
+      session(),   lights,        content.visibility,    content.beauty,
+      content.sum, content.alpha, std::move(attributes), picture_.mattes ? &*picture_.mattes : nullptr};
   say_once(write_picture(picture, written, format_));
   if (tev_ != nullptr) tev_->show(files.picture.filename().string(), written);
   picture.settle();

@@ -47,7 +47,8 @@ class ViewCommand : public Command {
  public:
   explicit ViewCommand(CLI::App& app)
       : Command(app, "view",
-                "see the scene in a browser, and move camera and lights there: serves one page on 127.0.0.1, and prints its "
+                "see the scene in a browser, and move camera and lights there: serves one page on 127.0.0.1, and "
+                "prints its "
                 "address") {
     cli_.add_option("SCENE", run_.scene,
                     "scene file: .json (penumbra-scene/1), .gltf or .glb; or a mesh file, around which a studio is put")
@@ -58,7 +59,8 @@ class ViewCommand : public Command {
         ->capture_default_str();
     cli_.add_flag("--no-browser", no_browser_, "do not open the address in a browser");
     cli_.add_flag("--watch", watch_, "read the scene again when its file, or one that it names, changes");
-    cli_.add_option("--method", method_, "method to begin with, NAME:key=value:... (default: exact areas)")->type_name("NAME");
+    cli_.add_option("--method", method_, "method to begin with, NAME:key=value:... (default: exact areas)")
+        ->type_name("NAME");
     cli_.add_option("--light-samples", samples_, "light samples to begin with, 1 to 4096 (default: exact areas)")
         ->type_name("N")
         ->check(CLI::Range(1, 4096));

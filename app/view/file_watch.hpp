@@ -7,8 +7,8 @@
 
 namespace penumbra::app {
 
-/// Notices when files change on disk, by their times and sizes. A change counts once the files have been the same at two
-/// looks: editors write in pieces.
+/// Notices when files change on disk, by their times and sizes. A change counts once the files have been the same at
+/// two looks: editors write in pieces.
 class FileWatch {
  public:
   explicit FileWatch(std::vector<std::filesystem::path> files);

@@ -81,10 +81,8 @@ ordered_json light_json(const scenes::AreaLight& light) {
 }
 
 ordered_json camera_json(const scenes::Camera& camera) {
-  ordered_json made = {{"name", camera.name},
-                       {"eye", array(camera.eye)},
-                       {"target", array(camera.target)},
-                       {"up", array(camera.up)}};
+  ordered_json made = {
+      {"name", camera.name}, {"eye", array(camera.eye)}, {"target", array(camera.target)}, {"up", array(camera.up)}};
   if (camera.height)
     made["orthographicHeight"] = *camera.height;
   else
@@ -96,7 +94,7 @@ scenes::AreaLight changed_light(const scenes::AreaLight& light, const json& chan
   json own = require_object(change, "light");
   for (const auto& [key, value] : own.items()) {
     // What else a file may say names files and meshes.
-    constexpr std::array kKnown = {"name",   "rectangle", "ellipse",    "disk",    "polygon",
+    constexpr std::array kKnown = {"name",   "rectangle", "ellipse",    "disk",     "polygon",
                                    "sphere", "sun",       "irradiance", "radiance", "twoSided"};
     if (std::ranges::find(kKnown, key) == kKnown.end())
       throw InputError("light \"{}\": the page does not change \"{}\"", light.name, key);

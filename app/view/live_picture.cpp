@@ -86,9 +86,8 @@ std::vector<std::pair<const char*, Image8>> images_of(const LivePicture& picture
           const auto found = difference(picture, display.light);
           limit = compare::error_scale_limit(found ? found->largest : 1);
         }
-        images.emplace_back("difference",
-                            compare::error_picture(samples, visibility_of(picture, 0, display.light),
-                                                   visibility_of(picture, 1, display.light), *limit));
+        images.emplace_back("difference", compare::error_picture(samples, visibility_of(picture, 0, display.light),
+                                                                 visibility_of(picture, 1, display.light), *limit));
         return images;
       }
       [[fallthrough]];  // nothing to compare with

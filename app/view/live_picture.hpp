@@ -26,8 +26,8 @@ struct LiveAnswer {
 
 /// The numbers of what is shown.
 struct LivePicture {
-  std::uint64_t revision = 0;  ///< of the state
-  bool is_final = false;       ///< not a quick one to be followed by a better
+  std::uint64_t revision = 0;                     ///< of the state
+  bool is_final = false;                          ///< not a quick one to be followed by a better
   std::uint32_t full_width = 0, full_height = 0;  ///< of the final picture
   std::vector<std::string> lights;
   std::vector<LiveAnswer> answers;  ///< one, or two that are compared
@@ -35,15 +35,15 @@ struct LivePicture {
   glm::dvec3 origin{0};
   std::size_t triangles = 0;
   float automatic_stops = 0;
-  double milliseconds = 0;                ///< of all of it
-  std::map<std::uint64_t, double> stamps; ///< of each client, of its last change that is in it
+  double milliseconds = 0;                 ///< of all of it
+  std::map<std::uint64_t, double> stamps;  ///< of each client, of its last change that is in it
 };
 
 /// Which light samples each pixel of a final picture sees of a light.
 struct LiveMasks {
   std::uint64_t revision = 0;
-  std::string light, shape;           ///< name and kind
-  std::vector<glm::dvec2> places;     ///< of light samples, in the light's frame, from −1 to 1
+  std::string light, shape;        ///< name and kind
+  std::vector<glm::dvec2> places;  ///< of light samples, in the light's frame, from −1 to 1
   std::vector<std::uint32_t> masks;
   std::size_t words = 0;
 };
@@ -59,8 +59,8 @@ std::optional<LiveDifference> difference(const LivePicture& picture, const std::
 /// the bytes of each of its `images`, PNG of a final picture, else JPEG. `more`: further members of the object.
 std::string frame_message(const LivePicture& picture, const LiveDisplay& display, const nlohmann::ordered_json& more);
 
-/// What the answers say of a pixel of the final picture's size. `objects`: names of the meshes, by triangle; `masks` may
-/// be null, or of another picture.
+/// What the answers say of a pixel of the final picture's size. `objects`: names of the meshes, by triangle; `masks`
+/// may be null, or of another picture.
 nlohmann::ordered_json pixel_json(const LivePicture& picture, glm::uvec2 pixel, const scenes::Scene& scene,
                                   const LiveMasks* masks);
 

@@ -109,8 +109,8 @@ class LiveRenderer {
   mutable std::condition_variable wake_, ended_;
   bool ending_ = false, wants_reload_ = false, wants_show_ = false;
   LiveState state_;
-  std::uint64_t revision_ = 1;  // of state_; another number, another picture
-  std::map<std::uint64_t, double> stamps_;  // of each client, of its last change
+  std::uint64_t revision_ = 1;                         // of state_; another number, another picture
+  std::map<std::uint64_t, double> stamps_;             // of each client, of its last change
   std::shared_ptr<const scenes::Scene> whole_, file_;  // with meshes, as read; without
   std::shared_ptr<const LivePicture> picture_;
   std::shared_ptr<const LiveMasks> masks_;
@@ -121,7 +121,7 @@ class LiveRenderer {
   RunOptions run_;
   MethodWish wish_;
   std::unique_ptr<Steps> steps_;
-  std::unique_ptr<FrameRenderer> frames_;  // refers to run_, wish_ and steps_
+  std::unique_ptr<FrameRenderer> frames_;          // refers to run_, wish_ and steps_
   std::shared_ptr<const scenes::Scene> rendered_;  // whose meshes frames_ has
   LivePace pace_;
   double final_milliseconds_ = 1000;

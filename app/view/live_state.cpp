@@ -45,7 +45,8 @@ LiveChange change_light(LiveState& state, const json& message) {
     for (const char* key : {"radiance", "irradiance", "twoSided"}) one->erase(key);
   }
   if (before != after && has_body(state.scene, light))
-    throw InputError("light \"{}\" has a body in the scene, which would stay behind: its shape is the file's", light.name);
+    throw InputError("light \"{}\" has a body in the scene, which would stay behind: its shape is the file's",
+                     light.name);
   light = std::move(made);
   return LiveChange::picture;
 }
@@ -64,7 +65,8 @@ LiveChange change_camera(LiveState& state, const json& message) {
   scenes::Camera camera = state.camera;
   if (const auto name = message.find("name"); name != message.end()) {
     const auto found = std::ranges::find(state.scene.cameras, name->get<std::string>(), &scenes::Camera::name);
-    if (found == state.scene.cameras.end()) throw InputError("the scene has no camera \"{}\"", name->get<std::string>());
+    if (found == state.scene.cameras.end())
+      throw InputError("the scene has no camera \"{}\"", name->get<std::string>());
     camera = *found;
   }
   if (const auto change = message.find("camera"); change != message.end()) camera = changed_camera(camera, *change);
@@ -142,8 +144,8 @@ LiveChange stop_moving(LiveState& state, const json&) {
 using Apply = LiveChange (*)(LiveState&, const json&);
 const std::map<std::string_view, Apply>& changes() {
   static const std::map<std::string_view, Apply> all = {
-      {"camera", change_camera}, {"light", change_light},     {"lights", change_lights_on},
-      {"method", change_method}, {"size", change_size},       {"samples", change_samples},
+      {"camera", change_camera},   {"light", change_light}, {"lights", change_lights_on},
+      {"method", change_method},   {"size", change_size},   {"samples", change_samples},
       {"display", change_display}, {"masks", change_masks}, {"still", stop_moving},
   };
   return all;

@@ -29,9 +29,11 @@ ordered_json saying(std::string_view level, const std::string& text) {
 
 std::string view_page() {
   return fmt::format(
-      "<!DOCTYPE html>\n<html lang=\"en\" data-frame=\"0\" data-exact=\"false\" data-ms=\"\" data-method=\"\">\n<head>\n"
+      "<!DOCTYPE html>\n<html lang=\"en\" data-frame=\"0\" data-exact=\"false\" data-ms=\"\" "
+      "data-method=\"\">\n<head>\n"
       "<meta charset=\"utf-8\">\n<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
-      "<title>Penumbra</title>\n<link rel=\"icon\" href=\"data:,\">\n<style nonce=\"@NONCE@\">\n{}</style>\n</head>\n<body>\n{}"
+      "<title>Penumbra</title>\n<link rel=\"icon\" href=\"data:,\">\n<style "
+      "nonce=\"@NONCE@\">\n{}</style>\n</head>\n<body>\n{}"
       "<script nonce=\"@NONCE@\">\n{}</script>\n</body>\n</html>\n",
       kViewStyle, kViewMarkup, kViewScript);
 }
@@ -42,7 +44,8 @@ LiveView::LiveView(RunOptions options, scenes::Scene scene, std::uint16_t port)
   serving.port = port;
   serving.token = network::make_token();
   serving.page = view_page();
-  serving.files.push_back({"/scene.json", "application/json", "scene.json", [this] { return renderer_->scene_text(); }});
+  serving.files.push_back(
+      {"/scene.json", "application/json", "scene.json", [this] { return renderer_->scene_text(); }});
   server_ = std::make_unique<network::PageServer>(std::move(serving), *this);
   renderer_ = std::make_unique<LiveRenderer>(
       std::move(options), std::move(scene),

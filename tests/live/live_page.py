@@ -47,17 +47,22 @@ class Page:
     def frames(self):
         return int(self.ask(f"{ROOT}.frame"))
 
-    def choose(self, control, value):
-        """Sets a control as a user does; waits for the final picture."""
+    def after(self, action):
+        """Waits for the final picture that an action brings."""
         before = self.frames()
-        self.ask(f"(() => {{ const c = document.getElementById('{control}'); c.value = {json.dumps(value)}; "
-                 "c.dispatchEvent(new Event('change')); })()")
+        action()
         self.browser.wait(f"{ROOT}.frame > {before} && {ROOT}.exact === 'true'")
 
+    def choose(self, control, value):
+        """Sets a control as a user does."""
+        self.type(f"#{control}", value)
+
+    def type(self, selector, value):
+        self.after(lambda: self.ask(f"(() => {{ const c = document.querySelector({json.dumps(selector)}); c.value = {json.dumps(value)}; "
+                                    "c.dispatchEvent(new Event('change')); })()"))
+
     def tick(self, control):
-        before = self.frames()
-        self.ask(f"document.getElementById('{control}').click()")
-        self.browser.wait(f"{ROOT}.frame > {before} && {ROOT}.exact === 'true'")
+        self.after(lambda: self.ask(f"document.getElementById('{control}').click()"))
 
     def box(self, selector):
         return self.ask(f"(() => {{ const b = document.querySelector({json.dumps(selector)}).getBoundingClientRect(); "
@@ -128,23 +133,22 @@ def check_camera(page, folder):
     shift = [a - b for a, b in zip(panned["eye"], moved["eye"])]
     expect(max(abs(value) for value in shift) > 0.1 and all(abs(a - b - c) < 1e-9 for a, b, c in zip(panned["target"], moved["target"], shift)),
            "the right button pans eye and pivot alike")
-    page.browser.call("Input.dispatchMouseEvent", type="mouseWheel", x=page.place(0.5, 0.5)[0], y=page.place(0.5, 0.5)[1], deltaX=0, deltaY=-200)
-    page.browser.wait(f"{ROOT}.exact === 'false'")
-    page.exact()
+    x, y = page.place(0.5, 0.5)
+    page.after(lambda: page.browser.call("Input.dispatchMouseEvent", type="mouseWheel", x=x, y=y, deltaX=0, deltaY=-200))
     expect(distance(page.camera()) < 0.9 * distance(panned), "the wheel comes nearer")
     near = page.camera()
-    page.browser.key("w")
-    page.browser.wait(f"{ROOT}.exact === 'false'")
-    page.exact()
+    page.ask("document.getElementById('picture').focus()")
+    page.after(lambda: page.browser.key("w"))
     expect(page.camera()["target"] != near["target"], "W walks")
     page.tick("home")
     same(page.camera(), before, "home is where the file has it")
     x, y = page.place(0.5, 0.9)
-    for count in (1, 2):
-        page.browser.pointer("mousePressed", x, y, button="left", clickCount=count)
-        page.browser.pointer("mouseReleased", x, y, button="left", clickCount=count)
-    page.browser.wait(f"{ROOT}.exact === 'false'")
-    page.exact()
+
+    def click_twice():
+        for count in (1, 2):
+            page.browser.pointer("mousePressed", x, y, button="left", clickCount=count)
+            page.browser.pointer("mouseReleased", x, y, button="left", clickCount=count)
+    page.after(click_twice)
     target = page.camera()["target"]
     expect(abs(target[1]) < 1e-3, f"a double click on the floor sets the pivot there: {target}")
     page.tick("home")
@@ -152,8 +156,7 @@ def check_camera(page, folder):
 
 def check_lights(page, folder):
     before = page.state()["lights"]
-    page.ask("document.getElementById('see-light').click()")
-    page.browser.wait(f"{ROOT}.exact === 'true' && document.querySelector('[data-handle=\"move along X\"]')")
+    page.tick("see-light")
     time.sleep(0.3)
     handle = page.box("[data-handle='move along Y']")
     start = (handle[0] + handle[2] / 2, handle[1] + handle[3] / 2)
@@ -182,13 +185,10 @@ def check_lights(page, folder):
     page.tick("redo")
     same(page.state()["lights"], moved, "redone")
     # Numbers.
-    page.ask("(() => { const i = document.querySelector('[aria-label=\"position x\"]'); i.value = '1.25'; i.dispatchEvent(new Event('change')); })()")
-    page.browser.wait(f"{ROOT}.exact === 'false' || true")
-    page.exact()
+    page.type("[aria-label='position x']", "1.25")
     same(page.state()["lights"][0]["rectangle"]["center"][0], 1.25, "a number that was typed")
     page.choose("light", "sun")
-    page.ask("(() => { const i = document.querySelector('[aria-label=\"by stops\"]'); i.value = '1'; i.dispatchEvent(new Event('change')); })()")
-    page.exact()
+    page.type("input[aria-label='by stops']", "1")
     same(page.state()["lights"][2]["irradiance"], [2 * value for value in before[2]["irradiance"]], "a stop more")
     page.tick("light-solo")
     same(page.state()["solo"], "sun", "solo")

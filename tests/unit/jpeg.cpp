@@ -82,5 +82,24 @@ TEST(Jpeg, RefusesWhatItCannotDecode) {
   EXPECT_FALSE(looks_like_jpeg({}));
 }
 
+TEST(Jpeg, WhatIsWrittenIsReadAgainNearlyTheSame) {
+  Image8 image{37, 21, {}};
+  for (std::uint32_t y = 0; y < image.height; ++y) {
+    for (std::uint32_t x = 0; x < image.width; ++x)
+      image.pixels.push_back({static_cast<std::uint8_t>(6 * x), static_cast<std::uint8_t>(12 * y), 128});
+  }
+  const std::vector<std::byte> bytes = encode_jpeg(image, 95);
+  ASSERT_TRUE(looks_like_jpeg(bytes));
+  const RgbaImage read = decode_rgba_jpeg(bytes, 64);
+  ASSERT_EQ(read.width, image.width);
+  ASSERT_EQ(read.height, image.height);
+  for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+    for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(read.pixels[i].at(c), image.pixels[i].at(c), 8) << i;
+  }
+  EXPECT_LT(encode_jpeg(image, 40).size(), bytes.size());
+  EXPECT_THROW(encode_jpeg({}, 90), ResourceError);
+  EXPECT_THROW(encode_jpeg({70'000, 1, std::vector<Color8>(70'000)}, 90), ResourceError);
+}
+
 }  // namespace
 }  // namespace penumbra

@@ -185,7 +185,7 @@ byId("redo").addEventListener("click", () => goTo(undone, history));
 byId("see-light").addEventListener("click", () => {
   const centre = centreOf(chosenLight());
   if (!centre) return;
-  const inside = () => { const at = project(centre); return at && at.x > 0.08 && at.x < 0.92 && at.y > 0.08 && at.y < 0.92; };
+  const inside = () => { const at = project(centre); return at && at.x > 0.15 && at.x < 0.85 && at.y > 0.18 && at.y < 0.82; };
   for (let i = 0; i < 60 && !inside(); ++i) {
     if (view.orthographicHeight) view = { ...view, orthographicHeight: view.orthographicHeight * 1.1 };
     else view = { ...view, eye: add(view.target, times(sub(view.eye, view.target), 1.1)) };

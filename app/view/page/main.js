@@ -1,6 +1,7 @@
 // The state that the server tells, and the controls that are not a room of their own.
-function trouble(text, lasting = true) {
+function trouble(text, lasting = true, kind = "bad") {
   byId("trouble").textContent = text;
+  byId("trouble").className = kind;
   clearTimeout(trouble.timer);
   if (!lasting) trouble.timer = setTimeout(() => { byId("trouble").textContent = ""; }, 8000);
 }
@@ -66,14 +67,16 @@ byId("size").addEventListener("change", () => {
 });
 for (const id of ["home", "camera"]) byId(id).addEventListener(id === "home" ? "click" : "change", () =>
   change("camera", { type: "camera", name: byId("camera").value }));
-byId("copy-camera").addEventListener("click", async () => {
+byId("copy-camera").addEventListener("click", () => {
   const text = JSON.stringify({ name: byId("camera").value, ...cameraWords() });
   byId("copy-camera").dataset.copied = text;
-  try {
-    await navigator.clipboard.writeText(text);
-    trouble("The camera is in the clipboard.", false);
-  } catch {
-    prompt("The camera as JSON:", text);
-  }
+  // The older way to the clipboard: it asks for no permission.
+  const area = Object.assign(document.createElement("textarea"), { value: text });
+  document.body.append(area);
+  area.select();
+  const copied = document.execCommand("copy");
+  area.remove();
+  byId("copy-camera").focus();
+  trouble(copied ? "The camera is in the clipboard." : `The camera as JSON: ${text}`, !copied, "good");
 });
 connect();

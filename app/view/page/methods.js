@@ -5,8 +5,8 @@ const kBest = "best";
 
 function fillMethods() {
   for (const [slot, { select }] of Object.entries(slots)) {
-    select.replaceChildren(slot === "a" ? new Option("exact areas (best method)", "") : new Option("none", ""));
-    if (slot === "b") select.append(new Option("exact areas (best method)", kBest));
+    select.replaceChildren(slot === "a" ? new Option("exact areas", "") : new Option("none", ""));
+    if (slot === "b") select.append(new Option("exact areas", kBest));
     for (const family of ["geometry", "image", "reference"]) {
       const group = document.createElement("optgroup");
       group.label = family;

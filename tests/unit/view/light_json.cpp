@@ -71,9 +71,10 @@ TEST(LightJson, RefusesWhatAFileCouldNotSay) {
     changed[key] = value;
     return changed;
   };
-  for (const json& wrong : {with("texture", "/etc/passwd"), with("casters", json::object()), with("radiance", {-1, 0, 0}),
-                            with("rectangle", {{"center", {0, 4, 0}}, {"halfU", {0, 0, 0}}, {"halfV", {0, 0, 1}}}),
-                            with("rectangle", "large"), json("light"), json::array(), json(nullptr)})
+  for (const json& wrong :
+       {with("texture", "/etc/passwd"), with("casters", json::object()), with("radiance", {-1, 0, 0}),
+        with("rectangle", {{"center", {0, 4, 0}}, {"halfU", {0, 0, 0}}, {"halfV", {0, 0, 1}}}),
+        with("rectangle", "large"), json("light"), json::array(), json(nullptr)})
     EXPECT_THROW(changed_light(light, wrong), InputError) << wrong;
   json other = good;
   other.erase("rectangle");

@@ -22,8 +22,8 @@ TEST(Requests, TheTokenIsAParameterOfItsOwn) {
   EXPECT_TRUE(has_token("/?token=abc", "abc"));
   EXPECT_TRUE(has_token("/live?x=1&token=abc", "abc"));
   EXPECT_TRUE(has_token("/?token=abc&x", "abc"));
-  for (const char* target : {"/", "/?", "/?token=", "/?token=ab", "/?token=abcd", "/?token=abd", "/?xtoken=abc", "/?token=abd&token=abc",
-                             "/token=abc", "/?&&", "/?token", "token=abc"})
+  for (const char* target : {"/", "/?", "/?token=", "/?token=ab", "/?token=abcd", "/?token=abd", "/?xtoken=abc",
+                             "/?token=abd&token=abc", "/token=abc", "/?&&", "/?token", "token=abc"})
     EXPECT_FALSE(has_token(target, "abc")) << target;
   EXPECT_EQ(path_of("/live?token=abc"), "/live");
   EXPECT_EQ(path_of("/"), "/");
@@ -32,16 +32,16 @@ TEST(Requests, TheTokenIsAParameterOfItsOwn) {
 TEST(Requests, HostsAreTheLoopbacksNames) {
   for (const char* host : {"127.0.0.1", "127.0.0.1:80", "localhost:8080", "[::1]:1", "localhost"})
     EXPECT_TRUE(is_loopback_host(host)) << host;
-  for (const char* host : {"", "localhost.evil.example", "127.0.0.1.evil.example:80", "evil.example", "localhost:80x", "127.0.0.2",
-                           "localhost:80@evil.example", "0.0.0.0:80"})
+  for (const char* host : {"", "localhost.evil.example", "127.0.0.1.evil.example:80", "evil.example", "localhost:80x",
+                           "127.0.0.2", "localhost:80@evil.example", "0.0.0.0:80"})
     EXPECT_FALSE(is_loopback_host(host)) << host;
 }
 
 TEST(Requests, OriginsAreThePagesOwnOrMissing) {
   EXPECT_TRUE(is_own_origin("", "localhost:80"));
   EXPECT_TRUE(is_own_origin("http://localhost:80", "localhost:80"));
-  for (const char* origin : {"null", "http://localhost", "https://localhost:80", "http://localhost:801", "http://evil.example",
-                             "file://", "http://localhost:80.evil.example"})
+  for (const char* origin : {"null", "http://localhost", "https://localhost:80", "http://localhost:801",
+                             "http://evil.example", "file://", "http://localhost:80.evil.example"})
     EXPECT_FALSE(is_own_origin(origin, "localhost:80")) << origin;
 }
 

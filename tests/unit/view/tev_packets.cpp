@@ -20,11 +20,12 @@ TEST(TevPackets, OnePixel) {
   const auto packets = tev_packets({"a", 1, 1, {{"R", {&red, 1}}, {"V", {&v, 1}}}});
   ASSERT_EQ(packets.size(), 2U);
   EXPECT_EQ(packets[0], bytes_of({24, 0, 0, 0, 4, 1, 'a', 0, 1, 0, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0, 'R', 0, 'V', 0}));
-  EXPECT_EQ(packets[1], bytes_of({72, 0, 0, 0, 6, 0, 'a', 0, 2, 0, 0, 0, 'R', 0, 'V', 0,   //
-                                  0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0,          // x, y, width, height
-                                  0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0,          // where channels begin
-                                  1, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0,          // how far values are apart
-                                  0, 0, 0x80, 0x3f, 0, 0, 0, 0xc0}));
+  EXPECT_EQ(packets[1],
+            bytes_of({72, 0, 0,    0,    6, 0, 'a', 0,   2, 0, 0, 0, 'R', 0, 'V', 0,  //
+                      0,  0, 0,    0,    0, 0, 0,   0,   1, 0, 0, 0, 1,   0, 0,   0,  // x, y, width, height
+                      0,  0, 0,    0,    0, 0, 0,   0,   1, 0, 0, 0, 0,   0, 0,   0,  // where channels begin
+                      1,  0, 0,    0,    0, 0, 0,   0,   1, 0, 0, 0, 0,   0, 0,   0,  // how far values are apart
+                      0,  0, 0x80, 0x3f, 0, 0, 0,   0xc0}));
 }
 
 TEST(TevPackets, LargePicturesComeInStripes) {
