@@ -163,7 +163,7 @@ std::string frame_message(const LivePicture& picture, const LiveDisplay& display
                        {"seconds", answer.seconds}});
   }
   ordered_json header = {{"type", "frame"},
-                         {"exact", picture.is_final},
+                         {"final", picture.is_final},
                          {"width", picture.full_width},
                          {"height", picture.full_height},
                          {"triangles", picture.triangles},
@@ -194,7 +194,7 @@ ordered_json pixel_json(const LivePicture& picture, glm::uvec2 pixel, const scen
   const std::uint32_t x = std::min(pixel.x * samples.width / picture.full_width, samples.width - 1);
   const std::uint32_t y = std::min(pixel.y * samples.height / picture.full_height, samples.height - 1);
   const std::size_t i = std::size_t{y} * samples.width + x;
-  ordered_json made = {{"type", "pixel"}, {"x", pixel.x}, {"y", pixel.y}, {"exact", picture.is_final}};
+  ordered_json made = {{"type", "pixel"}, {"x", pixel.x}, {"y", pixel.y}, {"final", picture.is_final}};
   const std::int32_t triangle = samples.triangle[i];
   made["surface"] = triangle != ViewSamples::kBackground;
   if (triangle != ViewSamples::kBackground) {

@@ -3,6 +3,7 @@
 #include "app/light_methods.hpp"
 #include "app/options.hpp"
 #include "app/pictures/frame_render.hpp"
+#include "app/view/live_pace.hpp"
 #include "app/view/live_picture.hpp"
 #include "app/view/live_state.hpp"
 #include "render/machine.hpp"
@@ -22,24 +23,6 @@
 #include <vector>
 
 namespace penumbra::app {
-
-/// How much of a picture is made while something moves.
-struct LiveQuality {
-  std::uint32_t divisor = 2;         ///< of width and height
-  std::uint32_t light_samples = 16;  ///< at most, of methods that have them
-};
-
-/// Chooses the best quality that keeps about fifteen pictures a second.
-class LivePace {
- public:
-  [[nodiscard]] LiveQuality quality() const;
-  /// Notes what a picture of that quality took.
-  void took(double milliseconds);
-
- private:
-  std::size_t level_ = 2;
-  int quick_ = 0;  // pictures in a row that left time for more
-};
 
 /// What the renderer tells; called on its thread.
 struct LiveEvents {

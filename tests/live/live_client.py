@@ -164,7 +164,7 @@ class Client:
 
     def final(self, stamp=None):
         """The final picture of the state, or of the one after this client's change with that stamp."""
-        return self.until(lambda message: message["type"] == "frame" and message["exact"] and
+        return self.until(lambda message: message["type"] == "frame" and message["final"] and
                           (stamp is None or message["stamps"].get(str(self.number)) == stamp))
 
     def begin(self):

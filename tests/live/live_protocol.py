@@ -202,9 +202,9 @@ def check_moving(server):
     expect(stamps == sorted(stamps), f"pictures of newer and newer states: {stamps}")
     expect(len(set(stamps)) >= 5, f"pictures come while the camera moves: {stamps}")
     for message in frames:
-        same(message["images"][0]["type"], "image/png" if message["exact"] else "image/jpeg", "how pictures come")
-        expect(message["files"][0][:2] == (b"\x89P" if message["exact"] else b"\xff\xd8"), "and what they are")
-    theirs = other.until(lambda message: message["type"] == "frame" and message["exact"] and
+        same(message["images"][0]["type"], "image/png" if message["final"] else "image/jpeg", "how pictures come")
+        expect(message["files"][0][:2] == (b"\x89P" if message["final"] else b"\xff\xd8"), "and what they are")
+    theirs = other.until(lambda message: message["type"] == "frame" and message["final"] and
                          message["stamps"].get(str(client.number)) == 159)
     same(theirs["files"], frame["files"], "the other client's picture")
     state = [message for message in other.seen if message["type"] == "state"]

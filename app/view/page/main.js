@@ -54,7 +54,7 @@ on("say", (message) => {
   if (message.level === "error") trouble(message.text);
   else if (message.level === "warning") trouble(message.text, false);
 });
-on("frame", (header) => { if (header.exact) trouble(byId("trouble").textContent, false); });
+on("frame", (header) => { if (header.final) trouble(byId("trouble").textContent, false); });
 on("connected", () => trouble(""));
 on("lost", () => trouble("The connection to `penumbra view` is lost; trying again."));
 

@@ -12,7 +12,7 @@ function draw() {
     canvas.height = height;
   }
   const pen = canvas.getContext("2d"), one = by.a || by.difference || by.all;
-  pen.imageSmoothingEnabled = !header.exact;
+  pen.imageSmoothingEnabled = !header.final;
   if (how === "side") {
     pen.drawImage(by.a, 0, 0, width, height);
     pen.drawImage(by.b, width, 0, width, height);
@@ -64,13 +64,13 @@ on("frame", (header, images) => {
   draw();
   const root = document.documentElement.dataset, stamp = header.stamps[clientId];
   root.frame = String(Number(root.frame || 0) + 1);
-  root.exact = String(header.exact && !(sentStamp > (stamp ?? 0)));
+  root.exact = String(header.final && !(sentStamp > (stamp ?? 0)));
   root.ms = (stamp === undefined ? header.milliseconds : performance.now() - stamp).toFixed(1);
   root.method = header.answers.map((answer) => answer.method).join(" | ");
   const words = (answer) => answer.method + (answer.lightSamples ? `, ${answer.lightSamples} light samples` : "");
   const reduced = header.images[0].width < header.width ? `, ${header.images[0].width}\u00d7${header.images[0].height}` : "";
   byId("shown").textContent = `${words(header.answers[0])}${header.answers[1] ? " | " + words(header.answers[1]) : ""}: ` +
-    `${header.exact ? "final" : "preview" + reduced}, ${Math.round(root.ms)} ms`;
+    `${header.final ? "final" : "preview" + reduced}, ${Math.round(root.ms)} ms`;
   byId("wipe-row").hidden = mode() !== "wipe";
   const two = header.answers.length > 1 && shown.by.b;
   byId("label-a").textContent = two && mode() !== "b" ? "A: " + words(header.answers[0]) : "";

@@ -32,7 +32,7 @@ on("pointed", (place) => {
 on("frame", () => { if (pointed && !pointers.size) askPixel(...pointed); });
 
 function showPixel(pixel) {
-  const box = byId("readout"), lines = [`Pixel ${pixel.x}, ${pixel.y}${pixel.exact ? "" : " (preview)"}${pixel.surface ? `: ${pixel.object}, triangle ${pixel.id}` : ": background"}`];
+  const box = byId("readout"), lines = [`Pixel ${pixel.x}, ${pixel.y}${pixel.final ? "" : " (preview)"}${pixel.surface ? `: ${pixel.object}, triangle ${pixel.id}` : ": background"}`];
   for (const [i, answer] of (pixel.answers || []).entries()) {
     const of = Object.entries(answer.V).map(([light, v]) => `V ${light} = ${v.toPrecision(6)}`).join(", ");
     lines.push(`${pixel.answers.length > 1 ? "AB"[i] + ", " : ""}${answer.method}${answer.lightSamples ? `, ${answer.lightSamples} light samples` : ""}: ${of}`);
@@ -74,7 +74,7 @@ on("frame", (header) => {
   byId("times").tBodies[0].replaceChildren(...phases.map((phase) => row([phase, ...header.answers.map((answer) => (1000 * (answer.seconds[phase] || 0)).toFixed(1))], "td")),
     row(["all", header.milliseconds.toFixed(1)].concat(two ? [""] : []), "td"));
   byId("size-facts").textContent = `${header.triangles.toLocaleString("en")} triangles, ${header.width}\u00d7${header.height} pixels`;
-  frameTimes.push({ at: performance.now(), ms: Number(document.documentElement.dataset.ms), exact: header.exact });
+  frameTimes.push({ at: performance.now(), ms: Number(document.documentElement.dataset.ms), final: header.final });
   if (frameTimes.length > 100) frameTimes.shift();
   drawPlot();
 });
@@ -84,7 +84,7 @@ function drawPlot() {
   pen.clearRect(0, 0, sheet.width, sheet.height);
   const high = (ms) => sheet.height * (1 - Math.min(ms, most) / most);
   frameTimes.forEach((one, i) => {
-    pen.fillStyle = style.getPropertyValue(one.exact ? "--accent" : "--soft");
+    pen.fillStyle = style.getPropertyValue(one.final ? "--accent" : "--soft");
     pen.fillRect(i * 3, high(one.ms), 2, sheet.height - high(one.ms));
   });
   pen.fillStyle = style.getPropertyValue("--bad");

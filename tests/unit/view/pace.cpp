@@ -1,5 +1,5 @@
 // The quality of quick pictures follows what they take.
-#include "app/view/live_renderer.hpp"
+#include "app/view/live_pace.hpp"
 
 #include <gtest/gtest.h>
 

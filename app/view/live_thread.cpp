@@ -1,0 +1,310 @@
+// Of LiveRenderer: what its thread does.
+#include "app/machine.hpp"
+#include "app/methods.hpp"
+#include "app/output.hpp"
+#include "app/process/interrupt.hpp"
+#include "app/process/stopwatch.hpp"
+#include "app/view/live_renderer.hpp"
+#include "app/view/live_steps.hpp"
+#include "app/whole_lights.hpp"
+#include "render/device.hpp"
+#include "scenes/picture_size.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+#include <utility>
+
+namespace penumbra::app {
+
+using nlohmann::ordered_json;
+
+namespace {
+
+constexpr std::uint32_t kSmallestSide = 32;  // of a reduced picture
+constexpr std::uint32_t kMaskSamples = 256;
+/// A final picture is done in bands of so many rows, after each of which it can be given up.
+constexpr std::uint32_t kBand = 64;
+/// While something is dragged, a final picture waits so long for what comes next.
+constexpr std::chrono::milliseconds kPause{90};
+
+}  // namespace
+
+bool LiveRenderer::is_overtaken(std::uint64_t revision) const {
+  const std::lock_guard lock(mutex_);
+  return revision_ != revision || wants_reload_ || ending_;
+}
+
+bool LiveRenderer::has_work() const {
+  if (ending_ || wants_reload_ || (wants_show_ && picture_)) return true;
+  const bool is_done = failed_ == revision_ || (picture_ && picture_->revision == revision_ && picture_->is_final);
+  if (!is_done) return true;
+  const bool has_masks = masks_ && masks_->revision == revision_ && masks_->light == state_.display.light;
+  return state_.masks && !has_masks && masks_failed_ != revision_ && failed_ != revision_;
+}
+
+void LiveRenderer::work() {
+  try {
+    std::unique_lock lock(mutex_);
+    for (;;) {
+      wake_.wait(lock, [this] { return has_work(); });
+      if (ending_) return;
+      work_on(lock);
+    }
+  } catch (...) {
+    const std::lock_guard lock(mutex_);
+    thrown_ = std::current_exception();
+    ended_.notify_all();
+  }
+}
+
+void LiveRenderer::work_on(std::unique_lock<std::mutex>& lock) {
+  if (std::exchange(wants_reload_, false)) {
+    lock.unlock();
+    read_again();
+    lock.lock();
+    return;
+  }
+  const bool has_any = picture_ && picture_->revision == revision_;
+  Order order{state_, revision_, pace_.quality(), has_any || final_milliseconds_ < kPictureTime, stamps_};
+  if (failed_ == revision_ || (has_any && picture_->is_final) || wants_show_) {
+    const bool shows = std::exchange(wants_show_, false);
+    lock.unlock();
+    if (shows)
+      show();
+    else
+      make_masks(order);
+    lock.lock();
+    return;
+  }
+  if (order.is_final && order.state.moving && has_any) {
+    const auto something_came = [&] {
+      return ending_ || wants_reload_ || wants_show_ || revision_ != order.revision || !state_.moving;
+    };
+    if (wake_.wait_for(lock, kPause, something_came)) {
+      // The pointer has been let go, or there is something newer: look again.
+      if (revision_ != order.revision || ending_ || wants_reload_ || wants_show_) return;
+    }
+  }
+  lock.unlock();
+  make_picture(order);
+  lock.lock();
+}
+
+void LiveRenderer::failed(std::uint64_t revision, const std::string& message) {
+  {
+    const std::lock_guard lock(mutex_);
+    failed_ = revision;
+  }
+  events_.say("error", message);
+}
+
+void LiveRenderer::read_again() {
+  try {
+    scenes::Scene scene = read_session_scene(options_, {});
+    auto file = std::make_shared<const scenes::Scene>(without_meshes(scene));
+    {
+      const std::lock_guard lock(mutex_);
+      state_ = reloaded(state_, *file_, without_meshes(scene));
+      file_ = std::move(file);
+      whole_ = std::make_shared<const scenes::Scene>(std::move(scene));
+      ++revision_;
+    }
+    events_.reloaded();
+  } catch (const Interrupted&) {
+    throw;
+  } catch (const Error& error) {
+    events_.say("error", error.what());  // what was shown before stays
+  }
+}
+
+scenes::Scene LiveRenderer::scene_of(const LiveState& state) const {
+  std::shared_ptr<const scenes::Scene> whole;
+  {
+    const std::lock_guard lock(mutex_);
+    whole = whole_;
+  }
+  const bool same_meshes = frames_ && frames_->has_meshes() && rendered_ == whole;
+  scenes::Scene scene = same_meshes ? state.scene : *whole;
+  scene.lights = state.scene.lights;
+  scene.cameras = {state.camera};
+  return scene;
+}
+
+void LiveRenderer::render(scenes::Scene scene, bool keeps_masks) {
+  std::shared_ptr<const scenes::Scene> whole;
+  {
+    const std::lock_guard lock(mutex_);
+    whole = whole_;
+  }
+  if (!frames_) {
+    frames_ = std::make_unique<FrameRenderer>(run_, wish_, machine_, *steps_);
+    frames_->expect_frames();
+  }
+  const bool same_meshes = scene.soup.triangles.empty();
+  const Frame frame{.number = {},
+                    .camera = scene.cameras.front().name,
+                    .same_meshes = same_meshes,
+                    .keeps_masks = keeps_masks,
+                    .band_rows = kBand};
+  if (!same_meshes) rendered_ = whole;
+  frames_->render(std::move(scene), frame, {}, 0);
+}
+
+/// Quick pictures of areas are light samples of the method that has them by default.
+MethodWish LiveRenderer::wish_for(const Order& order, const std::string& entry) {
+  NamedMethod method = parse_method(entry);
+  const std::uint32_t asked = order.state.light_samples;
+  MethodWish wish{std::move(method.name), std::move(method.options), asked != 0};
+  std::uint32_t samples = asked;
+  if (!order.is_final) {
+    samples = std::min(order.quality.light_samples, asked != 0 ? asked : kMaskSamples);
+    if (wish.method.empty()) {
+      wish.samples = true;
+    } else if (const auto description = describe_method(wish.method, wish.options); description.gives_area()) {
+      wish = {{}, {}, true};
+    } else if (description.counts_light_samples()) {
+      wish.samples = true;
+    } else {
+      samples = 0;
+    }
+  }
+  run_.light_samples = samples == 0 ? "" : fmt::format("{}", samples);
+  return wish;
+}
+
+LiveAnswer LiveRenderer::answer(const Order& order, const std::string& entry, scenes::Scene& scene) {
+  wish_ = wish_for(order, entry);
+  render(std::move(scene), false);
+  const compare::Stats stats = frames_->stats();
+  LiveAnswer made;
+  made.method = stats.method;
+  for (const auto& [key, value] : stats.options) made.method += ":" + key + "=" + value;
+  made.light_samples = stats.light_samples;
+  made.milliseconds = 1000 * stats.seconds.shadow().value_or(0);
+  made.seconds = compare::to_json(stats)["seconds"];
+  made.frame = frames_->take();
+  return made;
+}
+
+void LiveRenderer::make_picture(const Order& order) {
+  const Stopwatch watch;
+  const LiveState& state = order.state;
+  try {
+    std::uint32_t width = state.width, height = state.height;
+    if (width == 0) std::tie(width, height) = scenes::picture_size(state.scene, state.camera);
+    std::uint32_t divisor = order.is_final ? 1 : order.quality.divisor;
+    while (divisor > 1 && std::min(width, height) / divisor < kSmallestSide) divisor /= 2;
+    run_.size = fmt::format("{}x{}", (width + divisor - 1) / divisor, (height + divisor - 1) / divisor);
+    run_.lights = lights_on(state);
+    scenes::Scene scene = scene_of(state);
+    if (run_.lights.empty()) {  // a picture is of one light at least
+      run_.lights = {scene.lights.front().name};
+      scene.lights.front().radiance = glm::dvec3(0);
+    }
+    steps_->set_revision(order.is_final ? order.revision : 0);
+    auto picture = std::make_shared<LivePicture>();
+    picture->answers.push_back(answer(order, state.method, scene));
+    if (state.other) {
+      scene = scene_of(state);
+      if (lights_on(state).empty()) scene.lights.front().radiance = glm::dvec3(0);
+      picture->answers.push_back(answer(order, *state.other, scene));
+    }
+    const Session& session = frames_->session();
+    picture->revision = order.revision;
+    picture->is_final = order.is_final;
+    picture->full_width = width;
+    picture->full_height = height;
+    picture->lights = whole_names(session.lights);
+    picture->samples = session.samples;
+    picture->origin = session.floats.origin;
+    picture->triangles = session.scene.soup.triangles.size();
+    if (order.is_final || !has_stops_) {
+      automatic_stops_ = std::log2(auto_exposure(session, picture->answers.front().frame.sum));
+      has_stops_ = true;
+    }
+    picture->automatic_stops = automatic_stops_;
+    picture->stamps = order.stamps;
+    picture->milliseconds = 1000 * watch.seconds();
+    publish(std::move(picture));
+    if (order.is_final)
+      final_milliseconds_ = 1000 * watch.seconds();
+    else
+      pace_.took(1000 * watch.seconds());
+  } catch (const GivenUp&) {
+    final_milliseconds_ = std::max(final_milliseconds_, 1000 * watch.seconds());
+  } catch (const Interrupted&) {
+    throw;
+  } catch (const render::DeviceDoesNotAnswer& error) {
+    static_cast<void>(frames_.release());  // nothing of the device may be destroyed while it is at work
+    machine_ = make_machine(options_.device);
+    failed(order.revision, error.what());
+  } catch (const Error& error) {
+    frames_.reset();  // whatever it holds may be half of one scene and half of another
+    failed(order.revision, error.what());
+  }
+}
+
+void LiveRenderer::make_masks(const Order& order) {
+  try {
+    const LiveState& state = order.state;
+    std::shared_ptr<const LivePicture> picture;
+    {
+      const std::lock_guard lock(mutex_);
+      picture = picture_;
+    }
+    run_.size = fmt::format("{}x{}", picture->full_width, picture->full_height);
+    run_.lights = {state.display.light};
+    run_.light_samples = fmt::format("{}", kMaskSamples);
+    wish_ = {{}, {}, true};
+    steps_->set_revision(order.revision);
+    render(scene_of(state), true);
+    const Session& session = frames_->session();
+    auto made = std::make_shared<LiveMasks>();
+    made->revision = order.revision;
+    made->light = state.display.light;
+    const visibility::Light& light = session.lights.front();
+    made->shape = visibility::name_of(light.kind);
+    made->places = light.coordinates;
+    made->words = light.words_per_mask();
+    RenderedFrame frame = frames_->take();
+    if (session.lights.size() == 1 && !frame.masks.empty()) made->masks = std::move(frame.masks.front());
+    const std::lock_guard lock(mutex_);
+    masks_ = std::move(made);
+  } catch (const GivenUp&) {
+  } catch (const Interrupted&) {
+    throw;
+  } catch (const Error& error) {
+    frames_.reset();
+    const std::lock_guard lock(mutex_);
+    masks_failed_ = order.revision;
+  }
+}
+
+void LiveRenderer::publish(std::shared_ptr<LivePicture> picture) {
+  {
+    const std::lock_guard lock(mutex_);
+    picture_ = std::move(picture);
+    wants_show_ = false;
+  }
+  show();
+}
+
+void LiveRenderer::show() {
+  std::shared_ptr<const LivePicture> picture;
+  LiveDisplay display;
+  ordered_json stamps = ordered_json::object();
+  {
+    const std::lock_guard lock(mutex_);
+    if (!picture_) return;
+    picture = picture_;
+    display = state_.display;
+    for (const auto& [client, stamp] : picture->stamps) stamps[fmt::format("{}", client)] = stamp;
+  }
+  const ordered_json more = {{"frame", ++frame_}, {"stamps", std::move(stamps)}};
+  events_.frame(std::make_shared<const std::string>(frame_message(*picture, display, more)));
+}
+
+}  // namespace penumbra::app
