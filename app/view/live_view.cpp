@@ -21,6 +21,18 @@ std::string text_of(const ordered_json& message) {
   return message.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
 }
 
+/// Is JSON nested deeper than any message? What copies and writes it calls itself level by level.
+bool is_deep(std::string_view text) {
+  constexpr int kMost = 32;
+  int depth = 0;
+  for (const char c : text) {
+    if (c == '[' || c == '{') ++depth;
+    if (c == ']' || c == '}') --depth;
+    if (depth > kMost) return true;
+  }
+  return false;
+}
+
 ordered_json saying(std::string_view level, const std::string& text) {
   return {{"type", "say"}, {"level", level}, {"text", text}};
 }
@@ -68,6 +80,7 @@ void LiveView::send_state(network::ClientId except) {
 
 void LiveView::message(network::ClientId client, std::string_view text) {
   try {
+    if (is_deep(text)) throw InputError("a message is nested deeper than any that is known");
     const json message = json::parse(text, nullptr, false);
     if (message.is_discarded()) throw InputError("a message is JSON");
     do_message(client, message);

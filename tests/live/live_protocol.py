@@ -85,6 +85,7 @@ def check_refusals(server):
                           ("a file", {"type": "light", "name": "key", "light": {"rectangle": rectangle, "texture": "/etc/passwd"}}),
                           ("negative light", {"type": "light", "name": "key", "light": {"rectangle": rectangle, "radiance": [-1, 0, 0]}}),
                           ("a camera that sees nothing", {"type": "camera", "camera": {"eye": [0, 0, 0], "target": [0, 0, 0]}}),
+                          ("a deep message", b'{"type": "light", "name": "key", "light": {"rectangle": ' + b"[" * 25000 + b"]" * 25000 + b"}}"),
                           ("a camera of words", {"type": "camera", "camera": {"eye": "here"}}),
                           ("a method that is none", {"type": "method", "slot": "a", "entry": "magic"}),
                           ("an option that is none", {"type": "method", "slot": "a", "entry": "edge-scatter:x=1"}),
