@@ -68,11 +68,11 @@ double hyab(const glm::dvec3& a, const glm::dvec3& b) {
 /// The colour difference in [0, 1]: HyAB ^ .7, of which up to .4 of the largest (green against blue) gets .95 of the
 /// range.
 double redistributed(double difference) {
-  static const double kLargest = std::pow(hyab(hunt_lab({0, 1, 0}), hunt_lab({0, 0, 1})), 0.7);
+  static const double largest = std::pow(hyab(hunt_lab({0, 1, 0}), hunt_lab({0, 0, 1})), 0.7);
   constexpr double kShareOfLargest = 0.4, kShareOfRange = 0.95;
-  const double power = std::pow(difference, 0.7), knee = kShareOfLargest * kLargest;
+  const double power = std::pow(difference, 0.7), knee = kShareOfLargest * largest;
   if (power < knee) return kShareOfRange / knee * power;
-  return kShareOfRange + (power - knee) / (kLargest - knee) * (1 - kShareOfRange);
+  return kShareOfRange + (power - knee) / (largest - knee) * (1 - kShareOfRange);
 }
 
 /// A channel of a picture.
