@@ -190,7 +190,7 @@ class FrameRenderer {
   std::vector<Kept> kept_;
   bool expects_frames_ = false;
   std::optional<SurfaceView> surface_;  // nothing: what a camera sees
-  TevPictures* tev_ = nullptr;  // none: they are only written
+  TevPictures* tev_ = nullptr;          // none: they are only written
   Said said_;
   Plan plan_;
   Done done_;

@@ -17,7 +17,7 @@ using nlohmann::ordered_json;
 
 namespace {
 
-std::string text_of(const ordered_json& message) {
+std::string message_text(const ordered_json& message) {
   return message.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
 }
 
@@ -51,7 +51,7 @@ std::string view_page() {
 }
 
 LiveView::LiveView(RunOptions options, scenes::Scene scene, std::uint16_t port)
-    : methods_(text_of(methods_json()["methods"])) {
+    : methods_(message_text(methods_json()["methods"])) {
   network::ServerOptions serving;
   serving.port = port;
   serving.token = network::make_token();
@@ -63,19 +63,19 @@ LiveView::LiveView(RunOptions options, scenes::Scene scene, std::uint16_t port)
       std::move(options), std::move(scene),
       LiveEvents{.frame = [this](std::shared_ptr<const std::string> frame) { server_->send_frame(std::move(frame)); },
                  .say = [this](std::string_view level,
-                               const std::string& text) { server_->send_to_all(text_of(saying(level, text))); },
+                               const std::string& text) { server_->send_to_all(message_text(saying(level, text))); },
                  .reloaded = [this] { send_state(0); }});
 }
 
 /// Nobody but who reads the address knows the token, and that is printed once all is there: renderer_ is.
 void LiveView::opened(network::ClientId client) {
   server_->send(client, fmt::format(R"({{"type": "hello", "client": {}, "methods": {}}})", client, methods_));
-  server_->send(client, text_of(renderer_->state()));
+  server_->send(client, message_text(renderer_->state()));
   renderer_->show_again();
 }
 
 void LiveView::send_state(network::ClientId except) {
-  server_->send_newest(text_of(renderer_->state()), except);
+  server_->send_newest(message_text(renderer_->state()), except);
 }
 
 void LiveView::message(network::ClientId client, std::string_view text) {
@@ -85,8 +85,8 @@ void LiveView::message(network::ClientId client, std::string_view text) {
     if (message.is_discarded()) throw InputError("a message is JSON");
     do_message(client, message);
   } catch (const Error& error) {
-    server_->send(client, text_of(saying("error", error.what())));
-    server_->send(client, text_of(renderer_->state()));
+    server_->send(client, message_text(saying("error", error.what())));
+    server_->send(client, message_text(renderer_->state()));
   }
 }
 
@@ -100,7 +100,7 @@ void LiveView::do_message(network::ClientId client, const json& message) {
         throw InputError("message \"pixel\": {} is a pixel's number", key);
       return found->get<std::uint32_t>();
     };
-    return server_->send(client, text_of(renderer_->pixel(place("x"), place("y"))));
+    return server_->send(client, message_text(renderer_->pixel(place("x"), place("y"))));
   }
   if (renderer_->apply(message, client) == LiveChange::nothing) return;
   const auto moving = message.find("moving");
