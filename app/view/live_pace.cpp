@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 namespace penumbra::app {
 namespace {
@@ -11,20 +12,28 @@ constexpr std::array kLevels{LiveQuality{1, 64}, LiveQuality{1, 16}, LiveQuality
                              LiveQuality{2, 4},  LiveQuality{4, 4},  LiveQuality{8, 4}};
 constexpr double kQuickTime = 28;  // milliseconds, that leave time for more
 
+constexpr int kLongestPatience = 256;  // pictures
+
 }  // namespace
 
 LiveQuality LivePace::quality() const {
   return kLevels.at(level_);
 }
 
+/// A level that turned out too slow is tried again after twice as many quick pictures as before.
 void LivePace::took(double milliseconds) {
+  const bool was_raised = std::exchange(raised_, false);
   if (milliseconds > kPictureTime) {
-    level_ = std::min(level_ + (milliseconds > 2 * kPictureTime ? 2 : 1), kLevels.size() - 1);
+    level_ = std::min(level_ + (milliseconds > 2 * kPictureTime && !was_raised ? 2 : 1), kLevels.size() - 1);
+    patience_ = was_raised ? std::min(2 * patience_, kLongestPatience) : patience_;
     quick_ = 0;
-  } else if (milliseconds < kQuickTime && level_ > 0 && ++quick_ >= 4) {
-    --level_;
-    quick_ = 0;
+    return;
   }
+  if (was_raised) patience_ = kPatience;
+  if (milliseconds >= kQuickTime || level_ == 0 || ++quick_ < patience_) return;
+  --level_;
+  raised_ = true;
+  quick_ = 0;
 }
 
 }  // namespace penumbra::app

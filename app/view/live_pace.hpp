@@ -23,7 +23,10 @@ class LivePace {
 
  private:
   std::size_t level_ = 2;
-  int quick_ = 0;  // pictures in a row that left time for more
+  static constexpr int kPatience = 4;
+  int patience_ = kPatience;  // quick pictures before a better level is tried
+  int quick_ = 0;             // since the last change of level
+  bool raised_ = false;       // the level is new, and may be too slow
 };
 
 }  // namespace penumbra::app

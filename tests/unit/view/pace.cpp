@@ -14,8 +14,13 @@ double cost(LiveQuality quality, double nanoseconds) {
 TEST(LivePace, SettlesWherePicturesTakeAFifteenthOfASecondAtMost) {
   for (const double nanoseconds : {0.1, 1.0, 5.0, 20.0, 60.0}) {
     LivePace pace;
-    for (int i = 0; i < 60; ++i) pace.took(cost(pace.quality(), nanoseconds));
-    EXPECT_LE(cost(pace.quality(), nanoseconds), 67) << nanoseconds;
+    int slow = 0;
+    for (int i = 0; i < 400; ++i) {
+      const double milliseconds = cost(pace.quality(), nanoseconds);
+      slow += milliseconds > 67 ? 1 : 0;
+      pace.took(milliseconds);
+    }
+    EXPECT_LE(slow, 10) << nanoseconds;  // while it looks for a better level
   }
 }
 
