@@ -137,7 +137,7 @@ std::vector<BadUsage> bad_usages() {
   return {
       {"NoCommand", {}, 2, {"--help"}},
       {"UnknownCommand", {"rendr"}, 2, {"no command \"rendr\"", "did you mean render?"}},
-      {"UnknownCommandFarFromAny", {"--quiet", "bake", "SCENE"}, 2, {"\"bake\"", "render, compare"}},
+      {"UnknownCommandFarFromAny", {"--quiet", "fry", "SCENE"}, 2, {"\"fry\"", "render, compare"}},
       {"UnknownCommandAskedForHelp", {"rendr", "--help"}, 2, {"no command \"rendr\""}},
       {"UnknownOption", with({"--colour"}), 2, {"render has no option --colour"}},
       {"MisspeltOption", with({"--metod=pcss"}), 2, {"render has no option --metod; did you mean --method?"}},

@@ -62,7 +62,7 @@ class Client:
     """One WebSocket. Takes each picture as soon as it has read it, unless `lazy`."""
 
     def __init__(self, server, token=None, lazy=False, **headers):
-        self.lazy, self.rest, self.seen = lazy, b"", []
+        self.lazy, self.rest, self.seen, self.end = lazy, b"", [], None
         self.socket = socket.create_connection((server.parts.hostname, server.parts.port), timeout=60)
         key = base64.b64encode(os.urandom(16)).decode()
         lines = {"Host": server.parts.netloc, "Upgrade": "websocket", "Connection": "Upgrade", "Sec-WebSocket-Key": key,
@@ -76,6 +76,11 @@ class Client:
         self.status = int(head.split()[1])
 
     def more(self):
+        if self.end is not None:  # what keeps a connection alive is no message
+            left = self.end - time.monotonic()
+            if left <= 0:
+                raise TimeoutError("no such message came")
+            self.socket.settimeout(left)
         part = self.socket.recv(1 << 20)
         if not part:
             raise Closed()
@@ -141,14 +146,19 @@ class Client:
 
     def until(self, wanted, seconds=30):
         """The first message that `wanted` is true of; those before it are in `seen`."""
-        self.seen, end = [], time.monotonic() + seconds
-        while time.monotonic() < end:
-            self.socket.settimeout(max(end - time.monotonic(), 0.01))
-            message = self.read()
-            self.seen.append(message)
-            if wanted(message):
-                return message
-        raise TimeoutError("no such message came")
+        self.seen, self.end = [], time.monotonic() + seconds
+        try:
+            while True:
+                message = self.read()
+                self.seen.append(message)
+                if wanted(message):
+                    return message
+        except TimeoutError as error:
+            said = [message for message in self.seen if message["type"] == "say"]
+            raise TimeoutError(f"no such message came; {len(self.seen)} others, of which {said}") from error
+        finally:
+            self.end = None
+            self.socket.settimeout(60)
 
     def wait(self, seconds):
         """Reads what comes meanwhile."""
