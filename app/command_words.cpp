@@ -74,7 +74,7 @@ std::string in_lines(std::string_view text, std::size_t width) {
   return result;
 }
 
-/// What a value is, without what CLI11 adds of the checks on it (":INT in [1 - 4096]").
+/// The type of an option's value, without what CLI11 adds of the checks on it (":INT in [1 - 4096]").
 std::string value_name(const CLI::Option& option) {
   const std::string name = option.get_type_name();
   return name.substr(0, std::min(name.find(":INT in"), name.find(":UINT in")));

@@ -69,7 +69,7 @@ std::string options_of(const CommandWords& command) {
 std::string man_page(std::span<const CommandWords> commands, const CommandWords& command) {
   const bool is_program = &command == commands.data();
   const std::string name = is_program ? "penumbra" : "penumbra-" + command.name;
-  // Of the program's description the first line is what it is.
+  // The first line of the program's description says what it is.
   const std::string what = command.help.substr(0, command.help.find('\n'));
   std::string text = fmt::format(".TH {} 1 \"\" \"Penumbra {}\" \"User Commands\"\n.SH NAME\n{} \\- {}\n", upper(name),
                                  PENUMBRA_VERSION, roff(name), roff(what));

@@ -11,7 +11,7 @@
 namespace penumbra::app {
 namespace {
 
-/// What a value is completed with.
+/// Completions of a value.
 enum class ValueKind { nothing, files, methods, commands };
 
 ValueKind values_of(const CommandWords& command, const OptionWords& option) {

@@ -144,7 +144,8 @@ class PageServer::State::Socket : public std::enable_shared_from_this<Socket> {
 
  private:
   void open() {
-    if (server_.sockets_.size() >= server_.options_.limits.clients) return close(websocket::close_code::try_again_later);
+    if (server_.sockets_.size() >= server_.options_.limits.clients)
+      return close(websocket::close_code::try_again_later);
     id_ = ++server_.last_client_;
     server_.sockets_.emplace(id_, this->shared_from_this());
     server_.handler_.opened(id_);
@@ -277,13 +278,14 @@ class PageServer::State::Connection : public std::enable_shared_from_this<Connec
   [[nodiscard]] Response page(const Request& request) const {
     std::string html = server_.options_.page;
     constexpr std::string_view kMark = "@NONCE@";
-    for (std::size_t at = 0; (at = html.find(kMark, at)) != std::string::npos;) html.replace(at, kMark.size(), server_.nonce_);
+    for (std::size_t at = 0; (at = html.find(kMark, at)) != std::string::npos;)
+      html.replace(at, kMark.size(), server_.nonce_);
     Response response = respond(request, http::status::ok, "text/html; charset=utf-8", std::move(html));
     const std::string host(view_of(request[http::field::host]));
-    response.set("Content-Security-Policy",
-                 "default-src 'none'; script-src 'nonce-" + server_.nonce_ + "'; style-src 'nonce-" + server_.nonce_ +
-                     "'; img-src blob: data:; connect-src 'self' ws://" + host +
-                     "; base-uri 'none'; form-action 'none'; frame-ancestors 'none'");
+    response.set("Content-Security-Policy", "default-src 'none'; script-src 'nonce-" + server_.nonce_ +
+                                                "'; style-src 'nonce-" + server_.nonce_ +
+                                                "'; img-src blob: data:; connect-src 'self' ws://" + host +
+                                                "; base-uri 'none'; form-action 'none'; frame-ancestors 'none'");
     return response;
   }
 
@@ -297,9 +299,8 @@ class PageServer::State::Connection : public std::enable_shared_from_this<Connec
       } catch (const std::exception& error) {
         response = say(parser_.get(), http::status::internal_server_error, error.what());
       }
-      server_.post([self = std::move(self), response = std::move(response)]() mutable {
-        self->write(std::move(response));
-      });
+      server_.post(
+          [self = std::move(self), response = std::move(response)]() mutable { self->write(std::move(response)); });
     });
   }
 
@@ -379,7 +380,8 @@ void PageServer::stop() {
   state_->stop();
 }
 void PageServer::send(ClientId client, std::string text) {
-  state_->post([state = state_.get(), client, text = std::move(text)]() mutable { state->send(client, std::move(text)); });
+  state_->post(
+      [state = state_.get(), client, text = std::move(text)]() mutable { state->send(client, std::move(text)); });
 }
 void PageServer::send_to_all(std::string text) {
   state_->post([state = state_.get(), text = std::move(text)] { state->send_to_all(text); });

@@ -16,20 +16,20 @@ using ClientId = std::uint64_t;
 
 /// What one client may ask of the server; whoever goes beyond is disconnected.
 struct ServerLimits {
-  std::size_t clients = 8;               ///< sockets that are open at once
-  std::size_t message_bytes = 1U << 16;  ///< of one message to the server
-  double messages_per_second = 250;      ///< on average
-  double burst = 500;                    ///< messages at once, after a pause
-  std::size_t waiting_texts = 64;        ///< messages that a client has not read yet
+  std::size_t clients = 8;                         ///< sockets that are open at once
+  std::size_t message_bytes = 1U << 16;            ///< of one message to the server
+  double messages_per_second = 250;                ///< on average
+  double burst = 500;                              ///< messages at once, after a pause
+  std::size_t waiting_texts = 64;                  ///< messages that a client has not read yet
   std::chrono::milliseconds request_time{10'000};  ///< from a connection to the end of its request
   std::chrono::milliseconds silence{30'000};       ///< without an answer to a ping
 };
 
 /// A file that is made when it is asked for.
 struct ServedFile {
-  std::string path;  ///< with a slash in front
-  std::string type;  ///< MIME
-  std::string name;  ///< under which a browser saves it
+  std::string path;                   ///< with a slash in front
+  std::string type;                   ///< MIME
+  std::string name;                   ///< under which a browser saves it
   std::function<std::string()> make;  ///< on a thread of its own; what it throws is an answer 500 with the message
 };
 
@@ -56,8 +56,8 @@ class PageHandler {
 };
 
 /// Serves a page and its WebSocket on 127.0.0.1, by a thread of its own, until it is destroyed. A request without the
-/// token, to another host name than the loopback's, or from another page's origin is answered 403, whatever it asks for.
-/// Functions may be called on any thread.
+/// token, to another host name than the loopback's, or from another page's origin is answered 403, whatever it asks
+/// for. Functions may be called on any thread.
 class PageServer {
  public:
   /// `handler` must outlive it. Throws ResourceError if the port is taken.

@@ -15,8 +15,8 @@ std::string_view path_of(std::string_view target);
 /// Has the target the parameter `token` with this value? Takes as long whichever digit is wrong.
 bool has_token(std::string_view target, std::string_view token);
 
-/// Does the header `Host` name this machine's loopback, with any port (a tunnel may have another)? A page elsewhere whose
-/// name has been pointed to this machine sends its own name.
+/// Does the header `Host` name this machine's loopback, with any port (a tunnel may have another)? A page elsewhere
+/// whose name has been pointed to this machine sends its own name.
 bool is_loopback_host(std::string_view host);
 
 /// Is the header `Origin` that of a page from `host`? Programs that are no browsers send none, which is empty.

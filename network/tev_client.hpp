@@ -24,8 +24,8 @@ struct TevPicture {
 /// counts itself, a type and values, all little-endian; texts end with a zero byte.
 class TevClient {
  public:
-  /// `address`: HOST:PORT; tev listens on 127.0.0.1:14158 unless it was told otherwise. Throws UsageError for what is no
-  /// such address, ResourceError if nobody listens.
+  /// `address`: HOST:PORT; tev listens on 127.0.0.1:14158 unless it was told otherwise. Throws UsageError for what is
+  /// no such address, ResourceError if nobody listens.
   explicit TevClient(const std::string& address);
   TevClient(const TevClient&) = delete;
   TevClient& operator=(const TevClient&) = delete;

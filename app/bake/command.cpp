@@ -124,7 +124,7 @@ class BakeCommand : public Command {
   }
 
  private:
-  /// What is wrong with the command line is said before anything long begins.
+  /// A wrong command line is refused before anything long begins.
   [[nodiscard]] PictureRequest checked_request() {
     std::string& size = options_.run.size;
     if (size.empty()) size = fmt::format("{}", kDefaultSide);

@@ -20,7 +20,7 @@ class FailOn {
   /// are not searched.
   FailOn(std::string_view names, bool searches_intersections);
 
-  /// What of it a file has, in words: "not closed, 3 boundaryEdges". Empty: nothing.
+  /// The defects of that list that a file has, in words: "not closed, 3 boundaryEdges". Empty: nothing.
   [[nodiscard]] std::string found_in(const FileReport& file) const;
 
  private:

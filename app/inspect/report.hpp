@@ -46,7 +46,7 @@ struct RepairReport {
 /// alone. Of each defect the first `list_limit` places are listed.
 nlohmann::ordered_json report_json(const FileReport& file, const std::optional<RepairReport>& repaired,
                                    std::size_t list_limit);
-/// Of several files: an array of their entries.
+/// The entries of several files, as an array.
 nlohmann::ordered_json report_json(std::span<const FileReport> files, std::size_t list_limit);
 
 /// How much of a report is printed.

@@ -33,7 +33,7 @@ struct Frame {
   std::string camera;            ///< empty: the first
   std::uint32_t pixel_side = 1;  ///< view samples a pixel along each axis
   PixelFilter filter = {};       ///< of these
-  /// Of exact areas at several view samples a pixel (InterpolatedAreas); 0: each of them is evaluated.
+  /// Error of V up to which exact areas are interpolated (InterpolatedAreas); 0: every view sample is evaluated.
   double pixel_tolerance = kPixelTolerance;
   /// Scenes at other moments, whose mean the picture is; empty: it is that of the one moment. Each is asked for once.
   std::vector<std::function<scenes::Scene()>> moments = {};

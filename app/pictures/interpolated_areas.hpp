@@ -58,7 +58,7 @@ class InterpolatedAreas final : public visibility::Method {
  private:
   /// `touching`: of several surfaces so near to one another that the shadow where they meet may begin between corners.
   enum class Cell : std::uint8_t { touching, apart, bent, smooth };
-  /// What a method answers at a view sample.
+  /// A method's answer at a view sample.
   struct Answer {
     float visibility = 1;
     glm::dvec3 form_factor{0};

@@ -93,7 +93,7 @@ ordered_json camera_json(const scenes::Camera& camera) {
 scenes::AreaLight changed_light(const scenes::AreaLight& light, const json& change) {
   json own = require_object(change, "light");
   for (const auto& [key, value] : own.items()) {
-    // What else a file may say names files and meshes.
+    // Other keys of a file name files and meshes.
     constexpr std::array kKnown = {"name",   "rectangle", "ellipse",    "disk",     "polygon",
                                    "sphere", "sun",       "irradiance", "radiance", "twoSided"};
     if (std::ranges::find(kKnown, key) == kKnown.end())

@@ -15,7 +15,7 @@
 
 namespace penumbra::app {
 
-/// What one of the methods that are shown says.
+/// The answer of one of the methods that are shown.
 struct LiveAnswer {
   std::string method;               ///< with its options: what the page names
   std::uint32_t light_samples = 0;  ///< 0: areas, or a method that has none
@@ -59,7 +59,7 @@ std::optional<LiveDifference> difference(const LivePicture& picture, const std::
 /// the bytes of each of its `images`, PNG of a final picture, else JPEG. `more`: further members of the object.
 std::string frame_message(const LivePicture& picture, const LiveDisplay& display, const nlohmann::ordered_json& more);
 
-/// What the answers say of a pixel of the final picture's size. `objects`: names of the meshes, by triangle; `masks`
+/// All answers at one pixel of the final picture's size. `objects`: names of the meshes, by triangle; `masks`
 /// may be null, or of another picture.
 nlohmann::ordered_json pixel_json(const LivePicture& picture, glm::uvec2 pixel, const scenes::Scene& scene,
                                   const LiveMasks* masks);

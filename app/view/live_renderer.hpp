@@ -24,7 +24,7 @@
 
 namespace penumbra::app {
 
-/// What the renderer tells; called on its thread.
+/// Callbacks of the renderer, called on its thread.
 struct LiveEvents {
   std::function<void(std::shared_ptr<const std::string>)> frame;  ///< frame_message()
   std::function<void(std::string_view level, const std::string& text)> say;
