@@ -7,6 +7,11 @@ cd -- "$1"
 format=$(command -v clang-format-14 || command -v clang-format || true)
 [[ $format && $("$format" --version) == *' 14.'* ]] || { echo 'style: clang-format 14 is not installed (packages.txt)' >&2; exit 1; }
 rooms=(app areas base bench cmake compare engines examples hybrids import include library maps mesh network python reference render repair scenes selftest tests visibility volumes vsm)
-options=(--dry-run --Werror)
-[[ ${2:-} == --write ]] && options=(-i)
-find "${rooms[@]}" -type f \( -name '*.cpp' -o -name '*.hpp' -o -name '*.h' \) -print0 | xargs -0 -n 50 -P 2 "$format" "${options[@]}"
+sources() { find "${rooms[@]}" -type f \( -name '*.cpp' -o -name '*.hpp' -o -name '*.h' \) -print0; }
+check() { xargs -0 -n 50 -P 2 "$format" --dry-run --Werror "$@"; }
+if [[ ${2:-} == --write ]]; then
+  # Writes those alone that change: a new time stamp would have them compiled again.
+  sources | check 2>&1 | sed -n 's/^\([^:]*\):[0-9]*:[0-9]*: error: .*/\1/p' | sort -u | tr '\n' '\0' | xargs -0 -r "$format" -i
+else
+  sources | check
+fi
