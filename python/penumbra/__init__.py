@@ -23,6 +23,8 @@ from . import _core
 from ._core import Cancelled, Error, InputError, ResourceError, UsageError
 
 __version__ = _core.version()
+for _error in (Cancelled, Error, InputError, ResourceError, UsageError):
+    _error.__module__ = __name__  # so that messages name the class as programs do
 __all__ = [
     "Cancelled", "Error", "InputError", "LightPicture", "Picture", "Renderer", "ResourceError", "Scene", "UsageError",
     "add_method", "compare", "inspect", "load", "methods", "render", "wedges",
@@ -55,6 +57,8 @@ def _size(size):
     if size is None:
         return 0, 0
     width, height = size
+    if not (int(width) == width >= 1 and int(height) == height >= 1):
+        raise UsageError(f"size {width}x{height}: expected two whole numbers of pixels, at least 1")
     return int(width), int(height)
 
 

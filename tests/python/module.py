@@ -231,6 +231,10 @@ class Module(unittest.TestCase):
             penumbra.Scene.from_dict({"meshes": [], "lights": []})
         with self.assertRaises(penumbra.InputError):
             scene.add_mesh("bad", [[0, 0, 0], [1, 0, 0], [0, 1, np.nan]], [[0, 1, 2]])
+        for size in ((0, 0), (8, 0), (8.5, 8)):
+            with self.assertRaisesRegex(penumbra.UsageError, "at least 1"):
+                penumbra.render(scene, size=size)
+        self.assertEqual(repr(penumbra.InputError), "<class 'penumbra.InputError'>")
         before = scene.light("sky")
         with self.assertRaises(penumbra.InputError):
             scene.set_light("sky", half_u=(0, 0, 0), radiance=(1, 1, 1))
