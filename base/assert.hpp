@@ -5,7 +5,8 @@
 #include <cstdio>
 #include <cstdlib>
 
-/// We erred: prints the condition, the place and the values, and aborts; on in release as well.
+/// Checks an internal invariant: if it fails, prints the condition, the place and the values, and aborts. Active in
+/// release builds, too.
 #define PENUMBRA_ASSERT(condition, ...)                                                                                \
   do {                                                                                                                 \
     if (!(condition)) {                                                                                                \

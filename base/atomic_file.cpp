@@ -1,3 +1,6 @@
+// Output files that appear whole or not at all: nameless files (O_TMPFILE) linked in place, or locked, uniquely named
+// part files.
+
 #include "base/atomic_file.hpp"
 
 #include "base/assert.hpp"
@@ -28,7 +31,7 @@ namespace {
 
 constexpr std::uint64_t kNoQuota = std::numeric_limits<std::uint64_t>::max();
 
-/// PENUMBRA_TEST_DISK_QUOTA, read at each use so that a test can set and unset it.
+/// Returns the limit of PENUMBRA_TEST_DISK_QUOTA, read at each use so that a test can set and unset the variable.
 std::uint64_t disk_quota() {
   const char* text = std::getenv("PENUMBRA_TEST_DISK_QUOTA");
   if (text == nullptr) return kNoQuota;
@@ -37,12 +40,12 @@ std::uint64_t disk_quota() {
   return quota;
 }
 
-/// The folder that a file stands in, as a path that can be opened.
+/// Returns the folder that contains `file`, as a path that can be opened.
 std::filesystem::path folder_of(const std::filesystem::path& file) {
   return file.has_parent_path() ? file.parent_path() : ".";
 }
 
-/// Parts that have a name. Held while a file changes its name.
+/// Part files that have a name. The mutex is held while a file changes its name.
 struct NamedParts {
   std::mutex mutex;
   std::set<std::filesystem::path> paths;
@@ -54,8 +57,8 @@ NamedParts& named_parts() {
   return parts;
 }
 
-/// What the names of parts begin with on this machine until it starts again. An equal beginning means the same kernel,
-/// where a lock of the process that made the part is visible.
+/// Returns the prefix of part file names on this machine, constant until the next reboot. An equal prefix means the
+/// same kernel, on which the lock of the process that made the part is visible.
 const std::string& part_prefix() {
   static const std::string prefix = [] {
     std::ifstream stream("/proc/sys/kernel/random/boot_id");
@@ -66,18 +69,18 @@ const std::string& part_prefix() {
   return prefix;
 }
 
-/// Removes a part that nobody holds any more.
+/// Removes a part file that no process has locked any more.
 void remove_if_orphaned(const std::filesystem::path& part) {
   const int descriptor = ::open(part.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
   if (descriptor < 0) return;
   struct stat status {};
   if (::fstat(descriptor, &status) == 0 && S_ISREG(status.st_mode) && ::flock(descriptor, LOCK_EX | LOCK_NB) == 0) {
-    ::unlink(part.c_str());  // an owner who comes too late for the lock sees that its file is gone, and makes another
+    ::unlink(part.c_str());  // an owner that locks too late sees that its file is gone, and creates another
   }
   ::close(descriptor);
 }
 
-/// Clears a folder of what killed processes left there; once a folder and process.
+/// Removes part files that killed processes left in a folder; runs once for each folder and process.
 void remove_orphans(const std::filesystem::path& folder) {
   static std::mutex mutex;
   static std::set<std::filesystem::path> done;
@@ -86,7 +89,7 @@ void remove_orphans(const std::filesystem::path& folder) {
   const std::lock_guard lock(mutex);
   if (error || !done.insert(name).second) return;
   const std::string& prefix = part_prefix();
-  if (prefix == ".penumbra--") return;  // no /proc: whose files these are cannot be told
+  if (prefix == ".penumbra--") return;  // without /proc the owner of a part file cannot be determined
   std::filesystem::directory_iterator entries(name, error);
   for (; !error && entries != std::filesystem::directory_iterator(); entries.increment(error)) {
     const std::string file = entries->path().filename().string();
@@ -94,7 +97,7 @@ void remove_orphans(const std::filesystem::path& folder) {
   }
 }
 
-/// Where the file shall stand in the end: links are followed, so that the link survives and its target is replaced.
+/// Returns the final path of the file: follows symbolic links, so that a link survives and its target is replaced.
 std::filesystem::path resolve_destination(const std::filesystem::path& path) {
   if (path.empty() || !path.has_filename()) {
     throw ResourceError("cannot write \"{}\": it names a folder; give the name of a file", path.string());
@@ -106,8 +109,8 @@ std::filesystem::path resolve_destination(const std::filesystem::path& path) {
   return target;
 }
 
-/// A name that nobody in this process has had yet: short (a long file name may leave no room for a suffix), and with
-/// the destination's extension for people who find one.
+/// Returns a name that this process has not used yet: short (a long file name may leave no room for a suffix), with the
+/// destination's extension to help users who find a part file.
 std::filesystem::path next_part(const std::filesystem::path& destination) {
   static std::atomic<unsigned> serial{0};
   return destination.parent_path() /
@@ -120,7 +123,8 @@ std::string path_of_descriptor(int descriptor) {
 
 void refuse_what_is_no_regular_file(const std::filesystem::path& path, const std::filesystem::path& destination) {
   struct stat status {};
-  if (::lstat(destination.c_str(), &status) != 0) return;  // not there (or not reachable: creating will say why)
+  // A file that does not exist, or cannot be reached: creating it reports why.
+  if (::lstat(destination.c_str(), &status) != 0) return;
   if (S_ISREG(status.st_mode)) return;
   const char* kind = S_ISDIR(status.st_mode)                                ? "a folder"
                      : S_ISCHR(status.st_mode) || S_ISBLK(status.st_mode)   ? "a device"
@@ -137,14 +141,14 @@ AtomicFile::AtomicFile(std::filesystem::path path) : path_(std::move(path)), des
   if (!open_nameless()) open_named();
 }
 
-/// False: this file system, or this machine, cannot.
+/// Returns false if the file system or the machine does not support nameless files.
 bool AtomicFile::open_nameless() {
   if (std::getenv("PENUMBRA_TEST_NAMED_PARTS") != nullptr) return false;
   descriptor_ = ::open(folder_of(destination_).c_str(), O_WRONLY | O_TMPFILE | O_CLOEXEC, 0666);
-  if (descriptor_ < 0) return false;  // if it is for another reason, that will be found out and told presently
+  if (descriptor_ < 0) return false;  // any other reason is reported by open_named()
   const bool can_be_named = ::access(path_of_descriptor(descriptor_).c_str(), F_OK) == 0;
   if (!can_be_named) ::close(std::exchange(descriptor_, -1));
-  // Held already when the file gets a name, so that nobody takes it for an orphan.
+  // The lock is taken before the file gets a name, so that no other process mistakes the file for an orphan.
   if (can_be_named) ::flock(descriptor_, LOCK_EX);
   return can_be_named;
 }
@@ -159,10 +163,10 @@ void AtomicFile::open_named() {
     }
     if (descriptor_ < 0 && errno == EEXIST) continue;
     if (descriptor_ < 0) fail(errno);
-    ::flock(descriptor_, LOCK_EX);  // where there are no locks, nobody else gets one either, and orphans stay
+    ::flock(descriptor_, LOCK_EX);  // on a file system without locks no process gets a lock, and orphans stay
     struct stat status {};
     if (::fstat(descriptor_, &status) == 0 && status.st_nlink > 0) return;
-    remove_temporary();  // taken for an orphan before it was locked
+    remove_temporary();  // another process removed the file as an orphan before it was locked
   }
 }
 
@@ -186,7 +190,7 @@ void AtomicFile::write_at(std::uint64_t offset, std::span<const std::byte> bytes
     if (count < 0 && errno == EINTR) continue;
     if (count < 0) fail(errno);
     if (count == 0) fail(ENOSPC);
-    bytes = bytes.subspan(static_cast<std::size_t>(count));  // a short write: the next try says why
+    bytes = bytes.subspan(static_cast<std::size_t>(count));  // a short write: the next call reports the reason
     offset += static_cast<std::uint64_t>(count);
     size_ = std::max(size_, offset);
   }
@@ -205,11 +209,11 @@ void AtomicFile::settle() {
 void AtomicFile::commit() {
   PENUMBRA_ASSERT(descriptor_ >= 0, "second commit of {}", path_.string());
   if (!settled_) settle();
-  // Again, in case somebody put something else there meanwhile (rename itself refuses only folders).
+  // Checked again: another process may have put something else there since (rename itself refuses only folders).
   refuse_what_is_no_regular_file(path_, destination_);
   give_name();
   if (::close(std::exchange(descriptor_, -1)) != 0 && errno != EINTR) fail(errno);
-  // The rename itself reaches the disk with the folder. Best effort: the file is complete either way.
+  // Makes the rename itself reach the disk, by flushing the folder. Best effort: the file is complete in any case.
   if (const int descriptor = ::open(folder_of(destination_).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
       descriptor >= 0) {
     ::fsync(descriptor);
@@ -217,7 +221,8 @@ void AtomicFile::commit() {
   }
 }
 
-/// A link never replaces a file: where there is one already, a name of our own comes first, to be renamed.
+/// A hard link never replaces a file: where the destination exists, the file first gets a part name, which is then
+/// renamed.
 void AtomicFile::give_name() {
   NamedParts& parts = named_parts();
   const std::lock_guard lock(parts.mutex);
@@ -257,7 +262,7 @@ void AtomicFile::remove_temporary() noexcept {
 
 void remove_unfinished_files() {
   NamedParts& parts = named_parts();
-  parts.mutex.lock();  // for ever
+  parts.mutex.lock();  // never unlocked
   for (const std::filesystem::path& part : parts.paths) ::unlink(part.c_str());
 }
 

@@ -14,30 +14,31 @@
 #include <utility>
 #include <vector>
 
-/// Sorting in linear time on all cores: first into parts that a processor's cache holds, then each part by itself, so
-/// that memory is read and written in order. No result depends on the number of threads.
+/// Sorting in linear time on all cores: first into parts that fit a processor's cache, then each part by itself, so
+/// that memory is read and written sequentially. No result depends on the number of threads.
 namespace penumbra {
 
-/// Numbers of elements, each with a word, in parts of like words; each part ascending by number.
+/// Indices of elements, each with a word, in parts of similar words; each part is in ascending order of index.
 struct Parts {
   struct Item {
     std::uint32_t word, number;
   };
-  std::vector<std::uint32_t> first;  ///< one a part and one past the last's end
+  std::vector<std::uint32_t> first;  ///< begin of each part, and the end of the last
   std::unique_ptr<Item[]> items;
 
   [[nodiscard]] std::size_t size() const { return first.size() - 1; }
   [[nodiscard]] std::span<const Item> operator[](std::size_t part) const {
     return {items.get() + first[part], first[part + 1] - first[part]};
   }
-  /// How many are good for so many elements: a power of two.
+  /// Returns a good number of parts for `elements` elements: a power of two.
   static std::size_t good_count(std::size_t elements) {
-    constexpr std::size_t kElements = 4096, kMost = 4096;  // of a part; streams that are written side by side
+    constexpr std::size_t kElements = 4096, kMost = 4096;  // elements of a part; most streams that are written
+                                                           // concurrently
     return std::min(std::bit_ceil(std::max<std::size_t>(elements / kElements, 1)), kMost);
   }
 };
 
-/// Sorts 0 … count − 1 by word_of(i) >> shift, which is below `parts`. Asks for each word twice.
+/// Sorts 0 … count − 1 by word_of(i) >> shift, which must be below `parts`. Calls word_of twice for each element.
 template <typename WordOf>
 Parts into_parts(std::size_t count, std::size_t parts, unsigned shift, const WordOf& word_of) {
   constexpr std::size_t kChunk = 1U << 14U;
@@ -45,7 +46,8 @@ Parts into_parts(std::size_t count, std::size_t parts, unsigned shift, const Wor
   result.first.assign(parts + 1, 0);
   result.items = std::make_unique_for_overwrite<Parts::Item[]>(count);
   const std::size_t chunks = (count + kChunk - 1) / kChunk;
-  std::vector<std::uint32_t> places(chunks * parts, 0);  // how many each chunk has for each part; then where they go
+  std::vector<std::uint32_t> places(chunks * parts, 0);  // first the count of each chunk in each part, then the write
+                                                         // positions
   const auto for_each_of = [&](std::size_t chunk, const auto& visit) {
     std::uint32_t* const place = places.data() + chunk * parts;
     for (std::size_t i = chunk * kChunk; i < std::min((chunk + 1) * kChunk, count); ++i) {
@@ -68,9 +70,9 @@ Parts into_parts(std::size_t count, std::size_t parts, unsigned shift, const Wor
   return result;
 }
 
-/// Numbers of elements, sorted into buckets; each bucket ascending.
+/// Indices of elements, sorted into buckets; each bucket is in ascending order.
 struct Buckets {
-  std::vector<std::uint32_t> first;  ///< one a bucket and one past the last's end
+  std::vector<std::uint32_t> first;  ///< begin of each bucket, and the end of the last
   UnsetList<std::uint32_t> items;
 
   [[nodiscard]] std::size_t size() const { return first.size() - 1; }
@@ -79,7 +81,7 @@ struct Buckets {
   }
 };
 
-/// Sorts 0 … count − 1 by bucket_of(i) < buckets, which is asked for twice.
+/// Sorts 0 … count − 1 by bucket_of(i) < buckets. Calls bucket_of twice for each element.
 template <typename BucketOf>
 Buckets into_buckets(std::size_t count, std::size_t buckets, const BucketOf& bucket_of) {
   Buckets result;
@@ -101,8 +103,8 @@ Buckets into_buckets(std::size_t count, std::size_t buckets, const BucketOf& buc
   return result;
 }
 
-/// For each of 0 … count − 1 the first that is the same: same(i, j), which hash_of(i) = hash_of(j) must follow from.
-/// Hashes are 64 bits of which the upper half is as good as random.
+/// Returns for each of 0 … count − 1 the first element equal to it by same(i, j). same(i, j) must imply hash_of(i) =
+/// hash_of(j). Hashes have 64 bits, of which the upper half must be well distributed.
 template <typename HashOf, typename Same>
 std::vector<std::uint32_t> first_of_same(std::size_t count, const HashOf& hash_of, const Same& same) {
   constexpr std::uint32_t kNone = 0xffffffffU;
@@ -115,7 +117,7 @@ std::vector<std::uint32_t> first_of_same(std::size_t count, const HashOf& hash_o
   tbb::enumerable_thread_specific<std::vector<std::uint32_t>> tables;
   tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t part) {
     const std::span<const Parts::Item> here = parts[part];
-    std::vector<std::uint32_t>& table = tables.local();  // places in `here`, by the low bits of words
+    std::vector<std::uint32_t>& table = tables.local();  // positions in `here`, indexed by the low bits of words
     table.assign(std::bit_ceil(2 * here.size() + 1), kNone);
     for (std::uint32_t i = 0; i < here.size(); ++i) {
       const auto [word, number] = here[i];

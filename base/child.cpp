@@ -1,3 +1,5 @@
+// Child processes by posix_spawn: start, wait, kill.
+
 #include "base/child.hpp"
 
 #include "base/error.hpp"
@@ -18,13 +20,14 @@ std::string reason() {
   return std::generic_category().message(errno);
 }
 
-/// posix_spawn's two argument objects for a command's files.
+/// The two argument objects (file actions and attributes) that posix_spawn needs for a command's files.
 class SpawnSettings {
  public:
   explicit SpawnSettings(const std::vector<int>& files) {
     const auto count = static_cast<int>(files.size());
     std::vector<int> from = files;
-    for (int& file : from) {  // above all numbers that the child's files will have, so that none overwrites another
+    for (int& file : from) {  // moved above all numbers that the child's files will get, so that no file overwrites
+                              // another
       if (file >= count) continue;
       copies_.emplace_back(::fcntl(file, F_DUPFD_CLOEXEC, count));
       if (!copies_.back().is_open()) throw ResourceError("cannot duplicate a file descriptor: {}", reason());
@@ -75,7 +78,7 @@ Pipe make_pipe() {
   if (::pipe2(fds.data(), O_CLOEXEC) != 0) throw ResourceError("cannot make a pipe: {}", reason());
   Pipe pipe{Descriptor(fds[0]), Descriptor(fds[1])};
   // If this program was started without standard streams, the ends may have got the numbers 0 to 2, which the child's
-  // own redirections are about to overwrite one after the other: move them out of the way.
+  // redirections will overwrite one after the other: the ends are moved to higher numbers.
   for (Descriptor* end : {&pipe.read, &pipe.write}) {
     if (end->get() > 2) continue;
     const int moved = ::fcntl(end->get(), F_DUPFD_CLOEXEC, 3);
@@ -91,7 +94,7 @@ Child::~Child() {
 }
 
 void Child::kill(int signal) const {
-  if (!ended_) ::kill(pid_, signal);  // not reaped yet, so the number is still its own
+  if (!ended_) ::kill(pid_, signal);  // not reaped yet, so the process number still belongs to the child
 }
 
 bool Child::has_ended() {
@@ -108,7 +111,8 @@ void Child::reap(int options) {
   while (!ended_) {
     const pid_t result = ::waitpid(pid_, &status_, options);
     if (result == 0) return;
-    // ECHILD: somebody ignores SIGCHLD, so the kernel reaped it; what it leaves behind says whether it did its work.
+    // ECHILD: SIGCHLD is ignored in this process, so the kernel reaped the child; the child's output shows whether the
+    // child succeeded.
     ended_ = result == pid_ || errno != EINTR;
   }
 }

@@ -10,34 +10,34 @@
 
 namespace penumbra {
 
-/// The two ends of a pipe; children get neither, unless they are given it under another number.
+/// The two ends of a pipe; children inherit neither, unless ChildCommand::files gives them an end under another number.
 struct Pipe {
   Descriptor read, write;
 };
 
-/// Throws ResourceError if there can be none.
+/// Throws ResourceError if no pipe can be made.
 Pipe make_pipe();
 
 /// A program to be started.
 struct ChildCommand {
-  std::vector<std::string> words;  ///< its file, and the arguments
-  /// Open files of this process that are to be the child's 0, 1, 2 and so on. The child has no others: libraries of
-  /// this process may have opened files without O_CLOEXEC (GPU drivers do).
+  std::vector<std::string> words;  ///< program file, then the arguments
+  /// Open files of this process that become the child's 0, 1, 2 and so on. The child gets no others: libraries of this
+  /// process may have opened files without O_CLOEXEC (GPU drivers do).
   std::vector<int> files;
 };
 
-/// A child's number, or why there is none.
+/// The child's process number, or the reason why it could not be started.
 struct ChildStart {
   pid_t pid = -1;
-  int error = 0;  ///< an errno; 0: it runs
+  int error = 0;  ///< errno; 0 if the child runs
 };
 
-/// Starts a program with default signal handling, whatever this process blocks or ignores. By posix_spawn, not by fork:
-/// this process has threads (TBB, Vulkan drivers), whose locks a forked copy would inherit locked. ResourceError if the
-/// files cannot be duplicated.
+/// Starts a program with default signal handling, regardless of the signals that this process blocks or ignores. Uses
+/// posix_spawn instead of fork: this process has threads (TBB, Vulkan drivers), whose locks a forked copy would inherit
+/// locked. Throws ResourceError if the files cannot be duplicated.
 ChildStart start_child(const ChildCommand& command);
 
-/// Owns a child process: it never outlives this object, and never stays behind as a zombie.
+/// Owns a child process, which never outlives this object and never stays behind as a zombie.
 class Child {
  public:
   explicit Child(pid_t pid) : pid_(pid) {}
@@ -45,10 +45,10 @@ class Child {
   Child& operator=(const Child&) = delete;
   ~Child();
 
-  /// Nothing if it has ended.
+  /// Does nothing if the child has ended.
   void kill(int signal = SIGKILL) const;
   bool has_ended();
-  /// The exit status as waitpid gives it.
+  /// Returns the exit status as waitpid reports it.
   int wait();
 
  private:

@@ -6,9 +6,9 @@
 
 namespace penumbra {
 
-/// A text as a field of a CSV file (RFC 4180): in quotes where a comma, a quote or a line's end needs them.
+/// Returns `text` as a field of a CSV file (RFC 4180): quoted where it contains a comma, a quote or an end of line.
 std::string csv_field(std::string_view text);
-/// A number in the shortest digits that read back as the same double; nothing: an empty field.
+/// Returns a number in the shortest digits that read back as the same double, and an empty field for nullopt.
 std::string csv_field(const std::optional<double>& number);
 
 }  // namespace penumbra

@@ -1,3 +1,5 @@
+// Suggestions for misspelled names: edit distance, and abbreviations that are the last words of a name.
+
 #include "base/did_you_mean.hpp"
 
 #include <fmt/core.h>
@@ -14,8 +16,8 @@ char lower(char c) {
   return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
 }
 
-/// Levenshtein's distance with Damerau's step: how many letters must be changed, added, left out, or exchanged with the
-/// next to make one of the other; large and small ones are the same.
+/// Returns the Levenshtein distance with Damerau's transposition, ignoring case: the number of letters to change,
+/// insert, delete or exchange with the next.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> row(b.size() + 1), before(b.size() + 1), next(b.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t{0});
@@ -32,7 +34,7 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return row.back();
 }
 
-/// Of --light-samples and samples or --samples: is what was written its last words?
+/// Returns whether `text` is the last words of `name`: "samples" or "--samples" of "--light-samples".
 bool ends_with_words(std::string_view name, std::string_view text) {
   text.remove_prefix(std::min(text.find_first_not_of('-'), text.size()));
   return text.size() > 3 && name.size() > text.size() && name.ends_with(text) &&

@@ -6,8 +6,8 @@
 
 namespace penumbra {
 
-/// "; did you mean X?" for the name that is nearest to `text` by Levenshtein's distance, if at most a third of its
-/// letters differ, else nothing. Of several as near the first.
+/// Returns "; did you mean X?" for the name that is nearest to `text` by Levenshtein distance, if at most a third of
+/// its letters differ, else an empty text. Among equally near names the first wins.
 std::string did_you_mean(std::string_view text, const std::vector<std::string>& names);
 
 }  // namespace penumbra

@@ -10,8 +10,8 @@
 namespace penumbra {
 namespace detail {
 
-/// A format string that is checked against its arguments when it is compiled, for the errors that the library's headers
-/// declare without knowing fmt.
+/// A format string that is checked against its arguments at compile time, for errors that the library's headers declare
+/// without including fmt.
 template <typename... Args>
 class Format {
  public:

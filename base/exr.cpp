@@ -1,3 +1,5 @@
+// Reading of OpenEXR files through OpenEXR's own library, from a path or from memory.
+
 #include "base/exr.hpp"
 
 #include "base/error.hpp"
@@ -95,7 +97,7 @@ void read_other_parts(Source& source, const Imath::Box2i& window, const std::str
   }
 }
 
-/// From what OpenEXR opens: a name, or a stream.
+/// Reads from what OpenEXR opens: a file name or a stream, passed as `source`.
 template <typename Source>
 ExrFile read_from(const std::string& shown, const ExrSelection& selection, Source&& source) {
   try {
@@ -144,7 +146,7 @@ bool is_whole_exr(const std::filesystem::path& path, const std::string& attribut
     const Imf::Header& header = input.header();
     if (header.findTypedAttribute<Imf::StringAttribute>(attribute) == nullptr) return false;
     if (!input.isComplete() || header.channels().begin() == header.channels().end()) return false;
-    // Lines stand in their order: where the last is, all are.
+    // Lines are written in order: if the last line exists, all exist.
     const Imath::Box2i window = header.dataWindow();
     std::vector<float> line(static_cast<std::size_t>(window.max.x - window.min.x) + 1);
     Imf::FrameBuffer pixels;

@@ -1,6 +1,7 @@
-// DWAA, by OpenEXR's own library. It takes channels for colours by what stands after the last dot of their names (R, G,
-// B, Y, BY, RY: in blocks of 8 x 8 by cosines, as 16-bit floats) and keeps all else exact: "P.Y" would be a luminance,
-// and numbers of Cryptomatte colours. Such layers stand in a second part of the file, with ZIP.
+// Writing of DWAA files by OpenEXR's own library. The library takes channels for colours by the part after the last dot
+// of their names (R, G, B, Y, BY, RY: blocks of 8 x 8 in a cosine transform, as 16-bit floats) and keeps all others
+// exact: "P.Y" would be treated as a luminance, and the numbers of Cryptomatte as colours. Layers with such exact
+// channels are stored in a second part of the file, with ZIP.
 #include "base/assert.hpp"
 #include "base/error.hpp"
 #include "base/exr_planes.hpp"
@@ -36,14 +37,14 @@ class Output : public Imf::OStream {
     try {
       file_.write_at(begin_ + place_, {reinterpret_cast<const std::byte*>(bytes), size});
     } catch (...) {
-      thrown_ = std::current_exception();  // the library would make another of it
+      thrown_ = std::current_exception();  // kept as it is: the library would throw another exception in its place
       throw;
     }
     place_ += size;
   }
   std::uint64_t tellp() override { return place_; }
   void seekp(std::uint64_t place) override { place_ = place; }
-  /// The exception that a write threw; null if none did.
+  /// Returns the exception that a write threw; null if none did.
   [[nodiscard]] const std::exception_ptr& thrown() const { return thrown_; }
 
  private:
@@ -52,7 +53,7 @@ class Output : public Imf::OStream {
   std::exception_ptr thrown_;
 };
 
-/// Before the last dot.
+/// Returns the part before the last dot.
 std::string layer_of(const std::string& channel) {
   return channel.substr(0, std::min(channel.rfind('.'), channel.size()));
 }
@@ -68,10 +69,10 @@ Imf::PixelType code_of(Type type) {
   return type == Type::uint32 ? Imf::UINT : type == Type::float16 ? Imf::HALF : Imf::FLOAT;
 }
 
-/// Planes by name, in the order of their names' bytes, as files have them.
+/// Planes by name, in byte order of their names, as files store them.
 using Planes = std::map<std::string, Plane>;
 
-/// A part that is being written: lines go to it in bands.
+/// A part of the file that is being written in bands of lines.
 class Part {
  public:
   Part(Planes planes, std::size_t width) : planes_(std::move(planes)), width_(width) {}
@@ -92,10 +93,10 @@ class Part {
     return header;
   }
 
-  /// To an OutputFile or an OutputPart.
+  /// Writes this part to an OutputFile or an OutputPart.
   template <typename File>
   void write(File& file, std::size_t height, std::atomic<std::uint64_t>& too_large) const {
-    constexpr std::size_t kBand = 32;  // DWAA packs as many lines together
+    constexpr std::size_t kBand = 32;  // lines that DWAA packs together
     std::vector<std::vector<std::uint8_t>> lines(planes_.size());
     std::vector<float> scratch;
     for (std::size_t first = 0; first < height; first += kBand) {
@@ -128,7 +129,7 @@ std::uint64_t write_dwaa(AtomicFile& file, const ExrImage& image) {
   const std::filesystem::path& path = file.path();
   for (const auto& [name, value] : image.attributes) check_name(path, "attribute's name", name);
   const std::size_t pixel_count = std::size_t{image.width} * image.height;
-  std::set<std::string> apart;  // layers
+  std::set<std::string> apart;  // layers of the second part
   for (const ExrChannel& channel : image.channels) {
     check_name(path, "channel's name", channel.name);
     if (channel.exact && is_lossy(channel.name)) apart.insert(layer_of(channel.name));

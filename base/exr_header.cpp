@@ -13,9 +13,9 @@ namespace {
 
 constexpr std::int32_t kMagic = 20000630;
 constexpr std::int32_t kVersion = 2;
-constexpr std::int32_t kLongNames = 0x400;  // of up to 255 bytes, not 31
+constexpr std::int32_t kLongNames = 0x400;  // names of up to 255 bytes, not 31
 constexpr std::uint8_t kNone = 0, kZips = 2, kZip = 3;
-constexpr std::uint8_t kIncreasing = 0;  // order of lines
+constexpr std::uint8_t kIncreasing = 0;  // line order: increasing y
 constexpr std::int32_t kUint = 0, kHalf = 1, kFloat = 2;
 
 class Header {
@@ -39,8 +39,8 @@ class Header {
     for (const auto& [name, type] : types) {
       channels.put_text(name);
       channels.put(type == exr::Type::uint32 ? kUint : type == exr::Type::float16 ? kHalf : kFloat);
-      channels.put(std::int32_t{0});  // perceptually logarithmic, and three bytes that are kept free
-      channels.put(std::array{std::int32_t{1}, std::int32_t{1}});  // a value a pixel, either way
+      channels.put(std::int32_t{0});                               // pLinear, and three reserved bytes
+      channels.put(std::array{std::int32_t{1}, std::int32_t{1}});  // sampling: a value for every pixel in x and y
     }
     channels.put('\0');
     begin("channels", "chlist", channels.all().size());

@@ -39,9 +39,9 @@ class ExrBytes {
   std::vector<std::byte> bytes_;
 };
 
-/// The beginning of an OpenEXR file of one part and scan lines, with any compression but DWAA, up to the table of its
-/// blocks. `types`: of each channel, by name. In time linear in the channels, of which a scene of many lights has many:
-/// OpenEXR's library (3.1) looks at all that there are for each that it adds.
+/// Returns the beginning of an OpenEXR file of one part with scan lines, with any compression but DWAA, up to the table
+/// of its blocks. `types` gives the type of each channel by name. Takes time linear in the number of channels, which is
+/// large for scenes with many lights: OpenEXR's library (3.1) searches all channels for each that is added.
 std::vector<std::byte> exr_header(const ExrImage& image, const std::map<std::string, exr::Type>& types);
 
 }  // namespace penumbra

@@ -1,3 +1,5 @@
+// Converts the channels of an OpenEXR file to the bytes of its scan lines.
+
 #include "base/exr_planes.hpp"
 
 #include "base/assert.hpp"
@@ -16,7 +18,7 @@ namespace penumbra::exr {
 namespace {
 
 constexpr float kLargestHalf = 65504;
-/// From here on a value rounds to infinity.
+/// Smallest float that rounds to infinity in 16 bits.
 constexpr float kPastHalf = 65520;
 
 }  // namespace

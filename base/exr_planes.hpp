@@ -9,24 +9,24 @@
 #include <string>
 #include <vector>
 
-/// What the writers of OpenEXR files share. Inside base/ only.
+/// Shared by the writers of OpenEXR files. Inside base/ only.
 namespace penumbra::exr {
 
 enum class Type : std::uint8_t { uint32, float32, float16 };
 
-/// The values of one channel, whatever they mean: in memory, or made when they are needed.
+/// The values of one channel, either in memory or computed on demand.
 class Plane {
  public:
-  /// `channel` must outlive it.
+  /// `channel` must outlive this object.
   Plane(const ExrChannel& channel, std::size_t pixel_count);
 
   [[nodiscard]] Type type() const { return type_; }
-  /// Of one value in the file.
+  /// Returns the size of one value in the file.
   [[nodiscard]] std::size_t bytes() const { return type_ == Type::float16 ? 2 : 4; }
-  /// Values of lossy colours become 16 bits on the way; here they keep their type, but not what those cannot hold.
+  /// Clamps values to the range of 16 bits: the lossy compression stores 16 bits, although the channel keeps its type.
   void bound() { bounded_ = true; }
-  /// Writes the values of `width` pixels from number `pixel` on as the file has them. `scratch` is the calling
-  /// thread's. Counts those that were too large.
+  /// Writes the values of `width` pixels from number `pixel` on in the file's format. `scratch` belongs to the calling
+  /// thread. Adds the number of values that were too large to `too_large`.
   void gather(std::size_t pixel, std::size_t width, std::uint8_t* to, std::vector<float>& scratch,
               std::atomic<std::uint64_t>& too_large) const;
 
@@ -43,7 +43,7 @@ class Plane {
 /// Throws InputError for a name that OpenEXR cannot hold.
 void check_name(const std::filesystem::path& path, const char* what, const std::string& name);
 
-/// Writes the image with DWAA, by OpenEXR's own library.
+/// Writes the image with DWAA, through OpenEXR's own library.
 std::uint64_t write_dwaa(AtomicFile& file, const ExrImage& image);
 
 }  // namespace penumbra::exr

@@ -1,5 +1,5 @@
-// Lines are packed as OpenEXR's ZIP has them, by libdeflate, which takes half of zlib's time for as many bytes, on all
-// cores. (DWAA: exr_dwaa.cpp.)
+// Writing of OpenEXR files, scan lines packed as OpenEXR's ZIP on all cores by libdeflate, which takes half of zlib's
+// time for as many bytes. (DWAA: exr_dwaa.cpp.)
 #include "base/assert.hpp"
 #include "base/error.hpp"
 #include "base/exr.hpp"
@@ -24,31 +24,31 @@ namespace {
 
 using exr::Plane;
 
-constexpr int kLevel = 3;  // larger ones take longer for less than 0.5 % of the bytes
+constexpr int kLevel = 3;  // higher levels take longer for less than 0.5 % of the bytes
 
-/// Lines that stand together in the file.
+/// Returns the number of lines of a block of the file.
 std::size_t lines_of(ExrCompression compression) {
   return compression == ExrCompression::zip ? 16 : 1;
 }
 
-/// Packs lines as OpenEXR's ZIP does: bytes of even places before those of odd ones, each as its difference from the
-/// one before, deflated. One for each thread.
+/// Packs lines as OpenEXR's ZIP does: bytes of even places before those of odd places, each as the difference from its
+/// predecessor, then deflated. One packer for each thread.
 class Packer {
  public:
-  /// Counts values that were too large for 16 bits.
+  /// Adds the number of values that were too large for 16 bits to `too_large`.
   explicit Packer(std::atomic<std::uint64_t>& too_large)
       : too_large_(too_large), deflate_(libdeflate_alloc_compressor(kLevel), libdeflate_free_compressor) {
     if (!deflate_) throw std::bad_alloc();
   }
 
-  /// `count` lines of `width` pixels from number `first` on, each with all its planes one after the other.
+  /// Packs `count` lines of `width` pixels from line number `first` on, each line with its planes one after the other.
   std::vector<std::uint8_t> packed(std::span<const Plane> planes, std::size_t width, std::size_t first,
                                    std::size_t count) {
     const std::size_t bytes = count * width * bytes_of_pixel(planes);
     if (bytes == 0) return {};
     split_.resize(bytes);
     line_.resize(4 * width + 2);
-    line_[0] = line_[1] = 0;  // the two bytes before a line
+    line_[0] = line_[1] = 0;  // the two bytes in front of a line
     std::uint8_t *even = split_.data(), *odd = split_.data() + bytes / 2;
     for (std::size_t y = first; y < first + count; ++y) {
       for (const Plane& plane : planes) {
@@ -63,7 +63,8 @@ class Packer {
         std::memcpy(line_.data(), line_.data() + line_bytes, 2);
       }
     }
-    // The first byte is itself; the first of an odd place comes after the last of an even one, not after none.
+    // The first byte is stored as it is; the first byte of an odd place follows the last of an even one, and so is a
+    // difference.
     split_[0] = static_cast<std::uint8_t>(split_[0] - 128);
     split_[bytes / 2] = difference(static_cast<std::uint8_t>(split_[bytes / 2] - 128), line_[0]);
 
@@ -71,12 +72,13 @@ class Packer {
     const std::size_t size =
         libdeflate_zlib_compress(deflate_.get(), split_.data(), bytes, deflated_.data(), bytes - 1);
     if (size != 0) return {deflated_.begin(), deflated_.begin() + static_cast<std::ptrdiff_t>(size)};
-    // No smaller: as it is, which readers know by its size. What was too large has been counted.
+    // If packing does not make the block smaller, the block is stored unpacked, which readers recognise by its size.
+    // Values too large were already counted.
     std::atomic<std::uint64_t> again = 0;
     return plain(planes, width, first, count, again);
   }
 
-  /// The same, not packed.
+  /// Returns the lines of packed(), unpacked.
   std::vector<std::uint8_t> plain(std::span<const Plane> planes, std::size_t width, std::size_t first,
                                   std::size_t count) {
     return plain(planes, width, first, count, too_large_);
@@ -115,7 +117,8 @@ struct Block {
   std::vector<std::uint8_t> bytes;
 };
 
-/// Packs blocks of lines on all cores, and writes each when all before it are written. Returns where each begins.
+/// Packs blocks of lines on all cores, and writes each block after all blocks before it. Returns the offset of each
+/// block.
 std::vector<std::uint64_t> write_lines(AtomicFile& file, std::span<const Plane> planes, const ExrImage& image,
                                        std::atomic<std::uint64_t>& too_large) {
   tbb::enumerable_thread_specific<Packer> packers([&] { return Packer(too_large); });
@@ -161,7 +164,7 @@ void add_vector_channels(ExrImage& image, const std::string& layer, std::span<co
 }
 
 std::uint64_t write_exr(const std::filesystem::path& path, const ExrImage& image) {
-  AtomicFile file(path);  // first, so that a place that cannot be written is told before any work
+  AtomicFile file(path);  // opened first, so that a place that cannot be written is reported before any work
   const std::uint64_t too_large = write_exr(file, image);
   file.commit();
   return too_large;
@@ -177,7 +180,7 @@ std::uint64_t write_exr(AtomicFile& file, const ExrImage& image) {
   for (const auto& attribute : image.vectors) exr::check_name(path, "attribute's name", attribute.first);
   for (const auto& attribute : image.matrices) exr::check_name(path, "attribute's name", attribute.first);
   if (image.compression == ExrCompression::dwaa) return exr::write_dwaa(file, image);
-  // In the file, channels stand in the order of their names' bytes.
+  // The file stores channels in byte order of their names.
   std::map<std::string, Plane> planes;
   std::map<std::string, exr::Type> types;
   const std::size_t pixel_count = std::size_t{image.width} * image.height;
@@ -190,7 +193,7 @@ std::uint64_t write_exr(AtomicFile& file, const ExrImage& image) {
   const std::uint64_t begin = file.size();
   const std::vector<std::byte> header = exr_header(image, types);
   file.write(header);
-  // A table of where each block of lines begins comes before the first of them, and is filled in afterwards.
+  // The table of block offsets precedes the first block, and is filled in afterwards.
   const std::size_t lines = lines_of(image.compression);
   const std::size_t blocks = (image.height + lines - 1) / lines;
   file.write(std::vector<std::byte>(8 * blocks));

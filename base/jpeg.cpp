@@ -1,11 +1,11 @@
-// libjpeg reports errors by longjmp, which may not jump over destructors: in `decode_jpeg` and `write_jpeg` nothing has
-// one.
+// JPEG through libjpeg, which reports errors by longjmp. longjmp must not skip destructors: no local of `decode_jpeg`
+// and `write_jpeg` has one.
 #include "base/jpeg.hpp"
 
 #include "base/error.hpp"
 
 #include <array>
-#include <cstdio>  // jpeglib.h takes it for granted
+#include <cstdio>  // required by jpeglib.h, which does not include it
 
 #include <jpeglib.h>
 
@@ -22,7 +22,7 @@ namespace {
 
 constexpr std::size_t kJpegChannels = 3;
 
-/// All that outlives a longjmp.
+/// State of a decoder that outlives a longjmp.
 struct JpegDecoder {
   JpegDecoder() = default;
   JpegDecoder(const JpegDecoder&) = delete;
@@ -45,13 +45,13 @@ void jpeg_failed(j_common_ptr jpeg) {
   std::longjmp(decoder.escape, 1);
 }
 
-/// Warnings are of damaged data, behind which libjpeg would invent the rest; except for bytes that nobody needs between
-/// two parts of the file, which some cameras leave.
+/// Treats libjpeg's warnings as errors: they mean damaged data, which libjpeg would replace by invented pixels. The
+/// exception is unused bytes between two parts of the file, which some cameras write.
 void jpeg_warned(j_common_ptr jpeg, int level) {
   if (level < 0 && jpeg->err->msg_code != JWRN_EXTRANEOUS_DATA) jpeg_failed(jpeg);
 }
 
-/// False: `message` says why not, unless the size is the reason.
+/// Returns false on failure: `message` then has the reason, unless the size is the reason.
 bool decode_jpeg(JpegDecoder& decoder, std::span<const std::byte> bytes) {
   if (setjmp(decoder.escape) != 0) return false;
   jpeg_create_decompress(&decoder.jpeg);
@@ -77,7 +77,7 @@ bool decode_jpeg(JpegDecoder& decoder, std::span<const std::byte> bytes) {
   return true;
 }
 
-/// All that outlives a longjmp.
+/// State of an encoder that outlives a longjmp.
 struct JpegEncoder {
   JpegEncoder() = default;
   JpegEncoder(const JpegEncoder&) = delete;
@@ -91,7 +91,7 @@ struct JpegEncoder {
   jpeg_compress_struct jpeg{};
   std::jmp_buf escape{};
   std::array<char, JMSG_LENGTH_MAX> message{};
-  unsigned char* bytes = nullptr;  // libjpeg's, by malloc
+  unsigned char* bytes = nullptr;  // allocated by libjpeg with malloc
   unsigned long size = 0;
 };
 
@@ -101,7 +101,7 @@ void jpeg_not_written(j_common_ptr jpeg) {
   std::longjmp(encoder.escape, 1);
 }
 
-/// False: `message` says why not.
+/// Returns false on failure: `message` then has the reason.
 bool write_jpeg(JpegEncoder& encoder, const Image8& image, int quality) {
   if (setjmp(encoder.escape) != 0) return false;
   jpeg_create_compress(&encoder.jpeg);
@@ -113,11 +113,11 @@ bool write_jpeg(JpegEncoder& encoder, const Image8& image, int quality) {
   encoder.jpeg.in_color_space = JCS_RGB;
   jpeg_set_defaults(&encoder.jpeg);
   jpeg_set_quality(&encoder.jpeg, quality, TRUE);
-  encoder.jpeg.comp_info[0].h_samp_factor = 1;  // colours at every pixel, not at every fourth
+  encoder.jpeg.comp_info[0].h_samp_factor = 1;  // colour at full resolution, not subsampled by 2 x 2
   encoder.jpeg.comp_info[0].v_samp_factor = 1;
   jpeg_start_compress(&encoder.jpeg, TRUE);
   while (encoder.jpeg.next_scanline < encoder.jpeg.image_height) {
-    // libjpeg's interface is older than const.
+    // libjpeg's interface predates const.
     auto* row = const_cast<JSAMPROW>(image.pixels[std::size_t{encoder.jpeg.next_scanline} * image.width].data());
     jpeg_write_scanlines(&encoder.jpeg, &row, 1);
   }

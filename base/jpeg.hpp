@@ -9,16 +9,16 @@
 
 namespace penumbra {
 
-/// Do the bytes begin as a JPEG file's?
+/// Returns whether the bytes begin as a JPEG file does.
 bool looks_like_jpeg(std::span<const std::byte> bytes);
 
-/// A JPEG picture in 8 bits, alpha 255, as libjpeg decodes it by its defaults. InputError for what is no JPEG file, is
-/// damaged, has colours that are neither grey nor RGB (CMYK), or has a side of more than `largest_side` pixels, which
-/// is found out before anything is decoded.
+/// Decodes a JPEG picture to 8 bits, alpha 255, with libjpeg's defaults. Throws InputError for bytes that are not a
+/// JPEG file, are damaged, have colours that are neither grey nor RGB (CMYK), or have a side of more than
+/// `largest_side` pixels, which is checked before anything is decoded.
 RgbaImage decode_rgba_jpeg(std::span<const std::byte> bytes, std::uint32_t largest_side);
 
-/// The picture as a JPEG file in memory, without loss of colour's resolution, for eyes; `quality` from 1 to 100. A
-/// picture that JPEG cannot hold (no pixels, or a side over 65,500) is a ResourceError.
+/// Returns the picture as a JPEG file in memory, with colours at full resolution, for display; `quality` from 1 to 100.
+/// Throws ResourceError for a picture that JPEG cannot hold (no pixels, or a side over 65,500).
 std::vector<std::byte> encode_jpeg(const Image8& image, int quality);
 
 }  // namespace penumbra

@@ -1,3 +1,5 @@
+// Cache of large freed arrays for `operator new` (pages.cpp).
+
 #include "base/kept_arrays.hpp"
 
 #include <algorithm>
@@ -6,7 +8,7 @@
 
 namespace {
 
-constinit penumbra::KeptArrays arrays;  // before any other object
+constinit penumbra::KeptArrays arrays;  // constructed before any other object
 
 }  // namespace
 
@@ -48,7 +50,7 @@ void KeptArrays::settle(std::size_t bytes, std::size_t made) {
 
 bool KeptArrays::keep(void* first, std::size_t bytes) {
   const std::scoped_lock lock(mutex_);
-  used_bytes_ -= std::min(used_bytes_, bytes);  // (a library may bring an operator new of its own)
+  used_bytes_ -= std::min(used_bytes_, bytes);  // clamped: a library may have an operator new of its own
   const auto place = std::ranges::find(kept_, nullptr, &Array::first);
   if (!keeps_ || place == kept_.end()) return false;
   *place = {first, bytes};

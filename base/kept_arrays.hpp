@@ -6,25 +6,27 @@
 
 namespace penumbra {
 
-/// Large arrays that were given back, kept for the next of about their size: the C library would give them to the
-/// system, which then clears each page anew. Large arrays that are in use and those that are kept are together never
-/// more than the most that was in use at once. Any thread may call any of these.
+/// Cache of large freed arrays for reuse by allocations of about the same size: the C library would return such memory
+/// to the system, which then clears each page again. The arrays in use and the cached ones together never exceed the
+/// most that was in use at once. Thread-safe.
 class KeptArrays {
  public:
-  /// Bytes; smaller arrays the C library keeps itself (keep_freed_memory).
+  /// Bytes of the smallest array that is cached; the C library keeps smaller ones itself (keep_freed_memory).
   static constexpr std::size_t kLeast = std::size_t{1} << 25U;
 
-  /// Nothing is kept before this is called.
+  /// Enables the cache; nothing is cached before this call.
   void start_keeping();
-  /// An array of at least so many bytes, at most an eighth more: the smallest that is kept. Null: there is none, and
-  /// the caller makes one and says so (settle); others are freed if they would be too much beside it.
+  /// Returns the smallest cached array of at least `bytes` bytes and at most an eighth more. Returns null if there is
+  /// none: the caller then allocates an array and calls settle(); cached arrays that would exceed the limit together
+  /// with the new one are freed.
   [[nodiscard]] void* take(std::size_t bytes);
-  /// What was asked for and not there is an array of so many bytes now; 0: none that will be given to keep().
+  /// Call after a take() that returned null: reports the size really allocated (0 if the array will never be given
+  /// back).
   void settle(std::size_t bytes, std::size_t made);
-  /// An array is no longer in use. False: it is not kept, and the caller's to free.
+  /// Takes an array that is no longer in use. Returns false if it is not cached: the caller then frees it.
   [[nodiscard]] bool keep(void* first, std::size_t bytes);
   void free_all();
-  /// Of all that are kept.
+  /// Returns the total size of all cached arrays.
   [[nodiscard]] std::size_t bytes() const;
 
  private:
@@ -37,12 +39,12 @@ class KeptArrays {
   void free_more_than(std::size_t room);
 
   mutable std::mutex mutex_;
-  std::array<Array, 64> kept_{};  // in any order
+  std::array<Array, 64> kept_{};  // in no particular order
   bool keeps_ = false;
   std::size_t kept_bytes_ = 0, used_bytes_ = 0, most_used_bytes_ = 0;
 };
 
-/// Those of `operator new` (pages.cpp).
+/// Returns the cache that `operator new` uses (pages.cpp).
 KeptArrays& kept_arrays();
 
 }  // namespace penumbra

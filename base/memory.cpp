@@ -1,3 +1,6 @@
+// Memory available to this process (machine, control groups, resource limits), and settings of the C library's
+// allocator.
+
 #include "base/memory.hpp"
 
 #include "base/error.hpp"
@@ -26,7 +29,7 @@ std::optional<std::uint64_t> parse_number(std::string_view text) {
   return value;
 }
 
-/// The number at the start of a file of one number.
+/// Returns the number at the start of a file that has one number.
 std::optional<std::uint64_t> number_in(const std::filesystem::path& file) {
   std::ifstream stream(file);
   std::string text;
@@ -34,7 +37,7 @@ std::optional<std::uint64_t> number_in(const std::filesystem::path& file) {
   return parse_number(text);
 }
 
-/// The number behind a key in a file of lines "KEY NUMBER" or "KEY: NUMBER kB".
+/// Returns the number behind `key` in a file of lines "KEY NUMBER" or "KEY: NUMBER kB".
 std::optional<std::uint64_t> number_of(const std::filesystem::path& file, std::string_view key) {
   std::ifstream stream(file);
   for (std::string line; std::getline(stream, line);) {
@@ -47,16 +50,17 @@ std::optional<std::uint64_t> number_of(const std::filesystem::path& file, std::s
   return std::nullopt;
 }
 
-/// Names of one version's files.
+/// File names of one version of control groups.
 struct GroupFiles {
   const char* limit;
   const char* usage;
-  const char* prefix;  ///< of keys in memory.stat that count the whole subtree
+  const char* prefix;  ///< prefix of keys in memory.stat that count the whole subtree
 };
 constexpr GroupFiles kVersion1 = {"memory.limit_in_bytes", "memory.usage_in_bytes", "total_"};
 constexpr GroupFiles kVersion2 = {"memory.max", "memory.current", ""};
 
-/// What one group leaves; pages of files count as free, since the kernel gives them back before it refuses.
+/// Returns the memory that one group has left. Cached file pages count as free, since the kernel reclaims them before
+/// it refuses memory.
 std::uint64_t room_of_group(const std::filesystem::path& folder, const GroupFiles& files) {
   const auto limit = number_in(folder / files.limit), usage = number_in(folder / files.usage);
   if (!limit || !usage) return kUnlimited;
@@ -67,8 +71,8 @@ std::uint64_t room_of_group(const std::filesystem::path& folder, const GroupFile
   return *limit - std::min(*limit, used);
 }
 
-/// The least that a group and those above it leave. In a container the path may be the host's, which is not to be seen
-/// there: then only the mount's own root counts.
+/// Returns the least that a group and its ancestors have left. In a container `path` may be the host's, which is not
+/// visible there: then only the mount's own root counts.
 std::uint64_t room_of_groups(const std::filesystem::path& mount, std::string path, const GroupFiles& files) {
   std::uint64_t room = room_of_group(mount, files);
   while (path.size() > 1) {
@@ -95,7 +99,8 @@ std::uint64_t room_of_control_groups(const std::filesystem::path& root) {
   return room;
 }
 
-/// What a resource limit leaves of addresses; `column` is that of /proc/self/statm, in pages.
+/// Returns the address space that a resource limit leaves; `column` is the column of /proc/self/statm, which counts
+/// pages.
 std::uint64_t room_of_limit(const std::filesystem::path& root, __rlimit_resource resource, int column) {
   rlimit limit{};
   if (::getrlimit(resource, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return kUnlimited;
@@ -126,7 +131,8 @@ MemoryRoom memory_room(const std::filesystem::path& root) {
 }
 
 void require_memory(std::uint64_t bytes, std::string_view what, std::string_view remedy) {
-  constexpr std::uint64_t kAlwaysTried = 16u << 20;  // not worth the look-up, and an ordinary bad_alloc if it fails
+  constexpr std::uint64_t kAlwaysTried = 16u << 20;  // below this the check costs more than it saves, and a failure is
+                                                     // an ordinary bad_alloc
   if (bytes <= kAlwaysTried) return;
   MemoryRoom room = memory_room();
   if (bytes <= room.bytes) return;
@@ -138,7 +144,7 @@ void require_memory(std::uint64_t bytes, std::string_view what, std::string_view
 }
 
 std::uint64_t peak_resident_bytes() {
-  // Of this program alone: what getrusage says begins with the size of the process that started it.
+  // VmHWM covers this program alone: getrusage's figure starts at the size of the process that started it.
   std::ifstream status("/proc/self/status");
   for (std::string line; std::getline(status, line);) {
     if (line.starts_with("VmHWM:")) return std::stoull(line.substr(6)) << 10U;  // in KiB
@@ -156,7 +162,7 @@ void give_back_memory() {
 void keep_freed_memory() {
   kept_arrays().start_keeping();
 #ifdef __GLIBC__
-  // glibc takes no larger limit than this; larger arrays are kept_arrays()'.
+  // Largest threshold that glibc accepts; larger arrays go through kept_arrays().
   ::mallopt(M_MMAP_THRESHOLD, 1 << 25);
   ::mallopt(M_TRIM_THRESHOLD, std::numeric_limits<int>::max());
 #endif

@@ -1,3 +1,5 @@
+// Base64, and deflate in parts, for data embedded in HTML.
+
 #include "base/packed.hpp"
 
 #include "base/assert.hpp"
@@ -17,7 +19,7 @@ std::string base64(std::span<const std::byte> bytes) {
   text.reserve((bytes.size() + 2) / 3 * 4);
   for (std::size_t i = 0; i < bytes.size(); i += 3) {
     const std::size_t count = std::min<std::size_t>(3, bytes.size() - i);
-    std::uint32_t group = 0;  // 24 bits; what is missing at the end is zero
+    std::uint32_t group = 0;  // 24 bits; missing bytes at the end are zero
     for (std::size_t k = 0; k < 3; ++k)
       group = group << 8 | (k < count ? std::to_integer<std::uint32_t>(bytes[i + k]) : 0);
     for (std::size_t k = 0; k < 4; ++k) text += k <= count ? kDigits[group >> (18 - 6 * k) & 63] : '=';
@@ -42,7 +44,7 @@ Deflated::~Deflated() {
 }
 
 void Deflated::add(std::span<const std::byte> bytes) {
-  // zlib counts in 32 bits.
+  // zlib's counters have 32 bits.
   constexpr std::size_t kMost = std::numeric_limits<uInt>::max();
   for (; !bytes.empty(); bytes = bytes.subspan(std::min(kMost, bytes.size())))
     run(bytes.first(std::min(kMost, bytes.size())), Z_NO_FLUSH);
@@ -55,7 +57,7 @@ std::vector<std::byte> Deflated::finish() {
 
 void Deflated::run(std::span<const std::byte> bytes, int flush) {
   std::array<Bytef, 1 << 14> part{};
-  // zlib's interface is older than const; it does not write here.
+  // zlib's interface predates const; it does not write here.
   stream_->next_in = const_cast<Bytef*>(reinterpret_cast<const Bytef*>(bytes.data()));
   stream_->avail_in = static_cast<uInt>(bytes.size());
   do {

@@ -7,15 +7,15 @@
 #include <string>
 #include <vector>
 
-struct z_stream_s;  // zlib's
+struct z_stream_s;  // zlib's stream
 
 namespace penumbra {
 
-/// RFC 4648, with padding.
+/// Encodes bytes in base64 (RFC 4648), with padding.
 std::string base64(std::span<const std::byte> bytes);
 
-/// Bytes deflated as they come (RFC 1950, what a browser's DecompressionStream calls "deflate"): of what is added in
-/// parts no more than the result is kept. The same bytes give the same result, however they are parted.
+/// Compresses bytes as they arrive (zlib format, RFC 1950, which a browser's DecompressionStream calls "deflate"): of
+/// added parts only the compressed bytes are kept. Equal bytes give equal results, however they are divided into parts.
 class Deflated {
  public:
   Deflated();
@@ -24,7 +24,7 @@ class Deflated {
   ~Deflated();
 
   void add(std::span<const std::byte> bytes);
-  /// All that was added. Last of all calls.
+  /// Returns the compressed bytes of everything that was added. Must be the last call.
   std::vector<std::byte> finish();
 
  private:

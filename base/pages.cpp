@@ -1,3 +1,5 @@
+// Replaces the global `operator new`: large arrays lie in large pages and are reused (kept_arrays.hpp).
+
 #include "base/pages.hpp"
 
 #include "base/kept_arrays.hpp"
@@ -13,7 +15,7 @@
 
 // Linked into Penumbra's own executables, never into the library: a host program keeps its own allocator.
 
-// Sanitizers have an operator new of their own, which finds more.
+// Sanitizers replace operator new themselves, and detect more.
 #ifndef PENUMBRA_SHADOW_MEMORY
 
 namespace {
@@ -23,7 +25,7 @@ using penumbra::kLargePage;
 
 constexpr std::size_t kUsual = alignof(std::max_align_t);
 
-/// The C library gives a little more than is asked for, up to a large page.
+/// The C library may allocate more than requested, up to a large page.
 constexpr std::size_t kLeastAsked = KeptArrays::kLeast - kLargePage - 4096;
 
 bool is_kept_size(void* first) {
@@ -37,9 +39,9 @@ void* memory_of(std::size_t bytes, std::size_t alignment) {
   }
   const bool may_be_kept = bytes >= kLeastAsked && alignment <= kLargePage;
   if (void* const kept = may_be_kept ? penumbra::kept_arrays().take(bytes) : nullptr) return kept;
-  void* first = nullptr;  // (aligned_alloc takes whole large pages alone, where sanitizers look)
+  void* first = nullptr;  // (sizes are multiples of large pages, since sanitizers require that of aligned_alloc)
   if (::posix_memalign(&first, std::max(alignment, kLargePage), bytes) != 0) first = nullptr;
-  // Only pages that are the array's alone. A system without large pages gives small ones.
+  // Covers only pages that belong to the array alone. A system without large pages provides small ones.
   if (first != nullptr) static_cast<void>(::madvise(first, bytes / kLargePage * kLargePage, MADV_HUGEPAGE));
   if (may_be_kept) penumbra::kept_arrays().settle(bytes, is_kept_size(first) ? malloc_usable_size(first) : 0);
   return first;

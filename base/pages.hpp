@@ -15,16 +15,16 @@
 
 namespace penumbra {
 
-/// Most processors' larger pages: one is given in a fraction of the time that its 512 small ones take.
+/// Size of a large page on most processors: the system provides one in a fraction of the time of its 512 small pages.
 constexpr std::size_t kLargePage = std::size_t{1} << 21U;
 
-/// Arrays of so many bytes begin at a large page and lie in large pages where the system has some: pages.cpp replaces
-/// `operator new` for this, so that it is true of every list, of libraries too. (Not under address and thread
-/// sanitizer.)
+/// Arrays of at least this many bytes begin at a large page and lie in large pages where the system has some: pages.cpp
+/// replaces `operator new` for this purpose, so it holds for every list, of libraries too. (Not under address and
+/// thread sanitizer.)
 constexpr std::size_t kLargeArray = 2 * kLargePage;
 
-/// Allocator of lists that all cores write before anybody reads them: resize() leaves plain values as the memory has
-/// them, whatever initialisers their members have, so that each page is first touched by who writes it.
+/// Allocator for lists that all cores write before any thread reads: resize() leaves plain values uninitialised, even
+/// if their members have initialisers, so that each page is first touched by the thread that writes it.
 template <typename Value>
 struct PageAllocator : std::allocator<Value> {
   PageAllocator() = default;
@@ -40,12 +40,12 @@ struct PageAllocator : std::allocator<Value> {
   }
 };
 
-/// A list whose new values are not set (PageAllocator).
+/// A list whose new values are uninitialised (PageAllocator).
 template <typename Value>
 using UnsetList = std::vector<Value, PageAllocator<Value>>;
 
-/// list.resize(count) of an empty list that is filled on all cores: they also ask for its memory, which the system
-/// gives page by page, and which takes longer than writing it.
+/// Does list.resize(count) for an empty list that all cores will fill: all cores also page in its memory, which takes
+/// longer than writing it.
 template <typename Value>
 void resize_on_all_cores(std::vector<Value>& list, std::size_t count) {
   constexpr std::size_t kPage = 4096, kPiece = 2 * kLargePage;
@@ -53,12 +53,12 @@ void resize_on_all_cores(std::vector<Value>& list, std::size_t count) {
   const std::size_t bytes = count * sizeof(Value),
                     to_page = (kPage - reinterpret_cast<std::uintptr_t>(list.data()) % kPage) % kPage;
   const std::size_t whole =
-      bytes > to_page ? (bytes - to_page) / kPage * kPage : 0;  // of pages that are the list's alone
+      bytes > to_page ? (bytes - to_page) / kPage * kPage : 0;  // bytes in pages that belong to the list alone
   if (whole > kPiece) {
     char* const first = reinterpret_cast<char*>(list.data()) + to_page;
     tbb::parallel_for(std::size_t{0}, (whole + kPiece - 1) / kPiece, [&](std::size_t i) {
       const std::size_t from = i * kPiece;
-      // A system that does not know this gives pages later.
+      // On a system without MADV_POPULATE_WRITE the pages are provided later.
       static_cast<void>(::madvise(first + from, std::min(kPiece, whole - from), MADV_POPULATE_WRITE));
     });
   }

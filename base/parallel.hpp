@@ -9,7 +9,7 @@
 
 namespace penumbra::mesh {
 
-/// body(i) for each i below count, on all cores, in no order.
+/// Calls body(i) for each i below `count`, on all cores, in no order.
 template <typename Body>
 void for_each_index(std::size_t count, const Body& body) {
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 1024), [&](const tbb::blocked_range<std::size_t>& range) {
@@ -17,7 +17,7 @@ void for_each_index(std::size_t count, const Body& body) {
   });
 }
 
-/// Are two lists equal? On all cores: where nothing differs, all of both is read.
+/// Returns whether two lists are equal, comparing on all cores; equal lists are read completely.
 template <typename List>
 bool equal_on_all_cores(const List& a, const List& b) {
   if (a.size() != b.size()) return false;

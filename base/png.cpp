@@ -1,5 +1,5 @@
-// PNG through libpng's simplified interface: it reports errors as values, where the classic one needs setjmp, which
-// may not jump over destructors.
+// PNG through libpng's simplified interface, which reports errors as values. (The classic interface needs setjmp, which
+// must not skip destructors.)
 #include "base/png.hpp"
 
 #include "base/atomic_file.hpp"
@@ -11,7 +11,7 @@
 namespace penumbra {
 namespace {
 
-/// Frees what libpng may still hold, also on the way of an exception.
+/// Frees libpng's memory, also when an exception is thrown.
 struct PngImage {
   PngImage() { image.version = PNG_IMAGE_VERSION; }
   PngImage(const PngImage&) = delete;

@@ -1,6 +1,7 @@
-// PNG as the file has it. libpng's simplified interface (png.cpp) obeys gAMA chunks and takes 16 bits without one as
-// linear light, by a power of 2.2 where sRGB has its own curve; the classic one hands out the bits as they are. It
-// reports errors by longjmp, which may not jump over destructors: in `decode` nothing has one.
+// Decoding of PNG with the file's own values. libpng's simplified interface (png.cpp) obeys gAMA chunks and takes 16
+// bits without one as linear light, using a power of 2.2 instead of sRGB's curve; the classic interface returns the
+// stored bits. The classic interface reports errors by longjmp, which must not skip destructors: no local of `decode`
+// has one.
 #include "base/error.hpp"
 #include "base/png.hpp"
 
@@ -16,16 +17,16 @@
 namespace penumbra {
 namespace {
 
-constexpr std::size_t kChannels = 4;  // red green blue alpha, whatever the file has
+constexpr std::size_t kChannels = 4;  // red green blue alpha, regardless of the file's channels
 
-/// All that outlives a longjmp.
+/// State of a decoder that outlives a longjmp.
 struct Decoder {
   Decoder(std::span<const std::byte> file, std::uint32_t most) : bytes(file), largest_side(most) {}
   Decoder(const Decoder&) = delete;
   Decoder& operator=(const Decoder&) = delete;
   ~Decoder() { png_destroy_read_struct(&png, &info, nullptr); }
 
-  std::span<const std::byte> bytes;  ///< not read yet
+  std::span<const std::byte> bytes;  ///< bytes not read yet
   png_structp png = nullptr;
   png_infop info = nullptr;
   std::array<char, 200> message{};
@@ -49,7 +50,7 @@ void read(png_structp png, png_bytep out, std::size_t count) {
   decoder.bytes = decoder.bytes.subspan(count);
 }
 
-/// Fills `values`. False: `message` says why not, unless the size is the reason.
+/// Fills `values`. Returns false on failure: `message` then has the reason, unless the size is the reason.
 bool decode(Decoder& decoder) {
   if (setjmp(png_jmpbuf(decoder.png)) != 0) return false;
   png_set_read_fn(decoder.png, &decoder, read);
@@ -58,7 +59,7 @@ bool decode(Decoder& decoder) {
   decoder.height = png_get_image_height(decoder.png, decoder.info);
   if (std::max(decoder.width, decoder.height) > decoder.largest_side) return false;
 
-  png_set_expand_16(decoder.png);  // v becomes 257 v: the same share of the largest value
+  png_set_expand_16(decoder.png);  // v becomes 257 v: the same fraction of the largest value
   png_set_gray_to_rgb(decoder.png);
   png_set_add_alpha(decoder.png, 0xffff, PNG_FILLER_AFTER);
   if constexpr (std::endian::native == std::endian::little) png_set_swap(decoder.png);
@@ -76,7 +77,7 @@ bool decode(Decoder& decoder) {
   return true;
 }
 
-/// Throws InputError for what cannot be read, or is larger than the decoder allows.
+/// Throws InputError for bytes that cannot be decoded, or for a picture larger than the decoder allows.
 void decode_or_throw(Decoder& decoder) {
   decoder.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &decoder, fail, ignore);
   if (decoder.png != nullptr) decoder.info = png_create_info_struct(decoder.png);
@@ -95,7 +96,7 @@ RgbaImage decode_rgba_png(std::span<const std::byte> bytes, std::uint32_t larges
   RgbaImage image{decoder.width, decoder.height, {}};
   image.pixels.reserve(std::size_t{image.width} * image.height);
   for (std::size_t i = 0; i < decoder.values.size(); i += kChannels) {
-    // A byte v came as 257 v: it comes back.
+    // A byte v was expanded to 257 v, and is reduced to v again.
     const auto byte = [&](std::size_t channel) {
       return static_cast<std::uint8_t>((decoder.values[i + channel] + 128u) / 257u);
     };

@@ -7,13 +7,13 @@
 
 namespace penumbra::mesh {
 
-/// A stretch [begin, end] of the progress that a caller hears of: rising, one call at a time.
+/// A range [begin, end] of the progress that a caller is told; values rise, and calls do not overlap.
 class Progress {
  public:
   Progress(const std::function<void(double)>& report, double begin, double end)
       : report_(&report), begin_(begin), end_(end) {}
 
-  /// Counts work that many threads do, and reports about two hundred times.
+  /// Counts work that many threads do, and reports progress about two hundred times.
   class Counter {
    public:
     Counter(const Progress& progress, std::size_t count) : progress_(progress), count_(count) {}

@@ -1,5 +1,6 @@
-// G. Ward, "Real pixels", Graphics Gems II (1991), and the Radiance file format: a header of lines, an empty one, a
-// line with the size, and scan lines whose four bytes a pixel may be run-length encoded, in one of two ways.
+// Radiance pictures (G. Ward, "Real pixels", Graphics Gems II, 1991, and the Radiance file format): a header of lines,
+// an empty line, a line with the size, and scan lines whose four bytes a pixel may be run-length encoded in one of two
+// formats.
 #include "base/rgbe.hpp"
 
 #include "base/error.hpp"
@@ -17,7 +18,7 @@ namespace {
 
 using Pixel = std::array<std::uint8_t, 4>;
 
-/// What has not been read yet.
+/// The bytes that were not read yet.
 class Bytes {
  public:
   explicit Bytes(std::span<const std::byte> bytes) : left_(bytes) {}
@@ -29,7 +30,7 @@ class Bytes {
     return value;
   }
   [[nodiscard]] std::span<const std::byte> rest() const { return left_; }
-  /// Up to the next end of line, which is skipped.
+  /// Returns the text up to the next end of line, and skips that.
   std::string_view line() {
     const std::string_view text(reinterpret_cast<const char*>(left_.data()), left_.size());
     const std::size_t end = text.substr(0, kLongestLine).find('\n');
@@ -70,7 +71,7 @@ Size size_of(std::string_view line, std::uint32_t largest_side) {
   return size;
 }
 
-/// All reds of a scan line, then all greens, blues and exponents, each in runs.
+/// Reads a scan line by channels: all reds, then all greens, blues and exponents, each in runs.
 void read_planes(Bytes& from, std::span<Pixel> line) {
   for (std::size_t channel = 0; channel < 4; ++channel) {
     for (std::size_t x = 0; x < line.size();) {
@@ -87,7 +88,8 @@ void read_planes(Bytes& from, std::span<Pixel> line) {
   }
 }
 
-/// Whole pixels; one of mantissas 1, 1, 1 repeats the last so often as its exponent says, the next such 256 times.
+/// Reads a scan line pixel by pixel. A pixel of mantissas 1, 1, 1 repeats the previous pixel as many times as its
+/// exponent says; if a second one follows, its exponent counts 256 times as much.
 void read_pixels(Bytes& from, Pixel first, std::span<Pixel> line) {
   std::uint32_t shift = 0;
   Pixel last{};
@@ -136,8 +138,8 @@ LinearImage decode_rgbe(std::span<const std::byte> bytes, std::uint32_t largest_
   }
   const Size size = size_of(from.line(), largest_side);
   LinearImage image{size.width, size.height, {}};
-  // A line of 32,767 pixels takes no fewer than 1,040 bytes, a short one four: what could not be there is not asked
-  // for.
+  // A line of 32,767 pixels takes no fewer than 1,040 bytes, a short one four: memory is not allocated for lines that
+  // cannot be in the file.
   if (from.rest().size() < size.height * std::max<std::uint64_t>(4, size.width / 32))
     throw InputError("the Radiance picture ends in the middle of its scan lines");
   image.pixels.resize(std::size_t{size.width} * size.height);

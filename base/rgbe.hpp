@@ -8,12 +8,12 @@
 
 namespace penumbra {
 
-/// Do the bytes begin as a Radiance picture does?
+/// Returns whether the bytes begin as a Radiance picture does.
 bool is_rgbe(std::span<const std::byte> bytes);
 
 /// Reads a Radiance picture (.hdr, 32-bit_rle_rgbe): a mantissa m and the shared exponent e are m 2^(e − 136), divided
-/// by the header's exposures. Returns it from the top left, whichever way its scan lines run. Throws InputError,
-/// without the file's name, for anything else and for pictures larger than `largest_side`.
+/// by the header's exposures. The result starts at the top left, regardless of the direction of the file's scan lines.
+/// Throws InputError, without the file's name, for anything else and for pictures larger than `largest_side`.
 LinearImage decode_rgbe(std::span<const std::byte> bytes, std::uint32_t largest_side);
 
 }  // namespace penumbra

@@ -6,7 +6,7 @@
 
 namespace penumbra {
 
-/// The sum of the components' sizes: bounds the length.
+/// Returns the sum of the components' magnitudes, an upper bound of the length.
 template <typename T>
 T size1(const glm::vec<3, T>& x) {
   return std::abs(x.x) + std::abs(x.y) + std::abs(x.z);
