@@ -1,3 +1,5 @@
+// Luminance of a light's texture over trapezoids between two of its rows, as a fraction of the whole, from prefix sums.
+
 #include "areas/textured_part.hpp"
 
 #include "areas/texture_measure.hpp"
@@ -11,7 +13,8 @@
 namespace penumbra::areas {
 namespace {
 
-/// Rows become columns, from the lowest, and a row's texels from left to right a column's from below.
+/// Returns the texture with rows and columns exchanged: rows from the lowest become columns, and a row's texels from
+/// left to right become a column's texels from below.
 visibility::LightTexture turned(const visibility::LightTexture& texture) {
   visibility::LightTexture result;
   result.width = texture.height;

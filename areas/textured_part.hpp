@@ -6,13 +6,13 @@
 
 namespace penumbra::areas {
 
-/// A part of a light between two of its rows, in its coordinates: s of its two sides at both.
+/// A part of a light between two of its rows, in the light's coordinates: s of its two sides at both rows.
 struct LevelTrapezoid {
   double low, high;  ///< t
   double low_left, low_right, high_left, high_right;
 };
 
-/// A texture's luminance integrated over parts of the light: as TextureMeasure does it, with rows for columns.
+/// Integral of a texture's luminance over parts of the light: TextureMeasure with rows and columns exchanged.
 class TexturedPart {
  public:
   explicit TexturedPart(const visibility::LightTexture& texture);
@@ -20,9 +20,10 @@ class TexturedPart {
   TexturedPart(TexturedPart&&) noexcept;
   TexturedPart& operator=(TexturedPart&&) noexcept;
 
-  /// The share of all. Off by its sums' rounding: 16 (width + height) · 2⁻⁵³ of the brightest texel over the mean.
+  /// Returns the part's fraction of the whole integral. The error is the rounding of the sums: 16 (width + height) ·
+  /// 2⁻⁵³ of the brightest texel over the mean.
   [[nodiscard]] double share_of(const LevelTrapezoid& part) const;
-  /// The brightest texel over the mean.
+  /// Returns the brightest texel's luminance over the mean.
   [[nodiscard]] double contrast() const { return contrast_; }
   [[nodiscard]] double rounding() const { return rounding_; }
 
