@@ -1,3 +1,5 @@
+// Builds a balanced tree of boxes by splitting at medians, in parallel.
+
 #include "mesh/box_tree.hpp"
 
 #include "base/parallel.hpp"
@@ -28,7 +30,7 @@ struct BoxTree::Builder {
     });
   }
 
-  /// Node `node`, the first of whose items is at n j / width for j = node − width.
+  /// Builds node `node`; with j = node − width, its first item is number n j / width.
   void build(std::uint32_t node, std::uint32_t width) {
     const std::size_t count = boxes.size(), j = node - width;
     const std::size_t begin = count * j / width, end = count * (j + 1) / width;

@@ -10,7 +10,7 @@
 
 namespace penumbra::mesh {
 
-/// Axis-aligned, closed. Empty (lower > upper) by default.
+/// An axis-aligned, closed box. Empty (lower > upper) by default.
 struct Box {
   glm::dvec3 lower{1.7976931348623157e308}, upper{-1.7976931348623157e308};
 
@@ -22,26 +22,27 @@ struct Box {
   }
 };
 
-/// A binary tree over boxes, split at medians: balanced whatever the distribution, and a function of the boxes alone.
+/// A binary tree over boxes, split at medians: balanced for every distribution, and a function of the boxes alone.
 /// Level d has 2^d nodes; node j of it holds the items at [n j / 2^d, n (j + 1) / 2^d) of `order`.
 class BoxTree {
  public:
   explicit BoxTree(std::span<const Box> boxes);
 
-  /// The items' numbers, near ones together.
+  /// Returns the items' indices, close items together.
   [[nodiscard]] std::span<const std::uint32_t> order() const& { return order_; }
   std::span<const std::uint32_t> order() const&& = delete;
 
-  /// visit(item) for every item whose box `reaches(box)`; reaches must be true of a box that holds one it is true of.
+  /// Calls visit(item) for every item whose box satisfies `reaches(box)`; reaches must be true for every box that
+  /// contains one for which it is true.
   template <typename Reaches, typename Visit>
   void find(const Reaches& reaches, const Visit& visit) const {
     find([](std::uint32_t) { return true; }, reaches, visit);
   }
-  /// The same without what is below nodes that `enters(node)` is false of.
+  /// Calls visit as above, but skips everything below nodes for which `enters(node)` is false.
   template <typename Enters, typename Reaches, typename Visit>
   void find(const Enters& enters, const Reaches& reaches, const Visit& visit) const {
     if (order_.empty()) return;
-    std::array<std::uint32_t, 64> stack;  // numbers as in a heap, from 1; never more than one a level waits
+    std::array<std::uint32_t, 64> stack;  // heap indices, from 1; at most one node a level is waiting
     std::size_t waiting = 0;
     stack[waiting++] = 1;
     while (waiting > 0) {
@@ -58,7 +59,8 @@ class BoxTree {
     }
   }
 
-  /// For each node, what join(value, value) makes of value_of(item) of all items below it; by the nodes' numbers.
+  /// Returns for each node, by heap index, the values value_of(item) of all items below the node, combined by
+  /// join(value, value).
   template <typename ValueOf, typename Join>
   [[nodiscard]] auto fold(const ValueOf& value_of, const Join& join) const {
     std::vector<decltype(value_of(std::uint32_t{}))> values(nodes_.size());
@@ -81,7 +83,7 @@ class BoxTree {
 
   std::uint32_t leaves_ = 1;  ///< a power of two
   std::vector<std::uint32_t> order_;
-  std::vector<Box> nodes_, boxes_;  ///< as in a heap; the items', in order
+  std::vector<Box> nodes_, boxes_;  ///< nodes_ in heap order; boxes_ of the items, in the order of `order_`
 };
 
 }  // namespace penumbra::mesh

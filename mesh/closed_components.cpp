@@ -9,7 +9,7 @@
 namespace penumbra::mesh {
 namespace {
 
-/// Walks from `first` through edges, winding each triangle as its neighbour.
+/// Walks from `first` across edges, giving each triangle the winding that agrees with its neighbour.
 Component wind_component(const EdgeGraph& graph, std::uint32_t first, std::vector<std::int8_t>& turn) {
   Component component{{first}};
   turn[first] = 1;

@@ -9,23 +9,25 @@ namespace penumbra::mesh {
 
 /// Triangles that are connected through edges.
 struct Component {
-  std::vector<std::uint32_t> triangles;  ///< the first has the smallest number
-  bool closed = true;  ///< exactly two triangles at every edge, all of them with an area and windable alike
+  std::vector<std::uint32_t> triangles;  ///< the first has the smallest index
+  bool closed = true;  ///< exactly two triangles at every edge, all with non-zero area, and consistently orientable
 };
 
-/// All components of a mesh, in the order of their first triangles, and how to wind them.
+/// All components of a mesh, in the order of their first triangles, and a consistent winding.
 struct Components {
   std::vector<Component> components;
-  /// ±1 for each triangle: as stored, or the other way round, so that neighbours in a closed component run against one
-  /// another along their edge. The first triangle of each keeps its winding. Of no meaning in components that are open.
+  /// For each triangle 1 (winding as stored) or −1 (reversed), so that neighbours in a closed component traverse their
+  /// common edge in opposite directions. The first triangle of each component keeps its winding. Meaningless in open
+  /// components.
   std::vector<std::int8_t> turn;
 };
 
-/// Linear in the mesh. Windings in the file need not agree.
+/// Finds the components, in time linear in the mesh. Windings in the file need not agree.
 Components find_components(const MeshView& mesh, const EdgeGraph& graph);
 
-/// Six times the volume that a closed component encloses, wound by `turn`: positive if its normals point outward. In
-/// double, relative to one of its own vertices, so that a mesh far from the origin comes out no worse.
+/// Returns six times the volume that a closed component encloses, wound by `turn`: positive if its normals point
+/// outward. In double, relative to one of the component's own vertices, so that precision does not depend on the
+/// distance from the origin.
 double signed_volume(const MeshView& mesh, const Component& component, const std::vector<std::int8_t>& turn);
 
 }  // namespace penumbra::mesh

@@ -7,8 +7,8 @@
 
 namespace penumbra::mesh {
 
-/// Sets of the numbers below `count`, each at first alone. A set's root is its smallest member, whatever the order of
-/// joining.
+/// Sets of the integers below `count`, initially singletons. A set's root is its smallest member, regardless of the
+/// order of joining.
 class DisjointSets {
  public:
   explicit DisjointSets(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0u); }

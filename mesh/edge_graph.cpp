@@ -15,8 +15,8 @@
 namespace penumbra::mesh {
 namespace {
 
-/// Joins vertices within `weld` of each other, and chains of them: the roots are the first of each chain. Sweeps along
-/// x, so it costs n · (vertices within `weld` along x): meant for tolerances far below the spacing of vertices.
+/// Joins vertices within `weld` of each other, and chains of them; the root is the first of each chain. Sweeps along x,
+/// so the cost is n · (vertices within `weld` along x): meant for tolerances far below the spacing of vertices.
 void join_close(std::span<const glm::dvec3> positions, double weld, std::vector<std::uint32_t>& vertex) {
   std::vector<std::uint32_t> order;
   for (std::uint32_t i = 0; i < vertex.size(); ++i) {
@@ -58,7 +58,8 @@ EdgeGraph build_edge_graph(const MeshView& mesh, double weld) {
 
   const std::size_t vertices = mesh.positions.size();
   const SortedSides sorted = sort_sides(graph.vertex, mesh.triangles);
-  std::vector<std::uint32_t> begun(vertices + 1, 0);  // how many edges begin at each vertex; then the first of them
+  std::vector<std::uint32_t> begun(vertices + 1, 0);  // first the number of edges that begin at each vertex, then the
+                                                      // index of the first of them
   for_each_index(vertices, [&](std::size_t vertex) {
     const std::span<const SortedSide> here = sorted.from(vertex);
     for (std::size_t i = 0; i < here.size(); ++i) begun[vertex] += i == 0 || here[i].other != here[i - 1].other ? 1 : 0;

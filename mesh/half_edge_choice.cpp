@@ -12,8 +12,8 @@ namespace {
 
 constexpr std::uint32_t kNotHeld = HeldTriangles::kNotHeld;
 
-/// The triangles with an area around an edge, if they are exactly two. Triangles without an area cast nothing and are
-/// never held, so they crowd no edge.
+/// Returns the triangles with an area at an edge, if there are exactly two. Triangles without an area cast no shadow
+/// and are never held, so they do not crowd an edge.
 std::optional<std::array<Incidence, 2>> neighbours(const EdgeGraph& graph, std::uint32_t edge) {
   std::array<Incidence, 2> pair;
   std::size_t count = 0;
@@ -36,8 +36,8 @@ std::vector<bool> crowded_edges(const EdgeGraph& graph) {
   return crowded;
 }
 
-/// Breadth first from the lowest triangle that is left: every triangle is wound as its neighbours that came before it
-/// want, and given up if they disagree.
+/// Winds triangles breadth first, from the lowest remaining one: every triangle is wound to agree with the neighbours
+/// already held, and listed if they disagree.
 class Winder {
  public:
   Winder(const EdgeGraph& graph, HeldTriangles& held)
@@ -96,7 +96,7 @@ class Winder {
     ++held_.patches;
   }
 
-  /// Whether the held neighbours of t want it turned; nothing if they disagree.
+  /// Returns whether the held neighbours of t require it to be turned; nullopt if they disagree.
   [[nodiscard]] std::optional<bool> wanted_turn(std::uint32_t t) const {
     std::optional<bool> wanted;
     for (const std::uint32_t edge : graph_.triangle_edges[t]) {

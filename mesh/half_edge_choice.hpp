@@ -7,19 +7,20 @@
 
 namespace penumbra::mesh {
 
-/// Which triangles a half-edge structure can hold, and how each must be wound. Inside mesh/ only.
+/// Triangles that a half-edge structure can hold, and their windings. Inside mesh/ only.
 struct HeldTriangles {
   static constexpr std::uint32_t kNotHeld = 0xffffffffu;
 
-  std::vector<std::uint32_t> patch;  ///< for each triangle, its component among the held ones; kNotHeld: listed
-  std::vector<bool> turn;            ///< for each triangle: wind it the other way
+  std::vector<std::uint32_t> patch;  ///< for each triangle, its component among the held ones; kNotHeld if it is listed
+                                     ///< instead
+  std::vector<bool> turn;            ///< for each triangle: true if its winding is reversed
   std::vector<ListedFace> listed;    ///< ascending
   std::uint32_t patches = 0;
 };
 
 HeldTriangles choose_held(const EdgeGraph& graph);
 
-/// For each corner (3 · triangle + corner) of a held triangle, its fan: corners at one point that hang together through
+/// For each corner (3 · triangle + corner) of a held triangle, its fan: corners at one point that are connected through
 /// edges of two held triangles. Fans are numbered in the order of their first corners.
 struct HeldFans {
   std::vector<std::uint32_t> of_corner;  ///< kNotHeld where the triangle is not held

@@ -10,7 +10,7 @@
 namespace penumbra::mesh {
 namespace {
 
-/// Connectivity only: positions stay in the soup, and nothing is ever deleted.
+/// Stores connectivity only: positions stay in the soup, and nothing is ever deleted.
 struct Traits : OpenMesh::DefaultTraits {
   VertexAttributes(OpenMesh::Attributes::None);
   HalfedgeAttributes(OpenMesh::Attributes::PrevHalfedge);
@@ -21,7 +21,7 @@ using HalfedgeHandle = OpenMesh::HalfedgeHandle;
 using VertexHandle = OpenMesh::VertexHandle;
 using FaceHandle = OpenMesh::FaceHandle;
 
-/// OpenMesh's own handles are int.
+/// Converts OpenMesh's handles, which are int.
 std::uint32_t number(const OpenMesh::BaseHandle& handle) {
   return handle.is_valid() ? static_cast<std::uint32_t>(handle.idx()) : HalfEdgeView::kNone;
 }
@@ -30,7 +30,7 @@ Handle handle(std::uint32_t number) {
   return Handle(static_cast<int>(number));
 }
 
-/// OpenMesh says on a stream of its own, connected to stderr, why it refuses a face; the listing says so here.
+/// Silences the stream on which OpenMesh explains, to stderr, why it refuses a face; `listed` has the reasons here.
 void silence_openmesh() {
   omerr().disable();
 }
@@ -40,7 +40,7 @@ void silence_openmesh() {
 struct HalfEdgeView::Surface {
   OpenMeshSurface mesh;
   std::vector<std::uint32_t> triangle_of_face, face_of_triangle, point_of_vertex, component_of_face, turned;
-  std::vector<std::uint32_t> edge_of_halfedge_pair;  // the edge graph's, for each edge of OpenMesh
+  std::vector<std::uint32_t> edge_of_halfedge_pair;  // for each edge of OpenMesh, the edge of the edge graph
   std::vector<ListedFace> listed;
   std::vector<SurfaceComponent> components;
 
@@ -131,8 +131,9 @@ void HalfEdgeView::Surface::check(const MeshView& soup) const {
   }
 }
 
-/// The next edge of the loop: turn at h's end through the faces inside until one is missing. The walk never comes back
-/// to h, whose right side is outside, so each rim has one successor and one predecessor: every loop closes.
+/// Returns the next edge of the loop: turns at h's end through the faces inside until one is missing. The walk never
+/// returns to h, whose right side is outside, so each rim edge has one successor and one predecessor: every loop
+/// closes.
 HalfedgeHandle HalfEdgeView::Surface::next_on_rim(HalfedgeHandle h, const std::vector<bool>& inside) const {
   HalfedgeHandle next = mesh.next_halfedge_handle(h);
   while (!is_rim(next, inside)) next = mesh.next_halfedge_handle(mesh.opposite_halfedge_handle(next));

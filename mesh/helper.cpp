@@ -1,3 +1,5 @@
+// Starts helper programs and supervises them: pipes, deadlines, limits on output.
+
 #include "mesh/helper.hpp"
 
 #include "base/child.hpp"
@@ -35,7 +37,7 @@ std::filesystem::path folder_of_this_code() {
   Dl_info info{};
   std::error_code error;
   if (::dladdr(reinterpret_cast<void*>(&reason), &info) != 0 && info.dli_fname != nullptr) {
-    // The name of a program is what its caller called it by; that of a library is its path.
+    // dladdr gives a program's name as its caller typed it; a library's name is its path.
     if (std::filesystem::path file = std::filesystem::canonical(info.dli_fname, error);
         !error && file.extension() != "" && file.filename().string().find(".so") != std::string::npos)
       return file.parent_path();
@@ -47,14 +49,14 @@ std::filesystem::path folder_of_this_code() {
 
 std::filesystem::path find_helper(const HelperProgram& program) {
   if (const char* named = std::getenv(program.variable); named != nullptr && *named != '\0') return named;
-  // Beside the file that holds this code, the program or the library, or where `cmake --install` puts it.
+  // Looks next to the file that holds this code, the program or the library, and where `cmake --install` puts helpers.
   const std::filesystem::path folder = folder_of_this_code();
   for (const char* const place : {".", "../bin", "../../bin"}) {
     std::error_code ignored;
     if (auto helper = (folder / place / program.file).lexically_normal(); std::filesystem::exists(helper, ignored))
       return helper;
   }
-  return folder / program.file;  // whose absence is said when it is started
+  return folder / program.file;  // if it does not exist, starting it reports that
 }
 
 ResourceError missing(const HelperProgram& program, const std::string& file, int error) {
@@ -64,12 +66,13 @@ ResourceError missing(const HelperProgram& program, const std::string& file, int
       program.words, file, reason(error), program.built_with, program.variable);
 }
 
-/// What the output's pipe holds where the system allows that: the child goes on writing while this process reads.
+/// Capacity of the output pipe, if the system allows it: the child continues writing while this process reads.
 constexpr std::size_t kPipeBytes = std::size_t{1} << 20;
 
-/// What the child gets as its standard streams.
+/// Standard streams of the child.
 struct Streams {
-  Pipe life;  ///< its input: nothing comes, and its end is that of this process or of the job
+  Pipe life;  ///< the child's input: nothing is written, and the end of file means that this process or the job has
+              ///< ended
   Pipe output, errors;
 };
 
@@ -90,7 +93,8 @@ pid_t start(const HelperProgram& program, const std::vector<std::string>& argume
   return started.pid;
 }
 
-/// Reads once from a pipe that poll called ready; closes it at its end. `take(bytes)` gets what was read.
+/// Reads once from a pipe that poll reported as ready, and closes the pipe at its end. Calls `take(bytes)` with the
+/// bytes read.
 template <typename Take>
 void drain(Descriptor& from, std::span<std::byte> buffer, Take take) {
   const ssize_t count = ::read(from.get(), buffer.data(), buffer.size());
@@ -101,12 +105,12 @@ void drain(Descriptor& from, std::span<std::byte> buffer, Take take) {
   }
 }
 
-/// Collects the child's output until it ends, or until it has cost too much, and then ends it.
+/// Collects the child's output until the child ends, or until it exceeds a limit and is killed.
 HelperEnding supervise(Child& child, Streams streams, const HelperRun& run) {
   constexpr std::size_t kKeptErrors = 4096;
   const Clock::time_point deadline = run.time ? Clock::now() + *run.time : Clock::time_point::max();
   Pipe &output = streams.output, &errors = streams.errors;
-  output.write.close();  // or the pipes would never end
+  output.write.close();  // needed for the pipes to reach their end
   errors.write.close();
   HelperEnding outcome;
   std::array<std::byte, 4096> buffer;
@@ -119,7 +123,7 @@ HelperEnding supervise(Child& child, Streams streams, const HelperRun& run) {
     }
     std::array<pollfd, 2> waiting{{{output.read.get(), POLLIN, 0}, {errors.read.get(), POLLIN, 0}}};  // -1 is skipped
     const int timeout = static_cast<int>(std::min<std::int64_t>(remaining(), 1000));
-    if (::poll(waiting.data(), waiting.size(), timeout) <= 0) continue;  // time passed, or a signal came
+    if (::poll(waiting.data(), waiting.size(), timeout) <= 0) continue;  // timeout, or a signal
     if (waiting[0].revents != 0) {
       drain(output.read, outcome.output.room(kPipeBytes), [&](std::span<const std::byte> bytes) {
         if (bytes.size() > run.output_bytes - outcome.output.size())
@@ -129,13 +133,13 @@ HelperEnding supervise(Child& child, Streams streams, const HelperRun& run) {
       });
     }
     if (waiting[1].revents != 0) {
-      drain(errors.read, buffer, [&](std::span<const std::byte> bytes) {  // what is too much is read and forgotten
+      drain(errors.read, buffer, [&](std::span<const std::byte> bytes) {  // excess bytes are read and dropped
         const auto kept = bytes.first(std::min(bytes.size(), kKeptErrors - outcome.errors.size()));
         outcome.errors.append(reinterpret_cast<const char*>(kept.data()), kept.size());
       });
     }
   }
-  // Closing its streams is not ending: it has until the deadline for that as well.
+  // A child that closed its streams may still run: the deadline applies to its end as well.
   while (outcome.how == HelperEnding::How::by_itself && !child.has_ended()) {
     if (remaining() <= 0)
       outcome.how = HelperEnding::How::out_of_time;
@@ -168,7 +172,8 @@ void require_helper(const HelperProgram& program) {
 
 HelperEnding run_helper(const HelperProgram& program, const HelperRun& run) {
   Streams streams{make_pipe(), make_pipe(), make_pipe()};
-  ::fcntl(streams.output.write.get(), F_SETPIPE_SZ, static_cast<int>(kPipeBytes));  // where not, it is only slower
+  // optional: without it the pipe is only slower
+  ::fcntl(streams.output.write.get(), F_SETPIPE_SZ, static_cast<int>(kPipeBytes));
   Child child(start(program, run.arguments, streams, run.files));
   streams.life.read.close();
   return supervise(child, std::move(streams), run);

@@ -11,27 +11,27 @@
 #include <vector>
 
 /// Programs of this project that do one piece of work in a process of their own: `penumbra-import` reads foreign files,
-/// `penumbra-repair` repairs meshes. helper_process.hpp is their side of it.
+/// `penumbra-repair` repairs meshes. helper_process.hpp is the helper's side.
 namespace penumbra::mesh {
 
 class WireReader;
 
-/// Such a program. It stands beside the file that holds this code, the program's or the library's, or in `../bin` from
-/// there, or where an environment variable says.
+/// A helper program. Found next to the file that holds this code (the program or the library), or in `../bin` from
+/// there, or at the path in an environment variable.
 struct HelperProgram {
   const char* file;        ///< "penumbra-import"
   const char* variable;    ///< "PENUMBRA_IMPORT_HELPER"
-  const char* words;       ///< in messages: "the import helper"
-  const char* built_with;  ///< in the message that it is missing: how it is built, if not always
+  const char* words;       ///< name in messages: "the import helper"
+  const char* built_with;  ///< build option named in the message that the helper is missing, unless it is always built
 };
 
-/// ResourceError if the program is not there.
+/// Throws ResourceError if the program does not exist.
 void require_helper(const HelperProgram& program);
 
 /// First byte of a helper's answer, after its magic.
 enum class HelperStatus : std::uint8_t {
-  done = 0,           ///< what the helper is for follows
-  bad_input = 1,      ///< a message follows: an exception, thrown over there
+  done = 0,           ///< the result follows
+  bad_input = 1,      ///< a message follows: an exception in the helper
   out_of_memory = 2,  ///< nothing follows
 };
 
@@ -40,12 +40,12 @@ inline constexpr char kHelperMagic[8] = {'P', 'N', 'B', 'R', 'I', 'M', 'P', '1'}
 /// Reads the head of an answer; throws WireError.
 HelperStatus get_status(WireReader& from);
 
-/// Bytes that become more. Their memory grows by realloc, which moves pages of large blocks and not what is in them.
+/// A growing array of bytes. Grows by realloc, which remaps the pages of large blocks instead of copying.
 class GrowingBytes {
  public:
-  /// At least `least` bytes behind those that are there; throws std::bad_alloc.
+  /// Returns at least `least` bytes of space behind the stored ones; throws std::bad_alloc.
   std::span<std::byte> room(std::size_t least);
-  /// So many of the room are there now.
+  /// Appends the first `count` bytes of the space that room() returned.
   void add(std::size_t count) { size_ += count; }
   [[nodiscard]] std::size_t size() const { return size_; }
   [[nodiscard]] std::span<const std::byte> all() const& { return {memory_.get(), size_}; }
@@ -61,8 +61,9 @@ class GrowingBytes {
 
 /// One call of a helper.
 struct HelperRun {
-  std::vector<std::string> arguments;  ///< one of them is this process's number: the helper ends with it
-  std::vector<int> files;              ///< open files of this process: the helper's kFirstHelperFile and so on
+  std::vector<std::string> arguments;  ///< one of them is this process's number: the helper ends with this process
+  std::vector<int> files;              ///< open files of this process, which become the helper's kFirstHelperFile and
+                                       ///< so on
   std::optional<std::chrono::milliseconds> time = {};
   std::uint64_t output_bytes = ~std::uint64_t{0};
 };
@@ -71,18 +72,18 @@ inline constexpr int kFirstHelperFile = 3;
 struct HelperEnding {
   enum class How { by_itself, out_of_time, too_much_output };
   How how = How::by_itself;
-  int status = 0;  ///< as waitpid gives it
+  int status = 0;  ///< as waitpid reports it
   GrowingBytes output;
-  std::string errors;  ///< the first few KiB of what it wrote to stderr
+  std::string errors;  ///< the first few KiB of the helper's output to stderr
 
-  /// "; it said: …": the first line of these (what follows is a library's stack trace at best); empty if it said
-  /// nothing.
+  /// Returns "; it said: …" with the first line of `errors` (later lines are at best a library's stack trace); empty if
+  /// `errors` is.
   [[nodiscard]] std::string first_line() const;
 };
 
-/// Runs a helper to its end, or to that of its time or output. Its standard input is a pipe that this process never
-/// writes to and whose end is its own end: it ends with this process at the latest, and with the thread that called
-/// this function. ResourceError if it is missing or cannot be started.
+/// Runs a helper until it ends, or reaches the limit of time or output. Its standard input is a pipe that this process
+/// never writes to and that closes when this process ends: the helper ends with this process at the latest, and with
+/// the thread that called this function. Throws ResourceError if the helper is missing or cannot be started.
 HelperEnding run_helper(const HelperProgram& program, const HelperRun& run);
 
 }  // namespace penumbra::mesh

@@ -1,3 +1,5 @@
+// Sandbox of helper processes: end with the parent, no new files, no children, limits on memory and time.
+
 #include "mesh/helper_process.hpp"
 
 #include "base/error.hpp"
@@ -18,13 +20,14 @@ void limit(__rlimit_resource resource, rlim_t value) {
   ::setrlimit(resource, &both);  // fails only where a lower limit is in force already
 }
 
-/// Sees to it that this process ends with the one that asked, at whatever moment that is killed; false: it is gone
-/// already. Standard input is a pipe whose other end only the asker has.
+/// Makes this process end with its parent, at whatever moment the parent is killed; returns false if the parent is gone
+/// already. Standard input is a pipe whose other end only the parent has.
 bool end_with_asker(std::uint64_t asker) {
-  // Two ways, since each has its hole: the first is bound to the thread that asked; for the second, another child of
-  // the asker may for a moment hold the pipe's other end.
+  // Two mechanisms, since each has a gap: the first is bound to the parent's thread; for the second, another child of
+  // the parent may briefly hold the pipe's other end.
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (static_cast<std::uint64_t>(::getppid()) != asker) return false;  // it died before, so that no signal will come
+  // The parent ended before prctl, so that no signal will come.
+  if (static_cast<std::uint64_t>(::getppid()) != asker) return false;
   const int pipe = ::fcntl(STDIN_FILENO, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
   const int nothing = ::open("/dev/null", O_RDONLY | O_CLOEXEC);
   if (pipe < 0 || nothing < 0 || ::dup2(nothing, STDIN_FILENO) < 0) return false;
@@ -36,15 +39,16 @@ bool end_with_asker(std::uint64_t asker) {
   return ::poll(&state, 1, 0) == 0;  // … unless it did so before
 }
 
-/// From here on this process can read files and answer, and not much more.
+/// Restricts this process to reading files and writing its answer.
 void confine(const HelperTerms& terms) {
   ::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0);
   ::prctl(PR_SET_DUMPABLE, 0);
   limit(RLIMIT_CORE, 0);
-  limit(RLIMIT_FSIZE, 0);  // it writes to a pipe only
+  limit(RLIMIT_FSIZE, 0);  // this process writes to a pipe only
   limit(RLIMIT_NOFILE, 64);
   if (terms.milliseconds)
-    limit(RLIMIT_CPU, *terms.milliseconds / 1000 + 2);  // the asker's clock comes first, unless it has died
+    limit(RLIMIT_CPU, *terms.milliseconds / 1000 + 2);  // fallback: the parent's deadline comes first, unless the
+                                                        // parent has died
 #if !defined(PENUMBRA_SHADOW_MEMORY)
   if (terms.memory_bytes) {
     limit(RLIMIT_AS, *terms.memory_bytes);
@@ -56,7 +60,7 @@ void confine(const HelperTerms& terms) {
 }  // namespace
 
 int begin_helper(const HelperTerms& terms) {
-  // First of all, while nothing is to be lost.
+  // Done first, before there is anything to lose.
   if (!end_with_asker(terms.asker)) ::_exit(static_cast<int>(ExitCode::interrupted));
   const int output = ::dup(STDOUT_FILENO);
   if (output < 0 || ::dup2(STDERR_FILENO, STDOUT_FILENO) < 0) ::_exit(static_cast<int>(ExitCode::resource));

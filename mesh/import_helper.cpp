@@ -21,7 +21,7 @@ std::string in_seconds(std::chrono::milliseconds time) {
   return fmt::format("{:g} s", static_cast<double>(time.count()) / 1000.0);
 }
 
-/// Throws what the outcome means for the user, unless the child ended as it should.
+/// Throws the error that corresponds to the helper's ending, unless the helper ended normally.
 void require_good_ending(const HelperEnding& outcome, const std::string& file, const ImportLimits& limits) {
   const bool cpu_limit = WIFSIGNALED(outcome.status) && WTERMSIG(outcome.status) == SIGXCPU;
   if (outcome.how == HelperEnding::How::out_of_time || cpu_limit) {
@@ -50,10 +50,10 @@ struct FittedLimits {
   MemoryRoom room;
 };
 
-/// What the file may cost on this machine now: the helper's own memory; and its answer, which this process holds up to
-/// three times (as it grows, and as what is made of it).
+/// Reduces limits to this machine's free memory: the helper's own memory, and its answer, which this process holds up
+/// to three times (while it grows, and in converted form).
 FittedLimits fit_to_machine(ImportLimits limits) {
-  give_back_memory();  // what this process only keeps is the helper's, too
+  give_back_memory();  // kept free memory of this process becomes available to the helper
   const MemoryRoom room = memory_room();
   limits.memory_bytes = std::min(limits.memory_bytes, room.bytes);
   limits.output_bytes = std::min(limits.output_bytes, room.bytes / 4);

@@ -12,8 +12,8 @@
 
 namespace penumbra::mesh {
 
-/// What the helper is asked to do: `penumbra-import KIND MILLISECONDS BYTES ASKER FILE FLAGS…`. FILE is only a name:
-/// the helper finds the file and its folder opened, as the descriptors below.
+/// Arguments of the helper: `penumbra-import KIND MILLISECONDS BYTES ASKER FILE FLAGS…`. FILE is only a name: the
+/// helper gets the file and its folder opened, as the descriptors below.
 struct HelperJob {
   std::string kind;  ///< "mesh", "gltf", "texture" or "sky"
   const InputFile& input;
@@ -23,17 +23,18 @@ inline constexpr int kInputDescriptor = kFirstHelperFile;
 inline constexpr int kFolderDescriptor = kFirstHelperFile + 1;
 
 struct HelperAnswer {
-  std::vector<std::filesystem::path> sources;  ///< files that were opened on the way, `job.input` among them
+  std::vector<std::filesystem::path> sources;  ///< files that were opened, including `job.input`
   GrowingBytes bytes;
-  std::size_t payload_at = 0;  ///< of the bytes
+  std::size_t payload_at = 0;  ///< offset in the bytes
   [[nodiscard]] std::span<const std::byte> payload() const& { return bytes.all().subspan(payload_at); }
   std::span<const std::byte> payload() const&& = delete;
 };
 
 /// Runs `penumbra-import` on a foreign file, in a process of its own, and returns its answer.
 ///
-/// InputError: the file is bad, or reading it crashed, hung or exceeded `limits`. ResourceError: the helper is missing
-/// or cannot be started, or this machine has less memory left than `limits` and the file needs more than that.
+/// Throws InputError if the file is bad, or if reading it crashed, hung or exceeded `limits`; ResourceError if the
+/// helper is missing or cannot be started, or if the file needs more memory than this machine has left, which is less
+/// than `limits`.
 HelperAnswer run_import_helper(const HelperJob& job, const ImportLimits& limits);
 
 }  // namespace penumbra::mesh

@@ -13,7 +13,7 @@
 namespace penumbra::mesh {
 namespace {
 
-/// Length of the well-formed UTF-8 sequence that `text` (not empty) starts with; 0 if it is ill-formed.
+/// Returns the length of the well-formed UTF-8 sequence that `text` (not empty) starts with; 0 if it is ill-formed.
 std::size_t sequence_length(std::string_view text) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   const unsigned char lead = byte(0);
@@ -27,12 +27,12 @@ std::size_t sequence_length(std::string_view text) {
   for (std::size_t i = 1; i < length; ++i) {
     if ((byte(i) & 0xC0) != 0x80) return 0;
   }
-  // Overlong forms, surrogates and what lies beyond U+10FFFF all show in the second byte.
+  // The second byte shows overlong forms, surrogates and code points beyond U+10FFFF.
   if ((lead == 0xE0 && byte(1) < 0xA0) || (lead == 0xED && byte(1) > 0x9F) || (lead == 0xF0 && byte(1) < 0x90) ||
       (lead == 0xF4 && byte(1) > 0x8F)) {
     return 0;
   }
-  if (lead == 0xC2 && byte(1) < 0xA0) return 0;  // C1 control characters: terminals obey these, too
+  if (lead == 0xC2 && byte(1) < 0xA0) return 0;  // C1 control characters: terminals interpret these, too
   return length;
 }
 
@@ -119,7 +119,7 @@ void put_positions(WireWriter& to, const std::vector<glm::dvec3>& positions) {
   to.put_values<glm::vec3>(positions.size(), [&](std::size_t i) { return glm::vec3(positions[i]); });
 }
 
-/// Numbers that mostly grow by `step` from one to the next.
+/// Writes numbers most of which exceed their predecessor by `step`.
 void put_numbers(WireWriter& to, std::span<const std::uint32_t> numbers, std::uint32_t step) {
   std::vector<NumberRun> runs;
   for (const std::uint32_t number : numbers) {

@@ -10,8 +10,8 @@
 #include <type_traits>
 #include <vector>
 
-/// The format in which the import helper answers. Both ends are one build on one machine, so numbers travel in their
-/// memory representation; but the sender may have been taken over by a hostile file, so the reader believes nothing.
+/// The format of the import helper's answers. Both ends are one build on one machine, so numbers are sent in their
+/// memory representation; but a hostile file may have compromised the sender, so the reader checks everything.
 namespace penumbra::mesh {
 
 struct ImportedMesh;
@@ -30,14 +30,14 @@ class WireWriter {
     put<std::uint64_t>(values.size());
     append(values.data(), values.size_bytes());
   }
-  /// The same of values that are not copied: they must stay where they are until the pieces have been used.
+  /// Writes an array without copying: the values must stay unchanged until pieces() has been used.
   template <typename T>
   void put_array_in_place(std::span<const T> values) {
     static_assert(std::is_trivially_copyable_v<T>);
     put<std::uint64_t>(values.size());
     if (!values.empty()) in_place_.push_back({bytes_.size(), std::as_bytes(values)});
   }
-  /// An array of the values value(0), value(1) …
+  /// Writes an array of the values value(0), value(1) …
   template <typename T, typename Value>
   void put_values(std::size_t count, const Value& value) {
     static_assert(std::is_trivially_copyable_v<T>);
@@ -54,14 +54,14 @@ class WireWriter {
     put<std::uint64_t>(texts.size());
     for (const std::string& text : texts) put_string(text);
   }
-  /// All that was put, in order; valid until more is.
+  /// Returns everything written, in order; valid until the next put.
   [[nodiscard]] std::vector<std::span<const std::byte>> pieces() const;
-  /// The same as one.
+  /// Returns everything written as one array.
   [[nodiscard]] std::vector<std::byte> bytes() const;
 
  private:
   struct InPlace {
-    std::size_t after;  ///< so many of bytes_
+    std::size_t after;  ///< position in bytes_
     std::span<const std::byte> values;
   };
   void append(const void* data, std::size_t size) {
@@ -73,20 +73,20 @@ class WireWriter {
   std::vector<InPlace> in_place_;
 };
 
-/// Writes all that was put; false if that fails.
+/// Writes everything in `from` to the descriptor `to`; returns false if that fails.
 bool write_all(int to, const WireWriter& from);
 
-/// The answer is not what a healthy helper sends.
+/// The answer is not one that an intact helper sends.
 struct WireError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Reads in the order in which WireWriter wrote. Never reads past the end, and never allocates more than what is left
-/// to read: a count is compared with the remaining bytes before anything is reserved for it.
+/// Reads values in the order in which WireWriter wrote them. Never reads past the end, and never allocates more than
+/// the remaining bytes: a count is compared with them before memory is reserved.
 class WireReader {
  public:
   explicit WireReader(std::span<const std::byte> bytes) : rest_(bytes) {}
-  explicit WireReader(std::vector<std::byte>&& bytes) = delete;  // they must outlive it
+  explicit WireReader(std::vector<std::byte>&& bytes) = delete;  // the bytes must outlive the reader
 
   template <typename T>
   T get() {
@@ -107,7 +107,7 @@ class WireReader {
     if (!source.empty()) std::memcpy(values.data(), source.data(), source.size());
     return values;
   }
-  /// The bytes of an array of values, which lie anyhow.
+  /// Returns the bytes of an array, which may be unaligned.
   template <typename T>
   std::span<const std::byte> get_array_in_place() {
     static_assert(std::is_trivially_copyable_v<T>);
@@ -117,7 +117,7 @@ class WireReader {
   }
   std::string get_string();  ///< made printable: see printable()
   std::vector<std::string> get_strings();
-  std::vector<std::string> get_raw_strings();  ///< for paths, which may hold any bytes: not to be shown
+  std::vector<std::string> get_raw_strings();  ///< for paths, which may hold any bytes: not for display
   [[nodiscard]] std::size_t remaining() const { return rest_.size(); }
   void expect_end() const {
     if (!rest_.empty()) throw WireError("there is more than expected");
@@ -133,17 +133,17 @@ class WireReader {
   std::span<const std::byte> rest_;
 };
 
-/// `text` with control characters (a hostile file must not steer the terminal) and ill-formed UTF-8 (JSON writers
-/// throw on it) replaced by '?'.
+/// Returns `text` with control characters (a hostile file must not control the terminal) and ill-formed UTF-8 (JSON
+/// writers throw on it) replaced by '?'.
 std::string printable(std::string_view text);
 
-/// `count` numbers: `first`, and then each as much more as its list goes up by.
+/// A run of `count` numbers: `first`, each following one larger by the list's step.
 struct NumberRun {
   std::uint32_t first = 0, count = 0;
 };
 
-/// The soup must stay as it is until the writer's pieces have been used. What says little takes little: positions that
-/// are single precision, and numbers of objects and faces that stay the same or count up.
+/// Writes a soup, which must stay unchanged until the writer's pieces have been used. Compact: positions that fit
+/// single precision are sent as such, and object and face numbers that stay the same or count up as runs.
 void put_soup(WireWriter& to, const TriangleSoup& soup);
 /// Checks that every index is in range, every position finite and the arrays of one length; throws WireError.
 TriangleSoup get_soup(WireReader& from);

@@ -1,3 +1,5 @@
+// Opens input files so that symbolic links cannot lead out of a folder, and so that devices and pipes are refused.
+
 #include "mesh/input_file.hpp"
 
 #include "base/file_error.hpp"
@@ -15,14 +17,15 @@
 namespace penumbra::mesh {
 namespace {
 
-constexpr int kReadFlags = O_RDONLY | O_CLOEXEC | O_NONBLOCK;  // a named pipe without a writer must not stop us
+constexpr int kReadFlags = O_RDONLY | O_CLOEXEC | O_NONBLOCK;  // nonblocking, since opening a named pipe without a
+                                                               // writer would block
 constexpr int kFolderFlags = O_PATH | O_DIRECTORY | O_CLOEXEC;
 
 void require_content(int descriptor, const std::string& shown) {
   if (!require_regular(descriptor, shown)) throw InputError("{}: the file is empty (0 bytes)", shown);
 }
 
-/// Walks from a folder along a name, never out of it.
+/// Resolves a name from a folder, one component at a time, never leaving the folder.
 class Walk {
  public:
   Walk(int folder, const std::string& name) : folder_(folder) {
@@ -52,7 +55,7 @@ class Walk {
 
   [[nodiscard]] int current() const { return entered_.empty() ? folder_ : entered_.back().get(); }
 
-  /// The parts of `path` come next.
+  /// Queues the components of `path`, to be resolved next.
   void push(const std::string& path) {
     if (path.empty()) error_ = ENOENT;
     if (path.starts_with('/')) {
@@ -79,7 +82,7 @@ class Walk {
     names_.pop_back();
   }
 
-  /// Goes into the folder of that name, or takes up the way that a link shows. True for anything else: the end.
+  /// Enters the folder `name`, or queues the target of a link. Returns true for anything else, which ends the walk.
   bool enter(const std::string& name) {
     Descriptor entry(::openat(current(), name.c_str(), O_PATH | O_NOFOLLOW | O_CLOEXEC));
     struct stat info {};
@@ -88,7 +91,7 @@ class Walk {
       return false;
     }
     if (S_ISLNK(info.st_mode)) {
-      constexpr int kMostLinks = 40;  // as the kernel
+      constexpr int kMostLinks = 40;  // the kernel's limit
       std::array<char, PATH_MAX> target{};
       const ssize_t length = ::readlinkat(entry.get(), "", target.data(), target.size());
       if (length < 0 || ++links_ > kMostLinks) {
@@ -116,9 +119,9 @@ class Walk {
 
   int folder_;
   bool at_root_ = false;
-  std::vector<Descriptor> entered_;  ///< folders on the way, and their names
+  std::vector<Descriptor> entered_;  ///< folders entered so far, and their names
   std::vector<std::string> names_;
-  std::vector<std::string> waiting_;  ///< the next part of the way is last
+  std::vector<std::string> waiting_;  ///< remaining components; the next one is last
   int links_ = 0, error_ = 0;
 };
 
@@ -134,7 +137,7 @@ bool require_regular(int descriptor, const std::string& shown) {
 
 InputFile open_input(const std::filesystem::path& file) {
   const std::string shown = file.string();
-  // Looked at before it is opened: opening a device may do something.
+  // Inspected before it is opened: opening a device may have side effects.
   const Descriptor named(::open(file.c_str(), O_PATH | O_CLOEXEC));
   if (!named.is_open()) throw_file_error(errno, shown);
   require_regular(named.get(), shown);
@@ -152,7 +155,7 @@ OpenedBeneath open_beneath(int folder, const std::string& name, int flags) {
 }
 
 InputBeneath open_input_beneath(int folder, const std::string& name, const std::filesystem::path& shown) {
-  // What is no file is refused by require_regular; NONBLOCK and NOCTTY keep that from having effects.
+  // require_regular refuses everything but files; NONBLOCK and NOCTTY prevent side effects of opening.
   OpenedBeneath file = open_beneath(folder, name, kReadFlags | O_NOCTTY);
   if (file.error != 0) return {{}, "", file.error};
   require_content(file.descriptor.get(), shown.string());

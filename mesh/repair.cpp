@@ -21,7 +21,7 @@ namespace {
 constexpr HelperProgram kRepair{"penumbra-repair", "PENUMBRA_REPAIR_HELPER", "the repair helper",
                                 " (target penumbra-repair; not with -DPENUMBRA_WITH_CGAL_GPL=OFF)"};
 
-/// A file in memory that holds what is to be repaired.
+/// Writes the repair request to a file in memory.
 Descriptor file_of(const WireWriter& request) {
   Descriptor file(::memfd_create("penumbra-repair", MFD_CLOEXEC));
   if (!file.is_open() || !write_all(file.get(), request)) {

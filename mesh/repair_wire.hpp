@@ -3,21 +3,21 @@
 #include "mesh/import_wire.hpp"
 #include "mesh/repair.hpp"
 
-/// What is asked of `penumbra-repair`, and what it answers.
+/// Request to `penumbra-repair`, and its answer.
 namespace penumbra::mesh {
 
-/// The soup must stay as it is until the writer's pieces have been used.
+/// Writes a request. The soup must stay unchanged until the writer's pieces have been used.
 void put_repair_request(WireWriter& to, const TriangleSoup& soup, const RepairOptions& options);
-/// Throws WireError, as get_soup does.
+/// A request read from the wire. Reading throws WireError, as get_soup does.
 struct RepairRequest {
   TriangleSoup soup;
   RepairOptions options;
 };
 RepairRequest get_repair_request(WireReader& from);
 
-/// As put_repair_request.
+/// Writes a result. The soup must stay unchanged until the writer's pieces have been used.
 void put_repaired(WireWriter& to, const Repaired& repaired);
-/// Throws WireError, as get_soup does.
+/// Reads a result. Throws WireError, as get_soup does.
 Repaired get_repaired(WireReader& from);
 
 }  // namespace penumbra::mesh

@@ -10,7 +10,7 @@
 namespace penumbra::mesh {
 namespace {
 
-/// The side that every point of the hull sees a triangle from, or nothing if they differ.
+/// Returns the side that every point of the hull sees a triangle from; nullopt if the sides differ.
 std::optional<Side> common_side(const MeshView& mesh, const Triangle& t, std::span<const glm::dvec3> corners) {
   const auto side = [&](const glm::dvec3& p) {
     return side_of_plane(mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]], p);
@@ -22,8 +22,8 @@ std::optional<Side> common_side(const MeshView& mesh, const Triangle& t, std::sp
   return first;
 }
 
-/// Triangles (a, b, c) and (a, b, d) on one plane, with c and d on either side of their edge: whatever p, what one
-/// adds the other takes away. `off_plane` is any point that is not on the plane.
+/// Returns whether (a, b, c) and (a, b, d) lie on one plane, with c and d on either side of their edge: then their
+/// contributions cancel for every p. `off_plane` is any point that is not on the plane.
 bool always_cancel(const MeshView& mesh, const Edge& edge, std::uint32_t c, std::uint32_t d,
                    std::span<const glm::dvec3> corners) {
   const glm::dvec3 &a = mesh.positions[edge.a], &b = mesh.positions[edge.b];
@@ -31,7 +31,7 @@ bool always_cancel(const MeshView& mesh, const Edge& edge, std::uint32_t c, std:
   if (side_of_plane(a, b, at_c, at_d) != Side::on) return false;
   const auto off_plane =
       std::ranges::find_if(corners, [&](const auto& p) { return side_of_plane(a, b, at_c, p) != Side::on; });
-  if (off_plane == corners.end()) return true;  // then the hull lies in the plane, and both are 0 on all of it
+  if (off_plane == corners.end()) return true;  // the hull lies in the plane, and both contributions are 0 on all of it
   return side_of_plane(a, b, at_c, *off_plane) == opposite(side_of_plane(a, b, at_d, *off_plane));
 }
 

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::uint32_t kMostTriangles = 0xffffffffU / 3;  // a side's number is 32 bits
 
-/// Equal for equal points, and for few others. (Multiplying and folding as in splitmix64.)
+/// Returns a hash that is equal for equal points. (Multiplying and folding as in splitmix64.)
 template <typename Point>
 std::uint64_t hash_of(const Point& point) {
   std::uint64_t hash = 0x9e3779b97f4a7c15u;
@@ -59,12 +59,12 @@ SortedSides sort_sides(std::span<const std::uint32_t> vertex, std::span<const Tr
   };
   for_each_side([&](std::uint32_t from, const SortedSide&) { counter(from).fetch_add(1, std::memory_order_relaxed); });
   std::uint32_t sum = 0;
-  for (std::uint32_t& first : sorted.first) first = sum += first;  // where they end
+  for (std::uint32_t& first : sorted.first) first = sum += first;  // now the end of each vertex's sides
   sorted.sides.resize(sum);
   for_each_side([&](std::uint32_t from, const SortedSide& side) {
     sorted.sides[counter(from).fetch_sub(1, std::memory_order_relaxed) - 1] = side;
   });
-  // Now in one order, whatever the number of threads.
+  // Sorted, so that the order does not depend on the number of threads.
   for_each_index(vertex.size(), [&](std::size_t from) {
     std::ranges::sort(std::span(sorted.sides).subspan(sorted.first[from], sorted.first[from + 1] - sorted.first[from]));
   });

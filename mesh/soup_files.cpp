@@ -25,7 +25,7 @@ static_assert(std::endian::native == std::endian::little, "the bytes are written
 constexpr std::size_t kStlHeader = 80, kStlTriangle = 50;
 constexpr std::size_t kPiece = std::size_t{1} << 20;
 
-/// 12 floats and two bytes that say nothing.
+/// Writes 12 floats and two unused bytes.
 void put_stl_triangle(std::byte* to, const std::array<glm::dvec3, 3>& corners) {
   glm::dvec3 normal = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
   const double length = glm::length(normal);
@@ -44,7 +44,7 @@ void write_stl(const std::filesystem::path& path, const TriangleSoup& soup) {
     throw ResourceError("{}: an STL file has room for 2^32 - 1 triangles; there are {}", path.string(),
                         soup.triangles.size());
   std::vector<std::byte> bytes(kStlHeader + 4 + kStlTriangle * soup.triangles.size());
-  constexpr std::string_view kName = "Penumbra";  // not "solid", by which text is recognised
+  constexpr std::string_view kName = "Penumbra";  // must not begin with "solid", which readers take for a text file
   std::memcpy(bytes.data(), kName.data(), kName.size());
   const auto count = static_cast<std::uint32_t>(soup.triangles.size());
   std::memcpy(bytes.data() + kStlHeader, &count, sizeof count);

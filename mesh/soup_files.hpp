@@ -6,8 +6,8 @@
 
 namespace penumbra::mesh {
 
-/// Writes a soup as .stl (binary: single precision, each triangle with corners of its own) or .off (text, no digit
-/// lost). The file appears whole or not at all (base/atomic_file.hpp: ResourceError).
+/// Writes a soup as .stl (binary: single precision, each triangle with its own corners) or .off (text, without loss of
+/// precision). The file appears whole or not at all (base/atomic_file.hpp: ResourceError).
 void write_stl(const std::filesystem::path& path, const TriangleSoup& soup);
 void write_off(const std::filesystem::path& path, const TriangleSoup& soup);
 

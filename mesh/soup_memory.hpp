@@ -6,7 +6,7 @@
 
 namespace penumbra::mesh {
 
-/// What a soup takes in memory.
+/// Returns the memory that a soup takes.
 constexpr std::uint64_t soup_bytes(std::uint64_t triangles, std::uint64_t positions) {
   return triangles * (sizeof(Triangle) + 2 * sizeof(std::uint32_t)) + positions * sizeof(glm::dvec3);
 }

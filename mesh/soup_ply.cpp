@@ -48,7 +48,7 @@ std::string header(const PlyMesh& mesh) {
   return text + "end_header\n";
 }
 
-/// PLY's usual index type is a signed 32-bit integer; readers know no other.
+/// PLY's usual index type is a signed 32-bit integer, the only one that all readers support.
 std::int32_t index(const PlyMesh& mesh, std::uint32_t i) {
   PENUMBRA_ASSERT(i < mesh.positions.size(), "vertex {} of {}", i, mesh.positions.size());
   return static_cast<std::int32_t>(i);

@@ -21,14 +21,14 @@ struct PlyEdge {
 struct PlyMesh {
   std::vector<glm::dvec3> positions;
   std::vector<Triangle> triangles;
-  std::vector<Color> triangle_colors;  ///< one a triangle, or none at all
+  std::vector<Color> triangle_colors;  ///< one for each triangle, or empty
   std::vector<PlyEdge> edges;
 };
 
 /// Writes a binary little-endian PLY: vertices in double, faces, and, if there are any, face colours (uchar red, green,
 /// blue) and an `edge` element (vertex1, vertex2, red, green, blue). The file appears whole or not at all
-/// (base/atomic_file.hpp: ResourceError). Readers that hold single precision, our importer among them, round the
-/// positions.
+/// (base/atomic_file.hpp: ResourceError). Readers that store single precision, such as this project's importer, round
+/// the positions.
 void write_ply(const std::filesystem::path& path, const PlyMesh& mesh);
 
 }  // namespace penumbra::mesh

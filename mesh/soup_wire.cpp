@@ -1,4 +1,4 @@
-// The program's end of the wire: what the import helper answers about triangles, taken apart on all cores.
+// The program's end of the wire: decodes the import helper's triangles on all cores.
 
 #include "base/pages.hpp"
 #include "base/parallel.hpp"
@@ -21,7 +21,8 @@ T value_at(std::span<const std::byte> bytes, std::size_t i) {
   return value;
 }
 
-/// The list of what `convert` makes of each value that was sent; throws `otherwise` if `is_good` is false of one.
+/// Reads a list of sent values, each converted by `convert`; throws WireError(`otherwise`) if `is_good` is false for
+/// any.
 template <typename Sent, typename T, typename IsGood>
 void get_checked(WireReader& from, std::vector<T>& list, const IsGood& is_good, const char* otherwise) {
   const std::span<const std::byte> sent = from.get_array_in_place<Sent>();
@@ -45,7 +46,7 @@ void get_positions(WireReader& from, std::vector<glm::dvec3>& positions) {
     get_checked<glm::dvec3>(from, positions, finite, kBad);
 }
 
-/// As many numbers as there are triangles. A run's length is believed only where it fits these.
+/// Reads one number for each of `triangles` triangles. A run's length is trusted only if it fits that count.
 void get_numbers(WireReader& from, std::vector<std::uint32_t>& numbers, std::size_t triangles, std::uint32_t step) {
   constexpr const char* kBad = "the triangle arrays differ in length";
   if (!from.get_bool()) {

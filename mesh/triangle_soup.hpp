@@ -11,12 +11,12 @@ namespace penumbra::mesh {
 
 using Triangle = std::array<std::uint32_t, 3>;
 
-/// Triangles as they stand: the default path, on which nothing is ever dropped silently. Positions may repeat,
+/// Triangles as read from a file: the default path, on which nothing is ever dropped silently. Positions may repeat,
 /// triangles may be degenerate, doubled, open, non-manifold. Lengths in the file's unit, double precision.
 struct TriangleSoup {
   std::vector<glm::dvec3> positions;
   std::vector<Triangle> triangles;         ///< indices into positions, all in range
-  std::vector<std::uint32_t> object;       ///< for each triangle, the object it belongs to
+  std::vector<std::uint32_t> object;       ///< for each triangle, the index of its object
   std::vector<std::uint32_t> source_face;  ///< for each triangle, the face's number in the source file (from 0)
 };
 

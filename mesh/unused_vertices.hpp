@@ -7,9 +7,9 @@
 
 namespace penumbra::mesh {
 
-/// Takes out the vertices that no triangle uses, and numbers the others anew in their order. They are no part of a
-/// scene: they would move its origin without being seen. Returns the old numbers of those that stay, in order; empty
-/// where all do.
+/// Removes the vertices that no triangle uses, and renumbers the others in their order. Unused vertices would move a
+/// scene's origin without being visible. Returns the old indices of the remaining vertices, in order; empty if all
+/// remain.
 std::vector<std::uint32_t> drop_unused_vertices(TriangleSoup& soup);
 
 }  // namespace penumbra::mesh

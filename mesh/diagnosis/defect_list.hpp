@@ -11,19 +11,20 @@
 
 namespace penumbra::mesh {
 
-/// Counts defects and keeps the first ones, by their triangles and then their vertices: the same ones whatever the
-/// order in which they are found, in memory proportional to the limit.
+/// Counts defects and keeps the first ones, ordered by their triangles and then their vertices: the result does not
+/// depend on the order in which defects are found, and memory is proportional to the limit.
 class DefectList {
  public:
   explicit DefectList(std::size_t limit) : limit_(limit) {}
 
-  /// There are so many more, all behind `limit` of those that are added.
+  /// Adds `more` defects to the count, all of which come after `limit` of those that are added.
   void count(std::uint64_t more) { count_ += more; }
 
-  /// Could one whose first triangle is this be among those that are kept?
+  /// Returns whether a defect whose first triangle is `first_triangle` could be among the kept ones.
   [[nodiscard]] bool may_list(std::uint32_t first_triangle) const { return limit_ > 0 && first_triangle <= last_; }
 
-  /// Both in the order in which they shall be listed; the triangles ascending, and at least one.
+  /// Adds a defect with its triangles and vertices in the order in which they are to be listed; triangles ascending, at
+  /// least one.
   void add(std::span<const std::uint32_t> triangles, std::span<const std::uint32_t> vertices) {
     ++count_;
     if (!may_list(triangles.front())) return;
@@ -66,7 +67,7 @@ class DefectList {
   std::size_t limit_;
   std::uint64_t count_ = 0;
   std::vector<Mark> marks_;
-  std::uint32_t last_ = 0xffffffffu;  // a mark whose first triangle comes after this one is surplus
+  std::uint32_t last_ = 0xffffffffu;  // defects whose first triangle comes after this one are not kept
 };
 
 }  // namespace penumbra::mesh

@@ -24,8 +24,8 @@ Corners corners_in_space(const MeshView& mesh, const EdgeGraph& graph, std::uint
   return {mesh.positions[corners[0]], mesh.positions[corners[1]], mesh.positions[corners[2]]};
 }
 
-/// Lowest altitude = 2 area / longest edge. In units of the largest coordinate difference: nothing over- or underflows
-/// that the comparison depends on.
+/// Returns whether the lowest altitude (2 area / longest edge) is below kNeedle times the longest edge. Computed in
+/// units of the largest coordinate difference, so that no relevant value over- or underflows.
 bool is_needle(const Corners& p) {
   glm::dvec3 u = 0.5 * p[1] - 0.5 * p[0], v = 0.5 * p[2] - 0.5 * p[0];
   const glm::dvec3 largest = glm::max(glm::abs(u), glm::abs(v));
@@ -36,7 +36,7 @@ bool is_needle(const Corners& p) {
   return glm::length(glm::cross(u, v)) < kNeedle * longest;
 }
 
-/// zero_area_triangles and needles.
+/// Finds zero_area_triangles and needles.
 void diagnose_shapes(const MeshView& mesh, const EdgeGraph& graph, std::size_t list_limit, Diagnosis& diagnosis) {
   DefectList zero_area(list_limit), needles(list_limit);
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -51,7 +51,7 @@ void diagnose_shapes(const MeshView& mesh, const EdgeGraph& graph, std::size_t l
   diagnosis.needles = std::move(needles).finish(mesh);
 }
 
-/// In order of the triangles: the same sum every time.
+/// Sums in the order of the triangles, so that the result is reproducible.
 double signed_volume(const MeshView& mesh, const EdgeGraph& graph, const glm::dvec3& centre) {
   double six_times = 0;
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -69,7 +69,7 @@ Diagnosis diagnose(const MeshView& mesh, const DiagnosisOptions& options) {
     if (options.progress) options.progress(share);
   };
   const std::size_t limit = options.list_limit;
-  const double searched = options.search_intersections ? 0.4 : 1;  // what the search leaves of the progress bar
+  const double searched = options.search_intersections ? 0.4 : 1;  // the fraction of the progress before the search
   Diagnosis diagnosis;
   diagnosis.triangles = mesh.triangles.size();
   const EdgeGraph graph = build_edge_graph(mesh, options.weld);

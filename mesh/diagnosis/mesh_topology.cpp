@@ -9,7 +9,7 @@
 namespace penumbra::mesh {
 namespace {
 
-/// The numbers (3 t + i) of the corners where a triangle's edge begins and ends: at the edge's a, at its b.
+/// Returns the indices (3 t + i) of the corners where a triangle's edge begins and ends: at the edge's a, at its b.
 std::array<std::uint32_t, 2> corners_at_ends(const EdgeGraph& graph, std::uint32_t edge, const Incidence& incidence) {
   const std::uint32_t t = incidence.triangle;
   std::uint32_t i = 0;
@@ -114,14 +114,15 @@ void diagnose_duplicates(const MeshView& mesh, const EdgeGraph& graph, std::size
   DefectList duplicate(list_limit), opposite(list_limit);
   std::vector<Incidence> faces;
   for (std::uint32_t edge = 0; edge < graph.edges.size(); ++edge) {
-    // A face is met at the edge of its two smaller vertices; those of an edge with one apex have the same vertices.
+    // A face is handled at the edge of its two smaller vertices; all faces of an edge with the same apex have the same
+    // vertices.
     const std::uint32_t a = graph.edges[edge].a, b = graph.edges[edge].b;
     faces.clear();
     std::ranges::copy_if(graph.around(edge), std::back_inserter(faces), [&](const auto& i) { return i.apex > b; });
     std::ranges::stable_sort(faces, {}, &Incidence::apex);
     for (auto begin = faces.begin(); begin != faces.end();) {
       const auto end = std::find_if(begin, faces.end(), [&](const auto& i) { return i.apex != begin->apex; });
-      std::array<std::vector<std::uint32_t>, 2> wound;  // one way, the other way
+      std::array<std::vector<std::uint32_t>, 2> wound;  // triangles of either winding
       for (auto face = begin; face != end; ++face) wound[face->reversed ? 1 : 0].push_back(face->triangle);
       for (const auto& same : wound) {
         for (std::size_t i = 1; i < same.size(); ++i) duplicate.add({same[0], same[i]}, {a, b, begin->apex});

@@ -6,16 +6,16 @@
 #include <cstdint>
 #include <vector>
 
-/// How the triangles of a soup hang together: everything here follows from the edge graph, without a coordinate.
+/// Connectivity of a triangle soup: everything here follows from the edge graph, without coordinates.
 namespace penumbra::mesh {
 
-/// The fans of every vertex: its triangles, linked where they share an edge that ends there. However many triangles
-/// such an edge has, they are one fan.
+/// The fans of every vertex: its triangles, linked where they share an edge that ends there. All triangles of such an
+/// edge belong to one fan, however many there are.
 struct Fans {
   static constexpr std::uint32_t kNone = 0xffffffffu;
 
-  std::vector<std::uint32_t> fan;    ///< of corner i of triangle t, at [3 t + i]; kNone where t repeats a vertex
-  std::vector<std::uint32_t> count;  ///< of each vertex
+  std::vector<std::uint32_t> fan;    ///< fan of corner i of triangle t, at [3 t + i]; kNone where t repeats a vertex
+  std::vector<std::uint32_t> count;  ///< number of fans of each vertex
 };
 Fans find_fans(const MeshView& mesh, const EdgeGraph& graph);
 
@@ -23,9 +23,9 @@ std::uint64_t count_vertices(const MeshView& mesh, const EdgeGraph& graph);
 std::uint64_t count_components(const EdgeGraph& graph);
 std::uint64_t count_boundary_loops(const EdgeGraph& graph, const Fans& fans);
 
-/// boundary_edges, non_manifold_edges and inconsistent_windings.
+/// Finds boundary_edges, non_manifold_edges and inconsistent_windings.
 void diagnose_edges(const MeshView& mesh, const EdgeGraph& graph, std::size_t list_limit, Diagnosis& diagnosis);
-/// duplicate_faces and opposite_faces.
+/// Finds duplicate_faces and opposite_faces.
 void diagnose_duplicates(const MeshView& mesh, const EdgeGraph& graph, std::size_t list_limit, Diagnosis& diagnosis);
 Defect non_manifold_vertices(const MeshView& mesh, const EdgeGraph& graph, const Fans& fans, std::size_t list_limit);
 

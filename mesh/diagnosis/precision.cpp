@@ -18,7 +18,7 @@ namespace {
 
 using Floats = std::array<float, 3>;
 
-/// The distance from the largest float ≤ x to the next, were there no largest float.
+/// Returns the distance from the largest float ≤ x to the next float, as if the exponent were unbounded.
 double spacing_of_floats(double x) {
   constexpr int kLowest = std::numeric_limits<float>::min_exponent - 1, kBits = std::numeric_limits<float>::digits - 1;
   return std::ldexp(1.0, (x > 0 ? std::max(std::ilogb(x), kLowest) : kLowest) - kBits);

@@ -5,11 +5,11 @@
 
 namespace penumbra::mesh {
 
-/// lower and upper; then largest_coordinate, float_spacing, shortest_edge, vertices_lost and triangles_lost, which
-/// follow from them.
+/// Computes lower and upper; then largest_coordinate, float_spacing, shortest_edge, vertices_lost and triangles_lost,
+/// which follow from the bounds.
 void diagnose_precision(const MeshView& mesh, const EdgeGraph& graph, Diagnosis& diagnosis);
 
-/// Half way between the bounds, as a scene's origin is: scene floats are float32 of (position − this).
+/// Returns the centre of the bounds, computed as a scene's origin is: scene floats are float32 of (position − centre).
 glm::dvec3 centre_of_bounds(const Diagnosis& diagnosis);
 
 }  // namespace penumbra::mesh

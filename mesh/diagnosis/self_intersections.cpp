@@ -1,12 +1,12 @@
-// The cases by shared vertices are those of CGAL's polygon mesh processing, self_intersections(); the predicates are
-// its kernel's (LGPL).
+// Self-intersections of a soup, exact. The cases by shared vertices are those of CGAL's polygon mesh processing,
+// self_intersections(); the predicates come from CGAL's kernel (LGPL).
 //
-// Whether two triangles meet is a matter of their vertices alone. So those with the same three are searched as one
-// surface, and what is found of it counts for all of them: n triangles in one place cost n log n, not n².
+// Whether two triangles meet depends on their vertices alone. So triangles with the same three vertices are searched as
+// one surface, and each result counts for all of them: n triangles in one place cost n log n, not n².
 //
 // All triangles at one vertex have boxes that overlap there: a fan of n would cost n². Two triangles with a common
-// vertex meet elsewhere exactly if some ray from it goes into both, so those at a vertex of many, a hub, are searched
-// by the directions in which they lie, and the search by boxes leaves pairs out that have a hub in common.
+// vertex meet elsewhere exactly if some ray from that vertex goes into both. So triangles at a vertex of many, a hub,
+// are searched by the directions in which they lie, and the search by boxes skips pairs that have a hub in common.
 
 #include "mesh/diagnosis/self_intersections.hpp"
 
@@ -36,13 +36,13 @@ namespace {
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Point = Kernel::Point_3;
 
-/// Do two triangles meet that have at most two vertices in common?
+/// Tests whether two triangles meet that have at most two vertices in common.
 class PairTest {
  public:
   PairTest(const MeshView& mesh, const EdgeGraph& graph) : mesh_(mesh), graph_(graph) {}
 
   bool operator()(std::uint32_t t, std::uint32_t u) const {
-    // Shared vertices first, in the same order in both.
+    // Shared vertices come first, in the same order in both triangles.
     Triangle a = graph_.corners(mesh_.triangles[t]), b = graph_.corners(mesh_.triangles[u]);
     std::size_t shared = 0;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -72,8 +72,8 @@ class PairTest {
     return CGAL::coplanar(a, b, p, q) && CGAL::coplanar_orientation(a, b, p, q) == CGAL::POSITIVE;
   }
 
-  /// Triangles with p[0] == q[0]. What they share is convex; if it holds another point, follow the ray through it from
-  /// the vertex: it leaves one triangle first, through the far edge, inside the other.
+  /// Tests triangles with p[0] == q[0]. The intersection is convex; if it contains another point, the ray from the
+  /// vertex through that point leaves one triangle first, through the far edge, inside the other.
   static bool meet_away_from_vertex(const std::array<Point, 3>& p, const std::array<Point, 3>& q) {
     const CGAL::Orientation q1 = CGAL::orientation(p[0], p[1], p[2], q[1]);
     const CGAL::Orientation q2 = CGAL::orientation(p[0], p[1], p[2], q[2]);
@@ -86,10 +86,10 @@ class PairTest {
   const EdgeGraph& graph_;
 };
 
-/// Triangles with the same three vertices, ascending.
+/// Triangles with the same three vertices, in ascending order.
 using Copies = std::span<const std::uint32_t>;
 
-/// All triangles with an area, those with the same three vertices side by side.
+/// All triangles with an area, grouped by their three vertices.
 class Surfaces {
  public:
   Surfaces(const MeshView& mesh, const EdgeGraph& graph) {
@@ -116,27 +116,27 @@ class Surfaces {
 
  private:
   std::vector<std::uint32_t> triangles_;
-  std::vector<std::size_t> first_;  ///< of each surface, in `triangles_`; one more at the end
+  std::vector<std::size_t> first_;  ///< begin of each surface in `triangles_`, and the end of the last
 };
 
-/// The pairs that meet: all counted, the first ones listed.
+/// The pairs of triangles that meet: all are counted, the first ones listed.
 class PairList {
  public:
   PairList(const MeshView& mesh, const EdgeGraph& graph, std::size_t limit)
       : mesh_(mesh), graph_(graph), limit_(limit), list_(limit) {}
 
-  /// Every triangle of one surface with every one of another.
+  /// Adds every triangle of one surface with every triangle of another.
   void add(Copies a, Copies b) {
     const std::uint64_t all = std::uint64_t{a.size()} * b.size();
     std::size_t listed = 0;
-    while (listed < limit_ && !a.empty() && !b.empty()) {  // in their order, as many as the whole list can take
+    while (listed < limit_ && !a.empty() && !b.empty()) {  // in list order, as many as the whole list can take
       if (a.front() > b.front()) std::swap(a, b);
       listed += add_first(a.front(), b.first(std::min(b.size(), limit_ - listed)));
       a = a.subspan(1);
     }
     list_.count(all - listed);
   }
-  /// Every two triangles of one surface.
+  /// Adds every two triangles of one surface.
   void add(Copies same) {
     const std::uint64_t all = std::uint64_t{same.size()} * (same.size() - 1) / 2;
     std::size_t listed = 0;
@@ -167,7 +167,7 @@ class PairList {
 
 constexpr std::uint32_t kNone = 0xffffffffu;
 
-/// Vertices of more surfaces than kCrowd, and what lies at each.
+/// Hubs: vertices of more than kCrowd surfaces, and the surfaces at each.
 class Hubs {
  public:
   static constexpr std::uint32_t kCrowd = 64;
@@ -203,7 +203,7 @@ class Hubs {
   }
   static bool have_common(const Few& a, const Few& b) { return first(common(a, b)) != kNone; }
 
-  /// visit(surface, other) for pairs with a common hub, each once: all that may meet elsewhere than in shared vertices.
+  /// Calls visit(surface, other) once for each pair with a common hub that may meet elsewhere than in shared vertices.
   template <typename Visit>
   void find_pairs(const Visit& visit) const {
     for (std::size_t begin = 0, end = 0; begin < at_hubs_.size(); begin = end) {
@@ -218,7 +218,7 @@ class Hubs {
           const std::uint32_t item = tree.order()[i], surface = here[item].second;
           tree.find([&](const Box& box) { return box.meets(boxes[item]); },
                     [&](std::uint32_t other) {
-                      // Two common hubs: the pair is the first one's.
+                      // With two common hubs, the pair is handled at the first.
                       if (other > item && first(common(of(surface), of(here[other].second))) == hub)
                         visit(surface, here[other].second);
                     });
@@ -230,8 +230,8 @@ class Hubs {
  private:
   static std::uint32_t first(const Few& hubs) { return std::ranges::min(hubs); }
 
-  /// A box around the unit vectors from the hub into the triangle: they are an arc between two of them, which is no
-  /// farther from its chord c than 1 − √(1 − c²/4) ≤ c²/4. Rounding is far below 2⁻⁴⁰.
+  /// Returns a box around the unit vectors from the hub into the triangle: these are an arc between two unit vectors,
+  /// which is no farther from its chord c than 1 − √(1 − c²/4) ≤ c²/4. Rounding is far below 2⁻⁴⁰.
   [[nodiscard]] Box directions(const Triangle& corners, std::uint32_t hub) const {
     std::array<glm::dvec3, 2> ends;
     std::size_t count = 0;
@@ -245,9 +245,9 @@ class Hubs {
   }
 
   const MeshView& mesh_;
-  std::vector<Triangle> corners_;                                 ///< of each surface
+  std::vector<Triangle> corners_;                                 ///< corners of each surface
   std::vector<std::pair<std::uint32_t, std::uint32_t>> at_hubs_;  ///< (hub, surface), sorted
-  std::vector<bool> is_hub_;                                      ///< of each vertex; empty if there are none
+  std::vector<bool> is_hub_;                                      ///< for each vertex; empty if there are no hubs
 };
 
 }  // namespace
@@ -262,7 +262,7 @@ Defect find_self_intersections(const MeshView& mesh, const EdgeGraph& graph, std
   }
   const BoxTree tree(boxes);
   const Hubs hubs(mesh, graph, surfaces);
-  std::vector<Hubs::Few> below;  // for each node, the hubs that all below it have in common
+  std::vector<Hubs::Few> below;  // for each node, the hubs that all surfaces below it have in common
   if (!hubs.empty()) below = tree.fold([&](std::uint32_t item) { return hubs.of(item); }, Hubs::common);
   const PairTest meet(mesh, graph);
   tbb::enumerable_thread_specific<PairList> found([&] { return PairList(mesh, graph, list_limit); });

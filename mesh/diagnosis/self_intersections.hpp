@@ -6,11 +6,11 @@
 
 namespace penumbra::mesh {
 
-/// Every pair of triangles with an area that meet elsewhere than in a vertex or edge that they share: exact, on all
-/// cores. Triangles with the same three vertices do, so do neighbours that fold onto one another. Costs a test for each
-/// pair whose boxes overlap, those with the same three vertices taken as one: about n log n for a surface however often
-/// it is repeated, n² for a heap of different triangles as large as the whole. A place's points are the first
-/// triangle's corners, then the second's.
+/// Finds every pair of triangles with an area that meet elsewhere than in a vertex or edge that they share: exact, on
+/// all cores. This includes triangles with the same three vertices, and neighbours that fold onto one another. Costs a
+/// test for each pair of overlapping boxes, triangles with the same three vertices taken as one: about n log n for a
+/// surface, however often it is repeated, n² for a heap of different triangles as large as the whole. The points of a
+/// listed place are the first triangle's corners, then the second's.
 Defect find_self_intersections(const MeshView& mesh, const EdgeGraph& graph, std::size_t list_limit,
                                const Progress& progress);
 

@@ -1,6 +1,7 @@
-// Candidates by a tree over the vertices that each edge descends as a segment (a long diagonal edge has a large box,
-// but passes few vertices); the verdict is exact. The descent errs only on the side of more candidates.
-// Many vertices on one line with many edges on it would be a quadratic number of pairs: the vertices on the line of a
+// T-junctions: vertices exactly inside edges. Candidates come from a tree over the vertices, which each edge traverses
+// as a segment (a long diagonal edge has a large box, but passes few vertices); the verdict is exact. The traversal
+// errs only toward more candidates.
+// Many vertices on one line with many edges on it would give a quadratic number of pairs: the vertices on the line of a
 // crowded edge are found and sorted once, and every other edge on that line counts those between its ends by two binary
 // searches.
 
@@ -22,10 +23,11 @@
 namespace penumbra::mesh {
 namespace {
 
-/// A segment that asks which boxes it meets, by separating axes (Ericson 2005, Real-Time Collision Detection, 5.3.3).
-/// Coordinates within [−1, 1]. "No" is certain: the box of the segment is compared exactly, and the three cross
-/// products carry a bound on their error: with |T| ≤ 2 and e ≤ 1 each computed to within 2⁻⁵¹, and h to within
-/// 2⁻⁵³ of itself, both sides of each comparison are off by less than 2⁻⁴⁸ (|h_j| + |h_k|), or 2⁻¹⁰⁰⁰ on underflow.
+/// Tests which boxes a segment meets, by separating axes (Ericson 2005, Real-Time Collision Detection, 5.3.3).
+/// Coordinates are within [−1, 1]. The answer "no" is certain: the box of the segment is compared exactly, and the
+/// three cross products carry a bound on their error: with |T| ≤ 2 and e ≤ 1 each computed to within 2⁻⁵¹, and h to
+/// within 2⁻⁵³ of itself, both sides of each comparison are off by less than 2⁻⁴⁸ (|h_j| + |h_k|), or 2⁻¹⁰⁰⁰ on
+/// underflow.
 class SegmentQuery {
  public:
   SegmentQuery(const glm::dvec3& a, const glm::dvec3& b)
@@ -35,7 +37,7 @@ class SegmentQuery {
   }
 
   bool reaches(const Box& box) const { return box_.meets(box) && line_reaches(box); }
-  /// The same of the whole line that the segment lies on; it takes three of the axes, and the same bounds hold.
+  /// Tests the whole line that contains the segment; this needs three of the axes, and the same error bounds hold.
   bool line_reaches(const Box& box) const {
     const glm::dvec3 t = middle_ - (0.5 * box.lower + 0.5 * box.upper), e = 0.5 * box.upper - 0.5 * box.lower;
     for (int i = 0; i < 3; ++i) {
@@ -53,7 +55,7 @@ class SegmentQuery {
   Box box_;
 };
 
-/// A power of two that brings the largest coordinate to [0.5, 1): exact, but where it underflows.
+/// Returns a power of two that brings the largest coordinate to [0.5, 1): exact, except for underflow.
 double scale_to_one(const MeshView& mesh, std::span<const std::uint32_t> vertices) {
   double largest = 0;
   for (const std::uint32_t v : vertices) {
@@ -75,7 +77,8 @@ std::vector<std::uint32_t> used_vertices(const MeshView& mesh, const EdgeGraph& 
   return vertices;
 }
 
-/// The first axis along which the edge's ends differ: on their line, positions are ordered by it.
+/// Returns the first axis along which the edge's ends differ: positions on the edge's line are ordered by this
+/// coordinate.
 int telling_axis(const glm::dvec3& a, const glm::dvec3& b) {
   for (int i = 0; i < 2; ++i) {
     if (a[i] != b[i]) return i;
@@ -88,7 +91,7 @@ bool strictly_between(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3
   return std::min(a[i], b[i]) < p[i] && p[i] < std::max(a[i], b[i]);
 }
 
-/// An edge with more vertices in it than this is crowded.
+/// An edge that contains more vertices than this is crowded.
 constexpr std::size_t kCrowded = 32;
 
 class Search {
@@ -104,7 +107,7 @@ class Search {
 
   Defect run(const Progress& progress) {
     Progress::Counter counter(progress, graph_.edges.size());
-    // In the order of the tree, so that successive searches go the same ways through memory; edges are sorted by a.
+    // Searches in the order of the tree, so that successive searches visit the same memory; edges are sorted by a.
     for_each_index(vertices_.size(), [&](std::size_t i) {
       const std::uint32_t v = vertices_[tree_.order()[i]];
       auto edge = std::ranges::lower_bound(graph_.edges, Edge{v, 0});
@@ -153,7 +156,7 @@ class Search {
     for (const std::uint32_t v : inside) found_.local().add(triangles, std::array{v, a, b});
   }
 
-  /// By their first triangles, so that the list is full soon and the others are counted alone.
+  /// Adds edges by their first triangles, so that the list is full soon and the remaining ones are only counted.
   void add_crowded(DefectList& all) {
     Numbers edges;
     for (const Numbers& some : crowded_) edges.insert(edges.end(), some.begin(), some.end());
@@ -182,7 +185,8 @@ class Search {
     }
   }
 
-  /// The number in `lines_` of the line through two vertices: two vertices that lie on one known line lie on no other.
+  /// Returns the index in `lines_` of the line through two vertices: two vertices that lie on one known line lie on no
+  /// other.
   std::size_t line_through(std::uint32_t a, std::uint32_t b) {
     const Numbers &at_a = lines_at_[a], &at_b = lines_at_[b];
     for (const std::uint32_t line : at_a) {
@@ -210,8 +214,8 @@ class Search {
   BoxTree tree_;
   tbb::enumerable_thread_specific<DefectList> found_;
   tbb::enumerable_thread_specific<Numbers> inside_, crowded_;
-  std::vector<Numbers> lines_;     ///< of crowded edges: the vertices on each, in order along it
-  std::vector<Numbers> lines_at_;  ///< for each vertex, those that it lies on
+  std::vector<Numbers> lines_;     ///< for each line of crowded edges, the vertices on it, in order along it
+  std::vector<Numbers> lines_at_;  ///< for each vertex, the lines through it
 };
 
 }  // namespace

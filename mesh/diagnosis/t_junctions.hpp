@@ -6,8 +6,8 @@
 
 namespace penumbra::mesh {
 
-/// Every (vertex, edge) where the vertex, any triangle's corner, lies exactly inside the open edge. A place's points
-/// are the vertex and the edge's two ends; its triangles are the edge's.
+/// Finds every (vertex, edge) where the vertex, any triangle's corner, lies exactly inside the open edge. The points of
+/// a listed place are the vertex and the edge's two ends; its triangles are those of the edge.
 Defect find_t_junctions(const MeshView& mesh, const EdgeGraph& graph, std::size_t list_limit, const Progress& progress);
 
 }  // namespace penumbra::mesh

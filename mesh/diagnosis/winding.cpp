@@ -1,9 +1,10 @@
-// Why a test at each vertex suffices. The signed boundary is a sum of m_e [a_e → b_e]. Different lines share no more
-// than a point, so it is zero exactly if its part on each line is. That part has, along the line, a piecewise constant
-// multiplicity that is zero far away, so it is zero everywhere exactly if it never jumps; at a point v it jumps by the
-// sum of ±m_e over the edges on this line that end (+) or begin (−) there. So: at each vertex, group the edges by the
-// line through the vertex that they lie on, and each group must sum to zero. Triangles without area need no care: the
-// three edges of a collinear one cancel on their line by themselves.
+// Watertightness of a soup by its signed boundary; here is why a test at each vertex suffices. The signed boundary is a
+// sum of m_e [a_e → b_e]. Different lines share at most a point, so the boundary is zero exactly if its part on each
+// line is. That part has, along the line, a piecewise constant multiplicity that is zero far away, so it is zero
+// everywhere exactly if it never jumps; at a point v it jumps by the sum of ±m_e over the edges on this line that end
+// (+) or begin (−) there. So: at each vertex, group the edges by the line through the vertex that they lie on, and each
+// group must sum to zero. Triangles without area need no special case: the three edges of a collinear one cancel on
+// their line by themselves.
 
 #include "mesh/diagnosis/winding.hpp"
 
@@ -19,15 +20,15 @@
 namespace penumbra::mesh {
 namespace {
 
-/// An edge of the signed boundary as one of its ends sees it.
+/// An edge of the signed boundary, seen from one of its ends.
 struct End {
   std::uint32_t other = 0;  // the far end
   int sum = 0;              // m_e, negative where the edge begins
 };
 
-/// The boundary's ends, grouped by vertex.
+/// The ends of boundary edges, grouped by vertex.
 struct Ends {
-  std::vector<std::uint32_t> first;  // for each vertex, its first one in `ends`; one more at the end
+  std::vector<std::uint32_t> first;  // begin of each vertex in `ends`, and the end of the last
   std::vector<End> ends;
 };
 
@@ -45,7 +46,8 @@ Ends boundary_ends(const EdgeGraph& graph, const std::vector<bool>& turned) {
   for_each_index(sums.size(),
                  [&](std::size_t edge) { sums[edge] = signed_sum(graph, static_cast<std::uint32_t>(edge), turned); });
   Ends all;
-  all.first.resize(graph.vertex.size() + 2);  // counted two places on, so that filling leaves each group's begin
+  all.first.resize(graph.vertex.size() + 2);  // counted two places on, so that after filling each entry is its group's
+                                              // begin
   for (std::size_t i = 0; i < sums.size(); ++i) {
     if (sums[i] != 0) ++all.first[graph.edges[i].a + 2], ++all.first[graph.edges[i].b + 2];
   }
@@ -61,7 +63,7 @@ Ends boundary_ends(const EdgeGraph& graph, const std::vector<bool>& turned) {
   return all;
 }
 
-/// Do the edges that end at v cancel on each line through v?
+/// Returns whether the edges that end at v cancel on each line through v.
 bool cancels(std::span<const glm::dvec3> positions, std::uint32_t v, std::span<End> ends) {
   const auto compare = [&](const End& e, const End& f) {
     return compare_lines(positions[v], positions[e.other], positions[f.other]);
@@ -77,7 +79,8 @@ bool cancels(std::span<const glm::dvec3> positions, std::uint32_t v, std::span<E
   return true;
 }
 
-/// Which triangle of a patch decides its winding if turned and unturned ones are equally many.
+/// Returns a triangle's sorted corners: the tie breaker that decides a patch's winding if turned and unturned triangles
+/// are equally many.
 std::array<std::array<double, 3>, 3> sorted_corners(const MeshView& mesh, const Triangle& corners) {
   std::array<std::array<double, 3>, 3> sorted;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -88,7 +91,8 @@ std::array<std::array<double, 3>, 3> sorted_corners(const MeshView& mesh, const 
   return sorted;
 }
 
-/// A patch of neighbours, all wound like its first triangle except those in `turned`; nothing if that is impossible.
+/// A patch of neighbours, all wound like its first triangle except those in `turned`; `orientable` is false if no such
+/// winding exists.
 struct Patch {
   std::vector<std::uint32_t> triangles;
   bool orientable = true;
@@ -116,7 +120,7 @@ Patch grow_patch(const EdgeGraph& graph, std::uint32_t seed, std::vector<bool>& 
   return patch;
 }
 
-/// Most triangles of the patch are turned; or half, and the first one in space is.
+/// Returns whether most triangles of the patch are turned; or exactly half, among them the first one in space.
 bool should_turn_back(const MeshView& mesh, const EdgeGraph& graph, const Patch& patch,
                       const std::vector<bool>& turned) {
   const auto count =

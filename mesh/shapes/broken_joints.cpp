@@ -23,12 +23,12 @@ void build_sheet(LatticeMesh& mesh, int s) {
   mesh.add_sheet(wall(s));
 }
 
-/// Edges of a sheet of s² cells that are not on its rim.
+/// Returns the number of edges of a sheet of s² cells that are not on its rim.
 Count inner_edges(Count s) {
   return 3 * s * s - 2 * s;
 }
 
-/// Both sides of a sheet, on the same vertices: closed, with nothing inside.
+/// Builds both sides of a sheet, on the same vertices: closed, with nothing inside.
 void build_pillow(LatticeMesh& mesh, int s) {
   build_sheet(mesh, s);
   mesh.add_sheet({{0, 0, 0}, kY, kX, s, s});
@@ -47,7 +47,7 @@ void build_doubled_sheet(LatticeMesh& mesh, int s) {
   build_sheet(mesh, s);
   build_sheet(mesh, s);
 }
-/// On the rim each triangle meets its double across an edge of two triangles. A face and its double are no neighbours
+/// On the rim each triangle meets its double across an edge of two triangles. A face and its double are not neighbours
 /// that could be turned to agree (the two would cancel): the sheet stays open.
 Known know_doubled_sheet(Count s) {
   Known known = know_pillow(s);
@@ -61,7 +61,7 @@ void build_doubled_box(LatticeMesh& mesh, int s) {
   box(mesh, s);
   box(mesh, s);
 }
-/// 18 s² edges, each with four triangles; the winding number inside is 2.
+/// The box has 18 s² edges, each with four triangles; the winding number inside is 2.
 Known know_doubled_box(Count s) {
   Known known = known_box(s);
   known.duplicate_faces = known.self_intersections = 12 * s * s;
@@ -70,8 +70,8 @@ Known know_doubled_box(Count s) {
   return known;
 }
 
-/// A square ring of 2 s cells a side between its corners, lying flat except on its first side, where it turns upright
-/// and on, upside down.
+/// Builds a square ring of 2 s cells a side between its corners, lying flat except on its first side, where it turns
+/// upright and further, upside down.
 void build_moebius(LatticeMesh& mesh, int s) {
   const int near = kCell, far = (2 * s + 1) * kCell, out = (2 * s + 2) * kCell, half = kCell / 2;
   using Rung = std::pair<glm::ivec3, glm::ivec3>;  // from inside to outside; after the turn, from outside to inside
@@ -122,7 +122,7 @@ Known know_shared_edge(Count s) {
   return known;
 }
 
-/// One sheet across the middle of a box of 2 s cells.
+/// Builds one sheet across the middle of a box of 2 s cells.
 void build_inner_wall(LatticeMesh& mesh, int s) {
   mesh.add_box({0, 0, 0}, {2 * s, s, s});
   mesh.add_sheet({s * kX, kY, kZ, s, s});
@@ -137,7 +137,7 @@ Known know_inner_wall(Count s) {
   return known;
 }
 
-/// Two boxes with a side in common, twice there, once for each.
+/// Builds two boxes with a side in common, which exists twice, once for each box.
 void build_shared_wall(LatticeMesh& mesh, int s) {
   box(mesh, s);
   box(mesh, s, s * kX);
@@ -173,29 +173,29 @@ Known know_bowtie_sheets(Count s) {
   return known;
 }
 
-/// A flat sheet, and an upright one that crosses its first column of cells half-way: along the line both are cut in
-/// pieces, the first at j and j + 1/2, the second, which starts at 1/8 and is crossed at a quarter of a cell's height,
-/// at j + 1/8 and j + 3/8.
+/// Builds a flat sheet, and an upright one that crosses its first column of cells in the middle: along the line both
+/// are cut into pieces, the first at j and j + 1/2, the second, which starts at 1/8 and is crossed at a quarter of a
+/// cell's height, at j + 1/8 and j + 3/8.
 void build_crossing_sheets(LatticeMesh& mesh, int s) {
   const int height = s / 2 * kCell + kCell / 4;
   mesh.add_sheet({{0, height, 0}, kZ, kX, s, s});
   mesh.add_sheet({{kCell / 2, 0, kCell / 8}, kY, kZ, s, s});
 }
-/// The line's common part runs from 1/8 to s. Inside it are 2 s − 1 ends of the first's pieces and 2 s − 1 of the
-/// second's, none at the same place: each begins another pair.
+/// The line's common part runs from 1/8 to s. Inside it are 2 s − 1 ends of the first sheet's pieces and 2 s − 1 of the
+/// second's, all at different places: each begins another pair.
 Known know_crossing_sheets(Count s) {
   Known known = twice(known_sheet(s));
   known.self_intersections = 4 * s - 1;
   return known;
 }
 
-/// A place inside the triangle abc of cell i of the top of s³ cells, `dx`, `dz` eighths of a cell from its (1/4, 3/4).
-/// Within ±1/8 it stays inside: c = (1, 1) and b = (0, 1), and it is on the side of ac where z > x.
+/// Returns a place inside the triangle abc of cell i of the top of s³ cells, `dx`, `dz` eighths of a cell from the
+/// cell's (1/4, 3/4). Within ±1/8 it stays inside: c = (1, 1) and b = (0, 1), and it is on the side of ac where z > x.
 glm::ivec3 in_top(int s, int i, int dx, int dz) {
   return s * kY + i * kZ + glm::ivec3((2 + dx) * kCell / 8, 0, (6 + dz) * kCell / 8);
 }
 
-/// Triangles with their tips through the top.
+/// Builds triangles whose tips pierce the top.
 void build_piercing(LatticeMesh& mesh, int s) {
   box(mesh, s);
   for (int i = 0; i < s; ++i) {
@@ -217,7 +217,7 @@ Known know_piercing(Count s) {
   return known;
 }
 
-/// Tetrahedra with their tips through the top: three of the four sides cross it.
+/// Builds tetrahedra whose tips pierce the top: three of the four sides cross it.
 void build_spikes(LatticeMesh& mesh, int s) {
   box(mesh, s);
   for (int i = 0; i < s; ++i) {
@@ -238,7 +238,7 @@ Known know_spikes(Count s) {
   return known;
 }
 
-/// Triangles that lie in the top.
+/// Builds triangles that lie in the top.
 void build_decals(LatticeMesh& mesh, int s) {
   box(mesh, s);
   for (int i = 0; i < s; ++i) {
@@ -246,9 +246,9 @@ void build_decals(LatticeMesh& mesh, int s) {
   }
 }
 
-/// Two sheets on a plane: the last cell of the one and the first of the other overlap. The second is shifted half a
-/// cell along the row, a quarter across: of the four pairs of triangles, abc of the second and acd of the first, which
-/// the diagonals keep apart, do not meet.
+/// Builds two sheets on a plane: the last cell of the first and the first cell of the second overlap. The second is
+/// shifted half a cell along the row, a quarter across: of the four pairs of triangles, abc of the second and acd of
+/// the first, which the diagonals keep apart, do not meet.
 void build_overlap(LatticeMesh& mesh, int s) {
   build_sheet(mesh, s);
   mesh.add_sheet({(s - 1) * (kX + kY) + kX / 2 + kY / 4, kX, kY, s, s});

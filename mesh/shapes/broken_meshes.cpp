@@ -17,10 +17,10 @@ namespace {
 using broken::LatticeMesh;
 using broken::Lift;
 
-/// Where the lattice stands in space: at center + step · (place − middle), with no rounding anywhere.
+/// Maps the lattice to space: center + step · (place − middle), without any rounding.
 class Placement {
  public:
-  /// The box from low to high, as large as fits within `half_extent` with a step that is a power of two.
+  /// Maps the box from `low` to `high`, as large as fits within `half_extent` with a step that is a power of two.
   Placement(const glm::dvec3& low, const glm::dvec3& high, const glm::dvec3& center, double half_extent)
       : middle_((low + high) / 2.0) {
     const glm::dvec3 half = (high - low) / 2.0;
@@ -32,7 +32,7 @@ class Placement {
 
   [[nodiscard]] glm::dvec3 of(const glm::dvec3& place) const { return center_ + step_ * (place - middle_); }
 
-  /// Representable next to every coordinate of the whole.
+  /// Returns a step that is representable next to every coordinate of the whole.
   [[nodiscard]] double smallest_step(Lift lift) const {
     if (lift == Lift::none) return 0;
     return std::exp2(std::ilogb(far_) - (lift == Lift::float_step ? 23 : 52));
@@ -64,7 +64,7 @@ const broken::Defect& find_defect(std::string_view name) {
   throw InputError("there is no defect \"{}\"; there are {}", name, fmt::join(names, ", "));
 }
 
-/// Before any memory is asked for.
+/// Checked before memory is allocated.
 KnownDiagnosis known_of(const BrokenShape& shape) {
   if (shape.defects.empty()) throw InputError("a broken mesh needs at least one defect (\"none\" is one)");
   if (shape.size == 0 || shape.size > kMaxBrokenSize) {
@@ -73,7 +73,7 @@ KnownDiagnosis known_of(const BrokenShape& shape) {
   KnownDiagnosis known;
   for (const std::string& name : shape.defects) {
     broken::add(known, find_defect(name).known(shape.size));
-    builder::checked({known.triangles, known.vertices});  // each time, so that no sum overflows
+    builder::checked({known.triangles, known.vertices});  // checked after each part, so that no sum overflows
   }
   return known;
 }
@@ -87,14 +87,14 @@ Box bounds_of(const LatticeMesh& mesh) {
   return box;
 }
 
-/// A part and where its lattice's zero is on the lattice of the whole.
+/// A part, and the place of its lattice's zero on the lattice of the whole.
 struct Part {
   LatticeMesh mesh;
   Box box;
   glm::dvec3 at{0};
 };
 
-/// In rows along X, rows one behind the other along −Z, all on the same ground, with a cell between them.
+/// Places parts in rows along X, rows one behind the other along −Z, all on the same ground, one cell apart.
 void set_beside_each_other(std::vector<Part>& parts) {
   const auto columns = static_cast<std::size_t>(std::ceil(std::sqrt(static_cast<double>(parts.size()))));
   glm::ivec3 widest(0);
@@ -171,7 +171,7 @@ TriangleSoup make_lattice_soup(const LatticeSoup& soup) {
   std::mt19937 random(soup.seed);
   const auto coordinate = [&] { return static_cast<double>(random() % (std::uint64_t{soup.cells} + 1)); };
   TriangleSoup result;
-  result.positions.reserve(std::size_t{3} * soup.triangles);  // what was checked, and not the next power of two
+  result.positions.reserve(std::size_t{3} * soup.triangles);  // exactly the checked size, not the next power of two
   result.triangles.reserve(soup.triangles);
   for (std::uint32_t i = 0; i < soup.triangles; ++i) {
     for (int corner = 0; corner < 3; ++corner) {

@@ -15,12 +15,12 @@
 /// Meshes with each defect that real files have, alone and combined, small and large, each with its known diagnosis:
 /// the counts are formulas in the generator, not results of a search. Deterministic.
 ///
-/// All coordinates (but those that a gap lifts by a hair) are whole multiples of a step that is a power of two,
-/// whatever centre and size are asked for: "exactly on" is exact in double, and in float as long as fewer than 2²³
-/// steps lie between a vertex and the scene's origin. A cell is 2048 steps long.
+/// All coordinates (except those that a gap lifts by the smallest step) are whole multiples of a step that is a power
+/// of two, for any centre and size: "exactly on" is exact in double, and in float as long as fewer than 2²³ steps lie
+/// between a vertex and the scene's origin. A cell is 2048 steps long.
 namespace penumbra::mesh {
 
-/// The counts of Diagnosis that a generator knows beforehand.
+/// The counts of Diagnosis that a generator predicts.
 struct KnownDiagnosis {
   std::uint64_t triangles = 0, vertices = 0, components = 0;
   bool closed = true, closed_as_wound = true;
@@ -35,13 +35,14 @@ struct BrokenMesh {
 };
 
 struct BrokenShape {
-  std::vector<std::string> defects;  ///< names from broken_defects(), in any number; each adds a part beside the others
+  std::vector<std::string> defects;  ///< names from broken_defects(), in any number; each adds a separate part
   std::uint32_t size = 1;            ///< cells along an edge of a part: 1 the smallest, 64 a large mesh
-  glm::dvec3 center{0};              ///< of the whole's bounds, to the nearest step
-  double half_extent = 1;            ///< of the whole, at most, along its longest axis; at least half of that
+  glm::dvec3 center{0};              ///< centre of the whole mesh's bounds, to the nearest step
+  double half_extent = 1;            ///< largest half extent of the whole mesh, along its longest axis; at least half
+                                     ///< of that is used
 };
 
-/// The defects that can be asked for, each with a sentence on what it is.
+/// The available defects, each with a one-sentence description.
 struct DefectName {
   std::string_view name, what;
 };
@@ -49,21 +50,21 @@ std::span<const DefectName> broken_defects();
 
 inline constexpr std::uint32_t kMaxBrokenSize = 2048;
 
-/// Throws InputError for an unknown name (and says which exist), for no name, a size of 0 or above kMaxBrokenSize, and
-/// more triangles than kMaxShapeTriangles.
+/// Throws InputError for an unknown name (listing the known ones), for an empty list of names, a size of 0 or above
+/// kMaxBrokenSize, and more triangles than kMaxShapeTriangles.
 BrokenMesh make_broken_mesh(const BrokenShape& shape);
-/// Of the vertices only the different ones. Throws as make_broken_mesh.
+/// Returns the size; `vertices` counts only different ones. Throws as make_broken_mesh does.
 ShapeSize shape_size(const BrokenShape& shape);
 
 struct LatticeSoup {
   std::uint32_t triangles = 64;
-  std::uint32_t cells = 4;  ///< corners are drawn from {0 … cells}³: the fewer, the more coincidences
+  std::uint32_t cells = 4;  ///< corners are drawn from {0 … cells}³: fewer cells give more coincidences
   std::uint32_t seed = 1;
-  glm::dvec3 center{0};    ///< of the lattice, to the nearest step
-  double half_extent = 1;  ///< of the lattice, at most; at least half of that
+  glm::dvec3 center{0};    ///< centre of the lattice, to the nearest step
+  double half_extent = 1;  ///< largest half extent of the lattice; at least half of that is used
 };
-/// Random triangles whose corners are drawn from a tiny lattice: duplicates, overlaps, T-junctions, zero areas and
-/// non-manifold edges are the rule.
+/// Returns random triangles whose corners are drawn from a tiny lattice, so that duplicates, overlaps, T-junctions,
+/// zero areas and non-manifold edges are frequent.
 TriangleSoup make_lattice_soup(const LatticeSoup& soup);
 ShapeSize shape_size(const LatticeSoup& soup);
 

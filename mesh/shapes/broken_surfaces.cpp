@@ -4,7 +4,7 @@
 #include <utility>
 
 /// Defects in the surface of a closed box of s³ cells. Each is made once in every cell of the top's first row (s times)
-/// unless it says otherwise; "patch" is a square of h = ⌈s/2⌉ cells in the top's first corner.
+/// unless noted; "patch" is a square of h = ⌈s/2⌉ cells in the top's first corner.
 namespace penumbra::mesh::broken {
 namespace {
 
@@ -31,7 +31,7 @@ Known know_hole(Count s) {
   return known;
 }
 
-/// Every other cell of every other row, in the top and in the bottom: h² holes each, none of which touch.
+/// Removes every other cell of every other row, in the top and in the bottom: h² holes each, none of which touch.
 void build_holes(LatticeMesh& mesh, int s) {
   const auto keep = [](int i, int j) { return i % 2 == 1 || j % 2 == 1; };
   mesh.add_sheet(top(s), keep);
@@ -48,8 +48,8 @@ Known know_holes(Count s) {
   return known;
 }
 
-/// Cells (0, 0) and (1, 1) of a top of (s + 1)² cells: the vertex between them has two fans, each from a side of the
-/// one hole to a side of the other. Followed through the fans, the boundary is one loop.
+/// Removes cells (0, 0) and (1, 1) of a top of (s + 1)² cells: the vertex between them has two fans, each from a side
+/// of one hole to a side of the other. Followed through the fans, the boundary is one loop.
 void build_touching_holes(LatticeMesh& mesh, int s) {
   mesh.add_sheet(top(s + 1), [](int i, int j) { return i != j || i > 1; });
   mesh.add_open_box({0, 0, 0}, glm::ivec3(s + 1));
@@ -71,7 +71,7 @@ void build_flipped_triangle(LatticeMesh& mesh, int s) {
 Known know_flipped_triangle(Count s) {
   Known known = known_box(s);
   known.closed_as_wound = false;
-  known.inconsistent_windings = 3 * s;  // no two of them are neighbours
+  known.inconsistent_windings = 3 * s;  // no two of the flipped triangles are neighbours
   return known;
 }
 
@@ -130,7 +130,7 @@ Triangle split_side(LatticeMesh& mesh, int i) {
   return {a, b, middle};
 }
 
-/// Both halves of the split triangle meet the one across along half its side, which neither has for a side.
+/// Both halves of the split triangle meet the triangle across ab along half of its side, which is a side of neither.
 void add_split(Known& known, Count times) {
   known.triangles += times;
   known.vertices += times;
@@ -138,7 +138,7 @@ void add_split(Known& known, Count times) {
   known.self_intersections += 2 * times;
 }
 
-/// Every other cell, so that the cracks do not touch.
+/// Splits every other cell, so that the cracks do not touch.
 void build_t_junction(LatticeMesh& mesh, int s) {
   box(mesh, s);
   for (int i = 0; i < s; i += 2) split_side(mesh, i);
@@ -151,7 +151,7 @@ Known know_t_junction(Count s) {
   return known;
 }
 
-/// Every cell: one loop, and vertices along it where two fans meet.
+/// Opens every cell: one loop, and vertices along it where two fans meet.
 void build_crack(LatticeMesh& mesh, int s) {
   box(mesh, s);
   for (int i = 0; i < s; ++i) split_side(mesh, i);
@@ -165,7 +165,7 @@ Known know_crack(Count s) {
   return known;
 }
 
-/// A crack whose sides are joined by triangles without area.
+/// Builds a crack whose sides are joined by triangles without area.
 void build_collinear(LatticeMesh& mesh, int s) {
   box(mesh, s);
   for (int i = 0; i < s; ++i) {
@@ -204,7 +204,7 @@ Known know_repeated_vertex(Count s) {
   return known;
 }
 
-/// A vertex one lattice step inside the middle of ab: the triangle under it is as high as one step.
+/// Adds a vertex one lattice step inside the middle of ab: the triangle under it has the height of one step.
 void build_needle(LatticeMesh& mesh, int s) {
   box(mesh, s);
   for (int i = 0; i < s; ++i) {
@@ -223,7 +223,7 @@ Known know_needle(Count s) {
   return known;
 }
 
-/// A strip of cells that stands on the top's edge.
+/// Adds a strip of cells that stands on the top's edge.
 void build_fin(LatticeMesh& mesh, int s) {
   box(mesh, s);
   mesh.add_sheet({s * kY, kZ, kY, s, 1});
@@ -239,8 +239,8 @@ Known know_fin(Count s) {
   return known;
 }
 
-/// The top in cells half as long: closed as a set of points, though no edge of the rim has two triangles. At each
-/// middle of a rim edge three of the top's triangles meet the one below.
+/// Builds the top with cells half as long: closed as a set of points, though no edge of the rim has two triangles. At
+/// each middle of a rim edge three of the top's triangles meet the one below.
 void build_lid(LatticeMesh& mesh, int s) {
   mesh.add_sheet({s * kY, kZ / 2, kX / 2, 2 * s, 2 * s});
   mesh.add_open_box({0, 0, 0}, {s, s, s});
@@ -256,7 +256,7 @@ Known know_lid(Count s) {
   return known;
 }
 
-/// A hole, and what was in it a hair above.
+/// Builds a hole, and its cut-out part slightly above.
 void build_lifted(LatticeMesh& mesh, int s, Lift lift) {
   build_hole(mesh, s);
   mesh.lift_from_here(lift);
@@ -280,7 +280,8 @@ void build_unmerged(LatticeMesh& mesh, int s) {
   mesh.separate();
 }
 
-/// Twice as many cells: half-way up, at y = 0 if that is where the mesh's centre is, lies a row of vertices.
+/// Uses twice as many cells, so that a row of vertices lies in the middle of the height, at y = 0 if the mesh's centre
+/// is there.
 void build_negative_zero(LatticeMesh& mesh, int s) {
   build_unmerged(mesh, 2 * s);
   mesh.signed_zeros = true;

@@ -10,12 +10,12 @@
 #include <cstdint>
 #include <numbers>
 
-/// What the shape generators share; no header of the room's interface.
+/// Shared by the shape generators; not part of the room's interface.
 namespace penumbra::mesh::builder {
 
 inline constexpr double kTau = 2 * std::numbers::pi;
 
-/// The size, unless it is more than any shape may have.
+/// Returns `size`; throws if it exceeds the limit of shapes.
 inline ShapeSize checked(const ShapeSize& size) {
   if (size.triangles > kMaxShapeTriangles) {
     throw InputError("the shape would have {} triangles; at most {} are generated", size.triangles, kMaxShapeTriangles);
@@ -23,13 +23,13 @@ inline ShapeSize checked(const ShapeSize& size) {
   return size;
 }
 
-/// Says no before the memory is asked for.
+/// Throws before memory is allocated that this process cannot have.
 inline void require_room(const ShapeSize& size) {
   require_memory(soup_bytes(size.triangles, size.vertices), fmt::format("a shape of {} triangles", size.triangles),
                  "make it smaller");
 }
 
-/// An empty one with that room.
+/// Returns an empty soup with reserved memory.
 inline TriangleSoup soup_with_room(const ShapeSize& size) {
   require_room(size);
   TriangleSoup soup;
@@ -48,21 +48,21 @@ inline void add_quad(TriangleSoup& soup, std::uint32_t a, std::uint32_t b, std::
   soup.triangles.push_back({a, c, d});
 }
 
-/// The corners of a box's six sides, counter-clockwise from outside; bit 0, 1, 2 of a corner: at the upper end of
-/// x, y, z. The side at −Z comes last.
+/// The corners of a box's six sides, counter-clockwise from outside; bits 0, 1, 2 of a corner mean the upper end of x,
+/// y, z. The side at −Z comes last.
 inline constexpr std::array<std::array<std::uint32_t, 4>, 6> kBoxSides{
     {{1, 3, 7, 5}, {0, 4, 6, 2}, {2, 6, 7, 3}, {0, 1, 5, 4}, {4, 5, 7, 6}, {0, 2, 3, 1}}};
 
-/// Eight corners in the numbering of kBoxSides; returns the first.
+/// Adds eight corners in the numbering of kBoxSides; returns the first index.
 std::uint32_t add_box_corners(TriangleSoup& soup, const glm::dvec3& low, const glm::dvec3& high);
 void add_box(TriangleSoup& soup, const glm::dvec3& low, const glm::dvec3& high);
 void append(TriangleSoup& soup, const TriangleSoup& other);
 
-/// A tube closed in both directions: vertex (i, j) is first + i · sides + j. Normals are outward if going round the
-/// sides turns counter-clockwise about the direction of growing i.
+/// Adds the faces of a tube closed in both directions: vertex (i, j) is first + i · sides + j. Normals are outward if
+/// the sides run counter-clockwise about the direction of growing i.
 void add_ring_faces(TriangleSoup& soup, std::uint32_t segments, std::uint32_t sides);
 
-/// Fills object and source_face: each triangle is a face of its own.
+/// Fills object and source_face: each triangle is its own face.
 TriangleSoup finish(TriangleSoup soup);
 
 }  // namespace penumbra::mesh::builder

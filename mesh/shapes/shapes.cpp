@@ -103,7 +103,7 @@ TriangleSoup make_sphere(const SphereShape& sphere) {
   TriangleSoup soup = soup_with_room(shape_size(sphere));
   const std::uint32_t top = add_vertex(soup, sphere.center + glm::dvec3(0, sphere.radius, 0));
   for (std::uint32_t i = 1; i < rings; ++i) {
-    const double latitude = std::numbers::pi * i / rings;  // from the upper pole
+    const double latitude = std::numbers::pi * i / rings;  // measured from the upper pole
     for (std::uint32_t j = 0; j < segments; ++j) {
       const double longitude = kTau * j / segments;
       const glm::dvec3 direction(std::sin(latitude) * std::cos(longitude), std::cos(latitude),
@@ -131,7 +131,7 @@ TriangleSoup make_sphere(const SphereShape& sphere) {
 
 ShapeSize icosphere_size(std::uint32_t subdivisions) {
   PENUMBRA_ASSERT(subdivisions < 16, "{}", subdivisions);
-  const std::uint64_t parts = 1ull << (2 * subdivisions);  // of each of the icosahedron's sides
+  const std::uint64_t parts = 1ull << (2 * subdivisions);  // triangles of each of the icosahedron's sides
   return checked({20 * parts, 10 * parts + 2});
 }
 

@@ -23,7 +23,7 @@ TriangleSoup make_fence(const FenceShape& fence) {
     add_box(soup, {x - half, fence.base.y, fence.base.z},
             {x + half, fence.base.y + fence.height, fence.base.z + 2 * half});
   }
-  for (std::uint32_t i = 0; i < fence.rails; ++i) {  // behind the posts, evenly over the height
+  for (std::uint32_t i = 0; i < fence.rails; ++i) {  // behind the posts, evenly spaced over the height
     const double y = fence.base.y + fence.height * (i + 1) / (fence.rails + 1);
     add_box(soup, {left, y - half, fence.base.z - 2 * half}, {left + fence.width, y + half, fence.base.z});
   }
@@ -48,8 +48,8 @@ TriangleSoup make_room(const RoomShape& room) {
   const double left = room.base.x - room.window_width / 2, right = left + room.window_width;
   const double sill = room.base.y + room.window_sill, lintel = sill + room.window_height;
 
-  // Two nested boxes, the inner one inside out. Their sides at −Z are frames around the window, joined through the
-  // wall by four jambs. Loops are in the order of kBoxSides.back().
+  // Two nested boxes, the inner one inside out. Their sides at −Z are frames around the window, joined through the wall
+  // by four jambs. Loops are in the order of kBoxSides.back().
   const std::uint32_t outer = add_box_corners(soup, low - thickness, high + thickness);
   const std::uint32_t inner = add_box_corners(soup, low, high);
   const auto add_window_loop = [&](double z) {
@@ -72,7 +72,7 @@ TriangleSoup make_room(const RoomShape& room) {
     add_quad(soup, inner_window + i, inner_window + next, inner + next_corner, inner + corner);
   }
 
-  // Bars in the middle of the wall's thickness; their ends stand in the masonry so that no light slips by. The
+  // Bars in the middle of the wall's thickness; their ends reach into the masonry so that no light passes. The
   // horizontal ones lie behind the vertical ones: no two share a face.
   const double middle = (outside + inside) / 2, half = room.bar / 2;
   for (std::uint32_t i = 0; i < room.vertical_bars; ++i) {

@@ -7,8 +7,8 @@
 
 #include <utility>
 
-/// Shapes that curl, bump and scatter: blob, knot, terrain, hair. Chance is a hash of small integers, so that
-/// the same seed gives the same mesh on every machine.
+/// Blob, knot, terrain and hair. Random numbers are hashes of small integers, so that the same seed gives the same mesh
+/// on every machine.
 namespace penumbra::mesh {
 
 using namespace builder;
@@ -23,12 +23,13 @@ std::uint64_t scramble(std::uint64_t x) {
   return x ^ (x >> 31);
 }
 
-/// In [0, 1), a function of its arguments alone.
+/// Returns a number in [0, 1), a function of its arguments alone.
 double chance(std::uint64_t seed, std::uint64_t a, std::uint64_t b) {
   return static_cast<double>(scramble(scramble(scramble(seed) ^ a) ^ b) >> 11) * 0x1p-53;
 }
 
-/// Value noise in [-1, 1]: random heights at integer places, joined by a quintic so that slopes are continuous.
+/// Returns value noise in [-1, 1]: random heights at integer places, interpolated by a quintic so that slopes are
+/// continuous.
 double value_noise(std::uint64_t seed, double x, double y) {
   const double cell_x = std::floor(x), cell_y = std::floor(y);
   const auto corner = [&](double i, double j) {
@@ -73,13 +74,13 @@ TriangleSoup make_knot(const KnotShape& knot) {
     const double t = kTau * i / knot.segments;
     const double around = turns * t, through = windings * t;
     const glm::dvec3 outward(std::cos(around), 0, -std::sin(around)), along(-std::sin(around), 0, -std::cos(around));
-    const glm::dvec3 normal = std::cos(through) * outward + glm::dvec3(0, std::sin(through), 0);  // of the torus
+    const glm::dvec3 normal = std::cos(through) * outward + glm::dvec3(0, std::sin(through), 0);  // normal of the torus
     const double distance = core + swing * std::cos(through);
     const glm::dvec3 axis = core * outward + swing * normal;
     const glm::dvec3 tangent =
         glm::normalize(turns * distance * along +
                        windings * swing * (-std::sin(through) * outward + glm::dvec3(0, std::cos(through), 0)));
-    // The torus's normal is a frame that closes upon itself after the last segment; it is orthogonal to the curve.
+    // The torus's normal gives a frame that closes after the last segment; it is orthogonal to the curve.
     const glm::dvec3 binormal = glm::cross(tangent, normal);
     for (std::uint32_t j = 0; j < knot.sides; ++j) {
       const double across = kTau * j / knot.sides;
@@ -103,7 +104,7 @@ TriangleSoup make_terrain(const TerrainShape& terrain) {
                                  .cells_v = terrain.cells.y});
   for_each_index(soup.positions.size(), [&](std::size_t i) {
     glm::dvec3& position = soup.positions[i];
-    // Each octave is twice as fine and half as high; the sum of the heights is 1.
+    // Each octave has twice the frequency and half the height; the sum of the heights is 1.
     double height = 0, amplitude = 1, total = 0, frequency = terrain.features / (2 * longer);
     for (std::uint32_t octave = 0; octave < terrain.octaves; ++octave) {
       height += amplitude * value_noise(scramble(terrain.seed) + octave, (position.x - terrain.center.x) * frequency,
