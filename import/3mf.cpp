@@ -17,8 +17,8 @@
 namespace penumbra::mesh {
 namespace {
 
-/// A name as packages compare them: small letters, what percent signs stand for, slashes, and none at the beginning,
-/// where paths have one and entries of the archive have none.
+/// Returns a name in the form in which packages compare names: lower case, percent escapes decoded, forward slashes,
+/// and no leading slash (paths have one, archive entries none).
 std::string compared(std::string_view path) {
   std::string name;
   for (std::size_t i = 0; i < path.size(); ++i) {
@@ -36,13 +36,13 @@ std::string compared(std::string_view path) {
   return name.substr(name.starts_with('/') ? 1 : 0);
 }
 
-/// The archive's entries by the names of a package.
+/// The archive's entries by their names in the package.
 class Entries {
  public:
   explicit Entries(const ZipArchive& archive) {
     for (const std::string& name : archive.names()) by_name_.emplace(compared(name), name);
   }
-  /// The entry of that name as the archive writes it; `path` without its slash if there is none.
+  /// Returns the entry of that name as the archive spells it; `path` without its leading slash if there is none.
   [[nodiscard]] std::string find(std::string_view path) const {
     const auto found = by_name_.find(compared(path));
     return found != by_name_.end() ? found->second : std::string(path.substr(path.starts_with('/') ? 1 : 0));
@@ -52,7 +52,7 @@ class Entries {
   std::map<std::string, std::string> by_name_;
 };
 
-/// The part with which the package begins.
+/// Returns the part with which the package begins.
 std::string find_start(const ZipArchive& archive, const Entries& entries, const std::string& file) {
   const std::string relationships = entries.find("_rels/.rels");
   if (archive.contains(relationships)) {
@@ -105,7 +105,7 @@ class PackageReader {
  private:
   using Target = std::pair<std::string, std::string>;  ///< the entry and the id
   struct Reference {
-    std::optional<std::size_t> part;  ///< that is made of the target; none if the build lists it
+    std::optional<std::size_t> part;  ///< the part made from the target; nullopt if the build lists the target
     Target target;
     glm::dmat4 placement;
   };
@@ -121,7 +121,7 @@ class PackageReader {
       for (const pugi::xml_node& object : children_named(resources, "object")) read_object(xml, object, entry);
     }
     note_print_unit(model, notes_);
-    if (!is_start) return;  // other models have a build of their own, which is not this package's
+    if (!is_start) return;  // other models have their own builds, which do not belong to this package
     for (const pugi::xml_node& build : children_named(model, "build")) {
       for (const pugi::xml_node& item : children_named(build, "item")) refer(xml, item, entry, std::nullopt);
     }
@@ -162,13 +162,13 @@ class PackageReader {
 
   void refer(const XmlText& xml, const pugi::xml_node& node, const std::string& entry,
              std::optional<std::size_t> from) {
-    const pugi::xml_attribute path = attribute_named(node, "path");  // of the production extension
+    const pugi::xml_attribute path = attribute_named(node, "path");  // attribute of the production extension
     const std::string target = path ? entries_.find(path.value()) : entry;
     want(target);
     references_.push_back({from, {target, node.attribute("objectid").value()}, read_transform(xml, node)});
   }
 
-  /// Four rows of three numbers, for points as rows: just what glm calls columns.
+  /// Reads four rows of three numbers, for points as row vectors: exactly the columns of a glm matrix.
   static glm::dmat4 read_transform(const XmlText& xml, const pugi::xml_node& node) {
     glm::dmat4 matrix(1);
     const pugi::xml_attribute transform = node.attribute("transform");
@@ -185,7 +185,7 @@ class PackageReader {
   const ZipArchive& archive_;
   const Entries entries_;
   const std::string& file_;
-  std::set<std::string> known_;  ///< entries that were wanted once
+  std::set<std::string> known_;  ///< entries that were requested before
   std::vector<std::string> wanted_;
   std::vector<AssemblyPart> parts_;
   std::map<Target, std::size_t> numbers_;

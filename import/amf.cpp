@@ -36,7 +36,7 @@ class AmfReader {
     for (std::size_t i = 0; i < parts_.size(); ++i) {
       if (!placed[i]) roots.push_back({i, glm::dmat4(1)});
     }
-    if (roots.empty() && !parts_.empty()) roots.push_back({0, glm::dmat4(1)});  // all are part of one another
+    if (roots.empty() && !parts_.empty()) roots.push_back({0, glm::dmat4(1)});  // every part is a child of another
     ImportedMesh mesh = assemble(parts_, roots, xml_.file());
     note_print_unit(amf, mesh.notes);
     if (curved_ > 0)
@@ -90,7 +90,7 @@ class AmfReader {
     part.positions.push_back(position);
   }
 
-  /// What is not there is 0.
+  /// Reads a vector; missing coordinates are 0.
   glm::dvec3 read_vector(const pugi::xml_node& node, const std::array<const char*, 3>& names) const {
     glm::dvec3 vector(0);
     for (std::size_t i = 0; i < 3; ++i) {
@@ -105,7 +105,7 @@ class AmfReader {
       const std::string id = instance.attribute("objectid").value();
       const auto found = numbers_.find(id);
       if (found == numbers_.end()) xml_.fail(instance, "there is no object or constellation with the id '{}'", id);
-      // Turned around x, then y, then z, and then moved.
+      // Rotated about x, then y, then z, and then translated.
       const glm::dvec3 degrees = read_vector(instance, {"rx", "ry", "rz"});
       glm::dmat4 placement = glm::translate(glm::dmat4(1), read_vector(instance, {"deltax", "deltay", "deltaz"}));
       for (glm::length_t axis = 2; axis >= 0; --axis) {

@@ -29,7 +29,8 @@ class Assembly {
       add(next.part, next.placement);
       placed_[next.part] = true;
       const auto& children = parts_[next.part].children;
-      for (std::size_t i = children.size(); i-- > 0;) {  // last first, so that they come off in the file's order
+      for (std::size_t i = children.size(); i-- > 0;) {  // pushed last first, so that they are popped in the file's
+                                                         // order
         if (filled_[children[i].part]) stack.push_back({children[i].part, next.placement * children[i].placement});
       }
     }
@@ -60,8 +61,8 @@ class Assembly {
                      wild.number, p.x, p.y, p.z);
   }
 
-  /// Takes parts away whose children are all gone; what is left in the end is made of itself. A part is filled if it or
-  /// one of its children is: others need no place, however often they are shown.
+  /// Removes parts whose children are all removed; a part that remains contains itself. A part is filled if it or one
+  /// of its children has faces: other parts need no place, however often they are shown.
   void settle_order() {
     std::vector<std::size_t> waiting(parts_.size()), ready;
     std::vector<std::vector<std::size_t>> parents(parts_.size());
@@ -85,7 +86,7 @@ class Assembly {
     const auto left = std::ranges::find_if(waiting, [](std::size_t count) { return count > 0; });
     auto part = static_cast<std::size_t>(left - waiting.begin());
     std::vector<bool> seen(parts_.size(), false);
-    while (!seen[part]) {  // down to one that is in the circle, not above it: the first that comes twice
+    while (!seen[part]) {  // walks down to a part of the cycle, not above it: the first that repeats
       seen[part] = true;
       const auto& children = parts_[part].children;
       part = std::ranges::find_if(children, [&](const PlacedPart& child) { return waiting[child.part] > 0; })->part;
@@ -107,7 +108,8 @@ class Assembly {
     for (std::size_t i = 0; i < part.positions.size(); ++i) {
       const glm::dvec3 p(placement * glm::dvec4(part.positions[i], 1));
       if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) {
-        wild_.push_back({static_cast<std::uint32_t>(positions.size()), part_number, i});  // no matter, unless used
+        // an error only if a face uses the vertex
+        wild_.push_back({static_cast<std::uint32_t>(positions.size()), part_number, i});
       }
       positions.push_back(p);
     }
@@ -135,11 +137,11 @@ class Assembly {
   FaceCollector faces_;
   struct Wild {
     std::uint32_t vertex = 0;          ///< of the mesh
-    std::size_t part = 0, number = 0;  ///< where it comes from
+    std::size_t part = 0, number = 0;  ///< its origin in the file
   };
-  std::vector<Wild> wild_;             ///< vertices that are not finite
-  std::vector<bool> filled_, placed_;  ///< by part: there are faces in it or below it; it is shown
-  std::uint64_t held_ = 0;             ///< faces of all parts, as often as they are placed
+  std::vector<Wild> wild_;             ///< vertices with coordinates that are not finite
+  std::vector<bool> filled_, placed_;  ///< for each part: it or a part below it has faces; it is shown
+  std::uint64_t held_ = 0;             ///< faces of all parts, counted as often as the parts are placed
   std::uint64_t mirrored_ = 0;
 };
 

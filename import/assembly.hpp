@@ -13,26 +13,27 @@
 
 namespace penumbra::mesh {
 
-/// One part of a file, put somewhere by another part or by the file itself.
+/// A part placed by another part or by the file itself.
 struct PlacedPart {
-  std::size_t part = 0;  ///< a number into the list of parts
+  std::size_t part = 0;  ///< index into the list of parts
   glm::dmat4 placement{1};
 };
 
-/// A part has triangles of its own, or other parts, or both.
+/// A part: its own triangles, its child parts, or both.
 struct AssemblyPart {
-  std::string name;  ///< for messages: "object 3"
+  std::string name;  ///< name in messages: "object 3"
   std::vector<glm::dvec3> positions;
   std::vector<Triangle> triangles;  ///< into `positions`, in range
   std::vector<PlacedPart> children;
-  std::vector<std::uint32_t> corners = {};  ///< of faces of any number of corners, one after the other, as `triangles`
-  std::vector<std::size_t> face_ends = {};  ///< of each of these, in `corners`
+  std::vector<std::uint32_t> corners = {};  ///< corners of faces with any number of corners, one face after the other,
+                                            ///< as `triangles`
+  std::vector<std::size_t> face_ends = {};  ///< end of each face in `corners`
 };
 
-/// The triangles of all `roots` and what they are made of, every part as often as it is placed. Parts that nothing
-/// places are counted in a note, and so are mirrored ones, whose windings are reversed. Throws InputError if a part is
-/// made of itself, if a position that a face uses is not finite where it is placed, or if there are no triangles;
-/// `instead` says then what there is in their place.
+/// Returns the triangles of all `roots` and of the parts below them, every part as often as it is placed. Parts that
+/// are never placed are counted in a note, and so are mirrored ones, whose windings are reversed. Throws InputError if
+/// a part contains itself, if a position that a face uses is not finite after placing, or if there are no triangles;
+/// `instead` then describes the file's other content.
 ImportedMesh assemble(std::span<const AssemblyPart> parts, std::span<const PlacedPart> roots, const std::string& file,
                       const std::string& instead = "");
 

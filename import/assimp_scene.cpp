@@ -29,8 +29,8 @@ glm::dmat4 to_glm(const aiMatrix4x4& m) {  // Assimp's letters are rows, glm's c
 
 class SceneReader {
  public:
-  /// `to_scene` places the file's root, which turns its units and axes into ours. `triangles`, if it is known how many
-  /// the file shows, must come.
+  /// `to_scene` places the file's root, converting its units and axes. `triangles`, if not 0, is the number of
+  /// triangles that must be read.
   SceneReader(const aiScene& scene, std::string file, const glm::dmat4& to_scene, std::uint64_t triangles)
       : scene_(scene), file_(std::move(file)), to_scene_(to_scene), triangles_(triangles), faces_(mesh_.soup) {}
 
@@ -50,7 +50,8 @@ class SceneReader {
         shown[number] = true;
         add(*scene_.mMeshes[number], visit.to_world);
       }
-      for (unsigned i = visit.node->mNumChildren; i-- > 0;) {  // last first, so that they come off in the file's order
+      for (unsigned i = visit.node->mNumChildren; i-- > 0;) {  // pushed last first, so that they are popped in the
+                                                               // file's order
         const aiNode* child = visit.node->mChildren[i];
         broken_tree_ = broken_tree_ || child == nullptr;
         if (child != nullptr) stack.push_back({child, visit.to_world * to_glm(child->mTransformation)});
@@ -74,8 +75,8 @@ class SceneReader {
   }
 
  private:
-  /// Meshes that no node shows are not part of what the file depicts, unless the importer delivers a tree with holes
-  /// (Assimp's RAW importer does) or with no mesh at all.
+  /// Meshes that no node shows are not part of the depicted scene, unless the importer delivers an incomplete tree
+  /// (Assimp's RAW importer does) or one without any mesh.
   void add_hidden(const std::vector<bool>& shown) {
     const auto hidden = std::ranges::count(shown, false);
     if (hidden == 0) return;
@@ -99,14 +100,16 @@ class SceneReader {
       const aiVector3D& v = part.mVertices[i];
       const glm::dvec3 p(to_world * glm::dvec4(v.x, v.y, v.z, 1));
       positions.push_back(p);
-      if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) continue;  // no matter, unless it is used
+      // an error only if a face uses the position
+      if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) continue;
       for (const float x : {v.x, v.y, v.z}) farthest_ = std::max(farthest_, std::abs(x));
       low_ = glm::min(low_, p);
       high_ = glm::max(high_, p);
     }
     parts_.emplace_back(first, &part);
     held_ += part.mNumFaces;
-    // A mirroring transform turns every triangle inside out; swapping its corners' order keeps the outside outside.
+    // A mirroring transform turns every triangle inside out; swapping the order of its corners keeps the outside
+    // outside.
     const bool mirrored = glm::determinant(to_world) < 0;
     for (unsigned f = 0; f < part.mNumFaces; ++f) {
       const aiFace& face = part.mFaces[f];
@@ -137,7 +140,7 @@ class SceneReader {
                      v.z);
   }
 
-  /// " of mesh 'name'", where the file has several.
+  /// Returns " of mesh 'name'" if the file has several meshes, else an empty text.
   [[nodiscard]] std::string of_part(const aiMesh& part) const {
     return scene_.mNumMeshes > 1 ? fmt::format(" of mesh '{}'", part.mName.C_Str()) : "";
   }
@@ -161,8 +164,9 @@ class SceneReader {
     }
   }
 
-  /// Assimp holds positions in single precision. That is worth a word where the grid of floats at the mesh's distance
-  /// from zero shows against its size: coarser than a 16384th of the diagonal, a 32nd of a pixel in a 512-pixel image.
+  /// Assimp stores positions in single precision. A note is added if the spacing of floats at the mesh's distance from
+  /// zero is visible at the mesh's size: coarser than a 16384th of the diagonal, a 32nd of a pixel in a 512-pixel
+  /// image.
   void note_lost_precision() {
     const double spacing = std::nextafter(farthest_, std::numeric_limits<float>::infinity()) - farthest_;
     const double diagonal = glm::length(high_ - low_);
@@ -182,16 +186,16 @@ class SceneReader {
   FaceCollector faces_;
   std::vector<std::uint32_t> corners_;
   std::vector<std::pair<std::size_t, const aiMesh*>>
-      parts_;               ///< the first position of each mesh, as often as it is shown
-  std::uint64_t held_ = 0;  ///< faces of these
+      parts_;               ///< the first position of each mesh, once for each time the mesh is shown
+  std::uint64_t held_ = 0;  ///< number of faces of these
   bool broken_tree_ = false;
   float farthest_ = 0;
   glm::dvec3 low_{std::numeric_limits<double>::infinity()}, high_{-std::numeric_limits<double>::infinity()};
   std::uint64_t mirrored_ = 0, normals_ = 0, uvs_ = 0, colors_ = 0, skins_ = 0, morphs_ = 0;
 };
 
-/// What FBX files say of their unit and axes, which Assimp reads but does not apply: lengths become metres, as Blender
-/// makes of them, and the axis that points up Y.
+/// Unit and axes of an FBX file, which Assimp reads but does not apply: lengths become metres, as in Blender, and the
+/// up axis becomes Y.
 class FbxFrame {
  public:
   explicit FbxFrame(const aiMetadata* data) {
@@ -200,7 +204,7 @@ class FbxFrame {
     to_scene_ = glm::scale(glm::dmat4(1), glm::dvec3(metres));
     notes_.push_back(
         fmt::format("FBX: a unit of {:g} cm; positions times {:g}, so that they are metres", metres * 100, metres));
-    glm::dmat3 turn(0);  // rows: which axis of the file is to the right, up, and to the front
+    glm::dmat3 turn(0);  // rows: the file's axis that points right, up, and to the front
     constexpr std::array<const char*, 3> kAxes = {"CoordAxis", "UpAxis", "FrontAxis"};
     for (int row = 0; row < 3; ++row) {
       const std::string axis = kAxes[static_cast<std::size_t>(row)];

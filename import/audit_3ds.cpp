@@ -11,7 +11,7 @@
 namespace penumbra::mesh {
 namespace {
 
-constexpr std::size_t kChunkHeader = 6;  // a chunk's number, and its length with these six bytes
+constexpr std::size_t kChunkHeader = 6;  // bytes of a chunk's number and of its length, which includes these six bytes
 
 std::uint32_t little_endian(std::string_view bytes, std::size_t at, std::size_t count) {
   std::uint32_t value = 0;
@@ -19,26 +19,26 @@ std::uint32_t little_endian(std::string_view bytes, std::size_t at, std::size_t 
   return value;
 }
 
-/// Chunks made of chunks, as Assimp reads them; those of a material hold nothing that is counted.
+/// Chunks that contain chunks, as Assimp reads them; chunks of materials contain no counted elements.
 constexpr std::array<std::uint32_t, 12> kContainers = {0x4D4D, 0x3DC2, 0x3D3D, 0x4100, 0xAFFF, 0xB000,
                                                        0xB002, 0xB003, 0xB004, 0xB005, 0xB006, 0xB007};
 constexpr std::uint32_t kObject = 0x4000;  ///< a name, then chunks
 constexpr std::uint32_t kFaces = 0x4120;   ///< a count, faces, then chunks
 
-/// Chunks with a count of something in them.
+/// Chunks that contain a count of elements.
 struct Counted {
   std::uint32_t number;
   std::size_t skip;   ///< bytes before the count
-  std::size_t width;  ///< of the count
-  std::size_t bytes;  ///< the least that each takes of what is counted
+  std::size_t width;  ///< bytes of the count
+  std::size_t bytes;  ///< least bytes of one counted element
 };
 constexpr std::array<Counted, 8> kCounted = {{{0x4110, 0, 2, 12},  // vertices
                                               {kFaces, 0, 2, 8},
                                               {0x4140, 0, 2, 8},    // texture coordinates
-                                              {0xB020, 10, 4, 18},  // keys: time, flags, and a vector,
-                                              {0xB021, 10, 4, 22},  // a rotation,
-                                              {0xB022, 10, 4, 18},  // a vector,
-                                              {0xB023, 10, 4, 10},  // an angle,
+                                              {0xB020, 10, 4, 18},  // keys: time, flags, and a vector
+                                              {0xB021, 10, 4, 22},  // keys with a rotation
+                                              {0xB022, 10, 4, 18},  // keys with a vector
+                                              {0xB023, 10, 4, 10},  // keys with an angle
                                               {0xB024, 10, 4, 10}}};
 
 struct Span {
@@ -56,7 +56,7 @@ void audit_3ds(std::string_view content, const std::string& file) {
       const std::uint32_t number = little_endian(content, span.first, 2),
                           length = little_endian(content, span.first + 2, 4);
       if (length < kChunkHeader || length > span.end - span.first) {
-        // Some writers put zeros or other filling after the last chunk of the file.
+        // Some writers put zeros or other padding after the last chunk of the file.
         if (span.end == content.size() && span.first > 0 && waiting.empty() && number == 0) break;
         throw InputError(
             "{}: the chunk {:#06x} at byte {} says that it has {} bytes, but there are {}; the file is "

@@ -5,8 +5,8 @@
 
 namespace penumbra::mesh {
 
-/// Throws InputError for a 3D Studio file with a chunk that reaches beyond the one that it is part of, or that says it
-/// holds more vertices, faces or keys than there is room for: Assimp would allocate first and look later.
+/// Throws InputError for a 3D Studio file with a chunk that exceeds its parent, or that claims more vertices, faces or
+/// keys than it has room for: Assimp would allocate memory for them before checking.
 void audit_3ds(std::string_view content, const std::string& file);
 
 }  // namespace penumbra::mesh

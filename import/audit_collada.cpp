@@ -43,7 +43,7 @@ class Counter {
           triangles += triangles_of(target_of(child, "url"));
       }
     }
-    return visits < kMostVisits ? triangles : 0;  // repeated without end: the limit of memory will say so
+    return visits < kMostVisits ? triangles : 0;  // 0 for endless repetition, which runs into the limit of memory
   }
 
  private:
@@ -65,7 +65,7 @@ class Counter {
     return found == named_.end() ? pugi::xml_node() : found->second;
   }
 
-  /// Of a geometry, or of what a controller deforms.
+  /// Returns the number of triangles of a geometry, or of the geometry that a controller deforms.
   std::uint64_t triangles_of(pugi::xml_node node) {
     for (int depth = 0; node && local_name(node) == "controller" && depth < 64; ++depth) {
       pugi::xml_node source;
@@ -111,7 +111,7 @@ class Counter {
 
   const XmlText& xml_;
   std::map<std::string, pugi::xml_node> named_;
-  std::map<std::size_t, std::uint64_t> counted_;  ///< by a geometry's hash
+  std::map<std::size_t, std::uint64_t> counted_;  ///< by the hash of the geometry
 };
 
 }  // namespace

@@ -1,5 +1,5 @@
-// penumbra-import: reads one foreign file in a process of its own. Not for users: penumbra starts it, tells it what to
-// read and at what cost, and takes its answer from its standard output (mesh/import_helper.hpp says how).
+// penumbra-import: reads one foreign file in a process of its own. Not for users: penumbra starts it, passes the file
+// and the limits, and reads the answer from its standard output (see mesh/import_helper.hpp).
 
 #include "base/error.hpp"
 #include "base/memory.hpp"
@@ -25,8 +25,8 @@
 #include <string_view>
 
 #if defined(PENUMBRA_SHADOW_MEMORY)
-// Sanitizers reserve terabytes of addresses, so that the limit must be on resident memory instead. Leaks are Assimp's
-// (on eleven of its own test files), and end with this process.
+// Sanitizers reserve terabytes of addresses, so that the limit must be on resident memory instead. The leaks are
+// Assimp's (on eleven of its own test files), and end with this process.
 extern "C" const char* __asan_default_options();
 extern "C" const char* __asan_default_options() {
   return "detect_leaks=0:hard_rss_limit_mb=4096";
@@ -50,7 +50,7 @@ bool parse(std::string_view text, std::uint64_t& value) {
   return error == std::errc() && end == text.data() + text.size();
 }
 
-/// `flag` is --name=NUMBER.
+/// Parses a `flag` of the form --name=NUMBER.
 bool parse_number(std::string_view flag, std::string_view name, std::optional<double>& value) {
   if (!flag.starts_with(name)) return false;
   flag.remove_prefix(name.size());
@@ -88,7 +88,7 @@ bool parse(int argc, char** argv, Arguments& arguments) {
 
 struct Answer {
   mesh::WireWriter head, payload;
-  // What the payload says without copying it.
+  // Owners of data that the payload refers to without copying.
   mesh::ImportedMesh mesh;
   scenes::Scene scene;
   scenes::Texture texture;
@@ -128,10 +128,10 @@ Answer answer_for(const Arguments& arguments) {
     return answer;
   } catch (const std::bad_alloc&) {
     return message(mesh::HelperStatus::out_of_memory);
-  } catch (const std::length_error&) {  // more than any memory could hold
+  } catch (const std::length_error&) {  // a size larger than any memory
     return message(mesh::HelperStatus::out_of_memory);
   } catch (const std::exception& error) {
-    // What a library catches itself is told as text alone.
+    // An exception that a library caught itself is known only by its text.
     if (std::string_view(error.what()).find("std::bad_alloc") != std::string_view::npos) {
       return message(mesh::HelperStatus::out_of_memory);
     }
@@ -153,7 +153,7 @@ int main(int argc, char** argv) {
   const int output = mesh::begin_helper({arguments.asker, arguments.milliseconds, arguments.bytes});
   keep_freed_memory();
   const Answer answer = answer_for(arguments);
-  // _exit: the libraries' own cleaning up after a hostile file is one more chance to crash.
+  // Uses _exit: cleanup by libraries after a hostile file could crash.
   const bool told = mesh::write_all(output, answer.head) && mesh::write_all(output, answer.payload);
   _exit(told ? 0 : static_cast<int>(ExitCode::resource));
 }

@@ -19,7 +19,7 @@
 namespace penumbra::mesh {
 namespace {
 
-/// Statements that say nothing of where surfaces are.
+/// Statements that do not affect surfaces.
 constexpr std::array<std::string_view, 20> kSilent = {
     "g",        "o",   "s",          "mg",        "usemtl", "mtllib", "usemap", "maplib", "bevel", "c_interp",
     "d_interp", "lod", "shadow_obj", "trace_obj", "vp",     "vn",     "vt",     "cstype", "deg",   "end"};
@@ -33,11 +33,12 @@ class ObjReader {
 
   ImportedMesh read(std::string_view text) {
     std::string_view line;
-    std::string joined;  // of lines that end in a backslash
+    std::string joined;  // lines joined by backslashes
     while (take_line(text, line)) {
       ++line_number_;
       std::string_view words = line;
-      if (joined.empty() && take_word(words).starts_with('#')) continue;  // a comment's backslash continues nothing
+      // A backslash in a comment does not continue the line.
+      if (joined.empty() && take_word(words).starts_with('#')) continue;
       if (const auto part = continued(line)) {
         joined.append(*part).append(" ");
       } else if (joined.empty()) {
@@ -73,7 +74,8 @@ class ObjReader {
     throw InputError("{}: line {}: {}", file_, line_number_, text_for_people(format, std::forward<Args>(args)...));
   }
 
-  /// What stands before a backslash that ends the line, as it does where only blanks follow.
+  /// Returns the part before a backslash at the end of the line, which may be followed by blanks; nullopt if there is
+  /// none.
   static std::optional<std::string_view> continued(std::string_view line) {
     const std::size_t last = line.find_last_not_of(" \t\v\f");
     if (last == std::string_view::npos || line[last] != '\\') return std::nullopt;
@@ -114,8 +116,7 @@ class ObjReader {
   void vertex(std::string_view line) {
     const std::uint64_t number = vertices() + 1;
     if (number > std::numeric_limits<std::uint32_t>::max()) fail("more than 4,294,967,295 vertices");
-    // x y z, x y z w, or a position and a colour. What colours say is no matter, and may be no number at all, and so
-    // is what more there is.
+    // x y z, x y z w, or a position and a colour. Colours are ignored, and need not be numbers; so are further words.
     std::array<double, 4> numbers{0, 0, 0, 1};
     std::array<std::string_view, 8> words;
     std::size_t count = 0;
@@ -128,25 +129,27 @@ class ObjReader {
     }
     colors_ += count == 6 || count == 7 ? 1 : 0;
     longer_ += count == 5 || count == 8 ? 1 : 0;
-    if (numbers[3] == 0) {  // no weight, if all are so: that is seen at the end
+    if (numbers[3] == 0) {  // weight 0: an error only if not all are 0, which is known at the end
       if (weightless_++ == 0) first_weightless_ = {number, line_number_};
       numbers[3] = 1;
     }
     const glm::dvec3 position = glm::dvec3(numbers[0], numbers[1], numbers[2]) / numbers[3];
     if (!std::isfinite(position.x) || !std::isfinite(position.y) || !std::isfinite(position.z)) {
-      wild_.emplace_back(static_cast<std::uint32_t>(vertices()), line_number_);  // no matter, unless a face uses it
+      // an error only if a face uses the vertex
+      wild_.emplace_back(static_cast<std::uint32_t>(vertices()), line_number_);
     }
     mesh_.soup.positions.push_back(position);
   }
 
-  /// Texture coordinates; what is no number, or is missing, is kNoPlace.
+  /// Reads texture coordinates; words that are missing or not numbers give kNoPlace.
   void place(std::string_view line) {
     const auto u = parse_real(take_word(line)), v = parse_real(take_word(line));
     const bool is_place = u && v && std::abs(*u) < 1e6 && std::abs(*v) < 1e6;
     places_.push_back(is_place ? glm::dvec2(*u, *v) : kNoPlace);
   }
 
-  /// The number, from 0, of the texture coordinates that a corner names after its first slash; or nothing.
+  /// Returns the index, from 0, of the texture coordinates that a corner names after its first slash; or a number for
+  /// none.
   [[nodiscard]] std::int64_t place_of_corner(std::string_view word) const {
     const std::size_t slash = word.find('/');
     if (slash == std::string_view::npos) return kPlaceless;
@@ -156,7 +159,8 @@ class ObjReader {
     return *index > 0 ? *index - 1 : static_cast<std::int64_t>(places_.size()) + *index;
   }
 
-  /// Gives each position its texture coordinates; of a vertex with several, each but the first is a new position.
+  /// Gives each position its texture coordinates; of a vertex with several coordinates, each but the first becomes a
+  /// new position.
   void place_vertices() {
     TriangleSoup& soup = mesh_.soup;
     constexpr std::int64_t kNotYet = -2;
@@ -189,7 +193,7 @@ class ObjReader {
     }
   }
 
-  /// The corner's vertex, numbered from 0; texture coordinates and normals after a slash are not looked at.
+  /// Returns the corner's vertex, numbered from 0; texture coordinates and normals after a slash are ignored.
   std::uint32_t corner(std::string_view word) {
     const auto index = parse_number<std::int64_t>(word.substr(0, word.find('/')));
     if (!index) fail("'{}' is not a vertex number", word);
@@ -200,13 +204,13 @@ class ObjReader {
       }
       return static_cast<std::uint32_t>(static_cast<std::int64_t>(vertices()) + *index);
     }
-    // A positive number may name a vertex that only follows: the highest is judged at the end.
+    // A positive number may refer to a later vertex: the highest one is checked at the end.
     const auto named = static_cast<std::uint64_t>(*index);
     if (named > vertices() && named > highest_named_) {
       highest_named_ = named;
       highest_line_ = line_number_;
     }
-    return static_cast<std::uint32_t>(named - 1);  // one that is too high for its type is refused at the end
+    return static_cast<std::uint32_t>(named - 1);  // a number too high for the type is refused at the end
   }
 
   void face(std::string_view line) {
@@ -229,7 +233,7 @@ class ObjReader {
       faces_.skip_lines(std::max<std::uint64_t>(corners, 1) - 1);
   }
 
-  /// Only now, because faces may name vertices that follow them.
+  /// Faces are added at the end, because they may refer to later vertices.
   void add_faces() {
     std::size_t first = 0;
     mesh_.soup.triangles.reserve(face_ends_.size());
@@ -270,17 +274,19 @@ class ObjReader {
   bool with_places_;
   ImportedMesh mesh_;
   FaceCollector faces_;
-  std::vector<std::uint32_t> corners_;                       ///< of all faces, one after the other
+  std::vector<std::uint32_t> corners_;                       ///< corners of all faces, one face after the other
   std::vector<std::size_t> face_ends_;                       ///< into `corners_`
-  std::vector<glm::dvec2> places_;                           ///< texture coordinates, if they are wanted
-  std::vector<std::int64_t> corner_places_;                  ///< of each of `corners_`, a number of these, or none
+  std::vector<glm::dvec2> places_;                           ///< texture coordinates, if requested
+  std::vector<std::int64_t> corner_places_;                  ///< for each of `corners_`, the index of its texture
+                                                             ///< coordinates, or none
   std::vector<std::pair<std::uint32_t, std::size_t>> wild_;  ///< vertices that are not finite, and their lines
-  std::uint64_t statements_ = 0;                             ///< that are faces
+  std::uint64_t statements_ = 0;                             ///< number of face statements
   std::size_t line_number_ = 0, highest_line_ = 0;
-  std::uint64_t highest_named_ = 0;  ///< vertex, from 1, that a face before it names; 0 if there is none
+  std::uint64_t highest_named_ = 0;  ///< largest vertex number, from 1, that a face names before the vertex exists; 0
+                                     ///< if there is none
   std::uint64_t normals_ = 0, uvs_ = 0, colors_ = 0, free_form_ = 0, unknown_ = 0;
-  std::uint64_t longer_ = 0, weightless_ = 0;  ///< vertices with numbers of no known meaning, and of weight 0
-  std::pair<std::uint64_t, std::size_t> first_weightless_;  ///< its number from 1, and its line
+  std::uint64_t longer_ = 0, weightless_ = 0;  ///< vertices with numbers of unknown meaning, and of weight 0
+  std::pair<std::uint64_t, std::size_t> first_weightless_;  ///< vertex number from 1, and line
   std::string first_unknown_;
 };
 

@@ -12,19 +12,19 @@
 namespace penumbra::mesh {
 namespace {
 
-/// The file's words, line by line, without comments; knows the number of the current line for messages.
+/// The file's words, line by line, without comments, with the number of the current line for messages.
 class OffWords {
  public:
   OffWords(std::string_view text, std::string file) : text_(text), file_(std::move(file)) {}
 
-  /// The next word on this line or a later one; fails at the end of the file.
+  /// Returns the next word on this line or a later one; throws at the end of the file.
   std::string_view next(std::string_view wanted) {
     for (;;) {
       if (const std::string_view word = next_on_line(); !word.empty()) return word;
       if (!next_line()) fail("the file ends where {} should follow; it is truncated", wanted);
     }
   }
-  /// The next word on this line; empty at its end.
+  /// Returns the next word on this line; empty at its end.
   std::string_view next_on_line() { return take_word(line_); }
   void skip_rest_of_line() { line_ = {}; }
   bool next_line() {
@@ -63,12 +63,12 @@ class OffWords {
 struct OffHeader {
   bool homogeneous = false;  ///< 4OFF: a fourth coordinate divides the others
   bool attributes = false;   ///< the header promises normals, colours or texture coordinates
-  std::uint32_t extras = 0;  ///< numbers after a vertex's coordinates that are always there: normal, texture
-  bool colors = false;       ///< COFF: a colour of unknown length
+  std::uint32_t extras = 0;  ///< numbers that follow every vertex's coordinates: normal, texture
+  bool colors = false;       ///< COFF: a colour with an unknown number of components
   std::uint32_t vertices = 0, faces = 0;
 };
 
-/// The letters before OFF: ST, C, N, 4 and n, in Geomview's order or in that of MeshLab, whose files say NCOFF.
+/// Reads the letters before OFF: ST, C, N, 4 and n, in Geomview's order or in that of MeshLab, which writes NCOFF.
 void read_letters(std::string_view letters, OffHeader& header, OffWords& words) {
   const std::string_view all = letters;
   bool any_dimension = false;
@@ -125,7 +125,7 @@ OffHeader read_header(OffWords& words) {
     header.vertices = *vertices;
   }
   header.faces = words.count("number of faces");
-  // The number of edges nobody uses, and some leave it out.
+  // The number of edges is unused, and some files omit it.
   std::size_t more = 0;
   while (parse_real(words.next_on_line())) ++more;
   if (more > 3) {
@@ -135,7 +135,7 @@ OffHeader read_header(OffWords& words) {
         more - 1);
   }
   words.skip_rest_of_line();
-  // A vertex takes at least "0 0 0 ", a face "0 ": a header that lies about that must not make us allocate.
+  // A vertex takes at least the bytes "0 0 0 ", a face "0 ": a wrong header must not cause a large allocation.
   if (header.vertices * 6ull + header.faces * 2ull > words.bytes_left() + 1ull) {
     words.fail(
         "the header promises {} vertices and {} faces, more than the file's remaining {} bytes can hold; it is "
@@ -145,9 +145,9 @@ OffHeader read_header(OffWords& words) {
   return header;
 }
 
-/// Has each vertex a line of its own? Then what follows its coordinates there is known to belong to it, whatever the
-/// header says: many writers put colours there and no letter C. So it is where each of the first lines holds a vertex
-/// and there are lines enough for the faces. A copy of the words is read ahead.
+/// Returns whether each vertex has its own line. Then words after its coordinates belong to the vertex, regardless of
+/// the header: many writers put colours there without the letter C. True if each of the first lines holds a vertex and
+/// enough lines for the faces follow. Reads ahead on a copy of the words.
 bool has_line_for_each(OffWords words, const OffHeader& header) {
   const std::size_t needed = (header.homogeneous ? 4u : 3u) + header.extras;
   std::uint64_t lines = 0;
@@ -226,12 +226,12 @@ class OffReader {
       }
       corners_.push_back(index);
     }
-    words_.skip_rest_of_line();  // the face's colour
+    words_.skip_rest_of_line();  // skips the face's colour
     faces_.add(corners_);
   }
 
-  /// What follows the last face. A line that could be one more is refused: the header does not fit the file, and what
-  /// was read may be anything.
+  /// Reads the rest after the last face. A line that could be another face is an error: the header does not fit the
+  /// file, and the elements read so far may be wrong.
   void read_rest() {
     std::uint64_t lines = 0;
     std::size_t first = 0;
@@ -266,7 +266,7 @@ class OffReader {
   FaceCollector faces_;
   std::vector<std::uint32_t> corners_;
   std::vector<std::pair<std::uint32_t, std::size_t>> wild_;  ///< vertices that are not finite, and their lines
-  std::uint64_t longer_ = 0;                                 ///< vertices with more numbers on their lines
+  std::uint64_t longer_ = 0;                                 ///< number of vertices with further numbers on their lines
 };
 
 }  // namespace

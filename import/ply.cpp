@@ -16,7 +16,7 @@
 namespace penumbra::mesh {
 namespace {
 
-/// The numbers of a text, element by element: each begins on a line of its own, and may go on over several.
+/// The numbers of a text, element by element: each element begins on a new line, and may extend over several.
 class AsciiNumbers {
  public:
   AsciiNumbers(const PlyHeader& header, const std::string& file)
@@ -32,13 +32,13 @@ class AsciiNumbers {
     if (!value) fail("'{}' is not a number", word);
     return *value;
   }
-  /// What stands on the line beyond the properties that the header declares.
+  /// Skips the rest of the line after the declared properties, and counts lines that have more.
   void end_element() {
     if (!take_word(line_).empty()) ++lines_with_more_;
     line_ = {};
   }
   [[nodiscard]] std::size_t bytes_left() const { return text_.size() + line_.size(); }
-  /// Is there anything but blanks?
+  /// Returns whether anything but blanks remains.
   [[nodiscard]] bool has_more() const {
     std::string_view rest = text_;
     return !take_word(rest).empty();
@@ -58,7 +58,7 @@ class AsciiNumbers {
   std::uint64_t lines_with_more_ = 0;
 };
 
-/// What a property is to us.
+/// The reader's use of a property.
 enum class Role : std::uint8_t { none, x, y, z, corners };
 
 template <typename Numbers>
@@ -152,7 +152,7 @@ class PlyReader {
     return roles;
   }
 
-  /// Without a list of either usual name, the only list of integers is it.
+  /// Without a list of a usual name, the only list of integers is taken for the corners.
   void take_other_list(const PlyElement& element, std::vector<Role>& roles, std::string& ignored) {
     std::optional<std::size_t> only;
     for (std::size_t i = 0; i < element.properties.size(); ++i) {
@@ -186,7 +186,7 @@ class PlyReader {
     }
   }
 
-  /// Where the numbers can be had many at once: how many vertices were taken.
+  /// Takes vertices in bulk where the format allows it; returns their number.
   std::uint64_t take_vertices(const PlyElement& element, const std::vector<Role>& roles, std::uint64_t most) {
     if constexpr (std::is_same_v<Numbers, BinaryNumbers>) {
       const auto place_of = [&](Role role) {
@@ -213,7 +213,7 @@ class PlyReader {
     return static_cast<std::uint32_t>(index);
   }
 
-  /// Faces may stand before the vertices: then they wait.
+  /// Keeps a face until the vertices are known, which the file may list after the faces.
   void keep(std::span<const std::uint32_t> face) {
     ++kept_faces_;
     if (vertices_known_) return faces_.add(face);
@@ -227,14 +227,14 @@ class PlyReader {
     keep(face_);
   }
 
-  /// Every corner from the third on makes a triangle with the two before it; −1 begins a new strip.
+  /// Every corner from the third on makes a triangle with its two predecessors; −1 begins a new strip.
   void keep_strip() {
     std::size_t length = 0;
     for (std::size_t i = 0; i < corners_.size(); ++i) {
       length = corners_[i] == -1 ? 0 : length + 1;
       if (length < 3) continue;
       ++held_;
-      const std::size_t turn = length % 2;  // of every other triangle, so that all have one winding
+      const std::size_t turn = length % 2;  // reverses every other triangle, so that all have the same winding
       face_.clear();
       for (const std::size_t back : {2 - (1 - turn), 1 + (1 - turn), std::size_t{0}}) {
         face_.push_back(vertex_named(corners_[i - back]));
@@ -259,12 +259,12 @@ class PlyReader {
   ImportedMesh mesh_;
   FaceCollector faces_;
   std::uint64_t vertices_ = 0;
-  std::vector<double> corners_;  ///< of the element that is being read, as the file says
-  bool vertices_known_ = false;  ///< all that the header promises
+  std::vector<double> corners_;  ///< corners of the current element, as stored in the file
+  bool vertices_known_ = false;  ///< all promised vertices were read
   std::uint64_t kept_faces_ = 0;
   std::uint64_t held_ = 0;              ///< faces that the header counts, and triangles of strips
-  std::vector<std::uint32_t> face_;     ///< the last one's corners
-  std::vector<std::uint32_t> kept_;     ///< corners of all faces that wait, one after the other
+  std::vector<std::uint32_t> face_;     ///< corners of the last face
+  std::vector<std::uint32_t> kept_;     ///< corners of all kept faces, one face after the other
   std::vector<std::size_t> face_ends_;  ///< into `kept_`
 };
 

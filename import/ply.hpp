@@ -8,15 +8,15 @@
 namespace penumbra::mesh {
 
 /// Reads the surfaces of a PLY file, ASCII or binary of either endianness, in double precision: positions, and the
-/// lists of vertices of faces and triangle strips. Not through Assimp, because its reader allocates what a list says
-/// before it looks, and reads past the end of a file that is too short for it.
+/// vertex lists of faces and triangle strips. Does not use Assimp, whose reader allocates the size of a list before
+/// checking it, and reads past the end of a file that is too short.
 ///
-/// Whatever else is in the file is skipped and noted. Throws InputError with the line, or in binary the element's
+/// Everything else in the file is skipped and noted. Throws InputError with the line, or in binary files the element's
 /// number.
 ImportedMesh read_ply(std::string_view content, const std::string& file);
 
-/// The same of a binary body, number by number, whatever it holds: what read_ply, which takes what is usual many
-/// numbers at once, is tested against.
+/// Reads as read_ply does, a binary body number by number for every layout: the reference against which read_ply, which
+/// takes usual layouts in bulk, is tested.
 ImportedMesh read_ply_slowly(std::string_view content, const std::string& file);
 
 }  // namespace penumbra::mesh

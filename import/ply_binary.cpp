@@ -53,10 +53,10 @@ std::int64_t BinaryNumbers::load_length(const char* from, PlyType type, bool swa
     case PlyType::uint32:
       return load<std::uint32_t>(from, swap);
     case PlyType::int64:
-    case PlyType::uint64:  // what is too large is less than 0
+    case PlyType::uint64:  // values that are too large become negative
       return load<std::int64_t>(from, swap);
     default:
-      return -1;  // the header refuses those
+      return -1;  // the header refuses these types
   }
 }
 

@@ -16,7 +16,7 @@
 
 namespace penumbra::mesh {
 
-/// The numbers of a binary body, taken from its front: one by one, or, of elements of the usual kinds, many at once.
+/// The numbers of a binary body, taken from its front: one by one, or in bulk for elements of usual layouts.
 class BinaryNumbers {
  public:
   BinaryNumbers(const PlyHeader& header, const std::string& file)
@@ -35,14 +35,14 @@ class BinaryNumbers {
                      text_for_people(format, std::forward<Args>(args)...));
   }
 
-  /// Takes vertices whose coordinates are the properties number `axes`, as long as there is nothing about them that
-  /// number() would have to be asked for, `most` at most, and says how many: none, where a property is a list or the
-  /// coordinates' types differ; and it stops at one that is not whole, or not finite.
+  /// Takes up to `most` vertices whose coordinates are the properties number `axes`, in bulk; returns the number taken.
+  /// Takes none if a property is a list or the coordinates' types differ; stops at a vertex that is incomplete, or not
+  /// finite, which number() must handle.
   std::uint64_t take_vertices(const PlyElement& element, std::array<std::size_t, 3> axes, std::uint64_t most,
                               std::vector<glm::dvec3>& positions);
 
-  /// The same of faces: keep(corners) of each, as it comes. None, where another property is a list or the corners are
-  /// no integers of 32 bits; and it stops at one that is not whole, or has more than 32 corners, or names a vertex from
+  /// Takes faces in bulk, calling keep(corners) for each. Takes none if another property is a list or the corners are
+  /// not 32-bit integers; stops at a face that is incomplete, has more than 32 corners, or refers to a vertex from
   /// `vertices` on.
   template <typename Keep>
   std::uint64_t take_faces(const PlyElement& element, std::size_t corners, std::uint64_t most, std::uint64_t vertices,
@@ -96,7 +96,7 @@ std::uint64_t BinaryNumbers::take_faces(const PlyElement& element, std::size_t c
     bool known = true;
     for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
       named[i] = load<std::uint32_t>(at + head + 4 * i, swap_);
-      known &= named[i] < vertices && !(has_sign && named[i] > 0x7fffffffU);  // less than 0
+      known &= named[i] < vertices && !(has_sign && named[i] > 0x7fffffffU);  // negative numbers are unknown
     }
     if (!known) break;
     keep(std::span<const std::uint32_t>(named).first(static_cast<std::size_t>(count)));

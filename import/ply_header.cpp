@@ -43,12 +43,12 @@ class HeaderReader {
     header_.body = content;
     bool ended = false;
     std::string_view line;
-    bool ends_are_returns = false;  // a carriage return alone: what the first line ends with, all lines do
+    bool ends_are_returns = false;  // the first line ends with a lone carriage return, and so do all lines
     while (!ended && header_.lines < kMostLines && take_line(header_.body, line)) {
       ++header_.lines;
       const std::string_view end(line.end(), header_.body.begin());
       if (header_.lines == 1) ends_are_returns = end == "\r";
-      // Then a line feed behind a return is no part of the end: it is a binary body's first byte.
+      // A line feed after such a return is not part of the line's end: it is a binary body's first byte.
       if (ends_are_returns && end == "\r\n")
         header_.body = std::string_view(header_.body.begin() - 1, header_.body.end());
       std::string_view rest = line;
@@ -118,16 +118,17 @@ class HeaderReader {
     header_.elements.back().properties.push_back(std::move(property));
   }
 
-  /// Nothing is allocated for elements that the file cannot hold.
+  /// Checks that the file is large enough for its elements, before memory is allocated.
   void require_room() const {
     std::uint64_t left = header_.body.size() + 1;  // the last line may lack its end
     for (const PlyElement& element : header_.elements) {
-      std::uint64_t bytes = 0;  // the least that one takes: of a list, its length
+      std::uint64_t bytes = 0;  // least bytes of one element: for a list, its length field
       for (const PlyProperty& property : element.properties) {
         const std::size_t binary = size_of(property.is_list ? property.length_type : property.type);
         bytes += header_.format == PlyFormat::ascii ? 2 : binary;
       }
-      bytes = std::max<std::uint64_t>(bytes, 1);  // nobody means to repeat nothing a billion times
+      bytes = std::max<std::uint64_t>(bytes, 1);  // elements of zero bytes are counted as one byte: a billion empty
+                                                  // elements are not meant
       if (element.count > left / bytes) {
         throw InputError(
             "{}: PLY header: it promises {} elements '{}' of {} bytes or more, but only {} bytes follow; the file is "

@@ -16,7 +16,7 @@ struct PlyProperty {
   std::string name;
   PlyType type = PlyType::float32;
   bool is_list = false;
-  PlyType length_type = PlyType::uint8;  ///< of a list
+  PlyType length_type = PlyType::uint8;  ///< type of a list's length
 };
 
 struct PlyElement {
@@ -30,11 +30,12 @@ enum class PlyFormat : std::uint8_t { ascii, little_endian, big_endian };
 struct PlyHeader {
   PlyFormat format = PlyFormat::ascii;
   std::vector<PlyElement> elements;
-  std::size_t lines = 0;  ///< of the header
-  std::string_view body;  ///< what follows it
+  std::size_t lines = 0;  ///< number of lines of the header
+  std::string_view body;  ///< the part of the file after the header
 };
 
-/// Throws InputError for what is no header, and for one that promises more elements than bytes follow.
+/// Reads the header. Throws InputError for an invalid header, and for one that promises more elements than bytes
+/// follow.
 PlyHeader read_ply_header(std::string_view content, const std::string& file);
 
 }  // namespace penumbra::mesh

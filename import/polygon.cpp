@@ -11,13 +11,14 @@
 #include <numeric>
 #include <tuple>
 
-// Where a polygon that is neither flat nor simple is cut is a convention, not a fact of its geometry, so plain double
-// arithmetic decides here; nothing later depends on these signs, and the number of triangles never does.
+// Triangulation of polygons by fans or ear clipping. How to cut a polygon that is neither flat nor simple is a
+// convention, not a fact of its geometry, so plain double arithmetic decides here; no later step depends on these
+// signs, and the number of triangles never does.
 
 namespace penumbra::mesh {
 namespace {
 
-/// Newell's normal: the sum of the edges' cross products; its length is twice the area of a flat polygon.
+/// Returns Newell's normal: the sum of the edges' cross products; its length is twice the area of a flat polygon.
 glm::dvec3 mean_normal(std::span<const glm::dvec3> corners) {
   glm::dvec3 sum(0);
   for (std::size_t i = 0; i < corners.size(); ++i) {
@@ -26,7 +27,7 @@ glm::dvec3 mean_normal(std::span<const glm::dvec3> corners) {
   return sum;
 }
 
-/// The corners seen along the axis that the mean normal is closest to, turned so that they run counter-clockwise.
+/// Returns the corners projected along the axis closest to the mean normal, oriented counter-clockwise.
 std::vector<glm::dvec2> project(std::span<const glm::dvec3> corners) {
   const glm::dvec3 normal = mean_normal(corners);
   const glm::dvec3 size(std::abs(normal.x), std::abs(normal.y), std::abs(normal.z));
@@ -41,17 +42,18 @@ std::vector<glm::dvec2> project(std::span<const glm::dvec3> corners) {
   return flat;
 }
 
-/// Twice the signed area of the triangle a b c: positive if it runs counter-clockwise.
+/// Returns twice the signed area of the triangle a b c: positive if it runs counter-clockwise.
 double turn(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) {
   return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
-/// The sine of an angle that counts as none: a corner in the middle of a straight side is off its line by the rounding
-/// of single precision in files. A triangle cut off there would have no area, or be a sliver, though a better one can
-/// be cut elsewhere.
+/// Sine of an angle that counts as zero: a corner in the middle of a straight side is off its line by the rounding of
+/// single precision in files. A triangle cut off there would have no area, or be a sliver, although a better one can be
+/// cut elsewhere.
 constexpr double kStraight = 0x1p-20;
 
-/// turn(a, b, c) where the sine of the turn at b is `sine`, or up to twice that: lengths are sums of coordinates.
+/// Returns turn(a, b, c) for a turn at b whose sine is `sine`, or up to twice that: lengths are estimated by sums of
+/// coordinates.
 double turn_of_sine(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c, double sine) {
   const glm::dvec2 u = glm::abs(b - a), v = glm::abs(c - b);
   return sine * (u.x + u.y) * (v.x + v.y);
@@ -67,8 +69,9 @@ bool turns_right(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) 
 
 enum class Shape { round, straight_corners, other };
 
-/// round: convex, and every triangle of the fan around corner 0 has three corners that are not straight, or there is no
-/// area at all. straight_corners: convex, but that fan would have triangles without area.
+/// Classifies an outline. round: convex, and every triangle of the fan around corner 0 has three corners that are not
+/// straight, or the polygon has no area at all. straight_corners: convex, but that fan would have triangles without
+/// area.
 Shape shape_of(std::span<const glm::dvec2> outline) {
   const std::size_t count = outline.size();
   bool has_area = false;
@@ -77,7 +80,7 @@ Shape shape_of(std::span<const glm::dvec2> outline) {
     if (turns_right(a, b, c)) return Shape::other;
     has_area |= turns_left(a, b, c, kStraight);
   }
-  // A pentagram turns left everywhere, too, but its fan turns right somewhere.
+  // A pentagram also turns left everywhere, but its fan turns right somewhere.
   bool clear = true;
   for (std::size_t i = 1; i + 1 < count; ++i) {
     const glm::dvec2 &a = outline[0], &b = outline[i], &c = outline[i + 1];
@@ -87,8 +90,8 @@ Shape shape_of(std::span<const glm::dvec2> outline) {
   return clear || !has_area ? Shape::round : Shape::straight_corners;
 }
 
-/// A convex polygon from its leftmost to its rightmost corner, as monotone polygons are cut (Garey, Johnson, Preparata
-/// and Tarjan 1978): in linear time, and without cutting off straight corners, whichever corner comes first.
+/// Cuts a convex polygon from its leftmost to its rightmost corner, as monotone polygons are cut (Garey, Johnson,
+/// Preparata and Tarjan 1978): in linear time, without cutting off straight corners, independent of the first corner.
 class Zipper {
  public:
   Zipper(std::span<const glm::dvec2> outline, std::vector<Triangle>& triangles)
@@ -105,7 +108,7 @@ class Zipper {
       if (before(last, i)) last = i;
     }
     stack_ = {first};
-    // Below with the order of the corners, above against it; whichever comes first is next.
+    // `below` follows the order of the corners, `above` runs against it; the leftmost of the two comes next.
     std::uint32_t below = (first + 1) % count, above = (first + count - 1) % count;
     while (below != last || above != last) {
       const bool is_below = above == last || (below != last && before(below, above));
@@ -130,7 +133,7 @@ class Zipper {
     stack_.push_back(corner);
   }
 
-  /// The triangles from `corner` to all that wait.
+  /// Cuts the triangles from `corner` to all corners on the stack.
   void close(std::uint32_t corner) {
     for (std::size_t i = 0; i + 1 < stack_.size(); ++i) cut(stack_[i], stack_[i + 1], corner);
   }
@@ -146,10 +149,10 @@ class Zipper {
   std::span<const glm::dvec2> outline_;
   std::vector<Triangle>& triangles_;
   std::vector<std::uint32_t> stack_;  ///< corners that still miss triangles; all but the first are on one side
-  bool below_ = true;                 ///< that side
+  bool below_ = true;                 ///< the side of these corners
 };
 
-/// The corners that are not cut off yet, in cells of a grid, so that an ear looks at those near it alone.
+/// The corners that are not cut off yet, in the cells of a grid, so that an ear is tested against near corners only.
 class CornerGrid {
  public:
   explicit CornerGrid(std::span<const glm::dvec2> outline) : outline_(outline) {
@@ -165,7 +168,7 @@ class CornerGrid {
 
   void remove(std::uint32_t corner) { std::erase(cells_[cell_of(outline_[corner])], corner); }
 
-  /// Is blocks(place) true of any corner within the box, or near it?
+  /// Returns whether blocks(place) is true for any corner within the box, or near it.
   template <typename Blocks>
   [[nodiscard]] bool any(const glm::dvec2& low, const glm::dvec2& high, const Blocks& blocks) const {
     for (std::size_t y = index(low, 1); y <= index(high, 1); ++y) {
@@ -180,7 +183,7 @@ class CornerGrid {
 
  private:
   [[nodiscard]] std::size_t index(const glm::dvec2& p, glm::length_t axis) const {
-    const double at = (p[axis] - low_[axis]) / cell_[axis];  // no number where the outline has no extent
+    const double at = (p[axis] - low_[axis]) / cell_[axis];  // NaN if the outline has no extent
     return at > 0 ? std::min(static_cast<std::size_t>(std::min(at, 1e9)), side_ - 1) : 0;
   }
   [[nodiscard]] std::size_t cell_of(const glm::dvec2& p) const { return index(p, 1) * side_ + index(p, 0); }
@@ -200,7 +203,7 @@ bool is_ear(std::span<const glm::dvec2> outline, const CornerGrid& corners, std:
   const glm::dvec2 low = glm::min(a, glm::min(b, c)), high = glm::max(a, glm::max(b, c)),
                    more = 4 * sine * (high - low);
   return !corners.any(low - more, high + more, [&](const glm::dvec2& p) {
-    if (p == a || p == b || p == c) return false;  // also a bridge to a hole, which visits corners twice
+    if (p == a || p == b || p == c) return false;  // also true at a bridge to a hole, which visits corners twice
     return turn(a, b, p) >= 0 && turn(b, c, p) >= 0 && turn(c, a, p) >= -turn_of_sine(c, a, p, sine);
   });
 }
@@ -216,7 +219,8 @@ PolygonKind triangulate_polygon(std::span<const glm::dvec3> corners, std::vector
   };
   if (corners.size() == 3) return fan(), PolygonKind::convex;
   const glm::dvec3 normal = mean_normal(corners);
-  if (!std::isfinite(normal.x + normal.y + normal.z)) return fan(), PolygonKind::convex;  // whoever uses it refuses it
+  // later checks refuse such positions
+  if (!std::isfinite(normal.x + normal.y + normal.z)) return fan(), PolygonKind::convex;
   const std::vector<glm::dvec2> outline = project(corners);
   const Shape shape = shape_of(outline);
   if (shape == Shape::round) return fan(), PolygonKind::convex;
@@ -239,7 +243,7 @@ PolygonKind triangulate_polygon(std::span<const glm::dvec3> corners, std::vector
     triangles.push_back({ring[(tip + count - 1) % count], ring[tip], ring[(tip + 1) % count]});
     grid.remove(ring[tip]);
     ring.erase(ring.begin() + static_cast<std::ptrdiff_t>(tip));
-    tip %= ring.size();  // go on with the next corner, not around the same one: fewer slivers
+    tip %= ring.size();  // continues with the next corner, not around the same one: gives fewer slivers
     tries = 0;
     sine = kStraight;
   }

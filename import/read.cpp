@@ -35,10 +35,10 @@
 namespace penumbra::mesh {
 namespace {
 
-/// Where Assimp believes the file to be: what it asks for below this is looked for in the file's folder and below.
+/// Folder in which Assimp believes the file to be: names below it are looked for in the file's folder and below.
 constexpr std::string_view kVirtualFolder = "/mesh/";
 
-/// Lets an importer read the file's own folder and what is below it, and write nothing: an OBJ's material library or
+/// Gives an importer read access to the file's own folder and below, and no write access: an OBJ's material library or
 /// a scene's parts may name any path of the machine.
 class FolderOnly : public Assimp::IOSystem {
  public:
@@ -86,10 +86,10 @@ class FolderOnly : public Assimp::IOSystem {
   std::filesystem::path folder_name_;
   std::string name_;
   const std::string& content_;
-  std::vector<std::unique_ptr<std::string>> others_;  ///< contents of files that the first one names
+  std::vector<std::unique_ptr<std::string>> others_;  ///< contents of files that the main file refers to
 };
 
-/// The first few complaints that Assimp makes while it reads; most importers go on after one.
+/// Collects the first few complaints of Assimp; most importers continue after one.
 class Complaints : public Assimp::LogStream {
  public:
   void write(const char* message) override {
@@ -120,7 +120,7 @@ std::string supported_extensions(const Assimp::Importer& importer) {
   return list;
 }
 
-/// What the file's first bytes say it is, for files whose name says something else.
+/// Returns the format recognised by the file's first bytes, for files with a misleading extension; nullopt if unknown.
 std::optional<std::string_view> sniff(std::string_view content) {
   if (content.starts_with("glTF")) return ".glb";
   if (content.starts_with("ply\n") || content.starts_with("ply\r")) return ".ply";
@@ -129,14 +129,14 @@ std::optional<std::string_view> sniff(std::string_view content) {
   return std::nullopt;
 }
 
-/// What Assimp says when it runs out of memory is what the standard library calls its exceptions.
+/// Assimp reports exhausted memory by the text of the standard library's exceptions.
 void rethrow_out_of_memory(std::string_view message) {
   for (const std::string_view sign : {"std::bad_alloc", "bad_array_new_length", "vector::", "basic_string::"}) {
     if (message.find(sign) != std::string_view::npos) throw std::bad_alloc();
   }
 }
 
-/// Of what the file shows so many triangles are known, and must come.
+/// Reads a file with Assimp; if `triangles` is not 0, that many triangles must be delivered.
 ImportedMesh read_with_assimp(const InputFile& input, const std::string& content, std::uint64_t triangles = 0) {
   const std::string file = input.name.string(), extension = input.name.extension().string();
   if (lower_extension(input.name) == ".3ds") audit_3ds(content, file);
@@ -154,12 +154,12 @@ ImportedMesh read_with_assimp(const InputFile& input, const std::string& content
   const std::string base = input.name.filename().string();
   const std::string shown_to_assimp = std::string(kVirtualFolder) + base;
   Assimp::Importer importer;
-  importer.SetIOHandler(std::make_unique<FolderOnly>(input, content).release());  // it takes ownership
-  importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);            // no made-up geometry for bones
+  importer.SetIOHandler(std::make_unique<FolderOnly>(input, content).release());  // the importer takes ownership
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);            // no generated geometry for bones
   if (!extension.empty() && !importer.IsExtensionSupported(extension)) {
     throw InputError("{}: no importer for '{}' files; known are {}", file, extension, supported_extensions(importer));
   }
-  // No post-processing: some of its steps drop faces.
+  // Without post-processing: some of its steps drop faces.
   const aiScene* scene = importer.ReadFile(shown_to_assimp, 0);
   if (scene == nullptr || scene->mRootNode == nullptr) {
     std::string said = importer.GetErrorString();
@@ -178,7 +178,7 @@ ImportedMesh read_with_assimp(const InputFile& input, const std::string& content
   return mesh;
 }
 
-/// An OBJ's material libraries are not read, but they belong to it: no output may take their place.
+/// Material libraries of an OBJ are not read, but belong to it: no output may overwrite them.
 void note_material_libraries(std::string_view text, const std::filesystem::path& folder) {
   constexpr std::string_view kKeyword = "mtllib";
   for (std::size_t at = text.find(kKeyword); at != std::string_view::npos; at = text.find(kKeyword, at + 1)) {
@@ -186,7 +186,7 @@ void note_material_libraries(std::string_view text, const std::filesystem::path&
     take_line(rest, line);
     while (!line.empty() && (line.front() == ' ' || line.front() == '\t')) line.remove_prefix(1);
     if (line.empty()) continue;
-    note_opened_file(folder / line);  // one name with blanks, or several names: both are meant in files that exist
+    note_opened_file(folder / line);  // either one name with blanks or several names: files of both readings are noted
     for (std::string_view name; !(name = take_word(line)).empty();) note_opened_file(folder / name);
   }
 }

@@ -5,10 +5,9 @@
 
 namespace penumbra::mesh {
 
-/// Reads a mesh file (all but glTF, which the scenes' reader does) in this very process: what the import helper does
-/// under its limits. Nobody else should call it, because hostile files crash, hang and exhaust the libraries behind it.
-/// Throws InputError; std::bad_alloc.
-/// `with_places`: ImportedMesh::places, of OBJ files.
+/// Reads a mesh file (all formats but glTF, which the reader of scenes handles) in the current process: called by the
+/// import helper under its limits. No other code may call it, because hostile files crash, hang and exhaust the
+/// libraries behind it. Throws InputError; std::bad_alloc. `with_places`: fills ImportedMesh::places for OBJ files.
 ImportedMesh read_mesh(const InputFile& input, bool with_places = false);
 
 }  // namespace penumbra::mesh

@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::size_t kHeader = 84, kTriangle = 50;
 
-/// `keyword` is given in lower case; writers differ in the case of theirs.
+/// Compares without regard to case; `keyword` must be in lower case.
 bool same_keyword(std::string_view word, std::string_view keyword) {
   return std::ranges::equal(word, keyword,
                             [](char a, char b) { return std::tolower(static_cast<unsigned char>(a)) == b; });
@@ -29,13 +29,14 @@ std::uint32_t count_of_binary(std::string_view content) {
   return count;
 }
 
-/// What stands first in an ASCII file. Binary ones may begin with "solid" as well, which says nothing then.
+/// Returns whether the file begins with "solid", as ASCII files do; binary files may as well, without meaning.
 bool begins_with_solid(std::string_view content) {
   const std::string_view word = take_word(content);
   return word.size() >= 5 && same_keyword(word.substr(0, 5), "solid");
 }
 
-/// A binary file has zeros in its count at least, unless that is above sixteen million.
+/// Returns whether the header and count have no zero byte. The count of a binary file has one, unless it is above
+/// sixteen million.
 bool begins_with_text(std::string_view content) {
   return content.substr(0, kHeader).find('\0') == std::string_view::npos;
 }
@@ -49,8 +50,8 @@ void add_corners(TriangleSoup& soup, FaceCollector& faces, std::uint32_t count) 
 ImportedMesh read_binary(std::string_view content, const std::string& file) {
   const std::size_t told = count_of_binary(content), held = (content.size() - kHeader) / kTriangle;
   const bool whole = (content.size() - kHeader) % kTriangle == 0;
-  // Writers that do not know the number when they begin leave 0 or all bits set; and what follows the promised
-  // triangles to the end of the file, fifty bytes each, is triangles.
+  // Writers that do not know the number in advance leave 0 or all bits set; and data after the promised triangles up to
+  // the end of the file, fifty bytes each, are further triangles.
   const bool unknown = told == 0 || told == std::numeric_limits<std::uint32_t>::max();
   const std::size_t count = held > 0 && ((whole && told < held) || unknown) ? held : told;
   const std::size_t wanted = kHeader + kTriangle * count;
@@ -66,7 +67,7 @@ ImportedMesh read_binary(std::string_view content, const std::string& file) {
   mesh.soup.positions.reserve(3 * count);
   mesh.soup.triangles.reserve(count);
   for (std::size_t i = 0; i < count; ++i) {
-    std::array<float, 12> numbers{};  // a normal, which is not looked at, and three corners
+    std::array<float, 12> numbers{};  // a normal, which is ignored, and three corners
     std::memcpy(numbers.data(), content.data() + kHeader + kTriangle * i, sizeof(numbers));
     for (std::size_t c = 3; c < 12; c += 3) {
       const glm::dvec3 p(numbers[c], numbers[c + 1], numbers[c + 2]);
@@ -124,7 +125,7 @@ class AsciiStl {
     throw InputError("{}: line {}: {}", file_, line_number_, text_for_people(format, std::forward<Args>(args)...));
   }
 
-  /// A solid's name runs to the end of its line, except where a writer puts a whole solid on one line.
+  /// Skips a solid's name, which extends to the end of its line, except if a writer puts a whole solid on one line.
   static void skip_name(std::string_view& line) {
     for (std::string_view rest = line; !rest.empty();) {
       const std::string_view from = rest, word = take_word(rest);
@@ -146,7 +147,7 @@ class AsciiStl {
       corners_ = 0;
       had_loop_ = false;
     } else if (same_keyword(word, "normal")) {
-      for (int i = 0; i < 3; ++i) take_word(line);  // which are not looked at
+      for (int i = 0; i < 3; ++i) take_word(line);  // skips the normal
     } else if (same_keyword(word, "vertex")) {
       vertex(line);
     } else if (same_keyword(word, "endfacet")) {
@@ -183,10 +184,10 @@ class AsciiStl {
   const std::string& file_;
   ImportedMesh mesh_;
   FaceCollector faces_;
-  std::size_t line_number_ = 0, facet_line_ = 0;  ///< where the open facet begins; 0 if none is open
-  std::uint32_t corners_ = 0;                     ///< of the loop that is being read
-  std::uint64_t loops_ = 0;                       ///< that ended
-  bool had_loop_ = false;                         ///< the open facet has a face already
+  std::size_t line_number_ = 0, facet_line_ = 0;  ///< line on which the open facet begins; 0 if none is open
+  std::uint32_t corners_ = 0;                     ///< corners of the current loop
+  std::uint64_t loops_ = 0;                       ///< number of finished loops
+  bool had_loop_ = false;                         ///< the open facet already has a face
   bool open_solid_ = false;
   std::uint64_t unknown_ = 0;
   std::string first_unknown_;
@@ -200,7 +201,7 @@ ImportedMesh read_stl(std::string_view content, const std::string& file) {
   if (!solid && !long_enough) {
     throw InputError("{}: neither ASCII STL ('solid …') nor long enough for binary STL", file);
   }
-  // A length that fits to the byte decides, and then whether the header is text.
+  // An exactly fitting length means binary; otherwise a header of text means ASCII.
   const bool fits = long_enough && content.size() == kHeader + kTriangle * std::size_t{count_of_binary(content)};
   const bool ascii = solid && (!long_enough || (!fits && begins_with_text(content)));
   ImportedMesh mesh = ascii ? AsciiStl(file).read(content) : read_binary(content, file);

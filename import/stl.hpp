@@ -7,11 +7,11 @@
 
 namespace penumbra::mesh {
 
-/// Reads an STL file, ASCII or binary. Not through Assimp, because its reader refuses binary files with bytes after
-/// their last triangle or with a header that begins with "solid", and ASCII ones whose keywords are capitals.
+/// Reads an STL file, ASCII or binary. Does not use Assimp, whose reader refuses binary files with bytes after their
+/// last triangle or with a header that begins with "solid", and ASCII files with keywords in capitals.
 ///
-/// Throws InputError: a binary file shorter than its count promises; in an ASCII one, with the line, facets without
-/// an end, coordinates that are no numbers or not finite.
+/// Throws InputError: a binary file shorter than its count promises; in an ASCII file, with the line, facets without an
+/// end, coordinates that are not numbers or not finite.
 ImportedMesh read_stl(std::string_view content, const std::string& file);
 
 }  // namespace penumbra::mesh

@@ -19,7 +19,7 @@ bool is_blank(char c) {
 
 }  // namespace
 
-// Plain loops: find_first_of is several times slower, which shows in files of a hundred megabytes.
+// Plain loops: find_first_of is several times slower, which matters for files of a hundred megabytes.
 bool take_line(std::string_view& text, std::string_view& line) {
   if (text.empty()) return false;
   std::size_t end = 0;

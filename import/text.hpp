@@ -14,26 +14,26 @@
 
 namespace penumbra::mesh {
 
-/// The file name's extension in lower case (".obj"); empty if it has none.
+/// Returns the file name's extension in lower case (".obj"); empty if it has none.
 std::string lower_extension(const std::filesystem::path& file);
 
-/// Takes the next line off `text`, without its end ("\n", "\r\n" or "\r"). False at the end.
+/// Takes the next line off `text`, without its end ("\n", "\r\n" or "\r"). Returns false at the end.
 bool take_line(std::string_view& text, std::string_view& line);
 
-/// Takes the next blank-separated word off `line`; empty at its end.
+/// Takes the next blank-separated word off `line`; returns an empty word at its end.
 std::string_view take_word(std::string_view& line);
 
-/// The line before its comment, which '#' begins; that of "1.#IND" begins none.
+/// Returns the line without its comment, which '#' begins, except in "1.#IND".
 std::string_view without_comment(std::string_view line);
 
-/// A message with words of the file in it, printable: a zero byte among them would end the message there.
+/// Formats a message that contains words of the file, and makes it printable: a zero byte would end the message.
 template <typename... Args>
 std::string text_for_people(fmt::format_string<Args...> format, Args&&... args) {
   return printable(fmt::format(format, std::forward<Args>(args)...));
 }
 
-/// The whole of `word` as a number; nothing if it is not one (or an integer is too large for its type). Accepts a
-/// leading '+', which from_chars does not. A real that is too large becomes infinite: the caller refuses that by name.
+/// Parses the whole of `word` as a number; returns nullopt if it is not one (or an integer is too large for its type).
+/// Accepts a leading '+', which from_chars does not. A real that is too large becomes infinite: the caller refuses it.
 template <typename Number>
 std::optional<Number> parse_number(std::string_view word) {
   if (word.starts_with('+')) word.remove_prefix(1);
@@ -47,7 +47,8 @@ std::optional<Number> parse_number(std::string_view word) {
   return value;
 }
 
-/// The same of a real, also one that an old C library wrote for what is no number: "-1.#IND", "1.#QNAN", "1.#INF".
+/// Parses a real as parse_number does, and also "-1.#IND", "1.#QNAN", "1.#INF", which old C libraries wrote for
+/// non-numbers.
 std::optional<double> parse_real(std::string_view word);
 
 }  // namespace penumbra::mesh

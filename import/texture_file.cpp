@@ -21,7 +21,7 @@ namespace {
 
 constexpr std::array kPngMark = {std::byte{0x89}, std::byte{'P'}, std::byte{'N'}, std::byte{'G'}};
 constexpr std::array kExrMark = {std::byte{0x76}, std::byte{0x2f}, std::byte{0x31}, std::byte{0x01}};
-/// The largest picture that is read, uncompressed, with four 32-bit channels, and room for what else a file holds.
+/// Size of the largest accepted picture, uncompressed, with four 32-bit channels, and room for other content of a file.
 constexpr std::uintmax_t kMostBytes = std::uintmax_t{128} << 20, kMostSkyBytes = std::uintmax_t{640} << 20;
 
 std::string read_bytes(const mesh::InputFile& input, std::uintmax_t most_bytes) {
@@ -45,7 +45,7 @@ std::string list_of(const std::vector<std::string>& names) {
 }
 
 LinearImage read_exr_picture(std::span<const std::byte> bytes, const std::string& shown, std::uint32_t largest_side) {
-  // No more than is used: a file may have thousands of channels, and 16 MiB each in memory.
+  // Reads only the used channels: a file may have thousands, of 16 MiB each in memory.
   const ExrFile exr = read_exr(bytes, shown, {.largest_side = largest_side, .channels = {"R", "G", "B", "Y"}});
   const std::array<const char*, 3> names =
       exr.floats.contains("Y") && !exr.floats.contains("R") ? std::array{"Y", "Y", "Y"} : std::array{"R", "G", "B"};

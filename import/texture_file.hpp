@@ -6,10 +6,11 @@
 /// Runs inside the import helper only: pictures are foreign files, too.
 namespace penumbra::scenes {
 
-/// What read_texture says of it (scenes/light_texture.hpp), but the file's name in messages, and check_texture.
+/// Reads a texture as described at read_texture (scenes/light_texture.hpp), without the file's name in messages and
+/// without check_texture.
 Texture read_texture_file(const mesh::InputFile& input);
 
-/// Likewise of read_sky_picture.
+/// Reads a sky as described at read_sky_picture, without the file's name in messages.
 Texture read_sky_file(const mesh::InputFile& input);
 
 }  // namespace penumbra::scenes

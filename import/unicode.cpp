@@ -12,7 +12,7 @@
 namespace penumbra::mesh {
 namespace {
 
-/// Formats that are text, or that are text unless they begin otherwise than a byte order mark does.
+/// Extensions of formats that are text, or are text unless they begin with something else than a byte order mark.
 constexpr std::array<std::string_view, 33> kTextFormats = {
     ".obj", ".off", ".stl", ".ply", ".amf", ".ac",   ".acc",     ".ac3d",    ".ase",  ".ask", ".dae",
     ".x",   ".x3d", ".wrl", ".xgl", ".nff", ".enff", ".lws",     ".irr",     ".dxf",  ".raw", ".irrmesh",
@@ -21,11 +21,11 @@ constexpr std::array<std::string_view, 33> kTextFormats = {
 struct Encoding {
   std::string_view name;
   std::string_view mark;
-  std::size_t width;  ///< bytes a unit
+  std::size_t width;  ///< bytes of a unit
   bool big_endian;
 };
 
-// The longer marks first: that of UTF-32 begins with that of UTF-16.
+// Longer marks first: that of UTF-32 begins with that of UTF-16.
 using namespace std::string_view_literals;
 constexpr std::array<Encoding, 4> kEncodings = {{{"UTF-32", "\xFF\xFE\0\0"sv, 4, false},
                                                  {"UTF-32", "\0\0\xFE\xFF"sv, 4, true},
@@ -64,7 +64,7 @@ std::string decode(std::string_view content, const Encoding& encoding, const std
     std::uint32_t c = unit(at);
     const bool high = c >= 0xD800 && c < 0xDC00, low = c >= 0xDC00 && c < 0xE000;
     if (low || c > 0x10FFFF) fail(at);
-    if (high) {  // the first half of a pair
+    if (high) {  // the first half of a surrogate pair
       const std::uint32_t next = encoding.width == 2 && at + 2 < content.size() ? unit(at + 2) : 0;
       if (next < 0xDC00 || next >= 0xE000) fail(at);
       c = 0x10000 + ((c - 0xD800) << 10) + (next - 0xDC00);

@@ -19,15 +19,15 @@
 namespace penumbra::mesh {
 namespace {
 
-/// Nodes whose children are shown as they are, whatever else they do (Collision and Billboard for a camera that moves).
+/// Nodes whose children are shown unchanged, regardless of other effects (Collision and Billboard for a moving camera).
 constexpr std::array<std::string_view, 17> kGroups = {
     "Scene",         "Group",       "StaticGroup", "Collision",   "Anchor",         "Billboard",
     "PickableGroup", "CADAssembly", "CADLayer",    "CADFace",     "ViewpointGroup", "LayoutGroup",
     "Layer",         "LayerSet",    "LayoutLayer", "ScreenGroup", "Viewport"};
 constexpr std::array<std::string_view, 2> kTransforms = {"Transform", "CADPart"};
-/// Nodes whose surfaces stand in another file or another node.
+/// Nodes whose surfaces are in another file or another node.
 constexpr std::array<std::string_view, 4> kElsewhere = {"Inline", "GeoLOD", "ProtoInstance", "ParticleSystem"};
-/// Nodes that name others by USE without showing them, and so does every sensor.
+/// Nodes that refer to others by USE without showing them; sensors do so, too.
 constexpr std::array<std::string_view, 4> kTools = {"Script", "RigidBodyCollection", "CollisionCollection",
                                                     "CollisionSpace"};
 
@@ -78,7 +78,7 @@ class X3dReader {
   }
 
  private:
-  /// The unit of length in metres, which X3D has if the file says nothing.
+  /// Reads the unit of length in metres, the default of X3D.
   void read_units(const pugi::xml_node& head) {
     for (const pugi::xml_node& unit : children_named(head, "unit")) {
       const std::string_view category = unit.attribute("category").value();
@@ -92,8 +92,7 @@ class X3dReader {
     }
   }
 
-  /// What each USE means: the last node before it that DEF gave this name. The body of a prototype has names of its
-  /// own.
+  /// Resolves each USE: the last node before it to which DEF gave the name. The body of a prototype has its own names.
   void find_names(const pugi::xml_node& scene) {
     struct Scope {
       pugi::xml_node top;
@@ -107,7 +106,7 @@ class X3dReader {
         node = node.first_child();
         continue;
       }
-      for (;; node = node.parent()) {  // up to one that has a neighbour
+      for (;; node = node.parent()) {  // goes up to a node that has a next sibling
         if (node == scene) return;
         if (node == scopes.back().top) scopes.pop_back();
         if (node.next_sibling()) break;
@@ -128,20 +127,21 @@ class X3dReader {
     if (const pugi::xml_attribute name = node.attribute("DEF")) named[name.value()] = node;
     shapes_ += local_name(node) == "Shape" ? 1 : 0;
   }
-  /// In document order, below `top`.
+  /// Returns the next node in document order, below `top`.
   static pugi::xml_node following(pugi::xml_node node, const pugi::xml_node& top) {
     if (node.first_child()) return node.first_child();
     while (node && node != top && !node.next_sibling()) node = node.parent();
     return node == top ? pugi::xml_node() : node.next_sibling();
   }
-  /// The node that a node among others means; itself if there is none, and none of its kind shows surfaces.
+  /// Returns the node that a node refers to by USE; itself if it has no USE, and the node itself if its kind shows no
+  /// surfaces.
   [[nodiscard]] pugi::xml_node meant(const pugi::xml_node& node) const {
     const std::string_view name = local_name(node);
     const bool may_show =
         can_hold_shapes(node) || is_one_of(name, kElsewhere) || name.starts_with("Geo") || name.starts_with("HAnim");
     return may_show || !missing_.contains(node.hash_value()) ? resolved(node) : node;
   }
-  /// Of one that shows or holds surfaces; there must be one.
+  /// Resolves the USE of a node that shows or contains surfaces; throws if it refers to none.
   [[nodiscard]] pugi::xml_node resolved(const pugi::xml_node& node) const {
     if (missing_.contains(node.hash_value()))
       xml_.fail(node, "USE: there is no node '{}' before it", printable(node.attribute("USE").value()));
@@ -173,7 +173,7 @@ class X3dReader {
     }
   }
 
-  /// The children that can hold shapes, and are shown.
+  /// Returns the visible children that can contain shapes.
   std::vector<pugi::xml_node> shown_children(const pugi::xml_node& node) {
     std::vector<pugi::xml_node> all, shown;
     for (const pugi::xml_node& child : node.children()) {
@@ -200,7 +200,7 @@ class X3dReader {
            is_one_of(name, kTransforms);
   }
 
-  /// Shapes below a node that the file itself does not show.
+  /// Marks shapes below a node that the file does not show.
   void leave_out(const pugi::xml_node& node) {
     for (pugi::xml_node below = node; below; below = following(below, node)) {
       if (local_name(below) == "Shape" && !below.attribute("USE")) left_out_nodes_.insert(below.hash_value());
@@ -208,14 +208,14 @@ class X3dReader {
   }
   void ignore(const pugi::xml_node& node) {
     const std::string_view name = local_name(node);
-    if (name == "ProtoDeclare" || name == "ExternProtoDeclare") return leave_out(node);  // shown by instances alone
+    if (name == "ProtoDeclare" || name == "ExternProtoDeclare") return leave_out(node);  // only instances are shown
     if (may_show_surfaces(node)) {
       xml_.fail(node, "<{}> may hold surfaces, but is not supported; write what it shows as Transform and Shape", name);
     }
     ++ignored_[std::string(name)];
   }
 
-  /// Is there a surface in a node of a kind that is not read, or below what it names by USE?
+  /// Returns whether a node of an unsupported kind, or a node that it refers to by USE, may contain a surface.
   bool may_show_surfaces(const pugi::xml_node& top) {
     const bool is_tool = is_one_of(local_name(top), kTools) || local_name(top).ends_with("Sensor");
     std::vector<pugi::xml_node> stack = {top};
@@ -260,7 +260,7 @@ class X3dReader {
     }
   }
 
-  /// Translation · centre · rotation · scale along turned axes, and back from the centre.
+  /// Returns translation · centre · rotation · scale along rotated axes, and back from the centre.
   [[nodiscard]] glm::dmat4 transform_of(const pugi::xml_node& node) const {
     const auto vector = [&](const char* name, double fallback) {
       const std::vector<double> v = x3d_reals(xml_, node, name, {fallback, fallback, fallback});
@@ -278,7 +278,7 @@ class X3dReader {
            glm::translate(glm::dmat4(1), -center);
   }
 
-  /// Every shape of the file is in the mesh, or the file itself does not show it.
+  /// Checks that every shape of the file is in the mesh, or is one that the file does not show.
   void require_all_shapes() {
     for (const auto& [node, number] : numbers_) left_out_nodes_.erase(node);  // shown elsewhere by USE
     left_out_ = left_out_nodes_.size();
@@ -297,12 +297,12 @@ class X3dReader {
 
   const XmlText& xml_;
   X3dResolve resolve_;
-  std::map<std::size_t, pugi::xml_node> uses_;  ///< by the hash of a node with USE: what it means
-  std::map<std::size_t, std::size_t> numbers_;  ///< of parts, by their nodes' hashes
-  std::set<std::size_t> missing_;               ///< hashes of nodes whose USE names nothing
+  std::map<std::size_t, pugi::xml_node> uses_;  ///< by the hash of a node with USE: the node it refers to
+  std::map<std::size_t, std::size_t> numbers_;  ///< indices of parts, by their nodes' hashes
+  std::set<std::size_t> missing_;               ///< hashes of nodes whose USE is undefined
   std::string first_missing_;
   std::set<std::size_t> left_out_nodes_, without_surfaces_;
-  double metres_ = 1;                    ///< that a unit of length has
+  double metres_ = 1;                    ///< length of a unit in metres
   std::vector<pugi::xml_node> waiting_;  ///< nodes whose parts have no content yet
   std::vector<AssemblyPart> parts_;
   std::uint64_t shapes_ = 0, reached_ = 0, left_out_ = 0, curved_ = 0;

@@ -16,7 +16,7 @@
 namespace penumbra::mesh {
 namespace {
 
-/// The next word between blanks and commas; empty at the end.
+/// Returns the next word between blanks and commas; empty at the end.
 std::string_view take_value(std::string_view& text) {
   constexpr std::string_view kBetween = " ,\t\r\n\v\f";
   text.remove_prefix(std::min(text.find_first_not_of(kBetween), text.size()));
@@ -53,7 +53,7 @@ double real(const XmlText& xml, const pugi::xml_node& node, const char* name, do
   return x3d_reals(xml, node, name, {fallback}).front();
 }
 
-/// One geometry node, whose positions begin at the part's end.
+/// One geometry node; its positions begin at the end of the part.
 class Geometry {
  public:
   Geometry(const XmlText& xml, const pugi::xml_node& node, const X3dResolve& resolve, AssemblyPart& part)
@@ -171,7 +171,7 @@ class Geometry {
     join(outline, circle(inner));
   }
 
-  /// ISO/IEC 19775-1, 13.3.5: the cross-section, scaled and turned, in a plane across the spine at each of its points.
+  /// ISO/IEC 19775-1, 13.3.5: the cross-section, scaled and rotated, in a plane across the spine at each of its points.
   void extrusion() {
     const std::vector<double> section = x3d_reals(xml_, node_, "crossSection"),
                               scales = x3d_reals(xml_, node_, "scale"), turns = x3d_reals(xml_, node_, "orientation"),
@@ -238,7 +238,7 @@ class Geometry {
     return order;
   }
 
-  /// Adds a face; indices into the positions of this node.
+  /// Adds a face; `corners` are indices into the positions of this node.
   void add(std::span<const std::int32_t> corners) {
     for (const std::int32_t corner : corners) {
       if (corner < 0 || static_cast<std::size_t>(corner) >= positions()) {
@@ -251,7 +251,7 @@ class Geometry {
     }
     part_.face_ends.push_back(part_.corners.size());
   }
-  /// What stands between −1 and −1.
+  /// Calls add_run for each run of indices between −1 and −1.
   template <typename Add>
   static void add_runs(const std::vector<std::int32_t>& order, const Add& add_run) {
     for (std::size_t begin = 0; begin < order.size();) {
@@ -282,7 +282,7 @@ class Geometry {
     const double angle = 2 * std::numbers::pi * i / kX3dSides;
     return {std::cos(angle), std::sin(angle)};
   }
-  /// Counter-clockwise as seen from above.
+  /// Adds a ring, counter-clockwise as seen from above.
   std::vector<std::int32_t> ring(double radius, double height) {
     std::vector<std::int32_t> corners;
     for (int i = 0; i < kX3dSides; ++i) {

@@ -27,10 +27,10 @@ std::vector<glm::dmat3> x3d_planes_across(const std::vector<glm::dvec3>& spine) 
   std::vector<bool> known(count);
   for (std::size_t i = 0; i < count; ++i) known[i] = set(z[i]);
   const auto first = static_cast<std::size_t>(std::ranges::find(known, true) - known.begin());
-  if (first == count) {  // a straight spine: the Y axis turned to it
+  if (first == count) {  // a straight spine: the Y axis rotated to it
     const auto along = std::ranges::find_if(y, [](const glm::dvec3& v) { return v != glm::dvec3(0); });
     const glm::dvec3 axis = along == y.end() ? glm::dvec3(0, 1, 0) : *along;
-    // Turned from the Y axis by the shortest way; against it, around the X axis.
+    // Rotated from the Y axis by the smallest angle; if opposite to it, around the X axis.
     const glm::dvec3 turned =
         axis.y > -1 ? glm::dvec3(0, 0, 1) - axis.z / (1 + axis.y) * (axis + glm::dvec3(0, 1, 0)) : glm::dvec3(0, 0, -1);
     for (glm::dvec3& v : z) v = turned;

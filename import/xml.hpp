@@ -13,29 +13,29 @@
 
 namespace penumbra::mesh {
 
-/// An XML text with places for messages; what the AMF and 3MF readers stand on. Internal to this room. pugixml expands
+/// An XML text with places for messages; used by the AMF, 3MF and X3D readers. Internal to this room. pugixml expands
 /// no entities that a file defines and opens no files.
 class XmlText {
  public:
-  /// Throws InputError with the line of the first syntax error. `text` must outlive this.
+  /// Throws InputError with the line of the first syntax error. `text` must outlive this object.
   XmlText(std::string_view text, std::string file);
 
   [[nodiscard]] const pugi::xml_document& document() const { return document_; }
   [[nodiscard]] const std::string& file() const { return file_; }
 
-  /// InputError: the file, the line of `node`, and the message.
+  /// Throws InputError with the file, the line of `node`, and the message.
   template <typename... Args>
   [[noreturn]] void fail(const pugi::xml_node& node, fmt::format_string<Args...> format, Args&&... args) const {
     throw InputError("{}: line {}: {}", file_, line_of(node.offset_debug()),
                      fmt::format(format, std::forward<Args>(args)...));
   }
 
-  /// The number in `text`, which belongs to `node` and is its `what`; one that is not finite is no matter in a vertex
-  /// that no face uses.
+  /// Parses the number in `text`, which belongs to `node`; `what` names it in messages. The number may be infinite or
+  /// NaN, which is an error only if a face uses the vertex.
   [[nodiscard]] double coordinate(const pugi::xml_node& node, const char* text, std::string_view what) const;
-  /// The same, finite.
+  /// Parses a finite number.
   [[nodiscard]] double real(const pugi::xml_node& node, const char* text, std::string_view what) const;
-  /// The number of one of `count` things, from 0.
+  /// Parses the index of one of `count` elements, from 0.
   [[nodiscard]] std::uint32_t index(const pugi::xml_node& node, const char* text, std::size_t count) const;
 
  private:
@@ -46,16 +46,16 @@ class XmlText {
   pugi::xml_document document_;
 };
 
-/// The element's name without its namespace's prefix.
+/// Returns the element's name without its namespace prefix.
 std::string_view local_name(const pugi::xml_node& node);
 
-/// The children of that name, whatever their prefix.
+/// Returns the children of that name, regardless of their prefixes.
 std::vector<pugi::xml_node> children_named(const pugi::xml_node& node, std::string_view name);
 
-/// A file for printers has a unit, which is kept out of its positions: a note says so, once, where it is no millimetre.
+/// Adds a note about the unit of a file for printers, which is not applied to its positions, unless it is a millimetre.
 void note_print_unit(const pugi::xml_node& root, std::vector<std::string>& notes);
 
-/// The attribute of that name, whatever its prefix.
+/// Returns the attribute of that name, regardless of its prefix.
 pugi::xml_attribute attribute_named(const pugi::xml_node& node, std::string_view name);
 
 }  // namespace penumbra::mesh

@@ -1,6 +1,6 @@
-// The list of entries at an archive's end, and entries packed by deflate or not at all (APPNOTE.TXT of PKWARE, 4.3 to
-// 4.5). Sizes and places of 64 bits stand in an entry's extra field wherever the plain field has all bits set, which
-// several writers do for small entries, too.
+// Reads zip archives: the list of entries at the end, and entries packed by deflate or stored (APPNOTE.TXT of PKWARE,
+// 4.3 to 4.5). Sizes and offsets of 64 bits are in an entry's extra field wherever the plain field has all bits set,
+// which several writers do for small entries, too.
 
 #include "import/zip_archive.hpp"
 
@@ -15,13 +15,13 @@
 namespace penumbra::mesh {
 namespace {
 
-/// Deflate makes nothing more than 1032 times smaller: an entry that promises more lies, and must not be allocated.
+/// Deflate reduces data by a factor of 1032 at most: an entry that claims more is invalid, and must not be allocated.
 constexpr std::uint64_t kLargestRatio = 1032;
 
 constexpr std::size_t kLocal = 30, kListed = 46, kEnd = 22, kEnd64 = 56, kLocator64 = 20;  ///< bytes of the records
 constexpr std::uint64_t kAllBits = 0xffffffff;
 
-/// The little-endian number of so many bytes.
+/// Returns the little-endian number of `width` bytes.
 std::uint64_t number(std::string_view bytes, std::uint64_t at, std::size_t width) {
   std::uint64_t value = 0;
   for (std::size_t i = width; i-- > 0;) value = value << 8 | static_cast<unsigned char>(bytes[at + i]);
@@ -32,13 +32,13 @@ bool has(std::string_view content, std::uint64_t at, std::size_t size, std::stri
   return at <= content.size() && size <= content.size() - at && content.substr(at).starts_with(signature);
 }
 
-/// Where the list of entries is.
+/// Offset and length of the list of entries.
 struct List {
   std::uint64_t at = 0, count = 0;
 };
 
 std::optional<List> find_list(std::string_view content) {
-  // The last record has a comment behind it, of up to 64 KiB.
+  // The last record may be followed by a comment of up to 64 KiB.
   const std::size_t end = content.rfind("PK\x05\x06");
   if (end == std::string_view::npos || !has(content, end, kEnd, "PK")) return std::nullopt;
   List list{number(content, end + 16, 4), number(content, end + 10, 2)};
@@ -82,7 +82,7 @@ void ZipArchive::take_sizes(std::string_view extra, Entry& entry) {
     extra.remove_prefix(4 + size);
     if (id != 1) continue;
     for (std::uint64_t* value :
-         {&entry.size, &entry.packed, &entry.at}) {  // those alone that did not fit, in this order
+         {&entry.size, &entry.packed, &entry.at}) {  // only the values that did not fit, in this order
       if (*value != kAllBits || field.size() < 8) continue;
       *value = number(field, 0, 8);
       field.remove_prefix(8);
@@ -122,7 +122,7 @@ std::string ZipArchive::read(std::string_view name) const {
   return content;
 }
 
-/// Shorter than `size` if it does not become that.
+/// Inflates `packed`; the result is shorter than `size` on failure.
 std::string ZipArchive::inflated(std::string_view packed, std::uint64_t size) {
   std::string content(size, '\0');
   z_stream stream{};
@@ -130,7 +130,7 @@ std::string ZipArchive::inflated(std::string_view packed, std::uint64_t size) {
   if (inflateInit2(&stream, kWithoutHeader) != Z_OK) throw std::bad_alloc();
   std::uint64_t from = 0, to = 0;
   int state = Z_OK;
-  while (state == Z_OK) {  // zlib counts in 32 bits
+  while (state == Z_OK) {  // zlib's counters have 32 bits
     constexpr std::uint64_t kMost = std::uint64_t{1} << 30;
     stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(packed.data() + from));
     stream.avail_in = static_cast<uInt>(std::min(packed.size() - from, kMost));

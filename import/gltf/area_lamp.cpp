@@ -29,7 +29,7 @@ std::array<double, N> numbers(const tinygltf::Value& lamp, const char* key, doub
   return all;
 }
 
-/// A circle, up to the rounding of a transform in single precision?
+/// Returns whether u and v span a circle, up to the rounding of a transform in single precision.
 bool is_round(const glm::dvec3& u, const glm::dvec3& v) {
   const double rounding = 8 * static_cast<double>(std::numeric_limits<float>::epsilon()) * glm::dot(u, u);
   return std::abs(glm::dot(u, v)) <= rounding && std::abs(glm::dot(u, u) - glm::dot(v, v)) <= rounding;
@@ -53,7 +53,7 @@ std::optional<AreaLight> area_lamp_of(const tinygltf::Node& node, const PlacedNo
   glm::dvec3 v = size[1] / 2 * glm::dvec3(placed.to_world[1]);
   const glm::dvec3 along = -glm::dvec3(placed.to_world[2]);
   if (!(glm::length(glm::cross(u, v)) > 0)) throw InputError("{}: it has no area in the world", place);
-  if (glm::dot(glm::cross(u, v), along) < 0) v = -v;  // it shines along u × v
+  if (glm::dot(glm::cross(u, v), along) < 0) v = -v;  // the light must shine along u × v
   AreaLight light;
   light.radiance = {radiance[0], radiance[1], radiance[2]};
   const tinygltf::Value& shape = lamp.Get("shape");

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::string_view kGenerator = "Khronos glTF Blender I/O";
 
-/// The three numbers of "v3.4.50"; nothing if the generator's name does not end in such.
+/// Returns the three numbers of "v3.4.50"; nullopt if the generator's name does not end with a version.
 std::optional<std::array<int, 3>> version_of(std::string_view generator) {
   const std::size_t at = generator.rfind('v');
   if (at == std::string_view::npos) return std::nullopt;

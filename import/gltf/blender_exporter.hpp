@@ -6,11 +6,12 @@ class Model;
 
 namespace penumbra::scenes {
 
-/// Did Blender's exporter write the file? It means some things as only Blender does.
+/// Returns whether Blender's exporter wrote the file, which uses some features in its own sense.
 bool is_from_blender(const tinygltf::Model& model);
 
-/// Did a version of Blender's exporter write it that puts a lamp's power into `intensity` as Blender has it, watts or,
-/// of a sun, watts a square metre? Those before 3.4.36 do; later ones write candela and lux, 683 lumens to a watt.
+/// Returns whether a version of Blender's exporter wrote the file that stores a lamp's power in `intensity` in
+/// Blender's unit, watts or, for a sun, watts a square metre. Versions before 3.4.36 do; later ones write candela and
+/// lux, 683 lumens to a watt.
 bool writes_watts(const tinygltf::Model& model);
 
 }  // namespace penumbra::scenes

@@ -1,3 +1,6 @@
+// Means of pictures over triangles: triangles are clipped to rows and texels (Sutherland and Hodgman), large ones
+// sampled.
+
 #include "import/gltf/emissive_picture.hpp"
 
 #include "base/image.hpp"
@@ -11,7 +14,7 @@
 namespace penumbra::scenes {
 namespace {
 
-/// A convex outline of few corners.
+/// A convex outline with few corners.
 struct Outline {
   std::array<glm::dvec2, 8> corners{};
   std::size_t count = 0;
@@ -21,7 +24,8 @@ struct Outline {
   [[nodiscard]] std::span<const glm::dvec2> all() const { return std::span(corners).first(count); }
 };
 
-/// The part of a convex outline where the coordinate `axis` is at least (or at most) `limit`: Sutherland and Hodgman.
+/// Returns the part of a convex outline where the coordinate `axis` is at least (or at most) `limit`: Sutherland and
+/// Hodgman.
 Outline cut(const Outline& outline, glm::length_t axis, double limit, bool at_least) {
   Outline kept;
   for (std::size_t i = 0; i < outline.count; ++i) {
@@ -51,7 +55,7 @@ struct Range {
   double first, last;
 };
 
-/// The least and the greatest coordinate of an outline.
+/// Returns the smallest and the largest coordinate of an outline.
 Range range_of(const Outline& outline, glm::length_t axis) {
   Range range{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
   for (const glm::dvec2& corner : outline.all()) {
@@ -61,7 +65,7 @@ Range range_of(const Outline& outline, glm::length_t axis) {
   return range;
 }
 
-/// The whole numbers between which an outline lies: cells first … last − 1 meet it.
+/// Returns the integers between which an outline lies: it meets cells first … last − 1.
 Range cells_of(const Outline& outline, glm::length_t axis) {
   const Range range = range_of(outline, axis);
   return {std::floor(range.first), std::ceil(range.last)};
@@ -70,7 +74,7 @@ Range cells_of(const Outline& outline, glm::length_t axis) {
 class Texels {
  public:
   Texels(const Picture& picture, const PictureUse& use) : picture_(picture), use_(use) {}
-  /// The colour of the cell that begins at (x, y), whole numbers of texels from the picture's top left.
+  /// Returns the colour of the cell that begins at (x, y), in whole texels from the picture's top left.
   [[nodiscard]] glm::dvec3 at(double x, double y) const {
     static const std::array<double, 256> linear = [] {
       std::array<double, 256> values{};
@@ -87,7 +91,7 @@ class Texels {
   const PictureUse& use_;
 };
 
-/// At the middles of steps² equal parts.
+/// Samples at the centres of steps² equal parts.
 glm::dvec3 sampled_mean(const Texels& texels, const Outline& triangle, int steps) {
   glm::dvec3 sum(0);
   const glm::dvec2 u = (triangle.corners[1] - triangle.corners[0]) / double(steps);
@@ -114,8 +118,8 @@ struct Sum {
   }
 };
 
-/// Adds the texels of one row, of which `row` is the part within the triangle. Those between the ends of its upper and
-/// of its lower border are covered as a whole.
+/// Adds the texels of one row; `row` is the part of the row within the triangle. Texels between the ends of its upper
+/// and lower border are covered completely.
 void add_row(const Texels& texels, Outline row, double y, Sum& sum) {
   Range whole{-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
   for (const double border : {y, y + 1}) {
@@ -165,7 +169,7 @@ glm::dvec3 PictureMeans::of_triangle(const PictureUse& use, const std::array<glm
   Outline triangle;
   for (const glm::dvec2& place : places) {
     glm::dvec2 at = place * size;
-    // Files hold single precision: an edge between texels is meant where a place is that near to it.
+    // Files store single precision: a coordinate that is within its rounding of a texel border is taken as that border.
     for (glm::length_t axis = 0; axis < 2; ++axis) {
       const double rounding =
           4 * static_cast<double>(std::numeric_limits<float>::epsilon()) * std::max(size[axis], std::abs(at[axis]));
@@ -173,7 +177,7 @@ glm::dvec3 PictureMeans::of_triangle(const PictureUse& use, const std::array<glm
     }
     triangle.add(at);
   }
-  // A picture that repeats, mirrored or not, is the same whole periods away.
+  // A repeating picture, mirrored or not, is unchanged by a shift of whole periods.
   for (glm::length_t axis = 0; axis < 2; ++axis) {
     if ((axis == 0 ? use.wrap_s : use.wrap_t) == PictureUse::Wrap::clamp) continue;
     const double periods = 2 * size[axis] * std::floor(range_of(triangle, axis).first / (2 * size[axis]));

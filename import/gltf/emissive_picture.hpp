@@ -12,22 +12,23 @@
 
 namespace penumbra::scenes {
 
-/// A triangle that a picture lies on.
+/// A triangle with its place in a picture.
 struct PicturedTriangle {
-  std::array<glm::dvec2, 3> places;  ///< in the picture, (0, 0) its top left, (1, 1) its bottom right; finite
-  double area = 0;                   ///< in the world
+  std::array<glm::dvec2, 3> places;  ///< coordinates in the picture, (0, 0) its top left, (1, 1) its bottom right;
+                                     ///< finite
+  double area = 0;                   ///< area in the world
 };
 
-/// Means of pictures over triangles. Texels are squares of one colour: what a filter would bring in from beside a
-/// triangle does not count, so that a part of an atlas is as it was painted. A mean is exact up to rounding, but for
-/// triangles over more than a few million texels, and for all that come after a hundred million texels were looked at:
-/// those are sampled.
+/// Means of pictures over triangles. Texels are squares of one colour: neighbouring texels that a filter would blend in
+/// do not count, so that a part of an atlas keeps its painted colour. A mean is exact up to rounding, except for
+/// triangles over more than a few million texels, and for all triangles after the first hundred million texels: those
+/// are sampled.
 class PictureMeans {
  public:
-  /// `pictures` must outlive it, and may grow.
+  /// `pictures` must outlive this object, and may grow.
   explicit PictureMeans(const std::vector<Picture>& pictures) : pictures_(pictures) {}
 
-  /// The mean of the texels (linear red green blue) that the triangles cover, each by the area that it has in the
+  /// Returns the mean of the texels (linear red green blue) that the triangles cover, each weighted by its area in the
   /// world. Black for triangles without area.
   glm::dvec3 over(const PictureUse& use, std::span<const PicturedTriangle> triangles);
 
@@ -36,8 +37,8 @@ class PictureMeans {
 
   const std::vector<Picture>& pictures_;
   double cells_left_ = 1 << 27;
-  /// Of triangles that were looked at before: many lamps share one picture and the places in it. By picture, ways to
-  /// wrap and places.
+  /// Means of triangles computed before, by picture, wrap modes and coordinates: many lamps share one picture and the
+  /// places in it.
   std::map<std::array<double, 9>, glm::dvec3> known_;
 };
 

@@ -28,7 +28,8 @@ std::size_t padded(std::size_t size) {
   return (size + 3) / 4 * 4;
 }
 
-/// Where the chunk after `at` begins, whose content ends there: some writers pad without counting it, some do not pad.
+/// Returns the offset of the chunk after the one that ends at `at`: some writers pad without counting the padding, some
+/// do not pad.
 std::size_t next_chunk(std::string_view bytes, std::size_t at) {
   const auto begins = [&](std::size_t place) {
     return place + kChunkHeader <= bytes.size() &&
@@ -38,7 +39,7 @@ std::size_t next_chunk(std::string_view bytes, std::size_t at) {
   return padded(at);
 }
 
-/// Nothing but what pads.
+/// Returns whether the bytes are only padding.
 bool is_padding(std::string_view bytes) {
   return bytes.size() < 4 && std::ranges::all_of(bytes, [](char c) { return c == '\0' || c == ' '; });
 }

@@ -12,12 +12,12 @@
 #include <span>
 #include <string>
 
-// tinygltf checks almost nothing that an accessor says about its buffer; all of it is checked here, in 64 bits.
+// Checks, in 64 bits, every property of an accessor that refers to its buffer: tinygltf checks almost none.
 
 namespace penumbra::scenes {
 namespace {
 
-/// Elements at regular distances inside a buffer, all of them in range.
+/// Equally spaced elements inside a buffer, all in range.
 struct ElementView {
   const unsigned char* first = nullptr;
   std::size_t stride = 0;
@@ -28,7 +28,7 @@ struct ElementLayout {
   std::size_t count = 0, bytes = 0;
 };
 
-/// `count` elements from `offset` on in buffer view number `view`; `place` says whose view it is.
+/// Returns `count` elements from `offset` on in buffer view number `view`; `place` is the view's owner, for messages.
 ElementView view_elements(const tinygltf::Model& model, const std::string& place, int view, std::size_t offset,
                           ElementLayout layout) {
   if (view < 0 || static_cast<std::size_t>(view) >= model.bufferViews.size()) {
@@ -62,7 +62,8 @@ double load(const unsigned char* from, bool normalized) {
   T value;
   std::memcpy(&value, from, sizeof(T));
   if constexpr (std::is_integral_v<T>) {
-    // glTF 2.0, "Accessor data types": c / 127 and the like, and never below −1.
+    // Normalised integers (glTF 2.0, "Accessor data types"): c / 127 for signed bytes and similarly for other types,
+    // never below −1.
     if (normalized)
       return std::max(static_cast<double>(value) / static_cast<double>(std::numeric_limits<T>::max()), -1.0);
   }
@@ -110,7 +111,7 @@ std::uint32_t load_index(const unsigned char* from, int type) {
   return static_cast<std::uint32_t>(load_component(from, type, false));
 }
 
-/// Overwrites the elements that a sparse accessor lists. `store(i, bytes)` puts one into place i.
+/// Overwrites the elements that a sparse accessor lists. `store(i, bytes)` stores one at index i.
 template <typename Store>
 void apply_sparse(const tinygltf::Model& model, const std::string& place, const tinygltf::Accessor& accessor,
                   std::size_t element_bytes, Store store) {
@@ -158,8 +159,8 @@ const tinygltf::Accessor& find_accessor(const tinygltf::Model& model, int number
   return model.accessors[static_cast<std::size_t>(number)];
 }
 
-/// How many numbers its elements have together. Of one without a buffer view nothing else limits its count, and a
-/// product that overflows would allocate less than sparse entries then fill.
+/// Returns the number of numbers of all elements together. For an accessor without a buffer view nothing else limits
+/// its count, and a product that overflows would allocate less than the sparse entries then fill.
 std::size_t number_count(const tinygltf::Accessor& accessor, std::size_t components, const std::string& place) {
   constexpr std::size_t kMost = std::numeric_limits<std::ptrdiff_t>::max() / sizeof(double);
   if (accessor.count > kMost / components) {
@@ -192,11 +193,11 @@ Numbers read_numbers(const tinygltf::Model& model, int number, std::initializer_
   if (accessor.bufferView < 0) {
     numbers.values.resize(number_count(accessor, numbers.components, place), 0.0);
   } else {
-    // In this order: only a count that the buffer holds may be allocated.
+    // The view comes first: only a count that fits the buffer may be allocated.
     const ElementView view =
         view_elements(model, place, accessor.bufferView, accessor.byteOffset, {accessor.count, element_bytes});
     numbers.values.resize(number_count(accessor, numbers.components, place));
-    if (accessor.componentType == TINYGLTF_COMPONENT_TYPE_FLOAT) {  // nearly always
+    if (accessor.componentType == TINYGLTF_COMPONENT_TYPE_FLOAT) {  // the usual case
       double* to = numbers.values.data();
       for (std::size_t i = 0; i < accessor.count; ++i) {
         const unsigned char* const from = view.at(i);

@@ -19,13 +19,13 @@ namespace {
 
 enum class Interpolation { linear, step, cubic };
 
-/// What a channel moves, with its keys.
+/// The property that a channel animates, with its keys.
 struct Channel {
   std::string place;
   bool rotates = false;
   Interpolation interpolation = Interpolation::linear;
   std::vector<double> times;   ///< ascending, or equal at a jump
-  std::vector<double> values;  ///< `width` numbers a key; cubic: in-tangent, value and out-tangent a key
+  std::vector<double> values;  ///< `width` numbers for each key; cubic: in-tangent, value and out-tangent for each key
   std::size_t width = 0;
 };
 
@@ -47,7 +47,7 @@ std::vector<double> key_times(const tinygltf::Model& model, int accessor, const 
   std::vector<double> times = read_numbers(model, accessor, {TINYGLTF_TYPE_SCALAR}, "key times").values;
   if (times.empty()) throw InputError("{}/input: there are no keys", place);
   for (std::size_t i = 1; i < times.size(); ++i) {
-    // Two keys at one time are a jump: the later one holds from then on.
+    // Two keys at the same time are a jump: the later one holds from then on.
     if (times[i] < times[i - 1])
       throw InputError("{}/input: key {} at {} s is before the one at {} s; times must ascend", place, i, times[i],
                        times[i - 1]);
@@ -55,7 +55,7 @@ std::vector<double> key_times(const tinygltf::Model& model, int accessor, const 
   return times;
 }
 
-/// How many numbers a channel of this path gives its node; 0: the path is none of glTF 2.0's.
+/// Returns the number of values that a channel of this path has for its node; 0 if glTF 2.0 has no such path.
 std::size_t width_of(const tinygltf::Model& model, const tinygltf::Node& node, const std::string& path) {
   if (path == "translation" || path == "scale") return 3;
   if (path == "rotation") return 4;
@@ -91,7 +91,7 @@ Channel read_channel(const tinygltf::Model& model, const tinygltf::AnimationSamp
   return channel;
 }
 
-/// Spherical interpolation along the shorter arc.
+/// Interpolates spherically along the shorter arc.
 std::vector<double> between_rotations(std::span<const double> a, std::span<const double> b, double share) {
   const auto quaternion = [](std::span<const double> q) { return glm::normalize(glm::dquat(q[3], q[0], q[1], q[2])); };
   const glm::dquat turned = glm::slerp(quaternion(a), quaternion(b), share);

@@ -12,15 +12,15 @@ class Model;
 
 namespace penumbra::scenes {
 
-/// When the animations of these numbers begin and end; nothing if nothing in them moves. InputError for key times that
-/// glTF does not allow.
+/// Returns begin and end of the animations `played`; nullopt if nothing in them moves. Throws InputError for key times
+/// that glTF does not allow.
 std::optional<Motion> motion_of(const tinygltf::Model& model, const std::vector<std::size_t>& played);
 
-/// Puts the model's nodes where these animations (ascending numbers, ClipChoice::played) have them at `seconds`: all of
-/// them together, as they were in the program that wrote them. Before its first key and after its last one a channel
-/// holds still; where two keys are at one time the later one counts from then on. LINEAR (rotations along the shorter
-/// arc), STEP and CUBICSPLINE as glTF 2.0, appendix C, defines them. Where two channels move the same, the later in the
-/// file wins. InputError for what glTF does not allow.
+/// Moves the model's nodes to their places at `seconds` in the animations `played` (ascending indices,
+/// ClipChoice::played): all together, as in the program that wrote the file. A channel holds its value before its first
+/// key and after its last one; of two keys at the same time the later one holds from then on. LINEAR (rotations along
+/// the shorter arc), STEP and CUBICSPLINE are those of glTF 2.0, appendix C. If two channels move the same property,
+/// the later in the file wins. Throws InputError for files that glTF does not allow.
 void pose_model(tinygltf::Model& model, double seconds, const std::vector<std::size_t>& played);
 
 }  // namespace penumbra::scenes

@@ -17,8 +17,8 @@ namespace penumbra::scenes {
 
 namespace {
 
-/// The extras' "shift" (Camera::shift), for glTF knows no shifted lenses; nothing if it is no pair of numbers, and so
-/// another tool's.
+/// Returns "shift" of the extras (Camera::shift; glTF has no shifted lenses); nullopt if it is not a pair of numbers,
+/// and so belongs to another tool.
 std::optional<glm::dvec2> shift_of(const tinygltf::Value& pair) {
   if (!pair.IsArray() || pair.ArrayLen() != 2 || !pair.Get(0).IsNumber() || !pair.Get(1).IsNumber())
     return std::nullopt;

@@ -14,8 +14,8 @@ class Node;
 
 namespace penumbra::scenes {
 
-/// A node's camera, without a name: perspective, or orthographic. Throws InputError for one that does not exist, or
-/// that shows nothing.
+/// Returns a node's camera, perspective or orthographic, without a name. Throws InputError for a camera that does not
+/// exist, or that shows nothing.
 Camera camera_of(const tinygltf::Model& model, const tinygltf::Node& node, const PlacedNode& placed, Losses& losses);
 
 }  // namespace penumbra::scenes

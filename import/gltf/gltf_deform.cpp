@@ -16,10 +16,10 @@ namespace {
 
 std::vector<double> weights_of(const tinygltf::Model& model, const tinygltf::Node& node) {
   if (!node.weights.empty()) return node.weights;
-  return model.meshes[static_cast<std::size_t>(node.mesh)].weights;  // it was found before
+  return model.meshes[static_cast<std::size_t>(node.mesh)].weights;  // the mesh's index was checked before
 }
 
-/// Of each joint: from where it was bound into the world.
+/// Returns for each joint its transform from the bind pose into the world.
 std::vector<glm::dmat4> joint_matrices(const tinygltf::Model& model, int number,
                                        std::span<const std::optional<glm::dmat4>> to_world) {
   const std::string place = fmt::format("/skins/{}", number);
@@ -51,7 +51,7 @@ std::vector<glm::dmat4> joint_matrices(const tinygltf::Model& model, int number,
 
 void morph(const tinygltf::Model& model, const tinygltf::Node& node, const tinygltf::Primitive& primitive,
            const std::string& attribute, const std::string& place, std::span<glm::dvec3> vertices) {
-  if (primitive.targets.empty() || vertices.empty()) return;  // no normals to move, though a target has some
+  if (primitive.targets.empty() || vertices.empty()) return;  // targets may have normals, but there are none to move
   const std::vector<double> weights = weights_of(model, node);
   for (std::size_t t = 0; t < std::min(weights.size(), primitive.targets.size()); ++t) {
     const auto target = primitive.targets[t].find(attribute);

@@ -31,8 +31,8 @@ glm::dvec3 radiance_of(const PrimitiveVertices& vertices, std::span<const mesh::
 
 std::variant<Emitter, std::string> emitter_since(const Scene& scene, const SoupEnd& before, const PlacedNode& placed,
                                                  bool two_sided) {
-  // Files hold single precision: a position is rounded by half a float's step at its distance from the node's
-  // origin, and so is each coordinate; the world's own double rounding is nothing beside it.
+  // Files store single precision: a position is rounded by half the spacing of floats at its distance from the node's
+  // origin, and so is each coordinate; the rounding of the transform in double is negligible.
   const auto positions = std::span(scene.soup.positions).subspan(before.position);
   const glm::dvec3 origin(placed.to_world[3]);
   double distance = 0;

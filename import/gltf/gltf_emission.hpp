@@ -13,12 +13,14 @@
 
 namespace penumbra::scenes {
 
-/// What a primitive emits, evenly: its material's radiance times the mean of its emissive picture over the texels that
-/// its triangles cover (emissive_picture.hpp). `triangles` are the file's, indices into its vertices.
+/// Returns the uniform radiance that a primitive emits: its material's radiance times the mean of its emissive picture
+/// over the texels under its triangles (emissive_picture.hpp). `triangles` are those of the file, indices into its
+/// vertices.
 glm::dvec3 radiance_of(const PrimitiveVertices& vertices, std::span<const mesh::Triangle> triangles,
                        PictureMeans& means);
 
-/// The light whose body the scene's triangles since `before` are, which `placed` put there; or why there is none.
+/// Returns the light whose body is the scene's triangles since `before`, placed by `placed`; or the reason why there is
+/// none.
 std::variant<Emitter, std::string> emitter_since(const Scene& scene, const SoupEnd& before, const PlacedNode& placed,
                                                  bool two_sided);
 

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::array<std::string_view, 12> kUnderstood{
     "EXT_mesh_gpu_instancing",
-    "KHR_animation_pointer",  // what it moves and is not done is said by its target
+    "KHR_animation_pointer",  // targets that are not supported are reported individually
     "KHR_draco_mesh_compression",
     "KHR_lights_punctual",
     "KHR_materials_diffuse_transmission",
@@ -23,11 +23,11 @@ constexpr std::array<std::string_view, 12> kUnderstood{
     "KHR_mesh_quantization",
     "KHR_node_visibility",
     "KHR_texture_transform",
-    "KHR_texture_basisu",  // pictures that cannot be read are said by their objects
+    "KHR_texture_basisu",  // pictures that cannot be read are reported with their objects
 };
 
-/// What these say changes no diffuse surface and no light. The core's materials are what KHR_materials_variants begins
-/// with, and the finest level of MSFT_lod is the core's.
+/// Extensions that change no diffuse surface and no light. The core's materials are the default of
+/// KHR_materials_variants, and the finest level of MSFT_lod is the core's mesh.
 constexpr std::array<std::string_view, 36> kWithoutEffect{
     "AGI_articulations",
     "AGI_stk_metadata",
@@ -67,14 +67,14 @@ constexpr std::array<std::string_view, 36> kWithoutEffect{
     "VRMC_vrm",
 };
 
-/// What they change of the light, which is not done.
+/// Extensions that change the lighting and are not supported, with their effects.
 constexpr std::array<std::pair<std::string_view, const char*>, 3> kLight{{
     {"EXT_lights_ies", "shapes the light of lamps, which is not supported"},
     {"EXT_lights_image_based", "lights the scene from all around, which is not supported"},
     {"KHR_environment_map", "lights the scene from all around, which is not supported"},
 }};
 
-/// What is not done of the light; nothing for an extension that changes none.
+/// Returns the unsupported effect on the lighting; null for an extension without one.
 const char* light_of(const std::string& extension) {
   const auto found = std::ranges::find(kLight, extension, &std::pair<std::string_view, const char*>::first);
   return found == kLight.end() ? nullptr : found->second;

@@ -11,9 +11,9 @@ class Model;
 
 namespace penumbra::scenes {
 
-/// Says what becomes of the extensions that a file uses. Those that are understood, and those that change no diffuse
-/// surface, no light and no shadow, are not spoken of. Those that light the scene and are not done, and others that the
-/// file requires, are refused; what is left is one warning. `as_mesh`: lights are not asked for.
+/// Reports the extensions that a file uses. Supported extensions, and those that change no diffuse surface, no light
+/// and no shadow, are not mentioned. Unsupported extensions that light the scene, and others that the file requires,
+/// are refused; the rest gives one warning. `as_mesh`: lights are ignored.
 void judge_extensions(const tinygltf::Model& model, bool as_mesh, Losses& losses, std::vector<std::string>& warnings);
 
 }  // namespace penumbra::scenes

@@ -11,7 +11,7 @@
 namespace penumbra::scenes {
 namespace {
 
-/// The entry; nothing if there is none.
+/// Returns the entry; null if there is none.
 const tinygltf::Value* entry(const tinygltf::Value& extras, const char* key) {
   return extras.IsObject() && extras.Has(key) ? &extras.Get(key) : nullptr;
 }

@@ -13,26 +13,27 @@ struct Mesh;
 
 namespace penumbra::scenes {
 
-/// What extras (Blender's custom properties) of a node, or else of its mesh, say that glTF has no word for: booleans,
-/// or numbers, 0 and 1; or a name.
+/// Properties in the extras (Blender's custom properties) of a node, or else of its mesh, that glTF does not have:
+/// booleans, or numbers 0 and 1; or a name.
 struct ObjectFlags {
   bool casts_shadow = true;     ///< "castsShadow"
   bool receives_shadow = true;  ///< "receivesShadow"
-  bool body = true;             ///< "body": false: an emissive mesh only says where its light is
-  std::string light_name;       ///< "lightName", of an emissive mesh's light; empty: the mesh's own
+  bool body = true;             ///< "body": false for an emissive mesh that only marks the place of its light
+  std::string light_name;       ///< "lightName", name of an emissive mesh's light; empty: the mesh's name
 };
 
-/// An entry of these names that is of another kind is another tool's: it counts as not there, and goes to the losses.
+/// Reads the flags. An entry with one of these names and another type belongs to another tool: it is ignored, and added
+/// to the losses.
 ObjectFlags flags_of(const tinygltf::Node& node, const tinygltf::Mesh& mesh, Losses& losses);
 
-/// Does a lamp cast shadows? "castsShadow" of its node, read likewise.
+/// Returns whether a lamp casts shadows: "castsShadow" of its node, read as by flags_of.
 bool lamp_casts_shadows(const tinygltf::Node& node, Losses& losses);
 
-/// True or false of extras, or 1 or 0, read likewise; `owner` is whose they are.
+/// Returns true or false, or 1 or 0, of an entry of extras, read as by flags_of; `owner` names its owner in messages.
 std::optional<bool> flag_of_extras(const tinygltf::Value& extras, const char* key, const std::string& owner,
                                    Losses& losses);
 
-/// A number of extras, read likewise.
+/// Returns a number of extras, read as by flags_of.
 std::optional<double> number_of_extras(const tinygltf::Value& extras, const char* key, const std::string& owner,
                                        Losses& losses);
 

@@ -27,11 +27,11 @@ bool is_emissive(const tinygltf::Model& model, const tinygltf::Primitive& primit
   return std::ranges::any_of(factor, [](double x) { return x > 0; });
 }
 
-/// Do all lie on one line, up to the rounding of where they are?
+/// Returns whether all points lie on one line, up to the rounding of their positions.
 bool are_collinear(std::span<const glm::dvec3> points) {
   double largest = 0;
   for (const glm::dvec3& p : points) largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
-  // A transform is four products a coordinate, chained over a few parents; a difference has two such errors.
+  // A transform is four products for each coordinate, chained over a few parents; a difference has two such errors.
   const double rounding = 64 * std::numeric_limits<double>::epsilon() * largest;
   const auto farthest =
       std::ranges::max_element(points, {}, [&](const glm::dvec3& p) { return glm::distance(p, points.front()); });
@@ -59,7 +59,7 @@ std::vector<std::optional<glm::dmat4>> unhidden_places(tinygltf::Model& model,
     }
   }
   std::vector<std::optional<glm::dmat4>> places(model.nodes.size());
-  std::vector<std::string> said;  // for the scene itself
+  std::vector<std::string> said;  // warnings that the scene itself reports; ignored here
   for (const PlacedNode& placed : place_nodes(model, said))
     places[static_cast<std::size_t>(placed.number)] = placed.to_world;
   for (std::size_t i = 0; i < model.nodes.size(); ++i) model.nodes[i].scale = std::move(posed[i]);
@@ -87,7 +87,8 @@ std::optional<glm::dvec3> hidden_light(const tinygltf::Model& model, int number,
             skinned && vertex < skinned->vertices.size() ? skinned->vertices[vertex] : places[index].value();
         positions[vertex] = glm::dvec3(to_world * glm::dvec4(positions[vertex], 1));
       }
-      std::erase_if(positions, [](const glm::dvec3& p) { return !std::isfinite(p.x + p.y + p.z); });  // of no triangle
+      // positions that no triangle uses
+      std::erase_if(positions, [](const glm::dvec3& p) { return !std::isfinite(p.x + p.y + p.z); });
       return positions;
     };
     const bool emissive = is_emissive(model, primitives[i]);

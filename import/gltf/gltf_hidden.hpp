@@ -13,20 +13,20 @@ class Model;
 
 namespace penumbra::scenes {
 
-/// Each node's scale as the file has it, before anything moves.
+/// Returns each node's scale as stored in the file, before any animation.
 std::vector<std::vector<double>> rest_scales(const tinygltf::Model& model);
 
-/// Where each node would be if none were scaled to nothing: a scale of 0 becomes that of `rest`, or 1 if that is 0 too.
-/// By node number; nothing for those that are not in the scene. The model comes back as it was.
+/// Returns each node's transform if no node were scaled to zero: a scale of 0 becomes that of `rest`, or 1 if that is
+/// 0, too. By node index; nullopt for nodes outside of the scene. The model is unchanged on return.
 std::vector<std::optional<glm::dmat4>> unhidden_places(tinygltf::Model& model,
                                                        const std::vector<std::vector<double>>& rest);
 
-/// Where each node is, by its number.
+/// Each node's transform, by its index.
 using Places = std::span<const std::optional<glm::dmat4>>;
 
-/// Do these places, of the node or of its skin's joints, squash a mesh with an emissive material to a line or a point,
-/// of which `unhidden` would not? So lamps are hidden in animations: they are keyed to a scale of 0. A point of what is
-/// left of it, or nothing. Of a skinned mesh all must be squashed.
+/// Returns a point of the squashed mesh if the transforms `shown` of the node, or of its skin's joints, squash a mesh
+/// with an emissive material to a line or a point, and `unhidden` would not; else nullopt. Animations hide lamps by
+/// keying their scale to 0. All joints of a skinned mesh must be squashed.
 std::optional<glm::dvec3> hidden_light(const tinygltf::Model& model, int node, Places shown, Places unhidden);
 
 }  // namespace penumbra::scenes

@@ -18,7 +18,7 @@
 namespace penumbra::scenes {
 namespace {
 
-/// Does anything but nodes move vertices?
+/// Returns whether anything but nodes moves vertices.
 bool bends(const tinygltf::Model& model) {
   const auto morphs = [](const tinygltf::Mesh& mesh) {
     return std::ranges::any_of(mesh.primitives, [](const auto& primitive) { return !primitive.targets.empty(); });
@@ -26,7 +26,8 @@ bool bends(const tinygltf::Model& model) {
   return !model.skins.empty() || std::ranges::any_of(model.meshes, morphs);
 }
 
-/// When what is played moves. At rest nothing of it is seen, so that faults of it are only warned of.
+/// Returns the time span of the played animations. A scene at rest does not show them, so that their faults are only
+/// warned of.
 std::optional<Motion> motion_for(const tinygltf::Model& model, const ClipChoice& clips, const ReadOptions& options,
                                  std::vector<std::string>& warnings) {
   if (options.time && !clips.others.empty()) {
@@ -67,7 +68,7 @@ Scene import_for(Purpose purpose, const mesh::InputFile& input, const ReadOption
     scene.warnings.insert(scene.warnings.begin(), warnings.begin(), warnings.end());
     return std::move(scene);
   } catch (const InputError& error) {
-    throw InputError("{}: {}", input.name.string(), error.what());  // places alone do not say in which file
+    throw InputError("{}: {}", input.name.string(), error.what());  // places alone do not identify the file
   }
 }
 
@@ -80,7 +81,7 @@ Scene import_gltf(const mesh::InputFile& input, const ReadOptions& options) {
 mesh::ImportedMesh import_gltf_mesh(const mesh::InputFile& input, const ReadOptions& options) {
   Scene scene = import_for(Purpose::mesh, input, options);
   mesh::ImportedMesh mesh{std::move(scene.soup), std::move(scene.warnings), {}};
-  // One object, whose faces are numbered through.
+  // Makes one object, whose faces are numbered consecutively.
   std::uint32_t number = 0;
   for (std::uint32_t& face : mesh.soup.source_face) face = number++;
   std::ranges::fill(mesh.soup.object, 0u);

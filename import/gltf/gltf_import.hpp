@@ -6,15 +6,15 @@
 
 namespace penumbra::scenes {
 
-/// Reads a glTF scene in this very process: what the import helper does under its limits; everybody else calls
+/// Reads a glTF scene in the current process: called by the import helper under its limits; all other callers use
 /// read_gltf. Throws InputError; std::bad_alloc.
 Scene import_gltf(const mesh::InputFile& input, const ReadOptions& options);
 
-/// Reads only the triangles of a glTF file, as one mesh. Scenes and mesh files share this reader. Surfaces with an
-/// alpha that lets light through would be solid: refused unless `options` are lenient.
+/// Reads only the triangles of a glTF file, as one mesh. Scenes and mesh files share this reader. Surfaces whose alpha
+/// lets light through would become solid: refused unless `options` are lenient.
 mesh::ImportedMesh import_gltf_mesh(const mesh::InputFile& input, const ReadOptions& options);
 
-/// Whether the file's name says that it is glTF.
+/// Returns whether the file's name has an extension of glTF.
 bool is_gltf(const std::filesystem::path& file);
 
 }  // namespace penumbra::scenes

@@ -1,5 +1,5 @@
-// EXT_mesh_gpu_instancing: a node's mesh once for each element of its TRANSLATION, ROTATION and SCALE accessors, in
-// place of once at the node.
+// EXT_mesh_gpu_instancing: a node's mesh once for each element of its TRANSLATION, ROTATION and SCALE accessors,
+// instead of once at the node.
 
 #include "import/gltf/gltf_instances.hpp"
 
@@ -18,7 +18,7 @@ namespace {
 
 constexpr const char* kInstancing = "EXT_mesh_gpu_instancing";
 
-/// What one attribute says of each instance; empty: the extension does not have it.
+/// One attribute's value of each instance; empty if the extension does not have it.
 struct Attribute {
   Numbers numbers;
   [[nodiscard]] std::vector<double> of(std::size_t instance) const {
@@ -50,7 +50,7 @@ std::optional<std::vector<glm::dmat4>> instances_of(const tinygltf::Model& model
   };
   const Attribute translation = read("TRANSLATION", TINYGLTF_TYPE_VEC3),
                   rotation = read("ROTATION", TINYGLTF_TYPE_VEC4), scale = read("SCALE", TINYGLTF_TYPE_VEC3);
-  // Attributes of other names say how many there are, too.
+  // Attributes of other names also give the number of instances.
   const tinygltf::Value& extra = extension->second;
   for (const std::string& name :
        extra.Has("attributes") ? extra.Get("attributes").Keys() : std::vector<std::string>()) {

@@ -12,9 +12,9 @@ class Node;
 
 namespace penumbra::scenes {
 
-/// EXT_mesh_gpu_instancing: from each instance of the node's mesh to the node. Nothing for a node without the
-/// extension; an empty list if it has it and no attributes, which is no instance at all. Throws InputError, with the
-/// node's place, for lists that are not of one length or type.
+/// EXT_mesh_gpu_instancing: returns the transforms from each instance of the node's mesh to the node. Returns nullopt
+/// for a node without the extension; an empty list if the extension has no attributes, which means no instance at all.
+/// Throws InputError, with the node's place, for lists that differ in length or have a wrong type.
 std::optional<std::vector<glm::dmat4>> instances_of(const tinygltf::Model& model, const tinygltf::Node& node,
                                                     int number);
 

@@ -25,24 +25,24 @@
 namespace penumbra::scenes {
 namespace {
 
-/// What tinygltf may open; it asks through the callbacks below.
+/// Files that tinygltf may open, through the callbacks below.
 struct Confinement {
   int folder = -1;
   std::filesystem::path folder_name;
   bool allow_outside = false;
-  std::string refused;  ///< the last name that leads outside
-  /// How many bytes the file's buffers take of the files that they name, in their order: a file may be longer.
+  std::string refused;  ///< the last name that leads outside of the folder
+  /// Bytes that the buffers take from each named file, in buffer order: a file may be longer.
   std::map<std::string, std::deque<std::size_t>> lengths;
 
-  /// Nothing if it may not be opened, or is no regular file.
+  /// Opens a file. Returns a closed descriptor if the file may not be opened, or is not a regular file.
   Descriptor open(const std::string& name) {
     Descriptor file = open_as_named(name);
     if (file.is_open() || name.find('\\') == std::string::npos) return file;
-    // Written on Windows; browsers take a backslash for what it is meant to be.
+    // Names written on Windows have backslashes, which browsers take for slashes.
     std::string meant = name;
     std::ranges::replace(meant, '\\', '/');
     file = open_as_named(meant);
-    if (file.is_open()) mesh::note_opened_file(folder_name / meant);  // no output may take its place
+    if (file.is_open()) mesh::note_opened_file(folder_name / meant);  // no output may overwrite the file
     return file;
   }
 
@@ -68,7 +68,8 @@ tinygltf::FsCallbacks confined_files(Confinement& confinement) {
   files.FileExists = [](const std::string& name, void* user) {
     return static_cast<Confinement*>(user)->open(name).is_open();
   };
-  files.ExpandFilePath = [](const std::string& name, void*) { return name; };  // no ~ and no $VARIABLES from a file
+  files.ExpandFilePath = [](const std::string& name, void*) { return name; };  // no ~ and no $VARIABLES in names from a
+                                                                               // file
   files.ReadWholeFile = [](std::vector<unsigned char>* bytes, std::string* error, const std::string& name, void* user) {
     auto& confined = *static_cast<Confinement*>(user);
     const Descriptor file = confined.open(name);
@@ -92,7 +93,7 @@ tinygltf::FsCallbacks confined_files(Confinement& confinement) {
   return files;
 }
 
-/// A URI's percent signs undone.
+/// Decodes a URI's percent escapes.
 std::string decoded(std::string_view uri) {
   std::string text;
   for (std::size_t i = 0; i < uri.size(); ++i) {
@@ -108,8 +109,8 @@ std::string decoded(std::string_view uri) {
   return text;
 }
 
-/// Without line ends, without the parser's numbers in brackets, and without what a data URI holds: its head is enough,
-/// and whatever follows it.
+/// Returns a message without line ends, without the parser's numbers in brackets, and without the content of data URIs:
+/// their beginnings are enough, and text after them is dropped.
 std::string one_line(std::string text) {
   while (!text.empty() && (text.back() == '\n' || text.back() == '.')) text.pop_back();
   std::ranges::replace(text, '\n', ' ');
@@ -122,15 +123,15 @@ std::string one_line(std::string text) {
   return mesh::printable(text);
 }
 
-/// What tinygltf says against skins without inverse bind matrices, which glTF 2.0 allows (3.7.3.1): they are then
-/// identities. It reads the skin all the same.
+/// Removes tinygltf's complaint about skins without inverse bind matrices, which glTF 2.0 allows (3.7.3.1): they are
+/// identities. tinygltf reads such skins anyway.
 void forgive_default_binds(std::string& error) {
   constexpr std::string_view kComplaint = "'inverseBindMatrices' property is missing in Skin.\n";
   for (auto at = error.find(kComplaint); at != std::string::npos; at = error.find(kComplaint))
     error.erase(at, kComplaint.size());
 }
 
-/// How many bytes each buffer takes of the file that it names.
+/// Notes the number of bytes that each buffer takes from its file.
 void note_lengths(const nlohmann::json& document, Confinement& confinement) {
   const auto buffers = document.find("buffers");
   if (buffers == document.end() || !buffers->is_array()) return;
@@ -142,7 +143,7 @@ void note_lengths(const nlohmann::json& document, Confinement& confinement) {
   }
 }
 
-/// With '?' for what is no UTF-8.
+/// Returns the text with '?' in place of bytes that are not UTF-8.
 std::string as_utf8(std::string_view text) {
   std::string valid;
   valid.reserve(text.size());
@@ -156,7 +157,8 @@ std::string as_utf8(std::string_view text) {
   return valid;
 }
 
-/// The file's JSON, checked; the parser's message if it is none. `is_utf8`: none of its names had to be changed.
+/// Returns the file's checked JSON; throws the parser's message if it is not JSON. `is_utf8` becomes false if a name
+/// had to be changed.
 nlohmann::json document_of(std::string_view text, const std::string& file, bool& is_utf8) {
   try {
     nlohmann::json document = nlohmann::json::parse(text, nullptr, false);
@@ -184,16 +186,16 @@ TakenOut load_gltf_model(const mesh::InputFile& input, const ReadOptions& option
       input.folder.get(), std::filesystem::absolute(input.name).parent_path(), options.allow_outside, {}, {}};
   tinygltf::TinyGLTF parser;
   parser.SetFsCallbacks(confined_files(confinement));
-  // As they are: who uses a picture decodes it.
+  // Keeps images encoded: the code that uses a picture decodes it.
   parser.SetImageLoader(
       [](tinygltf::Image* image, int, std::string*, std::string*, int, int, const unsigned char* data, int count,
          void*) {
-        // tinygltf does not check that a view lies in its buffer: bytes of views are looked at later, by read_view.
+        // tinygltf does not check that a view lies in its buffer: bytes of views are read later, by read_view.
         if (image->bufferView < 0) image->image.assign(data, data + count);
         return true;
       },
       nullptr);
-  std::string error, warning;  // its warnings are about images only
+  std::string error, warning;  // tinygltf's warnings are about images only
   TakenOut taken_out;
   {
     const bool binary = bytes.starts_with("glTF");
@@ -210,7 +212,7 @@ TakenOut load_gltf_model(const mesh::InputFile& input, const ReadOptions& option
       bytes = text;
   }
   const auto size = static_cast<unsigned>(bytes.size());
-  const std::string here;  // names are looked for from the folder's descriptor
+  const std::string here;  // names are resolved from the folder's descriptor
   bool loaded = false;
   if (bytes.starts_with("glTF")) {
     const auto* data = reinterpret_cast<const unsigned char*>(bytes.data());
@@ -218,11 +220,11 @@ TakenOut load_gltf_model(const mesh::InputFile& input, const ReadOptions& option
   } else {
     loaded = parser.LoadASCIIFromString(&model, &error, &warning, bytes.data(), size, here, tinygltf::NO_REQUIRE);
   }
-  // Files of images are opened here, by the names that the file gives them and no other place.
+  // Image files are opened here, by the names in the file and no other path.
   for (tinygltf::Image& image : model.images) {
     if (image.uri.empty() || !image.image.empty()) continue;
     const std::string file = decoded(image.uri);
-    mesh::note_opened_file(confinement.folder_name / file);  // no output may take its place
+    mesh::note_opened_file(confinement.folder_name / file);  // no output may overwrite the file
     if (const Descriptor content = confinement.open(file); content.is_open()) {
       const std::string data = mesh::read_content(content.get(), file);
       image.image.assign(data.begin(), data.end());
@@ -233,7 +235,7 @@ TakenOut load_gltf_model(const mesh::InputFile& input, const ReadOptions& option
                      mesh::printable(confinement.refused));
   }
   forgive_default_binds(error);
-  // It goes on after some errors, and leaves out what it could not understand: nothing may go missing silently.
+  // tinygltf continues after some errors, and leaves out what it did not understand: nothing may go missing silently.
   if (!loaded || !error.empty()) {
     throw InputError("{}: {}", name, error.empty() ? "it is no glTF file" : one_line(error));
   }

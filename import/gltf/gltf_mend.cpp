@@ -16,7 +16,7 @@ namespace {
 
 using nlohmann::json;
 
-/// The array of this name; nothing if there is none.
+/// Returns the array of this name; null if there is none.
 json* array_of(json& owner, const char* name) {
   if (!owner.is_object()) return nullptr;
   const auto found = owner.find(name);
@@ -34,7 +34,7 @@ struct NodePath {
   std::string path;
 };
 
-/// "/nodes/N/translation" and the like.
+/// Parses "/nodes/N/translation" and similar pointers.
 std::optional<NodePath> node_path_of(std::string_view pointer) {
   constexpr std::string_view kNodes = "/nodes/";
   if (!pointer.starts_with(kNodes)) return std::nullopt;
@@ -50,7 +50,7 @@ std::optional<NodePath> node_path_of(std::string_view pointer) {
   return found;
 }
 
-/// Where KHR_animation_pointer leads; nothing if the target has none.
+/// Returns the target of KHR_animation_pointer; nullopt if there is none.
 std::optional<std::string> pointer_of(json& target) {
   json* const extensions = object_of(target, "extensions");
   json* const extension = extensions == nullptr ? nullptr : object_of(*extensions, "KHR_animation_pointer");
@@ -59,7 +59,7 @@ std::optional<std::string> pointer_of(json& target) {
   return (*extension)["pointer"].get<std::string>();
 }
 
-/// Makes the target one of glTF 2.0's own. False: the channel is to go.
+/// Converts the target to one of glTF 2.0. Returns false if the channel must be removed.
 bool mend_target(json& target, std::size_t clip, TakenOut& taken_out, bool& changed) {
   const bool by_pointer = target.contains("path") && target["path"] == "pointer";
   if (!by_pointer) {
@@ -96,7 +96,7 @@ bool mend_animations(json& document, TakenOut& taken_out) {
   return changed;
 }
 
-/// A data URI whose content is base64, in two parts.
+/// A data URI in base64, in two parts.
 struct DataUri {
   std::string_view media_type, content;
 };
@@ -112,7 +112,7 @@ std::optional<DataUri> data_uri_of(std::string_view uri) {
   return DataUri{head, uri.substr(comma + 1)};
 }
 
-/// Without percent signs and blanks, which browsers take base64 with: the same bytes.
+/// Returns base64 without percent escapes and blanks, which browsers accept: the same bytes.
 std::string plain_base64(std::string_view text) {
   std::string plain;
   plain.reserve(text.size());
@@ -134,13 +134,13 @@ std::uint64_t decoded_size(std::string_view base64) {
   return base64.size() / 4 * 3 + base64.size() % 4 * 3 / 4;
 }
 
-/// Gives the `uri` of a buffer or image a media type that tinygltf knows. Returns how many bytes it holds; nothing if
-/// it is no data URI, 0 if it is one that is not in base64.
+/// Gives the `uri` of a buffer or image a media type that tinygltf knows. Returns the number of its bytes; nullopt if
+/// it is not a data URI, 0 if it is one that is not in base64.
 std::optional<std::uint64_t> mend_uri(json& owner, bool& changed) {
   if (!owner.is_object() || !owner.contains("uri") || !owner["uri"].is_string()) return std::nullopt;
   auto& uri = owner["uri"].get_ref<std::string&>();
   if (!uri.starts_with("data:")) {
-    // tinygltf takes a plus sign for a blank, as forms of web pages do; in the names of files it is itself.
+    // tinygltf decodes a plus sign as a blank, as web forms do; in file names it stands for itself.
     for (std::size_t at = uri.find('+'); at != std::string::npos; at = uri.find('+', at)) {
       uri.replace(at, 1, "%2B");
       changed = true;
@@ -163,7 +163,7 @@ bool mend_uris(json& document, const std::string& file) {
   if (json* const images = array_of(document, "images")) {
     for (json& image : *images) {
       if (mend_uri(image, changed) != 0) continue;
-      // No picture that could be decoded; tinygltf would look for a file of this name.
+      // Not a picture that could be decoded; tinygltf would otherwise look for a file of this name.
       image["uri"] = "data:application/octet-stream;base64,AAAA";
       changed = true;
     }
@@ -184,11 +184,11 @@ bool mend_uris(json& document, const std::string& file) {
   return changed;
 }
 
-/// Has the accessor data of its own?
+/// Returns whether the accessor has its own data.
 bool has_data(json& document, const json& accessor) {
   const json* const accessors = array_of(document, "accessors");
   if (accessors == nullptr || !accessor.is_number_unsigned() || accessor.get<std::uint64_t>() >= accessors->size())
-    return true;  // it is refused elsewhere
+    return true;  // refused elsewhere
   const json& found = (*accessors)[accessor.get<std::size_t>()];
   return found.contains("bufferView") || found.contains("sparse");
 }

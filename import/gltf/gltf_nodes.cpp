@@ -14,7 +14,7 @@
 namespace penumbra::scenes {
 namespace {
 
-/// A property of `wanted` finite numbers, or none at all.
+/// Returns whether a property exists; throws unless it has `wanted` finite numbers or none.
 bool has_numbers(const std::vector<double>& numbers, std::size_t wanted, const std::string& place) {
   if (numbers.empty()) return false;
   if (numbers.size() != wanted) throw InputError("{}: {} numbers; expected {}", place, numbers.size(), wanted);
@@ -23,8 +23,8 @@ bool has_numbers(const std::vector<double>& numbers, std::size_t wanted, const s
   return true;
 }
 
-/// The last row of a matrix that exporters multiply in single precision: a product of a few matrices is off by some
-/// units of its last place.
+/// Checks the last row of a matrix that exporters multiplied in single precision: a product of a few matrices is off by
+/// some units in the last place.
 bool is_affine(const glm::dmat4& transform) {
   constexpr double kRounding = 16 * static_cast<double>(std::numeric_limits<float>::epsilon());
   const auto near = [](double x, double wanted) { return std::abs(x - wanted) <= kRounding; };
@@ -106,10 +106,10 @@ std::vector<PlacedNode> place_nodes(const tinygltf::Model& model, std::vector<st
       throw InputError("/nodes/{}: it does not exist; there are {}", node.number, model.nodes.size());
     }
     const auto index = static_cast<std::size_t>(node.number);
-    // A tree reaches each node once; this also ends every cycle.
+    // A tree reaches each node once; this check also ends every cycle.
     if (visited[index]) throw InputError("/nodes/{}: it has two parents or is its own ancestor", node.number);
     visited[index] = true;
-    // The stack held the parent's.
+    // Until here `to_world` and `visible` were those of the parent.
     node.to_world = node.to_world * local_transform(model.nodes[index], node.number);
     node.visible = node.visible && is_visible(model.nodes[index]);
     const auto& children = model.nodes[index].children;

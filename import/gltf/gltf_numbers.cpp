@@ -13,7 +13,7 @@ namespace {
 
 using nlohmann::json;
 
-/// Where whole numbers from 0 up stand; a star is any index or name. tinygltf keeps them in an int.
+/// JSON pointers of non-negative integers; a star is any index or name. tinygltf stores them in an int.
 constexpr std::array kNumbers = {
     "/scene",
     "/scenes/*/nodes/*",
@@ -55,7 +55,7 @@ constexpr std::array kNumbers = {
     "/nodes/*/extensions/KHR_lights_punctual/light",
     "/nodes/*/extensions/EXT_mesh_gpu_instancing/attributes/*",
 };
-/// JSON pointers of the numbers that tinygltf keeps in 64 bits.
+/// JSON pointers of numbers that tinygltf stores in 64 bits.
 constexpr std::array kSizes = {
     "/accessors/*/byteOffset",   "/accessors/*/count",        "/bufferViews/*/byteOffset",
     "/bufferViews/*/byteLength", "/bufferViews/*/byteStride", "/buffers/*/byteLength",
@@ -72,7 +72,7 @@ void check_number(const json& value, const std::string& pointer, const Expected&
                    value.dump(-1, ' ', true, json::error_handler_t::replace).substr(0, 60), expected.most);
 }
 
-/// Looks at what `rest` of a place leads to from `value`, which stands at `pointer`.
+/// Checks the numbers that `rest` of a pattern reaches from `value`, which is at `pointer`.
 void check_place(const json& value, std::string_view rest, const std::string& pointer, const Expected& expected) {
   if (rest.empty()) return check_number(value, pointer, expected);
   rest.remove_prefix(1);
@@ -93,7 +93,7 @@ void check_place(const json& value, std::string_view rest, const std::string& po
 }  // namespace
 
 void check_gltf_numbers(const json& document, const std::string& file) {
-  // glTF 1.0 has names where 2.0 has numbers: that it is of 1.0 is what helps to know.
+  // glTF 1.0 has names where 2.0 has numbers; the helpful message is that the file has version 1.0.
   const auto asset = document.find("asset");
   const bool known = asset != document.end() && asset->is_object() && asset->contains("version");
   if (!known) {

@@ -6,9 +6,9 @@
 
 namespace penumbra::scenes {
 
-/// Refuses numbers in a glTF file's JSON that tinygltf drops silently, and then reads as if they were not there:
-/// or takes modulo 2³²: indices, counts, offsets and sizes that are negative, too large, no integers or no numbers.
-/// InputError with the JSON pointer. Also refuses any version but 2.
+/// Refuses numbers in a glTF file's JSON that tinygltf silently ignores or takes modulo 2³²: indices, counts, offsets
+/// and sizes that are negative, too large, not integers or not numbers. Throws InputError with the JSON pointer. Also
+/// refuses any version but 2.
 void check_gltf_numbers(const nlohmann::json& document, const std::string& file);
 
 }  // namespace penumbra::scenes

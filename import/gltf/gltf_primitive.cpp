@@ -12,8 +12,8 @@
 namespace penumbra::scenes {
 namespace {
 
-/// The triangles of a primitive as indices into its vertices, wound as glTF 2.0, 3.7.2.1 says; `leftover` counts the
-/// indices at the end that make no triangle.
+/// Returns the triangles of a primitive as indices into its vertices, with the windings of glTF 2.0, 3.7.2.1;
+/// `leftover` counts the indices at the end that form no triangle.
 std::vector<mesh::Triangle> assemble(int mode, std::span<const std::uint32_t> v, std::uint64_t& leftover) {
   std::vector<mesh::Triangle> triangles;
   triangles.reserve(mode == TINYGLTF_MODE_TRIANGLES ? v.size() / 3 : v.size());

@@ -1,3 +1,5 @@
+// Builds a scene from a parsed glTF model: nodes, meshes, materials, lamps and emissive meshes.
+
 #include "import/gltf/gltf_scene.hpp"
 
 #include "base/assert.hpp"
@@ -35,8 +37,8 @@
 namespace penumbra::scenes {
 namespace {
 
-/// May a diffuse picture change with what this JSON pointer leads to? Of materials what is seen of metal, gloss and
-/// relief does not count, of cameras where they clip.
+/// Returns whether a diffuse picture may change with the property at this JSON pointer. Metalness, gloss and relief of
+/// materials do not matter, nor clipping distances of cameras.
 bool changes_light(std::string_view pointer) {
   constexpr std::array<std::string_view, 12> kOthers{"metallicFactor",
                                                      "roughnessFactor",
@@ -57,7 +59,7 @@ bool changes_light(std::string_view pointer) {
 /// Builds the scene from a parsed model, node by node.
 class GltfScene {
  public:
-  /// `model` and what `request` names must outlive it.
+  /// `model` and the objects that `request` refers to must outlive this object.
   GltfScene(const tinygltf::Model& model, const SceneRequest& request, Purpose purpose)
       : model_(model),
         purpose_(purpose),
@@ -73,7 +75,7 @@ class GltfScene {
     surfaces_.read_lightmap(lightmap->set);
   }
 
-  /// What parsing left out.
+  /// Reports the parts that parsing left out.
   void say_of(const TakenOut& taken_out, std::span<const std::size_t> played) {
     compressed_ = taken_out.compressed;
     for (const std::string& place : compressed_)
@@ -90,9 +92,10 @@ class GltfScene {
     }
   }
 
-  /// Are some of the file's vertices not in the scene? Once it has run.
+  /// Returns whether some of the file's vertices are not in the scene; valid after the run.
   [[nodiscard]] bool left_vertices_out() const { return left_out_; }
-  /// The middle of all vertices of its meshes, seen or not. Of Purpose::rest, once it has run.
+  /// Returns the centre of the bounds of all vertices of the model's meshes, visible or not; valid after a run with
+  /// Purpose::rest.
   [[nodiscard]] glm::dvec3 middle() const { return 0.5 * lower_ + 0.5 * upper_; }
 
   Scene run() {
@@ -143,14 +146,14 @@ class GltfScene {
     return number < unhidden_.size() && unhidden_[number] ? PlacedNode{placed.number, *unhidden_[number]} : placed;
   }
 
-  /// A lamp is where its node is, and shines along what the node is turned to, however it is scaled.
+  /// Returns the place of a lamp: the node's position and direction, regardless of its scale.
   [[nodiscard]] PlacedNode lamp_place(const PlacedNode& placed) const {
     PlacedNode place = unhidden(placed);
     place.to_world[3] = placed.to_world[3];
     return place;
   }
 
-  /// Every primitive of every instance that the file has in the scene has come, or is counted among what makes none.
+  /// Checks that every primitive of every instance in the scene was read, or was counted as one without triangles.
   void count_what_came(std::span<const PlacedNode> nodes) const {
     std::uint64_t there = 0;
     for (const PlacedNode& placed : nodes) {
@@ -194,8 +197,8 @@ class GltfScene {
       add_mesh(node, {placed.number, placed.to_world * (*instances)[i]}, fmt::format("{}.{}", name, i));
   }
 
-  /// A light that is scaled to nothing stays one, of the shape that it has when it is not, and dark: so all frames have
-  /// the same lights. What is seen of it is where its transform puts it.
+  /// Adds a mesh. A light that is scaled to zero stays a dark light with its unscaled shape, so that all frames have
+  /// the same lights. Its visible surface stays where its transform puts it.
   void add_mesh_or_hidden(const tinygltf::Node& node, const PlacedNode& placed, const std::string& name) {
     const PlacedNode whole = unhidden(placed);
     const auto hidden_at = is_mesh() ? std::nullopt : hidden_light(model_, placed.number, to_world_, unhidden_);
@@ -270,7 +273,8 @@ class GltfScene {
     if (purpose_ != Purpose::rest) return;
     for (const glm::dvec3& position : positions) {
       const glm::dvec3 p(placed.to_world * glm::dvec4(position, 1));
-      if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) continue;  // of no triangle
+      // a position that no triangle uses
+      if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) continue;
       lower_ = glm::min(lower_, p);
       upper_ = glm::max(upper_, p);
     }
@@ -278,7 +282,7 @@ class GltfScene {
 
   void add_object(const PrimitiveVertices& vertices, std::vector<mesh::Triangle> triangles, const std::string& name) {
     const Look& look = vertices.look;
-    const bool pictured = look.emission && !is_mesh();  // as a mesh it makes no light
+    const bool pictured = look.emission && !is_mesh();  // a mesh without lights has no emission
     const glm::dvec3 radiance = pictured ? radiance_of(vertices, triangles, means_) : look.radiance;
     if (pictured && radiance != glm::dvec3(0))
       losses_.mention("shines evenly, with the mean of its emissive picture where that lies on it", name);
@@ -295,7 +299,7 @@ class GltfScene {
     object.picture = vertices.look.picture;
     object.alpha = vertices.look.alpha;
     object.emits = add_light({radiance, vertices.look.two_sided}, name, vertices.placed, before);
-    if (object.emits && !flags_.body) {  // they only said where the light is
+    if (object.emits && !flags_.body) {  // the object only marks the place of the light
       ++bodiless_;
       return shorten(scene_, before);
     }
@@ -312,7 +316,7 @@ class GltfScene {
     glm::dvec3 radiance;
     bool two_sided;
   };
-  /// The number of the light that the triangles since `before` are the body of, if they are one.
+  /// Returns the index of the light whose body is the triangles since `before`, if they form one.
   std::optional<std::uint32_t> add_light(const Emission& emission, const std::string& name, const PlacedNode& placed,
                                          const SoupEnd& before) {
     const glm::dvec3& radiance = emission.radiance;
@@ -340,7 +344,7 @@ class GltfScene {
   }
 
   void add_lamp(AreaLight light, const tinygltf::Node& node, const std::string& name) {
-    if (light.radiance == glm::dvec3(0)) return;  // off
+    if (light.radiance == glm::dvec3(0)) return;  // the lamp is off
     light.name = light_names_.take(name);
     if (!lamp_casts_shadows(node, losses_)) shadeless_.push_back(scene_.lights.size());
     scene_.lights.push_back(std::move(light));
@@ -373,9 +377,9 @@ class GltfScene {
   const tinygltf::Model& model_;
   Purpose purpose_;
   bool lenient_;
-  std::span<const std::optional<glm::dmat4>> unhidden_;  // empty, or of each node
+  std::span<const std::optional<glm::dmat4>> unhidden_;  // for each node; or empty
   Scene scene_;
-  std::vector<std::optional<glm::dmat4>> to_world_;  // of each node; nothing for those that are not in the scene
+  std::vector<std::optional<glm::dmat4>> to_world_;  // for each node; nullopt for nodes outside of the scene
   Losses losses_;
   PunctualLights lamps_;
   SurfaceReader surfaces_;
@@ -385,12 +389,13 @@ class GltfScene {
   std::string refused_lights_;
   SkippedPrimitives skipped_;
   std::vector<std::string> compressed_;    // primitives that were left out
-  std::uint64_t gone_ = 0, bodiless_ = 0;  // primitives that are wholly transparent, that only say where a light is
+  std::uint64_t gone_ = 0, bodiless_ = 0;  // primitives that are completely transparent; primitives that only mark the
+                                           // place of a light
   bool left_out_ = false;
   glm::dvec3 lower_{std::numeric_limits<double>::infinity()}, upper_{-std::numeric_limits<double>::infinity()};
-  ObjectFlags flags_;                                             // of the mesh at hand
+  ObjectFlags flags_;                                             // flags of the current mesh
   std::vector<std::size_t> shadeless_;                            // lights that cast no shadows
-  std::uint64_t emissive_ = 0, looks_left_ = 0, lamps_left_ = 0;  // of Purpose::mesh
+  std::uint64_t emissive_ = 0, looks_left_ = 0, lamps_left_ = 0;  // counts for Purpose::mesh
 };
 
 }  // namespace

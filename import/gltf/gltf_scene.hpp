@@ -19,14 +19,14 @@ class Model;
 
 namespace penumbra::scenes {
 
-/// What a file is read for; `rest`: a mesh as it is modelled, which no skin and no morph target bends.
+/// Purpose of reading a file; `rest`: a mesh as modelled, without skins and morph targets.
 enum class Purpose : std::uint8_t { lit_scene, any_scene, mesh, rest };
 
 struct SceneRequest {
   const std::string& name;  ///< the scene's
   const ReadOptions& options;
-  std::span<const std::optional<glm::dmat4>> unhidden = {};  ///< see unhidden_places; empty: nothing moves
-  std::span<const std::size_t> played = {};                  ///< numbers of the animations that move it
+  std::span<const std::optional<glm::dmat4>> unhidden = {};  ///< see unhidden_places; empty if nothing moves
+  std::span<const std::size_t> played = {};                  ///< indices of the animations that move the scene
 };
 
 struct BuiltScene {
@@ -34,12 +34,12 @@ struct BuiltScene {
   bool left_vertices_out = false;  ///< some of the file's vertices are not in the scene
 };
 
-/// The scene of a parsed model, as its nodes stand now; `taken_out`: what parsing left out. Throws InputError for a
-/// file that is damaged, and for what is refused.
+/// Builds the scene of a parsed model with the current places of its nodes; `taken_out`: the parts that parsing left
+/// out. Throws InputError for a file that is damaged or refused.
 BuiltScene build_scene(const tinygltf::Model& model, const SceneRequest& request, Purpose purpose,
                        const TakenOut& taken_out);
 
-/// The middle of all vertices of the model's meshes, seen or not, as they are modelled.
+/// Returns the centre of the bounds of all vertices of the model's meshes, visible or not, as modelled.
 glm::dvec3 middle_at_rest(const tinygltf::Model& model, const SceneRequest& request);
 
 }  // namespace penumbra::scenes

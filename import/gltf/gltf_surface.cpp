@@ -1,5 +1,5 @@
-// Materials of glTF 2.0 (section 3.9) with KHR_materials_emissive_strength and KHR_texture_transform, as far as diffuse
-// surfaces go.
+// Materials of glTF 2.0 (section 3.9) with KHR_materials_emissive_strength and KHR_texture_transform, reduced to
+// diffuse surfaces.
 
 #include "import/gltf/gltf_surface.hpp"
 
@@ -37,7 +37,7 @@ glm::dvec3 checked_factor(const std::vector<double>& numbers, glm::dvec3 otherwi
   return factor;
 }
 
-/// A number of an extension; `otherwise` if it has none.
+/// Returns a number of an extension; `otherwise` if it has none.
 double number_of(const tinygltf::ExtensionMap& extensions, const char* extension, const char* key, double otherwise,
                  const std::string& place) {
   const auto found = extensions.find(extension);
@@ -49,7 +49,7 @@ double number_of(const tinygltf::ExtensionMap& extensions, const char* extension
   return number;
 }
 
-/// What a surface's colour and alpha begin with.
+/// The base colour and alpha of a surface.
 struct BaseColor {
   std::vector<double> factor;
   tinygltf::TextureInfo texture;
@@ -58,8 +58,8 @@ struct BaseColor {
 
 constexpr const char* kSpecularGlossiness = "KHR_materials_pbrSpecularGlossiness";
 
-/// The core's base colour; of a material of KHR_materials_pbrSpecularGlossiness, which files before 2021 often have,
-/// its diffuse colour, which takes the other's place.
+/// Returns the core's base colour; for a material of KHR_materials_pbrSpecularGlossiness, frequent in files before
+/// 2021, its diffuse colour, which replaces the base colour.
 BaseColor base_color_of(const tinygltf::Material& material) {
   const auto found = material.extensions.find(kSpecularGlossiness);
   if (found == material.extensions.end()) {
@@ -99,7 +99,7 @@ Alpha alpha_of(const tinygltf::Material& material, const BaseColor& base, const 
   alpha.cutoff = material.alphaCutoff;
   if (!(alpha.factor >= 0 && std::isfinite(alpha.factor)))
     throw InputError("{}{}: alpha {}; expected 0 to 1", place, base.factor_place, alpha.factor);
-  alpha.factor = std::min(alpha.factor, 1.0);  // as the colour's parts are
+  alpha.factor = std::min(alpha.factor, 1.0);  // clamped like the parts of the colour
   if (!std::isfinite(alpha.cutoff) || alpha.cutoff < 0)
     throw InputError("{}/alphaCutoff: {}; expected a number of 0 or more", place, alpha.cutoff);
   return alpha;
@@ -110,14 +110,14 @@ PictureUse::Wrap wrap_of(int mode) {
   return mode == TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT ? PictureUse::Wrap::mirror : PictureUse::Wrap::repeat;
 }
 
-/// What KHR_texture_transform does to coordinates.
+/// The transform of coordinates by KHR_texture_transform.
 struct TextureTransform {
   glm::dvec2 offset{0}, scale{1};
   double rotation = 0;   ///< radians
-  int coordinates = -1;  ///< its own set; −1: none
+  int coordinates = -1;  ///< its own set of coordinates; −1: none
 
-  /// Scaled, then turned counter-clockwise about (0, 0) as the picture is seen, v down, then moved: what Blender's
-  /// exporter means and browsers show. (The extension's page has the matrix of it by rows.)
+  /// Scales, then rotates counter-clockwise about (0, 0) as the picture is seen, v down, then translates, as Blender's
+  /// exporter and browsers do. (The extension's page gives the matrix by rows.)
   [[nodiscard]] glm::dvec2 operator()(const glm::dvec2& uv) const {
     const glm::dvec2 scaled = scale * uv;
     const double c = std::cos(rotation), s = std::sin(rotation);
@@ -146,7 +146,7 @@ TextureTransform transform_of(const tinygltf::TextureInfo& info) {
   return transform;
 }
 
-/// Does the material say nothing of its surface? What is left out is 1 in glTF.
+/// Returns whether the material has no properties of a surface. Missing properties are 1 in glTF.
 bool has_no_surface(const tinygltf::Material& material) {
   const auto& surface = material.pbrMetallicRoughness;
   return surface.baseColorFactor == std::vector<double>(4, 1.0) && surface.metallicFactor == 1 &&
@@ -154,7 +154,7 @@ bool has_no_surface(const tinygltf::Material& material) {
          surface.metallicRoughnessTexture.index < 0;
 }
 
-/// An attribute's numbers, one group a vertex, finite or not; nothing if the primitive has none.
+/// Returns an attribute's numbers, one group for each vertex, finite or not; nullopt if the primitive has none.
 std::optional<Numbers> attribute_of(const tinygltf::Model& model, const tinygltf::Primitive& primitive,
                                     const std::string& name, std::initializer_list<int> types, std::size_t vertices,
                                     const std::string& place) {
@@ -216,7 +216,7 @@ std::vector<glm::dvec2> SurfaceReader::places_of(const Owner& owner, const tinyg
     decides ? losses_.refuse(what, owner.object) : losses_.mention(what, owner.object);
   };
   if (!numbers) {
-    // glTF 2.0 leaves it open what is seen then.
+    // glTF 2.0 does not define the appearance in this case.
     lose(fmt::format("has no TEXCOORD_{}, by which its picture lies on it: one texel is everywhere", set));
     return std::vector<glm::dvec2>(owner.vertices, transform.offset);
   }

@@ -17,7 +17,7 @@
 namespace penumbra::scenes {
 namespace {
 
-/// What the vertex that was added last looks like.
+/// Adds the appearance of the vertex that was added last.
 void add_look(Scene& scene, const PrimitiveVertices& vertices, std::uint32_t index) {
   const Look& look = vertices.look;
   const std::size_t count = scene.soup.positions.size();
@@ -44,7 +44,7 @@ SoupEnd append_triangles(Scene& scene, const PrimitiveVertices& vertices, std::v
   auto& soup = scene.soup;
   const auto number = static_cast<std::uint32_t>(scene.objects.size());
   const SoupEnd before{soup.positions.size(), soup.triangles.size()};
-  // A mirroring node turns the front of its triangles (glTF 2.0, 3.7.4); swapped corners turn it back outward.
+  // A mirroring node flips the front of its triangles (glTF 2.0, 3.7.4); swapping corners turns it outward again.
   constexpr auto kUnused = std::numeric_limits<std::uint32_t>::max();
   std::vector<std::uint32_t> renumbered(vertices.local.size(), kUnused);
   if (soup.positions.empty()) soup.positions.reserve(vertices.local.size());

@@ -19,34 +19,35 @@
 
 namespace penumbra::scenes {
 
-/// A primitive's vertices as they were modelled, and what takes each into the world. All must outlive it.
+/// A primitive's vertices as modelled, and their transforms into the world. All members must outlive this object.
 struct PrimitiveVertices {
   std::span<const glm::dvec3> local;
-  const std::optional<Skinned>& skinned;  ///< nothing: the node's transform is all
+  const std::optional<Skinned>& skinned;  ///< nullopt: the node's transform applies to all vertices
   const Look& look;
   const PlacedNode& placed;
-  const std::string& place;                     ///< in the file, for messages
-  std::vector<glm::dvec2>* lightmap = nullptr;  ///< gets Look::lightmap, of each position of the soup; may be null
+  const std::string& place;                     ///< place in the file, for messages
+  std::vector<glm::dvec2>* lightmap = nullptr;  ///< receives Look::lightmap of each position of the soup; may be null
 
   [[nodiscard]] const glm::dmat4& to_world(std::uint32_t vertex) const {
     return skinned ? skinned->vertices[vertex] : placed.to_world;
   }
 };
 
-/// How long a scene's lists were.
+/// Lengths of a scene's lists.
 struct SoupEnd {
   std::size_t position, triangle;
 };
 
 /// Adds the triangles in world space, with only the vertices that they use (exporters share one long list of vertices
-/// among many primitives) and what these look like, under the number that the scene's next object will have. Returns
-/// where they begin. Throws InputError for a vertex that is not finite in the world, and for one too many.
+/// among many primitives) and the appearance of these, under the number that the scene's next object will have. Returns
+/// the lists' lengths before. Throws InputError for a vertex that is not finite in the world, and for too many
+/// vertices.
 SoupEnd append_triangles(Scene& scene, const PrimitiveVertices& vertices, std::vector<mesh::Triangle> triangles);
 
-/// Removes what was added since.
+/// Removes everything added since `end`.
 void shorten(Scene& scene, const SoupEnd& end);
 
-/// Gives the vertices after the last that has a look one that says nothing.
+/// Gives the vertices after the last one with an appearance a default one.
 void complete_looks(Scene& scene);
 
 }  // namespace penumbra::scenes

@@ -21,9 +21,9 @@ namespace penumbra::scenes {
 namespace {
 
 constexpr const char* kExtension = "KHR_lights_punctual";
-constexpr double kBlendersLumensPerWatt = 683;  // its "Standard" lighting mode
-/// In place of 0: a shadow that is hard in any picture of a scene that is some units large, as Blender's lamps of
-/// radius 0 give. Blender's own add-on for this program takes the same.
+constexpr double kBlendersLumensPerWatt = 683;  // factor of Blender's "Standard" lighting mode
+/// Replaces a radius of 0: gives hard shadows in any picture of a scene that is a few units large, as Blender's lamps
+/// of radius 0 do. Blender's add-on for this program uses the same value.
 constexpr double kHardRadius = 1e-4;
 
 double checked(double value, double least, const std::string& place) {
@@ -32,21 +32,22 @@ double checked(double value, double least, const std::string& place) {
   return value;
 }
 
-/// `smooth`: the file says that the cone falls off as Blender's do, or that it does not.
+/// `smooth`: whether the file says that the cone falls off as Blender's cones do.
 Cone cone_of(const tinygltf::Light& lamp, const glm::dvec3& direction, bool from_blender, std::optional<bool> smooth,
              const std::string& place) {
   const double outer = lamp.spot.outerConeAngle;
-  // Equal angles are a hard edge. An inner one that is larger is what exporters make of rounding, and viewers take it
-  // for the same.
+  // Equal angles are a hard edge. A slightly larger inner angle is a result of an exporter's rounding, and viewers
+  // treat it as equal.
   const double given = lamp.spot.innerConeAngle;
   const double inner = std::min(given < 0 && given > -1e-6 ? 0 : given, outer);
-  // Half a turn over four in single precision may be a hair more.
+  // π / 2 in single precision may be slightly larger.
   if (!(inner >= 0 && outer > 0 && outer <= std::numbers::pi / 2 * (1 + 1e-6))) {
     throw InputError("{}/spot: innerConeAngle {} and outerConeAngle {}; expected 0 <= inner <= outer <= pi / 2", place,
                      lamp.spot.innerConeAngle, outer);
   }
   if (from_blender && !smooth) {
-    // The file has (1 − blend) of the outer angle; Blender's lamps fall over `blend` of the cosines, at least 0.001.
+    // The file stores (1 − blend) of the outer angle; Blender's lamps fall off over `blend` of the cosines, at least
+    // 0.001.
     const double full = std::cos(outer), blend = 1 - inner / outer;
     const double edge = std::acos(std::min(full + std::max((1 - full) * blend, 0.001), 1.0));
     return {direction, glm::degrees(edge), std::min(glm::degrees(outer), 90.0), true};
@@ -78,7 +79,7 @@ std::optional<AreaLight> PunctualLights::light_of(const tinygltf::Node& node, co
     return chosen.value_or(otherwise);
   };
 
-  // A lamp shines along −Z of its node; nothing but position and direction is taken of the node's transform.
+  // A lamp shines along −Z of its node; only position and direction of the node's transform are used.
   const glm::dvec3 along(placed.to_world * glm::dvec4(0, 0, -1, 0));
   glm::dvec3 color(1);
   if (lamp.color.size() >= 3) color = {lamp.color[0], lamp.color[1], lamp.color[2]};

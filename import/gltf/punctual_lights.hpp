@@ -17,30 +17,31 @@ class Node;
 
 namespace penumbra::scenes {
 
-/// What the lamps of KHR_lights_punctual become: a directional lamp a sun, a point lamp a sphere, a spot lamp a sphere
-/// with a cone. They have no size in that extension; `extras` of the lamp, or else of its node, may say `radius` or
-/// `angle` (degrees), else ReadOptions does; and `smooth` 1 that a cone falls as Blender's do. Intensities are the
-/// extension's: lux of what faces a sun, candela of a sphere seen from afar, so a radiance of lux / π sin²(angle / 2),
-/// of candela / π radius². Blender's exporter multiplies watts by 683 lumens, and has emission in watts: there they are
-/// divided by that again (or by ReadOptions::lumens_per_watt); before version 3.4.36 it wrote watts, of a sun watts a
-/// square metre, so that a point or spot lamp's intensity is divided by 4π. It writes cones as angles that fall off as
-/// Blender's do. A radius of 0 becomes one so small that shadows are hard.
+/// Converts the lamps of KHR_lights_punctual: a directional lamp becomes a sun, a point lamp a sphere, a spot lamp a
+/// sphere with a cone. That extension has no sizes; `extras` of the lamp, or else of its node, may have `radius` or
+/// `angle` (degrees), else ReadOptions has it; and `smooth` 1 means that a cone falls off as Blender's do. Intensities
+/// have the extension's units: lux on a surface facing a sun, candela of a sphere seen from afar, so a radiance of lux
+/// / π sin²(angle / 2), or candela / π radius². Blender's exporter multiplies watts by 683 lumens, and stores emission
+/// in watts: intensities of its files are divided by 683 again (or by ReadOptions::lumens_per_watt). Before version
+/// 3.4.36 it wrote watts, for a sun watts a square metre, so that the intensity of a point or spot lamp is divided by
+/// 4π. It writes cones as angles that fall off as Blender's do. A radius of 0 becomes one so small that shadows are
+/// hard.
 class PunctualLights {
  public:
-  /// `model` and `losses` must outlive it.
+  /// `model` and `losses` must outlive this object.
   PunctualLights(const tinygltf::Model& model, const ReadOptions& options, Losses& losses)
       : model_(model), options_(options), losses_(losses) {}
 
-  /// The node's lamp, without a name; the node names its lamp in the extension (asserted). Nothing for a lamp of a type
-  /// that the extension does not have, which is refused by `name`. Throws InputError for what the extension does not
-  /// allow, and for sizes that are none.
+  /// Returns the node's lamp, without a name; the node must have a lamp in the extension (asserted). Returns nullopt
+  /// for a lamp of a type that the extension does not have, which is refused by `name`. Throws InputError for values
+  /// that the extension does not allow, and for invalid sizes.
   std::optional<AreaLight> light_of(const tinygltf::Node& node, const PlacedNode& placed, const std::string& name);
 
-  /// What was taken for granted, with its count.
+  /// Adds warnings about assumptions, with their counts.
   void add_warnings(std::vector<std::string>& warnings) const;
 
  private:
-  /// By what a lamp's intensity is divided; counts what is taken for granted.
+  /// Returns the divisor of a lamp's intensity; counts assumptions.
   double divisor_of(const std::string& type);
 
   const tinygltf::Model& model_;

@@ -1,5 +1,5 @@
-// tinygltf's code, compiled once, here, and under another namespace (import/CMakeLists.txt says why). Images are left
-// out: nobody here looks at them.
+// The code of tinygltf, compiled once, in another namespace (import/CMakeLists.txt has the reason). Without its image
+// code, which this program does not use.
 #include <nlohmann/json.hpp>
 
 #define TINYGLTF_IMPLEMENTATION

@@ -18,7 +18,8 @@ namespace {
 using Loop = std::vector<std::uint32_t>;
 using Edge = std::pair<std::uint32_t, std::uint32_t>;
 
-/// Twice the area long, relative to the loop's first point, so that nothing cancels far from the origin.
+/// Returns a vector of twice the area's length, computed relative to the loop's first point, so that nothing cancels
+/// far from the origin.
 glm::dvec3 vector_area(const Welded& mesh, const Loop& loop) {
   const glm::dvec3 first = mesh.points[loop[0]];
   glm::dvec3 sum(0);
@@ -36,10 +37,10 @@ class Parts {
       double longest = 0;
       for (std::size_t i = 0; i < 3; ++i)
         longest = std::max(longest, glm::distance(mesh.points[t[i]], mesh.points[t[(i + 1) % 3]]));
-      if (!(glm::length(area) > 4 * rounding * longest)) continue;  // no higher than that
+      if (!(glm::length(area) > 4 * rounding * longest)) continue;  // its height is within the rounding
       for (std::size_t i = 0; i < 3; ++i) {
         const auto [entry, is_new] = owner_.try_emplace({t[i], t[(i + 1) % 3]}, loops_.size());
-        if (!is_new) entry->second = kNone;  // two triangles on one side of an edge: nothing is joined there
+        if (!is_new) entry->second = kNone;  // two triangles on one side of an edge: such an edge joins nothing
       }
       loops_.push_back(loop);
       normals_.push_back(glm::normalize(area));
@@ -63,7 +64,7 @@ class Parts {
     std::ranges::sort(candidates, [](const Candidate& a, const Candidate& b) {
       return a.length != b.length ? a.length > b.length : a.edge < b.edge;
     });
-    // What is not convex may be so once its neighbours are joined.
+    // A join that is not convex now may become convex once its neighbours are joined.
     for (std::size_t before = 0; before != candidates.size();) {
       before = candidates.size();
       std::erase_if(candidates, [&](const Candidate& candidate) { return join_at(candidate.edge) != Joined::later; });
@@ -104,15 +105,16 @@ class Parts {
     return Joined::now;
   }
 
-  /// Both outlines as one, without what they have in common around the edge; nothing if they have more in common.
+  /// Returns the union of both outlines without their common edges around `edge`; nullopt if they have other edges in
+  /// common.
   static std::optional<Loop> union_of(const Loop& a, const Loop& b, const Edge& edge) {
     const auto at = [](const Loop& loop, std::size_t i) { return loop[i % loop.size()]; };
     const std::size_t n = a.size(), m = b.size();
-    std::size_t i = 0, j = 0;  // edge is a[i] → a[i + 1] and b[j] → b[j + 1], backwards
+    std::size_t i = 0, j = 0;  // edge is a[i] → a[i + 1], and reversed b[j] → b[j + 1]
     while (i < n && !(a[i] == edge.first && at(a, i + 1) == edge.second)) ++i;
     while (j < m && !(b[j] == edge.second && at(b, j + 1) == edge.first)) ++j;
     if (i == n || j == m) return std::nullopt;
-    std::size_t more = 0, less = 0;  // edges in common after and before it, as a goes
+    std::size_t more = 0, less = 0;  // common edges after and before `edge`, in a's direction
     while (more + 2 < std::min(n, m) && at(a, i + 2 + more) == at(b, j + m - 1 - more)) ++more;
     while (more + less + 2 < std::min(n, m) && at(a, i + n - 1 - less) == at(b, j + 2 + less)) ++less;
     Loop loop;
@@ -131,7 +133,7 @@ class Parts {
     });
   }
 
-  /// No point lies outside any edge: of turns alone one could make a star that goes round twice.
+  /// Checks that no point lies outside any edge: checking turns alone would accept a star that winds around twice.
   [[nodiscard]] bool is_convex(const Loop& loop, const glm::dvec3& normal) const {
     for (std::size_t i = 0; i < loop.size(); ++i) {
       const glm::dvec3 from = mesh_.points[loop[i]], along = mesh_.points[loop[(i + 1) % loop.size()]] - from;
@@ -145,10 +147,10 @@ class Parts {
 
   const Welded& mesh_;
   double rounding_;
-  std::map<Edge, std::size_t> owner_;  // of each directed edge the triangle to its left
+  std::map<Edge, std::size_t> owner_;  // for each directed edge, the triangle to its left
   std::vector<Loop> loops_;
   std::vector<glm::dvec3> normals_;
-  std::vector<std::size_t> parent_;  // the part that each triangle went into
+  std::vector<std::size_t> parent_;  // for each triangle, the part that it was joined to
 };
 
 }  // namespace
@@ -162,7 +164,7 @@ std::vector<ConvexPart> convex_parts(const Welded& mesh, double rounding) {
 std::vector<std::vector<std::size_t>> flat_regions(const Welded& mesh, double rounding) {
   const std::size_t count = mesh.triangles.size();
   std::vector<glm::dvec3> normals;
-  std::vector<double> sizes;  // twice the area
+  std::vector<double> sizes;  // twice the areas
   std::map<Edge, std::vector<std::size_t>> owners;
   for (std::size_t i = 0; i < count; ++i) {
     const mesh::Triangle& t = mesh.triangles[i];
@@ -179,8 +181,8 @@ std::vector<std::vector<std::size_t>> flat_regions(const Welded& mesh, double ro
       reach = std::max(reach, glm::distance(mesh.points[point], from));
     return std::ranges::all_of(mesh.triangles[b], [&](std::uint32_t point) {
       const glm::dvec3 way = mesh.points[point] - from;
-      // The plane of three rounded points is off by the rounding where they are, and farther away in proportion to the
-      // triangle's height, which is its doubled area over its reach.
+      // The plane of three rounded points is off by the rounding at these points, and farther away in proportion to the
+      // inverse of the triangle's height, which is its doubled area over its reach.
       return std::abs(glm::dot(normals[a], way)) <= 4 * rounding * (1 + glm::length(way) * reach / sizes[a]);
     });
   };

@@ -1,3 +1,5 @@
+// Recognises emissive meshes as area lights: flat convex outlines, spheres, or several convex parts.
+
 #include "import/gltf/emitters/emitter.hpp"
 
 #include "import/gltf/emitters/convex_parts.hpp"
@@ -23,14 +25,15 @@ namespace {
 
 using Piece = Pieces::Piece;
 
-/// A mesh that hangs together.
+/// A connected mesh.
 struct Component {
   Welded mesh;
-  bool closed = false;   ///< every edge has two triangles, which are wound alike
-  bool outward = false;  ///< and their fronts are outside
+  bool closed = false;   ///< every edge has two triangles, which are consistently wound
+  bool outward = false;  ///< the fronts of the triangles are outside
 };
 
-/// Winds all triangles alike, if each edge has two and they can be: then the mesh is closed.
+/// Winds all triangles consistently; returns nullopt unless each edge has two triangles and such a winding exists, that
+/// is, unless the mesh is closed.
 std::optional<Welded> wound_alike(const Welded& mesh) {
   using Side = std::pair<std::uint32_t, std::uint32_t>;
   std::map<Side, std::vector<std::size_t>> triangles_of;
@@ -42,7 +45,8 @@ std::optional<Welded> wound_alike(const Welded& mesh) {
   }
   if (std::ranges::any_of(triangles_of, [](const auto& edge) { return edge.second.size() != 2; })) return std::nullopt;
   Welded wound = mesh;
-  const auto runs = [&](std::size_t triangle, const Side& edge) {  // from the first to the second?
+  const auto runs = [&](std::size_t triangle, const Side& edge) {  // returns whether the triangle traverses the edge
+                                                                   // from first to second
     const mesh::Triangle& t = wound.triangles[triangle];
     for (std::size_t k = 0; k < 3; ++k) {
       if (t[k] == edge.first && t[(k + 1) % 3] == edge.second) return true;
@@ -50,7 +54,7 @@ std::optional<Welded> wound_alike(const Welded& mesh) {
     return false;
   };
   std::vector<bool> seen(mesh.triangles.size(), false);
-  for (std::size_t start = 0; start < seen.size(); ++start) {  // what only touches in a point is wound by itself
+  for (std::size_t start = 0; start < seen.size(); ++start) {  // parts that only touch in a point are wound separately
     if (seen[start]) continue;
     std::vector<std::size_t> open{start};
     seen[start] = true;
@@ -66,7 +70,7 @@ std::optional<Welded> wound_alike(const Welded& mesh) {
           seen[other] = true;
           open.push_back(other);
         } else if (runs(other, {a, b})) {
-          return std::nullopt;  // a Klein bottle, or one edge twice
+          return std::nullopt;  // a Klein bottle, or an edge that occurs twice
         }
       }
     }
@@ -74,7 +78,8 @@ std::optional<Welded> wound_alike(const Welded& mesh) {
   return wound;
 }
 
-/// How often the mesh goes around x (van Oosterom and Strackee 1983): of a closed one 1 inside, 0 outside.
+/// Returns the winding number of the mesh around x (van Oosterom and Strackee 1983): for a closed mesh 1 inside, 0
+/// outside.
 double winding_number(const Welded& mesh, const glm::dvec3& x) {
   double sum = 0;
   for (const mesh::Triangle& t : mesh.triangles) {
@@ -129,7 +134,7 @@ std::vector<Component> outward_components(const Welded& mesh, bool two_sided) {
   return seen;
 }
 
-/// The same triangles are there wound both ways: of two that emit to both sides one is enough.
+/// Removes one of two triangles that are equal but for their winding: if both emit to both sides, one is enough.
 Welded without_backs(const Welded& mesh) {
   std::map<std::array<std::uint32_t, 3>, std::size_t> known;
   std::vector<std::size_t> kept;
@@ -148,7 +153,7 @@ Piece piece_of(FlatLight&& shape) {
 
 void add_flat_pieces(const Welded& mesh, double rounding, std::vector<Piece>& pieces) {
   for (const std::vector<std::size_t>& triangles : flat_regions(mesh, rounding)) {
-    if (pieces.size() > kMostPieces) return;  // more are of no use
+    if (pieces.size() > kMostPieces) return;  // more pieces are not needed: the mesh is refused
     const Welded region = part_of(mesh, triangles);
     FlatLight whole = recognise_flat_light(region, rounding);
     if (!std::holds_alternative<std::string>(whole)) {
@@ -159,7 +164,7 @@ void add_flat_pieces(const Welded& mesh, double rounding, std::vector<Piece>& pi
       std::vector<glm::dvec3> corners;
       for (const std::uint32_t point : part.outline) corners.push_back(region.points[point]);
       FlatLight shape = light_of_outline(corners, part.normal, rounding);
-      // Convex to the rounding and no more: as it is.
+      // Convex only within the rounding: the polygon is kept unchanged.
       pieces.push_back(std::holds_alternative<std::string>(shape) ? Piece(Polygon{std::move(corners)})
                                                                   : piece_of(std::move(shape)));
     }
@@ -182,13 +187,13 @@ Piece back_of(const Piece& piece) {
   return piece;
 }
 
-/// Does some piece stand on a side to which another emits?
+/// Returns whether some piece lies on a side to which another one emits.
 bool hides_itself(const std::vector<Piece>& pieces, bool two_sided, double rounding) {
   if (pieces.size() < 2) return false;
   std::vector<std::vector<glm::dvec3>> corners;
   for (const Piece& piece : pieces) corners.push_back(corners_of(piece));
   const bool ball = std::ranges::any_of(corners, [](const auto& own) { return own.empty(); });
-  if (ball) return true;  // there is something else, and a sphere emits everywhere
+  if (ball) return true;  // another piece exists, and a sphere emits everywhere
   for (const std::vector<glm::dvec3>& own : corners) {
     glm::dvec3 normal(0);
     double reach = 0;
@@ -201,7 +206,7 @@ bool hides_itself(const std::vector<Piece>& pieces, bool two_sided, double round
     for (const std::vector<glm::dvec3>& other : corners) {
       for (const glm::dvec3& corner : other) {
         const double height = glm::dot(normal / size, corner - own[0]);
-        // The plane is as good as the piece is large; height over area is how well it is known far away.
+        // The accuracy of the plane depends on the piece's size; height over area gives its error far away.
         const double allowed = 8 * rounding * (1 + glm::distance(corner, own[0]) * reach / size);
         if (height > allowed || (two_sided && height < -allowed)) return true;
       }
@@ -217,7 +222,7 @@ std::variant<Emitter, std::string> recognise_emitter(std::span<const glm::dvec3>
                                                      double rounding) {
   Welded mesh = weld(positions, triangles);
   if (two_sided) mesh = without_backs(mesh);
-  std::vector<std::pair<Piece, bool>> found;  // with whether it emits to both sides
+  std::vector<std::pair<Piece, bool>> found;  // pieces, each with whether it emits to both sides
   for (const Component& component : outward_components(mesh, two_sided)) {
     if (const auto sphere = recognise_sphere(component.mesh, rounding)) {
       found.emplace_back(*sphere, false);
@@ -233,7 +238,7 @@ std::variant<Emitter, std::string> recognise_emitter(std::span<const glm::dvec3>
   std::vector<Piece> pieces;
   for (const auto& [piece, both] : found) {
     pieces.push_back(piece);
-    if (both && !emitter.two_sided) pieces.push_back(back_of(piece));  // closed meshes do not
+    if (both && !emitter.two_sided) pieces.push_back(back_of(piece));  // closed meshes emit only outward
   }
   if (pieces.empty()) return "it has no area";
   if (pieces.size() > kMostPieces) {

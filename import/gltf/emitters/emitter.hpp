@@ -16,22 +16,22 @@ namespace penumbra::scenes {
 struct Emitter {
   LightShape shape;
   bool two_sided = false;
-  /// Some of it stands before some other that emits toward it. A light's own mesh hides none of its light, so there is
-  /// more of it than an emitter of this shape would give.
+  /// True if a part of the mesh lies in front of another that emits toward it. A light's own mesh hides none of its
+  /// light here, so the light emits more than a real emitter of this shape.
   bool hides_itself = false;
 };
 
-/// More pieces than this are refused: each costs what a light costs.
+/// Meshes with more pieces are refused: each piece costs as much as a light.
 inline constexpr std::size_t kMostPieces = 1024;
 
-/// The light whose body is the given triangles, or why there is none. Whole, it is a flat convex outline
-/// (flat_light.hpp) or a sphere (sphere_light.hpp). Otherwise each of the meshes that it consists of is that, or is cut
-/// into flat convex parts (convex_parts.hpp).
+/// Returns the light whose body is the given triangles, or the reason why there is none. The whole mesh may be a flat
+/// convex outline (flat_light.hpp) or a sphere (sphere_light.hpp). Otherwise each of its connected meshes is one of
+/// these, or is divided into flat convex parts (convex_parts.hpp).
 ///
-/// Triangles emit to the side from which they run counter-clockwise, if `two_sided` to both. But of a mesh that is
-/// closed only the outside is ever seen, and there is nothing to see in one that another encloses: if `two_sided`,
-/// closed meshes emit outward whichever way they are wound, and what a closed mesh that emits outward encloses, not
-/// at all. `rounding`: how far each position may be from where its author meant it to be.
+/// Triangles emit to the side from which they run counter-clockwise, if `two_sided` to both. But of a closed mesh only
+/// the outside is visible, and a mesh enclosed by another is invisible: if `two_sided`, closed meshes emit outward
+/// regardless of their winding, and meshes inside a closed mesh that emits outward do not emit. `rounding`: distance of
+/// each position from its intended place.
 std::variant<Emitter, std::string> recognise_emitter(std::span<const glm::dvec3> positions,
                                                      std::span<const mesh::Triangle> triangles, bool two_sided,
                                                      double rounding);

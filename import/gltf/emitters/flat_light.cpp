@@ -1,3 +1,5 @@
+// Recognises flat convex emissive meshes as rectangle or polygon lights, within a given rounding of positions.
+
 #include "import/gltf/emitters/flat_light.hpp"
 
 #include <glm/geometric.hpp>
@@ -14,7 +16,8 @@
 namespace penumbra::scenes {
 namespace {
 
-/// The edges that have a triangle on one side only, joined into one loop; nothing if they do not form exactly one.
+/// Returns the edges that have a triangle on one side only, joined into one loop; nullopt if they do not form exactly
+/// one.
 std::optional<std::vector<std::uint32_t>> outline_of(const Welded& mesh) {
   std::set<std::pair<std::uint32_t, std::uint32_t>> edges;
   for (const mesh::Triangle& t : mesh.triangles) {
@@ -46,7 +49,7 @@ std::vector<glm::dvec3> true_corners(std::vector<glm::dvec3> loop, double roundi
     const std::size_t count = loop.size();
     const glm::dvec3 &before = loop[(i + count - 1) % count], &after = loop[(i + 1) % count];
     const glm::dvec3 along = after - before;
-    const double height = glm::length(glm::cross(along, loop[i] - before));  // times the base's length
+    const double height = glm::length(glm::cross(along, loop[i] - before));  // height times the base's length
     if (height <= 4 * rounding * glm::length(along)) {
       loop.erase(loop.begin() + static_cast<std::ptrdiff_t>(i));
       i = 0;
@@ -65,7 +68,7 @@ bool is_convex(std::span<const glm::dvec3> loop, const glm::dvec3& normal) {
   for (std::size_t i = 0; i < count; ++i) {
     if (turn(i, i + 1, i + 2) <= 0) return false;
   }
-  for (std::size_t i = 1; i + 1 < count; ++i) {  // and it goes round only once
+  for (std::size_t i = 1; i + 1 < count; ++i) {  // also checks that the outline goes around only once
     if (turn(0, i, i + 1) <= 0) return false;
   }
   return true;
@@ -80,7 +83,7 @@ FlatLight light_of_outline(std::vector<glm::dvec3> corners, const glm::dvec3& no
     const glm::dvec3 &a = corners[0], &b = corners[1], &c = corners[2], &d = corners[3];
     const glm::dvec3 half_u = ((b - a) + (c - d)) / 4.0, half_v = ((d - a) + (c - b)) / 4.0;
     const bool parallelogram = glm::length(a - b + c - d) <= 4 * rounding;
-    // Each half side is off by at most the rounding, so their product is by at most this.
+    // Each half side is off by at most the rounding, so their dot product is off by at most this.
     const bool right_angled =
         std::abs(glm::dot(half_u, half_v)) <= 2 * rounding * (glm::length(half_u) + glm::length(half_v));
     if (parallelogram && right_angled) return Rectangle{(a + b + c + d) / 4.0, half_u, half_v};
@@ -101,7 +104,7 @@ FlatLight recognise_flat_light(const Welded& mesh, double rounding) {
   const glm::dvec3 normal = glm::normalize(area);
   glm::dvec3 center(0);
   for (const glm::dvec3& p : mesh.points) center += p / static_cast<double>(mesh.points.size());
-  // Each position is off by the rounding along the normal, and so are the plane's own points.
+  // Each position is off by the rounding along the normal, and so are the points that define the plane.
   for (const glm::dvec3& p : mesh.points) {
     if (std::abs(glm::dot(normal, p - center)) > 4 * rounding) return "it is not flat";
   }

@@ -11,13 +11,13 @@
 namespace penumbra::scenes {
 namespace {
 
-constexpr double kNearest = 0.98;  // of the radius: a plane of a triangle from the centre
-/// How far corners may be from one sphere, of its radius: a hundredth of what planes may. Blender's own, made in single
-/// precision from angles, are up to 2e-6 off.
+constexpr double kNearest = 0.98;  // least distance of a triangle's plane from the centre, relative to the radius
+/// Largest deviation of corners from one sphere, relative to its radius: a hundredth of that of planes. Blender's
+/// spheres, computed in single precision from angles, are up to 2e-6 off.
 constexpr double kUneven = (1 - kNearest) / 100;
 
-/// The centre that fits |p − c|² = r² best for all points: least squares of 2 c · p + (r² − |c|²) = |p|², which is
-/// linear. Points are taken relative to their mean and scaled to 1, so that nothing cancels.
+/// Returns the centre that fits |p − c|² = r² best for all points: least squares of 2 c · p + (r² − |c|²) = |p|², which
+/// is linear. Points are taken relative to their mean and scaled to 1, so that nothing cancels.
 std::optional<glm::dvec3> center_of(std::span<const glm::dvec3> points) {
   glm::dvec3 mean(0);
   for (const glm::dvec3& p : points) mean += p / static_cast<double>(points.size());
@@ -49,7 +49,7 @@ std::optional<Sphere> recognise_sphere(const Welded& mesh, double rounding) {
     least = std::min(least, glm::distance(p, *center));
     most = std::max(most, glm::distance(p, *center));
   }
-  // Corners are off by the rounding, and so is the centre that they give.
+  // Corners are off by the rounding, and so is the centre computed from them.
   if (!(least > 0) || most - least > std::max(8 * rounding, kUneven * most)) return std::nullopt;
   double solid_angle = 0, area = 0;
   for (const mesh::Triangle& t : mesh.triangles) {
@@ -59,12 +59,12 @@ std::optional<Sphere> recognise_sphere(const Welded& mesh, double rounding) {
     if (twice == 0) continue;  // at a pole
     if (glm::dot(normal, a) < kNearest * most * twice) return std::nullopt;
     area += twice / 2;
-    // Van Oosterom and Strackee 1983; all three are about `most` long.
+    // Van Oosterom and Strackee 1983; all three lengths are about `most`.
     const double x = glm::length(a), y = glm::length(b), z = glm::length(c);
     solid_angle += 2 * std::atan2(glm::dot(a, glm::cross(b, c)),
                                   x * y * z + glm::dot(a, b) * z + glm::dot(b, c) * x + glm::dot(c, a) * y);
   }
-  // Once around, to the rounding of a sum of that many angles.
+  // The sum must be once around, up to the rounding of a sum of that many angles.
   if (std::abs(solid_angle - 4 * std::numbers::pi) > 1e-9 * static_cast<double>(mesh.triangles.size()) + 1e-6)
     return std::nullopt;
   return Sphere{*center, std::sqrt(area / (4 * std::numbers::pi)), {}};

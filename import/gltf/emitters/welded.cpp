@@ -10,7 +10,7 @@
 namespace penumbra::scenes {
 namespace {
 
-/// The same triangle, wound alike, from whichever corner it begins.
+/// Returns the triangle with the same winding, beginning at its lowest corner.
 mesh::Triangle from_least(const mesh::Triangle& t) {
   const auto least = static_cast<std::size_t>(std::ranges::min_element(t) - t.begin());
   return {t[least], t[(least + 1) % 3], t[(least + 2) % 3]};

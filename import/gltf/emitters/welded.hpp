@@ -9,19 +9,19 @@
 
 namespace penumbra::scenes {
 
-/// A mesh whose vertices are the distinct positions: exporters split vertices where normals or texture coordinates
-/// differ.
+/// A mesh whose vertices are distinct positions: exporters split vertices where normals or texture coordinates differ.
 struct Welded {
-  std::vector<glm::dvec3> points;         ///< those that triangles use
-  std::vector<mesh::Triangle> triangles;  ///< of three different points each; none is there twice, wound alike
+  std::vector<glm::dvec3> points;         ///< the points that triangles use
+  std::vector<mesh::Triangle> triangles;  ///< three different points each; no triangle occurs twice with the same
+                                          ///< winding
 };
 
 Welded weld(std::span<const glm::dvec3> positions, std::span<const mesh::Triangle> triangles);
 
-/// Some of its triangles, with only their points.
+/// Returns some of the mesh's triangles, with only their points.
 Welded part_of(const Welded& mesh, std::span<const std::size_t> triangles);
 
-/// What hangs together by common points, each as a mesh.
+/// Returns the parts connected by common points, each as a mesh.
 std::vector<Welded> components_of(const Welded& mesh);
 
 }  // namespace penumbra::scenes
