@@ -11,25 +11,25 @@
 #include <variant>
 #include <vector>
 
-/// The kinds of light, and what is true of each. Code asks for the property that it needs, in place of the kind: a new
-/// kind is then a row here, and code that only knows properties need not change.
+/// The kinds of light, and their properties. Code tests the property that it needs instead of the kind: a new kind is
+/// then a new row here, and code that depends on properties need not change.
 namespace penumbra::scenes {
 
-/// In the order of LightShape, and of lists for people.
+/// In the order of LightShape, and of lists in messages.
 enum class LightKind : std::uint8_t { rectangle, disk, ellipse, polygon, sphere, sun, dome };
 
-/// What the points of a light are.
+/// Location of a light's points.
 enum class LightPlace : std::uint8_t {
   plane,       ///< points of one plane, the same for every view sample
-  body,        ///< a solid body: each view sample sees a disk of its own, with points of its own
+  body,        ///< a solid body: each view sample sees a different disk of it, with different points
   directions,  ///< infinitely far away: directions, not points
 };
 
-/// What bounds a light in the coordinates (s, t) of its frame.
+/// Boundary of a light in the coordinates (s, t) of its frame.
 enum class LightRegion : std::uint8_t {
   square,   ///< |s| <= 1 and |t| <= 1
   disk,     ///< s² + t² <= 1
-  corners,  ///< a convex polygon with corners of its own
+  corners,  ///< a convex polygon with its own corners
   faces,    ///< directions all around: the square |s| <= 1 and |t| <= 1 of each face of a cube, or half of it
 };
 
@@ -38,10 +38,10 @@ struct LightTraits {
   const char* name;  ///< in messages, in JSON, and the key of its shape in scene files
   LightPlace place;
   LightRegion region;
-  bool circular;  ///< u and v are at right angles and of one length, so that LightRegion::disk is a circle in space
+  bool circular;  ///< u and v are orthogonal and equally long, so that LightRegion::disk is a circle in space
 };
 
-/// The table: one row a kind.
+/// The table: one row for each kind.
 inline constexpr std::array kLightTraits{
     LightTraits{LightKind::rectangle, "rectangle", LightPlace::plane, LightRegion::square, false},
     LightTraits{LightKind::disk, "disk", LightPlace::plane, LightRegion::disk, true},
@@ -59,14 +59,14 @@ constexpr const char* name_of(LightKind kind) {
   return traits_of(kind).name;
 }
 
-/// A set of kinds: what a method can do. Listed in the order of the table.
+/// A set of kinds, such as those that a method supports. Listed in the order of the table.
 class LightKinds {
  public:
   constexpr LightKinds() = default;
   constexpr LightKinds(std::initializer_list<LightKind> kinds) {
     for (const LightKind kind : kinds) bits_ |= bit(kind);
   }
-  /// Those of which `property` is true.
+  /// Returns the kinds for which `property` is true.
   template <typename Property>
   static constexpr LightKinds with(Property property) {
     LightKinds kinds;
@@ -84,7 +84,7 @@ class LightKinds {
     }
     return kinds;
   }
-  /// "rectangle, disk, sun"; before the last one, `last` in place of a comma.
+  /// Returns "rectangle, disk, sun"; `last` replaces the last comma.
   [[nodiscard]] std::string words(const char* last = ", ") const {
     std::string text;
     const std::vector<LightKind> kinds = list();
@@ -120,43 +120,44 @@ inline constexpr LightKinds kDomes =
     LightKinds::with([](const LightTraits& row) { return row.region == LightRegion::faces; });
 inline constexpr LightKinds kCircles = LightKinds::with([](const LightTraits& row) { return row.circular; });
 
-/// Has it a plane, which stored points span?
+/// Returns whether the light has a plane, spanned by stored points.
 constexpr bool is_planar(LightKind kind) {
   return kPlanarLights.contains(kind);
 }
-/// Is it a solid body, whose light points are others for each view sample?
+/// Returns whether the light is a solid body, whose light points differ between view samples.
 constexpr bool is_body(LightKind kind) {
   return kBodies.contains(kind);
 }
-/// Is it the square [−1, 1]² of its frame?
+/// Returns whether the light is the square [−1, 1]² of its frame.
 constexpr bool is_parallelogram(LightKind kind) {
   return kParallelograms.contains(kind);
 }
-/// Is it the unit disk of its frame? (Of a body: as each p sees it.)
+/// Returns whether the light is the unit disk of its frame. (A body: as each p sees it.)
 constexpr bool is_round(LightKind kind) {
   return kRoundLights.contains(kind);
 }
-/// Is it bounded by corners of its own?
+/// Returns whether the light is bounded by its own corners.
 constexpr bool is_polygon(LightKind kind) {
   return kPolygons.contains(kind);
 }
-/// Is it all around, so that no plane has a picture of it? A method looks at one face of a cube after the other.
+/// Returns whether the light is all around, so that no plane has a picture of it. A method handles one face of a cube
+/// after the other.
 constexpr bool is_dome(LightKind kind) {
   return kDomes.contains(kind);
 }
-/// Is it round, and a circle in space?
+/// Returns whether the light is round, and a circle in space.
 constexpr bool is_circle(LightKind kind) {
   return kCircles.contains(kind);
 }
 
 static_assert(kLightTraits.size() + 1 == std::variant_size_v<LightShape>, "a row for each shape but Pieces");
 
-/// The kind of a shape. Returns nullopt for one in pieces.
+/// Returns the kind of a shape; nullopt for one in pieces.
 inline std::optional<LightKind> kind_of(const LightShape& shape) {
   if (shape.index() >= kLightTraits.size()) return std::nullopt;
   return static_cast<LightKind>(shape.index());
 }
-/// The kind of a shape, of a light in pieces those of all pieces.
+/// Returns the kind of a shape; for a light in pieces the kinds of all pieces.
 inline LightKinds kinds_of(const LightShape& shape) {
   if (const std::optional<LightKind> kind = kind_of(shape)) return {*kind};
   LightKinds kinds;

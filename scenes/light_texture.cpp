@@ -15,11 +15,11 @@
 namespace penumbra::scenes {
 namespace {
 
-/// A picture of the largest size takes 200 MB to read; OpenEXR adds lines of all of a file's channels.
+/// A picture of the largest size takes 200 MB to read; OpenEXR adds lines of all channels of a file.
 constexpr mesh::ImportLimits kTextureLimits{.memory_bytes = 1ull << 30, .output_bytes = 64ull << 20};
 constexpr mesh::ImportLimits kSkyLimits{.memory_bytes = 4ull << 30, .output_bytes = 512ull << 20};
 
-/// What the import helper calls it, and how much that may take.
+/// The import helper's name of a kind of picture, and its limits.
 struct PictureKind {
   const char* name;
   const mesh::ImportLimits& limits;

@@ -7,28 +7,30 @@
 
 namespace penumbra::scenes {
 
-/// What a file has and the scene will not, or the other way round, with the names of the objects that it is about.
+/// Properties of a file that the scene will lack, or of a scene that a file will lack, with the names of the affected
+/// objects.
 class Losses {
  public:
-  /// It changes a shadow, or takes one away: refused unless the user is lenient. `what` follows the names.
+  /// Adds a loss that changes or removes a shadow: refused unless the user chose lenient reading. `what` follows the
+  /// names in the message.
   void refuse(const std::string& what, const std::string& object) { add(refused_, what, object); }
-  /// It changes how a surface looks.
+  /// Adds a loss that changes the appearance of a surface.
   void mention(const std::string& what, const std::string& object) { add(mentioned_, what, object); }
 
-  /// Warnings of what is refused elsewhere, alone: how a surface looks is nobody's concern here.
+  /// Adds warnings of refused losses only, for callers that do not use appearances.
   void warn_of_refused(std::vector<std::string>& warnings) const;
 
-  /// Throws InputError with all that is refused, if anything is. `lenient`: what the command does all the same if
-  /// asked.
+  /// Throws InputError with all refused losses, if there are any. `lenient`: what the command does in spite of them
+  /// with --lenient.
   void throw_refused(const char* lenient = "renders") const;
-  /// Warnings of everything, before those that are there. What matters more comes first.
+  /// Inserts warnings of all losses before existing ones, more important losses first.
   void warn(std::vector<std::string>& warnings) const;
 
  private:
   struct Loss {
     std::string what;
-    std::vector<std::string> objects;         ///< each once, in the order in which they came
-    std::unordered_set<std::string> known{};  ///< the same: a file may lose a hundred thousand
+    std::vector<std::string> objects;         ///< each once, in order of occurrence
+    std::unordered_set<std::string> known{};  ///< the same names, for look-up: a file may lose a hundred thousand
   };
   static void add(std::vector<Loss>& losses, const std::string& what, const std::string& object);
   static std::string text_of(const Loss& loss);

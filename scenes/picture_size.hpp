@@ -7,8 +7,8 @@
 
 namespace penumbra::scenes {
 
-/// Width and height in pixels of what a camera sees: the scene's, in the shape that the camera says; then the longer
-/// side is the scene's.
+/// Returns width and height in pixels of a camera's picture: the scene's size, or, if the camera has an aspect, that
+/// shape with the scene's longer side.
 std::pair<std::uint32_t, std::uint32_t> picture_size(const Scene& scene, const Camera& camera);
 
 }  // namespace penumbra::scenes

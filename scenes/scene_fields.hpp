@@ -6,9 +6,8 @@
 #include <tuple>
 #include <type_traits>
 
-/// What of a scene travels from the import helper, and in which order: the fields of each part, named once for both
-/// ends. Object::lit_by and AreaLight::texture are of formats that do not come this way; Scene::sources travel beside
-/// it.
+/// Fields of a scene that the import helper sends, in this order: named once for sender and receiver. Object::lit_by
+/// and AreaLight::texture belong to formats that the helper does not read; Scene::sources are sent separately.
 namespace penumbra::scenes {
 
 template <typename T, typename Part>
@@ -77,7 +76,7 @@ concept HasFields = requires(T& part) {
   fields_of(part);
 };
 
-/// Travels as it lies in memory, and lists of it at once.
+/// Types that are sent as stored in memory, lists of them in one piece.
 template <typename T>
 concept IsNumber = std::is_trivially_copyable_v<T> && !HasFields<T>;
 

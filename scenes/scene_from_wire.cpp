@@ -1,4 +1,4 @@
-// The program's end of the wire: what the import helper answers about scenes and textures, checked.
+// The program's end of the wire: decodes and checks the import helper's scenes and textures.
 
 #include "scenes/scene_fields.hpp"
 #include "scenes/scene_wire.hpp"
@@ -15,7 +15,7 @@ namespace {
 
 using mesh::WireError;
 
-/// Of an enumeration, whose values begin at 0.
+/// Last values of enumerations, which begin at 0.
 constexpr auto kLast = std::tuple(PictureUse::Wrap::clamp, Alpha::Mode::blend);
 
 template <typename T>
@@ -69,7 +69,7 @@ void check(const Scene& scene) {
   }
 }
 
-/// Gets what Put (scene_wire.cpp) puts: every number finite, every kind one that there is.
+/// Reads values that Put (scene_wire.cpp) wrote; checks that every number is finite and every enumerator valid.
 struct Get {
   mesh::WireReader& from;
 
@@ -104,7 +104,7 @@ struct Get {
     if (!std::ranges::all_of(numbers, [](const T& number) { return is_finite(number); }))
       throw WireError("one of many numbers is not finite");
   }
-  /// As long as there are entries: a false count makes no room.
+  /// Reads entry by entry: a false count allocates nothing.
   template <typename T>
   void operator()(std::vector<T>& entries) const {
     const auto count = from.get<std::uint64_t>();

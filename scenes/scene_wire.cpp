@@ -10,7 +10,7 @@
 namespace penumbra::scenes {
 namespace {
 
-/// Puts anything that fields_of names, or is made of.
+/// Writes any type that fields_of supports, or that consists of such types.
 struct Put {
   mesh::WireWriter& to;
 
@@ -30,7 +30,7 @@ struct Put {
   void operator()(const std::vector<T>& numbers) const {
     to.put_array_in_place(std::span<const T>(numbers));
   }
-  /// Each entry takes at least one byte, so that a false count runs into the end of the answer.
+  /// Each entry takes at least one byte, so that a false count reaches the end of the answer.
   template <typename T>
   void operator()(const std::vector<T>& entries) const {
     to.put<std::uint64_t>(entries.size());

@@ -5,16 +5,16 @@
 
 namespace penumbra::scenes {
 
-/// A whole scene in the import helper's answer.
+/// Writes a whole scene into the import helper's answer.
 void put_scene(mesh::WireWriter& to, const Scene& scene);
 
-/// Checks all that Scene promises (indices in range, numbers finite, at least one light and one camera); throws
-/// mesh::WireError.
+/// Reads a scene and checks everything that Scene requires (indices in range, numbers finite, at least one light and
+/// one camera); throws mesh::WireError.
 Scene get_scene(mesh::WireReader& from);
 
-/// A picture, without the name that the scene calls it by.
+/// Writes a picture, without its name in the scene.
 void put_texture(mesh::WireWriter& to, const Texture& texture);
-/// Checks that there are as many texels as the size says; throws mesh::WireError.
+/// Reads a picture and checks that the number of texels fits its size; throws mesh::WireError.
 Texture get_texture(mesh::WireReader& from);
 
 }  // namespace penumbra::scenes

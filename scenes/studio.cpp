@@ -21,7 +21,7 @@ std::string free_name(const std::vector<Named>& there, const std::string& wished
   return name;
 }
 
-/// The area of triangles in the plane of the lowest point that face upward: a body's own bottom faces downward.
+/// Returns the area of upward-facing triangles in the plane of the lowest point: a body's own bottom faces downward.
 double area_at_the_bottom(const Scene& scene, const Bounds& bounds) {
   const double tolerance = 1e-6 * glm::distance(bounds.low, bounds.high);
   double area = 0;
@@ -34,7 +34,7 @@ double area_at_the_bottom(const Scene& scene, const Bounds& bounds) {
   return area;
 }
 
-/// Whether something like a floor is there: half of the ground below everything lies in one plane.
+/// Returns whether something like a floor exists: half of the ground area below the scene lies in one plane.
 bool has_floor(const Scene& scene, const Bounds& bounds) {
   const glm::dvec3 extent = bounds.high - bounds.low;
   return area_at_the_bottom(scene, bounds) > 0.5 * extent.x * extent.z;
@@ -62,14 +62,14 @@ void add_floor(Scene& scene, const Bounds& bounds) {
   if (!scene.looks.normals.empty()) scene.looks.normals.resize(count, glm::vec3(0));
   if (!scene.looks.colors.empty()) scene.looks.colors.resize(count, glm::vec4(1));
   if (!scene.looks.places.empty()) scene.looks.places.resize(count, glm::dvec2(0));
-  // The scene's origin is the middle of all meshes at rest, the floor among them.
+  // The scene's origin is the centre of all meshes at rest, including the floor.
   if (scene.origin) {
     const Bounds floor_bounds = bounds_of(corners);
     scene.origin = (glm::min(bounds.low, floor_bounds.low) + glm::max(bounds.high, floor_bounds.high)) / 2.0;
   }
 }
 
-/// A square that faces `target`, upright.
+/// Returns an upright square that faces `target`.
 Rectangle facing_square(const glm::dvec3& center, const glm::dvec3& target, double side) {
   glm::dvec3 normal = target - center;
   normal = glm::length(normal) > 0 ? glm::normalize(normal) : glm::dvec3(0, -1, 0);
@@ -78,8 +78,8 @@ Rectangle facing_square(const glm::dvec3& center, const glm::dvec3& target, doub
   return {center, 0.5 * side * u, 0.5 * side * glm::cross(normal, u)};
 }
 
-/// The radiance that gives what faces the light, at the target, an irradiance of pi: a white surface there has a
-/// radiance of 1.
+/// Returns the radiance that gives a surface at the target, facing the light, an irradiance of pi: a white surface
+/// there has a radiance of 1.
 double radiance_for(const LightShape& shape, const glm::dvec3& target) {
   const auto over = [](double distance, double area) { return std::numbers::pi * distance * distance / area; };
   if (const auto* rectangle = std::get_if<Rectangle>(&shape)) {
@@ -134,7 +134,7 @@ const char* name_of(AddedLight::Kind kind) {
 }  // namespace
 
 void put_in_studio(Scene& scene, const Scene& rest, const StudioWish& wish) {
-  // Before the scene changes, which may be the one at rest.
+  // Computed before the scene changes: `rest` may be the same object.
   const Bounds bounds = bounds_of(rest.soup.positions);
   const bool on_floor = has_floor(rest, bounds);
   const glm::dvec3 middle = bounds.middle();

@@ -9,7 +9,8 @@
 
 namespace penumbra::scenes {
 
-/// A texel's number along one side of a picture that has `size` of them, for any whole number of texels from its first.
+/// Returns the index of a texel along one side of a picture with `size` texels, for any integral distance `texel` from
+/// the first one.
 inline std::size_t texel_number(double texel, std::uint32_t size, PictureUse::Wrap wrap) {
   const double count = size;
   if (wrap == PictureUse::Wrap::clamp) return static_cast<std::size_t>(std::clamp(texel, 0.0, count - 1));

@@ -8,18 +8,18 @@
 
 namespace penumbra::scenes {
 
-/// The corners of the box around points.
+/// Lower and upper corner of a bounding box.
 struct Bounds {
   glm::dvec3 low, high;
   [[nodiscard]] glm::dvec3 middle() const { return (low + high) / 2.0; }
-  /// Of the sphere around the box; of a point 1, so that a camera and a light have room.
+  /// Returns the radius of the sphere around the box; 1 for a point, so that camera and light are at a distance.
   [[nodiscard]] double radius() const;
 };
-/// At least one position.
+/// Returns the bounds of at least one position.
 Bounds bounds_of(std::span<const glm::dvec3> positions);
 
-/// A camera of 45 degrees, along the picture's height, that has the sphere around the bounds in its picture, seen from
-/// its front, right and above; named "synthesised". `aspect`: the picture's width over its height.
+/// Returns a camera of 45 degrees, along the picture's height, whose picture contains the sphere around the bounds,
+/// seen from the front, right and above; named "synthesised". `aspect`: the picture's width over its height.
 Camera camera_that_sees_all(const Bounds& bounds, double aspect = 1);
 
 }  // namespace penumbra::scenes

@@ -78,7 +78,7 @@ void check_camera(const Camera& camera, const std::string& where) {
     throw InputError("{}: the vertical field of view is {} degrees; expected more than 0 and less than 180", where,
                      camera.vertical_fov);
   }
-  constexpr double kFarthestShift = 1000;  // a lens that looks so far aside shows hardly anything
+  constexpr double kFarthestShift = 1000;  // a larger shift shows hardly anything
   if (!(std::abs(camera.shift.x) <= kFarthestShift && std::abs(camera.shift.y) <= kFarthestShift)) {
     throw InputError("{}: the shift is ({}, {}); expected up to {} heights of the picture", where, camera.shift.x,
                      camera.shift.y, kFarthestShift);

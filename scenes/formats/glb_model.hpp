@@ -11,36 +11,37 @@
 #include <string>
 #include <vector>
 
-/// A glTF model as it grows, with one scene and one buffer. Internal to this room: TinyGLTF's types.
+/// A glTF model under construction, with one scene and one buffer. Internal to this room: uses TinyGLTF's types.
 namespace penumbra::scenes {
 
-/// Every index that is handed out is in the model; buffer views are multiples of four bytes.
+/// Every returned index is valid in the model; buffer views are multiples of four bytes.
 class GlbModel {
  public:
   GlbModel();
 
   int add_material(tinygltf::Material material);
   int add_camera(tinygltf::Camera camera);
-  /// An accessor with its bounds, as POSITION wants it. InputError where the buffer would grow beyond a GLB's 4 GiB.
+  /// Adds an accessor with its bounds, as POSITION requires. Throws InputError if the buffer would exceed a GLB's 4
+  /// GiB.
   int add_positions(const std::vector<glm::vec3>& positions);
-  /// An accessor of any other attribute of vertices.
+  /// Adds an accessor of any other vertex attribute.
   int add_attribute(const std::vector<glm::vec2>& values);
   int add_attribute(const std::vector<glm::vec3>& values);
   int add_attribute(const std::vector<glm::vec4>& values);
-  /// An image in the file, of a PNG's bytes.
+  /// Adds an embedded image from a PNG's bytes.
   int add_png(const std::string& name, std::span<const std::byte> bytes);
   int add_texture(int image, tinygltf::Sampler sampler);
-  /// `mode`: TINYGLTF_MODE_…; indices into the accessor `positions`.
+  /// Returns a primitive. `mode`: TINYGLTF_MODE_…; `indices` are into the accessor `positions`.
   tinygltf::Primitive primitive(int mode, int positions, const std::vector<std::uint32_t>& indices, int material);
-  /// The mesh, and a node of its name that shows it.
+  /// Adds the mesh, and a node of the same name that shows it.
   int add_mesh_node(tinygltf::Mesh mesh);
   int add_node(tinygltf::Node node);
-  /// A lamp of KHR_lights_punctual.
+  /// Adds a lamp of KHR_lights_punctual.
   int add_lamp(tinygltf::Light lamp);
   void add_root(int node);
   void uses_extension(const std::string& name) { model_.extensionsUsed.push_back(name); }
 
-  /// The file's bytes.
+  /// Returns the file's bytes.
   [[nodiscard]] std::string encoded();
 
  private:

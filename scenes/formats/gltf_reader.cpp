@@ -15,7 +15,7 @@ Scene read_gltf(const std::filesystem::path& file, const ReadOptions& options) {
   if (options.allow_outside) job.flags.emplace_back("--allow-outside");
   if (options.lenient) job.flags.emplace_back("--lenient");
   if (!options.needs_light) job.flags.emplace_back("--without-light");
-  // {} gives the shortest text that is this very number again.
+  // {} gives the shortest text that reads back as the same number.
   if (options.lamp_radius) job.flags.push_back(fmt::format("--lamp-radius={}", *options.lamp_radius));
   if (options.sun_angle) job.flags.push_back(fmt::format("--sun-angle={}", *options.sun_angle));
   if (options.lumens_per_watt) job.flags.push_back(fmt::format("--lumens-per-watt={}", *options.lumens_per_watt));

@@ -32,20 +32,20 @@ int wrap_of(PictureUse::Wrap wrap) {
   return wrap == PictureUse::Wrap::mirror ? TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT : TINYGLTF_TEXTURE_WRAP_REPEAT;
 }
 
-/// What glTF has lamps for.
+/// Returns whether glTF has a lamp for the light.
 bool is_lamp(const AreaLight& light) {
   return format_of(light.shape).lamp != nullptr;
 }
 
-/// Does nothing cast a shadow of the light?
+/// Returns whether no object casts a shadow of the light.
 bool is_shadeless(const Scene& scene, const AreaLight& light) {
   return !light.unshaded_by.empty() && light.unshaded_by.size() == scene.objects.size();
 }
 
-/// What vertices of a mesh have.
+/// Vertex attributes of a mesh.
 struct GlbVertices {
   std::vector<glm::vec3> positions;
-  std::vector<glm::vec3> normals = {};  // these: none, or one each
+  std::vector<glm::vec3> normals = {};  // these lists are empty or have one element for each vertex
   std::vector<glm::vec4> colors = {};
   std::vector<glm::vec2> places = {};
 };
@@ -68,7 +68,7 @@ class GlbBuilder {
     return glb_.add_material(std::move(material));
   }
 
-  /// A node with a mesh of its own; `extras` as import/gltf/gltf_extras.hpp reads them.
+  /// Adds a node with its own mesh; `extras` as import/gltf/gltf_extras.hpp reads them.
   void add_mesh(const std::string& name, const GlbVertices& vertices, const std::vector<std::uint32_t>& indices,
                 int material, tinygltf::Value::Object extras = {}) {
     PENUMBRA_ASSERT(!vertices.positions.empty() && !indices.empty(), "mesh \"{}\" is empty", name);
@@ -92,13 +92,13 @@ class GlbBuilder {
       gltf.orthographic.ymag = *camera.height / 2;
       gltf.orthographic.xmag = aspect * gltf.orthographic.ymag;
       gltf.orthographic.znear = 0;
-      gltf.orthographic.zfar = 1e6 * *camera.height;  // glTF wants one; nothing here reads it
+      gltf.orthographic.zfar = 1e6 * *camera.height;  // required by glTF; not used by any reader here
     } else {
       gltf.type = "perspective";
       gltf.perspective.yfov = camera.vertical_fov * std::numbers::pi / 180;
       gltf.perspective.aspectRatio = aspect;
       gltf.perspective.znear = 1e-3 * glm::distance(camera.eye, camera.target);
-      gltf.perspective.zfar = 0;  // none
+      gltf.perspective.zfar = 0;  // infinite
     }
     if (camera.shift != glm::dvec2(0)) {
       gltf.extras = tinygltf::Value(tinygltf::Value::Object{
@@ -116,7 +116,7 @@ class GlbBuilder {
     glb_.add_root(glb_.add_node(std::move(node)));
   }
 
-  /// What glTF has lamps for.
+  /// Adds a light for which glTF has a lamp.
   void add_lamp(const AreaLight& light, bool casts_shadows) {
     const GltfLamp made = format_of(light.shape).lamp(light.shape);
     tinygltf::Light lamp;
@@ -194,7 +194,7 @@ class GlbBuilder {
   }
 
   GlbModel glb_;
-  std::map<std::uint32_t, int> images_;  // of the scene's pictures
+  std::map<std::uint32_t, int> images_;  // indices of the scene's pictures in the file
   std::map<std::tuple<std::uint32_t, PictureUse::Wrap, PictureUse::Wrap, bool>, int> textures_;
   bool uses_emissive_strength_ = false;
 };
@@ -203,7 +203,7 @@ void add_object(const Scene& scene, const ObjectRange& range, GlbBuilder& glb) {
   const Object& object = scene.objects[range.object];
   GlbVertices vertices;
   std::vector<std::uint32_t> indices;
-  std::unordered_map<std::uint32_t, std::uint32_t> local;  // the scene's vertex → this mesh's
+  std::unordered_map<std::uint32_t, std::uint32_t> local;  // maps the scene's vertices to those of this mesh
   const auto add = [](auto& to, const auto& from, std::uint32_t vertex) {
     if (!from.empty()) to.emplace_back(from[vertex]);
   };
@@ -231,7 +231,7 @@ void add_object(const Scene& scene, const ObjectRange& range, GlbBuilder& glb) {
   glb.add_mesh(object.name, vertices, indices, glb.add_material(scene, object), std::move(extras));
 }
 
-/// All pieces in one mesh, spheres with flat sides and their area.
+/// Adds all pieces as one mesh; spheres become polyhedra of the same area.
 void add_pieces(const AreaLight& light, const Pieces& shape, GlbBuilder& glb, Notes& notes) {
   constexpr std::uint32_t kSubdivisions = 3;
   std::vector<glm::vec3> positions;
@@ -299,7 +299,7 @@ void write_glb(const Scene& scene, AtomicFile& file, Losses& losses, Notes& note
       losses.refuse("is a dome, which glTF cannot say", scene.lights[i].name);
       continue;
     }
-    if (scene.lights[i].radiance == glm::dvec3(0))  // its outline would come back as a surface that casts shadow
+    if (scene.lights[i].radiance == glm::dvec3(0))  // its outline would be read back as a surface that casts a shadow
       notes.push_back(fmt::format("light \"{}\" is dark: glTF has no such lights; left out", scene.lights[i].name));
     else
       add_light(scene, scene.lights[i], glb, notes);

@@ -20,7 +20,7 @@ using nlohmann::json;
 
 constexpr std::size_t kDeepestNesting = 64;
 
-/// "[json.exception.parse_error.101] parse error at line 3, column 7: …" without what only the library's users know.
+/// Returns "parse error at line 3, column 7: …" without the library's prefix "[json.exception.parse_error.101]".
 std::string without_library_prefix(std::string message) {
   if (message.starts_with('[')) message.erase(0, std::min(message.size(), message.find("] ") + 2));
   constexpr std::string_view kNoise = "parse error at ";
@@ -28,7 +28,7 @@ std::string without_library_prefix(std::string message) {
   return message;
 }
 
-/// Builds the document event by event, so that every complaint can name its place.
+/// Builds the document event by event, so that every error message can name its place.
 class DocumentBuilder : public nlohmann::json_sax<json> {
  public:
   DocumentBuilder(json& root, const std::string& file) : root_(root), file_(file) {}
@@ -42,7 +42,7 @@ class DocumentBuilder : public nlohmann::json_sax<json> {
     refuse_zero(value, "string", open_.size());
     return add(std::move(value));
   }
-  bool binary(binary_t&) override { return false; }  // not in JSON text
+  bool binary(binary_t&) override { return false; }  // does not occur in JSON text
 
   bool start_object(std::size_t) override { return open(json::object()); }
   bool start_array(std::size_t) override { return open(json::array()); }
@@ -69,10 +69,10 @@ class DocumentBuilder : public nlohmann::json_sax<json> {
  private:
   struct Open {
     json* container;
-    std::string key;  ///< of the value that comes next, in an object
+    std::string key;  ///< key of the next value in an object
   };
 
-  /// No name of anything holds it, and a file's name or a message would end there.
+  /// Refuses zero bytes: no valid name contains one, and a file's name or a message would end there.
   void refuse_zero(const std::string& text, const char* what, std::size_t levels) const {
     if (text.find('\0') == std::string::npos) return;
     throw InputError("{}: the {} holds the character U+0000; expected printable text", place_under(levels).str(), what);
@@ -108,15 +108,15 @@ class DocumentBuilder : public nlohmann::json_sax<json> {
     return true;
   }
 
-  /// The place that the outermost `levels` open containers lead to: with all of them, that of the value that is about
-  /// to be added; with one less, that of the innermost container.
+  /// Returns the place of the outermost `levels` open containers: with all of them, that of the value that is about to
+  /// be added; with one less, that of the innermost container.
   [[nodiscard]] Place place_under(std::size_t levels) const {
     Place place{file_, {}};
     for (std::size_t i = 0; i < levels; ++i) {
       const json& container = *open_[i].container;
       if (container.is_object()) {
         place = place / open_[i].key;
-      } else {  // an open child stands in its parent already
+      } else {  // an open child is already stored in its parent
         place = place / (container.size() - (i + 1 < open_.size() ? 1 : 0));
       }
     }
@@ -166,12 +166,13 @@ std::string read_text_file(const std::filesystem::path& file) {
   const std::filesystem::file_status status = std::filesystem::status(file, error);
   if (!std::filesystem::exists(status)) throw InputError("{}: no such file", file.string());
   if (std::filesystem::is_directory(status)) throw InputError("{}: this is a folder; expected a file", file.string());
-  // A pipe or a device might never end.
+  // Reading a pipe or a device might never end.
   if (!std::filesystem::is_regular_file(status)) throw InputError("{}: not a regular file", file.string());
   std::ifstream stream(file, std::ios::binary);
   if (!stream) throw_file_error(errno, file.string() + ": cannot be read");
   const std::uintmax_t size = std::filesystem::file_size(file);
-  // The text, its values (a number of eight characters takes sixteen bytes), and what is made of them.
+  // Memory for the text, for its values (a number of eight characters takes sixteen bytes), and for the objects made
+  // from them.
   require_memory(3 * size, fmt::format("{}: a text of {}", file.string(), in_bytes(size)),
                  "name mesh files in place of listing triangles");
   std::string text(size, '\0');

@@ -10,7 +10,7 @@
 #include <string>
 #include <string_view>
 
-/// JSON with places: what the scene's JSON reader stands on. Internal to scenes/.
+/// JSON with places for messages, the basis of the scene's JSON reader. Internal to scenes/.
 namespace penumbra::scenes {
 
 /// A place in a JSON file, for messages: the file as the user named it and a JSON pointer (RFC 6901).
@@ -19,11 +19,11 @@ struct Place {
 
   [[nodiscard]] Place operator/(std::string_view key) const;
   [[nodiscard]] Place operator/(std::size_t index) const;
-  /// "scene.json: /meshes/0", or "scene.json" for the whole document.
+  /// Returns "scene.json: /meshes/0", or "scene.json" for the whole document.
   [[nodiscard]] std::string str() const;
 };
 
-/// Runs `make`; an Error of it gets the place in the scene file in front.
+/// Runs `make`; prefixes the message of an Error from `make` with the place in the scene file.
 template <typename Make>
 auto at_place(const Place& place, const Make& make) {
   try {
@@ -33,14 +33,14 @@ auto at_place(const Place& place, const Make& make) {
   }
 }
 
-/// Parses JSON strictly. InputError with line and column for a syntax error, and with the JSON pointer for what
-/// libraries let pass silently: a number beyond double's range, a key that stands twice, absurd nesting.
+/// Parses JSON strictly. Throws InputError with line and column for a syntax error, and with the JSON pointer for
+/// errors that libraries accept silently: a number beyond double's range, a duplicate key, excessive nesting.
 nlohmann::json parse_json(std::string_view text, const std::string& file);
 
-/// The whole text file; InputError if it is missing, a folder, a device, or cannot be read.
+/// Returns the whole text file; throws InputError if the file is missing, a folder, a device, or unreadable.
 std::string read_text_file(const std::filesystem::path& file);
 
-/// What a value is, in words: `a string "x"`, `the number 5`, `an array of 2 values`.
+/// Describes a value in words: `a string "x"`, `the number 5`, `an array of 2 values`.
 std::string describe_value(const nlohmann::json& value);
 
 }  // namespace penumbra::scenes

@@ -29,7 +29,7 @@ namespace {
 
 using nlohmann::json;
 
-/// A mesh with the coordinates of its positions in a lightmap, where they are wanted and there; else empty.
+/// A mesh with the lightmap coordinates of its positions; `places` is empty if they were not requested or do not exist.
 struct SourceMesh {
   mesh::TriangleSoup soup;
   std::vector<glm::dvec2> places = {};
@@ -68,7 +68,7 @@ SourceMesh read_source(const json& mesh, const Place& place, const ReadOptions& 
   if (mesh.contains("shape")) return {at_place(place / "shape", [&] { return read_shape(mesh["shape"]); })};
   if (mesh.contains("quad")) {
     const json& quad = mesh["quad"];
-    // The picture's lower left lies at its first corner, halfU runs to the right and halfV upward.
+    // The picture's lower left lies at the quad's first corner, halfU points right and halfV up.
     return {mesh::make_quad(read_vector(quad["center"]), read_vector(quad["halfU"]), read_vector(quad["halfV"])),
             {{0, 1}, {1, 1}, {1, 0}, {0, 0}}};
   }
@@ -86,7 +86,8 @@ SourceMesh read_source(const json& mesh, const Place& place, const ReadOptions& 
   return import_file(open_scene_file(name, place / "file", options), name, place / "file", options, scene);
 }
 
-/// Sine and cosine of degrees; exact for multiples of 90, so that a quarter turn leaves round numbers round.
+/// Returns sine and cosine of an angle in degrees; exact for multiples of 90, so that a quarter turn keeps round
+/// numbers round.
 std::pair<double, double> sine_cosine(double degrees) {
   const double turn = std::remainder(degrees, 360.0);
   if (turn == 0) return {0, 1};
@@ -133,7 +134,7 @@ Affine read_affine(const json& transform, const Place& place) {
     const glm::dvec3 degrees = read_vector(transform["rotate"]);
     for (int axis = 0; axis < 3; ++axis) {
       const auto [sine, cosine] = sine_cosine(degrees[axis]);
-      const int next = (axis + 1) % 3, last = (axis + 2) % 3;  // turns `next` toward `last`
+      const int next = (axis + 1) % 3, last = (axis + 2) % 3;  // rotates `next` toward `last`
       glm::dmat3 rotation(1);
       rotation[next][next] = rotation[last][last] = cosine;
       rotation[next][last] = sine;
@@ -163,7 +164,7 @@ mesh::ShapeSize size_of_mesh(const json& mesh, const Place& place) {
   return size;
 }
 
-/// The transform of an instance: under its key, in its own right, or as 16 numbers.
+/// Returns the transform of an instance: under its key, or the instance itself, which may be 16 numbers.
 const json& transform_of(const json& instance, const Place& place) {
   if (!instance.is_object() || !instance.contains("transform")) return instance;
   if (instance.size() > 1)
@@ -171,7 +172,7 @@ const json& transform_of(const json& instance, const Place& place) {
   return instance["transform"];
 }
 
-/// The mesh once for each instance, one after the other.
+/// Replaces the mesh by a copy for each instance, one after the other.
 void apply_instances(const json& instances, const Place& place, SourceMesh& mesh) {
   const std::size_t count = instances.size(), positions = mesh.soup.positions.size(),
                     triangles = mesh.soup.triangles.size();
@@ -215,12 +216,12 @@ std::vector<glm::dvec2> places_of_kept(std::vector<glm::dvec2> places, const std
 void require_room_for_meshes(const json& meshes, const Place& place) {
   mesh::ShapeSize all, largest;
   std::size_t number_of_largest = 0;
-  std::uint64_t most = 0;  // bytes, at the moment that needs the most
+  std::uint64_t most = 0;  // bytes at the moment of highest memory use
   for (std::size_t i = 0; i < meshes.size(); ++i) {
     const mesh::ShapeSize size = size_of_mesh(meshes[i], place / i);
     all.triangles += size.triangles;
     all.vertices += size.vertices;
-    // The first becomes the scene's; of the others there are two until they have been copied into it.
+    // The first mesh becomes the scene's; of each other one, two copies exist until it has been appended.
     const std::uint64_t twice = i == 0 ? 0 : mesh::soup_bytes(size.triangles, size.vertices);
     most = std::max(most, mesh::soup_bytes(all.triangles, all.vertices) + twice);
     if (size.triangles <= largest.triangles) continue;
@@ -237,7 +238,7 @@ void require_room_for_meshes(const json& meshes, const Place& place) {
 
 SceneFile open_scene_file(const std::string& name, const Place& place, const ReadOptions& options) {
   const std::filesystem::path folder = std::filesystem::path(place.file).parent_path();
-  const std::filesystem::path path = folder / name;  // an absolute name stands for itself
+  const std::filesystem::path path = folder / name;  // an absolute name replaces the folder
   const auto missing = [&] {
     return InputError("{}: no such file \"{}\" (paths are relative to the scene file)", place.str(), name);
   };
@@ -271,7 +272,8 @@ void apply_transform(const json& transform, const Place& place, mesh::TriangleSo
                      place.str(), determinant);
   }
   for (glm::dvec3& position : soup.positions) position = affine.linear * position + affine.offset;
-  if (determinant < 0) {  // a mirror turns meshes inside out; as glTF does, winding is reversed to make up for it
+  // a mirroring transform turns meshes inside out; as in glTF, windings are reversed to compensate
+  if (determinant < 0) {
     for (mesh::Triangle& triangle : soup.triangles) std::swap(triangle[1], triangle[2]);
   }
 }

@@ -25,7 +25,7 @@ namespace {
 
 using nlohmann::json;
 
-/// Names go into file formats line by line and into channel names.
+/// Names are written to line-based file formats and into channel names.
 void check_name(const std::string& name, const Place& place) {
   const auto is_control = [](char c) { return (c >= 0 && c < ' ') || c == 127; };
   if (std::any_of(name.begin(), name.end(), is_control)) {
@@ -52,7 +52,7 @@ Camera read_camera(const json& value, const Place& place, std::string fallback_n
   return camera;
 }
 
-/// `--camera` asks for them by name, so a name that is taken gets a number.
+/// Reads the cameras. `--camera` selects by name, so a duplicate name gets a number.
 std::vector<Camera> read_cameras(const json& document, const Place& root, std::vector<std::string>& warnings) {
   if (document.contains("camera")) return {read_camera(document["camera"], root / "camera", "camera")};
   std::vector<Camera> cameras;
@@ -83,7 +83,7 @@ Texture read_light_texture(const json& value, const Place& place, const ReadOpti
   return texture;
 }
 
-/// The picture of a dome.
+/// Reads the picture of a dome.
 Texture read_sky(const std::string& name, const Place& place, const ReadOptions& options, Scene& scene) {
   const SceneFile file = open_scene_file(name, place, options);
   Texture picture = at_place(place, [&] { return read_sky_picture(file.input, name); });
@@ -91,7 +91,8 @@ Texture read_sky(const std::string& name, const Place& place, const ReadOptions&
   return picture;
 }
 
-/// What a sun sends, by its radiance or by the irradiance of what faces it. A point has no radiance.
+/// Reads the emission of a sun: its radiance, or the irradiance of a surface that faces it. A point-like sun has no
+/// radiance.
 void read_sun_light(const json& value, const Place& place, AreaLight& light, Scene& scene) {
   const Sun& sun = std::get<Sun>(light.shape);
   if (value.contains("irradiance")) {
@@ -133,7 +134,7 @@ AreaLight read_light(const json& value, const Place& place, std::string fallback
 
 std::vector<AreaLight> read_lights(const json& document, const Place& root, const ReadOptions& options, Scene& scene) {
   std::vector<AreaLight> lights;
-  std::unordered_map<std::string, std::size_t> number_of;  // each name
+  std::unordered_map<std::string, std::size_t> number_of;  // index of each name
   for (const json& value : document["lights"]) {
     const Place place = root / "lights" / lights.size();
     AreaLight light = read_light(value, place, fmt::format("light{}", lights.size()), options, scene);
@@ -188,7 +189,7 @@ Object read_object(const json& value, const Place& place, const std::vector<Area
   return object;
 }
 
-/// The numbers of all meshes with one of these names.
+/// Returns the indices of all meshes with one of these names.
 std::set<std::uint32_t> named_objects(const json& names, const Place& place, const std::vector<Object>& objects) {
   std::set<std::uint32_t> found;
   for (std::size_t i = 0; i < names.size(); ++i) {
@@ -204,7 +205,7 @@ std::set<std::uint32_t> named_objects(const json& names, const Place& place, con
   return found;
 }
 
-/// A light's casters: those included, or all, without those excluded.
+/// Reads the casters of each light: those included, or all, without those excluded.
 void read_casters(const json& document, const Place& root, Scene& scene) {
   for (std::size_t i = 0; i < scene.lights.size(); ++i) {
     const json& value = document["lights"][i];
@@ -222,19 +223,19 @@ void read_casters(const json& document, const Place& root, Scene& scene) {
   }
 }
 
-/// Adds the mesh to the scene as the object of that number.
+/// Appends the mesh to the scene as the object with index `object`.
 void append(mesh::TriangleSoup& soup, mesh::TriangleSoup mesh, std::uint32_t object, const Place& place) {
   const std::size_t positions = soup.positions.size() + mesh.positions.size();
   const std::size_t triangles = soup.triangles.size() + mesh.triangles.size();
   if (positions > std::numeric_limits<std::uint32_t>::max()) {
     throw InputError("{}: the scene has more than 2^32 vertices", place.str());
   }
-  if (soup.triangles.empty()) {  // most often the largest, and the only one
+  if (soup.triangles.empty()) {  // the first mesh is usually the largest, and often the only one
     soup = std::move(mesh);
     soup.object.assign(soup.triangles.size(), object);
     return;
   }
-  // Each array grows into a new one, and the old one goes: the largest decides.
+  // Each array is copied into a larger one before the old one is freed: the largest array determines the memory needed.
   at_place(place, [&] {
     require_memory(positions * sizeof(glm::dvec3) + mesh::soup_bytes(mesh.triangles.size(), 0),
                    fmt::format("a scene of {} triangles", triangles), "make its meshes smaller");

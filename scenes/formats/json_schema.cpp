@@ -21,8 +21,8 @@ bool is_triangle_list(const json& list) {
 }
 
 /// Sets long lists of triangles aside while the rest is validated: a number takes a fraction of a microsecond, and a
-/// scene may have millions. Only lists that are what the schema demands of "triangles" are set aside; of each,
-/// one triangle stays. Everything is back when this goes.
+/// scene may have millions. Only lists that satisfy the schema's "triangles" are set aside; one triangle of each stays.
+/// The destructor puts all back.
 class ShelvedTriangles {
  public:
   explicit ShelvedTriangles(json& document) {

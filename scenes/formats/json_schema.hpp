@@ -11,16 +11,16 @@
 /// The schema of penumbra-scene/1. Internal to scenes/.
 namespace penumbra::scenes {
 
-/// scenes/penumbra-scene.schema.json, as it was when the program was built.
+/// Content of scenes/penumbra-scene.schema.json when the program was built.
 extern const std::string_view kSceneSchemaText;
 
-/// InputError for the first thing in the document that the schema forbids: where, what is there, what is expected.
-/// The document is the same afterwards.
+/// Throws InputError for the first violation of the schema in the document: its place, the value found, and the
+/// expected value. The document is unchanged on return.
 void enforce_schema(nlohmann::json& document, const std::string& file);
 
-/// The first place, in the document's order, where `instance` departs from the schema, in words for people; nothing for
-/// a document that is valid. Knows the keywords of JSON Schema that our schema uses, in the forms in which it uses
-/// them; a test holds its verdicts against a JSON Schema library's.
+/// Returns the first place, in document order, where `instance` violates the schema, in words for people; nullopt for a
+/// valid document. Supports the keywords of JSON Schema that this project's schema uses, in the forms in which it uses
+/// them; a test compares its verdicts with those of a JSON Schema library.
 std::optional<std::string> find_violation(const nlohmann::json& schema, const nlohmann::json& instance,
                                           const std::string& file);
 

@@ -10,15 +10,16 @@
 #include <array>
 #include <string_view>
 
-/// From the keys of a "shape" to a generator's options. What a key means and its bounds: the schema; defaults: the
-/// options structs of mesh/shapes/shapes.hpp and mesh/shapes/broken_meshes.hpp (a test holds the schema's to them).
+/// Converts the keys of a "shape" to a generator's options. Meanings and bounds of keys are in the schema; defaults in
+/// the options structs of mesh/shapes/shapes.hpp and mesh/shapes/broken_meshes.hpp (a test compares them with the
+/// schema's).
 namespace penumbra::scenes {
 namespace {
 
 using mesh::TriangleSoup;
 using nlohmann::json;
 
-/// Overwrites a default with the key's value, where there is one.
+/// Overwrites a default with the key's value, if the key exists.
 class Keys {
  public:
   explicit Keys(const json& shape) : shape_(shape) {}

@@ -8,9 +8,9 @@
 #include <algorithm>
 #include <limits>
 
-/// What a document violates, in a sentence that a person can act on. General validators report that no branch of a
-/// `oneOf` fits; this one knows which branch was meant (by the key that is present, or by "type"), goes into it and
-/// reports the innermost value that is wrong.
+/// Describes a violation of the schema in a sentence that helps a user to repair it. General validators report that no
+/// branch of a `oneOf` fits; this one determines the intended branch (by the key that is present, or by "type"), and
+/// reports the innermost wrong value in it.
 namespace penumbra::scenes {
 namespace {
 
@@ -129,7 +129,7 @@ class Validator {
   }
 
   static bool fits_length(const json& schema, const std::string& text) {
-    const auto characters = static_cast<std::size_t>(  // UTF-8: all bytes but continuations
+    const auto characters = static_cast<std::size_t>(  // UTF-8: counts all bytes but continuations
         std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; }));
     return characters >= schema.value("minLength", std::size_t{0}) &&
            characters <= schema.value("maxLength", std::numeric_limits<std::size_t>::max());
@@ -189,7 +189,7 @@ class Validator {
 
   // --- oneOf ----------------------------------------------------------------------------------------------------
 
-  /// The value of "type" that a branch insists on; empty for branches of other kinds.
+  /// Returns the value of "type" that a branch requires; empty for other branches.
   [[nodiscard]] std::string discriminator(const json& unresolved) const {
     const json& branch = resolve(unresolved);
     static const json::json_pointer type_constant("/properties/type/const");

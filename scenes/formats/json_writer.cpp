@@ -31,7 +31,7 @@ void write_camera(const Camera& camera, TextStream& text) {
     text.print(R"(, "verticalFov": )").number(camera.vertical_fov).print("}}");
 }
 
-/// "key": ["name", …], each name once.
+/// Writes "key": ["name", …], each name once.
 void write_names(const char* key, const std::set<std::string>& names, TextStream& text) {
   text.print(R"("{}": [)", key);
   bool first = true;

@@ -15,7 +15,7 @@
 namespace penumbra::scenes {
 namespace {
 
-/// Debian policy 5.6.1. Also keeps slashes out of the path that the name becomes part of.
+/// Returns whether the name is valid by Debian policy 5.6.1, which also keeps slashes out of the path formed from it.
 bool is_package_name(std::string_view name) {
   const auto is_lower_or_digit = [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9'); };
   return name.size() >= 2 && is_lower_or_digit(name[0]) && std::all_of(name.begin(), name.end(), [&](char c) {
@@ -23,7 +23,8 @@ bool is_package_name(std::string_view name) {
          });
 }
 
-/// <package>.list, or <package>:<architecture>.list for packages that may be installed for several.
+/// Returns <package>.list, or <package>:<architecture>.list for packages that may be installed for several
+/// architectures.
 std::vector<std::filesystem::path> package_lists(std::string_view package, const std::filesystem::path& dpkg_info) {
   std::vector<std::filesystem::path> lists;
   const std::string prefix = std::string(package) + ":";
@@ -39,7 +40,7 @@ std::vector<std::filesystem::path> package_lists(std::string_view package, const
   return lists;
 }
 
-/// All paths that the lists name.
+/// Returns all paths in the lists.
 std::set<std::string> listed_files(const std::vector<std::filesystem::path>& lists) {
   std::set<std::string> files;
   for (const std::filesystem::path& list : lists) {
@@ -50,7 +51,7 @@ std::set<std::string> listed_files(const std::vector<std::filesystem::path>& lis
   return files;
 }
 
-/// Packages may name /lib what lies in /usr/lib: the links at the root are the system's own.
+/// Packages may list as /lib files that are in /usr/lib: the links at the root belong to the system.
 bool is_listed(const std::set<std::string>& files, const std::string& path) {
   constexpr std::string_view kUsr = "/usr";
   return files.contains(path) || (path.starts_with("/usr/") && files.contains(path.substr(kUsr.size())));

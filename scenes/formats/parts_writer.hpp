@@ -14,7 +14,7 @@
 
 namespace penumbra::scenes {
 
-/// A named, coloured thing to look at.
+/// A named, coloured object to look at.
 struct Part {
   std::string name;
   glm::dvec4 color{1};  ///< linear red, green, blue; opacity
@@ -23,14 +23,14 @@ struct Part {
   std::vector<std::array<std::uint32_t, 2>> lines;
 };
 
-/// Writes parts by the file's extension:
-/// - .glb: a node, a mesh and a material each (two-sided), under a node that moves them by `origin`; positions in
-///   float32 relative to it. Lines become line primitives.
-/// - .obj: an object each, lines as `l`; positions plus origin.
+/// Writes parts in the format of the file's extension:
+/// - .glb: a node, a mesh and a material for each part (two-sided), under a node that translates by `origin`; positions
+///   in float32 relative to it. Lines become line primitives.
+/// - .obj: an object for each part, lines as `l`; positions plus origin.
 /// - .ply: one mesh with face and edge colours; positions plus origin.
 ///
-/// A part without triangles and lines is left out. UsageError for another extension, ResourceError if the file cannot
-/// be written; it appears whole or not at all.
+/// A part without triangles and lines is left out. Throws UsageError for another extension, ResourceError if the file
+/// cannot be written; the file appears whole or not at all.
 void write_parts(const std::filesystem::path& file, std::span<const Part> parts, const glm::dvec3& origin);
 
 }  // namespace penumbra::scenes

@@ -19,7 +19,7 @@
 namespace penumbra::scenes {
 namespace {
 
-/// A mesh file as a scene of one object, without light and camera.
+/// Reads a mesh file as a scene of one object, without light and camera.
 Scene read_mesh_file(const std::filesystem::path& file, LightmapPlaces* lightmap) {
   mesh::ImportedMesh imported = mesh::import_mesh(mesh::open_input(file), {}, {}, lightmap != nullptr);
   Scene scene;
@@ -62,7 +62,7 @@ Scene read_scene(const std::filesystem::path& file, const ReadOptions& options) 
   const bool wishes = studio.always || !studio.lights.empty() || studio.camera || !studio.fit_camera.empty();
   const bool lacks = !is_json && (scene.cameras.empty() || (scene.lights.empty() && !studio.never));
   const bool has_room = std::ranges::all_of(scene.soup.positions, [](const glm::dvec3& p) {
-    return std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) <= kLargestCoordinate;  // not NaN
+    return std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) <= kLargestCoordinate;  // false for NaN
   });
   if ((lacks || wishes) && has_room && !scene.soup.triangles.empty()) {
     std::optional<Scene> rest;

@@ -14,39 +14,39 @@
 
 namespace penumbra::scenes {
 
-/// The size of lamps that a glTF file gives none and the user neither: a light bulb's and the sun's, in the scene's
-/// unit and degrees.
+/// Default sizes of lamps in glTF files that specify none: those of a light bulb and the sun, in the scene's unit and
+/// in degrees.
 inline constexpr double kLampRadius = 0.1, kSunAngle = 0.53;
 
-/// Coordinates in a lightmap, for bakes: (0, 0) is its top left, (1, 1) its bottom right.
+/// Lightmap coordinates, for baking: (0, 0) is the lightmap's top left, (1, 1) its bottom right.
 struct LightmapPlaces {
-  std::uint32_t set = 0;           ///< glTF: which TEXCOORD_N is read; elsewhere there is one
-  std::vector<glm::dvec2> places;  ///< of each position of the soup; kNoPlace: it has none
+  std::uint32_t set = 0;           ///< glTF: the N of the TEXCOORD_N to read; other formats have one set
+  std::vector<glm::dvec2> places;  ///< for each position of the soup; kNoPlace: it has none
 };
 using mesh::kNoPlace;
 
 struct ReadOptions {
-  bool allow_outside = false;  ///< may the scene name files outside its folder?
-  bool needs_light = true;     ///< has a scene without a light a studio put around it (JSON: is it an error)?
-  std::optional<double> lamp_radius = {};  ///< glTF: of point and spot lamps whose file says none; above 0
-  std::optional<double> sun_angle = {};    ///< glTF: of sun lamps whose file says none, degrees; 0 ≤ angle < 180
-  /// glTF: by what lamps' intensities are divided; above 0. Nothing: 683 in files of Blender's exporter (before 3.4.36:
-  /// 4π, of suns 1), else 1.
+  bool allow_outside = false;              ///< allows files outside the scene's folder
+  bool needs_light = true;                 ///< puts a studio around a scene without a light (JSON: makes that an error)
+  std::optional<double> lamp_radius = {};  ///< glTF: radius of point and spot lamps whose file specifies none; above 0
+  std::optional<double> sun_angle = {};  ///< glTF: angle of sun lamps whose file specifies none, degrees; 0 ≤ angle <
+                                         ///< 180
+  /// glTF: divisor of lamps' intensities; above 0. Default: 683 for files of Blender's exporter (before 3.4.36: 4π, for
+  /// suns 1), else 1.
   std::optional<double> lumens_per_watt = {};
-  bool lenient = false;             ///< glTF: leave out what cannot be done and would change shadows, with a warning
-  std::optional<double> time = {};  ///< glTF: when, in seconds, its animations are looked at; nothing: at rest
-  /// glTF: the animations that are played, by name or number from 0; empty: all that can be played at once.
+  bool lenient = false;             ///< glTF: leaves out unsupported features that would change shadows, with a warning
+  std::optional<double> time = {};  ///< glTF: time of the animations, in seconds; nullopt: at rest
+  /// glTF: the animations that are played, by name or index from 0; empty: all that can be played together.
   std::vector<std::string> clips = {};
-  StudioWish studio = {};  ///< of scenes that need a light
-  /// Gets the coordinates that glTF files, OBJ files and quads of JSON have in a lightmap; none: they are not read.
+  StudioWish studio = {};  ///< studio for scenes that need a light
+  /// Receives the lightmap coordinates of glTF files, OBJ files and quads of JSON; null: they are not read.
   LightmapPlaces* lightmap = nullptr;
 };
 
-/// Reads .json (penumbra-scene/1), .gltf or .glb by the file's extension; any other file as a mesh. Where a mesh or a
-/// glTF scene has no light (and `needs_light` is on), a studio is put around it, with a warning. What comes back is
-/// complete: at least one object, light (unless `needs_light` is off) and camera, every number finite, every index in
-/// range. Otherwise InputError: the file, the place in it (JSON pointer or line), what is there and what would be
-/// right.
+/// Reads .json (penumbra-scene/1), .gltf or .glb by the file's extension; any other file as a mesh. If a mesh or a glTF
+/// scene has no light (and `needs_light` is on), a studio is put around it, with a warning. The result is complete: at
+/// least one object, light (unless `needs_light` is off) and camera, every number finite, every index in range.
+/// Otherwise throws InputError: the file, the place in it (JSON pointer or line), the value found and the expected one.
 Scene read_scene(const std::filesystem::path& file, const ReadOptions& options = {});
 
 }  // namespace penumbra::scenes

@@ -30,7 +30,7 @@ std::vector<ObjectRange> object_ranges(const mesh::TriangleSoup& soup) {
 }
 
 void append_number(fmt::memory_buffer& text, double value) {
-  if (value == 0 && std::signbit(value)) {  // "-0" is an integer to JSON readers, which have no negative zero
+  if (value == 0 && std::signbit(value)) {  // "-0" would be an integer to JSON readers, which have no negative zero
     text.append(std::string_view("-0.0"));
   } else {
     fmt::format_to(std::back_inserter(text), "{}", value);
@@ -60,7 +60,7 @@ void TextStream::flush() {
   buffer_.clear();
 }
 
-/// Is there a value beside `plain` in this list of vertices' looks, by objects?
+/// Returns for each object whether one of its vertices has a value other than `plain` in `looks`.
 template <typename Vector>
 std::vector<bool> objects_with(const Scene& scene, const std::vector<Vector>& looks, const Vector& plain) {
   std::vector<bool> with(scene.objects.size());
@@ -72,7 +72,7 @@ std::vector<bool> objects_with(const Scene& scene, const std::vector<Vector>& lo
   return with;
 }
 
-/// What a format without surfaces has no place for.
+/// Reports appearances that a format without surfaces cannot store.
 void lose_looks(const Scene& scene, const std::string& extension, Losses& losses) {
   const std::vector<bool> colored = objects_with(scene, scene.looks.colors, glm::vec4(1));
   const std::vector<bool> smooth = objects_with(scene, scene.looks.normals, glm::vec3(0));
@@ -100,10 +100,10 @@ std::vector<std::string> write_scene(const Scene& scene, const std::filesystem::
   Losses losses;
   Notes notes;
   if (extension != ".glb") lose_looks(scene, extension, losses);
-  if (!options.lenient) losses.throw_refused("writes");  // before much is written
+  if (!options.lenient) losses.throw_refused("writes");  // checked before much is written
   write(scene, output, losses, notes);
   if (!options.lenient) losses.throw_refused("writes");
-  // The scene comes last: where it is, what it names is.
+  // The scene is written last: once it exists, the files that it refers to exist.
   for (std::size_t i = 0; extension == ".json" && i < scene.lights.size(); ++i) {
     if (scene.lights[i].texture) write_texture(*scene.lights[i].texture, texture_file(file, i));
   }

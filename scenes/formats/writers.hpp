@@ -14,17 +14,18 @@
 #include <utility>
 #include <vector>
 
-/// What the writers of the three formats share. Internal to scenes/.
+/// Shared by the writers of the three formats. Internal to scenes/.
 namespace penumbra::scenes {
 
 using Notes = std::vector<std::string>;
 
-/// What each format cannot hold: of objects and lights as losses, of all else in words.
+/// Write a scene. Parts that the format cannot hold are added to `losses` for objects and lights, to `notes` otherwise.
 void write_json(const Scene& scene, AtomicFile& file, Losses& losses, Notes& notes);
 void write_glb(const Scene& scene, AtomicFile& file, Losses& losses, Notes& notes);
 void write_obj(const Scene& scene, AtomicFile& file, Losses& losses, Notes& notes);
 
-/// Where write_scene puts the texture of a light of the scene in `file`: "room.json" → "room-light0.exr".
+/// Returns the path that write_scene gives the texture of a light of the scene in `file`: "room.json" →
+/// "room-light0.exr".
 std::filesystem::path texture_file(const std::filesystem::path& file, std::size_t light);
 
 /// Triangles first … first + count − 1 of the soup belong to `object`.
@@ -33,13 +34,15 @@ struct ObjectRange {
   std::size_t first = 0, count = 0;
 };
 
-/// The objects' runs of triangles, in the soup's order. An object whose triangles do not stand together has several.
+/// Returns the objects' runs of triangles, in the soup's order. An object whose triangles are not contiguous has
+/// several.
 std::vector<ObjectRange> object_ranges(const mesh::TriangleSoup& soup);
 
-/// The shortest digits that read back as the same double, in a form that JSON readers keep a double ("-0.0").
+/// Appends the shortest digits that read back as the same double, in a form that JSON readers keep as a double
+/// ("-0.0").
 void append_number(fmt::memory_buffer& text, double value);
 
-/// Collects text and hands it to the file in large pieces, so that a big scene is never in memory twice.
+/// Collects text and passes it to the file in large pieces, so that a big scene is never in memory twice.
 class TextStream {
  public:
   explicit TextStream(AtomicFile& file) : file_(file) {}
@@ -52,7 +55,7 @@ class TextStream {
   }
   TextStream& number(double value);
   TextStream& numbers(const glm::dvec3& v, std::string_view separator);
-  /// "[x, y, z]"
+  /// Writes "[x, y, z]".
   TextStream& array(const glm::dvec3& v);
   void flush();
 

@@ -13,7 +13,7 @@
 #include <string>
 #include <variant>
 
-/// What rectangles and ellipses have in common: a centre and two half sides, or conjugate half diameters. Internal to
+/// Common parts of rectangles and ellipses: a centre and two half sides, or conjugate half diameters. Internal to
 /// scenes/.
 namespace penumbra::scenes {
 
@@ -44,12 +44,12 @@ void check_halves(const LightShape& shape, const std::string& where) {
   }
 }
 
-/// What it means that the halves are not at right angles, if they are not.
+/// Returns a hint with `meaning` if the halves are not at right angles, else an empty text.
 template <typename Halved>
 std::string hint_of_halves(const LightShape& shape, const char* meaning) {
   const auto& halved = std::get<Halved>(shape);
   const double cosine = glm::dot(glm::normalize(halved.half_u), glm::normalize(halved.half_v));
-  // Only a hint: what decimals leave of a right angle is no reason for one.
+  // The threshold avoids a hint for right angles that are inexact only because of rounded decimals.
   return std::abs(cosine) > 1e-3 ? fmt::format("halfU and halfV are not at right angles; {}", meaning) : "";
 }
 

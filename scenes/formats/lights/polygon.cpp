@@ -15,7 +15,7 @@
 namespace penumbra::scenes {
 
 glm::dvec3 polygon_normal(const Polygon& polygon) {
-  // Relative to the first vertex, so that a small polygon far from the origin keeps its digits.
+  // Computed relative to the first vertex, so that a small polygon far from the origin keeps its precision.
   const std::vector<glm::dvec3>& vertices = polygon.vertices;
   glm::dvec3 sum(0);
   for (std::size_t i = 1; i + 1 < vertices.size(); ++i) {
@@ -58,11 +58,11 @@ void check_polygon(const LightShape& shape, const std::string& where) {
     perimeter += glm::distance(vertices[i], next);
     centroid += vertices[i] / static_cast<double>(count);
   }
-  // Vertices of a flat polygon that was turned and stored in single precision stray by this much; what strays
-  // further was not meant flat.
+  // Vertices of a flat polygon that was rotated and stored in single precision deviate by this much; larger deviations
+  // are not rounding.
   const double tolerance = 16 * 0x1p-24 * magnitude;
   const glm::dvec3 normal = polygon_normal(polygon);
-  double width = 0;  // across the longest direction, roughly: twice the area by the perimeter
+  double width = 0;  // approximate width across the longest direction: twice the area over the perimeter
   for (std::size_t i = 0; i < count; ++i) {
     width += glm::dot(normal, glm::cross(vertices[i] - centroid, vertices[(i + 1) % count] - centroid)) / perimeter;
   }

@@ -50,7 +50,7 @@ void check_sphere(const LightShape& shape, const std::string& where) {
   }
 }
 
-/// A point or spot lamp: what its radius' disk sends along its axis.
+/// Returns a point or spot lamp with the intensity that a disk of the sphere's radius has along its axis.
 GltfLamp sphere_lamp(const LightShape& shape) {
   const auto& [center, radius, cone] = std::get<Sphere>(shape);
   return {.type = cone ? "spot" : "point",
