@@ -29,7 +29,7 @@ void Bindings::bind(Commands::State& commands, vk::PipelineBindPoint point, std:
                            vk::DescriptorPoolSize(vk::DescriptorType::eUniformTexelBuffer, count)};
     commands.pools.emplace_back(d, vk::DescriptorPoolCreateInfo({}, 1, sizes));
     const vk::DescriptorSetAllocateInfo info(*commands.pools.back(), *set_layout_);
-    // The set goes with its pool; it is not freed by itself.
+    // The set is freed with its pool, not by itself.
     const vk::DescriptorSet set = (*d).allocateDescriptorSets(info, *d.getDispatcher()).front();
     std::vector<vk::DescriptorBufferInfo> infos;
     std::vector<vk::BufferView> views;

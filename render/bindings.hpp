@@ -9,14 +9,14 @@
 
 namespace penumbra::render {
 
-/// The descriptor set and push constants of one pipeline, as its shaders declare them. Whatever is bound is checked
-/// against that.
+/// The descriptor set and push constants of one pipeline, as its shaders declare them. All bound objects are checked
+/// against the declaration.
 class Bindings {
  public:
   Bindings() = default;
   Bindings(Device::State& device, std::string name, const ShaderInterface& shader, vk::ShaderStageFlags stages);
 
-  /// Binds buffers (in binding order) and push constants for what is recorded next.
+  /// Binds buffers (in binding order) and push constants for the commands recorded next.
   void bind(Commands::State& commands, vk::PipelineBindPoint point, std::span<const std::byte> push,
             BufferList buffers) const;
   [[nodiscard]] vk::PipelineLayout layout() const { return *layout_; }
@@ -30,7 +30,7 @@ class Bindings {
   vk::raii::PipelineLayout layout_{nullptr};
 };
 
-/// Constants 0, 1, 2 … as Vulkan wants them; `values` must outlive it.
+/// Specialization constants 0, 1, 2 … in Vulkan's form; `values` must outlive this object.
 class SpecializationConstants {
  public:
   explicit SpecializationConstants(std::span<const std::uint32_t> values);

@@ -1,6 +1,6 @@
 // For shaders of both rasterisers: Vulkan's, as SPIR-V, and OpenGL's, as text (PENUMBRA_OPENGL). Structs of push
-// constants have the same layout as scalar block and as std140: no vec3 but at multiples of 16 bytes, and whole 16 bytes
-// before a member follows a struct.
+// constants must have the same layout in scalar and in std140: no vec3 except at multiples of 16 bytes, and padding to
+// whole 16 bytes before a member that follows a struct.
 #ifndef PENUMBRA_BOTH
 #define PENUMBRA_BOTH
 #ifdef PENUMBRA_OPENGL

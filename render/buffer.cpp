@@ -25,7 +25,7 @@ vk::raii::Buffer make_vk_buffer(const Device::State& device, std::uint64_t bytes
   return {device.device, vk::BufferCreateInfo({}, bytes, usage, vk::SharingMode::eExclusive)};
 }
 
-/// One copy in a command buffer of its own, waited for.
+/// Runs one copy in a command buffer of its own, and waits for its end.
 void copy_and_wait(Device::State& device, vk::Buffer from, vk::Buffer to, const vk::BufferCopy& region) {
   const vk::CommandBufferAllocateInfo info(*device.pool, vk::CommandBufferLevel::ePrimary, 1);
   const vk::raii::CommandBuffer commands = std::move(vk::raii::CommandBuffers(device.device, info).front());
@@ -54,7 +54,8 @@ Allocation allocate(Device::State& device, const vk::MemoryRequirements& needs, 
     type = find_type(device, needs.memoryTypeBits, host | Flag::eHostCached);
     if (!type) type = find_type(device, needs.memoryTypeBits, host);
   } else {
-    // Unified memory is both; a discrete card's small host-visible window is left to those who need it.
+    // Unified memory is both device-local and host-visible; a discrete card's small host-visible window is left to
+    // buffers that need it.
     const bool unified = device.info.kind == "cpu" || device.info.kind == "integrated";
     if (unified) type = find_type(device, needs.memoryTypeBits, Flag::eDeviceLocal | host);
     if (!type) type = find_type(device, needs.memoryTypeBits, Flag::eDeviceLocal);
@@ -90,7 +91,7 @@ Buffer::Buffer(const Device& device, std::string name, std::uint64_t bytes, Buff
     throw ResourceError("{}: {} are more than this device's storage buffers can hold ({})", s.name, human(bytes),
                         human(device.limits().max_storage_buffer_range));
   }
-  s.bytes = (bytes + 3) / 4 * 4;  // fills work on words
+  s.bytes = (bytes + 3) / 4 * 4;  // fills work on whole words
   using Usage = vk::BufferUsageFlagBits;
   vk::BufferUsageFlags usage = Usage::eStorageBuffer | Usage::eTransferSrc | Usage::eTransferDst |
                                Usage::eVertexBuffer | Usage::eIndexBuffer | Usage::eIndirectBuffer;
@@ -166,7 +167,7 @@ void Buffer::download(std::span<std::byte> data, std::uint64_t offset) const try
 bool grow(const Device& device, std::unique_ptr<Buffer>& buffer, const std::string& name, std::uint64_t bytes,
           BufferUse use) {
   if (buffer && buffer->bytes() >= bytes) return false;
-  buffer.reset();  // before the new one: the two need not fit together
+  buffer.reset();  // freed before the new one is allocated: both together may not fit
   buffer = std::make_unique<Buffer>(device, name, bytes, use);
   return true;
 }

@@ -11,17 +11,17 @@
 
 namespace penumbra::render {
 
-/// Where a buffer lives. `device`: fastest for shaders; upload and download go through a staging copy unless the memory
-/// is host-visible anyway (unified memory, processors).
+/// Memory kind of a buffer. `device`: fastest for shaders; upload and download use a staging copy unless the memory is
+/// host-visible (unified memory, processors).
 enum class BufferUse {
   storage,  ///< storage buffer, index and vertex buffer, transfer
-  texels,   ///< uniform texel buffer of RGBA32UI (16-byte elements) beside storage and transfer
+  texels,   ///< uniform texel buffer of RGBA32UI (16-byte elements), and storage and transfer
 };
 
 /// A range of device memory. Move-only. Its contents after construction are undefined.
 class Buffer {
  public:
-  /// Throws ResourceError when the device's limit (max_storage_buffer_range) or its memory does not suffice.
+  /// Throws ResourceError when `bytes` exceeds the device's limit (max_storage_buffer_range) or its free memory.
   Buffer(const Device& device, std::string name, std::uint64_t bytes, BufferUse use = BufferUse::storage);
   ~Buffer();
   Buffer(Buffer&&) noexcept;
@@ -30,8 +30,8 @@ class Buffer {
   [[nodiscard]] std::uint64_t bytes() const;
   [[nodiscard]] const std::string& name() const;
 
-  /// Copies and waits. `offset` in bytes.
-  /// (The object stays as it is; its memory is the device's, and passes write it, too.)
+  /// Copies and waits. `offset` in bytes. (const: the object is unchanged; its device memory is written by passes,
+  /// too.)
   void upload(std::span<const std::byte> data, std::uint64_t offset = 0) const;
   void download(std::span<std::byte> data, std::uint64_t offset = 0) const;
   template <typename T>
@@ -50,7 +50,7 @@ class Buffer {
   std::unique_ptr<State> state_;
 };
 
-/// A buffer with exactly these elements; at least one element large.
+/// Makes a buffer with exactly these elements, but at least one element large.
 template <typename T>
 Buffer make_buffer(const Device& device, std::string name, std::span<const T> values,
                    BufferUse use = BufferUse::storage) {
@@ -59,11 +59,11 @@ Buffer make_buffer(const Device& device, std::string name, std::span<const T> va
   return buffer;
 }
 
-/// Makes `buffer` at least `bytes` large (contents are lost when it grows); returns whether it grew.
+/// Makes `buffer` at least `bytes` large (content is lost when it grows); returns whether it grew.
 bool grow(const Device& device, std::unique_ptr<Buffer>& buffer, const std::string& name, std::uint64_t bytes,
           BufferUse use = BufferUse::storage);
 
-/// Buffers as passes take them: a list written down, or one made at run time.
+/// Buffers in the form that passes take: an initializer list, or a list made at run time.
 using BufferReference = std::reference_wrapper<const Buffer>;
 using BufferList = std::span<const BufferReference>;
 

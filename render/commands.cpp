@@ -11,9 +11,9 @@
 namespace penumbra::render {
 namespace {
 
-constexpr std::uint32_t kMaxPasses = 256;  // timestamped ones a recording; more run untimed
+constexpr std::uint32_t kMaxPasses = 256;  // timestamped passes in a recording; further ones run untimed
 
-/// Everything before is done and seen by everything after, the host included.
+/// All earlier commands finish before, and are visible to, all later ones and the host.
 void full_barrier(const vk::raii::CommandBuffer& commands) {
   const vk::MemoryBarrier2 barrier(
       vk::PipelineStageFlagBits2::eAllCommands, vk::AccessFlagBits2::eMemoryWrite,
@@ -30,8 +30,7 @@ Commands::Commands(const Device& device) : state_(std::make_unique<State>()) {
   const vk::CommandBufferAllocateInfo info(*s.device->pool, vk::CommandBufferLevel::ePrimary, 1);
   s.commands = std::move(vk::raii::CommandBuffers(s.device->device, info).front());
   s.fence = vk::raii::Fence(s.device->device, vk::FenceCreateInfo());
-  // A processor's driver runs passes when it likes and stamps them when it likes: there each pass is run and timed
-  // alone.
+  // A driver for processors runs and stamps passes at arbitrary times: there each pass is run and timed alone.
   s.host_timed = s.device->info.kind == "cpu";
   if (!s.host_timed && s.device->limits.timestamp_period > 0) {
     s.queries =
@@ -52,7 +51,7 @@ void Commands::State::begin_if_needed() {
 
 void Commands::State::open_pass(const std::string& name) {
   if (host_timed) {
-    if (recording) run();  // fills and copies before it are not this pass's time
+    if (recording) run();  // earlier fills and copies do not count as this pass's time
     host_times.push_back({name, 0});
     opened = std::chrono::steady_clock::now();
   }

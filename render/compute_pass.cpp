@@ -12,7 +12,7 @@
 namespace penumbra::render {
 
 struct ComputePipelines {
-  /// What a pipeline is made from.
+  /// Key of a pipeline in the device's cache.
   struct Key {
     std::string name;
     std::vector<std::uint32_t> constants;
@@ -50,7 +50,7 @@ ComputePipelines::One make_pipeline(const Device& device, const ComputePassOptio
   const auto properties =
       state.physical.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceVulkan13Properties>()
           .get<vk::PhysicalDeviceVulkan13Properties>();
-  // A device whose subgroup size varies is pinned to the one that Limits states; one whose size is fixed need not be.
+  // A device with a variable subgroup size is pinned to the size in Limits; a fixed size needs no pinning.
   const bool pin = options.full_subgroups && properties.minSubgroupSize != properties.maxSubgroupSize &&
                    (properties.requiredSubgroupSizeStages & vk::ShaderStageFlagBits::eCompute);
   const vk::PipelineShaderStageCreateInfo stage({}, vk::ShaderStageFlagBits::eCompute, *module, "main", constants.get(),
@@ -60,8 +60,8 @@ ComputePipelines::One make_pipeline(const Device& device, const ComputePassOptio
   return made;
 }
 
-/// The device's own, made if it has none. Drivers compile for a long time (on processors for tenths of a second), and a
-/// method is made again for every run of an error budget.
+/// Returns the device's cached pipeline, made if it does not exist. Drivers compile for a long time (on processors for
+/// tenths of a second), and a method is made again for every run of an error budget.
 const ComputePipelines::One& pipeline_of(const Device& device, const ComputePassOptions& options) {
   auto& kept = device.state().compute_pipelines;
   if (!kept) kept = {new ComputePipelines, [](ComputePipelines* all) { delete all; }};

@@ -12,7 +12,7 @@
 
 namespace penumbra::render {
 
-/// What a compute pass is made from.
+/// Options of a compute pass.
 struct ComputePassOptions {
   std::string name;  ///< labels timestamps, debug regions and errors
   std::span<const std::uint32_t> spirv;
@@ -22,8 +22,8 @@ struct ComputePassOptions {
 };
 
 /// A compute pipeline whose bindings (set 0, storage and uniform texel buffers, binding 0 … n−1) and push-constant size
-/// are read from its SPIR-V and checked when it is built and when it is recorded. Records only: no allocation, no wait.
-/// The device keeps its pipeline: another pass made from the same is made at once.
+/// are read from its SPIR-V and checked on construction and on recording. Recording allocates descriptors but does not
+/// wait. The device caches the pipeline: another pass from the same options is made immediately.
 class ComputePass {
  public:
   ComputePass(const Device& device, const ComputePassOptions& options);
@@ -39,7 +39,7 @@ class ComputePass {
       std::uint64_t groups) const {
     record(commands, std::as_bytes(std::span(&push, 1)), BufferList(buffers.begin(), buffers.size()), groups);
   }
-  /// For push constants and lists that are put together at run time.
+  /// Overload for push constants and lists that are assembled at run time.
   void record(Commands& commands, std::span<const std::byte> push, BufferList buffers, std::uint64_t groups) const;
 
  private:

@@ -62,8 +62,8 @@ vk::raii::Instance make_instance(const vk::raii::Context& context, bool validati
   return vk::raii::Instance(context, info);
 }
 
-/// Why the loader makes no instance, in its own words: its error code alone is "out of host memory" for a driver's
-/// description that is no JSON.
+/// Returns the reason why the loader makes no instance, from its own messages: its error code alone is "out of host
+/// memory" for a driver's description that is not JSON.
 ResourceError no_instance(const vk::raii::Context& context, const vk::SystemError& error) {
   ValidationLog log;
   using Severity = vk::DebugUtilsMessageSeverityFlagBitsEXT;
@@ -73,7 +73,7 @@ ResourceError no_instance(const vk::raii::Context& context, const vk::SystemErro
   const std::array extensions{VK_EXT_DEBUG_UTILS_EXTENSION_NAME};
   try {
     const vk::raii::Instance again(context, vk::InstanceCreateInfo({}, &application, {}, extensions, &listener));
-  } catch (const vk::SystemError&) {  // as before
+  } catch (const vk::SystemError&) {  // the validation log has the reason
   }
   return ResourceError(
       "no Vulkan: the loader makes no instance ({}); it says: {}; check VK_DRIVER_FILES and VK_ICD_FILENAMES, or "
@@ -100,7 +100,7 @@ std::vector<char> read_file(const std::filesystem::path& file) {
   return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
 }
 
-/// A cache that cannot be written is no error: the next start is a little slower.
+/// Failing to write the cache is not an error: the next start is slightly slower.
 void save_cache(const Device::State& state) try {
   if (state.cache_file.empty()) return;
   const auto data = state.cache.getData();
@@ -145,15 +145,16 @@ vk::raii::Device make_device(const vk::raii::PhysicalDevice& physical, std::uint
   return vk::raii::Device(physical, chain.get<vk::DeviceCreateInfo>());
 }
 
-/// What Mesa's driver for processors starts: a team that rasterises, a team that computes, one thread that takes work,
-/// one for its cache. It says nothing if it cannot, and then never does the work.
+/// Returns the number of threads that Mesa's driver for processors starts: a team that rasterises, a team that
+/// computes, one thread that accepts work, one for its cache. If it cannot start them, it reports nothing, and never
+/// does the work.
 unsigned driver_threads() {
   constexpr unsigned kLargestTeam = 16;
   return 2 * std::clamp(std::thread::hardware_concurrency(), 1U, kLargestTeam) + 2;
 }
 
-/// What that driver takes for its compiler and its threads' stacks before the first pass runs, with some to spare. It
-/// does not look whether it got them.
+/// Memory that this driver takes for its compiler and its threads' stacks before the first pass runs, with a reserve.
+/// The driver does not check that it got the memory.
 constexpr std::uint64_t kDriverBytes = std::uint64_t{256} << 20;
 
 }  // namespace
@@ -182,7 +183,7 @@ std::vector<DeviceInfo> list_devices() try {
 namespace {
 
 struct Opened {
-  std::unique_ptr<Device::State> state;  ///< with an instance, without a device
+  std::unique_ptr<Device::State> state;  ///< has an instance, but no device
   std::vector<vk::raii::PhysicalDevice> devices;
 };
 
@@ -217,7 +218,7 @@ std::unique_ptr<Device::State> open_device(Opened opened, DeviceInfo info) {
   s.timestamp_bits = s.physical.getQueueFamilyProperties()[s.queue_family].timestampValidBits;
   s.limits = read_limits(s.physical, s.timestamp_bits);
   s.memory = s.physical.getMemoryProperties();
-  longest_wait(s.info.kind == "cpu");  // wrong values are refused here, while nothing is at work
+  longest_wait(s.info.kind == "cpu");  // refuses invalid values here, before any work
   if (s.info.kind == "cpu") {
     require_threads(driver_threads(), "the device " + s.info.name);
     require_memory(kDriverBytes, "the device " + s.info.name, "raise the limit on memory (ulimit -v)");
@@ -233,7 +234,7 @@ std::unique_ptr<Device::State> open_device(Opened opened, DeviceInfo info) {
   return std::move(opened.state);
 }
 
-/// What `open` returns; what Vulkan throws becomes a ResourceError.
+/// Returns the result of `open`; converts exceptions of Vulkan to ResourceError.
 template <typename Open>
 auto opening(Open open) {
   try {
@@ -244,7 +245,7 @@ auto opening(Open open) {
     fail(error, "making the Vulkan device");
   } catch (const std::runtime_error& error) {
     if (dynamic_cast<const Error*>(&error) != nullptr) throw;
-    throw ResourceError("no Vulkan: {}", error.what());  // the loader's library is not there
+    throw ResourceError("no Vulkan: {}", error.what());  // the loader's library does not exist
   }
 }
 
@@ -273,7 +274,7 @@ std::optional<Device> Device::find_gpu(const DeviceOptions& options) {
     if (options.wanted.empty() && !has_usable(opened.devices)) return std::nullopt;
     DeviceInfo info = choose(opened.devices, options.wanted);
     if (info.kind == "cpu") return std::nullopt;
-    if (options.validation) return Device(options);  // in an instance with the layer
+    if (options.validation) return Device(options);  // uses an instance with the layer
     return Device(open_device(std::move(opened), std::move(info)));
   });
 }
@@ -281,7 +282,7 @@ std::optional<Device> Device::find_gpu(const DeviceOptions& options) {
 Device::~Device() {
   if (!state_) return;
   if (state_->abandoned) {
-    static_cast<void>(state_.release());  // destroying it would wait for ever
+    static_cast<void>(state_.release());  // leaked: destroying it would wait forever
     return;
   }
   save_cache(*state_);

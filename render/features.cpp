@@ -1,4 +1,4 @@
-// Which shaders run on which device: SPIR-V's capabilities, and the features of Vulkan that they need.
+// Device requirements of shaders: SPIR-V's capabilities, and the Vulkan features that they need.
 
 #include "render/features.hpp"
 
@@ -16,7 +16,7 @@
 namespace penumbra::render {
 namespace {
 
-/// One that a device has or lacks: `core` or `v12` says where Vulkan keeps it.
+/// A feature that not every device has: `core` or `v12` is Vulkan's member for it.
 struct Feature {
   SpvCapability needed_for;
   const char* name;
@@ -29,7 +29,7 @@ constexpr std::array kFeatures{
     Feature{SpvCapabilityInt64Atomics, "shaderBufferInt64Atomics", nullptr,
             &vk::PhysicalDeviceVulkan12Features::shaderBufferInt64Atomics}};
 
-/// Operations of subgroups in compute shaders.
+/// Subgroup operations in compute shaders.
 struct Operations {
   SpvCapability needed_for;
   const char* name;
@@ -41,14 +41,14 @@ constexpr std::array kOperations{
     Operations{SpvCapabilityGroupNonUniformBallot, "subgroup ballots", vk::SubgroupFeatureFlagBits::eBallot},
     Operations{SpvCapabilityGroupNonUniformShuffle, "subgroup shuffles", vk::SubgroupFeatureFlagBits::eShuffle}};
 
-/// The shaders with subgroups are written for these sizes.
+/// Sizes for which the shaders with subgroup operations are written.
 constexpr const char* kSizes = "subgroups of 4 to 64 lanes";
 constexpr std::uint32_t kSmallest = 4, kLargest = 64;
 
-/// Every Vulkan 1.3 device has what these need.
+/// Capabilities that every Vulkan 1.3 device supports.
 constexpr std::array kEverywhere{SpvCapabilityShader, SpvCapabilitySampledBuffer};
 
-/// The name of what a capability needs; null: every device has it.
+/// Returns the name of the feature that a capability needs; null if every device has it.
 const char* name_of(std::uint32_t capability) {
   if (std::ranges::find(kEverywhere, capability) != kEverywhere.end()) return nullptr;
   if (capability == SpvCapabilityGroupNonUniform) return kSizes;
@@ -63,7 +63,7 @@ const char* name_of(std::uint32_t capability) {
   return nullptr;
 }
 
-/// Those that a module declares: its first instructions.
+/// Returns the capabilities that a module declares, in its first instructions.
 std::vector<std::uint32_t> capabilities(std::span<const std::uint32_t> spirv) {
   constexpr std::size_t kHeader = 5;
   std::vector<std::uint32_t> found;

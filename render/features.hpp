@@ -9,17 +9,17 @@
 
 namespace penumbra::render {
 
-/// A pass needs what the device lacks (DeviceInfo::lacks). Other passes run there.
+/// Thrown if a pass needs a feature that the device lacks (DeviceInfo::lacks). Other passes run on the device.
 class LacksFeature : public ResourceError {
  public:
   using ResourceError::ResourceError;
 };
 
-/// What the shader needs and the device lacks, by Vulkan's names. Empty: it runs there. Read from its SPIR-V, which
-/// names each capability that it uses.
+/// Returns the features that the shader needs and the device lacks, by Vulkan's names; empty if the shader runs. Read
+/// from the SPIR-V, which declares each capability that it uses.
 std::vector<std::string> missing_for(const DeviceInfo& device, std::span<const std::uint32_t> spirv);
 
-/// Throws LacksFeature, which names the pass, if something is missing for one of its shaders.
+/// Throws LacksFeature, with the pass's name, if the device lacks a feature that the shader needs.
 void require_features(const DeviceInfo& device, std::span<const std::uint32_t> spirv, const std::string& pass);
 
 }  // namespace penumbra::render

@@ -13,7 +13,7 @@
 namespace penumbra::render {
 
 struct Machine::State {
-  /// Waits for what begin() began; throws what went wrong there. Under the mutex.
+  /// Waits for the work that begin() started, and rethrows its exception. Call with the mutex held.
   void finish() {
     if (making.valid()) making.get();
   }
@@ -33,8 +33,8 @@ struct Machine::State {
   DeviceOptions options;
   std::mutex mutex;
   std::optional<Device> own;
-  const Device* device = nullptr;  ///< `own`, or somebody else's
-  bool looked = false;             ///< for a GPU
+  const Device* device = nullptr;  ///< `own`, or a device of the caller
+  bool looked = false;             ///< a GPU was looked for
   std::future<void> making;        ///< works on the members above; destroyed first, which waits for its end
 };
 
@@ -53,7 +53,7 @@ void Machine::begin(bool needs_device) const {
   try {
     state.making = std::async(std::launch::async,
                               [&state, needs_device] { needs_device ? state.make_device() : state.look_for_gpu(); });
-  } catch (const std::system_error&) {  // no thread can be had: made when asked for
+  } catch (const std::system_error&) {  // without a thread, the device is made on first use
   }
 }
 

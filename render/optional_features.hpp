@@ -8,14 +8,14 @@
 
 namespace penumbra::render {
 
-/// Features that some shaders use and not every device has. Of the first, all that there are get switched on.
+/// Features that some shaders use and that not every device has. All available ones in `core` are enabled.
 struct OptionalFeatures {
   vk::PhysicalDeviceFeatures core;
   vk::PhysicalDeviceVulkan12Features v12;
 };
 OptionalFeatures optional_features(const vk::raii::PhysicalDevice& physical);
 
-/// Of a Vulkan 1.3 device: the names of those that it lacks, operations of subgroups among them.
+/// Returns the names of the features that a Vulkan 1.3 device lacks, subgroup operations included.
 std::vector<std::string> lacking(const vk::raii::PhysicalDevice& physical);
 
 }  // namespace penumbra::render

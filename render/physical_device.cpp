@@ -33,7 +33,7 @@ std::string version_text(std::uint32_t version) {
                      VK_API_VERSION_PATCH(version));
 }
 
-/// Each feature that all of Penumbra needs: how it is read from the device, and what it is for.
+/// Each feature that all of Penumbra needs: its member in Vulkan, and its purpose.
 std::vector<std::string> missing_features(const vk::raii::PhysicalDevice& physical) {
   const auto chain = physical.getFeatures2<vk::PhysicalDeviceFeatures2, vk::PhysicalDeviceVulkan11Features,
                                            vk::PhysicalDeviceVulkan12Features, vk::PhysicalDeviceVulkan13Features>();
@@ -75,7 +75,7 @@ int preference(const DeviceInfo& info) {
   return info.kind == "cpu" ? 3 : 4;
 }
 
-/// Of one kind, one that lacks less is better.
+/// Among devices of one kind, one that lacks fewer features comes first.
 bool comes_before(const DeviceInfo& a, const DeviceInfo& b) {
   return std::pair(preference(a), a.lacks.size()) < std::pair(preference(b), b.lacks.size());
 }
@@ -87,7 +87,7 @@ std::vector<vk::raii::PhysicalDevice> physical_devices(const vk::raii::Instance&
     vk::raii::PhysicalDevices devices(instance);
     return {std::make_move_iterator(devices.begin()), std::make_move_iterator(devices.end())};
   } catch (const vk::SystemError&) {
-    return {};  // a loader without a driver that works
+    return {};  // a loader without a working driver
   }
 }
 
@@ -122,7 +122,7 @@ DeviceInfo describe(const vk::raii::PhysicalDevice& physical, std::uint32_t inde
   }
   if (core.apiVersion < VK_API_VERSION_1_3) {
     info.refusals.push_back(fmt::format("Vulkan {} is older than 1.3", info.api_version));
-    return info;  // the feature structs below are 1.3's
+    return info;  // the feature structs below belong to Vulkan 1.3
   }
   info.refusals = missing_features(physical);
   info.lacks = lacking(physical);

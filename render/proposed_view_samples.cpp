@@ -16,7 +16,8 @@
 namespace penumbra::render {
 namespace {
 
-/// What a pixel has so far: the smallest t, of those the smallest rank, and of those the first triangle that has it.
+/// Best candidate of a pixel: the smallest t, among equal t the smallest rank, and for each rank the first triangle
+/// that has it.
 struct Winner {
   double t = std::numeric_limits<double>::infinity();
   std::uint32_t rank = std::numeric_limits<std::uint32_t>::max();
@@ -27,7 +28,7 @@ struct Winner {
   }
 };
 
-/// Rows of a picture, and triangles that are proposed for them.
+/// Rows of a picture, and the triangles proposed for them.
 struct Band {
   std::uint32_t first_row, rows, first_triangle, triangles;
 };
@@ -58,7 +59,8 @@ class Proposals {
                         .triangle_strip = true}),
         push_(context, "view sample camera", sizeof(gpu::VisibilityBufferPush)) {}
 
-  /// Pairs of pixel (of the band) and triangle (of the band). The list grows; nothing if it cannot grow enough.
+  /// Finds pairs of pixel (in the band) and triangle (in the band). The list grows; returns false if it cannot grow
+  /// enough.
   bool find(const visibility::PinholeCamera& camera, const opengl::Buffer& corners, const Band& band,
             std::vector<std::uint32_t>& pairs) {
     const gpu::VisibilityBufferPush push = push_of(camera, band);

@@ -58,7 +58,7 @@ std::uint32_t DepthTarget::height() const {
 
 namespace {
 
-/// From one layout to another, everything before done and seen.
+/// Changes an image's layout with a full barrier: earlier commands finish before, and are visible to, later ones.
 void change_layout(Commands::State& commands, vk::Image image, vk::ImageLayout from, vk::ImageLayout to) {
   const vk::ImageMemoryBarrier2 barrier(vk::PipelineStageFlagBits2::eAllCommands, vk::AccessFlagBits2::eMemoryWrite,
                                         vk::PipelineStageFlagBits2::eAllCommands,
@@ -97,7 +97,7 @@ struct RasterPass::State {
   Device::State* device = nullptr;
   std::string name;
   bool depth = false;
-  float cleared = 1;  // what the depth is before the first draw
+  float cleared = 1;  // depth before the first draw
   Bindings bindings;
   vk::raii::Pipeline pipeline{nullptr};
 };

@@ -32,10 +32,10 @@ class DepthTarget {
   std::unique_ptr<State> state_;
 };
 
-/// Which fragments a depth test keeps, compared with the depth that is there.
+/// Fragments that a depth test keeps, by comparison with the stored depth.
 enum class DepthCompare : std::uint8_t { less, greater };
 
-/// Which triangles are left out, by the side that they show: front is counter-clockwise on the screen, y down.
+/// Triangles that are culled, by their visible side: front is counter-clockwise on the screen, y down.
 enum class Cull : std::uint8_t { none, front, back };
 
 struct RasterPassOptions {
@@ -44,7 +44,7 @@ struct RasterPassOptions {
   std::span<const std::uint32_t> fragment;  ///< may be empty: depth only
   std::uint32_t push_bytes = 0;             ///< sizeof the push-constant struct; checked against the shaders
   std::vector<std::uint32_t> constants{};   ///< specialization constants 0, 1, 2 … of both stages
-  bool triangle_strip = false;              ///< else a list
+  bool triangle_strip = false;              ///< else a triangle list
   bool depth = false;                       ///< tests and writes a DepthTarget
   DepthCompare compare = DepthCompare::less;
   Cull cull = Cull::none;
@@ -62,17 +62,17 @@ class RasterPass {
   struct Draw {
     std::uint32_t width = 0, height = 0;  ///< of the viewport, which starts at (0, 0)
     std::uint32_t vertices = 0, instances = 1;
-    const DepthTarget* depth = nullptr;  ///< exactly when the pass has depth
-    bool clear = true;                   ///< depth to 1 before, or to 0 where greater depths are kept
+    const DepthTarget* depth = nullptr;  ///< non-null exactly if the pass has depth
+    bool clear = true;                   ///< sets depth to 1 before, or to 0 if greater depths are kept
   };
 
-  /// Buffers in binding order.
+  /// Records a draw. Buffers in binding order.
   template <typename Push>
   requires(std::is_trivially_copyable_v<Push> && !std::is_same_v<Push, std::span<const std::byte>>) void record(
       Commands& commands, const Push& push, std::initializer_list<BufferReference> buffers, const Draw& draw) const {
     record(commands, std::as_bytes(std::span(&push, 1)), BufferList(buffers.begin(), buffers.size()), draw);
   }
-  /// For push constants and lists that are put together at run time.
+  /// Overload for push constants and lists that are assembled at run time.
   void record(Commands& commands, std::span<const std::byte> push, BufferList buffers, const Draw& draw) const;
 
  private:

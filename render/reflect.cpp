@@ -6,7 +6,7 @@
 namespace penumbra::render {
 namespace {
 
-/// Owns everything that SPIRV-Cross hands out while one shader is read.
+/// Owns all objects of SPIRV-Cross while one shader is read.
 class CrossContext {
  public:
   CrossContext() { check(spvc_context_create(&context_)); }

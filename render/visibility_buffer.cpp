@@ -54,7 +54,7 @@ std::vector<Batch> upload(const Device& device, const visibility::SceneFloats& s
   return batches;
 }
 
-/// For each rank the first triangle that has it.
+/// Returns for each rank the first triangle that has it.
 std::vector<std::int32_t> triangles_by_rank(std::span<const std::uint32_t> ranks) {
   std::vector<std::int32_t> by_rank(ranks.size(), visibility::ViewSamples::kBackground);
   for (std::size_t i = ranks.size(); i-- > 0;) by_rank[ranks[i]] = static_cast<std::int32_t>(i);

@@ -7,7 +7,7 @@
 #include "render/visibility_buffer.shared.h"
 
 // Decides coverage and order in double: GLSL twin of visibility::cover. Two passes over the same proposals: the first
-// keeps the smallest t of each pixel, the second among those at exactly that t the smallest rank.
+// keeps the smallest t of each pixel, the second, among proposals with exactly that t, the smallest rank.
 
 layout(constant_id = 0) const uint kSecondPass = 0;
 
@@ -19,7 +19,7 @@ layout(scalar, push_constant) uniform Push { VisibilityBufferPush camera; };
 
 layout(location = 0) flat in uint triangle;
 
-// `precise` throughout: two triangles must compute the same sign for the edge that they share.
+// `precise` throughout: two triangles must compute the same sign for their common edge.
 double cross_dot(dvec3 d, dvec3 a, dvec3 b) {
   precise const double x = a.y * b.z - a.z * b.y;
   precise const double y = a.z * b.x - a.x * b.z;
@@ -33,7 +33,7 @@ void main() {
   precise const double ndc_x = 2.0 * (double(pixel.x) + 0.5) / double(camera.width) - 1.0;
   precise const double ndc_y = 1.0 - 2.0 * (double(pixel.y) + 0.5) / double(camera.height);
   precise const double aspect = double(camera.width) / double(camera.height);
-  // The same operations in the same order as PinholeCamera::direction: a ray through an edge must hit it here and there.
+  // Same operations in the same order as PinholeCamera::direction: both must agree for a ray through an edge.
   precise const double across = ndc_x * aspect;
   precise const dvec3 offset = across * camera.right + ndc_y * camera.up;
   precise const dvec3 direction = camera.middle + offset * camera.tan_half_fov;
@@ -43,8 +43,9 @@ void main() {
   precise const dvec3 c = dvec3(corners[3 * triangle + 2]) - camera.eye;
   const double ab = cross_dot(direction, a, b), bc = cross_dot(direction, b, c), ac = cross_dot(direction, a, c);
   const bool one_way = ab >= 0.0 && bc >= 0.0 && ac <= 0.0, other_way = ab <= 0.0 && bc <= 0.0 && ac >= 0.0;
-  if (one_way == other_way) return;  // neither; or all zero: edge-on or without area
-  // Edges from the corners themselves, as visibility::cover takes them: relative to the eye they would be rounded.
+  if (one_way == other_way) return;  // neither orientation; or all zero: edge-on or without area
+  // Edges are differences of the corners themselves, as in visibility::cover: relative to the eye they would be
+  // rounded.
   precise const dvec3 corner = dvec3(corners[3 * triangle]);
   precise const dvec3 u = dvec3(corners[3 * triangle + 1]) - corner, v = dvec3(corners[3 * triangle + 2]) - corner;
   const double toward = cross_dot(direction, u, v);

@@ -15,9 +15,9 @@ namespace penumbra::render {
 /// the smallest rank (visibility::ranks). Bit-identical to visibility::brute_force_view_samples.
 class VisibilityBuffer {
  public:
-  /// Whether the device has what its passes need: double precision, and atomics of 64-bit integers.
+  /// Returns whether the device has the features of its passes: double precision, and atomics of 64-bit integers.
   static bool runs_on(const DeviceInfo& device);
-  /// Throws LacksFeature if it does not run there.
+  /// Throws LacksFeature if its passes do not run on the device.
   VisibilityBuffer(const Device& device, const visibility::SceneFloats& scene);
   ~VisibilityBuffer();
   VisibilityBuffer(VisibilityBuffer&&) noexcept;

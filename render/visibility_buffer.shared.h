@@ -1,4 +1,5 @@
-// One struct, two languages: the camera of the visibility buffer, in double, relative to the scene's origin.
+// Push constants shared by C++ and GLSL: the camera of the visibility buffer, in double, relative to the scene's
+// origin.
 #ifdef __cplusplus
 #pragma once
 #include <cstdint>
@@ -13,10 +14,10 @@ struct VisibilityBufferPush {
   DOUBLE3(eye);
   DOUBLE3(right);
   DOUBLE3(up);
-  DOUBLE3(middle);  // not forward: a shifted lens looks elsewhere
+  DOUBLE3(middle);  // not forward: a shifted lens points elsewhere
   double tan_half_fov;
-  uint width, height;         // of the whole picture
-  uint first_row, row_count;  // the band that the buffers hold
+  uint width, height;         // size of the whole picture
+  uint first_row, row_count;  // the band in the buffers
 };
 
 #ifdef __cplusplus

@@ -5,11 +5,11 @@
 #include "render/both.glsl"
 #include "render/visibility_buffer.shared.h"
 
-// Proposes pixels for one triangle (an instance): its box on the screen, a pixel larger on every side, as a strip of four
-// vertices. Conservative without conservative rasterisation; the fragment shader decides.
+// Proposes pixels for one triangle (an instance): its box on the screen, enlarged by a pixel on every side, as a strip
+// of four vertices. Conservative without conservative rasterisation; the fragment shader decides.
 
 #ifdef PENUMBRA_OPENGL
-// The struct as C++ lays it out: OpenGL would give a dvec3 the room of four.
+// The struct in C++'s layout: OpenGL would give a dvec3 the space of four doubles.
 STORAGE(1) readonly buffer Push {
   double numbers[13];
   uint counts[4];
@@ -28,7 +28,7 @@ void main() {
   triangle = INSTANCE;
   const dvec2 size = dvec2(camera.width, camera.height);
   const double tan_x = camera.tan_half_fov * size.x / size.y;
-  // Up to rounding, which the pixel to spare has room for.
+  // Exact up to rounding, which the extra pixel covers.
   const dvec3 forward = cross(camera.up, camera.right);
   const dvec2 middle = dvec2(dot(camera.middle, camera.right), dot(camera.middle, camera.up));
   dvec2 lower = size, upper = dvec2(0.0);

@@ -2,16 +2,16 @@
 #extension GL_GOOGLE_include_directive : require
 #include "render/both.glsl"
 
-// OpenGL alone: which pixels the rasteriser proposes for which triangle, for the host to decide (visibility::cover). In
-// any order: the host takes a minimum of them.
+// OpenGL only: lists the pixels that the rasteriser proposes for each triangle, for the host to decide
+// (visibility::cover). In any order: the host takes a minimum over them.
 
 STORAGE(1) readonly buffer Push {
   double numbers[13];
   uint counts[4];  // width, height, first row, rows
 };
 STORAGE(2) buffer Proposals {
-  uint count;    // also of those that found no room
-  uint found[];  // pixel of the band and triangle, by turns
+  uint count;    // also counts those that found no space
+  uint found[];  // pixel of the band and triangle, alternating
 };
 
 layout(location = 0) flat in uint triangle;

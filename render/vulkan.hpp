@@ -1,5 +1,5 @@
 #pragma once
-// Inside render/ only: the one place that sees vulkan_raii.hpp whole.
+// Inside render/ only: the one header that includes all of vulkan_raii.hpp.
 
 #include "render/buffer.hpp"
 #include "render/commands.hpp"
@@ -19,13 +19,13 @@
 
 namespace penumbra::render {
 
-/// Collects what the validation layer says; the callback may come from any thread.
+/// Collects the validation layer's messages; the callback may come from any thread.
 struct ValidationLog {
   std::mutex mutex;
   std::vector<std::string> messages;
 };
 
-/// The compute pipelines that a device made and keeps (compute_pass.cpp).
+/// The compute pipelines that a device has made and caches (compute_pass.cpp).
 struct ComputePipelines;
 
 struct Device::State {
@@ -39,15 +39,15 @@ struct Device::State {
   vk::raii::Queue queue{nullptr};
   vk::raii::CommandPool pool{nullptr};
   vk::raii::PipelineCache cache{nullptr};
-  std::filesystem::path cache_file;  // empty: no folder to keep it in
-  std::vector<char> cache_on_disk;   // what cache_file held when the device was made
+  std::filesystem::path cache_file;  // empty: there is no folder for it
+  std::vector<char> cache_on_disk;   // content of cache_file when the device was made
   vk::PhysicalDeviceMemoryProperties memory;
   std::uint32_t timestamp_bits = 0;
   DeviceInfo info;
   Limits limits;
   std::uint64_t allocated = 0, peak = 0;
   bool debug_names = false;
-  bool only_checks = false;  // DeviceOptions
+  bool only_checks = false;  // as in DeviceOptions
   bool abandoned = false;    // see abandon()
   std::unique_ptr<opengl::Context> opengl;
   std::unique_ptr<ComputePipelines, void (*)(ComputePipelines*)> compute_pipelines{nullptr, nullptr};
@@ -60,19 +60,19 @@ struct Device::State {
   void name(const Handle& handle, const std::string& text) const;
 };
 
-/// The longest that one submission may take: PENUMBRA_DEVICE_TIMEOUT in seconds, else a day on processors, an hour
-/// elsewhere. UsageError for a value that is no number of seconds.
+/// Returns the time limit of one submission: PENUMBRA_DEVICE_TIMEOUT in seconds, else a day on processors, an hour
+/// elsewhere. Throws UsageError for a value that is not a number of seconds.
 std::chrono::seconds longest_wait(bool is_processor);
 
-/// Waits until the device has done what the fence was submitted with; `what` says what that is. Throws
-/// DeviceDoesNotAnswer when it can be told that this will not be, or after too long (PENUMBRA_DEVICE_TIMEOUT).
+/// Waits until the device has finished the work submitted with the fence; `what` names the work in messages. Throws
+/// DeviceDoesNotAnswer when the work is known to never finish, or exceeds the limit (PENUMBRA_DEVICE_TIMEOUT).
 void wait_for(Device::State& device, const vk::raii::Fence& fence, const std::string& what);
 
-/// From now on nothing of the device is destroyed, by whichever destructor: it may still be in use, and destroying a
-/// device waits for its work.
+/// Disables the destruction of all objects of the device, in whichever destructor: they may still be in use, and
+/// destroying a device waits for its work.
 void abandon(Device::State& device);
 
-/// Memory of its own for one buffer or image: tens of resources, so dedicated allocations do.
+/// Dedicated memory of one buffer or image: there are only tens of resources.
 struct Allocation {
   vk::raii::DeviceMemory memory{nullptr};
   bool host_visible = false;
@@ -87,8 +87,8 @@ struct Buffer::State {
   std::uint64_t bytes = 0;
   vk::raii::Buffer buffer{nullptr};
   Allocation allocation;
-  void* mapped = nullptr;              // when host-visible
-  vk::raii::BufferView view{nullptr};  // texels
+  void* mapped = nullptr;              // set if host-visible
+  vk::raii::BufferView view{nullptr};  // set for texel buffers
   ~State();
 };
 
@@ -103,25 +103,26 @@ struct Commands::State {
   bool recording = false;
   bool host_timed = false;
   std::vector<visibility::PassTime> host_times;
-  std::vector<visibility::PassTime> earlier;  // of what host_pass had to run; submit's first
+  std::vector<visibility::PassTime> earlier;  // times of passes that host_pass had to run; submit's first
   std::chrono::steady_clock::time_point opened;
 
   void begin_if_needed();
-  /// Submits what is recorded and waits for it.
+  /// Submits the recorded commands and waits for them.
   void run();
-  /// Opens a named region: debug label and a timestamp before it; close_pass writes the second and a full barrier.
+  /// Opens a named region: a debug label and a timestamp before it; close_pass writes the second timestamp and a full
+  /// barrier.
   void open_pass(const std::string& name);
   void close_pass();
 };
 
-/// What reflection says of one shader stage.
+/// Interface of one shader stage, by reflection.
 struct ShaderInterface {
-  std::vector<vk::DescriptorType> bindings;  // of set 0, index = binding
+  std::vector<vk::DescriptorType> bindings;  // bindings of set 0, by index
   std::uint32_t push_bytes = 0;
 };
 ShaderInterface reflect(std::span<const std::uint32_t> spirv, const std::string& name);
 
-/// Throws ResourceError with `doing` for a Vulkan failure.
+/// Throws ResourceError for a Vulkan failure; `doing` describes the failed operation.
 [[noreturn]] void fail(const vk::SystemError& error, const std::string& doing);
 
 template <typename Handle>

@@ -1,6 +1,6 @@
-// Every wait for the device has an end. A driver for processors that could not start its threads (a limit on processes)
-// takes work and never does it; a device can hang. How long a pass may take cannot be known, but whether anything is
-// being done can, where the device is this very process: then its other threads use the processor.
+// Waits for the device that always end. A driver for processors that could not start its threads (a limit on processes)
+// accepts work and never does it; a device can hang. The time that a pass needs is unknown, but if the device is this
+// very process, it is known whether it works: then the process's other threads use the processor.
 #include "base/error.hpp"
 #include "render/vulkan.hpp"
 
@@ -23,11 +23,11 @@ nanoseconds time_of(clockid_t clock) {
   return seconds(now.tv_sec) + nanoseconds(now.tv_nsec);
 }
 
-/// Tells how long the process's other threads have been doing nothing. Measured in turns of the wait, each of which
-/// this thread had to be woken for: a process that is stopped, or gets no time at all, is not idle.
+/// Measures how long the process's other threads have been idle, in turns of the wait, each of which requires this
+/// thread to be woken: a process that is stopped, or gets no time at all, does not count as idle.
 class IdleTurns {
  public:
-  /// Turns in a row, this one included, in which the other threads used no time worth mentioning.
+  /// Returns the number of consecutive turns, this one included, in which the other threads used no significant time.
   int next() {
     const nanoseconds others = time_of_others();
     const bool idle = others - before_ < std::chrono::microseconds(100);
@@ -93,7 +93,7 @@ void forget(void (*&function)(Arguments...)) {
 
 void abandon(Device::State& device) {
   device.abandoned = true;
-  // The dispatcher is the device's own, and not const there.
+  // The dispatcher belongs to the device, where it is not const.
   auto& calls = const_cast<vk::raii::DeviceDispatcher&>(*device.device.getDispatcher());
   forget(calls.vkDestroyBuffer), forget(calls.vkDestroyBufferView), forget(calls.vkFreeMemory);
   forget(calls.vkDestroyImage), forget(calls.vkDestroyImageView), forget(calls.vkDestroySampler);

@@ -1,4 +1,5 @@
-// In place of the other sources where the build has no EGL or no OpenGL: nothing can be made, and everything says why.
+// Replaces the other sources in a build without EGL or OpenGL: nothing can be made, and every function reports the
+// reason.
 
 #include "base/assert.hpp"
 #include "base/error.hpp"
@@ -39,7 +40,7 @@ const ContextInfo& Context::info() const {
   return state_->info;
 }
 
-// Nobody has a context, so nobody comes here.
+// Unreachable: no context can exist.
 namespace {
 [[noreturn]] void no_context(const std::string& name) {
   PENUMBRA_ASSERT(false, "{}: a context of OpenGL in a build without", name);

@@ -1,6 +1,6 @@
-// EGL without a display server: each device of EGL_EXT_device_enumeration is a display of its own; where that extension
-// is missing, EGL_MESA_platform_surfaceless is one. Displays are the process's and not counted: none is terminated,
-// since another context may live on it.
+// EGL without a display server: each device of EGL_EXT_device_enumeration is a display of its own; without that
+// extension, EGL_MESA_platform_surfaceless gives one. Displays are shared by the process and not counted: none is
+// terminated, since another context may use it.
 
 #include "render/opengl/context.hpp"
 
@@ -48,11 +48,11 @@ std::string egl_error() {
   return fmt::format("{} (EGL error {:#x})", error_name(error), error);
 }
 
-/// One way to OpenGL on this machine.
+/// A candidate for OpenGL on this machine.
 struct DisplayChoice {
   std::string platform;
   EGLDisplay display;
-  bool software;  ///< EGL says that the device is a processor
+  bool software;  ///< EGL reports that the device is a processor
 };
 
 std::vector<DisplayChoice> displays() {
@@ -80,7 +80,7 @@ std::vector<DisplayChoice> displays() {
   return found;
 }
 
-/// A context of OpenGL 4.5 on a display, or a refusal.
+/// Makes a context of OpenGL 4.5 on a display; on failure sets the refusal.
 EGLContext make_context(EGLDisplay display, ContextInfo& info) {
   const auto refuse = [&](const std::string& why) {
     info.refusals.push_back(why);
@@ -117,7 +117,7 @@ std::uint32_t number_of(GLenum what) {
   return static_cast<std::uint32_t>(std::max(value, 0));
 }
 
-/// Asks a context that is current what it is.
+/// Fills in the description of the current context.
 void describe(ContextInfo& info, bool software) {
   info.name = text_of(GL_RENDERER);
   info.driver = fmt::format("{} {}", text_of(GL_VENDOR), text_of(GL_VERSION));
@@ -130,7 +130,7 @@ void describe(ContextInfo& info, bool software) {
   GLint64 block = 0;
   glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &block);
   info.max_storage_block = static_cast<std::uint64_t>(std::max<GLint64>(block, 0));
-  constexpr std::uint32_t kBlocks = 3;  // that a pass of ours binds
+  constexpr std::uint32_t kBlocks = 3;  // uniform and storage blocks that a pass binds
   for (const auto& [stage, limit] : {std::pair("vertex", GL_MAX_VERTEX_SHADER_STORAGE_BLOCKS),
                                      std::pair("fragment", GL_MAX_FRAGMENT_SHADER_STORAGE_BLOCKS)}) {
     const std::uint32_t blocks = number_of(static_cast<GLenum>(limit));
@@ -175,7 +175,7 @@ Current::Current(Context::State& state)
       lock_(state.in_use),
       before_{eglQueryAPI(), eglGetCurrentDisplay(), eglGetCurrentContext(), eglGetCurrentSurface(EGL_DRAW),
               eglGetCurrentSurface(EGL_READ)} {
-  eglBindAPI(EGL_OPENGL_API);  // a thread's own setting
+  eglBindAPI(EGL_OPENGL_API);  // per-thread state of EGL
   if (eglMakeCurrent(state_.display, EGL_NO_SURFACE, EGL_NO_SURFACE, state_.context) != EGL_TRUE) {
     throw ResourceError("OpenGL on {}: the context cannot be made current: {}", state_.info.name, egl_error());
   }

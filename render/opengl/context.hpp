@@ -5,15 +5,15 @@
 #include <string>
 #include <vector>
 
-/// A second rasteriser: OpenGL 4.5 (core) on an EGL context without a surface, so that no display is needed. Knows
-/// nothing of shadows, and nothing of Vulkan.
+/// A second rasteriser: OpenGL 4.5 (core) on an EGL context without a surface, so that no display is needed.
+/// Independent of shadows and of Vulkan.
 namespace penumbra::render::opengl {
 
-/// What OpenGL is on one EGL device, and why it cannot be used if it cannot.
+/// Description of OpenGL on one EGL device, with the reason why it cannot be used, if any.
 struct ContextInfo {
   std::uint32_t index = 0;
-  std::string platform;  ///< how EGL was asked: "device 0", or "surfaceless"
-  std::string name;      ///< the renderer's, or the platform's where there is no context
+  std::string platform;  ///< EGL platform used: "device 0", or "surfaceless"
+  std::string name;      ///< the renderer's name, or the platform's if there is no context
   std::string kind;      ///< "cpu" or "gpu"
   std::string driver;    ///< vendor and version
   std::vector<std::string> refusals;
@@ -24,15 +24,15 @@ struct ContextInfo {
   [[nodiscard]] bool usable() const { return refusals.empty(); }
 };
 
-/// What this machine has. One entry that says why where there is nothing: this build was made without OpenGL, there is
-/// no EGL driver. Never throws.
+/// Returns the contexts of this machine. If there are none, one entry has the reason: a build without OpenGL, or no EGL
+/// driver. Never throws.
 std::vector<ContextInfo> list_contexts();
 
-/// A context without a surface. It is made current where it is used, one thread at a time, and on no thread after.
+/// A context without a surface. Made current by each user, on one thread at a time, and released afterwards.
 class Context {
  public:
-  /// The first that is usable; of several, one on the processor if `on_processor`, else not. Throws ResourceError
-  /// with the reason why each was refused.
+  /// Makes the first usable context; if several are, one on the processor if `on_processor`, else not. Throws
+  /// ResourceError with the reason why each was refused.
   explicit Context(bool on_processor);
   ~Context();
   Context(Context&&) noexcept;

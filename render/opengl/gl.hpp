@@ -1,6 +1,6 @@
 #pragma once
-// Inside render/opengl/ only: the one header that sees EGL and OpenGL. Functions are libEGL's and libOpenGL's own, the
-// vendor-neutral libraries that ask whichever driver is there.
+// Inside render/opengl/ only: the one header that includes EGL and OpenGL. Functions come from libEGL and libOpenGL,
+// the vendor-neutral libraries that dispatch to the installed driver.
 
 #define EGL_NO_X11
 #define MESA_EGL_NO_X11_HEADERS
@@ -24,8 +24,8 @@ struct Context::State {
   ~State();
 };
 
-/// While it lives the context is this thread's, and nobody else's; then the thread has the EGL context again that it
-/// had before, a calling program's own. Throws ResourceError if that cannot be.
+/// Makes the context current on this thread, exclusively, during its lifetime; then restores the thread's previous EGL
+/// context, which may be the calling program's. Throws ResourceError on failure.
 class Current {
  public:
   explicit Current(Context::State& state);
@@ -33,7 +33,7 @@ class Current {
   Current(const Current&) = delete;
   Current& operator=(const Current&) = delete;
 
-  /// Throws ResourceError with what OpenGL says went wrong since it was last asked.
+  /// Throws ResourceError with the error that OpenGL has recorded since the last check, if any.
   void check(const std::string& doing) const;
 
  private:

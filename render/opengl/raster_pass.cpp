@@ -40,7 +40,7 @@ struct RasterPass::State {
 
 namespace {
 
-/// A destructor's work on a context; one that was lost takes its objects with it.
+/// Runs a destructor's work on a context; a lost context has freed its objects already.
 template <typename Work>
 void release(Context::State* context, const Work& work) {
   if (context == nullptr) return;
@@ -51,7 +51,7 @@ void release(Context::State* context, const Work& work) {
   }
 }
 
-/// No block of push constants is larger: Vulkan promises no more either.
+/// Largest block of push constants: Vulkan guarantees no more either.
 constexpr GLsizeiptr kPushBytes = 128;
 
 GLuint compile(GLenum stage, std::string_view text, const std::string& name) {
@@ -75,7 +75,7 @@ GLuint link(const RasterPassOptions& options) {
                                     std::pair<GLenum, std::string_view>(GL_FRAGMENT_SHADER, options.fragment)}) {
     const GLuint shader = compile(stage, text, options.name);
     glAttachShader(program, shader);
-    glDeleteShader(shader);  // goes with the program
+    glDeleteShader(shader);  // freed with the program
   }
   glLinkProgram(program);
   GLint good = 0;

@@ -17,7 +17,7 @@ namespace penumbra::render::opengl {
 /// Memory that shaders read and write.
 class Buffer {
  public:
-  /// Contents are undefined. Throws ResourceError for more than a shader's block can have, or if memory is short.
+  /// Content is undefined. Throws ResourceError for a size above a shader block's limit, or if memory is short.
   Buffer(const Context& context, std::string name, std::uint64_t bytes);
   ~Buffer();
   Buffer(Buffer&&) noexcept;
@@ -45,13 +45,13 @@ class Buffer {
 /// A 32-bit float depth image.
 class DepthTarget {
  public:
-  /// Throws ResourceError for more than the driver's images can have.
+  /// Throws ResourceError for a size above the driver's limit.
   DepthTarget(const Context& context, const std::string& name, std::uint32_t width, std::uint32_t height);
   ~DepthTarget();
   DepthTarget(DepthTarget&&) noexcept;
   DepthTarget& operator=(DepthTarget&&) noexcept;
 
-  /// The depths, width · height of them, the row of the smallest y first.
+  /// Reads the depths, width · height of them, the row of the smallest y first.
   void read(std::span<float> depths) const;
 
   struct State;
@@ -63,16 +63,16 @@ class DepthTarget {
 
 struct RasterPassOptions {
   std::string name;
-  /// GLSL 4.50. What Vulkan has in push constants is the uniform block at binding 0 (std140); buffers are storage
-  /// blocks, std430, from binding 0 on.
+  /// GLSL 4.50. Vulkan's push constants are the uniform block at binding 0 (std140); buffers are storage blocks,
+  /// std430, from binding 0 on.
   std::string_view vertex, fragment;
-  bool triangle_strip = false;  ///< else a list
+  bool triangle_strip = false;  ///< else a triangle list
   bool depth = false;           ///< tests and writes a DepthTarget
-  bool keep_greater = false;    ///< of depths, else the smaller
+  bool keep_greater = false;    ///< keeps the greater of two depths, else the smaller
 };
 
-/// What render::RasterPass is on Vulkan, by OpenGL: no vertex inputs, no colours. y = −1 is the first row, depths are
-/// clipped to 0 … w, as there.
+/// OpenGL's equivalent of render::RasterPass: no vertex inputs, no colours. As in Vulkan, y = −1 is the first row and
+/// depths are clipped to 0 … w.
 class RasterPass {
  public:
   /// Throws ResourceError with the compiler's message if the driver refuses a shader.
@@ -84,11 +84,11 @@ class RasterPass {
   struct Draw {
     std::uint32_t width = 0, height = 0;  ///< of the viewport, which starts at (0, 0)
     std::uint32_t vertices = 0, instances = 1;
-    const DepthTarget* depth = nullptr;  ///< exactly when the pass has depth
-    bool clear = true;                   ///< depth to 1 before, or to 0 where greater depths are kept
+    const DepthTarget* depth = nullptr;  ///< non-null exactly if the pass has depth
+    bool clear = true;                   ///< sets depth to 1 before, or to 0 if greater depths are kept
   };
 
-  /// Draws at once. Buffers in binding order.
+  /// Draws immediately. Buffers in binding order.
   template <typename Push>
   requires(std::is_trivially_copyable_v<Push>) void draw(
       const Push& push, std::initializer_list<std::reference_wrapper<const Buffer>> buffers, const Draw& draw) const {
