@@ -1,6 +1,6 @@
 #pragma once
 
-// Internal to this room: Embree's rays one, four, eight or sixteen at a time behind one name.
+// Internal to this room: Embree's calls for one, four, eight or sixteen rays under one name.
 
 #include <embree3/rtcore.h>
 
@@ -46,7 +46,7 @@ struct Packet<16> {
 };
 // NOLINTEND(readability-identifier-naming)
 
-/// The lanes of a packet's field, which is an array, or of a single ray's, which is not.
+/// Returns the lanes of a packet's field, which is an array, or of a single ray's, which is not.
 template <typename Field>
 auto* lanes(Field& field) {
   if constexpr (std::is_array_v<Field>) {
@@ -56,7 +56,7 @@ auto* lanes(Field& field) {
   }
 }
 
-/// What Embree writes to tfar of a ray that hit something.
+/// Value that Embree writes to tfar of an occluded ray.
 inline constexpr float kOccluded = -std::numeric_limits<float>::infinity();
 
 }  // namespace penumbra::reference

@@ -1,3 +1,5 @@
+// Scaling of scenes and rays to the range in which Embree's float32 arithmetic neither overflows nor underflows.
+
 #include "reference/embree_range.hpp"
 
 #include "base/error.hpp"
@@ -13,9 +15,9 @@
 namespace penumbra::reference {
 namespace {
 
-constexpr int kMeshExponent = 14;      // of the first power of two that no coordinate of the mesh reaches
-constexpr double kFarthest = 0x1p60;   // of light points
-constexpr double kSmallest = 0x1p-50;  // largest edge component of a triangle
+constexpr int kMeshExponent = 14;      // exponent of the first power of two above all coordinates of the mesh
+constexpr double kFarthest = 0x1p60;   // distance of light points
+constexpr double kSmallest = 0x1p-50;  // least largest edge component of a triangle
 constexpr double kLeastTerm = 0x1p-95;
 
 double largest_component(const glm::dvec3& x) {

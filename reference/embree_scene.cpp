@@ -18,7 +18,7 @@ struct EmbreeScene::Parts {
   RTCScene scene = nullptr;
   std::vector<std::uint32_t> triangles;
   EmbreeRange range;
-  // Embree reads from these; its own arrays would be filled a small page at a time.
+  // Shared with Embree, which reads from them; its own arrays would be filled a small page at a time.
   UnsetList<glm::vec3> positions;
   UnsetList<mesh::Triangle> corners;
   std::atomic<std::int64_t> bytes = 0, peak_bytes = 0;
@@ -74,7 +74,7 @@ EmbreeScene::EmbreeScene(const visibility::SceneFloats& scene, std::vector<std::
   if (!parts.triangles.empty()) {
     const std::size_t vertices = scene.positions.size(), count = parts.triangles.size();
     try {
-      parts.positions.resize(vertices + 1);  // Embree reads the last one's sixteen bytes
+      parts.positions.resize(vertices + 1);  // Embree reads sixteen bytes at the last vertex
       parts.corners.resize(count);
     } catch (const std::bad_alloc&) {
       parts.throw_out_of_memory();

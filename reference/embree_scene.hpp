@@ -12,12 +12,12 @@ struct RTCSceneTy;
 namespace penumbra::reference {
 
 /// The triangles `chosen` (indices into SceneFloats::triangles) in an Embree scene of one geometry, robust mode.
-/// Primitive i is triangle chosen[i]. Lengths are range().scaled: rays must be, too. Embree's errors, out of memory
-/// among them, are thrown as ResourceError, what it has no range for as InputError.
+/// Primitive i is triangle chosen[i]. Lengths are range().scaled, and rays must be scaled, too. Embree's errors,
+/// including exhausted memory, are thrown as ResourceError, sizes out of its range as InputError.
 class EmbreeScene {
  public:
-  enum class Filter { none, by_context };  ///< may a ray's context carry a filter function?
-  enum class Build { medium, high };       ///< quality: soon built, or soon traversed
+  enum class Filter { none, by_context };  ///< whether a ray's context may have a filter function
+  enum class Build { medium, high };       ///< quality: fast to build, or fast to traverse
 
   EmbreeScene(const visibility::SceneFloats& scene, std::vector<std::uint32_t> chosen, Filter filter,
               Build build = Build::high);
@@ -28,7 +28,7 @@ class EmbreeScene {
   [[nodiscard]] RTCSceneTy* handle() const;
   [[nodiscard]] const std::vector<std::uint32_t>& triangles() const;
   [[nodiscard]] const EmbreeRange& range() const;
-  /// The most rays that this processor traces at once: 16 (AVX-512), 8 (AVX) or 4.
+  /// Returns the largest packet of rays that this processor traces: 16 (AVX-512), 8 (AVX) or 4.
   [[nodiscard]] int native_width() const;
   [[nodiscard]] std::uint64_t peak_bytes() const;
   /// Throws ResourceError if any call since the last check failed.

@@ -1,3 +1,5 @@
+// The method `exact`: V and the form factor of each view sample by areas/exact_area.hpp, in parallel over pixels.
+
 #include "reference/methods.hpp"
 
 #include "base/assert.hpp"
@@ -25,7 +27,7 @@ using visibility::Tile;
 using visibility::ViewSamples;
 
 constexpr float kNotEvaluated = std::numeric_limits<float>::quiet_NaN();
-constexpr std::uint32_t kTileRows = 8;  // enough pixels for all cores, few enough to see progress
+constexpr std::uint32_t kTileRows = 8;  // rows of a tile: enough pixels for all cores, few enough to report progress
 
 constexpr visibility::ChoiceOption kSweep{
     "sweep",
@@ -64,9 +66,9 @@ class Exact final : public visibility::Method {
   const Light* light_ = nullptr;
   const ViewSamples* samples_ = nullptr;
   std::optional<ExactArea> area_;
-  std::optional<std::vector<std::uint32_t>> wanted_;  // ascending; nothing: every pixel
-  std::vector<float> visibility_;                     // of the tile last evaluated
-  std::vector<glm::dvec3> form_factors_;              // likewise
+  std::optional<std::vector<std::uint32_t>> wanted_;  // ascending; nullopt: every pixel
+  std::vector<float> visibility_;                     // of the last evaluated tile
+  std::vector<glm::dvec3> form_factors_;              // of the last evaluated tile
   std::atomic<std::uint64_t> view_samples_ = 0, triangles_ = 0, edges_ = 0;
 };
 
@@ -108,7 +110,7 @@ void Exact::prepare_light(const Light& light) {
   view_samples_ = triangles_ = edges_ = 0;
 }
 
-/// Not those that the host's rules answer.
+/// Returns false for pixels that the host's rules decide.
 bool Exact::is_question(std::size_t pixel) const {
   return visibility::is_receiver(*scene_, *light_, *samples_, pixel);
 }

@@ -1,4 +1,4 @@
-// Rays that note every object on their way: Embree's filter function turns each hit away after looking at it.
+// Rays that record every object that they meet: Embree's filter function inspects and rejects each hit.
 
 #include "reference/hiding_objects.hpp"
 
@@ -21,17 +21,17 @@ using visibility::Light;
 using visibility::SceneFloats;
 using visibility::ViewSamples;
 
-constexpr std::size_t kSpread = 16;  // light samples that are asked in any case
+constexpr std::size_t kSpread = 16;  // light samples that are always tested
 
-/// Embree hands back the address of the first member.
+/// Embree passes the address of the first member to the filter.
 struct Context {
   RTCIntersectContext embree;
   const SceneFloats* scene;
-  const std::uint32_t* triangles;  // of each primitive
-  std::int32_t light;              // whose own body hides nothing
+  const std::uint32_t* triangles;  // triangle of each primitive
+  std::int32_t light;              // the light, whose own body hides nothing
   std::uint32_t carrier;
   HiddenBy found;
-  float first;  // of the ray on its way: where something hides first
+  float first;  // smallest t on the ray at which something hides the light
 };
 
 void note_object(const RTCFilterFunctionNArguments* hits) {
@@ -45,11 +45,11 @@ void note_object(const RTCFilterFunctionNArguments* hits) {
       (scene.object[triangle] == scene.object[context.carrier] ? context.found.own : context.found.other) = true;
       context.first = std::min(context.first, RTCRayN_tfar(hits->ray, hits->N, i));
     }
-    hits->valid[i] = 0;  // further along
+    hits->valid[i] = 0;  // farther than the nearest hit so far
   }
 }
 
-/// Light samples from one end of the light to the other, those that are asked in any case first.
+/// Returns light samples from one end of the light to the other, those that are always tested first.
 std::vector<std::uint32_t> spread_order(const Light& light) {
   const std::vector<std::uint32_t> near = tracing_order(light);
   const std::size_t step = std::max<std::size_t>(near.size() / kSpread, 1);
@@ -111,7 +111,7 @@ std::vector<HiddenBy> hiding_objects(const SceneFloats& scene, const ViewSamples
     std::vector<glm::vec3> points(light.points);
     for (std::size_t i = range.begin(); i != range.end(); ++i) {
       const glm::vec3& p = samples.p[pixels[i]];
-      if (light.points.empty()) {  // a sphere's depend on p
+      if (light.points.empty()) {  // a sphere's light points depend on p
         points.resize(light.sample_count());
         light_points_for(light, p, points.data());
       }

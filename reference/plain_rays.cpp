@@ -1,3 +1,5 @@
+// Plain shadow rays through Embree in packets, as a renderer traces them; a speed reference for benchmarks.
+
 #include "reference/plain_rays.hpp"
 
 #include "base/assert.hpp"
@@ -21,8 +23,8 @@
 namespace penumbra::reference {
 namespace {
 
-/// Denormals as zero while rays are traced, as Embree's manual recommends; put back afterwards, because the threads are
-/// shared with code whose results must not depend on this.
+/// Flushes denormals to zero while rays are traced, as Embree's manual recommends; restored afterwards, because the
+/// threads also run code whose results must not depend on this mode.
 class FlushDenormals {
  public:
   FlushDenormals() : saved_(_mm_getcsr()) {
@@ -62,7 +64,8 @@ void PlainRays::prepare_mesh(const visibility::SceneFloats& scene) {
   scene_ = &scene;
   build(-1);
   const EmbreeRange& range = embree_->range();
-  offset_ = 0x1p-16f * glm::length(range.scaled(scene.upper) - range.scaled(scene.lower));  // a few ulps of its size
+  // a few ulps of the scene's size
+  offset_ = 0x1p-16f * glm::length(range.scaled(scene.upper) - range.scaled(scene.lower));
 }
 
 void PlainRays::prepare_light(const visibility::Light& light) {
@@ -192,7 +195,7 @@ int PlainRays::trace_pixel(const glm::vec3& p, const glm::vec3& n, const PointAr
   const std::size_t count = light_->sample_count();
   for (std::size_t first = 0; first < count; first += kWidth) {
     int alive = 0;
-    for (std::size_t lane = 0; lane < kWidth; ++lane) {  // branch-free: the compiler makes vectors of it
+    for (std::size_t lane = 0; lane < kWidth; ++lane) {  // branch-free, so that the compiler vectorises the loop
       const float dx = points.x[first + lane] - from.x, dy = points.y[first + lane] - from.y,
                   dz = points.z[first + lane] - from.z;
       const bool above = n.x * dx + n.y * dy + n.z * dz > 0;
@@ -242,7 +245,7 @@ void PlainRays::evaluate_pixels(const visibility::ViewSamples& samples, std::spa
           const double front = glm::dot(light_normal, glm::dvec3(p - light_center));
           if (light.two_sided ? front == 0 : front <= 0) continue;
         }
-        const FlushDenormals flush;  // no sooner: scene floats may be such, but scaled they are not
+        const FlushDenormals flush;  // set only now: scene floats may be denormal, but scaled ones are not
         const int visible = trace_pixel<kWidth>(p, n, sphere ? own_arrays : points_, context);
         visibility[pixel] = static_cast<float>(visible) / static_cast<float>(light.sample_count());
       }

@@ -14,39 +14,40 @@ struct RTCIntersectContext;
 
 namespace penumbra::reference {
 
-/// The speed peer: the fastest plain Embree in robust mode that we know how to write, for benchmarks only. What a
-/// renderer does in practice: no filter function, the ray's origin moved off the surface, packets of neighbouring rays,
-/// all cores. (Embree's ray streams, rtcOccludedNp and rtcOccluded1M, were two to four times slower.) It is no oracle:
-/// the moved origin loses contact shadows below its offset.
+/// The speed reference: the fastest plain use of Embree in robust mode that is known here, for benchmarks only. Uses a
+/// renderer's practice: no filter function, the ray's origin moved off the surface, packets of neighbouring rays, all
+/// cores. (Embree's ray streams, rtcOccludedNp and rtcOccluded1M, were two to four times slower.) Not an oracle: the
+/// moved origin loses contact shadows below its offset.
 class PlainRays {
  public:
   struct Options {
-    int width = 0;           ///< rays traced together: 1, 4, 8 or 16; 0: as many as this processor does at once
+    int width = 0;           ///< rays traced together: 1, 4, 8 or 16; 0: this processor's width
     bool coherent = true;    ///< Embree's hint for packets
-    bool neighbours = true;  ///< packets of neighbours on the light rather than in the order of the light samples
-    bool one_frame = false;  ///< a hierarchy of medium quality, as for a mesh that is looked at once
+    bool neighbours = true;  ///< packets of neighbours on the light instead of consecutive light samples
+    bool one_frame = false;  ///< a hierarchy of medium quality, as for a mesh that is used for one frame
   };
   explicit PlainRays(const Options& options);
 
-  /// Once a mesh.
+  /// Call once for each mesh.
   void prepare_mesh(const visibility::SceneFloats& scene);
-  /// Once a light; rebuilds without the light's own body if it has one.
+  /// Call once for each light; rebuilds without the light's own body if it has one.
   void prepare_light(const visibility::Light& light);
-  /// What the rays of a perspective camera's pixels meet first, in packets of neighbours of a row: triangle, p and n in
-  /// float, as a renderer has them. The rest of ViewSamples stays empty. Only what casts shadow is there.
+  /// Returns the first hits of a perspective camera's rays, in packets of neighbours in a row: triangle, p and n in
+  /// float, as in a renderer. The rest of ViewSamples stays empty. Only casters of shadows are in the scene.
   [[nodiscard]] visibility::ViewSamples look(const visibility::PinholeCamera& camera) const;
-  /// V of each pixel; background, emitters and what receives no shadow have 1. Both must outlive the call.
+  /// Computes V of each pixel; background, emitters and objects that receive no shadow have 1. `samples` and
+  /// `visibility` must outlive the call.
   void evaluate(const visibility::ViewSamples& samples, std::span<float> visibility) const;
 
  private:
-  /// The light points, scaled, in the order of tracing, by axis, padded to whole packets.
+  /// The scaled light points, in the order of tracing, by axis, padded to whole packets.
   struct PointArrays {
     std::vector<float> x, y, z;
     template <typename Scaled>
     void assign(std::span<const glm::vec3> points, std::span<const std::uint32_t> order, const Scaled& scaled);
   };
 
-  /// body<kWidth>() with as many rays to a packet as were asked for.
+  /// Calls body<kWidth>() with the chosen packet width.
   template <typename Body>
   void with_width(const Body& body) const;
   template <int kWidth>
@@ -64,7 +65,7 @@ class PlainRays {
   std::optional<EmbreeScene> embree_;
   std::int32_t built_without_ = -1;
   std::vector<std::uint32_t> order_;
-  PointArrays points_;  // of a light that is no sphere
+  PointArrays points_;  // points of a light that is not a sphere
   float offset_ = 0;
 };
 

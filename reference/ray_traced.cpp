@@ -1,11 +1,11 @@
-// One shadow ray a light sample: the first oracle.
+// The method `raytrace`: one shadow ray for each light sample; the first oracle.
 //
-// Conditions (1) and (2) of the truth of a pair (horizon, emitting side) are decided exactly; (3) is Embree's. The open
-// segment p→l is the ray p + t (l − p), 0 < t < 1: Embree reports t > tnear = 0 and t ≤ tfar, so tfar is the largest
-// float below 1 (of a sun, whose light points are directions, infinity). A filter function turns away hits on the
-// carrying triangle and on what is exactly coplanar with it, and on the light's own body: an offset origin would lose
-// contact shadows. Triangles that cast none are not in the scene. Scene and rays are scaled to where float32 neither
-// underflows nor overflows (EmbreeRange).
+// Conditions (1) and (2) of the truth of a pair (horizon, emitting side) are decided exactly; (3) is decided by Embree.
+// The open segment p→l is the ray p + t (l − p), 0 < t < 1: Embree reports t > tnear = 0 and t ≤ tfar, so tfar is the
+// largest float below 1 (for a sun, whose light points are directions, infinity). A filter function rejects hits on the
+// carrying triangle and on triangles exactly coplanar with it, and on the light's own body: an offset origin would lose
+// contact shadows. Triangles that cast no shadow are not in the scene. Scene and rays are scaled so that float32
+// neither underflows nor overflows (EmbreeRange).
 
 #include "reference/methods.hpp"
 
@@ -39,10 +39,10 @@ using visibility::SceneFloats;
 using visibility::Tile;
 using visibility::ViewSamples;
 
-constexpr std::uint64_t kMaxMaskBytes = std::uint64_t{64} << 20;  // of one tile: an interrupt waits for its end
-constexpr std::uint32_t kNeverMet = SceneFloats::kNoPlane;        // plane number of the light's own body
+constexpr std::uint64_t kMaxMaskBytes = std::uint64_t{64} << 20;  // of one tile: an interrupt waits for the tile's end
+constexpr std::uint32_t kNeverMet = SceneFloats::kNoPlane;        // plane index of the light's own body
 
-/// What the filter function needs to know of the ray's pixel; Embree hands back the address of the first member.
+/// The ray's pixel, for the filter function; Embree passes the address of the first member.
 struct PixelContext {
   RTCIntersectContext embree;
   const std::uint32_t* plane_of_primitive;
@@ -87,13 +87,13 @@ class RayTraced final : public visibility::Method {
   }
 
  private:
-  /// Room for one thread's work on one pixel.
+  /// One thread's workspace for one pixel.
   struct Workspace {
-    std::vector<glm::vec3> points, scaled;  // of a sphere
+    std::vector<glm::vec3> points, scaled;  // points of a sphere
     std::vector<std::uint32_t> above;
   };
 
-  /// Of the light samples `above` p takes out, and decides exactly, those too near to p for Embree.
+  /// Removes the light samples too near to p for Embree from `above`, and decides them exactly.
   void decide_short_rays(std::size_t pixel, const std::vector<glm::vec3>& scaled, std::vector<std::uint32_t>& above,
                          std::span<std::uint32_t> visible);
   template <int kWidth>
@@ -102,18 +102,18 @@ class RayTraced final : public visibility::Method {
   void trace_tile(const Tile& tile);
 
   visibility::MethodDescription description_;
-  int width_ = 0;  // 0: the processor's
+  int width_ = 0;  // 0: the processor's width
   const SceneFloats* scene_ = nullptr;
   const Light* light_ = nullptr;
   const ViewSamples* samples_ = nullptr;
   std::optional<EmbreeScene> embree_;
   std::vector<std::uint32_t> plane_of_primitive_;
-  std::vector<glm::vec3> scaled_points_;  // of a light that is no sphere
+  std::vector<glm::vec3> scaled_points_;  // points of a light that is not a sphere
   std::vector<std::uint32_t> order_;
   std::vector<std::uint32_t> full_mask_;
   visibility::Bounds bounds_;
-  Tile tile_;                         // that was last evaluated
-  std::vector<std::uint32_t> masks_;  // of it
+  Tile tile_;                         // the last evaluated tile
+  std::vector<std::uint32_t> masks_;  // masks of that tile
   Counts counts_;
 };
 
@@ -137,7 +137,7 @@ RayTraced::RayTraced(const visibility::MethodOptions& options) {
   description_.output = visibility::Output::mask;
   description_.exact_for = "every light and any triangle soup, up to rounding in Embree's robust ray-triangle test";
   description_.lights = visibility::kEveryLight;
-  description_.span = {0, 0x1p45F};  // EmbreeRange refuses what is farther, and perhaps a bit more
+  description_.span = {0, 0x1p45F};  // EmbreeRange refuses larger distances, and possibly slightly smaller ones
   description_.verdict_on = ray_traced_verdict;
   description_.options = {kPacket.description()};
   width_ = visibility::parse_options(description_, options)[kPacket];
@@ -150,7 +150,7 @@ void RayTraced::prepare_mesh(const SceneFloats& scene) {
   for (std::uint32_t i = 0; i < scene.triangles.size(); ++i) {
     if (scene.casts_shadow[i] != 0) casting.push_back(i);
   }
-  embree_.reset();  // never two scenes in memory
+  embree_.reset();  // frees the old scene first, so that two are never in memory
   embree_.emplace(scene, std::move(casting), EmbreeScene::Filter::by_context);
 }
 
@@ -223,14 +223,14 @@ void RayTraced::trace_pixel(std::size_t pixel, Workspace& work, std::span<std::u
   const bool one_ray = light_->sun && light_->sun->tangent == 0;  // all light samples are the same direction
   const std::size_t count = one_ray ? 1 : points.size();
   counts_.rays.fetch_add(one_ray ? 1 : above_count, std::memory_order_relaxed);
-  if (!light_->sun) {  // whose rays are long enough
+  if (!light_->sun) {  // a sun's rays are always long enough
     const glm::vec3 nearest =
         glm::max(glm::max(range.scaled(bounds_.lower) - origin, origin - range.scaled(bounds_.upper)), 0.0f);
     if (std::max({nearest.x, nearest.y, nearest.z}) < range.shortest_ray()) {
       decide_short_rays(pixel, scaled_points, work.above, visible);
     }
   }
-  const glm::vec3 start = light_->sun ? glm::vec3(0) : origin;  // of what is scaled, to its end
+  const glm::vec3 start = light_->sun ? glm::vec3(0) : origin;  // of the scaled segment
   // The largest float below 1; the rays of a sun have no end.
   const float end = light_->sun ? std::numeric_limits<float>::infinity() : 0x1.fffffep-1f;
 

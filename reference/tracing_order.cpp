@@ -8,7 +8,7 @@
 namespace penumbra::reference {
 
 std::vector<std::uint32_t> tracing_order(const visibility::Light& light) {
-  const auto spread = [](double coordinate) {  // 16 bits, a zero between each two
+  const auto spread = [](double coordinate) {  // inserts a zero between every two of 16 bits
     auto x = static_cast<std::uint32_t>(std::clamp((coordinate + 1) / 2, 0.0, 1.0) * 65535);
     x = (x | (x << 8)) & 0x00ff00ffu;
     x = (x | (x << 4)) & 0x0f0f0f0fu;
@@ -18,7 +18,7 @@ std::vector<std::uint32_t> tracing_order(const visibility::Light& light) {
   std::vector<std::uint64_t> codes;
   std::vector<std::uint32_t> order(light.sample_count());
   for (const glm::dvec2& st : light.coordinates) codes.push_back(spread(st.x) | (spread(st.y) << 1));
-  if (light.dome) {  // face by face
+  if (light.dome) {  // sorted by faces
     for (std::size_t i = 0; i < codes.size(); ++i)
       codes[i] |= std::uint64_t{visibility::dome_face_of(*light.dome, light.points[i])} << 32U;
   }

@@ -7,8 +7,9 @@
 
 namespace penumbra::reference {
 
-/// The light samples in an order in which neighbours in the list are neighbours on the light (Morton order of their
-/// coordinates): rays that run together are traced faster. Only an order of work; masks keep the light samples'.
+/// Returns the light samples in an order in which neighbours in the list are neighbours on the light (Morton order of
+/// their coordinates): rays that are traced together are then faster. Affects the order of work only; masks keep the
+/// order of light samples.
 std::vector<std::uint32_t> tracing_order(const visibility::Light& light);
 
 }  // namespace penumbra::reference
