@@ -47,7 +47,8 @@ bool strictly_inside(const Box& inner, const Box& outer) {
   return true;
 }
 
-/// Six times the signed volume. Turning every triangle changes exactly its sign: repairing twice turns nothing twice.
+/// Returns six times the signed volume. Reversing every triangle exactly negates it: repairing twice reverses nothing
+/// twice.
 double volume(const TriangleSoup& soup, const std::vector<std::uint32_t>& triangles) {
   const glm::dvec3 origin = soup.positions[soup.triangles[triangles[0]][0]];
   double sum = 0;
@@ -58,7 +59,7 @@ double volume(const TriangleSoup& soup, const std::vector<std::uint32_t>& triang
   return sum;
 }
 
-/// The closed parts that CGAL turns so that together they bound a volume.
+/// Returns the closed parts that CGAL reverses so that together they bound a volume.
 std::vector<std::uint32_t> inverted_parts(const TriangleSoup& soup, const SurfaceParts& parts, CgalSurface& surface) {
   pmp::orient_to_bound_a_volume(surface.mesh);
   std::set<std::uint32_t> inverted;
@@ -73,7 +74,8 @@ std::vector<std::uint32_t> inverted_parts(const TriangleSoup& soup, const Surfac
   return {inverted.begin(), inverted.end()};
 }
 
-/// Where that is not defined: parts of negative volume that are in no other's bounds.
+/// Fallback if such orientations are not defined: returns the parts of negative volume that are inside no other part's
+/// bounds.
 std::vector<std::uint32_t> inside_out_parts(const TriangleSoup& soup, const SurfaceParts& parts) {
   std::vector<std::uint32_t> closed;
   std::vector<Box> boxes;
@@ -96,7 +98,7 @@ glm::dvec3 at(const CgalMesh& mesh, CgalMesh::Vertex_index v) {
   return {p.x(), p.y(), p.z()};
 }
 
-/// The triangle left of h has no area, or is folded back onto the face behind that edge.
+/// Returns whether the triangle left of h has no area, or is folded back onto the face behind that edge.
 bool is_flat_or_folded(const CgalMesh& mesh, HalfEdge h) {
   const auto a = mesh.source(h), b = mesh.target(h), c = mesh.target(mesh.next(h));
   if (collinear(at(mesh, a), at(mesh, b), at(mesh, c))) return true;
@@ -106,8 +108,8 @@ bool is_flat_or_folded(const CgalMesh& mesh, HalfEdge h) {
          CGAL::coplanar_orientation(mesh.point(a), mesh.point(b), mesh.point(c), mesh.point(d)) != CGAL::NEGATIVE;
 }
 
-/// Decides whether the filling of a hole is a surface beside what is there already: with area, not folded back, with no
-/// inner edge where another edge lies and no triangle where another lies.
+/// Decides whether the filling of a hole is a valid addition to the surface: with area, not folded back, with no inner
+/// edge on an existing edge and no triangle on an existing one.
 class FillingJudge {
  public:
   explicit FillingJudge(const TriangleSoup& soup) : graph_(build_edge_graph({soup.positions, soup.triangles})) {
@@ -115,7 +117,7 @@ class FillingJudge {
     edges_.insert(graph_.edges.begin(), graph_.edges.end());
   }
 
-  /// Remembers the filling if it is good.
+  /// Records the filling if it is valid, and returns whether it is.
   bool accept(const CgalMesh& mesh, std::vector<Face> patch) {
     std::ranges::sort(patch);
     std::set<Edge> inner;
@@ -152,7 +154,7 @@ class FillingJudge {
 struct Hole {
   HalfEdge border;
   std::size_t edges = 0;
-  std::uint32_t neighbour = CgalSurface::kNew;  // the lowest triangle around it
+  std::uint32_t neighbour = CgalSurface::kNew;  // the lowest triangle around the hole
 };
 
 std::vector<Hole> find_holes(const CgalSurface& surface) {
@@ -176,7 +178,7 @@ struct Filling {
   std::size_t first_triangle, triangles;
 };
 
-/// The triangles from `first_new` on that meet others elsewhere than in common points.
+/// Returns the triangles from `first_new` on that meet others elsewhere than in common points.
 std::set<std::size_t> crossing_fillings(const TriangleSoup& soup, std::size_t first_new) {
   if (soup.triangles.size() == first_new) return {};
   const CgalSurface surface = to_cgal(soup);
@@ -210,7 +212,7 @@ CgalSurface to_cgal(const TriangleSoup& soup, const std::vector<std::uint32_t>& 
     surface.triangle[face] = t;
   }
   for (const auto v : surface.mesh.vertices()) {
-    if (surface.mesh.is_isolated(v)) surface.mesh.remove_vertex(v);  // the others keep their numbers
+    if (surface.mesh.is_isolated(v)) surface.mesh.remove_vertex(v);  // the other vertices keep their indices
   }
   return surface;
 }
@@ -302,7 +304,8 @@ TriangleSoup fill_holes(const TriangleSoup& soup, std::uint32_t most_edges, Repa
     if (hole.edges > most_edges) continue;
     std::vector<Face> patch;
     pmp::triangulate_hole(surface.mesh, hole.border, std::back_inserter(patch));
-    if (patch.empty() || !judge.accept(surface.mesh, patch)) {  // the mesh keeps it, the soup does not get it
+    // the mesh keeps the patch, but the soup does not get it
+    if (patch.empty() || !judge.accept(surface.mesh, patch)) {
       ++unfilled;
       continue;
     }

@@ -10,14 +10,16 @@
 #include <utility>
 #include <vector>
 
-/// Inside repair/ only: soups as CGAL's meshes. Whatever includes this is GPL.
+/// Inside repair/ only: conversion between soups and CGAL's meshes. Every file that includes this header is under the
+/// GPL.
 namespace penumbra::repair {
 
 using CgalKernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using CgalPoint = CgalKernel::Point_3;
 using CgalMesh = CGAL::Surface_mesh<CgalPoint>;
 
-/// CGAL states its complaints on stderr before it throws; here they become sentences, so while this lives it is quiet.
+/// Suppresses CGAL's messages on stderr during its lifetime: CGAL prints its complaints before it throws, and the
+/// exceptions become sentences here.
 class QuietCgal {
  public:
   QuietCgal();
@@ -29,26 +31,26 @@ class QuietCgal {
   CGAL::Failure_function error_, warning_;
 };
 
-/// The mesh, or those triangles of it: vertex i is position i, and each face knows its triangle. Throws what CGAL
-/// throws, and std::logic_error if CGAL does not take a face.
+/// The mesh, or some of its triangles: vertex i is position i, and each face has the index of its triangle. Making it
+/// throws CGAL's exceptions, and std::logic_error if CGAL refuses a face.
 struct CgalSurface {
   CgalMesh mesh;
-  CgalMesh::Property_map<CgalMesh::Face_index, std::uint32_t> triangle;  ///< kNew for faces made since
+  CgalMesh::Property_map<CgalMesh::Face_index, std::uint32_t> triangle;  ///< kNew for faces made later
 
   static constexpr std::uint32_t kNew = 0xffffffffu;
 };
 CgalSurface to_cgal(const TriangleSoup& soup, const std::vector<std::uint32_t>& triangles);
 CgalSurface to_cgal(const TriangleSoup& soup);
 
-/// A face's vertices, counter-clockwise.
+/// Returns a face's vertices, counter-clockwise.
 std::array<CgalMesh::Vertex_index, 3> corners(const CgalMesh& mesh, CgalMesh::Face_index face);
 
-/// Pairs of faces that meet elsewhere than in common points. (CGAL also counts those that only touch where a vertex was
-/// split in two.)
+/// Returns pairs of faces that meet elsewhere than in common points. (CGAL also counts pairs that only touch where a
+/// vertex was split in two.)
 std::vector<std::pair<CgalMesh::Face_index, CgalMesh::Face_index>> intersections(const CgalMesh& mesh);
 
 /// The parts of a soup that are connected through edges, which triangles share by their indices; numbered by their
-/// first triangles. (closed_components.hpp has those of a mesh whose equal positions are one vertex.)
+/// first triangles. (closed_components.hpp has the parts of a mesh whose equal positions are merged.)
 struct SurfaceParts {
   std::vector<std::uint32_t> of_triangle;
   std::vector<std::vector<std::uint32_t>> triangles;

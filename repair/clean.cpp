@@ -22,6 +22,7 @@ class Subdivision {
  public:
   Subdivision(const TriangleSoup& soup, const EdgeGraph& graph) : graph_(graph) {
     const auto before = [&](std::uint32_t a, std::uint32_t b) {  // along a line, the order of coordinates is the order
+                                                                 // of points
       const glm::dvec3 &p = soup.positions[a], &q = soup.positions[b];
       return std::array{p.x, p.y, p.z} < std::array{q.x, q.y, q.z};
     };
@@ -29,13 +30,13 @@ class Subdivision {
       if (graph.kind[t] != TriangleKind::collinear) continue;
       Triangle corners = graph.corners(soup.triangles[t]);
       std::ranges::sort(corners, before);
-      middle_.emplace(edge(corners[0], corners[2]), corners[1]);  // the first triangle's, if there are several
+      middle_.emplace(edge(corners[0], corners[2]), corners[1]);  // keeps the first triangle's, if there are several
     }
   }
 
   [[nodiscard]] bool empty() const { return middle_.empty(); }
 
-  /// The vertices to insert between a and b, in order: those that lead to an edge which another triangle has.
+  /// Returns the vertices to insert between a and b, in order: those that lead to an edge which another triangle has.
   [[nodiscard]] std::vector<std::uint32_t> between(std::uint32_t a, std::uint32_t b) const {
     std::vector<std::uint32_t> inserted;
     bool used = false;
@@ -69,8 +70,8 @@ class Subdivision {
   std::map<Edge, std::uint32_t> middle_;
 };
 
-/// Triangles over a triangle's corners and the vertices on its edges, each with an area: a fan over the first edge that
-/// has any, and fans over the other two from its first and last vertex.
+/// Splits a triangle with vertices on its edges into triangles with area: a fan over the first edge that has such
+/// vertices, and fans over the other two from its first and last vertex.
 std::vector<Triangle> split(const Triangle& corners, const Subdivision& subdivision) {
   for (std::size_t i = 0; i < 3; ++i) {
     const std::uint32_t a = corners[i], b = corners[(i + 1) % 3], c = corners[(i + 2) % 3];
@@ -121,7 +122,7 @@ class Duplicates {
       if (faces[i].sorted != faces[i - 1].sorted) continue;
       if (faces[i].even == faces[i - 1].even) {
         remove(faces[i].triangle);
-      } else {  // the first of either winding: the odd ones come first
+      } else {  // the first triangle of either winding: odd ones come first
         std::size_t first = i - 1;
         while (first > 0 && faces[first - 1].sorted == faces[i].sorted) --first;
         pairs_.emplace_back(faces[first].triangle, faces[i].triangle);
@@ -129,7 +130,7 @@ class Duplicates {
     }
   }
 
-  /// Removing one may make its neighbours' edges odd: until nothing changes.
+  /// Removing a triangle may make its neighbours' edges odd: repeated until nothing changes.
   std::vector<bool> kept() {
     for (bool changed = true; changed;) {
       changed = false;

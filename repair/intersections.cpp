@@ -20,15 +20,15 @@ namespace pmp = CGAL::Polygon_mesh_processing;
 using Face = CgalMesh::Face_index;
 using FacePair = std::pair<Face, Face>;
 
-/// How far CGAL may move the surface of a part, as a share of the diagonal of its bounds. Unbounded, it resolves more,
-/// but at times by cutting away whole limbs.
+/// Distance by which CGAL may move the surface of a part, as a fraction of the diagonal of its bounds. Without a bound
+/// it resolves more, but sometimes by cutting off whole limbs.
 constexpr double kEnvelope = 0.01;
 
 bool meet_elsewhere(const CgalMesh& mesh, const FacePair& pair) {
   std::array<CgalPoint, 3> p, q;
   std::ranges::transform(corners(mesh, pair.first), p.begin(), [&](auto v) { return mesh.point(v); });
   std::ranges::transform(corners(mesh, pair.second), q.begin(), [&](auto v) { return mesh.point(v); });
-  // Common points first, in the same order.
+  // Moves common points to the front, in the same order.
   std::size_t common = 0;
   for (std::size_t i = 0; i < 3; ++i) {
     const auto same = std::find(q.begin() + static_cast<std::ptrdiff_t>(common), q.end(), p[i]);
@@ -42,7 +42,7 @@ bool meet_elsewhere(const CgalMesh& mesh, const FacePair& pair) {
   switch (common) {
     case 0:
       return true;
-    case 1:  // they meet elsewhere only if the side across from the point does
+    case 1:  // the triangles meet elsewhere only if the side opposite to the common point does
       return CGAL::do_intersect(Segment(p[1], p[2]), Triangle3(q[0], q[1], q[2])) ||
              CGAL::do_intersect(Segment(q[1], q[2]), Triangle3(p[0], p[1], p[2]));
     case 2:
@@ -59,7 +59,7 @@ double diagonal(const CgalMesh& mesh) {
   return glm::length(glm::dvec3(box.xmax() - box.xmin(), box.ymax() - box.ymin(), box.zmax() - box.zmin()));
 }
 
-/// New faces take the triangle of the nearest old face, through edges.
+/// Gives new faces the triangle of the nearest old face, through edges.
 void name_new_faces(CgalSurface& surface) {
   std::deque<Face> queue;
   for (const Face face : surface.mesh.faces()) {
@@ -74,7 +74,7 @@ void name_new_faces(CgalSurface& surface) {
   }
 }
 
-/// The part with fewer intersections, or nothing.
+/// Returns the part with fewer intersections, or nullopt.
 std::optional<CgalSurface> resolve(const TriangleSoup& soup, const std::vector<std::uint32_t>& triangles,
                                    std::size_t& resolved) {
   CgalSurface surface = to_cgal(soup, triangles);
@@ -102,7 +102,7 @@ void append(TriangleSoup& to, const TriangleSoup& from, const CgalSurface& surfa
     const auto [a, b, c] = corners(surface.mesh, face);
     to.triangles.push_back({offset + a.idx(), offset + b.idx(), offset + c.idx()});
     const std::uint32_t named = surface.triangle[face];
-    const std::uint32_t source = named == CgalSurface::kNew ? first_triangle : named;  // a part that was built again
+    const std::uint32_t source = named == CgalSurface::kNew ? first_triangle : named;  // a part that was rebuilt
     to.object.push_back(from.object[source]);
     to.source_face.push_back(from.source_face[source]);
   }
@@ -135,7 +135,7 @@ TriangleSoup resolve_intersections(const TriangleSoup& soup, RepairRecord& recor
     if (within[part] > 0) {
       try {
         better = resolve(soup, parts.triangles[part], resolved);
-      } catch (const std::exception&) {  // CGAL's assertions, on what it did not think of
+      } catch (const std::exception&) {  // CGAL's assertions, for unforeseen input
         ++failed;
       }
     }

@@ -20,21 +20,21 @@ using mesh::find_root;
 using mesh::Side;
 using mesh::side_of_plane;
 
-using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;  // of CGAL, its kernel alone (LGPL)
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;  // CGAL's kernel only (LGPL)
 
 constexpr std::uint32_t kNone = 0xffffffffu;
 
-/// Are c and d on the same side of the line through a and b, all four on one plane?
+/// Returns whether c and d are on the same side of the line through a and b, all four on one plane.
 bool same_half_plane(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, const glm::dvec3& d) {
   const auto at = [](const glm::dvec3& p) { return Kernel::Point_3(p.x, p.y, p.z); };
   return CGAL::coplanar_orientation(at(a), at(b), at(c), at(d)) == CGAL::POSITIVE;
 }
 
-/// A triangle at an edge of more than two, with its place around the edge.
+/// A triangle at an edge of more than two triangles, with its place around the edge.
 struct Spoke {
   std::uint32_t half_edge;  // 3 · triangle + corner
   std::uint32_t apex;
-  bool opens;  // the solid begins here, going counter-clockwise around the edge as seen against its direction
+  bool opens;  // the solid begins here, counter-clockwise around the edge as seen against its direction
   int half = 0;
 };
 
@@ -65,13 +65,14 @@ class Joiner {
   [[nodiscard]] std::uint32_t position(std::uint32_t corner) const { return soup_.triangles[corner / 3][corner % 3]; }
   [[nodiscard]] std::uint32_t vertex(std::uint32_t corner) const { return graph_.vertex[position(corner)]; }
   static std::uint32_t next(std::uint32_t corner) { return corner % 3 == 2 ? corner - 2 : corner + 1; }
-  /// The half-edge's corners at the edge's two ends, lower vertex first.
+  /// Returns the half-edge's corners at the edge's two ends, lower vertex first.
   [[nodiscard]] std::pair<std::uint32_t, std::uint32_t> ends(std::uint32_t half_edge) const {
     const std::uint32_t other = next(half_edge);
     return vertex(half_edge) < vertex(other) ? std::pair(half_edge, other) : std::pair(other, half_edge);
   }
 
-  /// Across edges of two triangles, each is wound as the one that reached it first; of each patch the fewer turn.
+  /// Winds each triangle consistently with the neighbour, across an edge of two triangles, from which it was first
+  /// reached; of each patch the minority is reversed.
   void wind_patches() {
     std::vector<bool> seen(turn_.size(), false);
     std::vector<std::uint32_t> patch;
@@ -120,9 +121,10 @@ class Joiner {
     }
   }
 
-  /// Sorts the triangles around the edge and joins those that bound a solid, as brackets: one whose back looks
-  /// counter-clockwise opens, one whose back looks clockwise closes. At one angle, closing comes first: the two sides
-  /// of a plate go on to the next triangles of their sides, the wall between two solids to each one's own.
+  /// Sorts the triangles around the edge and joins those that bound a solid, as brackets: a triangle whose back looks
+  /// counter-clockwise opens, one whose back looks clockwise closes. At equal angles, closing comes first: the two
+  /// sides of a plate are joined to the next triangles on their sides, and the wall between two solids to the triangles
+  /// of each solid.
   void link_around(std::uint32_t edge) {
     const glm::dvec3 &a = soup_.positions[graph_.edges[edge].a], &b = soup_.positions[graph_.edges[edge].b];
     std::vector<Spoke> spokes;
@@ -146,7 +148,8 @@ class Joiner {
       return std::tie(s.opens, s.half_edge) < std::tie(t.opens, t.half_edge);
     });
     std::vector<std::uint32_t> open;
-    for (int round = 0; round < 2; ++round) {  // the second time, what is still open meets what is still closed
+    // in the second round, remaining opening triangles meet remaining closing ones
+    for (int round = 0; round < 2; ++round) {
       for (const Spoke& spoke : spokes) {
         if (mate_[spoke.half_edge] != kNone) continue;
         if (spoke.opens && round == 0) open.push_back(spoke.half_edge);
@@ -182,8 +185,8 @@ class Joiner {
     return {fan_[ends(half_edge).first], fan_[ends(half_edge).second]};
   }
 
-  /// Calls `visit` with each set of half-edges at the edge that have the same key, if they are more than one pair that
-  /// is joined: indices of which `key` holds the ends would not say who is joined to whom.
+  /// Calls `visit` with each set of half-edges at the edge that have the same key, if the set is larger than one joined
+  /// pair: indices whose ends have that `key` would not determine the pairs.
   template <typename Key, typename Visit>
   void for_each_crowd(std::uint32_t edge, Key key, Visit visit) const {
     if (graph_.around(edge).size() < 2) return;
@@ -197,8 +200,8 @@ class Joiner {
     }
   }
 
-  /// A surface that touches itself along one edge, and around both of its ends is one fan, cannot be said by indices:
-  /// all but one of its pairs there are cut off, each triangle alone. True if there was such an edge.
+  /// Cuts off all but one pair of triangles, each triangle alone, where a surface touches itself along one edge and is
+  /// one fan around both ends: indices cannot represent that. Returns whether there was such an edge.
   bool detach_crowded() {
     std::set<std::uint32_t> detached;
     const auto detach_all_but_a_pair = [&](std::span<const std::uint32_t> crowd) {
@@ -221,7 +224,7 @@ class Joiner {
     return !detached.empty();
   }
 
-  /// What the result's indices say that the soup's did not.
+  /// Counts the changes of indices between the soup and the result.
   void count() {
     std::set<std::pair<std::uint32_t, std::uint32_t>> uses;  // (position, fan)
     for (std::uint32_t corner = 0; corner < fan_.size(); ++corner) uses.emplace(position(corner), fan_[corner]);
@@ -231,7 +234,7 @@ class Joiner {
         ++record_[RepairKind::moved];
       }
     }
-    // Each fan is one position in the end: a use of a second position is a merge, a second use of one is a split.
+    // Each fan becomes one position: a second position used by a fan is a merge, a second use of a position is a split.
     record_[RepairKind::merged] += uses.size() - fans_;
     record_[RepairKind::split_vertex] += uses.size() - used.size();
     record_[RepairKind::unused] += soup_.positions.size() - used.size();
@@ -274,8 +277,8 @@ class Joiner {
   const EdgeGraph& graph_;
   RepairRecord& record_;
   std::vector<bool> turn_;
-  std::vector<std::uint32_t> mate_;  // for each half-edge, the one it is joined to
-  std::vector<std::uint32_t> fan_;   // for each corner
+  std::vector<std::uint32_t> mate_;  // for each half-edge, the one that it is joined to
+  std::vector<std::uint32_t> fan_;   // fan of each corner
   std::uint32_t fans_ = 0;
   std::uint64_t detached_ = 0;
 };

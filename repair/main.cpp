@@ -1,5 +1,5 @@
-// penumbra-repair: repairs one mesh in a process of its own, the one program here that contains CGAL's GPL packages.
-// Not for users: penumbra starts it, gives it the mesh as a file and takes its answer from its standard output
+// penumbra-repair: repairs one mesh in a process of its own, the only program here that contains CGAL's GPL packages.
+// Not for users: penumbra starts it, passes the mesh as a file and reads its answer from its standard output
 // (mesh/repair.cpp).
 
 #include "base/error.hpp"
@@ -26,7 +26,7 @@ using namespace penumbra;
 
 struct Answer {
   mesh::WireWriter head, payload;
-  mesh::Repaired repaired;  ///< what the payload says without copying it
+  mesh::Repaired repaired;  ///< data that the payload refers to without copying
 };
 
 Answer message(mesh::HelperStatus status) {

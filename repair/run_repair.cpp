@@ -18,7 +18,7 @@ namespace {
 
 constexpr int kMostPasses = 8;  // two suffice for all but tangled meshes; each costs a sort of all edges
 
-/// The sentences, in the order of the steps. {} is the count.
+/// Sentences about the steps, in their order. {} is the count.
 constexpr std::array<std::pair<RepairKind, std::string_view>, static_cast<std::size_t>(RepairKind::kinds)> kSentences =
     {{
         {RepairKind::repeated, "removed {} triangles with two corners at one point"},
@@ -39,7 +39,7 @@ constexpr std::array<std::pair<RepairKind, std::string_view>, static_cast<std::s
         {RepairKind::unused, "dropped {} positions that no triangle used"},
     }};
 
-/// One after another; a step of CGAL's that fails leaves the soup as it was.
+/// Runs steps one after another; a CGAL step that fails leaves the soup unchanged.
 class Pass {
  public:
   Pass(const TriangleSoup& soup, const RepairOptions& options) : soup_(soup), options_(options) {}
@@ -86,7 +86,7 @@ class Pass {
   RepairRecord record_;
 };
 
-/// Rims of the joined soup: edges of one triangle, by indices.
+/// Counts the boundary edges of the joined soup: edges of one triangle, by indices.
 std::uint64_t count_open_edges(const TriangleSoup& soup) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> triangles;
   for (const Triangle& t : soup.triangles) {

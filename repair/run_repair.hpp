@@ -4,7 +4,8 @@
 
 namespace penumbra::repair {
 
-/// The work of `penumbra-repair`: what mesh::repair promises, in this process. `options.weld` is a length of 0 or more.
+/// Does the work of `penumbra-repair`, described at mesh::repair, in the current process. `options.weld` is a length of
+/// 0 or more.
 mesh::Repaired run_repair(const mesh::TriangleSoup& soup, const mesh::RepairOptions& options);
 
 }  // namespace penumbra::repair
