@@ -1,3 +1,5 @@
+// A method that delegates each light to one of two engines with equal results.
+
 #include "engines/engine_by_light.hpp"
 
 #include "base/assert.hpp"
@@ -22,7 +24,7 @@ class EngineByLight final : public visibility::Method {
   void prepare_mesh(const visibility::SceneFloats& scene) override {
     scene_ = &scene;
     usual_.has_mesh = other_.has_mesh = usual_.has_view = other_.has_view = false;
-    samples_ = nullptr;  // they are of the mesh before
+    samples_ = nullptr;  // the old samples belong to the previous mesh
     current_ = nullptr;
     give_mesh(usual_);
   }

@@ -7,11 +7,11 @@
 
 namespace penumbra::engines {
 
-/// What the option `engine` of a method that has both asks for.
+/// Values of the option `engine` of a method that has both engines.
 enum class Engine : std::uint8_t {
-  automatic,  ///< the GPU; vectors where there is none
-  vulkan,     ///< the device
-  vectors,    ///< the processor's own vector units, for what they can do
+  automatic,  ///< the GPU; vectors if there is none
+  vulkan,     ///< the Vulkan device
+  vectors,    ///< the processor's own vector units, for lights that they support
 };
 
 inline constexpr visibility::ChoiceOption kEngine{
@@ -22,7 +22,8 @@ inline constexpr visibility::ChoiceOption kEngine{
     "native "
     "where there is no GPU, or it cannot do the light. The same bits"};
 
-/// Whether a method runs on vector units where they can do its light. Looks for a GPU only for Engine::automatic.
+/// Returns whether a method runs on vector units for lights that they support. Looks for a GPU only for
+/// Engine::automatic.
 bool runs_on_vectors(const render::Machine& machine, Engine engine);
 
 }  // namespace penumbra::engines

@@ -7,21 +7,24 @@
 #include <memory>
 #include <type_traits>
 
-/// The tables of methods. Each family exports its own, a row a method, made by the functions below; the program joins
-/// them and names no method itself.
+/// Tables of methods. Each family exports its own, with a row for each method, made by the functions below; the program
+/// joins the tables and names no method itself.
 namespace penumbra::engines {
 
-/// What there is to know of a method before it is made, and how it is made.
+/// Properties of a method that are known before it is made, and its factory.
 struct MethodRow {
   using Options = visibility::MethodOptions;
 
-  visibility::MethodDescription description;  ///< without options
-  /// With these options. Throws UsageError for options that it does not have, or that exclude each other.
+  visibility::MethodDescription description;  ///< description with default options
+  /// Returns the description with the given options. Throws UsageError for unknown options, or options that exclude
+  /// each other.
   std::function<visibility::MethodDescription(const Options&)> describe;
   std::function<std::unique_ptr<visibility::Method>(const render::Machine&, const Options&)> make;
-  /// Whether this light's shadows are computed on the Vulkan device. Looks for a GPU only where that decides.
+  /// Returns whether the light's shadows are computed on the Vulkan device. Looks for a GPU only if the answer depends
+  /// on it.
   std::function<bool(const render::Machine&, const Options&, const visibility::Light&)> on_device;
-  int precedence = 0;  ///< rows with more come first, whatever their family; the others in the order of the tables
+  int precedence = 0;  ///< rows with higher values come first, regardless of family; others keep the order of the
+                       ///< tables
 };
 
 template <auto kDescribe>
@@ -35,7 +38,7 @@ visibility::MethodDescription describe_with(const visibility::MethodOptions& opt
   }
 }
 
-/// A method that runs on the Vulkan device.
+/// Makes the row of a method that runs on the Vulkan device.
 template <auto kDescribe, auto kMake>
 MethodRow on_device() {
   return {describe_with<kDescribe>({}), describe_with<kDescribe>,
@@ -45,7 +48,7 @@ MethodRow on_device() {
           [](const render::Machine&, const visibility::MethodOptions&, const visibility::Light&) { return true; }};
 }
 
-/// A method of two engines, which chooses. `kOnVectors`: does it choose the processor for this light?
+/// Makes the row of a method with two engines. `kOnVectors` returns whether the method uses the processor for a light.
 template <auto kDescribe, auto kMake, auto kOnVectors>
 MethodRow on_either(int precedence = 0) {
   return {describe_with<kDescribe>({}), describe_with<kDescribe>, kMake,
@@ -55,7 +58,8 @@ MethodRow on_either(int precedence = 0) {
           precedence};
 }
 
-/// A method that runs on the processor: an instance says what it is, without a Vulkan device.
+/// Makes the row of a method that runs on the processor: an instance, made without a Vulkan device, gives the
+/// description.
 template <auto kMake>
 MethodRow on_processor() {
   const auto describe = [](const visibility::MethodOptions& options) {

@@ -1,3 +1,5 @@
+// View samples by the GPU's visibility buffer, by scan conversion, or by a tree of boxes.
+
 #include "engines/view_sampler.hpp"
 
 #include "engines/engine_choice.hpp"

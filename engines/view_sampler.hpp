@@ -7,12 +7,12 @@
 
 namespace penumbra::engines {
 
-/// View samples by the faster of two engines, with the same bits: the GPU's visibility buffer, or, without a GPU, scan
-/// conversion on the processor's vector units. Neither knows holes or orthographic cameras: a tree of boxes finds what
-/// is seen through and by them.
+/// Computes view samples by the faster of two engines with equal results: the GPU's visibility buffer, or, without a
+/// GPU, scan conversion on the processor's vector units. Neither supports holes or orthographic cameras: for these a
+/// tree of boxes is used.
 class ViewSampler {
  public:
-  /// Uploads the scene, which must outlive this object, if a GPU is to draw it.
+  /// `scene`, which must outlive this object, is uploaded if a GPU draws it.
   ViewSampler(const render::Machine& machine, const visibility::SceneFloats& scene);
   /// Throws ResourceError for pictures that the device cannot draw.
   visibility::ViewSamples find(const visibility::PinholeCamera& camera);

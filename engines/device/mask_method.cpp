@@ -1,3 +1,6 @@
+// Host of mask methods on the Vulkan device: runs their kernels over bands of a tile until all lists fit, and settles
+// open light samples by exact predicates.
+
 #include "engines/device/mask_method.hpp"
 
 #include "base/assert.hpp"
@@ -11,7 +14,7 @@
 namespace penumbra::device {
 namespace {
 
-constexpr std::uint32_t kBlockRows = 8;  // the heights of all kernels' blocks of pixels divide it
+constexpr std::uint32_t kBlockRows = 8;  // a multiple of the heights of all kernels' blocks of pixels
 constexpr std::uint32_t kFirstQuestions = 1U << 14;
 
 }  // namespace
@@ -74,7 +77,7 @@ void MaskMethod::evaluate(const visibility::Tile& tile) {
   view_.load(tile);
   render::grow(*device_, masks_, "masks", tile_pixels() * layout_.words * 4);
   render::grow(*device_, counts_, "visible light samples", tile_pixels() * 4);
-  // Bands of rows, cut in two where the lists of one would be more than a buffer can hold.
+  // Bands of rows, divided in two if a band's lists would exceed the largest buffer.
   std::vector<visibility::Tile> bands{{0, tile.row_count}};
   while (!bands.empty()) {
     const visibility::Tile band = bands.back();

@@ -21,20 +21,20 @@
 
 namespace penumbra::device {
 
-/// What became of one run over a band of rows.
+/// Result of one run over a band of rows.
 enum class Attempt : std::uint8_t {
-  done,       ///< lists of questions may still have been too short
-  again,      ///< lists have grown, or loops are shorter now
-  too_large,  ///< a list would be larger than a storage buffer can be: cut the band in two
+  done,       ///< success, except that lists of questions may have been too short
+  again,      ///< must be repeated: lists have grown, or loops are shorter now
+  too_large,  ///< a list would exceed the largest storage buffer: the band must be divided in two
 };
 
-/// A method on the Vulkan device that finds which light samples each view sample sees. What comes before and after its
-/// lists and kernels is the same for all: uploads, tiles, lists that grow, open light samples decided by exact
-/// predicates, masks and V. The twin of vectors::MaskMethod.
+/// Base class of methods on the Vulkan device that compute the light samples visible from each view sample. Implements
+/// the steps around a method's lists and kernels that are the same for all: uploads, tiles, growing lists, open light
+/// samples decided by exact predicates, masks and V. The twin of vectors::MaskMethod.
 ///
-/// Kernels write into masks() (MaskLayout) and counts() (visible light samples of a pixel; of a pixel that sees none,
-/// or all, the mask says nothing), and append questions to questions(), each of as many bytes as the constructor was
-/// told, after a gpu::QuestionHead. The base is virtual so that a method can have another interface beside this one.
+/// Kernels write into masks() (MaskLayout) and counts() (visible light samples of a pixel; if none or all are visible,
+/// the mask is undefined), and append questions to questions(), each with the number of bytes given to the constructor,
+/// after a gpu::QuestionHead. The base is virtual so that a method can have another interface as well.
 class MaskMethod : public virtual visibility::Method {
  public:
   MaskMethod(const render::Device& device, visibility::MethodDescription description, std::uint64_t question_bytes);
@@ -48,29 +48,30 @@ class MaskMethod : public virtual visibility::Method {
   void read_masks(std::span<std::uint32_t> masks) override;
   void read_visibility(std::span<float> visibility) override;
   std::vector<visibility::PassTime> take_pass_times() override { return times_.take(); }
-  /// listRetries: a list was too short; loopRetries: a driver ended a loop; splitBands: a band was cut in two; and what
-  /// count() was told.
+  /// Returns listRetries (a list was too short), loopRetries (a driver ended a loop), splitBands (a band was divided in
+  /// two), and the counters added by count().
   [[nodiscard]] std::map<std::string, std::uint64_t> counters() const override { return counters_; }
   [[nodiscard]] std::uint64_t memory_bytes() const override { return device_->peak_bytes() - others_bytes_; }
 
  protected:
-  /// Once a mesh, before its upload: what the method adds to triangles. It must keep it.
+  /// Called once for each mesh, before its upload: returns the method's additions to triangles, which the method must
+  /// keep alive.
   virtual TriangleNotes note_triangles() { return {}; }
-  /// Once a light: lists and passes. Returns how the kernels lay masks out.
+  /// Called once for each light: makes lists and passes. Returns the kernels' layout of masks.
   virtual MaskLayout prepare_casters() = 0;
-  /// Lists and kernels over a band of the tile's rows. What is recorded last, this submits.
+  /// Records lists and kernels for a band of the tile's rows. The caller submits the last recorded commands.
   virtual Attempt run(const visibility::Tile& band) = 0;
-  /// A driver ended a kernel's loop too soon (QuestionHead::cut_off): shorter ones are to follow.
+  /// Called if a driver ended a kernel's loop too soon (QuestionHead::cut_off): shortens loops.
   virtual void shorten_loops();
-  /// What the first `count` questions are about.
+  /// Returns the bits that the first `count` questions are about.
   virtual std::vector<OpenBits> open_bits(std::uint32_t count) = 0;
-  /// After open_bits: decides and settles. For questions on whose answers others hang.
+  /// Called after open_bits: decides and settles the questions. Override if later questions depend on earlier answers.
   virtual void answer(std::span<const OpenBits> questions);
-  /// After the last band, where kernels leave counts() to a pass of its own.
+  /// Called after the last band, for kernels that compute counts() in a separate pass.
   virtual void finish() {}
-  /// Adds to the counters after a band.
+  /// Adds the method's counters after a band.
   virtual void count([[maybe_unused]] std::map<std::string, std::uint64_t>& counters) {}
-  /// Bytes of a pixel in the largest buffer of the method's own.
+  /// Returns the bytes for each pixel in the largest of the method's own buffers.
   [[nodiscard]] virtual std::uint64_t bytes_per_pixel() const { return 0; }
 
   std::vector<gpu::MaskWord> decide(std::span<const OpenBits> questions);
@@ -80,7 +81,7 @@ class MaskMethod : public virtual visibility::Method {
   [[nodiscard]] const render::Device& device() const { return *device_; }
   [[nodiscard]] const visibility::SceneFloats& scene() const { return *scene_; }
   [[nodiscard]] const visibility::TriangleTree& tree() const { return tree_; }
-  [[nodiscard]] float scale() const { return scale_; }  ///< of everything on the device
+  [[nodiscard]] float scale() const { return scale_; }  ///< scale of all lengths on the device
   [[nodiscard]] bool has_light() const { return light_ != nullptr; }
   [[nodiscard]] const visibility::Light& light() const { return *light_; }
   [[nodiscard]] const visibility::DeviceLight& device_light() const { return device_light_; }
@@ -96,11 +97,11 @@ class MaskMethod : public virtual visibility::Method {
   [[nodiscard]] visibility::PassTimes& times() { return times_; }
 
  private:
-  /// False: the band is too large.
+  /// Returns false if the band is too large.
   bool run_whole(const visibility::Tile& band);
 
   const render::Device* device_;
-  std::uint64_t others_bytes_;  ///< that were on the device before this
+  std::uint64_t others_bytes_;  ///< bytes on the device before this method was made
   visibility::MethodDescription description_;
   render::ComputePass settle_;
   render::Commands commands_;

@@ -1,3 +1,5 @@
+// Exact decisions about light samples that kernels left open, in parallel.
+
 #include "engines/device/open_judge.hpp"
 
 #include <tbb/blocked_range.h>

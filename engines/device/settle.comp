@@ -1,10 +1,10 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
+// Writes the host's exact decisions into the masks of visible light samples, and updates the counts of visible samples.
 #include "engines/device/mask.shared.h"
 
-// Puts what the host decided into the masks, and counts what that changes. Several words may be for one word of a mask:
-// they decide different bits, or say the same of one.
+// Several of the host's words may concern one word of a mask: they decide different bits, or agree on a bit.
 
 layout(local_size_x = 64) in;
 layout(scalar, binding = 0) buffer Masks { uint masks[]; };

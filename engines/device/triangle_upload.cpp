@@ -1,3 +1,5 @@
+// Uploads a scene's triangle hierarchy to the device.
+
 #include "engines/device/triangle_upload.hpp"
 
 #include <utility>

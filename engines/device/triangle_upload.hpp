@@ -15,15 +15,15 @@
 
 namespace penumbra::device {
 
-/// What a method adds to triangles; empty: nothing.
+/// A method's additions to triangles; empty: none.
 struct TriangleNotes {
-  std::span<const std::uint32_t> tags;  ///< for each triangle bits to be OR-ed to the number of its plane
-  std::span<const std::int8_t> turns;   ///< −1: its second and third corner change places
+  std::span<const std::uint32_t> tags;  ///< for each triangle, bits that are OR-ed to the index of its plane
+  std::span<const std::int8_t> turns;   ///< −1: the triangle's second and third corner are exchanged
 };
 
-/// A hierarchy of triangles on the device, scaled: of its nodes two texels a child (visibility::node_texels); of its
-/// triangles, for each slot of each leaf, one texel in each of three lists: (a, triangle), (b, plane and tag), (c,
-/// light that it is the body of).
+/// A hierarchy of triangles on the device, scaled: two texels for each child of a node (visibility::node_texels); for
+/// each slot of each leaf, one texel in each of three lists: (a, triangle), (b, plane and tag), (c, light whose body it
+/// is).
 class TriangleUpload {
  public:
   void prepare(const render::Device& device, const visibility::SceneFloats& scene, const visibility::TriangleTree& tree,
@@ -31,7 +31,7 @@ class TriangleUpload {
 
   [[nodiscard]] const render::Buffer& nodes() const { return *nodes_; }
   [[nodiscard]] const render::Buffer& corners(std::size_t i) const { return *corners_[i]; }
-  /// To be changed, and written again.
+  /// Nodes that a method may change and write again.
   [[nodiscard]] std::vector<visibility::Texel>& node_texels() { return node_texels_; }
   void write_nodes() { nodes_->write(std::span<const visibility::Texel>(node_texels_)); }
 

@@ -1,3 +1,5 @@
+// Uploads view samples to the device, row by row as tiles need them.
+
 #include "engines/device/view_upload.hpp"
 
 #include "visibility/receivers.hpp"

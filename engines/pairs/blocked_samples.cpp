@@ -1,5 +1,6 @@
-// Eisemann and Décoret 2007, section 4; planes instead of a projection as in Sintorn, Eisemann and Assarsson 2008,
-// section 4.3 (lights that are no planes): no division, nothing to clip.
+// Light samples that a triangle hides from a view sample: Eisemann and Décoret 2007, section 4; planes instead of a
+// projection as in Sintorn, Eisemann and Assarsson 2008, section 4.3 (for lights that are not planar): no division, and
+// no clipping.
 
 #include "engines/pairs/blocked_samples.hpp"
 
@@ -22,7 +23,7 @@
 #define PENUMBRA_PAIRS_HALF_SPACES
 namespace penumbra::pairs {
 
-/// normal · w + offset, off by less than `error`.
+/// The half-space normal · w + offset ≥ 0, evaluated with an error below `error`.
 struct HalfSpace {
   glm::dvec3 normal{0};
   double offset = 0, error = 0;
@@ -42,15 +43,15 @@ namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Of 32 light samples, which are certainly in all half-spaces, and which are certainly neither that nor outside of
-/// one.
+/// Classifies 32 light samples: those certainly inside all half-spaces, and those that are neither certainly inside all
+/// nor certainly outside of one.
 HalfSpaceBits in_all_here(const HalfSpaces& spaces, const double* ways, std::size_t stride) {
   const hn::CappedTag<double, 8> d;
   const std::size_t lanes = hn::Lanes(d);
   HalfSpaceBits bits;
   for (std::size_t i = 0; i < 32; i += lanes) {
     const auto x = hn::LoadU(d, ways + i), y = hn::LoadU(d, ways + stride + i), z = hn::LoadU(d, ways + 2 * stride + i);
-    auto least = hn::Set(d, 1.0);  // +: certainly inside of all; 0 … open; −: outside of one
+    auto least = hn::Set(d, 1.0);  // positive: certainly inside all; 0: open; negative: outside of one
     auto certain = hn::Set(d, 1.0);
     for (const HalfSpace& space : spaces) {
       const auto value = hn::MulAdd(hn::Set(d, space.normal.x), x,
@@ -81,7 +82,7 @@ namespace {
 
 HWY_EXPORT(in_all_here);
 
-/// Is it certain that all, or that none, of a box's w are in a half-space?
+/// Whether all, or none, of a box's w are certainly in a half-space.
 struct BoxSide {
   bool all = false, none = false;
 };
@@ -116,10 +117,10 @@ void BlockedSamples::hide(const glm::vec3& p, const std::array<glm::vec3, 3>& co
   const double way = farthest_ + glm::length(to_origin);
   const glm::dvec3 first(corners[0]), e1 = glm::dvec3(corners[1]) - first, e2 = glm::dvec3(corners[2]) - first;
   const glm::dvec3 normal = glm::cross(e1, e2);
-  // p's side of the plane; the sides of the light below are of the same normal.
+  // p's side of the plane; the half-spaces for the light's side below have the same normal.
   const double normal_error = kDeterminant * glm::length(e1) * glm::length(e2), height = -glm::dot(normal, d[0]);
   const bool certain = std::abs(height) > normal_error * length[0];
-  const double turn = height < 0 ? 1 : -1;  // D has the sign of −height
+  const double turn = height < 0 ? 1 : -1;  // D has the opposite sign of height
 
   HalfSpaces spaces;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -132,7 +133,8 @@ void BlockedSamples::hide(const glm::vec3& p, const std::array<glm::vec3, 3>& co
   std::array<BoxSide, 4> sides;
   std::ranges::transform(spaces, sides.begin(), [&](const HalfSpace& space) { return side_of(space, middle_, half_); });
   if (!certain) {
-    // Its edges may be the wrong way round, all three: then only what passes two of them on different sides is certain.
+    // All three edges may have the wrong orientation: then the triangle is certainly missed only if it lies on
+    // different sides of two of them.
     const auto edges = std::span(sides).first(3);
     if (std::ranges::any_of(edges, &BoxSide::all) && std::ranges::any_of(edges, &BoxSide::none)) {
       ++counts.missed;

@@ -1,3 +1,6 @@
+// Projection of view samples and triangles onto the far plane of a light's frustum (Sintorn, Eisemann and Assarsson
+// 2008, sections 4.1 and 4.2), with error bounds.
+
 #include "engines/pairs/far_plane.hpp"
 
 #include <glm/common.hpp>
@@ -10,10 +13,10 @@
 namespace penumbra::pairs {
 namespace {
 
-/// Nearer than this share of the far plane's distance, a triangle's footprint is not computed but bounded.
+/// The footprint of a triangle nearer than this fraction of the far plane's distance is bounded instead of computed.
 constexpr double kNear = 0x1p-12;
 
-/// A triangle cut at two heights: up to five corners.
+/// A triangle clipped between two heights: up to five corners.
 class Slab {
  public:
   Slab(const std::array<glm::dvec3, 3>& corners, double from, double to)
@@ -48,8 +51,8 @@ class Slab {
 FarPlane::FarPlane(const LightBox& light, double side, double reach, std::span<const std::uint32_t> pixels,
                    std::span<const glm::vec3> p, double per_pixel)
     : light_(light), side_(side) {
-  // Fewer than 8 roundings of twice the reach, and cuts interpolate with as many; light samples are `off` their plane,
-  // which moves what a segment meets by no more.
+  // Fewer than 8 roundings of twice the reach, and clipping interpolates with as many; light samples are `off` their
+  // plane, which moves the point that a segment meets by no more.
   error_ = 0x1p-46 * reach + (light.sun ? 0 : light.off);
   for (const std::uint32_t pixel : pixels) {
     const glm::dvec3 at = place(p[pixel]);
@@ -77,8 +80,9 @@ double FarPlane::nearest(const std::array<glm::vec3, 3>& corners) const {
   return std::min({place(corners[0]).z, place(corners[1]).z, place(corners[2]).z}) - 2 * error_;
 }
 
-/// Of what is nearer than n = kNear · far: q = k (x − f l), k ≥ far / n and f in [0, 1) as above. If x is beyond all
-/// of the light and its centre in one direction by m > 0, q is there beyond m far / n.
+/// Returns whether the part of a triangle nearer than n = kNear · far certainly projects outside of the window: q = k
+/// (x − f l), with k ≥ far / n and f in [0, 1) as in the header. If x is beyond all of the light and its centre in one
+/// direction by m > 0, q is beyond m far / n in that direction.
 bool FarPlane::misses_window(std::span<const glm::dvec3> polygon) const {
   const double least = 0.99 / kNear;
   for (int i = 0; i < 2; ++i) {
@@ -99,7 +103,7 @@ void FarPlane::add_upper(Footprint& footprint, std::span<const glm::dvec3> polyg
     for (const glm::dvec2& l : light_.corners()) {
       const glm::dvec2 way = light_.sun ? -l : glm::dvec2(x) - l;
       footprint.add(light_.sun ? glm::dvec2(x) + k * way : l + k * way);
-      // Of x by its error, once more for each of its height over that; of a sun's slope by `off`.
+      // Error of x, once more for each multiple of its height in the extrapolation; error of a sun's slope: `off`.
       const double error = light_.sun ? error_ * (4 + 4 * glm::length(l)) + std::abs(k) * (light_.off + 0x1p-50)
                                       : k * error_ * (4 + 4 * glm::length(way) / x.z);
       footprint.error = std::max(footprint.error, error);

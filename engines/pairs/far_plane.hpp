@@ -13,23 +13,23 @@
 namespace penumbra::pairs {
 
 /// The far plane of a light's frustum, parallel to the light through the farthest view sample: view samples are
-/// projected on it from the light's centre and lie in lists of light pixels, and a triangle's footprint there is the
-/// hull of what the light's corners project of its corners (Sintorn, Eisemann and Assarsson 2008, sections 4.1
-/// and 4.2).
+/// projected onto it from the light's centre and stored in lists of light pixels, and a triangle's footprint there is
+/// the hull of the projections of its corners from the light's corners (Sintorn, Eisemann and Assarsson 2008, sections
+/// 4.1 and 4.2).
 ///
-/// The footprint has the place q of each view sample p that a point x of the triangle hides a light point l from, also
-/// of those above the plane: with k = f / x_h and s = p_h / x_h, 1 ≤ s ≤ k, p = l + s (x − l), so
-///     q = p f / p_h = k x + k (1/s − 1) l = k x + (1 − k) l',  l' = l (k − k/s) / (k − 1),
-/// and l' is between the centre, 0, and l. For each l' that is the place where the segment from it through x ends, and
-/// those of a triangle's x are a triangle, of all l' and x the hull of those of corners. A sun is the same from
-/// infinity: q = x − (f − x_h) σ', σ' between 0 and σ.
+/// The footprint contains the place q of each view sample p, also of those above the plane, that a point x of the
+/// triangle hides a light point l from: with k = f / x_h and s = p_h / x_h, 1 ≤ s ≤ k, p = l + s (x − l), so
+/// q = p f / p_h = k x + k (1/s − 1) l = k x + (1 − k) l',  l' = l (k − k/s) / (k − 1),
+/// and l' is between the centre, 0, and l. For each l', q is the end of the segment from l' through x. For one l' the
+/// ends of all x of a triangle form a triangle; for all l' and x their hull is that of the corners' projections. A sun
+/// is the same from infinity: q = x − (f − x_h) σ', σ' between 0 and σ.
 class FarPlane {
  public:
-  /// Wider than that the frustum is not: |a| or |b| of a view sample over its distance h.
+  /// Largest slope of the frustum: |a| or |b| of a view sample over its distance h.
   static constexpr double kWidest = 8;
 
   FarPlane() = default;
-  /// `side`: −1 for what a two-sided light sees behind it. `reach`: at least the length of all positions. View samples
+  /// `side`: −1 for view samples behind a two-sided light. `reach`: at least the length of all positions. View samples
   /// on the other side are left out; those in the light's plane up to rounding, or outside of the frustum, are in
   /// `outside`.
   FarPlane(const LightBox& light, double side, double reach, std::span<const std::uint32_t> pixels,
@@ -37,19 +37,20 @@ class FarPlane {
 
   [[nodiscard]] bool empty() const { return pixels_.empty(); }
   [[nodiscard]] const std::vector<std::uint32_t>& outside() const { return outside_; }
-  /// Of a number in its lists.
+  /// Returns the pixel of an index in the lists.
   [[nodiscard]] std::uint32_t pixel(std::uint32_t number) const { return pixels_[number]; }
   [[nodiscard]] std::span<const double> heights() const& { return heights_; }
   std::span<const double> heights() const&& = delete;
   [[nodiscard]] LightPixels& light_pixels() { return light_pixels_; }
 
-  /// No points and not everywhere: it hides nothing from any view sample.
+  /// Returns the triangle's footprint; one without points and not `everywhere` hides nothing from any view sample.
   [[nodiscard]] Footprint footprint(const std::array<glm::vec3, 3>& corners) const;
-  /// How near to the light it is at least: less than the height of what it hides anything from.
+  /// Returns a lower bound of the triangle's distance from the light: less than the height of every view sample from
+  /// which it hides anything.
   [[nodiscard]] double nearest(const std::array<glm::vec3, 3>& corners) const;
 
  private:
-  /// (a, b, h), h growing away from the light on this side.
+  /// Returns (a, b, h), h growing with the distance from the light on this side.
   [[nodiscard]] glm::dvec3 place(const glm::vec3& x) const {
     glm::dvec3 at = light_.place(glm::dvec3(x));
     at.z *= side_;
@@ -59,7 +60,7 @@ class FarPlane {
   [[nodiscard]] bool misses_window(std::span<const glm::dvec3> polygon) const;
 
   LightBox light_;
-  double side_ = 1, error_ = 0;  ///< of a place
+  double side_ = 1, error_ = 0;  ///< error_: error of a place
   double far_ = 0;
   std::vector<std::uint32_t> pixels_, outside_;
   std::vector<double> heights_;

@@ -1,3 +1,5 @@
+// A planar light or a sun in orthonormal axes, with bounds of its light samples and of their rounding.
+
 #include "engines/pairs/light_box.hpp"
 
 #include "base/assert.hpp"
@@ -30,7 +32,8 @@ LightBox make_light_box(const visibility::Light& light) {
     box.axis = glm::normalize(glm::cross(frame.u, frame.v));
   }
   box.along = glm::cross(box.axis, box.across);
-  constexpr double kFlattest = 0x1p-8;  // of a direction's length, across the sun: double keeps 44 digits of the rest
+  constexpr double kFlattest = 0x1p-8;  // component of a direction along the axis, relative to its length; double keeps
+                                        // 44 digits of the remainder
   double reach = 0;
   for (const glm::vec3& l : light.points) {
     if (box.sun && !(-box.place(glm::dvec3(l)).z >= kFlattest * glm::length(glm::dvec3(l)))) {
@@ -47,8 +50,8 @@ LightBox make_light_box(const visibility::Light& light) {
         std::max(reach, box.sun ? glm::length(x) / glm::dot(-box.axis, x) : glm::length(x) + glm::length(box.origin));
     if (!box.sun) box.off = std::max(box.off, std::abs(box.place(x).z));
   }
-  // Axes are off unit length and right angles by a few roundings each, and so are (a, b, h) relative to what they are
-  // made of: together fewer than 32 of the largest length.
+  // Axes deviate from unit length and right angles by a few roundings each, and so does (a, b, h) relative to its
+  // inputs: together fewer than 32 roundings of the largest length.
   box.off += 0x1p-48 * reach;
   return box;
 }

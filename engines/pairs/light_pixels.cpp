@@ -1,5 +1,5 @@
-// View samples in lists of light pixels: Johnson et al. 2005, section 3; Sintorn, Eisemann and Assarsson 2008,
-// section 4.
+// View samples in lists of light pixels (irregular z-buffer): Johnson et al. 2005, section 3; Sintorn, Eisemann and
+// Assarsson 2008, section 4.
 
 #include "engines/pairs/light_pixels.hpp"
 
@@ -16,7 +16,7 @@ double cross(const glm::dvec2& o, const glm::dvec2& a, const glm::dvec2& b) {
   return (a.x - o.x) * (b.y - o.y) - (a.y - o.y) * (b.x - o.x);
 }
 
-/// The pixels of [from, to] among `count`.
+/// Returns the pixels of [from, to] among `count`.
 PixelRange range_of(double from, double to, std::uint32_t count) {
   if (!(to >= 0) || !(from < count)) return {};
   const double last = count - 1.0;
@@ -33,14 +33,14 @@ LightPixels::LightPixels(std::span<const glm::dvec2> places, double error, doubl
     lower_ = glm::min(lower_, place);
     upper_ = glm::max(upper_, place);
   }
-  // Square pixels, of a window that may be long and narrow.
+  // Square pixels, also in a long and narrow window.
   const glm::dvec2 size = glm::max(upper_ - lower_, glm::dvec2(std::numeric_limits<double>::min()));
   const double pixels = std::max(1.0, static_cast<double>(places.size()) / per_pixel);
   const double across = std::sqrt(pixels) * std::sqrt(size.x / size.y);
   columns_ = static_cast<std::uint32_t>(std::clamp(across, 1.0, std::min(pixels, 8192.0)));
   rows_ = static_cast<std::uint32_t>(std::clamp(pixels / columns_, 1.0, 8192.0));
   scale_ = glm::dvec2(columns_, rows_) / size;
-  // A place less the window's corner, times the scale: two roundings of no more than the largest coordinate.
+  // A place minus the window's corner, times the scale: two roundings of at most the largest coordinate.
   const double largest = std::max({std::abs(lower_.x), std::abs(lower_.y), std::abs(upper_.x), std::abs(upper_.y)});
   error_ = (error + 0x1p-51 * largest) * std::max(scale_.x, scale_.y) + 0x1p-30;
 
@@ -63,8 +63,8 @@ std::uint32_t LightPixels::pixel_of(const glm::dvec2& place) const {
 }
 
 /// Andrew's monotone chain. It may drop a corner that rounding puts inside: a cross product of differences u and v, u.x
-/// between 0 and v.x, is off by 2⁻⁵¹ |v.x| (|u.y| + |v.y|), so what is dropped is no farther out than 2⁻⁵⁰ of the
-/// points' extent, as often as there are points. The margin has that in it.
+/// between 0 and v.x, is off by 2⁻⁵¹ |v.x| (|u.y| + |v.y|), so each dropped corner is outside by at most 2⁻⁵⁰ of the
+/// points' extent, once for each point. The margin includes this error.
 PixelHull LightPixels::hull_of(const Footprint& footprint) const {
   PixelHull hull;
   std::array<glm::dvec2, Footprint::kMost> points;
@@ -87,7 +87,7 @@ PixelHull LightPixels::hull_of(const Footprint& footprint) const {
   for (auto it = points.begin(); it != end; ++it) add(*it, 0);
   const std::size_t right = hull.count - 1;
   for (auto it = end - 1; it != points.begin();) add(*--it, right);
-  if (hull.count > 1) --hull.count;  // the first once more
+  if (hull.count > 1) --hull.count;  // the first corner is repeated at the end
   return hull;
 }
 
@@ -101,8 +101,8 @@ PixelRange LightPixels::rows_of(const PixelHull& hull) const {
   return range_of(from - hull.margin, to + hull.margin, rows_);
 }
 
-/// The hull, grown by its margin in x and y, is in a row where the hull itself is within the margin of the row; what of
-/// an edge is there is found to a few roundings of its extent, which the margin has in it too.
+/// The hull, enlarged by its margin in x and y, is in a row where the hull itself is within the margin of the row; the
+/// part of an edge in a row is computed to a few roundings of its extent, which the margin includes, too.
 PixelRange LightPixels::columns_of(const PixelHull& hull, std::uint32_t row) const {
   if (hull.everywhere) return {0, columns_ - 1};
   const double low = row == 0 ? -std::numeric_limits<double>::max() : row - 2 * hull.margin,

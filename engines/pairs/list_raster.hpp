@@ -16,23 +16,23 @@
 
 namespace penumbra::pairs {
 
-/// View samples in lists of light pixels, and what is drawn over them.
+/// View samples in lists of light pixels, and their depths, for the triangles drawn over them.
 struct ListRaster {
   LightPixels& grid;
-  std::span<const double> depths;  ///< of each place: grows away from the light
+  std::span<const double> depths;  ///< depth of each place: grows with the distance from the light
   std::span<const std::uint32_t> triangles;
 };
 
 struct ListCounts {
-  std::uint64_t footprints = 0;  ///< (triangle, band of rows) that were scan-converted
-  std::uint64_t lists = 0;       ///< (triangle, light pixel) whose lists were walked
+  std::uint64_t footprints = 0;  ///< pairs (triangle, band of rows) that were scan-converted
+  std::uint64_t lists = 0;       ///< pairs (triangle, light pixel) whose lists were traversed
 };
 
-/// Draws triangles conservatively. `footprint_of(triangle)` is where each may hide anything from;
-/// `nearest_of(triangle)` is no more than the depth of all that it hides anything from. For each place (its number) in
-/// the lists of light pixels that it touches, `stays(triangle, number, state)` is asked; false: the place leaves its
-/// list for good. Cores share out bands of rows, each with a `State` of its own, which `finish(state)` gets at the end,
-/// one at a time.
+/// Draws triangles conservatively. `footprint_of(triangle)` returns the region in which the triangle may hide anything;
+/// `nearest_of(triangle)` a lower bound of the depths of all places that it hides anything from. For each place (its
+/// index) in the lists of touched light pixels, `stays(triangle, number, state)` is called; false removes the place
+/// from its list for good. Cores share bands of rows, each core with its own `State`, which `finish(state)` gets at the
+/// end; calls of `finish` do not overlap.
 template <typename State, typename FootprintOf, typename NearestOf, typename Stays, typename Finish>
 ListCounts draw(const ListRaster& in, const FootprintOf& footprint_of, const NearestOf& nearest_of, const Stays& stays,
                 const Finish& finish) {
@@ -49,7 +49,7 @@ ListCounts draw(const ListRaster& in, const FootprintOf& footprint_of, const Nea
   std::mutex finishing;
   const auto draw_band = [&](PixelRange band, State& state, ListCounts& own) {
     const std::size_t first = std::size_t{band.first} * grid.columns();
-    // Of each list how many are left, and how deep the deepest of them was.
+    // For each list: the number of places left, and the depth of the deepest.
     std::vector<std::uint32_t> left((band.last + std::size_t{1}) * grid.columns() - first);
     std::vector<double> deepest(left.size(), -std::numeric_limits<double>::max());
     for (std::size_t at = 0; at < left.size(); ++at) {

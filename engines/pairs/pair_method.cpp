@@ -1,3 +1,5 @@
+// Base of methods that start from all pairs of a view sample and a light sample and remove the hidden ones.
+
 #include "engines/pairs/pair_method.hpp"
 
 #include "base/assert.hpp"
@@ -17,7 +19,7 @@
 namespace penumbra::pairs {
 namespace {
 
-constexpr std::size_t kMostMaskBytes = std::size_t{256} << 20U;  // of a tile
+constexpr std::size_t kMostMaskBytes = std::size_t{256} << 20U;  // bytes of a tile's masks
 
 }  // namespace
 
@@ -59,7 +61,7 @@ std::uint32_t PairMethod::max_tile_rows() const {
       std::clamp<std::size_t>(kMostMaskBytes / row_bytes, 1, std::max(1U, samples_->height)));
 }
 
-/// Conditions (1) and (2) of the truth of a pair, exactly.
+/// Decides conditions (1) and (2) of the truth of a pair, exactly.
 void PairMethod::start(std::size_t pixel) {
   const std::span<std::uint32_t> mask = visible(static_cast<std::uint32_t>(pixel));
   if (!visibility::is_receiver(*scene_, *light_, *samples_, pixel)) {

@@ -14,13 +14,14 @@
 
 namespace penumbra::pairs {
 
-/// A method that starts from all pairs of a view sample and a light sample above its horizon, and takes away those that
-/// some triangle is between: `Cartesian product` and `view-sample mapping` methods. What a method adds is which
-/// triangles are tried against which view samples. Each bit is the truth of its pair if no triangle is left out that
-/// hides something, because hide() says of each the truth. No order matters, so neither does the number of threads.
+/// A method that starts from all pairs of a view sample and a light sample above its horizon, and removes the pairs
+/// that have a triangle between them: `Cartesian product` and `view-sample mapping` methods. Derived methods choose the
+/// triangles that are tested against each view sample. Each bit is the truth of its pair if no hiding triangle is left
+/// out, because hide() is exact for each triangle. The order of triangles is irrelevant, and so is the number of
+/// threads.
 class PairMethod : public visibility::Method {
  public:
-  /// `pass`: the name of its one stage in the pass times.
+  /// `pass`: name of its single stage in the pass times.
   PairMethod(visibility::MethodDescription description, std::string pass);
 
   [[nodiscard]] const visibility::MethodDescription& description() const override { return description_; }
@@ -36,15 +37,15 @@ class PairMethod : public visibility::Method {
   [[nodiscard]] std::uint64_t memory_bytes() const override;
 
  protected:
-  /// Takes away (hide) what triangles are between, of the view samples of `pixels`, which see some of the light so far.
-  /// Adds to the counters what is its own.
+  /// Removes (with hide) the pairs that triangles hide, for the view samples of `pixels`, which still see some of the
+  /// light. Adds the method's counters.
   virtual void block(std::span<const std::uint32_t> pixels, std::map<std::string, std::uint64_t>& counters) = 0;
-  /// After a light is set.
+  /// Called after a light is set.
   virtual void prepare_casters() {}
-  /// The order that light samples have in visible(): `order[i]` is the number of the i-th. Empty: their own.
+  /// Returns the order of light samples in visible(): `order[i]` is the index of the i-th. Empty: the original order.
   [[nodiscard]] virtual std::vector<std::uint32_t> light_order(const visibility::Light&) { return {}; }
 
-  /// Of a pixel, what is not known to be hidden.
+  /// Returns the bits of a pixel's light samples that are not known to be hidden.
   [[nodiscard]] std::span<std::uint32_t> visible(std::uint32_t pixel) {
     return std::span(masks_).subspan((pixel - first_pixel_) * words_, words_);
   }
@@ -58,15 +59,15 @@ class PairMethod : public visibility::Method {
   [[nodiscard]] bool may_hide(std::uint32_t triangle, std::uint32_t pixel) const {
     return visibility::may_occlude(*scene_, *light_, static_cast<std::uint32_t>(samples_->triangle[pixel]), triangle);
   }
-  /// Takes away what the triangle is between, if it may hide anything from that pixel.
+  /// Clears the light samples that the triangle hides from the pixel, if the triangle may hide anything from it.
   void hide(std::uint32_t triangle, std::uint32_t pixel, PairCounts& counts) {
     if (may_hide(triangle, pixel)) blocked_.hide(samples_->p[pixel], scene_->corners(triangle), visible(pixel), counts);
   }
   [[nodiscard]] const BlockedSamples& blocked() const { return blocked_; }
-  /// Tries every triangle that something in the box of p and the light may meet: for view samples that a method's own
-  /// search cannot place.
+  /// Tests every triangle that meets the bounding box of p and the light: for view samples that a method's own search
+  /// cannot handle.
   void try_all(std::uint32_t pixel, PairCounts& counts);
-  /// Triangles of the tree near what is between the light and [lower, upper].
+  /// Calls `visit` for triangles of the tree near the hull of the light and the box [lower, upper].
   template <typename Visit>
   void for_each_towards_light(const glm::vec3& lower, const glm::vec3& upper, Visit&& visit) const {
     const visibility::Bounds bounds = towards_light({lower, upper});
@@ -75,7 +76,7 @@ class PairMethod : public visibility::Method {
   void add(const PairCounts& counts);
 
   [[nodiscard]] const visibility::SceneFloats& scene() const { return *scene_; }
-  /// With its samples in light_order().
+  /// Returns the light with its samples in light_order().
   [[nodiscard]] const visibility::Light& light() const { return *light_; }
   [[nodiscard]] const visibility::ViewSamples& samples() const { return *samples_; }
   [[nodiscard]] const visibility::TriangleTree& tree() const { return tree_; }
@@ -90,13 +91,13 @@ class PairMethod : public visibility::Method {
   const visibility::SceneFloats* scene_ = nullptr;
   visibility::TriangleTree tree_;
   const visibility::Light* light_ = nullptr;
-  visibility::Light sorted_;          // the light, if its samples are in another order
+  visibility::Light sorted_;          // the light, if its samples are reordered
   std::vector<std::uint32_t> order_;  // light_order
   visibility::Bounds bounds_;
   BlockedSamples blocked_;
   const visibility::ViewSamples* samples_ = nullptr;
   std::size_t words_ = 0, first_pixel_ = 0;
-  std::vector<std::uint32_t> masks_, full_;  // of the tile; of one that sees all
+  std::vector<std::uint32_t> masks_, full_;  // masks of the tile; mask of a pixel that sees all
   double milliseconds_ = 0;
   std::map<std::string, std::uint64_t> counters_;
 };

@@ -6,8 +6,8 @@
 
 namespace penumbra::vectors {
 
-/// Of `Lanes` lanes of `Parts` parts each, for each choice of them (bit i: lane i): the parts of those chosen, in their
-/// order, and any part after them. Inside pack-inl.hpp only.
+/// Table for compacting `Lanes` lanes of `Parts` parts each: for each subset of lanes (bit i: lane i), the parts of the
+/// chosen lanes in order, then arbitrary parts. Inside pack-inl.hpp only.
 template <std::size_t Lanes, std::size_t Parts>
 constexpr auto chosen_lanes() {
   std::array<std::array<std::uint8_t, Lanes * Parts>, std::size_t{1} << Lanes> all{};

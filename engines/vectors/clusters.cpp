@@ -1,3 +1,5 @@
+// Classifies view samples against the light, and splits blocks of pixels into clusters.
+
 #include "engines/vectors/clusters.hpp"
 
 #include "base/size1.hpp"
@@ -16,7 +18,8 @@ namespace {
 
 constexpr std::size_t kMostClusters = 4;
 
-/// In the middle of the box's longest side, if a gap of more than a third of it is there; else the end.
+/// Returns the split position: the middle of the box's longest side if there is a gap of more than a third of it; else
+/// the end.
 std::size_t split(std::span<GridSample> samples) {
   glm::vec3 lower(samples.front().p), upper(lower);
   for (const GridSample& at : samples) {
@@ -43,7 +46,7 @@ std::size_t split(std::span<GridSample> samples) {
 bool KnownNormals::is_known(std::uint32_t triangle) const {
   const std::atomic_ref answer(answers_[triangle]);
   Answer found = answer.load(std::memory_order_relaxed);
-  if (found == Answer::not_asked) {  // of two threads that ask at once, both find the same
+  if (found == Answer::not_asked) {  // if two threads compute an answer at once, both get the same
     found = visibility::normal_is_known(scene_->corners(triangle)) ? Answer::known : Answer::unknown;
     answer.store(found, std::memory_order_relaxed);
   }
@@ -60,12 +63,12 @@ SampleClass classify(const ViewInput& view, std::uint32_t pixel, GridSample& at)
   at.pixel = pixel;
   at.plane = scene.plane[triangle];
   at.height = glm::dot(grid.axis, from);
-  // (bound level)
+  // Error of the height: (bound level) of docs/edge-scatter.md.
   const float error_level = 16 * kRound * grid.skew * (size1(from) + size1(at.p)) + grid.deviation;
   if (std::abs(at.height) <= error_level) return SampleClass::open;
   if (at.height < 0) return SampleClass::other_side;
   at.foot = glm::vec2(glm::dot(grid.across, from), glm::dot(grid.along, from)) + grid.first_cell;
-  // (bound horizon)
+  // Error of the horizon: (bound horizon) of docs/edge-scatter.md.
   const glm::vec3 normal = normals.is_known(triangle) ? samples.n[pixel] : glm::vec3(0);
   at.above = {glm::dot(normal, light.u), glm::dot(normal, light.v), -glm::dot(normal, from)};
   at.above_error = 16 * kRound * (size1(from) + size1(light.u) + size1(light.v) + size1(at.p)) + grid.deviation;

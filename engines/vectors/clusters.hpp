@@ -11,21 +11,21 @@
 /// From pixels to clusters of view samples. Inside engines/vectors/ only.
 namespace penumbra::vectors {
 
-/// What is certain of a view sample's light samples before any triangle is looked at.
+/// Classification of a view sample that is certain before any triangle is tested.
 enum class SampleClass : std::uint8_t {
-  in_front,      ///< p is on this side of the light, and the light or a part of it may be above p's horizon
+  in_front,      ///< p is on this side of the light, and at least a part of the light may be above p's horizon
   all_visible,   ///< background, or a triangle that receives no shadow
   none_visible,  ///< the light is below p's horizon
   open,          ///< p is within rounding of the light's plane: exact predicates decide
   other_side,    ///< p is on the light's other side
 };
 
-/// Of which triangles the normal is known (visibility::normal_is_known): each is looked at when somebody asks, since of
-/// a large mesh few are seen. Any thread may ask.
+/// Triangles with known normals (visibility::normal_is_known), computed on demand, since few triangles of a large mesh
+/// are seen. Thread-safe.
 class KnownNormals {
  public:
   KnownNormals() = default;
-  /// The scene must outlive it, or the next one that it is of.
+  /// The scene, or the scene that replaces it, must outlive this object.
   explicit KnownNormals(const visibility::SceneFloats& scene) : scene_(&scene), answers_(scene.triangles.size()) {}
 
   [[nodiscard]] bool is_known(std::uint32_t triangle) const;
@@ -35,7 +35,7 @@ class KnownNormals {
   enum class Answer : std::uint8_t { not_asked, known, unknown };
 
   const visibility::SceneFloats* scene_ = nullptr;
-  mutable std::vector<Answer> answers_;  // of each triangle; std::atomic_ref
+  mutable std::vector<Answer> answers_;  // for each triangle; accessed by std::atomic_ref
 };
 
 struct ViewInput {
@@ -46,11 +46,11 @@ struct ViewInput {
   const KnownNormals& normals;
   float scale;
 };
-/// Fills `at` if the answer is in_front or open.
+/// Classifies a view sample. Fills `at` if the result is in_front or open.
 SampleClass classify(const ViewInput& view, std::uint32_t pixel, GridSample& at);
 
-/// Splits view samples at gaps (an object in front of a floor) into at most four parts that follow one another; within
-/// a part the order stays. Returns where each part ends.
+/// Splits view samples at gaps (an object in front of a floor) into at most four consecutive parts, each in the
+/// original order. Returns the end of each part.
 std::vector<std::size_t> split_at_gaps(std::span<GridSample> samples);
 
 }  // namespace penumbra::vectors

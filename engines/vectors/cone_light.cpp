@@ -1,3 +1,6 @@
+// Spheres and suns on the vector engine: each view sample's cone, its error bounds, and a rectangle behind the cones of
+// neighbouring view samples. See docs/edge-scatter.md, "Spheres and suns".
+
 #include "engines/vectors/cone_light.hpp"
 
 #include "base/error.hpp"
@@ -17,23 +20,23 @@
 namespace penumbra::vectors {
 namespace {
 
-/// A thinner sun's light points are float32's rounding away from one another.
+/// A thinner sun's light points differ by no more than float32's rounding.
 constexpr double kThinnest = 0x1p-12;
-constexpr std::uint32_t kCells = 16;  ///< of a side, without light samples
-constexpr double kFlattest = 0x1p8;   ///< tan of half a cone's angle; from a flatter one, exact predicates decide
+constexpr std::uint32_t kCells = 16;  ///< cells a side, without light samples
+constexpr double kFlattest = 0x1p8;   ///< tangent of half a cone's angle; for wider cones exact predicates decide
 constexpr double kRoundingOf = 0x1p-24;
 
 double largest(const glm::dvec3& x) {
   return std::max({std::abs(x.x), std::abs(x.y), std::abs(x.z)});
 }
 
-/// Ways to the corners of the square around a cone.
+/// Returns directions to the corners of the square around a cone.
 std::array<glm::dvec3, 4> corners_of(const LightCone& cone) {
   const auto& [m, u, v] = cone;
   return {m - u - v, m + u - v, m + u + v, m - u + v};
 }
 
-/// A rectangle across an axis.
+/// A rectangle orthogonal to an axis.
 struct Rectangle {
   glm::dvec2 low{INFINITY}, high{-INFINITY};
 
@@ -57,9 +60,9 @@ ConeLight::ConeLight(const visibility::Light& light, const visibility::SceneFloa
     const bool as_it_is = !light_samples_ && light.sun->tangent > 0;
     tangent_ = as_it_is ? light.sun->tangent : std::max(light.sun->tangent, kThinnest);
     const double farthest = 1 + 2 * tangent_;
-    // A light point, the middle and two axes rounded to float, which then are not quite at right angles.
+    // Error of a light point: the middle and two axes are rounded to float, and are then not exactly orthogonal.
     deviation_ = 8 * kRoundingOf * farthest;
-    // Heights are along −center: the least of the scene's box, and a bit more, so that no view sample is near it.
+    // Heights are along −center: the grid is slightly below the scene's box, so that no view sample is close to it.
     const glm::dvec3 toward = glm::normalize(glm::dvec3(light.center));
     const glm::dvec3 low = scale_ * glm::dvec3(scene.lower), high = scale_ * glm::dvec3(scene.upper);
     beyond_ = -(glm::dot(glm::max(toward, 0.0), high) + glm::dot(glm::min(toward, 0.0), low)) -
@@ -68,14 +71,14 @@ ConeLight::ConeLight(const visibility::Light& light, const visibility::SceneFloa
   }
   const double r = light.radius, reach = largest(glm::dvec3(light.center)) + r;
   visibility::check_size(light, visibility::box_of_sphere(light, static_cast<float>(scale_)), options.method);
-  deviation_ = scale_ * (2 * kRoundingOf * reach + 0x1p-147);  // √3 / 2 units in the last place, at most
+  deviation_ = scale_ * (2 * kRoundingOf * reach + 0x1p-147);  // at most √3 / 2 units in the last place
   reach_ = std::max(reach_, static_cast<float>(scale_ * reach * 1.0001));
   const glm::vec3 box(static_cast<float>(2.25 * r) + 0x1p-12F * reach_ / static_cast<float>(scale_));
   tree.for_each_near(light.center - box, light.center + box, [&](std::uint32_t triangle) {
     if (scene.casts_shadow[triangle] == 0 || scene.emits[triangle] == light.index) return;
     const auto corners = scene.corners(triangle);
     NearCaster& caster = near_.emplace_back();
-    for (std::size_t i = 0; i < 3; ++i)  // as edges have them
+    for (std::size_t i = 0; i < 3; ++i)  // scaled as edges are
       caster.corners[i] = glm::dvec3(corners[i] * static_cast<float>(scale_));
     std::ranges::sort(caster.corners, comes_first);
     caster.middle = (caster.corners[0] + caster.corners[1] + caster.corners[2]) / 3.0;
@@ -101,7 +104,7 @@ LightGrid ConeLight::make_grid() const {
     places.emplace_back(glm::dvec2(grid.first_cell) + share * glm::dvec2(grid.half_cells) * st);
   grid.tiles = make_light_tiles(places);
   grid.reach = reach_;
-  grid.cones = LightGrid::Cones{};  // clang 14 knows no emplace() for a type that ends with the class around it
+  grid.cones = LightGrid::Cones{};  // clang 14 cannot emplace() a type whose enclosing class is incomplete
   grid.cones->end = !light_.sun;
   grid.cones->deviation = static_cast<float>(deviation_ * 1.0001);
   grid.cones->reach = static_cast<double>(reach_);
@@ -126,25 +129,25 @@ SampleClass ConeLight::classify(const ViewInput& view, std::uint32_t pixel, Grid
     if (!(glm::length(cone.u) > 0 && kFlattest * glm::length(cone.middle) > glm::length(cone.u)))
       return SampleClass::open;
   }
-  // (bound horizon)
+  // Error of the horizon: (bound horizon) of docs/edge-scatter.md.
   const glm::dvec3 n = view.normals.is_known(triangle) ? glm::dvec3(view.samples.n[pixel]) : glm::dvec3(0);
   const glm::dvec3 above(glm::dot(n, cone.u), glm::dot(n, cone.v), glm::dot(n, cone.middle));
   const double from_p = light_.sun ? 0 : size1(glm::dvec3(at.p));
   const double error = 16 * kRoundingOf * (size1(cone.middle) + size1(cone.u) + size1(cone.v) + from_p) + deviation_;
-  // Of a dome's face the square, else the disk in it.
+  // Reach of the square for a dome's face, else of the disk in it.
   const double reach = light_.dome ? std::abs(above.x) + std::abs(above.y) : std::hypot(above.x, above.y);
   const double span = reach * (1 + 0x1p-20);
   at.above = glm::vec3(above);
   at.above_error = static_cast<float>(error);
   if (above.z + span < -error) return SampleClass::none_visible;
   if (!near_.empty() && touches(*view.grid.cones, cone, glm::dvec3(at.p))) return SampleClass::open;
-  // Areas end at the middle of half a face, too.
+  // Areas are also bounded by the middle of half a face.
   at.straddles = above.z - span <= error || (light_.dome && light_.dome->half && !light_samples_);
   return SampleClass::in_front;
 }
 
-/// May a caster meet the square around the disk, or its plane so near to it that floats do not know on which side?
-/// Yes where places there are not known to half a square either. (bound ends)
+/// Returns whether a caster may meet the square around the disk, or its plane so close to it that its side is not
+/// certain in float. Also true if places in the plane have errors of half a square or more. (bound ends)
 bool ConeLight::touches(const LightGrid::Cones& cones, const LightCone& cone, const glm::dvec3& p) const {
   const double around = around_disk(cones, cone);
   if (!(around < 1.5)) return true;
@@ -231,7 +234,7 @@ void see_cone(const LightGrid& grid, ClusterSample& at) {
   const LightCone& cone = grid.cones->of[at.cone];
   const double height = glm::length(cone.middle), radius = glm::length(cone.u);
   const glm::dvec3 across(grid.across), along(grid.along), axis(grid.axis);
-  // From the grid's coordinates to a way, and from that to those of the light.
+  // way_of maps the grid's coordinates to a direction; `turn` maps on to the light's coordinates.
   const glm::dmat3 way_of(across / glm::dot(across, across), along / glm::dot(along, along), -axis);
   const glm::dvec2 half(grid.half_cells);
   const glm::dvec3 x = half.x / glm::dot(cone.u, cone.u) * cone.u, y = half.y / glm::dot(cone.v, cone.v) * cone.v,
@@ -239,7 +242,7 @@ void see_cone(const LightGrid& grid, ClusterSample& at) {
   for (int i = 0; i < 3; ++i)
     at.turn[i] = glm::vec3(glm::dot(x, way_of[i]), glm::dot(y, way_of[i]), glm::dot(w, way_of[i]));
 
-  constexpr double kMore = 1.05;  // for what is of second order
+  constexpr double kMore = 1.05;  // allowance for second-order terms
   const double cells = std::max(half.x, half.y), deviation = static_cast<double>(grid.cones->deviation);
   const double per_tangent = cells * height / radius;
   const auto rounded = [](double bound) { return static_cast<float>(kMore * bound); };

@@ -1,3 +1,5 @@
+// Casters at the plane of the disk that a view sample sees of a sphere. See docs/edge-scatter.md, "Ends".
+
 #include "engines/vectors/disk_plane.hpp"
 
 #include <glm/common.hpp>
@@ -34,7 +36,7 @@ double around_disk(const LightGrid::Cones& cones, const LightCone& cone) {
 }
 
 bool meets_disk(const DiskPlane& plane, const NearCaster& caster, double slab, double around) {
-  if (std::abs(plane.height(caster.middle)) > caster.radius + slab) return false;  // as most are
+  if (std::abs(plane.height(caster.middle)) > caster.radius + slab) return false;  // the usual case
   const std::array<glm::dvec3, 3>& corners = caster.corners;
   const std::array heights{plane.height(corners[0]), plane.height(corners[1]), plane.height(corners[2])};
   if (std::ranges::min(heights) > slab || std::ranges::max(heights) < -slab) return false;

@@ -10,21 +10,21 @@
 #include <cmath>
 #include <tuple>
 
-/// Casters at the disk that a view sample sees of a sphere, as where a lamp's own body reaches into it.
-/// docs/edge-scatter.md, "Ends".
+/// Casters at the disk of a sphere that a view sample sees, for casters that reach into the light, such as a lamp's own
+/// body. docs/edge-scatter.md, "Ends".
 namespace penumbra::vectors {
 
-/// The disk's plane, in double. A vertex is on one side of it and a side of a caster passes through it at one place,
-/// whichever edge or triangle asks; vectors ask with the same operations.
+/// The disk's plane, in double. For every edge and triangle, a vertex is on the same side of the plane and a side of a
+/// caster crosses it at the same place; vector code uses the same operations.
 struct DiskPlane {
   DiskPlane(const LightCone& cone, const glm::dvec3& from);
 
-  /// Over p, less that of the plane; 0 and more is behind the disk.
+  /// Signed distance of x from the disk's plane along the axis; ≥ 0: behind the disk.
   [[nodiscard]] double height(const glm::dvec3& x) const { return dot(axis, x - p) - end; }
-  /// (s, t) of the foot of x in the plane: the unit disk.
+  /// Returns (s, t) of the orthogonal projection of x onto the plane: the disk is the unit disk.
   [[nodiscard]] glm::dvec2 place(const glm::dvec3& x) const { return {dot(u, x - p), dot(v, x - p)}; }
-  /// The place where the segment between points on either side passes through, the lexicographically first one given
-  /// first.
+  /// Returns the place where the segment between points on either side crosses the plane; `first` must be the
+  /// lexicographically smaller point.
   [[nodiscard]] glm::dvec2 pass(const glm::dvec3& first, const glm::dvec3& second) const {
     const double h = height(first);
     const glm::dvec2 from = place(first);
@@ -41,12 +41,12 @@ inline bool comes_first(const glm::dvec3& a, const glm::dvec3& b) {
   return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
 }
 
-/// Within this of the plane floats do not know on which side of it something is.
+/// Returns the distance from the plane within which float arithmetic does not determine a point's side.
 double slab_of(const LightGrid::Cones& cones);
-/// How much larger than the disk's the square is in which casters matter, given errors of places there.
+/// Returns the size of the square in which casters matter, relative to the disk's, given the errors of places there.
 double around_disk(const LightGrid::Cones& cones, const LightCone& cone);
 
-/// Does a caster's part within `slab` of the plane come within ±`around` of the disk's middle?
+/// Returns whether a caster's part within `slab` of the plane comes within ±`around` of the disk's centre.
 bool meets_disk(const DiskPlane& plane, const NearCaster& caster, double slab, double around);
 
 }  // namespace penumbra::vectors

@@ -1,4 +1,5 @@
-// First stage of methods on a processor: what is in the leaves that a walk finds, eight edges or triangles at a time.
+// First stage of methods on vector units: finds the edges or triangles in the leaves that a traversal visits, eight at
+// a time.
 
 #include "engines/vectors/find.hpp"
 
@@ -13,7 +14,7 @@ HWY_BEFORE_NAMESPACE();
 namespace penumbra::vectors::HWY_NAMESPACE {
 namespace {
 
-/// first, first + 1, … as the bits of floats (numbers_from of vectors-inl.hpp)
+/// Returns first, first + 1, … as the bits of floats (numbers_from of vectors-inl.hpp).
 V numbers_from(std::size_t first) {
   const hn::RebindToSigned<D> d;
   return hn::BitCast(D(), hn::Add(hn::Iota(d, 0), hn::Set(d, static_cast<std::int32_t>(first))));
@@ -24,8 +25,8 @@ hn::Mask<D> used_lanes(std::uint32_t used, std::size_t lane) {
   return hn::LoadMaskBits(D(), bytes);
 }
 
-/// Does something whose corners are all in n·x ≥ `least` for each of the four planes, between `low` and `high` along
-/// the axis, meet the shaft?
+/// Tests whether an object meets the shaft whose corners all have n·x ≥ `least` for each of the four planes, and lie
+/// between `low` and `high` along the axis.
 struct ShaftTest {
   const Shaft& shaft;
 
@@ -45,7 +46,7 @@ struct EdgeSideWide {
   Point n;
   V at, error;
   hn::Mask<D> none, positive, negative;  // positive: all of the cluster's p are in front
-  hn::Mask<D> nothing;                   // none, or in the cluster's own plane
+  hn::Mask<D> nothing;                   // no triangle, or one in the cluster's own plane
 };
 
 hn::Mask<D> equals(const WideWords& numbers, std::size_t lane, std::uint32_t number) {
@@ -76,7 +77,7 @@ HWY_INLINE EdgeSideWide side_of(const EdgeInput& in, const WideEdges& leaf, std:
   return s;
 }
 
-/// Are k_e's two parts opposite for all of the cluster, or both nothing? (bound side)
+/// Returns whether the two terms of k_e cancel, or are both zero, for the whole cluster. (bound side)
 hn::Mask<D> is_none(const EdgeSideWide& s, const EdgeSideWide& t) {
   return hn::Or(hn::Or(hn::And(s.positive, t.negative), hn::And(s.negative, t.positive)),
                 hn::And(s.nothing, t.nothing));
@@ -135,8 +136,8 @@ void add_edges(const EdgeInput& in, std::uint32_t number, EdgeTable& out) {
   }
 }
 
-/// All of the cluster's p are outside of the closed part that a triangle is of, and behind it (wound inward): another
-/// of the part then hides what it hides. (docs/view-sample.md, Closed casters)
+/// Returns whether all of the cluster's p are outside of a triangle's closed part and behind the triangle (wound
+/// inward): another triangle of the part then hides everything that it hides. (docs/view-sample.md, Closed casters)
 hn::Mask<D> seen_from_outside(const TriangleInput& in, const WideTriangles& leaf, std::size_t lane) {
   const D d;
   const hn::RebindToUnsigned<D> words;
@@ -188,7 +189,7 @@ void add_triangles(const TriangleInput& in, std::uint32_t number, TriangleTable&
   }
 }
 
-/// Leaves among the roots of which `add` puts nothing into the table.
+/// Removes leaves from `roots` for which `add` puts nothing into the table.
 template <typename Out, typename Add>
 void drop_idle_leaves(std::vector<std::uint32_t>& roots, Out& table, Add add) {
   std::erase_if(roots, [&](std::uint32_t root) {

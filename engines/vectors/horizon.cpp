@@ -1,3 +1,6 @@
+// Cuts masks of light samples at the plane of the carrying triangle: rows by whole columns, tiles by vectors of
+// samples.
+
 #include "engines/vectors/horizon.hpp"
 
 #include <algorithm>
@@ -22,7 +25,8 @@ std::uint32_t bits_of(Tag d, hn::Mask<Tag> which) {
   return bytes[0] | std::uint32_t{bytes[1]} << 8U;
 }
 
-/// Clears the `lanes` bits from `place` on of light samples that are not above, and returns those that may be.
+/// Clears the `lanes` bits from `place` on of light samples that are not above, and returns the bits of those that are
+/// uncertain.
 template <class Tag>
 std::uint32_t cut(Tag d, hn::Vec<Tag> value, float error, std::uint32_t place, std::uint16_t& word) {
   const std::uint32_t lanes = (1U << hn::Lanes(d)) - 1;
@@ -32,14 +36,14 @@ std::uint32_t cut(Tag d, hn::Vec<Tag> value, float error, std::uint32_t place, s
   return may_be & ~is_above & lanes;
 }
 
-/// Of which side a vector of light samples is, is certain where the limits of its sum are beyond this: they and the
-/// sum itself round three products and three sums of no more than four times these terms.
+/// Returns the limit beyond which a sum certainly tells the side of a vector of light samples: the limits and the sum
+/// round three products and three sums of at most four times these terms.
 float sure_of(const GridSample& at) {
   return at.above_error + 64 * kRound * (std::abs(at.above.x) + std::abs(at.above.y) + std::abs(at.above.z));
 }
 
-/// Bits of a row's tiles, at most sixteen from `first` on: which the horizon may pass, and which are all below it. On
-/// others it has no say.
+/// Tiles of a row, at most sixteen from `first` on, as bits: those that the horizon may cross, and those completely
+/// below it. The horizon does not affect other tiles.
 struct TilesAtHorizon {
   std::uint32_t passed = 0, below = 0;
 };
@@ -111,7 +115,7 @@ void cut_at_horizon_here(const LightGrid& grid, const GridSample& at, Open& open
     const float least = hn::GetLane(hn::MinOfLanes(d, value_of_row)),
                 most = hn::GetLane(hn::MaxOfLanes(d, value_of_row));
     const std::uint32_t lanes = (1U << hn::Lanes(d)) - 1, place = first % 16;
-    // From the side that is farthest below: beyond the first column that is above, all are.
+    // Begins at the side that is farthest below: after the first column that is above, all are.
     for (std::uint32_t i = 0; i < grid.columns; ++i) {
       const std::uint32_t column = per_column < 0 ? grid.columns - 1 - i : i;
       const float of_column = static_cast<float>(column) * per_column;

@@ -1,4 +1,5 @@
-// What may meet the hull of view samples and the light. Inside engines/vectors/ only, and in the stages of methods.
+// Tests whether edges or triangles may meet the hull of view samples and the light. Inside engines/vectors/ only, and
+// in the stages of methods.
 
 #if defined(PENUMBRA_VECTORS_HULL_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef PENUMBRA_VECTORS_HULL_INL_HPP
@@ -19,12 +20,12 @@ namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// One corner of a vectorful of edges or triangles, in the grid's axes relative to the cluster's middle.
+/// One corner of a vector of edges or triangles, in the grid's axes relative to the cluster's middle.
 struct Corners {
   V across, along, height;
 };
 
-/// Edges or triangles whose corners are not all beyond one of the hull's faces.
+/// Returns the edges or triangles whose corners are not all beyond one of the hull's faces.
 template <std::size_t kCount>
 M meets(const Hull& hull, const std::array<Corners, kCount>& corners) {
   V low = corners[0].height, high = low;
@@ -48,4 +49,4 @@ M meets(const Hull& hull, const std::array<Corners, kCount>& corners) {
 }  // namespace penumbra::vectors::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
-#endif  // once a target
+#endif  // once for each target

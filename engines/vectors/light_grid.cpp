@@ -1,3 +1,6 @@
+// Makes the grid of cells of a planar light, and the bounds of clusters of view samples. Error bounds:
+// docs/edge-scatter.md.
+
 #include "engines/vectors/light_grid.hpp"
 
 #include "engines/vectors/cone_light.hpp"
@@ -16,12 +19,13 @@ float float_size1(const glm::dvec3& x) {
   return static_cast<float>(size1(x));
 }
 
-/// Of a row in cells, as device passes compute it: (row · step) / 2¹⁶ modulo 1 into [−½, ½).
+/// Returns the shift of a row in cells, as device passes compute it: (row · step) / 2¹⁶ modulo 1, in [−½, ½).
 float shift_of(std::uint32_t row, std::uint32_t step) {
   return static_cast<float>(static_cast<int>((row * step + 32768U) & 0xffffU) - 32768) / 65536.0F;
 }
 
-/// across, along (X and Y of a point are products with them, in cells), axis (of unit length, to the side).
+/// Returns across, along (dot products with them give X and Y of a point in cells), and axis (of unit length, toward
+/// `side`).
 std::array<glm::dvec3, 3> axes_of(const glm::dvec3& u, const glm::dvec3& v, float side, const glm::vec2& half_cells) {
   const glm::dvec3 n = glm::cross(u, v);
   const double squared = glm::dot(n, n);
@@ -30,23 +34,23 @@ std::array<glm::dvec3, 3> axes_of(const glm::dvec3& u, const glm::dvec3& v, floa
           static_cast<double>(side) * n / std::sqrt(squared)};
 }
 
-/// A place in the plane of a light's stored points.
+/// A point in the plane of a light's stored points.
 struct Corner {
   glm::dvec3 at{0};
   double off = 0;
 };
-/// The lower left end of the rectangle around a light, moved into that plane.
+/// Returns the lower left corner of the rectangle around a light, moved into that plane.
 Corner corner_around(const LightGridInput& input) {
   const auto& [c, to_u, to_v] = input.plane;
   const glm::dvec3 u = to_u - c, v = to_v - c, n = glm::cross(u, v);
   const glm::dvec3 from = glm::dvec3(input.light.center) - glm::dvec3(input.light.u) - glm::dvec3(input.light.v) - c;
   const double s = glm::dot(from, glm::cross(v, n)) / glm::dot(n, n),
                t = glm::dot(from, glm::cross(n, u)) / glm::dot(n, n);
-  // In the plane for whatever s and t; then as visibility::PlanePoint rounds.
+  // The point is in the plane for all s and t; its rounding is that of visibility::PlanePoint.
   return {c + s * u + t * v, 0x1p-50 * (glm::length(c) + std::abs(s) * glm::length(u) + std::abs(t) * glm::length(v))};
 }
 
-/// Light samples in cells: within `deviation` of where they are stored.
+/// Returns tiles of the light samples in cells, each within `deviation` of its stored place.
 LightTiles tiles_of(const LightGrid& grid, const visibility::DeviceLight& light) {
   std::vector<glm::vec2> places;
   places.reserve(light.coordinates.size());
@@ -62,7 +66,7 @@ LightGrid make_light_grid(const LightGridInput& input) {
   LightGrid grid;
   grid.center = input.light.center;
   if (input.is_rectangle) {
-    // Three times a point and two more, with a rounding each.
+    // A multiple of a point and two more points, with a rounding each.
     grid.corner = 3.0 * input.plane[0] - input.plane[1] - input.plane[2];
     grid.corner_off = 0x1p-49 * static_cast<double>(input.reach);
   } else {
@@ -76,8 +80,8 @@ LightGrid make_light_grid(const LightGridInput& input) {
   grid.columns = in_rows ? input.columns : some;
   grid.deviation = input.light.deviation;
   if (!input.window) {
-    // Edges are placed from the frame's corner, and counting begins at the one in the stored points' plane: the frame's
-    // rounding is between the two, whether or not light samples show it.
+    // Edges are placed from the frame's corner, and counting begins at the corner in the plane of the stored points:
+    // the frame's rounding is the difference, whether or not light samples show it.
     const glm::dvec3 apart = glm::dvec3(input.light.center) - u - v - grid.corner;
     grid.deviation += 1.0001F * static_cast<float>(glm::length(apart));
   }
@@ -90,7 +94,7 @@ LightGrid make_light_grid(const LightGridInput& input) {
   grid.axis = glm::vec3(axes[2]);
   grid.axes = axes_of(input.plane[1] - input.plane[0], input.plane[2] - input.plane[0], input.side, grid.half_cells);
   if (const auto& window = input.window) {
-    grid.corner = window->corner;  // off by what (bound foot) says, and reach has the skew in it
+    grid.corner = window->corner;  // its error is that of (bound foot), and reach includes the skew
     grid.corner_off = 0x1p-49 * static_cast<double>(input.reach);
     grid.axes = axes_of(0.5 * window->u, 0.5 * window->v, input.side, grid.half_cells);
   }
@@ -118,8 +122,8 @@ LightGrid make_light_grid(const LightGridInput& input) {
 
 namespace {
 
-/// How fast the hull of view samples and a rectangle in the light's plane (`low`, `high`: in cells from its middle)
-/// opens to the right, left, along and back, in cells for a unit of height.
+/// Returns the slopes by which the hull of view samples and a rectangle in the light's plane (`low`, `high`: in cells
+/// from its middle) widens to the right, left, along and back, in cells for a unit of height.
 template <typename At>
 std::array<float, 4> slopes_of(const LightGrid& grid, std::span<const At> samples, const glm::vec2& low,
                                const glm::vec2& high) {
@@ -180,12 +184,12 @@ ClusterSample complete(const LightGrid& grid, const Cluster& cluster, const Grid
   ClusterSample at;
   static_cast<GridSample&>(at) = placed;
   at.local = at.p - cluster.middle;
-  // As dot() of find.cpp: one order, nothing fused.
+  // Same order as dot() of find.cpp, without fused operations.
   const auto dot = [&](const glm::vec3& n) { return (at.local.x * n.x + at.local.y * n.y) + at.local.z * n.z; };
   at.in_grid = {dot(grid.across), dot(grid.along), dot(grid.axis)};
   at.far = glm::length(at.local) * 1.0001F;
   at.away = glm::length(at.p - grid.center) * 1.0001F;
-  constexpr float kMore = 1.05F;  // for what is of second order
+  constexpr float kMore = 1.05F;  // allowance for second-order terms
   const float cells = 16 * kRound * grid.skew * (grid.half_cells.x + grid.half_cells.y);
   const float lengths = at.away / at.height;
   Placing& place = at.on_grid;
@@ -195,7 +199,8 @@ ClusterSample complete(const LightGrid& grid, const Cluster& cluster, const Grid
   place.per_reach = 8 * kRound;
   place.per_foot = kMore * (kRound * (4 * lengths + 8) + grid.deviation / at.height);
   place.fixed = kMore * (kRound * grid.per_length * 4 * at.away + cells + grid.per_length * grid.deviation);
-  // A way is off by 8 ε of its lengths, and aside by as many cells: seen from a small light's height, that is more.
+  // A direction is off by 8 ε of its length, and sideways by as many cells: for a small light relative to its height,
+  // that is more.
   const glm::vec2 off = glm::abs(at.foot - grid.first_cell), window = 2.0F * grid.half_cells + 2.0F;
   place.per_lift = 64 * kRound *
                    (1 + 0.125F * (std::max(off.x, off.y) + grid.per_length * at.height) / std::min(window.x, window.y));
@@ -204,7 +209,7 @@ ClusterSample complete(const LightGrid& grid, const Cluster& cluster, const Grid
   at.window = {glm::vec2(-0.5F), 2.0F * grid.half_cells - 0.5F};
   at.lean = (glm::vec2(-0.5F) - at.foot) / at.height;
   at.end = at.height;
-  // What floats leave open is decided in double at the corner of what is stored, which is not quite this frame's.
+  // Samples that floats leave open are decided in double at the stored corner, which is slightly off this frame's.
   at.per_lean = kRound * (8 * grid.per_length * (1 + lengths) + (16 + 8 * lengths) * glm::length(at.lean)) +
                 kMore * (grid.per_length + glm::length(at.lean)) * grid.deviation / at.height;
   if (grid.cones) see_cone(grid, at);

@@ -1,3 +1,5 @@
+// Sorts light samples that are not in rows into tiles of sixteen, with look-up tables by row and column.
+
 #include "engines/vectors/light_tiles.hpp"
 
 #include <algorithm>
@@ -12,7 +14,7 @@ std::uint32_t divided_up(std::uint32_t x, std::uint32_t by) {
   return (x + by - 1) / by;
 }
 
-/// As many as there are tiles in each, so that edges pass few.
+/// Returns a number of rows close to the number of tiles in each, so that edges pass few tiles.
 std::uint32_t rows_for(std::uint32_t tiles) {
   return std::min(static_cast<std::uint32_t>(std::lround(std::sqrt(static_cast<double>(tiles)))),
                   LightTiles::kMostRows);
@@ -44,7 +46,7 @@ void add_row(LightTiles& tiles, std::span<const glm::vec2> places, std::span<std
 /// `right`: the largest X of all samples.
 void add_steps(LightTiles& tiles, float right) {
   constexpr float kPerCell = 4;
-  // What is looked up has been rounded twice, and so are the steps' limits here, by 2⁻²⁴ of the way from −½ each.
+  // A looked-up value has been rounded twice, and so have the steps' limits here, by 2⁻²⁴ of the distance from −½ each.
   const float margin = 0x1p-21F * (right + 1);
   tiles.steps_per_cell = std::min(kPerCell, static_cast<float>(LightTiles::kMostSteps) / (right + 1));
   tiles.steps = static_cast<std::int32_t>((right + 0.5F) * tiles.steps_per_cell) + 2;
@@ -53,7 +55,8 @@ void add_steps(LightTiles& tiles, float right) {
     const auto low = tiles.tile_low.begin() + row.first, high = tiles.tile_high.begin() + row.first;
     for (std::int32_t step = 0; step < tiles.steps; ++step) {
       const float at = static_cast<float>(step) / tiles.steps_per_cell - 0.5F, next = at + 1 / tiles.steps_per_cell;
-      const bool is_first = step == 0, is_last = step + 1 == tiles.steps;  // which stand for all beyond
+      const bool is_first = step == 0, is_last = step + 1 == tiles.steps;  // first and last step also stand for
+                                                                           // everything beyond
       const auto first = is_first ? high : std::lower_bound(high, high + row.count, at - margin);
       const auto end = is_last ? low + row.count : std::upper_bound(low, low + row.count, next + margin);
       tiles.tiles_at.push_back(static_cast<std::int32_t>(row.first + (first - high)) |
@@ -80,7 +83,7 @@ LightTiles make_light_tiles(std::span<const glm::vec2> places) {
     add_row(tiles, places, std::span(by_y).subspan(begin, end - begin));
   }
   tiles.most_sum = -std::numeric_limits<float>::infinity();
-  tiles.most_difference = 0;                     // the corner is left of what is beyond
+  tiles.most_difference = 0;                     // the light's corner is left of all tiles
   for (const LightTiles::Row& one : tiles.rows)  // a row's last tile begins farthest to the right
     tiles.most_difference = std::max(tiles.most_difference, tiles.tile_low[one.first + one.count - 1] - one.low);
   add_steps(tiles, std::max(0.0F, *std::ranges::max_element(tiles.tile_high)));
@@ -96,7 +99,7 @@ LightTiles make_light_tiles(std::span<const glm::vec2> places) {
   }
   std::int32_t row = 0;
   for (float step = 0; step <= LightTiles::kStepsPerCell * (tiles.rows.back().high + 0.5F) + 1; ++step) {
-    // One step early: what is looked up has been rounded.
+    // One step early: looked-up values are rounded.
     const float height = (step - 1) / LightTiles::kStepsPerCell - 0.5F;
     while (static_cast<std::size_t>(row) + 1 < tiles.rows.size() &&
            tiles.rows[static_cast<std::size_t>(row)].high < height)

@@ -1,3 +1,6 @@
+// Host of mask methods on vector units: regions of pixels in parallel, each divided into blocks and clusters whose
+// light samples the method decides.
+
 #include "engines/vectors/mask_method.hpp"
 
 #include "base/assert.hpp"
@@ -21,13 +24,14 @@
 namespace penumbra::vectors {
 namespace {
 
-constexpr std::uint32_t kBlock = 8, kSmallBlock = 4;  // pixels, whose clusters have lists
-constexpr std::uint32_t kRegion = 16;                 // pixels, whose blocks begin their walks at the same roots
+constexpr std::uint32_t kBlock = 8, kSmallBlock = 4;  // pixels a side of a block, whose clusters share lists
+constexpr std::uint32_t kRegion = 16;                 // pixels a side of a region, whose blocks share the roots of
+                                                      // traversals
 constexpr std::size_t kRegionPixels = std::size_t{kRegion} * kRegion;
-// Of a tile: plenty for every thread, and no more, since memory that the system gives anew takes longer than masks.
+// Mask memory per tile: enough to keep all threads busy; more would cost page faults.
 constexpr std::size_t kMaskBytesOfThread = std::size_t{16} << 20U, kMostMaskBytes = std::size_t{256} << 20U;
 
-/// Where the pixels of a region are: in Z order, so that those that follow one another are neighbours.
+/// Positions of a region's pixels in Z order, so that consecutive pixels are neighbours.
 struct Spot {
   std::uint32_t x = 0, y = 0;
 };
@@ -48,13 +52,13 @@ constexpr auto kSpots = [] {
 struct MaskMethod::Buffers {
   std::vector<GridSample> samples;
   std::vector<SampleMask> masks;
-  std::vector<LightCone> cones;  // of the region's view samples
+  std::vector<LightCone> cones;  // cones of the region's view samples
   NearSpheres near_region, near_cluster;
-  LightGrid turned;              // to a region's or a cluster's
-  std::uint64_t turned_for = 0;  // the light
+  LightGrid turned;              // the grid oriented toward a region or a cluster
+  std::uint64_t turned_for = 0;  // number of the light for which `turned` was made
 };
 
-/// Each method has its own: while a thread waits for one method's work it may do another's.
+/// Buffers are per method: while a thread waits for one method's work it may run work of another method.
 struct MaskMethod::AllBuffers {
   tbb::enumerable_thread_specific<Buffers> of_thread;
 };
@@ -65,8 +69,8 @@ MaskMethod::Buffers& MaskMethod::buffers() const {
 
 namespace {
 
-/// Eight bytes as a matrix of bits, transposed: bit r of byte c becomes bit c of byte r (H. S. Warren, Hacker's
-/// Delight, 2nd ed., 7-3).
+/// Returns eight bytes, as a matrix of bits, transposed: bit r of byte c becomes bit c of byte r (H. S. Warren,
+/// Hacker's Delight, 2nd ed., 7-3).
 std::uint64_t transposed(std::uint64_t bits) {
   std::uint64_t moved = (bits ^ (bits >> 7U)) & 0x00aa00aa00aa00aaU;
   bits ^= moved ^ (moved << 7U);
@@ -76,11 +80,11 @@ std::uint64_t transposed(std::uint64_t bits) {
   return bits ^ moved ^ (moved << 28U);
 }
 
-/// Bits of light samples in rows, from columns (mask_bit) to their own order, into a mask of zeros.
+/// Copies bits of light samples in rows from column order (mask_bit) to their own order, into a cleared mask.
 void add_rows(const LightGrid& grid, const std::uint16_t* from, std::span<std::uint32_t> mask) {
   for (std::uint32_t row = 0; row < grid.rows; row += 8) {
     for (std::uint32_t column = 0; column < grid.columns; column += 8) {
-      std::uint64_t block = 0;  // a byte a column
+      std::uint64_t block = 0;  // a byte for each column
       for (std::uint32_t i = 0; i < std::min(grid.columns - column, 8U); ++i) {
         const std::size_t bit = std::size_t{column + i} * grid.padded_rows + row;
         block |= std::uint64_t{from[bit / 16] >> bit % 16 & 0xffU} << 8 * i;
@@ -121,7 +125,7 @@ void MaskMethod::prepare_tree(const visibility::SceneFloats& scene) {
   if (refit_tree()) {
     count_for_mesh("treesRefit");
   } else {
-    triangles_ = {};  // of a scene before
+    triangles_ = {};  // clears the triangles of the previous scene
     tree_ = visibility::make_triangle_tree(scene);
     if (expects_frames_) built_cost_ = visibility::tree_cost(tree_);
     count_for_mesh("treesBuilt");
@@ -189,7 +193,7 @@ std::uint32_t MaskMethod::max_tile_rows() const {
   PENUMBRA_ASSERT(samples_ != nullptr && light_ != nullptr, "prepare_light and prepare_view come first");
   const auto threads = static_cast<std::size_t>(std::max(tbb::this_task_arena::max_concurrency(), 1));
   const std::size_t row_bytes = mask_words(grids_[0]) * 2 * samples_->width;
-  // Regions are whole where there is any room for them, however few threads there are.
+  // Regions are whole if there is any space for them, regardless of the number of threads.
   const std::size_t plenty = std::max<std::size_t>(threads * kMaskBytesOfThread / row_bytes, kRegion),
                     fit = std::min(plenty, kMostMaskBytes / row_bytes);
   const std::size_t rows = fit >= kRegion ? fit / kRegion * kRegion : fit;
@@ -239,7 +243,8 @@ void MaskMethod::do_region(const LightGrid& grid, std::uint32_t left, std::uint3
   ExactOpenJudge judge(pairs, grid);
   const ViewInput view{*scene_, *samples_, device_light_, grid, normals_, scale_};
   std::vector<GridSample>& samples = buffers().samples;
-  std::array<std::size_t, kRegionPixels / (std::size_t{kSmallBlock} * kSmallBlock)> ends{};  // of its small blocks
+  // ends of the clusters of its small blocks
+  std::array<std::size_t, kRegionPixels / (std::size_t{kSmallBlock} * kSmallBlock)> ends{};
   samples.resize(kRegionPixels);
   std::vector<LightCone>& cones = buffers().cones;
   cones.resize(cone_ ? kRegionPixels : 0);
@@ -255,7 +260,7 @@ void MaskMethod::do_region(const LightGrid& grid, std::uint32_t left, std::uint3
       if (kind == SampleClass::in_front) ++count;
       if (kind == SampleClass::all_visible) visible_[pixel] = light_->sample_count();
       if (kind == SampleClass::open && grid.side > 0 && !decide_open(at))
-        decide_all(at, judge);  // one of two sides asks
+        decide_all(at, judge);  // only one of the two sides decides them
     }
     ends[i / (kSmallBlock * kSmallBlock)] = count;
   }

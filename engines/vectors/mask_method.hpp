@@ -21,17 +21,17 @@
 
 namespace penumbra::vectors {
 
-/// How large the blocks of pixels are whose clusters have lists.
+/// Size of the blocks of pixels whose clusters share lists.
 enum class Blocks : std::uint8_t {
   usual,
-  small,  ///< where casters are so dense that neighbours see other edges
+  small,  ///< for casters so dense that neighbours see different edges
 };
 
-/// A method on all of the processor's cores, one region of pixels after the other, each from its lists to its bits in
-/// one go. All methods share what comes before and after the lists.
+/// A method on all of the processor's cores, region of pixels by region, each from its lists to its bits in one pass.
+/// Implements the steps before and after the lists for all such methods.
 class MaskMethod : public visibility::Method {
  public:
-  /// `pass`: the name of its one stage in the pass times.
+  /// `pass`: name of its single stage in the pass times.
   MaskMethod(visibility::MethodDescription description, std::string pass);
   ~MaskMethod() override;
 
@@ -45,7 +45,7 @@ class MaskMethod : public visibility::Method {
   void read_masks(std::span<std::uint32_t> masks) override;
   void read_visibility(std::span<float> visibility) override;
   std::vector<visibility::PassTime> take_pass_times() override;
-  /// openPixels, openPairs (left to exact predicates) and what count() was told.
+  /// Returns openPixels, openPairs (left to exact predicates) and the counters added by count().
   [[nodiscard]] std::map<std::string, std::uint64_t> counters() const override { return counters_; }
   std::map<std::string, std::uint64_t> take_mesh_counters() override { return std::exchange(mesh_counters_, {}); }
   [[nodiscard]] std::uint64_t memory_bytes() const override;
@@ -54,36 +54,35 @@ class MaskMethod : public visibility::Method {
   /// The two halves of prepare_mesh: tree(), then triangles().
   void prepare_tree(const visibility::SceneFloats& scene);
   void prepare_triangles();
-  /// Called once for each region, before its clusters and on the same thread. Returns how large the region's blocks
-  /// are.
+  /// Called once for each region, before its clusters and on the same thread. Returns the size of the region's blocks.
   virtual Blocks begin_region(const LightGrid& grid, const Cluster& all) = 0;
-  /// All view samples of a cluster. Sets how many light samples are visible from each and, unless none or all are,
-  /// which.
+  /// Computes all view samples of a cluster: sets the number of light samples visible from each and, unless none or all
+  /// are, their bits.
   virtual void do_cluster(const LightGrid& grid, std::span<const GridSample> samples, OpenJudge& judge,
                           std::span<SampleMask> masks) = 0;
-  /// A view sample within rounding of the light's plane: true if the method has decided it by itself; false if exact
-  /// predicates are to decide each of its light samples.
+  /// Called for a view sample within rounding of the light's plane. Returns true if the method has decided it; false if
+  /// exact predicates must decide each of its light samples.
   virtual bool decide_open(const GridSample&) { return false; }
   /// Returns whether triangles are cut at the light's plane, which makes error bounds larger.
   virtual bool prepare_casters() = 0;
-  /// The grid of cells that the light is looked at in.
+  /// Shape of the grid of cells.
   struct GridShape {
     visibility::DeviceLight frame;
-    bool is_rectangle = true;             ///< LightGridInput
-    std::uint32_t rows = 0, columns = 0;  ///< likewise
+    bool is_rectangle = true;             ///< as in LightGridInput
+    std::uint32_t rows = 0, columns = 0;  ///< as in LightGridInput
     std::optional<LightGridInput::Window> window = {};
-    float reach = 1;  ///< times that of scene and frame
+    float reach = 1;  ///< factor on the reach of scene and frame
   };
-  /// A cell a light sample where these are in rows; else tiles of them.
+  /// Returns a grid with a cell for each light sample if these are in rows; else with tiles of them.
   [[nodiscard]] virtual GridShape grid_shape() const;
-  /// Of a sphere or sun.
+  /// Returns whether the method uses the light samples of a sphere or sun.
   [[nodiscard]] virtual bool asks_for_light_samples() const { return true; }
-  /// Of a sphere: ConeOptions.
+  /// Returns ConeOptions::cuts_casters for a sphere.
   [[nodiscard]] virtual bool cuts_casters() const { return false; }
-  /// Runs do_cluster again for the tile last evaluated, for a result that was not asked for the first time. Counters
-  /// stay.
+  /// Runs do_cluster again for the tile evaluated last, for a result that was not requested the first time. Counters do
+  /// not change.
   void repeat();
-  /// Something that is made for a mesh was made, or has followed the mesh before.
+  /// Counts that a structure of the mesh was made, or was updated from the previous mesh.
   void count_for_mesh(const char* name) { ++mesh_counters_[name]; }
   /// Adds to the counters after a tile.
   virtual void count(std::map<std::string, std::uint64_t>& counters) = 0;
@@ -96,23 +95,23 @@ class MaskMethod : public visibility::Method {
   [[nodiscard]] const WideTriangleTree& triangles() const { return triangles_; }
   [[nodiscard]] const visibility::ViewSamples& samples() const { return *samples_; }
   [[nodiscard]] float scale() const { return scale_; }
-  /// Of the light's front.
+  /// Returns the grid of the light's front.
   [[nodiscard]] const LightGrid& grid() const { return grids_.front(); }
-  /// How many light samples each pixel of the tile sees.
+  /// Returns the number of light samples visible from each pixel of the tile.
   [[nodiscard]] std::span<const std::uint32_t> visible_samples() const { return visible_; }
-  /// Of the tile.
+  /// Returns the index of the tile's first pixel in the view samples.
   [[nodiscard]] std::size_t first_pixel() const { return std::size_t{tile_.first_row} * samples_->width; }
   [[nodiscard]] std::size_t tile_pixel(const GridSample& at) const { return at.pixel - first_pixel(); }
 
  private:
   struct Buffers;
   struct AllBuffers;
-  /// Those of this thread.
+  /// Returns the buffers of this thread.
   [[nodiscard]] Buffers& buffers() const;
-  /// Lets the last mesh's hierarchy follow. False: it does not fit this one, or not well.
+  /// Updates the previous mesh's hierarchy to this mesh. Returns false if it does not fit this one, or not well.
   bool refit_tree();
   void do_tile();
-  /// What this thread turns to view samples of a sphere or sun.
+  /// Returns this thread's grid, oriented toward view samples of a sphere or sun.
   [[nodiscard]] LightGrid& turned_grid() const;
   void do_region(const LightGrid& grid, std::uint32_t left, std::uint32_t top);
   Blocks enter_region(const LightGrid& grid, std::span<GridSample> samples);
@@ -127,18 +126,18 @@ class MaskMethod : public visibility::Method {
   float scale_ = 1;
   bool expects_frames_ = false;
   visibility::TriangleTree tree_;
-  double built_cost_ = 0;  // visibility::tree_cost when it was built, where frames are expected
+  double built_cost_ = 0;  // visibility::tree_cost when the hierarchy was built, if more frames are expected
   WideTriangleTree triangles_;
   KnownNormals normals_;
   const visibility::Light* light_ = nullptr;
   visibility::DeviceLight device_light_;
-  std::vector<LightGrid> grids_;    // one a side that it emits to
-  std::optional<ConeLight> cone_;   // of a sphere or sun
-  std::uint64_t light_number_ = 0;  // of all that were prepared
+  std::vector<LightGrid> grids_;    // one for each emitting side
+  std::optional<ConeLight> cone_;   // for a sphere or sun
+  std::uint64_t light_number_ = 0;  // counts all prepared lights
   std::unique_ptr<AllBuffers> buffers_;
   const visibility::ViewSamples* samples_ = nullptr;
   visibility::Tile tile_;
-  UnsetList<std::uint16_t> masks_;  // of the tile; set where some light samples are visible and some are not
+  UnsetList<std::uint16_t> masks_;  // masks of the tile; set for pixels with some, but not all, light samples visible
   std::vector<std::uint32_t> visible_;
   std::atomic<std::uint64_t> open_pixels_ = 0, open_pairs_ = 0;
   double milliseconds_ = 0;

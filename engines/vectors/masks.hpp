@@ -9,24 +9,24 @@
 #include <optional>
 #include <vector>
 
-/// Which light samples are visible from a view sample, and what is not certain of that.
+/// Masks of visible light samples, and the samples left open.
 namespace penumbra::vectors {
 
-/// Sixteen light samples each.
+/// Returns the number of words of a mask, sixteen light samples each.
 inline std::size_t mask_words(const LightGrid& grid) {
   return grid.tiles ? grid.tiles->tile_count() : std::size_t{grid.columns} * grid.padded_rows / 16;
 }
-/// The bit of a light sample: its slot; in rows column · padded_rows + row.
+/// Returns the bit of a light sample: its slot; for samples in rows column · padded_rows + row.
 inline std::size_t mask_bit(const LightGrid& grid, std::uint32_t light_sample) {
   if (grid.tiles) return grid.tiles->slot_of[light_sample];
   return std::size_t{light_sample % grid.columns} * grid.padded_rows + light_sample / grid.columns;
 }
 
-/// What float arithmetic left open of a view sample.
+/// Light samples of a view sample that float arithmetic left open.
 struct Open {
-  bool pixel = false;                        ///< all of it
-  bool corner = false;                       ///< how many triangles the segment to the light's corner meets
-  std::vector<std::uint32_t> rows, samples;  ///< rows of light samples; light samples; some twice
+  bool pixel = false;                        ///< all light samples are open
+  bool corner = false;                       ///< the number of triangles on the segment to the light's corner is open
+  std::vector<std::uint32_t> rows, samples;  ///< rows of light samples; light samples; may contain duplicates
 
   void clear() {
     pixel = corner = false;
@@ -36,12 +36,13 @@ struct Open {
   [[nodiscard]] bool any() const { return pixel || !rows.empty() || !samples.empty(); }
 };
 
-/// The visible light samples of a view sample: how many, and, unless all or none are, which (mask_words() words).
+/// The visible light samples of a view sample: their number, and, unless all or none are visible, their bits
+/// (mask_words() words).
 struct SampleMask {
   std::uint16_t* bits = nullptr;
   std::uint32_t visible = 0;
 
-  /// Sets `visible` from the bits of so many words.
+  /// Sets `visible` from the bits of the first `words` words.
   void count(std::size_t words) {
     visible = 0;
     std::size_t i = 0;
@@ -57,23 +58,24 @@ struct SampleMask {
 /// The light point centre + s u + t v is above the carrier's plane where A s + B t + C > 0.
 struct HorizonLine {
   glm::dvec3 above{0};  ///< (A, B, C), in double
-  glm::dvec3 error{0};  ///< what they are off by at most
+  glm::dvec3 error{0};  ///< largest errors of (A, B, C)
 };
 
-/// Decides by exact predicates what float arithmetic left open.
+/// Decides by exact predicates the questions that float arithmetic left open.
 class OpenJudge {
  public:
   virtual ~OpenJudge() = default;
-  /// How many triangles the segment from the view sample to a light sample meets.
+  /// Returns the number of triangles that the segment from the view sample to a light sample meets.
   virtual std::uint32_t depth(const GridSample& sample, std::uint32_t light_sample) = 0;
-  /// How many triangles are strictly between the view sample and the point centre + s u + t v of the light's plane,
-  /// taken exactly. Nothing: in double it is not certain which triangles to test.
+  /// Returns the number of triangles strictly between the view sample and the exact point centre + s u + t v of the
+  /// light's plane; nullopt if double does not determine the triangles to test.
   virtual std::optional<std::uint32_t> depth_in_plane(const GridSample& sample, const glm::dvec2& st) = 0;
-  /// From p to a light sample, in scene floats, not scaled; of a sun a way to it, of no particular length.
+  /// Returns the vector from p to a light sample, in scene floats, not scaled; for a sun a direction of arbitrary
+  /// length.
   virtual glm::dvec3 way_to(const GridSample& sample, std::uint32_t light_sample) = 0;
   virtual HorizonLine horizon(const GridSample& sample) = 0;
-  /// The triangle's normal, of any length, turned to the side that p is on; 0: p is in its plane, or the triangle is so
-  /// thin that its normal is not certain in double.
+  /// Returns the triangle's normal, of any length, oriented to p's side; 0 if p is in its plane, or if the triangle is
+  /// so thin that its normal is not certain in double.
   virtual glm::dvec3 normal_towards(const GridSample& sample, std::uint32_t triangle) = 0;
   virtual void decide(const GridSample& sample, const Open& open, SampleMask& mask) = 0;
 };

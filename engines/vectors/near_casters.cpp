@@ -1,4 +1,4 @@
-// Which casters may meet the disks that a few view samples see of a sphere: spheres around them, side by side.
+// Finds the casters that may meet the disks of a sphere that a few view samples see: vector tests of bounding spheres.
 
 #include "engines/vectors/near_casters.hpp"
 
@@ -21,12 +21,13 @@
 #define PENUMBRA_NEAR_CASTERS_ONCE
 namespace penumbra::vectors {
 
-/// What holds all of the disks: a piece of the plane through `middle` across `axis`.
+/// Bounds of all disks: a piece of the plane through `middle` orthogonal to `axis`.
 struct DiskSpan {
   glm::dvec3 axis{0}, middle{0};
-  double across = 0;  ///< no point of a disk's square is farther from the middle, less what `turned` is about,
-  double over = 0;    ///< nor farther off the plane
-  double turned = 0;  ///< for a point away from the middle by a length of 1 more
+  double across = 0;  ///< largest distance of a point of a disk's square from the middle, without the effect of
+                      ///< `turned`
+  double over = 0;    ///< largest distance of such a point from the plane
+  double turned = 0;  ///< added to both for each unit of distance from the middle
 };
 
 }  // namespace penumbra::vectors
@@ -107,8 +108,7 @@ void find_near_disks(const LightGrid& grid, std::span<const GridSample> samples,
   out.make_room(among.count);
   const std::span<const LightCone> cones = grid.cones->of;
   const auto middle_of = [&](const GridSample& at) { return glm::dvec3(at.p) + cones[at.cone].middle; };
-  // The first one's plane and its middle; how the others' are turned against it, pass over that, and have theirs
-  // beside.
+  // Bounds of all disks relative to the first: tilt of their planes, offset along its normal, offset of their centres.
   DiskSpan span{glm::normalize(cones[samples.front().cone].middle), middle_of(samples.front())};
   double beside = 0, widest = 0;
   for (const GridSample& at : samples) {
@@ -119,7 +119,7 @@ void find_near_disks(const LightGrid& grid, std::span<const GridSample> samples,
     span.over = std::max(span.over, std::abs(glm::dot(other, aside)));
     widest = std::max(widest, glm::length(cone.u));
   }
-  // Rounding is far less than a thousandth of the slab.
+  // Rounding is far below a thousandth of the slab.
   const double slab = 1.01 * slab_of(*grid.cones);
   constexpr double kCorner = 1.5 * 1.42;  // of the largest square that is not left to exact predicates
   span.across = kCorner * widest + beside + slab;

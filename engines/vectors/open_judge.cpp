@@ -1,3 +1,5 @@
+// Exact decisions, for methods on vector units, about light samples that float arithmetic left open.
+
 #include "engines/vectors/open_judge.hpp"
 
 #include "visibility/sphere_point.hpp"
@@ -38,7 +40,7 @@ HorizonLine ExactOpenJudge::horizon(const GridSample& sample) {
   const glm::dvec3 e1 = glm::dvec3(corners[1]) - a, e2 = glm::dvec3(corners[2]) - a;
   const glm::dvec3 n = glm::cross(e1, e2) * static_cast<double>(judge_.samples.facing[sample.pixel]);
   const glm::dvec3 from = judge_.light.sun ? center : center - a;
-  // A determinant of three differences (certain_meeting.cpp): fewer than 2⁻⁴⁶ of the product of their lengths.
+  // A determinant of three differences (certain_meeting.cpp) has an error below 2⁻⁴⁶ of the product of their lengths.
   const double lengths = 0x1p-46 * glm::length(e1) * glm::length(e2);
   return {{glm::dot(n, u), glm::dot(n, v), glm::dot(n, from)},
           lengths * glm::dvec3(glm::length(u), glm::length(v), glm::length(from))};

@@ -9,7 +9,7 @@
 
 namespace penumbra::vectors {
 
-/// Decides at once, by exact predicates, what is not certain, and counts it.
+/// Decides open questions immediately, by exact predicates, and counts them.
 class ExactOpenJudge final : public OpenJudge {
  public:
   ExactOpenJudge(const visibility::PairJudge& judge, const LightGrid& grid) : judge_(judge), grid_(grid) {}
@@ -36,7 +36,7 @@ class ExactOpenJudge final : public OpenJudge {
     std::uint32_t pixel;
     visibility::LightFrame disk;
   };
-  std::optional<Seen> seen_;  // of a sphere
+  std::optional<Seen> seen_;  // cache for a sphere
   std::uint64_t pixels_ = 0, pairs_ = 0;
 };
 

@@ -1,4 +1,4 @@
-// Keeps some of a vector's values, side by side. Inside engines/vectors/ only, and in the stages of methods.
+// Compacts selected lanes of a vector. Inside engines/vectors/ only, and in the stages of methods.
 
 #if defined(PENUMBRA_VECTORS_PACK_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef PENUMBRA_VECTORS_PACK_INL_HPP
@@ -18,8 +18,8 @@ HWY_BEFORE_NAMESPACE();
 namespace penumbra::vectors::HWY_NAMESPACE {
 namespace {
 
-/// The lanes that are kept, side by side. Highway 1.0.3 has tables for this in functions of its own where g++ copies
-/// them to the stack each time, which takes longer than anything else here.
+/// Returns the selected lanes, compacted. Highway 1.0.3 has tables for this in its own functions, where g++ copies them
+/// to the stack at each call, which costs more than the rest of the code.
 template <class Tag>
 [[maybe_unused]] HWY_INLINE hwy::HWY_NAMESPACE::Vec<Tag> packed(hwy::HWY_NAMESPACE::Vec<Tag> values,
                                                                 hwy::HWY_NAMESPACE::Mask<Tag> kept,
@@ -34,7 +34,7 @@ template <class Tag>
         tag, hn::VFromD<decltype(bits)>{_mm512_maskz_compress_epi64(kept.raw, hn::BitCast(bits, values).raw)});
   }
 #elif HWY_TARGET == HWY_AVX2 || HWY_TARGET == HWY_SSE4
-  [[maybe_unused]] std::uint8_t bits[8] = {};  // room that Highway asks for
+  [[maybe_unused]] std::uint8_t bits[8] = {};  // size that Highway requires
   if constexpr (sizeof(Lane) >= 4) hn::StoreMaskBits(tag, kept, bits);
   [[maybe_unused]] const std::size_t which = bits[0];
   if constexpr (kBytes == 16 && sizeof(Lane) >= 4) {
@@ -54,8 +54,8 @@ template <class Tag>
   return hn::Compress(values, kept);
 }
 
-/// Writes the lanes that are kept to `to`, which needs room for a whole vector, and gives their number. (Not by
-/// Highway's CompressStore, one instruction for which AMD's Zen 4 takes more than a hundred cycles.)
+/// Writes the selected lanes to `to`, which needs space for a whole vector, and returns their number. (Does not use
+/// Highway's CompressStore, an instruction that takes more than a hundred cycles on AMD's Zen 4.)
 template <class Tag>
 [[maybe_unused]] HWY_INLINE std::size_t pack(hwy::HWY_NAMESPACE::Vec<Tag> values, hwy::HWY_NAMESPACE::Mask<Tag> kept,
                                              Tag tag, hwy::HWY_NAMESPACE::TFromD<Tag>* to) {
@@ -68,4 +68,4 @@ template <class Tag>
 }  // namespace penumbra::vectors::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
-#endif  // once a target
+#endif  // once for each target

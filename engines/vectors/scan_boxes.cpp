@@ -1,10 +1,11 @@
-// Which pixels a triangle may cover, as scan_conversion.cpp derives it, in float: a vector of triangles at a time, and
-// most triangles of a large mesh lie between the pixels' centres. What floats cannot say is left to it (kOpen).
+// Pixels that a triangle may cover, as derived in scan_conversion.cpp, in float, a vector of triangles at a time; most
+// triangles of a large mesh lie between the pixels' centres. Cases that float cannot decide are left to
+// scan_conversion.cpp (kOpen).
 //
-// Legend: p corner, in units that make the scene no longer than 1; d = p − eye; R = max |d| of the three corners;
-// u, v, z = d along right, down and forward; q = u / z (or v / z); all sizes of vectors are sums of components' sizes.
-//   d       p − (float32 of the eye) − rest: two roundings of at most its own size, and what two floats leave of the
-//           eye, below 2⁻⁴⁷: together 2⁻²³ |d| + 2⁻⁴⁷
+// Legend: p corner, in units that make the scene no longer than 1; d = p − eye; R = max |d| of the three corners; u, v,
+// z = d along right, down and forward; q = u / z (or v / z); all sizes of vectors are sums of components' sizes.
+//   d       p − (float32 of the eye) − rest: two roundings of at most its own size, and the part of the eye that two
+//           floats omit, below 2⁻⁴⁷: together 2⁻²³ |d| + 2⁻⁴⁷
 //   u, v, z its error, the axes' rounding, a product's and two sums': 6 · 2⁻²⁴ R + 2⁻⁴⁷, less than η = 2⁻²¹ R + 2⁻⁴⁵
 //   q       computed with z > 256 η, it is off by at most η (1 + |u / z|) / z ≤ 1.005 η (1 + |q|) / z, which η's slack
 //           of a third covers
@@ -72,7 +73,7 @@ V most(V a, V b, V c) {
 /// One corner of each triangle.
 struct Corner {
   Vectors p, d;
-  V z, x, y;  // x, y in pixels beside the camera's middle
+  V z, x, y;  // x, y in pixels relative to the camera's middle
 };
 
 class Finder {
@@ -80,7 +81,7 @@ class Finder {
   Finder(const visibility::SceneFloats& scene, const BoxCamera& camera, PixelBoxes& boxes)
       : scene_(scene), camera_(camera), boxes_(boxes) {}
 
-  /// Of the vector's triangles, numbered from `first`, those in `asked`.
+  /// Finds boxes of the triangles in `asked` among the vector's triangles, numbered from `first`.
   void find(std::size_t first, const std::uint32_t* corners, M asked) const {
     hn::Vec<Words> at_a, at_b, at_c;
     hn::LoadInterleaved3(Words(), corners, at_a, at_b, at_c);
@@ -102,10 +103,10 @@ class Finder {
     const Vectors to_b = minus(b.p, a.p), to_c = minus(c.p, a.p);
     const V det_error = hn::Mul(hn::Mul(sizes(to_b), sizes(to_c)), hn::Add(off, off));
     const V det = hn::Sub(hn::Abs(determinant(to_b, to_c, a.d)), det_error);
-    // (|d| R³: a part in 2⁶ more than computed, as R is at least 2⁻³⁸ where z > 256 η)
+    // |d| R³ is enlarged by a part in 2⁶, as R is at least 2⁻³⁸ where z > 256 η.
     const V noise = hn::Mul(hn::Mul(set(1.015625F * camera_.longest_ray), reach), hn::Mul(reach, reach));
     const M certain = hn::Gt(det, hn::MulAdd(noise, set(static_cast<float>(kScanNoise)), set(0x1p-100F)));
-    // 3 E R extent / |D|, as far as a pixel
+    // 3 E R extent / |D|, clamped to a pixel
     const V beside =
         hn::Mul(hn::Div(hn::Mul(noise, set(0x3p-50F)), hn::Max(det, set(0x1p-100F))), hn::Add(extent, set(1)));
     const V margin = hn::Add(error, hn::IfThenElse(certain, hn::Min(beside, set(1)), set(1)));
@@ -200,7 +201,7 @@ BoxCamera::BoxCamera(const visibility::SceneFloats& scene, const visibility::Pin
                      const Screen& screen) {
   const double reach = std::max({size1(glm::dvec3(scene.lower)), size1(glm::dvec3(scene.upper)), size1(camera.eye)});
   const auto fits = [](double x) { return x < 0x1p60; };
-  // Gathering takes 32-bit signed numbers of floats.
+  // Gathering takes signed 32-bit indices of floats.
   const bool are_few = scene.positions.size() <= std::numeric_limits<std::int32_t>::max() / 3;
   is_usable = are_few && fits(reach) && reach > 0x1p-60 && fits(screen.scale) && fits(screen.longest_ray) &&
               fits(std::abs(screen.middle.x)) && fits(std::abs(screen.middle.y));

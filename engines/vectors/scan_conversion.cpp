@@ -1,17 +1,17 @@
-// Which triangles may cover which pixels, tile by tile. scan_tile.cpp decides, in double, as visibility::cover does;
-// here is only what must not lose a pixel that it would give to a triangle. Of most triangles scan_boxes.cpp says it,
-// in float; careful_box() does of those near the eye's plane, in double.
+// Scan conversion on the processor: pixels that triangles may cover, tile by tile. scan_tile.cpp decides coverage, in
+// double, as visibility::cover does; the code here must never lose a pixel that scan_tile.cpp would give to a triangle.
+// For most triangles scan_boxes.cpp finds the pixels, in float; careful_box() does so in double for those near the
+// eye's plane.
 //
-// Where can a pixel beside a triangle's projection be covered? cover() takes the signs of s₁ = d·(a×b), s₂ = d·(b×c),
-// s₃ = −d·(a×c), where a, b, c are the corners seen from the eye and d is the ray. Exactly, d = (s₂a + s₃b + s₁c) / D
-// with D = det(a, b, c), so that the ray's place on the screen is the mean of the corners' with weights s z / D.
-// Rounding moves each s by at most E = 8 · 2⁻⁵³ |d| R², R the largest |corner| (sums of absolute components
-// throughout): a pixel that is covered although it lies m pixels beside the box of the projection has at least one
-// weight below zero, none below −E R / |D|, and so m ≤ 3 E R extent / |D|. If |D| is large enough (`certain`), a
-// margin of 1/32 pixel is therefore safe, and t is between the corners' depths except for a part in 2⁸ (1 / t is the
-// corners' mean of 1 / z with these weights). Triangles seen
-// as good as edge-on get the margin of one pixel that proposals of the visibility buffer have
-// (render/visibility_buffer.vert), and are never left out as hidden.
+// Pixels outside of a triangle's projection can be covered because of rounding. cover() takes the signs of s₁ =
+// d·(a×b), s₂ = d·(b×c), s₃ = −d·(a×c), where a, b, c are the corners seen from the eye and d is the ray. Exactly, d =
+// (s₂a + s₃b + s₁c) / D with D = det(a, b, c), so that the ray's place on the screen is the mean of the corners' with
+// weights s z / D. Rounding moves each s by at most E = 8 · 2⁻⁵³ |d| R², R the largest |corner| (sums of absolute
+// components throughout): a pixel that is covered although it lies m pixels outside of the box of the projection has at
+// least one weight below zero, none below −E R / |D|, and so m ≤ 3 E R extent / |D|. If |D| is large enough
+// (`certain`), a margin of 1/32 pixel is therefore safe, and t is between the corners' depths except for a part in 2⁸
+// (1 / t is the corners' mean of 1 / z with these weights). Triangles seen nearly edge-on get the margin of one pixel
+// that proposals of the visibility buffer have (render/visibility_buffer.vert), and are never culled as hidden.
 
 #include "engines/vectors/scan_conversion.hpp"
 
@@ -38,13 +38,14 @@ namespace {
 using visibility::PinholeCamera;
 using visibility::SceneFloats;
 
-constexpr double kMargin = 1.0 / 32;                         // pixels, beside a triangle that is certain
-constexpr std::size_t kBatch = std::size_t{1} << 16U;        // triangles between two looks at what is hidden
-constexpr std::size_t kChunk = std::size_t{1} << 11U;        // of them, what one core sorts at a time
+constexpr double kMargin = 1.0 / 32;                         // in pixels, around a triangle that is certain
+constexpr std::size_t kBatch = std::size_t{1} << 16U;        // triangles between two updates of hidden tiles
+constexpr std::size_t kChunk = std::size_t{1} << 11U;        // triangles of a batch that one core sorts at a time
 constexpr std::size_t kMostEntries = std::size_t{1} << 16U;  // of a chunk's lists, except those of its last triangle
-constexpr std::uint32_t kFewTiles = 4;                       // up to here a triangle's box is its tiles
+constexpr std::uint32_t kFewTiles = 4;                       // up to this number the tiles of a triangle's box are used
+                                                             // directly
 
-/// Pixel centres that a triangle may cover, both ends included, and what no t of it is below (0: nothing known).
+/// Pixel centres that a triangle may cover, both ends included, and a lower bound of all its t (0: unknown).
 struct PixelBox {
   std::uint32_t left, right, top, bottom;
   float nearest;
@@ -56,10 +57,10 @@ struct Sorted {
   TileEntry entry;
 };
 
-/// What one core found among its triangles, by tile.
+/// Triangles that one core found, by tile.
 class Chunk {
  public:
-  /// Of these triangles, `next` is the first that is not sorted yet.
+  /// `next` is the first of these triangles that is not sorted yet.
   std::size_t next = 0, end = 0;
 
   void clear() { found_.clear(); }
@@ -83,17 +84,18 @@ class Chunk {
   std::vector<std::uint32_t> end_;
 };
 
-/// On which tiles a large triangle leaves nothing: all rays through the tile pass one of its edges on the wrong side.
+/// Finds tiles that a large triangle certainly does not cover: all rays through the tile are outside of one of its
+/// edges.
 class Outline {
  public:
   Outline(const PinholeCamera& view, const std::array<glm::vec3, 3>& corners, double longest_ray) {
     const glm::dvec3 a = glm::dvec3(corners[0]) - view.eye, b = glm::dvec3(corners[1]) - view.eye,
                      c = glm::dvec3(corners[2]) - view.eye;
     const double reach = std::max({size1(a), size1(b), size1(c)}), det = glm::dot(a, glm::cross(b, c));
-    if (!(std::abs(det) > kScanNoise * longest_ray * reach * reach * reach)) return;  // nothing is left out
+    if (!(std::abs(det) > kScanNoise * longest_ray * reach * reach * reach)) return;  // no tile is excluded
     const double side = det > 0 ? 1 : -1;
     edges_ = {side * glm::cross(a, b), side * glm::cross(b, c), side * glm::cross(c, a)};
-    error_ = 0x1p-48 * longest_ray * reach * reach;  // twice E, once for cover() and once for here
+    error_ = 0x1p-48 * longest_ray * reach * reach;  // twice E, once for cover() and once for the test here
   }
   [[nodiscard]] bool misses(const std::array<glm::dvec3, 4>& rays) const {
     return std::ranges::any_of(edges_, [&](const glm::dvec3& edge) {
@@ -129,7 +131,7 @@ class Scan {
   std::uint32_t tiles_x_, tiles_y_;
   UnsetList<double> nearest_;
   UnsetList<std::int64_t> carrier_;
-  std::vector<double> farthest_;  // of each tile: the largest of its pixels' smallest t
+  std::vector<double> farthest_;  // for each tile, the largest of its pixels' smallest t
 };
 
 Scan::Scan(const SceneFloats& scene, const PinholeCamera& camera)
@@ -147,7 +149,7 @@ Scan::Scan(const SceneFloats& scene, const PinholeCamera& camera)
   tbb::parallel_for(std::size_t{0}, tiles, [&](std::size_t i) {
     const auto tile = static_cast<std::uint32_t>(i);
     const auto nearest = std::span(nearest_).subspan(i * kScanSlots, kScanSlots);
-    std::ranges::fill(nearest, -std::numeric_limits<double>::infinity());  // beyond the picture
+    std::ranges::fill(nearest, -std::numeric_limits<double>::infinity());  // outside of the picture
     const std::uint32_t columns = std::min(camera.width - tile % tiles_x_ * kScanTile, kScanTile),
                         rows = std::min(camera.height - tile / tiles_x_ * kScanTile, kScanTile);
     for (std::uint32_t row = 0; row < rows; ++row)

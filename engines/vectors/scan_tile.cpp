@@ -1,3 +1,6 @@
+// Coverage and depth of the pixels of one tile, a vector of pixels at a time, with the operations of visibility::cover
+// in the same order.
+
 #include "engines/vectors/scan_tile.hpp"
 
 #include <glm/geometric.hpp>
@@ -28,10 +31,10 @@ Values along(const Rays& rays, const glm::dvec3& n) {
   return hn::Add(hn::Add(product(rays.x, n.x), product(rays.y, n.y)), product(rays.z, n.z));
 }
 
-/// One row of rays, for vectors of columns.
+/// One row of rays, evaluated for vectors of columns.
 struct RayRow {
   const visibility::PinholeCamera& view;
-  glm::dvec3 upward;  // the row's share of `up`
+  glm::dvec3 upward;  // the row's part of the direction along `up`
 
   Values axis(Values across, int i) const {
     const Pixels d;
@@ -41,7 +44,7 @@ struct RayRow {
   Rays at(Values across) const { return {axis(across, 0), axis(across, 1), axis(across, 2)}; }
 };
 
-/// A triangle as visibility::cover looks at it.
+/// A triangle's planes as visibility::cover uses them.
 struct Planes {
   Planes(const visibility::PinholeCamera& view, const std::array<glm::vec3, 3>& corners) {
     const glm::dvec3 first = corners[0], second = corners[1], third = corners[2];
@@ -97,7 +100,7 @@ class Painter {
     if (!hn::AllFalse(d, equal)) settle(triangle, slot, equal);
   }
 
-  /// Of triangles that meet a ray at one t the one whose sorted vertices come first.
+  /// Settles ties: of triangles that meet a ray at the same t the one whose sorted vertices come first wins.
   void settle(std::uint32_t triangle, std::size_t slot, hn::Mask<Pixels> equal) const {
     std::uint8_t lanes[8] = {};
     hn::StoreMaskBits(Pixels(), equal, lanes);
@@ -135,7 +138,7 @@ namespace penumbra::vectors {
 HWY_EXPORT(scan_tile_here);
 
 ScanCamera::ScanCamera(const visibility::PinholeCamera& camera) : view(camera) {
-  constexpr std::size_t kWidest = 8;  // of Pixels
+  constexpr std::size_t kWidest = 8;  // lanes of Pixels
   across.resize(camera.width + kWidest);
   upward.resize(camera.height);
   for (std::uint32_t x = 0; x < camera.width; ++x) across[x] = camera.across(x);

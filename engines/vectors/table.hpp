@@ -9,7 +9,7 @@
 /// Inside engines/vectors/ only, and in the stages of methods.
 namespace penumbra::vectors {
 
-/// Columns of floats, side by side.
+/// Columns of floats, one after the other.
 template <std::size_t kFields>
 class Table {
  public:
@@ -17,7 +17,7 @@ class Table {
 
   float* operator[](std::size_t field) { return data_.get() + field * capacity_; }
   const float* operator[](std::size_t field) const { return data_.get() + field * capacity_; }
-  /// A row's places, for who writes many of them: until the next reserve().
+  /// Pointers into a row, for code that writes many rows; valid until the next reserve().
   struct Row {
     float* first;
     std::size_t stride;
@@ -28,6 +28,7 @@ class Table {
   void reserve(std::size_t rows) {
     if (rows + kSlack <= capacity_) return;
     const std::size_t capacity = (2 * rows + 2 * kSlack + 15) / 16 * 16 + 16;  // + 16: columns begin in different sets
+                                                                               // of the cache
     auto data = hwy::AllocateAligned<float>(kFields * capacity);
     for (std::size_t field = 0; field < kFields && capacity_ > 0; ++field) {
       std::copy_n((*this)[field], count, data.get() + field * capacity);

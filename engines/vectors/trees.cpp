@@ -1,3 +1,5 @@
+// Converts hierarchies of triangles and edges to nodes and leaves with eight entries for vector code.
+
 #include "engines/vectors/trees.hpp"
 
 #include "base/assert.hpp"

@@ -12,8 +12,8 @@
 #include <span>
 #include <vector>
 
-/// Hierarchies as a processor's vector units like them: eight children, edges or triangles side by
-/// side, all numbers scaled like the device's.
+/// Hierarchies for a processor's vector units: eight children, edges or triangles side by side, all numbers scaled like
+/// the device's.
 namespace penumbra::vectors {
 
 constexpr std::size_t kWide = 8;
@@ -23,9 +23,9 @@ using WidePoints = std::array<WideFloats, 3>;  ///< x, y, z
 
 struct alignas(64) WideNode {
   WidePoints middle, half;
-  std::array<WideFloats, 4> cone;  ///< of normals: axis, cosine
+  std::array<WideFloats, 4> cone;  ///< cone of normals: axis, cosine
   WideWords reference;             ///< TriangleTree::Child::reference
-  std::uint32_t used = 0;          ///< a bit a child
+  std::uint32_t used = 0;          ///< a bit for each child
 };
 
 /// Edges, each with the planes of two of its triangles. Unused ones have used = 0.
@@ -33,20 +33,20 @@ struct alignas(64) WideEdges {
   WidePoints a, b;
   std::array<WidePoints, 2> n, anchor;
   std::array<WideWords, 2> plane;
-  WideWords cut;  ///< 0, or the number, from 1, of what a method knows of an edge's ends beside a and b
+  WideWords cut;  ///< 0, or the index, from 1, of a method's data about an edge's ends in addition to a and b
   std::uint32_t used = 0;
 };
 
 struct alignas(64) WideTriangles {
   std::array<WidePoints, 3> corner;
-  WideWords plane, emits;  ///< the light that it is the body of
-  WideWords closed{};      ///< a bit for the closed part that it is of, its corners then wound so that normals point
+  WideWords plane, emits;  ///< emits: the light whose body the triangle is
+  WideWords closed{};      ///< a bit for the triangle's closed part, its corners then wound so that normals point
                            ///< inward; or 0 (vsm/closed_parts.hpp)
   std::uint32_t used = 0;
 };
 
 struct WideEdgeTree {
-  std::vector<std::uint32_t> roots;  ///< none, or 0 and those of trees that were appended
+  std::vector<std::uint32_t> roots;  ///< none, or 0 and those of appended trees
   UnsetList<WideNode> nodes;
   WideLeaves<WideEdges> leaves;
 };
@@ -56,15 +56,15 @@ struct WideTriangleTree {
   WideLeaves<WideTriangles> leaves;
 };
 
-/// One more root.
+/// Appends a tree as one more root.
 void append(WideEdgeTree& tree, const WideEdgeTree& more);
-/// Makes leaves of many when somebody asks for them: `scene` and `tree` must stay as they are. `memory`: a tree of the
-/// same form, whose nodes, and leaves if they are few, are written over.
+/// Makes a wide tree. Large trees make leaves on demand: `scene` and `tree` must then stay unchanged. `memory`: a tree
+/// of the same form whose nodes, and leaves if they are few, are overwritten.
 WideTriangleTree wide_triangle_tree(const visibility::SceneFloats& scene, const visibility::TriangleTree& tree,
                                     float scale, WideTriangleTree memory = {});
 
-/// A child's texels: (middle, reference), (half extent, –) and, if there are three, (axis, cosine) of its cone, as of
-/// volumes/edges/edge_set.hpp.
+/// Stores a child's texels: (middle, reference), (half extent, –) and, if there are three, (axis, cosine) of its cone,
+/// in the format of volumes/edges/edge_set.hpp.
 void store(WideNode& node, std::size_t lane, std::span<const visibility::Texel> texels);
 
 template <typename Tree>

@@ -1,4 +1,4 @@
-// Vectors of floats, as many as the processor has: included once a target by each stage of a method on the processor.
+// Vectors of floats of the processor's width: included once for each target by each stage of a method on the processor.
 // Inside engines/vectors/ only, and in the stages of methods.
 
 #if defined(PENUMBRA_VECTORS_INL_HPP) == defined(HWY_TARGET_TOGGLE)
@@ -39,12 +39,12 @@ using I = hn::RebindToSigned<D>;
   return hn::FirstN(D(), count);
 }
 
-/// first, first + 1, … Of Highway's Iota only the one from 0 is a constant; others go lane by lane through memory.
+/// Returns first, first + 1, …. Only Highway's Iota from 0 is a constant; others go lane by lane through memory.
 [[maybe_unused]] hn::Vec<I> numbers_from(std::size_t first) {
   return hn::Add(hn::Iota(I(), 0), hn::Set(I(), static_cast<std::int32_t>(first)));
 }
 
-/// Calls `visit(lane)` for each lane that is set.
+/// Calls `visit(lane)` for each set lane.
 template <typename Visit>
 void for_each_lane(M which, Visit visit) {
   std::uint8_t bytes[8] = {};
@@ -58,4 +58,4 @@ void for_each_lane(M which, Visit visit) {
 }  // namespace penumbra::vectors::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
-#endif  // once a target
+#endif  // once for each target

@@ -1,5 +1,5 @@
-// Walks of hierarchies with the shaft from a cluster of view samples to the light, eight children at a time, as those
-// of find_edges.comp. Inside engines/vectors/ only.
+// Traversals of hierarchies with the shaft from a cluster of view samples to the light, eight children at a time, as in
+// find_edges.comp. Inside engines/vectors/ only.
 
 #if defined(PENUMBRA_VECTORS_WALK_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef PENUMBRA_VECTORS_WALK_INL_HPP
@@ -34,11 +34,11 @@ constexpr std::uint32_t kLeafBit = visibility::TriangleTree::kLeafBit;
 struct Point {
   V x, y, z;
 };
-/// What a walk tests boxes against: a cluster of view samples and the light.
+/// Input of box tests: a cluster of view samples and the light.
 struct WalkInput {
   const LightGrid& grid;
   const Cluster& cluster;
-  const ClusterSample* alone = nullptr;  ///< EdgeInput
+  const ClusterSample* alone = nullptr;  ///< as in EdgeInput
 };
 
 Point load(const WidePoints& points, std::size_t lane) {
@@ -49,8 +49,8 @@ Point minus(const Point& p, const glm::vec3& q) {
   const D d;
   return {hn::Sub(p.x, hn::Set(d, q.x)), hn::Sub(p.y, hn::Set(d, q.y)), hn::Sub(p.z, hn::Set(d, q.z))};
 }
-/// In one fixed order, without fused multiplications: later stages compute it again from equal floats, and must get
-/// equal results.
+/// Fixed order, without fused multiplications: later stages compute the same products again from equal floats, and must
+/// get equal results.
 V dot(const Point& p, const glm::vec3& q) {
   const D d;
   return hn::Add(hn::Add(hn::Mul(p.x, hn::Set(d, q.x)), hn::Mul(p.y, hn::Set(d, q.y))), hn::Mul(p.z, hn::Set(d, q.z)));
@@ -73,8 +73,8 @@ std::uint32_t bits_of(hn::Mask<D> mask) {
   hn::StoreMaskBits(D(), mask, bytes);
   return bytes[0];
 }
-/// The least and the largest n · x of a box's points x. Multiplications and additions may be fused here: boxes are only
-/// tested against shafts, whose bounds have room for either rounding.
+/// The smallest and the largest n · x of a box's points x. Multiplications and additions may be fused here: boxes are
+/// only tested against shafts, whose bounds allow for either rounding.
 struct Extent {
   V low, high;
 };
@@ -102,7 +102,7 @@ Point cross(const Point& p, const Point& q) {
           hn::Sub(hn::Mul(p.x, q.y), hn::Mul(p.y, q.x))};
 }
 
-/// (bound cone)
+/// Returns the children all of whose triangles face the cluster from one side: (bound cone) of docs/edge-scatter.md.
 hn::Mask<D> same_side(const WalkInput& in, const WideNode& node, std::size_t lane, const Point& middle,
                       const Point& half) {
   const D d;
@@ -121,8 +121,8 @@ hn::Mask<D> same_side(const WalkInput& in, const WideNode& node, std::size_t lan
   return hn::Gt(least, hn::Add(scaled(spread, 1.01F), slack));
 }
 
-/// Does what lies within these extents, relative to the one view sample and no farther from it than `far`, appear
-/// between two rows of light samples and to the right of the light's left side? (bound gaps)
+/// Returns whether objects within these extents, relative to the single view sample and at most `far` from it, appear
+/// between two rows of light samples and to the right of the light's left side. (bound gaps)
 hn::Mask<D> between_rows(const WalkInput& in, const Extent& across, const Extent& along, const Extent& level, V far) {
   const D d;
   const auto set = [&](float x) { return hn::Set(d, x); };
@@ -156,7 +156,7 @@ hn::Mask<D> box_between_rows(const WalkInput& in, const Point& middle, const Poi
                       extent(to, half, in.grid.axis, in.grid.axis_size), far);
 }
 
-/// The children whose boxes meet the shaft, and, with cones, may hold a silhouette edge: a bit each.
+/// Returns the children (bits) whose boxes meet the shaft, and, with cones, may contain a silhouette edge.
 template <bool kCones>
 std::uint32_t children_met(const WalkInput& in, const Shaft& shaft, const WideNode& node) {
   const D d;
@@ -172,7 +172,7 @@ std::uint32_t children_met(const WalkInput& in, const Shaft& shaft, const WideNo
   return hits & node.used;
 }
 
-/// Calls `leaf` for each leaf whose box meets the shaft, of the subtrees on the stack; until one call returns false.
+/// Calls `leaf` for each leaf whose box meets the shaft in the subtrees on the stack, until a call returns false.
 template <bool kCones, typename Tree, typename Leaf>
 void go_on(const WalkInput& in, const Shaft& shaft, const Tree& tree, std::vector<std::uint32_t>& stack, Leaf leaf) {
   while (!stack.empty()) {
@@ -189,7 +189,7 @@ void go_on(const WalkInput& in, const Shaft& shaft, const Tree& tree, std::vecto
   }
 }
 
-/// Asks for a node or a leaf before a walk comes to it: hierarchies of millions are in no cache.
+/// Prefetches a node or leaf; large hierarchies do not fit any cache.
 template <typename Tree>
 HWY_INLINE void fetch(const Tree& tree, std::uint32_t reference) {
   if ((reference & kLeafBit) != 0) return tree.leaves.fetch(reference & ~kLeafBit);
@@ -197,14 +197,14 @@ HWY_INLINE void fetch(const Tree& tree, std::uint32_t reference) {
   for (std::size_t line = 0; line < sizeof(WideNode); line += 64) hwy::Prefetch(lines + line);
 }
 
-/// Calls `leaf` for each leaf whose box meets the shaft, in the order of go_on; but goes down level by level, so that
-/// memory has time to bring what comes next.
+/// Calls `leaf` for each leaf whose box meets the shaft, in the order of go_on, but descends level by level, which
+/// gives prefetches time.
 template <bool kCones, typename Tree, typename Leaf>
 void walk(const WalkInput& in, const Shaft& shaft, const Tree& tree, const std::vector<std::uint32_t>& roots,
           std::vector<std::uint32_t>& levels, Leaf leaf) {
   levels.assign(roots.rbegin(), roots.rend());
   const auto is_leaf = [](std::uint32_t reference) { return (reference & kLeafBit) != 0; };
-  std::size_t begin = 0;  // of the last level
+  std::size_t begin = 0;  // begin of the last level
   for (bool ends = false; !ends;) {
     const std::size_t end = levels.size();
     ends = true;
@@ -227,7 +227,7 @@ void walk(const WalkInput& in, const Shaft& shaft, const Tree& tree, const std::
   for (; begin < levels.size(); ++begin) leaf(levels[begin] & ~kLeafBit);
 }
 
-/// Puts children in place of each root as long as there are not too many.
+/// Replaces roots by their children as long as there are not too many.
 template <bool kCones, typename Tree>
 void narrow(const WalkInput& in, const Shaft& shaft, const Tree& tree, std::vector<std::uint32_t>& roots) {
   constexpr std::size_t kMost = 24;
@@ -245,7 +245,7 @@ void narrow(const WalkInput& in, const Shaft& shaft, const Tree& tree, std::vect
   }
 }
 
-/// Goes down level by level until there are enough.
+/// Descends level by level until there are enough roots.
 template <bool kCones, typename Tree>
 void descend(const WalkInput& in, const Shaft& shaft, const Tree& tree, std::vector<std::uint32_t>& roots) {
   constexpr std::size_t kEnough = 24;
@@ -267,4 +267,4 @@ void descend(const WalkInput& in, const Shaft& shaft, const Tree& tree, std::vec
 }  // namespace penumbra::vectors::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
-#endif  // once a target
+#endif  // once for each target

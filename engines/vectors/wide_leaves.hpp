@@ -17,17 +17,17 @@
 
 namespace penumbra::vectors {
 
-/// The leaves of a hierarchy, and those of others that were appended to it. Of millions of leaves few are on the way
-/// from any view sample to a light: of many, each may be made when somebody asks for it.
+/// The leaves of a hierarchy, and those of appended hierarchies. Few of millions of leaves are between any view sample
+/// and a light: large sets of leaves are made on demand.
 template <typename Leaf>
 class WideLeaves {
  public:
-  /// Fills a leaf, which is Leaf{} before. Called on any thread, for as long as there are leaves to be made.
+  /// Fills a leaf, which is initialised to Leaf{}. Called on any thread, as long as leaves are missing.
   using Make = std::function<void(std::size_t number, Leaf& leaf)>;
 
   WideLeaves() = default;
   WideLeaves(const WideLeaves&) = default;
-  /// The other one is empty then.
+  /// The moved-from object is empty.
   WideLeaves(WideLeaves&& other) noexcept { *this = std::move(other); }
   WideLeaves& operator=(const WideLeaves& other) {
     *this = WideLeaves(other);
@@ -44,8 +44,7 @@ class WideLeaves {
   }
   ~WideLeaves() = default;
 
-  /// All of them: at once if they are few, else each, with its neighbours, when somebody asks for it. `held`: bytes of
-  /// what `make` holds.
+  /// Makes all leaves: immediately if they are few, else in blocks on demand. `held`: bytes that `make` holds.
   void make(std::size_t count, Make make, std::uint64_t held = 0) {
     constexpr std::size_t kFew = std::size_t{1} << 16U;
     count_ = count;
@@ -66,7 +65,7 @@ class WideLeaves {
     own_.resize(count);
     make_again([](std::size_t) { return true; }, make);
   }
-  /// Those that are wanted, over what they were; all were made at once.
+  /// Makes the wanted leaves again, in place; all must have been made at once.
   template <typename Wanted>
   void make_again(const Wanted& wanted, const Make& make) {
     PENUMBRA_ASSERT(blocks_.empty(), "{} leaves are made when somebody asks", count_);
@@ -83,7 +82,7 @@ class WideLeaves {
     const Leaf* const block = blocks_.made(number / kBlock);
     return (block != nullptr ? block : make_block(number / kBlock))[number % kBlock];
   }
-  /// Asks memory for a leaf, if it is made, before somebody looks at it.
+  /// Prefetches a leaf if it is made already.
   void fetch(std::size_t number) const {
     const Leaf* leaf = nullptr;
     if (number >= count_) return;
@@ -104,7 +103,7 @@ class WideLeaves {
   }
   void forget_appended() { appended_.clear(); }
 
-  /// Of what has been made, and of what the rest is made from.
+  /// Returns the bytes of the made leaves, and of the data from which the others are made.
   [[nodiscard]] std::uint64_t memory_bytes() const {
     return (own_.size() + appended_.size()) * sizeof(Leaf) + blocks_.memory_bytes() + held_bytes_;
   }
@@ -112,7 +111,7 @@ class WideLeaves {
  private:
   static constexpr std::size_t kBlock = 16;  // leaves that are made together: about ten kilobytes
 
-  /// Blocks of leaves, each made or not. Any thread may add one.
+  /// Blocks of leaves made on demand. Thread-safe.
   class Blocks {
    public:
     Blocks() = default;
@@ -139,7 +138,7 @@ class WideLeaves {
 
     [[nodiscard]] bool empty() const { return count_ == 0; }
     [[nodiscard]] Leaf* made(std::size_t block) const { return firsts_[block].load(std::memory_order_acquire); }
-    /// Memory for one.
+    /// Returns memory for one block.
     [[nodiscard]] Leaf* unset_block() {
       const std::scoped_lock lock(mutex_);
       if (slabs_.empty() || taken_ == kSlab) {
@@ -148,7 +147,7 @@ class WideLeaves {
       }
       return &slabs_.back()[kBlock * taken_++];
     }
-    /// The block that is there now: of two threads that add the same, one is first.
+    /// Returns the stored block: if two threads add the same block, the first one is kept.
     const Leaf* add(std::size_t block, Leaf* leaves) {
       Leaf* first = nullptr;
       return firsts_[block].compare_exchange_strong(first, leaves) ? leaves : first;
@@ -159,13 +158,13 @@ class WideLeaves {
     }
 
    private:
-    /// Blocks in an array that is kept for the next frame's, since the system gives memory slowly.
+    /// Blocks in an array that is cached for the next frame's, since the system provides memory slowly.
     static constexpr std::size_t kSlab = (KeptArrays::kLeast - 1) / (kBlock * sizeof(Leaf)) + 1;
 
-    std::unique_ptr<std::atomic<Leaf*>[]> firsts_;  // of each block its leaves, or null
+    std::unique_ptr<std::atomic<Leaf*>[]> firsts_;  // for each block its leaves, or null
     std::size_t count_ = 0;
     std::vector<UnsetList<Leaf>> slabs_;
-    std::size_t taken_ = 0;  // blocks of the last slab
+    std::size_t taken_ = 0;  // used blocks of the last slab
     std::mutex mutex_;
   };
 
@@ -179,8 +178,8 @@ class WideLeaves {
   }
 
   std::size_t count_ = 0;
-  UnsetList<Leaf> own_;  // where they were made at once
-  Make make_;            // else
+  UnsetList<Leaf> own_;  // if they were made at once
+  Make make_;            // if they are made on demand
   mutable Blocks blocks_;
   std::uint64_t held_bytes_ = 0;
   std::vector<Leaf> appended_;
