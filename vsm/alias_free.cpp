@@ -1,10 +1,11 @@
 // T. Aila and S. Laine, Alias-free shadow maps, 2004; G. Johnson, J. Lee, C. Burns and W. Mark, The irregular Z-buffer,
-// 2005: a shadow map whose samples are where it will be asked. View samples lie in lists of light pixels; each triangle
-// is rasterised conservatively from the light's centre and tested against the lists of the pixels that it touches.
+// 2005: a shadow map whose samples are at the places of view samples. View samples are stored in lists of light pixels;
+// each triangle is rasterised conservatively from the light's centre and tested against the lists of the pixels that it
+// touches.
 //
 // Departures. Six faces of a cube around the centre instead of one frustum (a sun has one, orthographic), each with a
 // window around its view samples. A test is the exact predicate on the view sample itself: no depth is stored, so there
-// is no bias. A view sample that is in shadow leaves its list.
+// is no bias. A view sample found to be in shadow is removed from its list.
 
 #include "vsm/methods.hpp"
 
@@ -50,14 +51,15 @@ visibility::MethodDescription describe_alias_free() {
           .verdict_on = alias_free_verdict};
 }
 
-/// How the light's centre sees: through a face of a cube, or along a sun's direction.
+/// Projection from the light's centre: through a face of a cube, or along a sun's direction.
 struct Eye {
-  glm::dvec3 center{0};  ///< of a sun its direction
+  glm::dvec3 center{0};  ///< for a sun, its direction
   bool sun = false;
   int axis = 2;
   double sign = 1;
 
-  /// x and y along the other two axes, z away from the light. Homogeneous: the place is (x, y) / z; of a sun (x, y).
+  /// Returns x and y along the other two axes, z away from the light. Homogeneous: the place is (x, y) / z; for a sun
+  /// (x, y).
   [[nodiscard]] glm::dvec3 see(const glm::vec3& point) const {
     const int i = (axis + 1) % 3, j = (axis + 2) % 3;
     const glm::dvec3 x(point);
@@ -83,11 +85,11 @@ int largest_axis(const glm::dvec3& x) {
 struct Face {
   Eye eye;
   std::vector<std::uint32_t> pixels;
-  std::vector<double> depth;  ///< of each of them
+  std::vector<double> depth;  ///< depth of each view sample
   LightPixels light_pixels;
 };
 
-/// A convex polygon cut by value(x) ≥ −slack.
+/// A convex polygon clipped by value(x) ≥ −slack.
 class Polygon {
  public:
   explicit Polygon(const std::array<glm::dvec3, 3>& corners)
@@ -109,11 +111,11 @@ class Polygon {
   [[nodiscard]] std::span<const glm::dvec3> corners() const { return std::span(corners_).first(count_); }
 
  private:
-  std::array<glm::dvec3, 8> corners_;  // three, and one more for each of five cuts
+  std::array<glm::dvec3, 8> corners_;  // three corners, and one more for each of five clips
   std::size_t count_;
 };
 
-/// Where a triangle may be seen in the face's window. No points: nowhere.
+/// Returns the region of the face's window in which a triangle may be seen; without points it is seen nowhere.
 Footprint footprint_of(const Face& face, const std::array<glm::vec3, 3>& corners) {
   const std::array seen{face.eye.see(corners[0]), face.eye.see(corners[1]), face.eye.see(corners[2])};
   double largest = 0;
@@ -121,13 +123,13 @@ Footprint footprint_of(const Face& face, const std::array<glm::vec3, 3>& corners
   Footprint footprint;
   if (face.eye.sun) {
     for (const glm::dvec3& at : seen) footprint.add(glm::dvec2(at));
-    // A quotient, a product and a difference, of no more than twice the largest coordinate (center[axis] is largest).
+    // A quotient, a product and a difference, of at most twice the largest coordinate (center[axis] is largest).
     footprint.error = 0;
     for (const glm::vec3& corner : corners)
       footprint.error = std::max(footprint.error, 0x1p-50 * 4 * glm::length(glm::dvec3(corner)));
     return footprint;
   }
-  // Coordinates are rounded once, a cut's value four times, of no more than 2 · largest; so is a corner where it cuts.
+  // Coordinates are rounded once, a clip's value four times, of at most 2 · largest; so is a new corner.
   const double slack = 0x1p-46 * largest;
   const glm::dvec2 lower = face.light_pixels.lower(), upper = face.light_pixels.upper();
   Polygon polygon(seen);
@@ -135,13 +137,13 @@ Footprint footprint_of(const Face& face, const std::array<glm::vec3, 3>& corners
   polygon.cut([&](const glm::dvec3& x) { return upper.x * x.z - x.x; }, slack);
   polygon.cut([&](const glm::dvec3& x) { return x.y - lower.y * x.z; }, slack);
   polygon.cut([&](const glm::dvec3& x) { return upper.y * x.z - x.y; }, slack);
-  polygon.cut([](const glm::dvec3& x) { return x.z; }, slack);  // a window of no width sees both ways
+  polygon.cut([](const glm::dvec3& x) { return x.z; }, slack);  // a window without width is seen from both sides
   double nearest = std::numeric_limits<double>::max();
   for (const glm::dvec3& at : polygon.corners()) nearest = std::min(nearest, at.z);
   footprint.everywhere = !(nearest > 0x1p8 * slack);
   if (footprint.everywhere) return footprint;
   for (const glm::dvec3& at : polygon.corners()) footprint.add(glm::dvec2(at) / at.z);
-  footprint.error = 16 * slack / nearest;  // of a corner, of the five cuts, and of a place of size 1
+  footprint.error = 16 * slack / nearest;  // of a corner, of the five clips, and of a place of size 1
   return footprint;
 }
 
@@ -183,7 +185,7 @@ class AliasFree final : public visibility::Method {
   [[nodiscard]] std::uint64_t memory_bytes() const override { return bytes_; }
 
  private:
-  /// Those that see nothing of the light's centre for other reasons than triangles are dark, the others in a face.
+  /// Sorts view samples into faces; those that do not see the light's centre for reasons other than triangles are dark.
   std::vector<Face> sort_view_samples(const visibility::Tile& tile);
   void rasterise(Face& face);
 
@@ -195,7 +197,7 @@ class AliasFree final : public visibility::Method {
   std::vector<std::uint32_t> casters_;
   const visibility::ViewSamples* samples_ = nullptr;
   std::size_t first_pixel_ = 0;
-  std::vector<std::uint8_t> lit_;  // of the tile
+  std::vector<std::uint8_t> lit_;  // for each pixel of the tile
   std::uint64_t tests_ = 0, footprints_ = 0, longest_ = 0, bytes_ = 0;
   double milliseconds_ = 0;
 };
@@ -239,7 +241,7 @@ void AliasFree::evaluate(const visibility::Tile& tile) {
       face.depth.push_back(face.eye.see(p).z);
       reach = std::max(reach, glm::length(glm::dvec3(p)));
     }
-    // Of a face: two differences and a quotient, of no more than 1. Of a sun as in footprint_of.
+    // Error for a face: two differences and a quotient, of at most 1; for a sun as in footprint_of.
     face.light_pixels = LightPixels(places, face.eye.sun ? 0x1p-48 * reach : 0x1p-50, per_pixel_);
     longest_ = std::max<std::uint64_t>(longest_, face.light_pixels.longest_list());
     bytes += face.light_pixels.bytes() + face.pixels.size() * (sizeof(std::uint32_t) + sizeof(double));
@@ -251,7 +253,7 @@ void AliasFree::evaluate(const visibility::Tile& tile) {
 
 void AliasFree::rasterise(Face& face) {
   const auto corners_of = [&](std::uint32_t triangle) { return scene_->corners(triangle); };
-  // Rounding keeps the order of depths: what is strictly deeper as rounded is deeper. Not so a sun's.
+  // Rounding keeps the order of depths: a place strictly deeper after rounding is deeper. This does not hold for a sun.
   const auto nearest_of = [&](std::uint32_t triangle) {
     if (face.eye.sun) return -std::numeric_limits<double>::max();
     const auto [a, b, c] = corners_of(triangle);

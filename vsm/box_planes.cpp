@@ -1,3 +1,6 @@
+// Tests boxes of view samples against the thirteen half-spaces between a triangle and a box of light samples; see
+// box_planes.hpp.
+
 #include "vsm/box_planes.hpp"
 
 #include "engines/pairs/blocked_samples.hpp"
@@ -21,7 +24,8 @@ BoxPlanes::BoxPlanes(const std::array<glm::dvec3, 3>& corners, const LightTree& 
     back += side < -error ? 1 : 0;
   }
   one_side_ = front == 4 || back == 4;
-  // With l in front and p behind, p sees the corners turn so that all f are positive; else they are negative.
+  // With l in front and p behind, p sees the corners in the order in which all f are positive; otherwise they are
+  // negative.
   const double turn = back == 4 ? -1 : 1;
   for (std::size_t e = 0; e < 3; ++e) {
     const glm::dvec3 &a = corners[e], &b = corners[(e + 1) % 3];
@@ -36,18 +40,18 @@ BoxPlanes::BoxPlanes(const std::array<glm::dvec3, 3>& corners, const LightTree& 
 }
 
 BoxPlanes::Answer BoxPlanes::look(const ReceiverTree::Node& box, std::uint32_t& open) const {
-  // Which way round the edges are is another matter for each light sample: nothing that was found before holds.
+  // The orientation of the edges differs between light samples: no earlier result holds.
   if (!one_side_) open |= kEdges;
-  // Of the box's points p: how far they are from each corner at most.
+  // Largest distance of the box's points p from each corner.
   std::array<double, 3> far{};
   for (std::size_t i = 0; i < 3; ++i) far[i] = glm::length(corners_[i] - box.middle) + box.radius;
-  bool some_in = false, some_out = false;  // whole edges, for triangles that both sides of may have light
+  bool some_in = false, some_out = false;  // whole edges, for triangles that may have light on both sides
   for (std::size_t e = 0; e < 3; ++e) {
     if ((open >> 4 * e & 15) == 0) {
       some_in = true;
       continue;
     }
-    // f changes with l by |δl| |a − p| |b − p|, a sun's by |δl| |a − p| |b − a|.
+    // f changes with l by |δl| |a − p| |b − p|; for a sun by |δl| |a − p| |b − a|.
     const double length = sun_ ? glm::length(corners_[(e + 1) % 3] - corners_[e]) : far[(e + 1) % 3];
     const double beside = off_ * far[e] * length;
     int out = 0;

@@ -10,13 +10,13 @@
 
 namespace penumbra::vsm {
 
-/// Between which boxes of view samples and a box of light samples a triangle is. Inside vsm/ only.
+/// Classifies boxes of view samples by whether a triangle is between them and a box of light samples. Inside vsm/ only.
 ///
-/// The segment p→l passes the edge a→b on the side of f(p, l) = det(l − p, a − p, b − p), which is affine in p and in
-/// l. So of a box of light samples its four corners decide, and each gives a plane through the edge, f as a function of
-/// p alone: between them is the edge's penumbra wedge. With the triangle's own plane these are thirteen half-spaces; p
-/// sees no light sample of the box if it is in all of them, and all (of what this triangle hides) if it is outside of
-/// the four of an edge, or of the triangle's plane.
+/// The segment p→l passes the edge a→b on the side given by the sign of f(p, l) = det(l − p, a − p, b − p), which is
+/// affine in p and in l. So for a box of light samples its four corners decide, and each gives a plane through the
+/// edge, f as a function of p alone: between them is the edge's penumbra wedge. With the triangle's own plane these are
+/// thirteen half-spaces; p sees no light sample of the box if it is in all of them, and all light samples (as far as
+/// this triangle is concerned) if it is outside of the four of an edge, or of the triangle's plane.
 class BoxPlanes {
  public:
   static constexpr std::uint32_t kAll =
@@ -26,16 +26,18 @@ class BoxPlanes {
   BoxPlanes() = default;
   BoxPlanes(const std::array<glm::dvec3, 3>& corners, const LightTree& tree, const LightTree::Node& light);
 
-  /// Is the box of light samples certainly on one side of the triangle's plane? Otherwise no box is hidden as a whole.
+  /// Returns whether the box of light samples is certainly on one side of the triangle's plane. If not, no box is
+  /// hidden as a whole.
   [[nodiscard]] bool one_side() const { return one_side_; }
 
   enum class Answer : std::uint8_t { beside, hidden, open };
-  /// `open`: the half-spaces that a box around this one was not certainly in; those that this box is not in are left.
+  /// Classifies a box. `open`: on input the half-spaces that an enclosing box was not certainly in; on return those
+  /// that this box is not in.
   [[nodiscard]] Answer look(const ReceiverTree::Node& box, std::uint32_t& open) const;
 
  private:
-  /// normal · (base − p) > 0. The value is off by less than `relative` times the length of base − p, and what l may be
-  /// beside the corners of its box comes on top.
+  /// The half-space normal · (base − p) > 0. The error of the value is below `relative` times the length of base − p,
+  /// plus the effect of l's distance from the corners of its box.
   struct Plane {
     glm::dvec3 normal{0}, base{0};
     double relative = 0;

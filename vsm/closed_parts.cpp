@@ -1,3 +1,5 @@
+// Finds the closed parts of a scene, and the triangles that view samples outside of a part need not test.
+
 #include "vsm/closed_parts.hpp"
 
 #include "base/parallel.hpp"
@@ -19,11 +21,11 @@ using visibility::SceneFloats;
 
 constexpr std::uint32_t kNone = 0xffffffffU;
 
-/// The triangles that cast shadow and are no light's body, as a mesh of its own.
+/// The triangles that cast shadows and are not a light's body, as a mesh.
 struct Casters {
   std::vector<glm::dvec3> positions;
   std::vector<mesh::Triangle> triangles;
-  std::vector<std::uint32_t> in_scene;  ///< for each, its number in the scene
+  std::vector<std::uint32_t> in_scene;  ///< index in the scene of each triangle
 };
 
 Casters casters_of(const SceneFloats& scene) {
@@ -56,7 +58,7 @@ ClosedPart bounds_of(const SceneFloats& scene, std::span<const std::uint32_t> tr
   return part;
 }
 
-/// For each plane, the component that alone has triangles on it, or kNone.
+/// Returns for each plane the only component that has triangles on it, or kNone.
 std::vector<std::uint32_t> plane_owners(const SceneFloats& scene, const std::vector<std::uint32_t>& component) {
   constexpr std::uint32_t kUnseen = 0xfffffffeU;
   std::vector<std::uint32_t> owner(scene.triangles.size(), kUnseen);
@@ -68,9 +70,9 @@ std::vector<std::uint32_t> plane_owners(const SceneFloats& scene, const std::vec
   return owner;
 }
 
-/// ±1: every light sample certainly sees the triangle from this side; 0: not certain. All arithmetic is in double on
-/// float32 numbers; the margin of 2⁻²⁰ of every length that enters is a million times the rounding there, and covers
-/// that light samples are stored in float32.
+/// Returns ±1 if every light sample certainly sees the triangle from this side; 0 if it is not certain. All arithmetic
+/// is in double on float32 numbers; the margin of 2⁻²⁰ of every length is a million times the rounding error, and
+/// covers that light samples are stored in float32.
 int side_shown(const std::array<glm::vec3, 3>& corners, const visibility::DeviceLight& frame, float scale) {
   const glm::dvec3 a(corners[0] * scale), e1 = glm::dvec3(corners[1] * scale) - a,
                                           e2 = glm::dvec3(corners[2] * scale) - a;
@@ -100,7 +102,7 @@ ClosedParts find_closed_parts(const SceneFloats& scene) {
   const mesh::MeshView view{casters.positions, casters.triangles};
   const mesh::Components found = mesh::find_components(view, mesh::build_edge_graph(view));
   const std::vector<mesh::Component>& components = found.components;
-  std::vector<std::uint32_t> component(scene.triangles.size(), kNone);  // of each triangle of the scene
+  std::vector<std::uint32_t> component(scene.triangles.size(), kNone);  // for each triangle of the scene
   for (std::uint32_t i = 0; i < components.size(); ++i) {
     for (const std::uint32_t t : components[i].triangles) component[casters.in_scene[t]] = i;
   }
@@ -121,7 +123,7 @@ ClosedParts find_closed_parts(const SceneFloats& scene) {
   closed.turn.resize(scene.triangles.size());
   for (const std::uint32_t i : chosen) {
     const bool outward = mesh::signed_volume(view, components[i], found.turn) > 0;
-    std::vector<std::uint32_t> triangles;  // of the scene
+    std::vector<std::uint32_t> triangles;  // indices in the scene
     for (const std::uint32_t t : components[i].triangles) triangles.push_back(casters.in_scene[t]);
     closed.parts.push_back(bounds_of(scene, triangles));
     for (std::size_t k = 0; k < triangles.size(); ++k) {

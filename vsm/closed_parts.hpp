@@ -19,28 +19,30 @@ struct ClosedPart {
   std::array<visibility::Bounds, 6> touching;
 };
 
-/// The parts (at most kMost, the largest) whose triangles meet two at an edge and can be wound alike, none of them
-/// coplanar with any triangle elsewhere, none the body of a light.
+/// The closed parts (at most kMost, the largest): their triangles meet in pairs at edges and can be wound consistently,
+/// none is coplanar with any triangle elsewhere, and none is the body of a light.
 struct ClosedParts {
   static constexpr std::uint32_t kMost = 31;
   static constexpr std::uint32_t kFewestTriangles = 64;
 
   std::vector<ClosedPart> parts;
-  std::vector<std::uint8_t> part;  ///< for each triangle: its part's number, from 1, or 0. Empty when there is none
-  std::vector<std::int8_t> turn;   ///< for each triangle of a part: ±1, so that turned by it all normals point inward
+  std::vector<std::uint8_t> part;  ///< for each triangle: the number of its part, from 1, or 0. Empty if there are no
+                                   ///< parts
+  std::vector<std::int8_t> turn;   ///< for each triangle of a part: ±1, so that normals multiplied by it point inward
 };
 
-/// Scene floats know no winding, and none is needed: parts are wound here.
+/// Finds the closed parts. Scene floats have no windings, and need none: parts are wound here.
 ClosedParts find_closed_parts(const visibility::SceneFloats& scene);
 
-/// Bit k: the box of part k (from 1) is certainly apart from the light's. Only these parts have dispensable triangles.
-/// `frame` is scaled by `scale`.
+/// Returns a bit for each part (from 1) whose box is certainly separate from the light's. Only these parts have
+/// dispensable triangles. `frame` is scaled by `scale`.
 std::uint32_t parts_apart_from(const ClosedParts& closed, const visibility::DeviceLight& frame, float scale);
-/// Likewise of a sphere, and of a sun, which is apart from all.
+/// Returns the parts separate from a sphere, or from a sun, which is separate from all.
 std::uint32_t parts_apart_from(const ClosedParts& closed, const visibility::Light& light);
 
-/// For each triangle that certainly has the whole light in front, wound by `turn`, and so is dispensable to view
-/// samples outside its part (docs/view-sample.md, "Closed casters"): the part's number, else 0.
+/// Returns for each triangle the number of its part if the whole light is certainly in front of the triangle, wound by
+/// `turn`, which makes it dispensable to view samples outside of the part (docs/view-sample.md, "Closed casters"); else
+/// 0.
 std::vector<std::uint8_t> find_dispensable(const ClosedParts& closed, const visibility::SceneFloats& scene,
                                            const visibility::DeviceLight& frame, float scale);
 

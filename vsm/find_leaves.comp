@@ -2,18 +2,20 @@
 #extension GL_GOOGLE_include_directive : require
 #include "vsm/view_sample.glsl"
 
-// First pass of view-sample mapping: what each view sample's own plane and the light's plane decide, and the leaves of
-// the tree that the shaft from a block of view samples to the light meets. Where Sintorn et al. rasterise footprints in
-// light space, we walk a hierarchy: that needs no light frustum, and the light may be anywhere.
+// First pass of view-sample mapping: light samples decided by each view sample's own plane and the light's plane, and
+// the leaves of the tree that the shaft from a block of view samples to the light meets. Where Sintorn et al. rasterise
+// footprints in light space, this pass traverses a hierarchy, which needs no light frustum: the light may be anywhere.
 
-layout(binding = 5) uniform usamplerBuffer nodes;         // 2 texels a child: (centre, reference), (half extent, the
-                                                          // closed part outside which all below is dispensable, or 0)
-layout(binding = 6) uniform usamplerBuffer parts;         // 14 texels a closed part: 7 boxes, itself and what touches it
+layout(binding = 5) uniform usamplerBuffer nodes;         // 2 texels for each child: (centre, reference), (half extent,
+                                                          // the closed part outside of which everything below is
+                                                          // dispensable, or 0)
+layout(binding = 6) uniform usamplerBuffer parts;         // 14 texels for each closed part: 7 boxes, that of the part
+                                                          // and those of its vertices on each face
 
 shared uint stack[kStackSize];
 shared uint leaves[kChunk + kTeam * kTeams + 8];
 
-// Hands the first `count` collected leaves to the second pass.
+// Passes the first `count` collected leaves to the second pass.
 void emit_chunk(uint header, uint outside_of, uint count) {
   uint chunk = 0;
   if (subgroupElect()) chunk = atomicAdd(chunk_count, 1);
@@ -29,7 +31,7 @@ void emit_chunk(uint header, uint outside_of, uint count) {
   if (i < kChunk) atomicOr(unfinished, 1u);
 }
 
-// Integers in the order of the floats, −0 and +0 the same: comparing them flushes nothing to zero.
+// Returns integers in the order of the floats, with −0 equal to +0: comparing them flushes nothing to zero.
 ivec3 ordered(uvec3 bits) {
   const ivec3 size = ivec3(bits & 0x7fffffffu);
   return mix(size, -size, greaterThan(bits, uvec3(0x7fffffffu)));
@@ -39,7 +41,8 @@ bool outside_box(ivec3 at, int texel) {
   return any(lessThan(at, ordered(texelFetch(parts, texel).xyz))) || any(greaterThan(at, ordered(texelFetch(parts, texel + 1).xyz)));
 }
 
-// Bit k: every view sample `on` is outside of part k, or on a face of its box where the part does not reach.
+// Returns bit k if every view sample `on` is outside of part k, or on a face of its box that the part does not reach
+// there.
 uint parts_around(bool on) {
   uint outside_of = 0;
   const ivec3 at = ordered(floatBitsToUint(p));
@@ -56,8 +59,8 @@ uint parts_around(bool on) {
   return outside_of;
 }
 
-// Lays the root of this dispatch's part of the tree on the stack; or, if a leaf lies above the part's level, the leaf with
-// the first of the parts that it could belong to. Returns the sizes of stack and leaves.
+// Pushes the root of this dispatch's part of the tree on the stack; or, if a leaf lies above the part's level, collects
+// the leaf in the first of the parts that it could belong to. Returns the sizes of stack and leaves.
 uvec2 first_of_part() {
   uint node = 0;
   uvec2 sizes = uvec2(1, 0);
@@ -70,7 +73,7 @@ uvec2 first_of_part() {
       node = reference;
     }
   }
-  stack[0] = node;                                        // every lane writes the same
+  stack[0] = node;                                        // every lane writes the same value
   if (sizes.y == 1) leaves[0] = node & ~kLeafBit;
   return sizes;
 }
@@ -83,7 +86,7 @@ void walk(bool on, float side, uint header, uint outside_of) {
   subgroupMemoryBarrierShared();
   subgroupBarrier();
   while (stack_size > 0 || leaf_count > 0) {
-    // Short, because some devices run all of a loop's body whatever its branches say.
+    // The body is short, because some devices execute all of a loop's body regardless of its branches.
     while (stack_size > 0 && leaf_count < kChunk) {
       const uint taken = min(stack_size, kTeams);
       const uint node = team < taken ? stack[stack_size - 1 - team] : 0;
@@ -112,7 +115,7 @@ void walk(bool on, float side, uint header, uint outside_of) {
     const uint emitted = min(leaf_count, kChunk);
     if (emitted > 0) emit_chunk(header, outside_of, emitted);
     leaf_count -= emitted;
-    for (uint turn = 0; turn < kTurns; ++turn) {          // moves them to the front, the first ones first
+    for (uint turn = 0; turn < kTurns; ++turn) {          // moves the collected leaves to the front, in order
       const uint i = turn * kLanes + lane, rest = i < leaf_count ? leaves[emitted + i] : 0;
       subgroupMemoryBarrierShared();
       subgroupBarrier();
@@ -120,9 +123,9 @@ void walk(bool on, float side, uint header, uint outside_of) {
       subgroupMemoryBarrierShared();
       subgroupBarrier();
     }
-    if (emitted < kChunk && stack_size > 0) break;        // the inner loop was cut off
+    if (emitted < kChunk && stack_size > 0) break;        // the driver ended the inner loop
   }
-  // Some processors' drivers end loops after 65535 turns. Never go on as if nothing had happened.
+  // Some drivers for processors end loops after 65535 iterations, which must be reported.
   if (stack_size > 0) atomicOr(unfinished, 1u);
 }
 
@@ -134,7 +137,7 @@ void main() {
   bool all_blocked = false;
   const bool first_part = push.part == 0;
 
-  // (2) p strictly on an emitting side of the light's plane.
+  // Condition (2): p strictly on an emitting side of the light's plane.
   if (on && abs(level) <= level_error) {
     if (first_part) ask(kAnyTriangle, kAllSamples);
     on = false;
@@ -143,7 +146,8 @@ void main() {
     all_blocked = true;
     on = false;
   }
-  // (1) The light sample strictly above the carrier's plane: one half-plane of the light. (bound horizon)
+  // Condition (1): the light sample strictly above the carrier's plane, which is one half-plane of the light. (bound
+  // horizon)
   if (on) {
     const vec3 above = vec3(dot(normal, push.u), dot(normal, push.v), dot(normal, towards));
     const float error = 16.0 * kRound * (size1(towards) + size1(push.u) + size1(push.v) + size1(p)) + push.deviation;

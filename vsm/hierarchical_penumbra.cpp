@@ -1,9 +1,9 @@
-// S. Laine and T. Aila, Hierarchical penumbra casting, Computer Graphics Forum 24 (3), 2005: work on the Cartesian
-// product of light samples and view samples. A triangle at a time, pairs of boxes that it is certainly between, or
-// certainly not, are done with as a whole; the others are divided.
+// S. Laine and T. Aila, Hierarchical penumbra casting, Computer Graphics Forum 24 (3), 2005: traverses the Cartesian
+// product of light samples and view samples. For one triangle at a time, pairs of boxes that the triangle is certainly
+// between, or certainly not between, are decided as a whole; the others are divided.
 //
-// Departures. Every test carries its error bound; what is left of a leaf is decided by BlockedSamples, exactly. Cores
-// share out subtrees of view samples, and each takes the triangles near what is between it and the light.
+// Departures. Every test has an error bound; open pairs of a leaf are decided by BlockedSamples, exactly. Cores share
+// subtrees of view samples, and each handles the triangles near the hull of its subtree and the light.
 
 #include "vsm/methods.hpp"
 
@@ -26,8 +26,8 @@ namespace {
 
 using pairs::PairCounts;
 
-constexpr std::uint32_t kSubtrees = 256;  // of view samples, about: what cores share out
-constexpr std::uint32_t kLeafWords = 8;   // of masks, tried at once against a leaf's view samples
+constexpr std::uint32_t kSubtrees = 256;  // approximate number of subtrees of view samples that cores share
+constexpr std::uint32_t kLeafWords = 8;   // words of masks that are tested together against a leaf's view samples
 
 visibility::MeshVerdict hierarchical_penumbra_verdict(const mesh::Diagnosis& mesh) {
   return {visibility::Verdict::exact,
@@ -68,15 +68,16 @@ class HierarchicalPenumbra final : public pairs::PairMethod {
   void prepare_casters() override;
   void block(std::span<const std::uint32_t> pixels, std::map<std::string, std::uint64_t>& counters) override;
 
-  /// One core's work: one triangle after the other against a subtree of view samples.
+  /// One core's work: each triangle in turn against a subtree of view samples.
   class Caster;
 
   LightTree lights_;
   LightShaft shaft_;
-  std::vector<PlaceBox> triangles_;  // of the scene, in the light's axes
+  std::vector<PlaceBox> triangles_;  // for each triangle of the scene, in the light's axes
   ReceiverTree receivers_;
-  std::vector<PlaceBox> places_, leaf_places_;  // of its nodes; of its pixels, in its order
-  std::vector<std::uint32_t> alive_;  // words() a node: light samples that one of its view samples may still see
+  std::vector<PlaceBox> places_, leaf_places_;  // boxes of the receiver tree's nodes; places of its pixels, in its
+                                                // order
+  std::vector<std::uint32_t> alive_;  // words() for each node: light samples that one of its view samples may still see
 };
 
 class HierarchicalPenumbra::Caster {
@@ -116,7 +117,7 @@ class HierarchicalPenumbra::Caster {
     return planes_[light];
   }
 
-  /// The light samples of one node, the view samples of another.
+  /// Tests the light samples of one node against the view samples of another.
   void visit(std::uint32_t light, std::uint32_t receivers, std::uint32_t open) {
     const LightNode& l = lights_.nodes[light];
     const Receivers& r = receivers_.nodes[receivers];
@@ -135,7 +136,7 @@ class HierarchicalPenumbra::Caster {
       ++boxes.beside;
       return;
     }
-    // A carrier is not met, and it is in its own plane only up to rounding.
+    // The triangle does not hide a carrier in its own plane, which the boxes only know up to rounding.
     if (answer == BoxPlanes::Answer::hidden && (r.planes & plane_bit_) == 0) {
       ++boxes.hidden;
       boxes.hidden_pairs += std::uint64_t{32} * l.words * r.count();
@@ -146,7 +147,8 @@ class HierarchicalPenumbra::Caster {
     }
     if (r.is_leaf() && (l.words <= kLeafWords || l.is_leaf())) return try_leaf(l, receivers);
     if (!l.is_leaf() && (r.is_leaf() || !planes.one_side() || light_is_larger(l, r))) {
-      // Half-spaces of an edge that all four hold stay held; the triangle's plane does not know the light.
+      // A half-space of an edge that all four corners satisfy stays satisfied; the triangle's plane does not depend on
+      // the light.
       std::uint32_t inherited = planes.one_side() ? open & 1U << 12 : 1U << 12;
       for (std::uint32_t e = 0; e < 3; ++e) {
         if (!planes.one_side() || (open >> 4 * e & 15) != 0) inherited |= 15U << 4 * e;
@@ -161,7 +163,7 @@ class HierarchicalPenumbra::Caster {
     for (std::size_t i = 0; i < both.size(); ++i) both[i] = left[i] | right[i];
   }
 
-  /// Whose extent moves a segment more where the triangle is?
+  /// Returns whether the light node's extent moves a segment at the triangle more than the receivers' extent does.
   [[nodiscard]] bool light_is_larger(const LightNode& l, const Receivers& r) const {
     const double to_receivers = glm::length(middle_ - r.middle);
     if (lights_.box.sun) return l.radius * to_receivers > r.radius;
@@ -186,8 +188,8 @@ class HierarchicalPenumbra::Caster {
   HierarchicalPenumbra& method_;
   const LightTree& lights_;
   const ReceiverTree& receivers_;
-  std::vector<BoxPlanes> planes_;        // of the triangle and each node of the light
-  std::vector<std::uint32_t> made_for_;  // for which triangle
+  std::vector<BoxPlanes> planes_;        // for the triangle and each node of the light
+  std::vector<std::uint32_t> made_for_;  // the triangle of each entry
   std::uint32_t number_ = 0, triangle_ = 0;
   std::array<glm::dvec3, 3> corners_{};
   glm::dvec3 middle_{0};

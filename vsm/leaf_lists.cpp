@@ -1,3 +1,5 @@
+// Host of find_leaves.comp: runs the pass, and grows its lists of chunks of leaves until they fit.
+
 #include "vsm/leaf_lists.hpp"
 
 #include "vsm/find_leaves.comp.spv.hpp"
@@ -8,7 +10,7 @@
 namespace penumbra::vsm {
 namespace {
 
-constexpr std::uint32_t kFirstChunks = 1U << 15;  // grows
+constexpr std::uint32_t kFirstChunks = 1U << 15;  // initial capacity, which grows
 
 }  // namespace
 

@@ -19,7 +19,7 @@
 
 namespace penumbra::vsm {
 
-/// What find_leaves.comp reads and writes beside its lists.
+/// Buffers that find_leaves.comp reads and writes besides its lists.
 struct LeafListInput {
   const render::Buffer& view;
   const render::Buffer& table;  ///< SampleTable
@@ -28,31 +28,31 @@ struct LeafListInput {
   const render::Buffer& nodes;
 };
 
-/// For each block of pixels the leaves of the tree of triangles that the shaft from its view samples to the light
-/// meets, in chunks; closed parts of the scene spare triangles. The pass decides as well what needs no triangles: the
-/// light's plane and the horizon.
+/// Lists, for each block of pixels, the leaves of the tree of triangles that the shaft from the block's view samples to
+/// the light meets, in chunks; closed parts of the scene save triangles. The pass also decides light samples that need
+/// no triangles: by the light's plane and the horizon.
 class LeafLists {
  public:
-  /// `method` names errors.
+  /// `method` names the method in errors.
   LeafLists(const render::Device& device, std::string method);
 
   /// Finds closed parts.
   void prepare_mesh(const visibility::SceneFloats& scene, float scale);
   [[nodiscard]] device::TriangleNotes notes() const { return {tags_, closed_.turn}; }
-  /// Marks in `triangles` what is dispensable for this light. `frame` is scaled by `scale`.
+  /// Marks in `triangles` those that are dispensable for this light. `frame` is scaled by `scale`.
   void prepare_light(const visibility::TriangleTree& tree, const visibility::DeviceLight& frame, float scale,
                      device::TriangleUpload& triangles);
-  /// `constants`: of the pass; the seventh is the number of leaves in a chunk.
+  /// `constants`: specialization constants of the pass; the seventh is the number of leaves in a chunk.
   void build_pass(const std::vector<std::uint32_t>& constants);
 
-  /// Lists of the `blocks` that `push` describes, whose chunk_capacity becomes the number of chunks.
+  /// Makes the lists of the `blocks` blocks that `push` describes, and sets its chunk_capacity to the number of chunks.
   [[nodiscard]] device::Attempt find(render::Commands& commands, gpu::ViewSamplePush& push, const LeafListInput& input,
                                      std::uint64_t blocks);
 
   [[nodiscard]] const render::Buffer& chunks() const { return chunks_.buffer(); }
-  // Of the last find:
+  // Pass times of the last find().
   [[nodiscard]] const std::vector<visibility::PassTime>& times() const { return times_; }
-  [[nodiscard]] bool was_cut_off() const { return was_cut_off_; }  ///< by a driver that ends loops
+  [[nodiscard]] bool was_cut_off() const { return was_cut_off_; }  ///< whether a driver ended a loop
 
  private:
   struct Head {
@@ -64,11 +64,11 @@ class LeafLists {
   std::optional<render::ComputePass> pass_;
 
   const visibility::SceneFloats* scene_ = nullptr;
-  std::uint32_t depth_ = 0;  // of the tree
+  std::uint32_t depth_ = 0;  // depth of the tree
   ClosedParts closed_;
-  std::vector<std::uint32_t> tags_;  // of triangles: closed parts
+  std::vector<std::uint32_t> tags_;  // tags of triangles: closed parts
   std::optional<render::Buffer> parts_;
-  std::uint32_t parts_apart_ = 0;  // bits: closed parts apart from the light
+  std::uint32_t parts_apart_ = 0;  // bits: closed parts separate from the light
 
   device::GrowingList chunks_;
   device::PartWalk walk_;

@@ -1,3 +1,6 @@
+// Left-sample maps (Eisemann and Décoret 2007, section 4.3) with bounds: for each texel the light samples left of all,
+// of any and of the middle one of its lines.
+
 #include "vsm/left_samples.hpp"
 
 #include "base/memory.hpp"
@@ -14,8 +17,8 @@
 namespace penumbra::vsm {
 namespace {
 
-/// What a line may be off by, in radii of the light, and still have a texel: a division, a root, an arc tangent and
-/// sines are fewer than 2⁸ roundings of numbers up to 8; light samples of a tilted light are floats near its plane.
+/// Largest error of a line, in radii of the light, covered by a texel: a division, a root, an arc tangent and sines are
+/// fewer than 2⁸ roundings of numbers up to 8; light samples of a tilted light are floats near its plane.
 constexpr double kMargin = 0x1p-18;
 
 }  // namespace
@@ -43,7 +46,7 @@ LeftSamples::LeftSamples(const visibility::Light& light, const pairs::LightBox& 
     const auto along = [](double angle, const glm::dvec2& x) { return std::cos(angle) * x.x + std::sin(angle) * x.y; };
     for (std::size_t j = 0; j < places.size(); ++j) {
       const glm::dvec2& x = places[j];
-      // |x| cos(θ − φ): extreme at the ends, or where θ is φ or φ + π.
+      // Extrema of |x| cos(θ − φ): at the ends, or where θ is φ or φ + π.
       double least = std::min(along(from, x), along(to, x)), most = std::max(along(from, x), along(to, x));
       const double phi = std::atan2(x.y, x.x), at_middle = along(middle, x);
       for (int turn = -2; turn <= 2; ++turn) {
@@ -51,7 +54,8 @@ LeftSamples::LeftSamples(const visibility::Light& light, const pairs::LightBox& 
         if (at < from || at > to) continue;
         (turn % 2 == 0 ? most : least) = (turn % 2 == 0 ? 1 : -1) * glm::length(x);
       }
-      // Left of the lines of all distances below some: it is put into the last of these, and runs down from there.
+      // A sample is left of the lines of all distances below some value: it is stored in the last of these, and
+      // propagated down from there.
       const auto put = [&](std::vector<std::uint32_t>& map, const auto& is_left) {
         std::uint32_t end = 0;
         for (std::uint32_t beyond = distances; end < beyond;) {
@@ -86,7 +90,7 @@ LeftSamples::Texel LeftSamples::texel(std::size_t number) const {
 LeftSamples::Texel LeftSamples::at(const Line& line) const {
   const std::size_t texels = std::size_t{angles_} * distances_;
   const double size = std::hypot(line.a, line.b), value = line.a * center_.x + line.b * center_.y + line.c;
-  // Of all light samples at once.
+  // Largest deviation over all light samples.
   const double span = size * radius_ * (1 + kMargin) + line.error +
                       kMargin * (std::abs(line.a * center_.x) + std::abs(line.b * center_.y));
   if (value > span) return texel(texels);

@@ -16,12 +16,12 @@ namespace penumbra::vsm {
 /// Left-sample maps (Eisemann and Décoret 2007, section 4.3): lines of the light's plane by their angle and distance,
 /// and for each texel of these the light samples to the left of its line.
 ///
-/// Departure: beside that of the texel's middle, a texel knows the light samples to the left of all of its lines, and
-/// of any of them. What is between is not known from the map alone.
+/// Departure: in addition to those of its middle line, a texel stores the light samples to the left of all of its
+/// lines, and of any of them. Light samples between these two sets are not determined by the map.
 class LeftSamples {
  public:
-  /// The line a A + b B + C = 0 in the light's axes; left is where that is positive. Its value is off by `error` at
-  /// most.
+  /// The line a A + b B + C = 0 in the light's axes; left is where the expression is positive. `error` is the largest
+  /// error of its value.
   struct Line {
     double a = 0, b = 0, c = 0, error = 0;
   };
@@ -42,10 +42,11 @@ class LeftSamples {
   [[nodiscard]] Texel texel(std::size_t number) const;
 
   glm::dvec2 center_{0};
-  double radius_ = 0;  // of a disk around all light samples
+  double radius_ = 0;  // radius of a disk around all light samples
   std::uint32_t angles_ = 0, distances_ = 0;
   std::size_t words_ = 0;
-  std::vector<std::uint32_t> all_, any_, middle_;  // a row of distances for each angle; then: all, none, unknown
+  std::vector<std::uint32_t> all_, any_, middle_;  // a row of distances for each angle; then three texels: all, none,
+                                                   // unknown
 };
 
 }  // namespace penumbra::vsm

@@ -1,3 +1,5 @@
+// Conservative test whether segments between boxes of view samples and of light samples may meet a triangle's box.
+
 #include "vsm/light_shaft.hpp"
 
 #include <glm/common.hpp>
@@ -7,9 +9,9 @@
 
 namespace penumbra::vsm {
 
-// Places are off by fewer than 8 roundings of twice the reach; so is what is interpolated below (s is right to 2⁻⁵²,
-// 1 − s too, and each product and sum rounds once more), of a sun times its steepest slope. A light sample is `off` its
-// plane, which moves a segment there by no more. 2⁻⁴⁴ of it all is ample.
+// Places have errors of fewer than 8 roundings of twice the reach; so have the interpolated places below (s is right to
+// 2⁻⁵², 1 − s too, and each product and sum rounds once more), for a sun times its steepest slope. A light sample is
+// `off` its plane, which moves a segment by no more. 2⁻⁴⁴ of the sum is ample.
 LightShaft::LightShaft(const pairs::LightBox& light, double reach)
     : light_(light),
       margin_(light.sun ? 0x1p-44 * reach * (1 + glm::length(glm::max(glm::abs(light.lower), glm::abs(light.upper)))) +

@@ -14,9 +14,9 @@ struct PlaceBox {
   glm::dvec3 lower{0}, upper{0};
 };
 
-/// What is between a light and view samples, in the light's axes. At the share s of the way from the light (a point l
-/// of it) to p the segment is at l + s (p − l); as h is 0 at the light, s is known from h, so a box between two h is
-/// met only where [l + s (p − l)] over those s meets it. A sun's ray is at p + (h_p − h) σ, σ its slope. Bounds,
+/// Bounds of the space between a light and view samples, in the light's axes. At the fraction s from the light (a point
+/// l of it) to p the segment is at l + s (p − l); as h is 0 at the light, h determines s, so a box between two heights
+/// is met only where [l + s (p − l)] over those s meets it. A sun's ray is at p + (h_p − h) σ, σ its slope. Bounds are
 /// rounded outward.
 class LightShaft {
  public:
@@ -24,10 +24,10 @@ class LightShaft {
   /// `reach`: at least the length of all positions.
   LightShaft(const pairs::LightBox& light, double reach);
 
-  /// Around points, rounded outward.
+  /// Returns a box around points, rounded outward.
   template <typename Points>
   [[nodiscard]] PlaceBox box_of(const Points& points) const;
-  /// May some segment from `receivers` to the light samples in [lower, upper] meet what is in `triangle`?
+  /// Returns whether some segment from `receivers` to the light samples in [lower, upper] may meet the box `triangle`.
   [[nodiscard]] bool meets(const PlaceBox& receivers, const PlaceBox& triangle, const glm::dvec2& lower,
                            const glm::dvec2& upper) const;
 

@@ -1,3 +1,5 @@
+// Builds a binary hierarchy over light samples by halving at whole words of masks.
+
 #include "vsm/light_tree.hpp"
 
 #include <glm/common.hpp>
@@ -11,7 +13,7 @@ namespace {
 
 constexpr std::uint32_t kWord = 32;
 
-/// Where `count` light samples are halved: at a whole word.
+/// Returns the position at which `count` light samples are halved: a whole word.
 std::uint32_t half_of(std::uint32_t count) {
   const std::uint32_t words = (count + kWord - 1) / kWord;
   return words / 2 * kWord;

@@ -12,14 +12,14 @@
 
 namespace penumbra::vsm {
 
-/// A binary hierarchy over light samples, whole words of masks each. Nodes lie in pre-order.
+/// A binary hierarchy over light samples; nodes hold whole words of masks. Nodes are stored in pre-order.
 struct LightTree {
   struct Node {
-    std::array<glm::dvec3, 4> corners{};  ///< around its light samples: points, of a sun directions
-    glm::dvec2 lower{0}, upper{0};        ///< the same in the light's axes
+    std::array<glm::dvec3, 4> corners{};  ///< around its light samples: points, for a sun directions
+    glm::dvec2 lower{0}, upper{0};        ///< bounds in the light's axes
     glm::dvec3 middle{0};
     double radius = 0;                  ///< half of the box's diagonal
-    std::uint32_t word = 0, words = 0;  ///< its light samples in masks
+    std::uint32_t word = 0, words = 0;  ///< its words in masks
     std::uint32_t right = 0;            ///< its right child; 0: none
     [[nodiscard]] bool is_leaf() const { return right == 0; }
   };
@@ -27,9 +27,10 @@ struct LightTree {
   std::vector<Node> nodes;
 };
 
-/// An order of light samples in which 32 that follow one another lie together: `order[i]` is the i-th's number.
+/// Returns an order of light samples in which 32 consecutive ones are close together: `order[i]` is the index of the
+/// i-th.
 std::vector<std::uint32_t> compact_order(const visibility::Light& light);
-/// Of a light whose samples are in such an order.
+/// Makes the tree of a light whose samples are in compact_order.
 LightTree make_light_tree(const visibility::Light& light);
 
 }  // namespace penumbra::vsm

@@ -1,3 +1,6 @@
+// Footprints of triangles on a plane or height field of view samples (Eisemann and Décoret 2007, section 4.1), with
+// error bounds.
+
 #include "vsm/planar_receiver.hpp"
 
 #include <glm/common.hpp>
@@ -10,7 +13,7 @@
 namespace penumbra::vsm {
 namespace {
 
-/// A triangle nearer to the light's lowest corner than this share of the way from the receiver has no box.
+/// A triangle nearer to the light's lowest corner than this fraction of the distance to the receiver has no box.
 constexpr double kGap = 0x1p-12;
 
 }  // namespace
@@ -51,10 +54,10 @@ glm::dvec3 PlanarReceiver::place(const glm::dvec3& x) const {
   return {glm::dot(across_, x), glm::dot(along_, x), glm::dot(normal_, x)};
 }
 
-/// −h of its highest corner: a segment from a lower p rises to what hides it.
+/// Returns −h of the triangle's highest corner: a segment from a lower p rises to its occluder.
 double PlanarReceiver::nearest(const std::array<glm::vec3, 3>& corners) const {
   double highest = -std::numeric_limits<double>::max();
-  // Where the light is below the plane for its part, segments may also fall.
+  // Where a part of the light is below the plane, segments may also fall.
   if (!(light_low_ > highest_ + 4 * error_) && !sun_) return highest;
   if (sun_ && !(light_low_ > 0)) return highest;
   for (const glm::vec3& corner : corners) highest = std::max(highest, place(glm::dvec3(corner)).z);
@@ -66,8 +69,8 @@ pairs::Footprint PlanarReceiver::footprint(const std::array<glm::vec3, 3>& corne
   std::array<glm::dvec3, 3> at{};
   for (std::size_t i = 0; i < 3; ++i) at[i] = place(glm::dvec3(corners[i]));
   const double high = std::max({at[0].z, at[1].z, at[2].z}), bottom = lowest_ - 4 * error_;
-  // Of what is lower than all view samples, or higher than the light, nothing hides anything. (Where all of the light
-  // is higher than the view samples.)
+  // A triangle below all view samples, or above the light, hides nothing. (If all of the light is above the view
+  // samples.)
   const double gap = sun_ ? 0x1p-10 : kGap * (light_low_ - lowest_);
   const bool light_above = sun_ ? light_low_ > gap : light_low_ > highest_ + 4 * error_ && gap > 64 * error_;
   if (light_above && high < bottom) return footprint;
@@ -75,7 +78,7 @@ pairs::Footprint PlanarReceiver::footprint(const std::array<glm::vec3, 3>& corne
   footprint.everywhere = !light_above || (!sun_ && high > light_low_ - gap);
   if (footprint.everywhere) return footprint;
 
-  // The part from `bottom` up: up to four corners.
+  // Clips the triangle to the part above `bottom`: up to four corners.
   std::array<glm::dvec3, 6> part{};
   std::size_t count = 0;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -93,7 +96,8 @@ pairs::Footprint PlanarReceiver::footprint(const std::array<glm::vec3, 3>& corne
         const glm::dvec2 q = (sun_ ? glm::dvec2(x) : glm::dvec2(l)) + k * way;
         lower = glm::min(lower, q);
         upper = glm::max(upper, q);
-        // Of x and l by their error; once more for each of their heights over the rise. Of a sun also of its direction.
+        // Errors of x and l, once more for each multiple of their heights in the extrapolation; for a sun also the
+        // error of its direction.
         footprint.error = std::max(footprint.error, 8 * error_ * (1 + std::abs(k)) * (1 + glm::length(way) / rise));
         if (sun_) footprint.error += 0x1p-40 * std::abs(k);
       }

@@ -12,24 +12,24 @@
 
 namespace penumbra::vsm {
 
-/// View samples on a plane, or on a height field over one, in a grid of texels; and the footprints that triangles have
-/// there: the box, along the grid, around what the light's corners project of a triangle's corners (Eisemann and
-/// Décoret 2007, section 4.1). Over a height field the box is that of its lowest and its highest plane together: from l
+/// View samples on a plane, or on a height field over one, in a grid of texels; and triangles' footprints there: the
+/// box, along the grid, around the projections of a triangle's corners from the light's corners (Eisemann and Décoret
+/// 2007, section 4.1). Over a height field the box covers the projections onto its lowest and its highest plane: from l
 /// through x the segment is at l + (x − l) (H_l − h) / (H_l − h_x) at height h, which is linear in h, and for either h
 /// the place is projective in x and in l, so corners bound it.
 class PlanarReceiver {
  public:
-  /// `normal`: about the plane's, on the side of the light. `reach`: at least the length of all positions.
+  /// `normal`: approximate normal of the plane, on the light's side. `reach`: at least the length of all positions.
   PlanarReceiver(const pairs::LightBox& light, const glm::dvec3& normal, double reach,
                  std::vector<std::uint32_t> pixels, std::span<const glm::vec3> p, double per_texel);
 
   [[nodiscard]] std::uint32_t pixel(std::uint32_t number) const { return pixels_[number]; }
-  /// How far below 0 each is: what a triangle hides is deeper than it.
+  /// Returns the depth of each view sample below 0: a triangle hides only deeper ones.
   [[nodiscard]] std::span<const double> depths() const& { return depths_; }
   std::span<const double> depths() const&& = delete;
   [[nodiscard]] pairs::LightPixels& texels() { return texels_; }
 
-  /// No points and not everywhere: it hides nothing from any view sample.
+  /// Returns the triangle's footprint; one without points and not `everywhere` hides nothing from any view sample.
   [[nodiscard]] pairs::Footprint footprint(const std::array<glm::vec3, 3>& corners) const;
   [[nodiscard]] double nearest(const std::array<glm::vec3, 3>& corners) const;
 
@@ -38,9 +38,9 @@ class PlanarReceiver {
 
   glm::dvec3 across_{0}, along_{0}, normal_{0};
   bool sun_ = false;
-  std::array<glm::dvec3, 4> light_{};  ///< its corners, of a sun directions: along the plane, and above it
-  double error_ = 0;                   ///< of a place
-  double lowest_ = 0, highest_ = 0;    ///< of its view samples
+  std::array<glm::dvec3, 4> light_{};  ///< the light's corners, for a sun directions: along the plane, and above it
+  double error_ = 0;                   ///< error of a place
+  double lowest_ = 0, highest_ = 0;    ///< heights of its view samples
   double light_low_ = 0, light_high_ = 0;
   std::vector<std::uint32_t> pixels_;
   std::vector<double> depths_;

@@ -1,3 +1,5 @@
+// Builds a binary hierarchy of boxes over view samples.
+
 #include "vsm/receiver_tree.hpp"
 
 #include <glm/common.hpp>
@@ -13,7 +15,7 @@ struct TreeBuilder {
   const visibility::ViewSamples& samples;
   ReceiverTree& tree;
 
-  /// Halves along the box's longest side. Equal coordinates are told apart by pixel, so that there is one tree.
+  /// Divides at the median along the box's longest side. Ties are broken by pixel, so that the tree is unique.
   void build(std::uint32_t begin, std::uint32_t end) {
     const std::size_t own = tree.nodes.size();
     tree.nodes.emplace_back();

@@ -11,21 +11,21 @@
 
 namespace penumbra::vsm {
 
-/// A binary hierarchy of boxes over view samples. Nodes lie in pre-order: a node's left child follows it.
+/// A binary hierarchy of boxes over view samples. Nodes are stored in pre-order: a node's left child follows it.
 struct ReceiverTree {
-  static constexpr std::uint32_t kLeaf = 8;  ///< at most so many view samples in a leaf
+  static constexpr std::uint32_t kLeaf = 8;  ///< most view samples in a leaf
 
   struct Node {
-    glm::dvec3 middle{0}, half{0};          ///< of its box, rounded outward
+    glm::dvec3 middle{0}, half{0};          ///< its box, rounded outward
     double radius = 0;                      ///< half the box's diagonal
     std::uint32_t begin = 0, end = 0;       ///< its view samples in `pixels`
-    std::uint32_t right = 0, end_node = 0;  ///< its right child, 0 for a leaf; where its subtree ends
-    std::uint64_t planes = 0;               ///< bit plane mod 64 of each of its carriers' planes
+    std::uint32_t right = 0, end_node = 0;  ///< its right child, 0 for a leaf; the end of its subtree
+    std::uint64_t planes = 0;               ///< bit (plane mod 64) of each of its carriers' planes
     [[nodiscard]] bool is_leaf() const { return right == 0; }
     [[nodiscard]] std::uint32_t count() const { return end - begin; }
   };
-  std::vector<Node> nodes;            ///< the root first; none without view samples
-  std::vector<std::uint32_t> pixels;  ///< those of a node together
+  std::vector<Node> nodes;            ///< the root first; empty without view samples
+  std::vector<std::uint32_t> pixels;  ///< view samples of a node are contiguous
 };
 
 ReceiverTree make_receiver_tree(const visibility::SceneFloats& scene, const visibility::ViewSamples& samples,

@@ -3,7 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "vsm/view_sample.shared.h"
 
-// How many light samples each pixel sees.
+// Last pass of view-sample mapping: counts the light samples that each pixel sees.
 
 layout(local_size_x = 64) in;
 layout(scalar, binding = 0) readonly buffer Masks { uint masks[]; };

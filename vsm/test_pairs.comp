@@ -4,12 +4,12 @@
 
 // Second pass of view-sample mapping: for every (view sample, triangle) pair the set of light samples that the triangle
 // hides, OR-ed (Eisemann-Décoret 2007; Sintorn et al. 2008). Departing from the papers, nothing is decided by rounding:
-// the plane of each edge has an error bound, what lies within it is put down as an open question, and the host answers
-// that with exact predicates.
+// the plane of each edge has an error bound, light samples within it are recorded as an open question, and the host
+// answers these with exact predicates.
 
-layout(binding = 5) uniform usamplerBuffer corner_a;      // per leaf slot: (a, triangle)
-layout(binding = 6) uniform usamplerBuffer corner_b;      // (b, plane and closed part)
-layout(binding = 7) uniform usamplerBuffer corner_c;      // (c, light that it is the body of)
+layout(binding = 5) uniform usamplerBuffer corner_a;      // for each leaf slot: (a, triangle)
+layout(binding = 6) uniform usamplerBuffer corner_b;      // for each leaf slot: (b, plane and closed part)
+layout(binding = 7) uniform usamplerBuffer corner_c;      // for each leaf slot: (c, light whose body it is)
 
 shared uint again[kChunk * kTeam + 1];
 
@@ -25,24 +25,26 @@ Corners fetch(uint slot) {
                  b.w >> kPartShift, int(c.w));
 }
 
-float orientation;                                        // ±1: makes W positive on the way to the light
+float orientation;                                        // ±1: makes W positive toward the light
 vec3 row_s, row_t, row_w;                                 // d ↦ (S, T, W): the light point (S/W, T/W) lies behind d
 float r;                                                  // R = max(|u|, |v|) · max(|c − p|, |u|, |v|)
-float light_pad;                                          // what the deviation of the light samples adds to a box
-float edge_error, det_error;                              // errors of edges and of det, to be scaled by lengths
-const float kLeastError = 1e-33;                          // more than underflow makes of an edge's values, and its reciprocal is finite
-const float kUnderflow = 1e-36;                           // what underflow makes of a sum of products, and some
+float light_pad;                                          // enlargement of a box by the deviation of the light samples
+float edge_error, det_error;                              // errors of edges and of det, to be multiplied by lengths
+const float kLeastError = 1e-33;                          // above the effect of underflow on an edge's values, and its
+                                                          // reciprocal is finite
+const float kUnderflow = 1e-36;                           // above the effect of underflow on a sum of products
 
 vec3 to_light(vec3 d) { return vec3(dot(row_s, d), dot(row_t, d), dot(row_w, d)); }
 
-// The triangle (a, a + e1, a + e2) as this lane's view sample sees it on the light, in homogeneous light coordinates.
-// Edges come from edge vectors, so that small triangles keep their shape.
+// The triangle (a, a + e1, a + e2) projected onto the light from this lane's view sample, in homogeneous light
+// coordinates. Edges come from edge vectors, so that small triangles keep their shape.
 struct Seen {
   vec3 A, D1, D2;
-  float from_a, far;                                      // |a − p|; bounds the distance of each corner
-  float error_a;                                          // of A, A + D1, A + D2, each coordinate (bound W)
-  float lowest, highest;                                  // W of the corners: the nearest to p's plane, the farthest
-  vec4 box;                                               // where on the light (bound box)
+  float from_a, far;                                      // from_a: |a − p|; far: bounds the distance of each corner
+  float error_a;                                          // error of each coordinate of A, A + D1, A + D2 (bound W)
+  float lowest, highest;                                  // W of the corners: the nearest to p's plane, and the
+                                                          // farthest
+  vec4 box;                                               // its place on the light (bound box)
 };
 
 // `sizes`: lengths of e1 and e2.
@@ -69,14 +71,15 @@ Seen see(vec3 a, vec3 e1, vec3 e2, vec2 sizes) {
   return seen;
 }
 
-// Of ab, bc, ca (bound F).
+// Errors of ab, bc, ca (bound F).
 vec3 error_of_edges(Seen seen, vec2 sizes) { return edge_error * seen.far * vec3(sizes.x, sizes.x + sizes.y, sizes.y) + kLeastError; }
-// Is p certainly off the triangle's plane? (bound det)
+// Returns whether p is certainly off the triangle's plane. (bound det)
 bool has_side(float det, Seen seen, vec2 sizes) { return abs(det) > max(det_error * seen.from_a * sizes.x * sizes.y, kUnderflow); }
 
-// The pairs that float arithmetic settles, which is nearly all: the triangle lies between p and the light, p is off its
-// plane, and no light sample is within the error of an edge. Returns false, having marked only what is certain, where
-// `test_carefully` must look again. Short, because some devices run all of a loop's body whatever its branches say.
+// Tests the pairs that float arithmetic decides, which are nearly all: the triangle lies between p and the light, p is
+// off its plane, and no light sample is within the error of an edge. Returns false, having marked only certain results,
+// if `test_carefully` must repeat the test. Short, because some devices execute all of a loop's body regardless of its
+// branches.
 bool test_quickly(vec3 a, vec3 e1, vec3 e2, vec2 sizes, bool beyond) {
   const Seen seen = see(a, e1, e2, sizes);
   const vec3 ab = cross(seen.A, seen.D1), bc = cross(seen.A + seen.D1, seen.D2 - seen.D1), ca = cross(seen.D2, seen.A);
@@ -95,7 +98,8 @@ bool test_quickly(vec3 a, vec3 e1, vec3 e2, vec2 sizes, bool beyond) {
   const vec3 inverse = 1.0 / mix(min(slope, -least), max(slope, least), rising);
   const vec3 at_0 = -z * inverse, per_t = -y * inverse;
   const vec3 slack = 1.375 * error * abs(inverse) + float(push.columns) * (8.0 * kRound);
-  // Added to an edge's crossing: a bound from below if it rises, from above if it falls; the other one says nothing.
+  // Added to an edge's crossing: gives a lower bound if the edge rises, an upper bound if it falls; the other bound is
+  // infinite.
   const vec3 none = vec3(1e9);
   const vec3 sure_below = mix(-none, slack, rising), sure_above = mix(-slack, none, rising);
   const vec3 open_below = mix(-none, -slack, rising), open_above = mix(slack, none, rising);
@@ -126,8 +130,8 @@ bool test_quickly(vec3 a, vec3 e1, vec3 e2, vec2 sizes, bool beyond) {
   return settled;
 }
 
-// Every case: triangles that reach behind p or the light, p within rounding of the triangle's plane, light samples
-// within the error of an edge.
+// Tests all other cases: triangles that reach behind p or the light, p within rounding of the triangle's plane, light
+// samples within the error of an edge.
 void test_carefully(vec3 a, vec3 e1, vec3 e2, vec2 sizes, uint triangle, bool beyond) {
   const Seen seen = see(a, e1, e2, sizes);
   const vec4 box = seen.box;
@@ -138,7 +142,7 @@ void test_carefully(vec3 a, vec3 e1, vec3 e2, vec2 sizes, uint triangle, bool be
   const vec3 error_f = error_of_edges(seen, sizes);
   const bool one_way = has_side(det, seen, sizes);
 
-  // An edge that has the whole light on its outer side, whichever way round the triangle is, ends it here.
+  // An edge with the whole light on its outer side, for either orientation of the triangle, ends the test.
   const vec3 middle = vec3(ab.z, bc.z, ca.z);
   const vec3 span = abs(vec3(ab.x, bc.x, ca.x)) + abs(vec3(ab.y, bc.y, ca.y)) + error_f;
   bool positive = all(greaterThanEqual(middle + span, vec3(0.0)));
@@ -156,7 +160,8 @@ void test_carefully(vec3 a, vec3 e1, vec3 e2, vec2 sizes, uint triangle, bool be
     const vec3 n = cross(e1, e2), from = push.center - a;
     fourth = orientation * vec3(dot(n, push.u), dot(n, push.v), dot(n, from));
     fourth_error = (64.0 * kRound * (size1(from) + size1(push.u) + size1(push.v)) + 2.0 * push.deviation) * sizes.x * sizes.y + kLeastError;
-    if (!one_way) {                                       // p is within rounding of the triangle's plane: never certain
+    // p is within rounding of the triangle's plane: no result is certain
+    if (!one_way) {
       fourth = vec3(0.0);
       fourth_error = 1.0;
     }
@@ -172,16 +177,18 @@ void test_carefully(vec3 a, vec3 e1, vec3 e2, vec2 sizes, uint triangle, bool be
 
 void main() {
   const uint chunk = gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x;
-  if (chunk >= push.chunk_capacity) return;               // here: how many there are
+  if (chunk >= push.chunk_capacity) return;               // chunk_capacity is the number of chunks here
   const uint first = chunk * (kChunkHead + kChunk), header = chunks[first], outside_of = chunks[first + 1];
   const float side = (header & kBackBit) != 0 ? -1.0 : 1.0;
   load_view_sample(header & ~kBackBit);
   const uint words = (push.sample_count + 31) / 32;
-  bool full = true;                                       // nothing left to block: other chunks or the horizon did
+  bool full = true;                                       // all samples are blocked already, by other chunks or the
+                                                          // horizon
   for (uint word = 0; word < words && full; ++word) {
     full = masks[pixel * words + word] == 0;
   }
-  // Half: a compiler may round differently here than where find_leaves asked the host, which overrules what is found here.
+  // Factor 0.5: a compiler may round differently here than in find_leaves, which asked the host; the host's answer
+  // replaces results found here.
   const bool on = inside && carrier != kNone && level * side > 0.5 * level_error && !full;
   for (uint word = 0; word < kSharedWords; ++word) blocked[slot_of(word)] = 0;
 
@@ -196,7 +203,7 @@ void main() {
   edge_error = 176.0 * kRound * r * r + 2.0 * volume * push.deviation;
   det_error = 256.0 * kRound * r * r * size * size;
 
-  // The slots of triangles that some lane could not settle quickly are kept, and looked at again.
+  // The slots of triangles that some lane could not decide quickly are kept, and tested again.
   const Shaft shaft = make_shaft(on, side);
   const vec3 lower = subgroupMin(on ? p : vec3(1e30)), upper = subgroupMax(on ? p : vec3(-1e30));
   const vec3 middle = 0.5 * lower + 0.5 * upper, half_size = 0.5 * upper - 0.5 * lower;
@@ -204,7 +211,7 @@ void main() {
   const uint end = kChunk * kTurns;
   uint at = subgroupAny(on) ? 0 : end;
   uint again_count = 0;
-  for (; at < end; at += kTeams) {                        // turn after turn of the teams, leaf after leaf
+  for (; at < end; at += kTeams) {                        // one round of the teams after the other, leaf by leaf
     const uint number = at / kTurns + team, leaf = number < kChunk ? chunks[first + kChunkHead + number] : kNone;
     if (subgroupAll(leaf == kNone)) {
       at = end;
@@ -220,7 +227,8 @@ void main() {
                      max(levels.x, max(levels.y, levels.z)) >= shaft.lowest && all(lessThanEqual(least, shaft.beyond));
     const vec3 e1 = t.b - t.a, e2 = t.c - t.a;
     const vec2 sizes = vec2(length(e1), length(e2));
-    // Behind a triangle of a part, and outside of it: whatever this triangle hides, another of the part hides as well.
+    // All view samples are behind a triangle of a part, and outside of the part: another triangle of the part hides
+    // everything that this one hides.
     const vec3 n = cross(e1, e2);
     const bool behind = dot(n, t.a - middle) - dot(abs(n), half_size) > 64.0 * kRound * push.reach * size1(e1) * size1(e2);
     const bool dispensable = behind && (outside_of >> t.part & 1) != 0;
@@ -233,7 +241,7 @@ void main() {
         const uint plane = subgroupShuffle(t.plane, from), front = fronts[word] >> bit & 1;
         bool settled = true;
         if (on && plane != carrier_plane) settled = kScatteredPoints == 0 && test_quickly(a, e11, e21, sizes1, front != 0);
-        again[again_count] = subgroupShuffle(slot, from) | front << 31;  // every lane writes the same
+        again[again_count] = subgroupShuffle(slot, from) | front << 31;  // every lane writes the same value
         again_count += subgroupAll(settled) ? 0 : 1;
       }
     }
@@ -245,7 +253,7 @@ void main() {
     const vec3 e1 = t.b - t.a, e2 = t.c - t.a;
     if (on && t.plane != carrier_plane) test_carefully(t.a, e1, e2, vec2(length(e1), length(e2)), t.triangle, again[i] >> 31 != 0);
   }
-  // Some processors' drivers end loops after 65535 turns. Never go on as if nothing had happened.
+  // Some drivers for processors end loops after 65535 iterations, which must be reported.
   if (at < end || i < again_count) atomicOr(asked.cut_off, 1u);
   if (on && !take_from_mask()) atomicOr(asked.cut_off, 1u);
 }

@@ -1,3 +1,6 @@
+// Data for the view-sample shaders: tags of closed parts, marks of dispensable subtrees, and the table of light
+// samples.
+
 #include "vsm/uploads.hpp"
 
 #include <glm/vec2.hpp>
@@ -21,7 +24,7 @@ std::vector<std::uint32_t> part_tags(const ClosedParts& closed) {
 
 namespace {
 
-/// The part to whose outside all triangles below a child are dispensable, or 0; marks the nodes below.
+/// Returns the part outside of which all triangles below a child are dispensable, or 0; marks the nodes below.
 std::uint32_t mark_child(const TriangleTree& tree, const TriangleTree::Child& child,
                          std::span<const std::uint8_t> dispensable, std::span<Texel> nodes) {
   constexpr std::uint32_t kUnseen = 0xffffffffU;
@@ -59,7 +62,7 @@ std::vector<Texel> part_texels(const ClosedParts& closed, float scale) {
     add(part.box);
     for (const visibility::Bounds& box : part.touching) add(box);
   }
-  if (texels.empty()) texels.emplace_back();  // a buffer is never empty
+  if (texels.empty()) texels.emplace_back();  // a buffer must not be empty
   return texels;
 }
 

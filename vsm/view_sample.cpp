@@ -1,4 +1,4 @@
-// `view-sample`: which of its two engines does a light; or the published variant.
+// `view-sample`: selects one of its two engines for each light; or the published variant.
 
 #include "vsm/methods.hpp"
 

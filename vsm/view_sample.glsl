@@ -1,6 +1,6 @@
-// What the two passes of view-sample mapping share: one workgroup is one subgroup and works on one block of neighbouring
-// pixels; a lane is in turn a child box, a triangle, a view sample. Derivations of every bound, by the names used here:
-// docs/view-sample.md.
+// Shared by the two passes of view-sample mapping: one workgroup is one subgroup and handles one block of neighbouring
+// pixels; a lane in turn stands for a child box, a triangle, a view sample. docs/view-sample.md derives every bound, by
+// the names used here.
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_KHR_shader_subgroup_basic : require
 #extension GL_KHR_shader_subgroup_ballot : require
@@ -13,18 +13,19 @@
 layout(local_size_x_id = 0) in;
 layout(constant_id = 1) const uint kLanes = 8;            // the workgroup's size, one subgroup
 layout(constant_id = 2) const uint kScatteredPoints = 0;  // 0: rows of equidistant samples; 1: any points, sorted by t
-layout(constant_id = 3) const uint kWordsPerRow = 1;      // rows: words that one row's bits take in shared memory
-layout(constant_id = 4) const uint kSharedWords = 16;     // per lane
-layout(constant_id = 5) const uint kBlockWidth = 4;       // pixels of a block; its height is lanes / width
+layout(constant_id = 3) const uint kWordsPerRow = 1;      // rows: words of one row's bits in shared memory
+layout(constant_id = 4) const uint kSharedWords = 16;     // words for each lane
+layout(constant_id = 5) const uint kBlockWidth = 4;       // pixels of a block in x; its height is lanes / width
 layout(constant_id = 6) const uint kChunk = 32;           // leaves of a chunk
 layout(constant_id = 7) const uint kStackSize = 64;
 
-layout(binding = 0) uniform usamplerBuffer view;          // 2 texels a pixel: (p, carrying triangle), (normal, plane and part)
+layout(binding = 0) uniform usamplerBuffer view;          // 2 texels for each pixel: (p, carrying triangle), (normal,
+                                                          // plane and part)
 layout(scalar, binding = 1) readonly buffer Samples {
   uint first_point[257];                                  // scattered: first point with t ≥ −1 + i / 128
   vec2 samples[];                                         // scattered: (s, t)
 };
-layout(scalar, binding = 2) buffer Masks { uint masks[]; };  // visible light samples, words per pixel
+layout(scalar, binding = 2) buffer Masks { uint masks[]; };  // visible light samples, words of each pixel
 layout(scalar, binding = 3) buffer Questions {
   QuestionHead asked;
   OpenQuestion questions[];
@@ -38,26 +39,26 @@ layout(scalar, binding = 4) buffer Chunks {
 layout(scalar, push_constant) uniform Push { ViewSamplePush push; };
 
 const uint kTeam = 8;                                     // children of a node, triangles of a leaf
-// A team of lanes looks at a node's children: several teams in a subgroup, or one that takes several turns.
+// A team of lanes handles a node's children: several teams in a subgroup, or one that takes several rounds.
 const uint kTeams = kLanes < kTeam ? 1 : kLanes / kTeam, kTurns = kLanes < kTeam ? kTeam / kLanes : 1;
 const uint kNone = 0xffffffffu, kLeafBit = 0x80000000u, kBackBit = 0x80000000u;
-const uint kPartShift = 27, kPlaneMask = (1u << kPartShift) - 1;  // a plane's number, and above it a closed part's
+const uint kPartShift = 27, kPlaneMask = (1u << kPartShift) - 1;  // a plane's index, and above it a closed part's
 const uint kChunkHead = 2;                                // words before the leaves
 const float kRound = 1.0 / 16777216.0;                    // 2⁻²⁴: half a unit in the last place of 1
 
 shared uint blocked[kSharedWords * kLanes];
 
-// The view sample of this lane.
-uint pixel;                                               // in the tile
-bool inside;                                              // the picture
+// View sample of this lane.
+uint pixel;                                               // index in the tile
+bool inside;                                              // whether the pixel is in the picture
 uint carrier, carrier_plane, carrier_part;
 vec3 p, normal;
 vec3 towards;                                             // the light's centre − p
-float level, level_error;                                 // > 0: p lies where u × v points (bound level)
+float level, level_error;                                 // > 0: p lies on the side that u × v points to (bound level)
 
 uint slot_of(uint word) { return word * kLanes + gl_SubgroupInvocationID; }
 float size1(vec3 x) { return abs(x.x) + abs(x.y) + abs(x.z); }
-// Bits first … last (in 0 … 31, first ≤ last) of a word.
+// Returns bits first … last (in 0 … 31, first ≤ last) of a word.
 uint bits(int first, int last) { return (0xffffffffu << first) & (0xffffffffu >> (31 - last)); }
 
 void load_view_sample(uint block) {
@@ -89,13 +90,14 @@ bool is_blocked(uint light_sample) {
   return (blocked[slot_of(row * kWordsPerRow + (column >> 5))] >> (column & 31) & 1) != 0;
 }
 
-// Four half-planes of the light, one a component: F(s, t) = x s + y t + z, each known up to ±error.
+// Four half-planes of the light, one in each component: F(s, t) = x s + y t + z, each known up to ±error.
 struct HalfPlanes {
   vec4 x, y, z, error;
 };
 
-// Marks what the half-planes leave: where all are certainly positive the sample is blocked; where none is certainly
-// negative, but some uncertain, it is asked about. Only samples with (s, t) in `box` (lower, upper) are looked at.
+// Marks samples by the half-planes: where all are certainly positive the sample is blocked; where none is certainly
+// negative, but some are uncertain, the sample becomes a question. Only samples with (s, t) in `box` (lower, upper) are
+// tested.
 void mark_points(HalfPlanes f, vec4 box, uint triangle) {
   const uint begin = first_point[clamp(int(floor((box.y + 1.0) * 128.0)) - 1, 0, 256)];
   const uint end = first_point[clamp(int(ceil((box.w + 1.0) * 128.0)) + 1, 0, 256)];
@@ -110,19 +112,20 @@ void mark_points(HalfPlanes f, vec4 box, uint triangle) {
   }
 }
 
-// (s of column 0, t) of a row; twin of visibility::row_shift_of.
+// Returns (s of column 0, t) of a row; twin of visibility::row_shift_of.
 vec2 row_start(int row) {
   const int shift = int((uint(row) * push.shift_step + 32768u) & 0xffffu) - 32768;
   return vec2((1.0 + float(shift) / 32768.0) / float(push.columns) - 1.0, float(2 * row + 1) / float(push.rows) - 1.0);
 }
 
-// Along a row each half-plane is a ray of column numbers: beyond x + slack certainly inside, short of x − slack certainly
-// outside (rising), or the other way round (falling). (bound row)
+// Along a row each half-plane is a range of columns: certainly inside beyond x + slack, certainly outside below x −
+// slack (rising), or the reverse (falling). (bound row)
 void mark_rows(HalfPlanes f, vec4 box, uint triangle) {
   const float last_column = float(push.columns) - 1.0, spacing = 2.0 / float(push.columns);
   const vec4 slope = f.x * spacing;
   const bvec4 rising = greaterThanEqual(slope, vec4(0.0));
-  // A slope so small that the value hardly changes along the row may be taken larger: the change stays within slack.
+  // A slope so small that the value hardly changes along the row may be replaced by a larger one: the change stays
+  // within slack.
   const vec4 least = f.error / (16.0 * float(push.columns));
   const vec4 inverse = 1.0 / mix(min(slope, -least), max(slope, least), rising);
   const vec4 at_0 = -f.z * inverse, per_t = -f.y * inverse, per_s = -f.x * inverse;
@@ -169,8 +172,8 @@ const vec4 kWholeLight = vec4(-1.0, -1.0, 1.0, 1.0);
 const vec3 kAlways = vec3(0.0, 0.0, 1.0);                 // the half-plane without an edge,
 const float kAlwaysError = 0.5;                           // and an error that leaves it certain
 
-// Takes this lane's blocked samples out of its mask in memory. Rows end anywhere in a word. False: the driver ended the
-// loop before all were.
+// Clears this lane's blocked samples in its mask in memory. Rows may end within a word. Returns false if the driver
+// ended the loop early.
 bool take_from_mask() {
   const uint words = (push.sample_count + 31) / 32;
   uint i = 0;
@@ -189,25 +192,26 @@ bool take_from_mask() {
 }
 
 // The shaft from this block's view samples (those `on`) to the light: the hull of both lies between two parallel planes
-// and in n·x ≤ beyond for four planes through the light's edges, one a component of nx, ny, nz. (bound shaft)
+// and in n·x ≤ beyond for four planes through the light's edges, one in each component of nx, ny, nz. (bound shaft)
 struct Shaft {
   vec3 axis;                                              // away from the light
   float lowest, highest;                                  // along the axis
   vec4 nx, ny, nz, beyond;
-  float front;                                            // beyond this along the axis is certainly off the light's plane
+  float front;                                            // positions beyond this along the axis are certainly off the
+                                                          // light's plane
 };
 
 Shaft make_shaft(bool on, float side) {
   Shaft shaft;
   shaft.axis = side * normalize(cross(push.u, push.v));
-  // Coordinates along u and v, which need not be at right angles: the dual basis.
+  // Coordinates along u and v, which need not be orthogonal: uses the dual basis.
   const vec3 n = cross(push.u, push.v);
   const vec3 u_dual = cross(push.v, n) / dot(n, n), v_dual = cross(n, push.u) / dot(n, n);
   const float skew = size1(push.u) * size1(push.v) / length(n);  // at least 1: 1 / sine of their angle
   const float height = on ? -dot(shaft.axis, towards) : 0.0;
   const float along_u = -dot(u_dual, towards), along_v = -dot(v_dual, towards);
   const float inverse = on ? 1.0 / height : 0.0, none = -1e18;
-  // Each plane leans by the largest slope at which a view sample sees past that edge of the light.
+  // Each plane has the largest slope at which a view sample sees past its edge of the light.
   const vec4 slope = vec4(subgroupMax(on ? (along_u - 1.0) * inverse : none), subgroupMax(on ? (-along_u - 1.0) * inverse : none),
                           subgroupMax(on ? (along_v - 1.0) * inverse : none), subgroupMax(on ? (-along_v - 1.0) * inverse : none));
   shaft.nx = vec4(u_dual.x, -u_dual.x, v_dual.x, -v_dual.x) - slope * shaft.axis.x;

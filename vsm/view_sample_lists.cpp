@@ -1,11 +1,12 @@
 // E. Sintorn, E. Eisemann and U. Assarsson, Sample based visibility for soft shadows using alias-free shadow maps,
 // Computer Graphics Forum 27 (4), 2008: view samples in lists of light pixels on the far plane of the light's frustum;
 // for each triangle the hull of its footprints from the light's corners, rasterised conservatively; in each light pixel
-// the triangle against each view sample of the list.
+// the triangle is tested against each view sample of the list.
 //
-// Departures. On the processor. View samples outside of the frustum are tried against all triangles. A view sample that
-// sees nothing any more leaves its list. Half-spaces through view sample and edge as in their section 4.3, light sample
-// by light sample instead of from a table: each bit is exact, and there is no table to be coarse.
+// Departures. On the processor. View samples outside of the frustum are tested against all triangles. A view sample
+// that sees no light any more is removed from its list. Half-spaces through view sample and edge as in their section
+// 4.3, evaluated for each light sample instead of read from a table: each bit is exact, independent of a table's
+// resolution.
 
 #include "vsm/view_sample_lists.hpp"
 
@@ -27,7 +28,7 @@ namespace {
 
 using pairs::PairCounts;
 
-constexpr double kListPerPixel = 2;  // view samples a light pixel, on average
+constexpr double kListPerPixel = 2;  // average number of view samples in a light pixel
 
 class ViewSampleLists final : public pairs::PairMethod {
  public:
@@ -60,7 +61,7 @@ void ViewSampleLists::block(std::span<const std::uint32_t> pixels, std::map<std:
     counters["longestList"] = std::max<std::uint64_t>(counters["longestList"], plane.light_pixels().longest_list());
     rasterise(plane, counters);
   }
-  // In the plane of a two-sided light they are outside of both frusta.
+  // View samples in the plane of a two-sided light are outside of both frusta.
   std::ranges::sort(outside);
   outside.erase(std::unique(outside.begin(), outside.end()), outside.end());
   counters["viewSamplesOutside"] += outside.size();

@@ -1,11 +1,12 @@
 // E. Eisemann and X. Décoret, Visibility sampling on GPU and applications, Computer Graphics Forum 26 (3), 2007: a
-// receiver patch is the picture, its texels view samples. For each triangle a box on the receiver of all that it may
-// hide any of the light from; in each texel there the triangle is projected back onto the light, and for each of its
-// three edges a left-sample map says which light samples are to the left of its line.
+// receiver patch is the picture, its texels are view samples. For each triangle, a box on the receiver that contains
+// every point from which it may hide any of the light; in each texel there the triangle is projected back onto the
+// light, and for each of its three edges a left-sample map gives the light samples to the left of its line.
 //
-// Departures. Every plane of the scene with enough view samples is a receiver, and what is left a height field over a
-// plane parallel to the light: any scene. Texels have lists of view samples where the camera put them. Back-projections
-// are lines of planes through p and an edge, without a division. lookup=exact decides what a map leaves open.
+// Departures. Every plane of the scene with enough view samples is a receiver, and the remaining view samples form a
+// height field over a plane parallel to the light: so any scene is possible. Texels have lists of view samples at the
+// camera's places. Back-projections are lines of planes through p and an edge, without a division. lookup=exact decides
+// light samples that a map leaves open.
 
 #include "vsm/methods.hpp"
 
@@ -95,7 +96,7 @@ class ViewSamplePlanar final : public pairs::PairMethod {
   [[nodiscard]] std::uint64_t memory_bytes() const override { return PairMethod::memory_bytes() + left_.bytes(); }
   void block(std::span<const std::uint32_t> pixels, std::map<std::string, std::uint64_t>& counters) override;
   void draw_on(PlanarReceiver& receiver, std::map<std::string, std::uint64_t>& counters);
-  /// What the map says, and the rest.
+  /// Uses the map, then decides the remaining light samples.
   void look_up(std::uint32_t triangle, std::uint32_t pixel, LookupCounts& counts);
 
   Lookup lookup_;
@@ -108,12 +109,12 @@ class ViewSamplePlanar final : public pairs::PairMethod {
 void ViewSamplePlanar::block(std::span<const std::uint32_t> pixels, std::map<std::string, std::uint64_t>& counters) {
   const double reach = 2 * std::max(glm::length(glm::dvec3(scene().lower)), glm::length(glm::dvec3(scene().upper))) +
                        glm::length(box_.origin) + glm::length(box_.lower) + glm::length(box_.upper);
-  // By plane, and by the side of it that is seen; in the order of planes, which is the same for the same scene.
+  // Groups by plane and visible side, in the order of planes, which is determined by the scene.
   std::map<std::pair<std::uint32_t, std::int8_t>, std::vector<std::uint32_t>> planes;
   for (const std::uint32_t pixel : pixels)
     planes[{scene().plane[static_cast<std::size_t>(samples().triangle[pixel])], samples().facing[pixel]}].push_back(
         pixel);
-  std::array<std::vector<std::uint32_t>, 2> fields;  // in front of the light, behind it
+  std::array<std::vector<std::uint32_t>, 2> fields;  // in front of the light; behind it
   for (auto& [plane, own] : planes) {
     const std::uint32_t pixel = own.front();
     const auto corners = scene().corners(static_cast<std::uint32_t>(samples().triangle[pixel]));
@@ -165,15 +166,16 @@ void ViewSamplePlanar::look_up(std::uint32_t triangle, std::uint32_t pixel, Look
   const glm::dvec3 e1 = glm::dvec3(corners[1]) - first, e2 = glm::dvec3(corners[2]) - first;
   const glm::dvec3 normal = glm::cross(e1, e2);
   const double normal_error = kDeterminant * glm::length(e1) * glm::length(e2), height = -glm::dot(normal, d[0]);
-  if (!(std::abs(height) > normal_error * glm::length(d[0]))) {  // which way round its edges are is not certain
+  // the orientation of the triangle's edges is not certain
+  if (!(std::abs(height) > normal_error * glm::length(d[0]))) {
     blocked().hide(p, corners, visible(pixel), counts.pairs);
     return;
   }
   const double turn = height < 0 ? 1 : -1;
   // The light's point (a, b) is on the inner side of an edge where n · (o + a across + b along − p) > 0, and beyond the
-  // triangle where the same is so of its own plane. (Of a sun, o is the direction −axis, and nothing is taken off.)
+  // triangle where the same holds for its own plane. (For a sun, o is the direction −axis, and p is not subtracted.)
   const double span = glm::length(box_.lower) + glm::length(box_.upper);
-  // What a light sample is off its place moves the value by |n| of that at most.
+  // A light sample's distance from its place changes the value by at most |n| times that distance.
   const bool as_published = lookup_ == Lookup::nearest;
   const auto line_of = [&](const glm::dvec3& n, const glm::dvec3& from, double sizes) {
     const glm::dvec3 way = box_.sun ? -box_.axis : box_.origin - from;

@@ -1,3 +1,5 @@
+// View-sample mapping on the Vulkan device: kernels, lists and questions for device::MaskMethod.
+
 #include "vsm/view_sample_vulkan.hpp"
 
 #include "base/error.hpp"
@@ -52,7 +54,8 @@ class ViewSampleMapping final : public device::MaskMethod {
   }
 
   device::MaskLayout prepare_casters() override {
-    // The shader multiplies up to six lengths; with the scene scaled to 1, float32 holds that for lights of such sizes.
+    // The shader multiplies up to six lengths; with the scene scaled to 1, float32 can represent that for lights of
+    // such sizes.
     const visibility::Light& light = this->light();
     visibility::check_size(light, device_light(), view_sample_description().name);
     const std::uint32_t words_per_row = (light.columns + 31) / 32;
@@ -60,7 +63,8 @@ class ViewSampleMapping final : public device::MaskMethod {
     SampleTable table = make_sample_table(device_light(), rows);
     table_.emplace(render::make_buffer<std::byte>(device(), "light samples", table.bytes));
 
-    // Some processors' drivers end loops after 65535 turns a workgroup; a triangle takes about a turn a row or point.
+    // Some drivers for processors end loops after 65535 iterations of a workgroup; a triangle takes about one iteration
+    // for each row or point.
     const std::uint32_t turns = TriangleTree::kWidth * ((rows ? light.rows : light.sample_count()) + 8);
     shape_ = {.scattered = !rows,
               .words_per_row = std::max(words_per_row, 1U),
@@ -73,23 +77,23 @@ class ViewSampleMapping final : public device::MaskMethod {
     return {.words = light.words_per_mask(), .light_sample = std::move(table.bit_of)};
   }
 
-  /// How the kernels are specialised for a light.
+  /// Specialization of the kernels for a light.
   struct Shape {
     bool scattered = false;
     std::uint32_t words_per_row = 1, shared_words = 1, chunk = 1;
   };
 
-  /// Blocks as square as the subgroup allows: 2×2, 4×2, 4×4, 8×4, 8×8.
+  /// Blocks are as square as the subgroup allows: 2×2, 4×2, 4×4, 8×4, 8×8.
   [[nodiscard]] std::uint32_t lanes() const { return device().limits().subgroup_size; }
   [[nodiscard]] std::uint32_t block_width() const { return lanes() >= 32 ? 8 : lanes() >= 8 ? 4 : 2; }
   [[nodiscard]] std::uint32_t block_height() const { return lanes() / block_width(); }
 
-  /// Of whole teams: one at least, of which a smaller subgroup is a part at a time.
+  /// Returns the number of lanes of whole teams: at least one, which a smaller subgroup handles in parts.
   [[nodiscard]] std::uint32_t lanes_of_teams() const { return std::max(lanes(), TriangleTree::kWidth); }
 
   void build_passes() {
-    // Depth first, a node a team at a time, each leaves at most seven more than it takes; rounded up, so that not every
-    // scene needs passes of its own.
+    // In depth-first order, a node for each team at a time, each node adds at most seven more than it removes; rounded
+    // up, so that few scenes need different passes.
     const std::uint32_t levels = (tree().depth + 3) / 4 * 4 + 2, stack = lanes_of_teams() * levels;
     check_shared_memory(stack);
     const std::vector<std::uint32_t> constants{
@@ -105,7 +109,8 @@ class ViewSampleMapping final : public device::MaskMethod {
     constants_ = constants;
   }
 
-  /// A mask a lane; and the stack and leaves of the walk, or the triangles that are looked at twice.
+  /// Shared memory: a mask for each lane; and the stack and leaves of the traversal, or the triangles that are tested
+  /// again.
   void check_shared_memory(std::uint32_t stack) const {
     const std::uint64_t walk = stack + shape_.chunk + lanes_of_teams() + 8;
     const std::uint64_t twice = std::uint64_t{shape_.chunk} * TriangleTree::kWidth + 1;
@@ -185,7 +190,7 @@ class ViewSampleMapping final : public device::MaskMethod {
     return open;
   }
 
-  /// Each pixel's number of visible light samples, of the finished masks.
+  /// Computes each pixel's number of visible light samples from the finished masks.
   void finish() override {
     const auto pixels = static_cast<std::uint32_t>(tile_pixels());
     resolve_.record(commands(), gpu::ResolvePush{pixels, light().sample_count()}, {masks(), counts()},
@@ -206,7 +211,7 @@ class ViewSampleMapping final : public device::MaskMethod {
   Shape shape_;
   std::vector<std::uint32_t> constants_;
   std::optional<render::Buffer> table_;
-  std::uint64_t chunks_ = 0, open_questions_ = 0, list_retries_ = 0, loop_retries_ = 0;  // to be counted
+  std::uint64_t chunks_ = 0, open_questions_ = 0, list_retries_ = 0, loop_retries_ = 0;  // counters
 };
 
 }  // namespace

@@ -7,7 +7,7 @@
 
 namespace penumbra::vsm {
 
-/// `view-sample` on the Vulkan device (view-sample with engine=vulkan): any planar light and pattern.
+/// Makes `view-sample` on the Vulkan device (view-sample with engine=vulkan): any planar light and pattern.
 std::unique_ptr<visibility::Method> make_vulkan_view_sample(const render::Device& device);
 
 }  // namespace penumbra::vsm

@@ -1,5 +1,5 @@
-// View-sample mapping on a processor: one triangle for one view sample in double, wherever it is: at or below p's
-// height, through the light's plane, an edge within float rounding of a light sample. The half-planes of
+// View-sample mapping on a processor: one triangle for one view sample in double, at any position: at or below p's
+// height, through the light's plane, an edge within float rounding of a light sample. Uses the half-planes of
 // docs/view-sample.md.
 
 #include "vsm/vectors/pairs.hpp"
@@ -19,20 +19,22 @@
 namespace penumbra::vsm {
 namespace {
 
-constexpr double kSlack = 0x1p-44;  // of all lengths that enter: hundreds of times double's rounding
+constexpr double kSlack = 0x1p-44;  // relative to all lengths involved: hundreds of times double's rounding
 
-/// Of the light's (row, column): at + row · per_row + column · per_column, known to ±error.
+/// A half-plane over the light's (row, column): at + row · per_row + column · per_column, known to ±error.
 struct HalfPlane {
   double at = 0, per_row = 0, per_column = 0, error = 0;
 };
 
-/// Along a row: positive beyond zero (rising) or before it (falling), certainly so outside of ±slack. (bound row)
+/// Zero of a half-plane along a row: positive beyond it (rising) or before it (falling), certain outside of ±slack.
+/// (bound row)
 struct Crossing {
-  double at = 0, per_row = 0, per_shift = -1, slack = 0;  // zero, in columns: at + row · per_row + shift · per_shift
+  double at = 0, per_row = 0, per_shift = -1, slack = 0;  // the zero, in columns: at + row · per_row + shift ·
+                                                          // per_shift
   bool rising = true;
 };
 Crossing crossing_of(const HalfPlane& f, double columns) {
-  // A slope so small that the value hardly changes along the row may be taken larger.
+  // A slope so small that the value hardly changes along the row may be replaced by a larger one.
   const double slope = std::max({std::abs(f.per_column), f.error / (16 * columns), 1e-300});
   const bool rising = f.per_column >= 0;
   const double inverse = (rising ? -1 : 1) / slope;
@@ -56,7 +58,7 @@ struct OneTriangle {
   const glm::vec3& p;
   const Corners& corners;
 };
-/// With the light sample as it is stored.
+/// Decides with the light sample as stored.
 void decide(const OneTriangle& one, std::uint32_t row, std::uint32_t column, Blocked& blocked, Open& open) {
   if (blocked.test(row, column)) return;
   const std::uint32_t light_sample = row * one.in.grid.columns + column;
@@ -95,7 +97,7 @@ class CarefulTest {
   }
 
  private:
-  /// n · (l − through) for light samples l; n is known to ± 2⁻⁴⁹ of `sizes`.
+  /// Returns n · (l − through) for light samples l; n is known to ± 2⁻⁴⁹ of `sizes`.
   [[nodiscard]] HalfPlane half_plane(const glm::dvec3& n, const glm::dvec3& through, double sizes) const {
     return {
         glm::dot(n, first_ - through), glm::dot(n, per_row_), glm::dot(n, per_column_),
@@ -107,7 +109,7 @@ class CarefulTest {
 
   void mark(const std::array<HalfPlane, 4>& planes, bool certain) {
     const double last_row = in_.grid.rows - 1.0, last_column = in_.grid.columns - 1.0;
-    for (const HalfPlane& f : planes) {  // one that has the whole light outside ends it
+    for (const HalfPlane& f : planes) {  // a plane with the whole light outside ends the test
       const double most =
           std::max(f.per_row, 0.0) * last_row + std::abs(f.per_column) + std::max(f.per_column, 0.0) * last_column;
       if (f.at + most < -f.error) return;
@@ -158,7 +160,7 @@ class CarefulTest {
   Open& open_;
 };
 
-/// The light as p sees it: the way to (s, t) is middle + s u + t v, or off that by no more than `off`.
+/// The light as p sees it: the direction to (s, t) is middle + s u + t v, with an error of at most `off`.
 struct SeenLight {
   glm::dvec3 middle{0}, u{0}, v{0};
   double off = 0;
@@ -173,7 +175,7 @@ SeenLight seen_light(const CarefulInput& input) {
           static_cast<double>(light.deviation)};
 }
 
-/// From s and t to cells; floats, which places are, round those.
+/// Converts a plane from s and t to cells; the floats that store it round it.
 CellPlanes::Plane in_cells(const LightGrid& grid, const glm::dvec3& f, double error) {
   const glm::dvec2 half(grid.half_cells), first(grid.first_cell);
   const double per_x = f.x / half.x, per_y = f.y / half.y, at = f.z - first.x * per_x - first.y * per_y;
@@ -198,7 +200,7 @@ CellPlanes planes_in_cells(const CarefulInput& input) {
     return in_cells(input.in.grid, {glm::dot(normal, u), glm::dot(normal, v), glm::dot(normal, middle) - from},
                     seen.off * size1(normal) + kSlack * sizes * lengths);
   };
-  // The differences of differences are right to the lengths of what they are differences of.
+  // Differences of differences have errors relative to the lengths of their operands.
   const double side = glm::dot(n, pa), far = size1(pa) + size1(pb) + size1(pc), sizes = far * far;
   const bool at_infinity = input.in.light.sun.has_value();
   CellPlanes planes{{plane(glm::cross(pa, pb), 0, size1(pa) * size1(pb), reach),

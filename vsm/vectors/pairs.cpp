@@ -1,5 +1,5 @@
-// View-sample mapping on a processor: triangles side by side for one view sample, and their spans of light columns row
-// by row (scan conversion). What float arithmetic cannot settle goes to test_carefully.
+// View-sample mapping on a processor: a vector of triangles for one view sample, and their spans of light columns row
+// by row (scan conversion). Cases that float arithmetic cannot decide go to test_carefully.
 
 #include "vsm/vectors/pairs.hpp"
 
@@ -29,7 +29,7 @@ class SampleTest {
   SampleTest(const PairInput& in, PairScratch& scratch, const ClusterSample& at)
       : in_(in), s_(scratch), at_(at), project_(in, scratch, at) {}
 
-  /// Returns whether anything is hidden or open. Stops where all is hidden.
+  /// Returns whether anything is hidden or open. Stops when all light samples are hidden.
   bool operator()() {
     const std::uint32_t all = in_.grid.rows * in_.grid.columns;
     bool any = false;
@@ -61,7 +61,7 @@ class SampleTest {
   }
 
  private:
-  static constexpr std::uint32_t kRowUnit = 4096;  // more than columns
+  static constexpr std::uint32_t kRowUnit = 4096;  // larger than the number of columns
 
   struct LightPoints {
     V x, y;
@@ -73,7 +73,7 @@ class SampleTest {
     b = upper;
   }
 
-  /// Light samples within the error of an edge.
+  /// Records light samples within the error of an edge as open.
   void ask(M which, std::size_t i, V row, V column) {
     which = hn::And(which, hn::And(hn::Ge(column, set(0)), hn::Lt(column, set(static_cast<float>(in_.grid.columns)))));
     HWY_ALIGN float rows[hn::MaxLanes(D())];
@@ -86,7 +86,7 @@ class SampleTest {
     });
   }
 
-  /// Spans of columns that triangles cover, row by row between the two edges that cross it. (bound span)
+  /// Finds spans of columns that triangles cover, row by row between the two edges that cross the row. (bound span)
   std::size_t convert(std::size_t i, std::size_t landed) {
     const D d;
     const I di;
@@ -159,7 +159,7 @@ class SampleTest {
   Projection project_;
 };
 
-/// Rows of columns to the mask's columns of rows.
+/// Converts rows of columns to the mask's columns of rows.
 void write_mask(const LightGrid& grid, Blocked& blocked, SampleMask& mask) {
   const hn::CappedTag<std::uint16_t, 16> d;
   fill(grid, true, mask);

@@ -17,10 +17,10 @@
 #include <span>
 #include <vector>
 
-/// View-sample mapping on a processor: what its stages hand to one another. Inside vsm/ only.
+/// View-sample mapping on a processor: data passed between its stages. Inside vsm/ only.
 namespace penumbra::vsm {
 
-// From engines/vectors/, by name: what the stages here hand to one another is made of these.
+// Names from engines/vectors/ that this data consists of.
 using vectors::Cluster;
 using vectors::ClusterSample;
 using vectors::GridSample;
@@ -39,7 +39,7 @@ using vectors::WideTriangles;
 using vectors::WideTriangleTree;
 using enum vectors::TriangleField;
 
-/// Of a triangle that may appear at a light row: where its corners appear, the bound of that, and its row in the
+/// Columns for a triangle that may appear at a light row: places of its corners, their error, and its row in the
 /// group's table (bits).
 enum SurvivorField : std::size_t { kX0, kY0, kX1, kY1, kX2, kY2, kError, kTriangle, kSurvivorFields };
 using SurvivorTable = Table<kSurvivorFields>;
@@ -53,10 +53,10 @@ struct PairInput {
   const Cluster& cluster;
   std::span<const ClusterSample> samples;
   const TriangleTable& triangles;
-  std::span<const glm::vec3> p;  ///< of the picture's view samples, as stored
+  std::span<const glm::vec3> p;  ///< the picture's view samples, as stored
 };
 
-/// Which light samples are hidden from one view sample: rows of columns.
+/// Light samples hidden from one view sample: rows of columns.
 class Blocked {
  public:
   void reset(std::uint32_t rows, std::uint32_t columns);
@@ -65,7 +65,7 @@ class Blocked {
   [[nodiscard]] bool test(std::uint32_t row, std::uint32_t column) {
     return (this->row(row)[column / 64] >> column % 64 & 1) != 0;
   }
-  /// from … to, from ≤ to.
+  /// Blocks columns `from` … `to` of a row; from ≤ to.
   void add(std::uint32_t row, std::uint32_t from, std::uint32_t to) {
     std::uint64_t* const words = this->row(row);
     for (std::uint32_t word = from / 64; word <= to / 64; ++word) {
@@ -83,10 +83,10 @@ class Blocked {
 /// Buffers of one thread.
 struct PairScratch {
   std::vector<ClusterSample> samples;
-  TriangleTable triangles, near;  // of the cluster, of a group
+  TriangleTable triangles, near;  // of the cluster; of a group
   SurvivorTable survivors;
   std::vector<std::uint32_t> roots, stack;
-  std::vector<std::uint32_t> again;  // triangles (rows of `near`) that vectors of floats cannot settle
+  std::vector<std::uint32_t> again;  // triangles (rows of `near`) that vectors of floats cannot decide
   struct Asked {
     std::uint32_t triangle, row, column;
   };
@@ -94,32 +94,33 @@ struct PairScratch {
   struct AskedSlot {
     std::uint32_t triangle, slot;
   };
-  std::vector<AskedSlot> asked_slots;          // likewise, of those in tiles
-  std::vector<glm::vec3> light_points;         // of a sphere, as one view sample sees it; empty: not computed
+  std::vector<AskedSlot> asked_slots;          // likewise, for light samples in tiles
+  std::vector<glm::vec3> light_points;         // points of a sphere as one view sample sees it; empty: not computed
   std::vector<std::int32_t> row_and_from, to;  // spans of columns
   Blocked blocked;
   Open open;
-  std::uint64_t pairs = 0, careful = 0;  // of view samples and triangles
+  std::uint64_t pairs = 0, careful = 0;  // counts of pairs (view sample, triangle)
 };
 
-/// One triangle for one view sample, in double: any position. Adds what is certainly blocked; what is not certain, and
-/// not blocked yet, is open.
+/// Input of the test of one triangle for one view sample, in double, at any position. The test adds light samples that
+/// are certainly blocked to `blocked`, and uncertain ones that are not blocked yet to `open`.
 struct CarefulInput {
   const PairInput& in;
   const ClusterSample& at;
-  std::uint32_t slot;  ///< of the tree's leaves
+  std::uint32_t slot;  ///< slot in the tree's leaves
 };
 void test_carefully(const CarefulInput& input, Blocked& blocked, Open& open);
-/// One light sample of it.
+/// Tests one light sample against the triangle.
 void test_one(const CarefulInput& input, std::uint32_t row, std::uint32_t column, Blocked& blocked, Open& open);
 
-/// Does the triangle hide light sample l, as stored (of a sphere: as this view sample sees it)? Nothing: double is not
-/// certain.
+/// Returns whether the triangle hides light sample l, as stored (for a sphere: as this view sample sees it); nullopt if
+/// double is not certain.
 std::optional<bool> hides(const CarefulInput& input, const glm::vec3& l);
 
-/// One triangle for one view sample and light samples in tiles, in double, wherever it is: four functions of a place in
-/// cells, at + x per_x + y per_y, each divided by what it is at most and known to ±near. It hides the light samples
-/// where all four have the sign of p's side of its plane, 1 or −1; 0: within rounding, either.
+/// One triangle for one view sample and light samples in tiles, in double, at any position: four functions of a place
+/// in cells, at + x per_x + y per_y, each divided by its largest value and known to ±near. The triangle hides the light
+/// samples where all four have the sign of p's side of its plane, 1 or −1; 0: p is within rounding of the plane, and
+/// either sign may hold.
 struct CellPlanes {
   struct Plane {
     float at = 0, per_x = 0, per_y = 0, near = 0;
@@ -129,7 +130,8 @@ struct CellPlanes {
 };
 CellPlanes planes_in_cells(const CarefulInput& input);
 
-/// `masks`: one for each view sample; of its bits all or none are written. test_tiles: light samples in tiles.
+/// Compute masks. `masks`: one for each view sample; all of its bits are written or none. test_tiles: for light samples
+/// in tiles.
 void test_tiles(const PairInput& input, PairScratch& scratch, OpenJudge& judge, std::span<SampleMask> masks);
 void test_pairs(const PairInput& input, PairScratch& scratch, OpenJudge& judge, std::span<SampleMask> masks);
 

@@ -1,5 +1,5 @@
-// View-sample mapping on a processor: where triangles side by side appear on the light as one view sample sees it.
-// Inside vsm/ only.
+// View-sample mapping on a processor: places of a vector of triangles on the light as one view sample sees them. Inside
+// vsm/ only.
 
 #if defined(PENUMBRA_VSM_VECTORS_PROJECT_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef PENUMBRA_VSM_VECTORS_PROJECT_INL_HPP
@@ -23,14 +23,14 @@ namespace {
 namespace hn = hwy::HWY_NAMESPACE;
 using namespace vectors::HWY_NAMESPACE;
 
-constexpr std::size_t kGroup = 16;   // view samples that sort out triangles together
-constexpr std::size_t kChunk = 256;  // triangles between two looks whether anything is left to hide
+constexpr std::size_t kGroup = 16;   // view samples that preselect triangles together
+constexpr std::size_t kChunk = 256;  // triangles between two checks whether anything is left to hide
 
 [[maybe_unused]] V column(const TriangleTable& table, std::size_t field, std::size_t i) {
   return hn::Load(D(), table[field] + i);
 }
 
-/// Triangles that the hull may meet.
+/// Returns the triangles that the hull may meet.
 [[maybe_unused]] M hull_meets(const Hull& hull, const TriangleTable& table, std::size_t i) {
   std::array<Corners, 3> corners;
   for (std::size_t corner = 0; corner < 3; ++corner) {
@@ -40,7 +40,7 @@ constexpr std::size_t kChunk = 256;  // triangles between two looks whether anyt
   return meets(hull, corners);
 }
 
-/// Triangles of the cluster that the group's hull may meet.
+/// Selects the triangles of the cluster that the group's hull may meet.
 [[maybe_unused]] void sort_out(const PairInput& in, std::span<const ClusterSample> group, TriangleTable& near) {
   const Hull hull = hull_of(in.grid, in.cluster, group);
   near.count = 0;
@@ -56,7 +56,7 @@ constexpr std::size_t kChunk = 256;  // triangles between two looks whether anyt
   }
 }
 
-/// Calls `test(view sample's number)` for each, with the triangles of its group in scratch.near.
+/// Calls `test(view sample's index)` for each, with the triangles of its group in scratch.near.
 template <typename Test>
 void for_each_in_groups(const PairInput& in, PairScratch& scratch, Test test) {
   for (std::size_t first = 0; first < in.samples.size(); first += kGroup) {
@@ -66,19 +66,19 @@ void for_each_in_groups(const PairInput& in, PairScratch& scratch, Test test) {
   }
 }
 
-/// Fills scratch.survivors with those of scratch.near that may cover a light sample.
+/// Fills scratch.survivors with the triangles of scratch.near that may cover a light sample.
 class Projection {
  public:
   Projection(const PairInput& in, PairScratch& scratch, const ClusterSample& at)
       : in_(in), s_(scratch), at_(at), place_(at.on_light) {
     const LightGrid& grid = in.grid;
-    // (bound near the plane): of a sphere's disk a height is off by more, and of a sun there is no plane.
+    // (bound near the plane): for a sphere's disk a height has a larger error, and for a sun there is no plane.
     ends_at_ = !grid.cones       ? at.height - 128 * kRound * grid.reach - grid.deviation
                : grid.cones->end ? place_.height - 512 * kRound * grid.reach - 4 * grid.cones->deviation
                                  : 3e38F;
   }
 
-  /// Triangles from `i` on, one a lane. What floats cannot place goes to scratch.again.
+  /// Projects triangles from `i` on, one in each lane. Those that floats cannot place are added to scratch.again.
   void operator()(std::size_t i, std::size_t end) {
     const D d;
     const TriangleTable& near = s_.near;
@@ -123,7 +123,7 @@ class Projection {
     out.count += more;
   }
 
-  /// Triangles (rows of scratch.near) that vectors of floats cannot settle.
+  /// Records triangles (rows of scratch.near) that vectors of floats cannot decide.
   void look_again(M which, V triangle) {
     HWY_ALIGN std::uint32_t numbers[hn::MaxLanes(D())];
     const hn::RebindToUnsigned<D> words;
@@ -141,12 +141,12 @@ class Projection {
                    hn::Sub(set(at_.in_grid.z), column(s_.near, corner + 2, i))};
     return in_.grid.cones ? Ways{turned(way, 0), turned(way, 1), turned(way, 2)} : way;
   }
-  /// As p sees a sphere or sun.
+  /// Returns a direction as p sees a sphere or sun.
   [[nodiscard]] V turned(const Ways& way, glm::length_t row) const {
     return hn::MulAdd(set(at_.turn[2][row]), way.w,
                       hn::MulAdd(set(at_.turn[1][row]), way.y, hn::Mul(set(at_.turn[0][row]), way.x)));
   }
-  /// May the box have a light sample in it? Of tiles: is it not certainly beside all cells?
+  /// Returns whether the box may contain a light sample. For tiles: whether it is not certainly outside of all cells.
   [[nodiscard]] M reaches(V low_x, V high_x, V low_y, V high_y, V error) const {
     const LightGrid& grid = in_.grid;
     const V last_row = set(static_cast<float>(grid.rows) - 1), right = set(static_cast<float>(grid.columns) - 0.5F);
@@ -175,4 +175,4 @@ class Projection {
 }  // namespace penumbra::vsm::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
-#endif  // once a target
+#endif  // once for each target

@@ -1,5 +1,5 @@
-// View-sample mapping on a processor for light samples that form no rows: each triangle is tested against the tiles
-// that it may cover, light samples side by side. docs/view-sample.md, "Light samples anywhere".
+// View-sample mapping on a processor for light samples that are not in rows: each triangle is tested against the tiles
+// that it may cover, a vector of light samples at a time. docs/view-sample.md, "Light samples anywhere".
 
 #include "engines/vectors/horizon.hpp"
 #include "vsm/vectors/pairs.hpp"
@@ -34,16 +34,16 @@ std::uint32_t word_of(TileM which) {
   return bytes[0] | std::uint32_t{bytes[1]} << 8U;
 }
 
-/// Of a tile: a bit a slot.
+/// Bits of a tile, one for each slot.
 struct TileBits {
   std::uint32_t hidden = 0, open = 0;
 };
 
-/// A triangle where it appears on the light, as a tile is tested against it. (bound tile)
+/// A triangle's place on the light, prepared for tests against tiles. (bound tile)
 struct CellTriangle {
   std::array<float, 3> x, y;
   float low_x, high_x, low_y, high_y;
-  float near;  // twice an area: a light sample in the box is certainly on one side of an edge's line beyond that
+  float near;  // twice an area: light samples in the box with larger values are certainly on one side of an edge's line
 
   CellTriangle(const SurvivorTable& table, std::size_t i)
       : x{table[kX0][i], table[kX1][i], table[kX2][i]}, y{table[kY0][i], table[kY1][i], table[kY2][i]} {
@@ -62,7 +62,7 @@ class TileTest {
   TileTest(const PairInput& in, PairScratch& scratch, const ClusterSample& at, SampleMask& mask)
       : in_(in), tiles_(*in.grid.tiles), s_(scratch), at_(at), mask_(mask), project_(in, scratch, at) {}
 
-  /// Takes what is certainly hidden out of the mask; what is not certain, and not hidden, is open.
+  /// Clears light samples that are certainly hidden; uncertain ones that are not hidden become open.
   void operator()() {
     fill(in_.grid, true, mask_);
     s_.survivors.reserve(kChunk + hn::Lanes(D()));
@@ -133,7 +133,7 @@ class TileTest {
     return bits;
   }
 
-  /// Wherever it is: by four half-planes of the light.
+  /// Tests a triangle at any position, by four half-planes of the light.
   void cover_carefully(std::uint32_t triangle) {
     const CellPlanes planes = planes_in_cells(input_of(triangle));
     const Tile d;
@@ -143,7 +143,7 @@ class TileTest {
       for (std::size_t lane = 0; lane < LightTiles::kWide; lane += hn::Lanes(d)) {
         const std::size_t slot = std::size_t{tile} * LightTiles::kWide + lane;
         const TileV x = hn::LoadU(d, &tiles_.x[slot]), y = hn::LoadU(d, &tiles_.y[slot]);
-        TileV least = hn::Set(d, 3e38F), most = hn::Set(d, -3e38F);  // less and more what they may be off by
+        TileV least = hn::Set(d, 3e38F), most = hn::Set(d, -3e38F);  // extrema minus and plus their errors
         TileV may_be_least = most, may_be_most = least;
         for (const CellPlanes::Plane& plane : planes.planes) {
           const TileV f =

@@ -1,4 +1,4 @@
-// View-sample mapping on a processor: its lists and what becomes of them. The rest is vectors::MaskMethod.
+// View-sample mapping on a processor: its lists, and their use for each cluster. vectors::MaskMethod does the rest.
 
 #include "vsm/vectors/view_sample_vectors.hpp"
 
@@ -24,7 +24,7 @@ bool is_outside(const visibility::Bounds& box, const glm::vec3& p) {
   return false;
 }
 
-/// Outside of the part, or on a face of its box where the part does not reach.
+/// Returns whether p is outside of the part, or on a face of its box that the part does not reach there.
 bool is_outside(const ClosedPart& part, const glm::vec3& p) {
   if (is_outside(part.box, p)) return true;
   for (std::size_t face = 0; face < 6; ++face) {
@@ -96,7 +96,8 @@ class VectorViewSample final : public vectors::MaskMethod {
     }
   }
 
-  /// Bit k: all these view samples are outside of part k, which does not carry them. On the floats as they are: exact.
+  /// Returns bit k if all these view samples are outside of part k, which does not carry them. Exact: compares the
+  /// stored floats.
   [[nodiscard]] std::uint32_t parts_around(std::span<const GridSample> view_samples) const {
     if (apart_ == 0) return 0;
     std::uint32_t carried = 0;
@@ -110,7 +111,7 @@ class VectorViewSample final : public vectors::MaskMethod {
     for (std::uint32_t k = 1; k <= closed_.parts.size(); ++k) {
       if ((apart_ & ~carried & 1U << k) == 0) continue;
       const ClosedPart& part = closed_.parts[k - 1];
-      bool outside = false;  // all of them beyond one face
+      bool outside = false;  // all view samples are beyond one face
       for (int axis = 0; axis < 3; ++axis) {
         outside = outside || upper[axis] < part.box.lower[axis] || lower[axis] > part.box.upper[axis];
       }
@@ -129,7 +130,7 @@ class VectorViewSample final : public vectors::MaskMethod {
   }
 
   ClosedParts closed_;
-  std::uint32_t apart_ = 0;  // bits: closed parts apart from the light
+  std::uint32_t apart_ = 0;  // bits: closed parts separate from the light
   tbb::enumerable_thread_specific<PairScratch> scratch_;
 };
 
