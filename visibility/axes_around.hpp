@@ -11,7 +11,7 @@ struct Axes {
   glm::dvec3 u, v;
 };
 
-/// Orthonormal u, v with u × v = n (unit): Duff et al., "Building an orthonormal basis, revisited" (JCGT 2017).
+/// Returns orthonormal u, v with u × v = n (unit): Duff et al., "Building an orthonormal basis, revisited" (JCGT 2017).
 inline Axes axes_around(const glm::dvec3& n) {
   const double sign = std::copysign(1.0, n.z);
   const double a = -1 / (sign + n.z), b = n.x * n.y * a;

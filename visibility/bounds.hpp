@@ -4,7 +4,7 @@
 
 namespace penumbra::visibility {
 
-/// A box along the axes.
+/// An axis-aligned box.
 struct Bounds {
   glm::vec3 lower{0}, upper{0};
 };

@@ -1,3 +1,5 @@
+// Segment–triangle test in double with a derived error bound; undecided cases are left to exact predicates.
+
 #include "visibility/certain_meeting.hpp"
 
 #include <glm/geometric.hpp>
@@ -8,7 +10,7 @@
 namespace penumbra::visibility {
 namespace {
 
-/// The way from p; `off`: how far from its end that may be, if it has one.
+/// Vector from p; `off`: error of its end, if it has one.
 struct Way {
   glm::dvec3 way;
   double off = 0;
@@ -19,11 +21,11 @@ std::optional<bool> decide(const glm::dvec3& p, const Way& from_p, const std::ar
   const auto& [way, off, ends] = from_p;
   const std::array d{glm::dvec3(corners[0]) - p, glm::dvec3(corners[1]) - p, glm::dvec3(corners[2]) - p};
   const std::array squared{glm::dot(d[0], d[0]), glm::dot(d[1], d[1]), glm::dot(d[2], d[2])};
-  // What l is off by adds as much to a determinant as a way that is longer by 2⁴⁶ of it.
+  // An error of l changes a determinant as much as a vector longer by 2⁴⁶ times the error.
   const double way_length = glm::length(way) + 0x1p46 * off, way_squared = way_length * way_length;
   // A determinant of three differences, each right to 2⁻⁵³ of itself in each coordinate, has three such errors, and
   // rounds six products of three, each at most the product of the rows' lengths, and their sums: fewer than 16 · 2⁻⁵³ ·
-  // 6 of that product. Its square, where nothing underflows; what is smaller than that is not certain.
+  // 6 of that product. The bound is squared where nothing underflows; smaller values are not certain.
   constexpr double kError = 0x1p-46 * 0x1p-46, kTiny = 0x1p-900;
   const auto sign = [](double value, double size_squared) {
     const double bound = kError * size_squared;
@@ -38,7 +40,7 @@ std::optional<bool> decide(const glm::dvec3& p, const Way& from_p, const std::ar
   }
   if (left > 0 && right > 0) return false;
   const glm::dvec3 e1 = d[1] - d[0], e2 = d[2] - d[0], n = glm::cross(e1, e2);
-  // The differences of differences are right to the lengths of what they are differences of.
+  // Differences of differences have errors relative to the lengths of their operands.
   const double largest = std::fmax(squared[0], std::fmax(squared[1], squared[2])), area = largest * largest;
   const int at_p = sign(-glm::dot(n, d[0]), 16 * area * largest);
   const int at_l = ends ? sign(glm::dot(n, way - d[0]), 16 * area * (largest + way_squared))

@@ -7,13 +7,13 @@
 
 namespace penumbra::visibility {
 
-/// Does the open segment p→l meet the triangle, if double arithmetic is certain: no sign on the way is within its
-/// rounding. As segment_meets_triangle (pair_truth.hpp) where both say something; p and l may be no floats. `off`: how
-/// far l may be from where it is meant to be.
+/// Returns whether the open segment p→l meets the triangle, if double arithmetic is certain, that is, if no sign is
+/// within its rounding; else nullopt. Agrees with segment_meets_triangle (pair_truth.hpp) where both have a result; p
+/// and l need not be floats. `off`: error of l.
 std::optional<bool> certainly_meets(const glm::dvec3& p, const glm::dvec3& l, const std::array<glm::vec3, 3>& corners,
                                     double off = 0);
 
-/// Likewise of the ray p + t · way, t > 0.
+/// Returns whether the ray p + t · way, t > 0, meets the triangle; nullopt if it is not certain.
 std::optional<bool> ray_certainly_meets(const glm::dvec3& p, const glm::dvec3& way,
                                         const std::array<glm::vec3, 3>& corners);
 

@@ -1,3 +1,5 @@
+// Closed parts of a mesh, and the layer of triangles of each that counts toward a light.
+
 #include "visibility/closed_casters.hpp"
 
 #include "base/assert.hpp"
@@ -44,7 +46,8 @@ ClosedCasters::ClosedCasters(const MeshView& mesh, const EdgeGraph& graph) {
   turn_ = std::move(found.turn);
 }
 
-/// Is the winding number of the part around c other than 0? The crossings of a segment that ends beyond its box.
+/// Returns whether the winding number of the part around c is not 0, by the crossings of a segment that ends beyond the
+/// part's box.
 bool ClosedCasters::is_around(const Part& part, const MeshView& mesh, const Light& light, const glm::vec3& c) const {
   const glm::dvec3 at(c);
   if (glm::any(glm::lessThan(at, part.lower)) || glm::any(glm::greaterThan(at, part.upper))) return false;
@@ -52,7 +55,7 @@ bool ClosedCasters::is_around(const Part& part, const MeshView& mesh, const Ligh
   int winding = 0;
   for (const std::uint32_t t : part.triangles) {
     const auto [a, b, d] = corners_of(mesh, t);
-    const std::array<glm::vec3, 3> corners = {glm::vec3(a), glm::vec3(b), glm::vec3(d)};  // they were floats
+    const std::array<glm::vec3, 3> corners = {glm::vec3(a), glm::vec3(b), glm::vec3(d)};  // the coordinates were floats
     if (!segment_meets_triangle(c, beyond, corners, light).meets) continue;
     winding += turn_[t] * static_cast<int>(mesh::side_of_plane(corners[0], corners[1], corners[2], c));
   }

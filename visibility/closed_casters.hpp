@@ -10,13 +10,14 @@
 #include <span>
 #include <vector>
 
-/// One layer a solid. Methods that add what triangles hide, and do not unite it, would take a closed surface twice: a
-/// segment that enters it leaves it again. So of a *closed part* only the triangles count by which segments toward the
-/// light leave for the region that holds the light's centre. Seen from a point outside, that is each solid once; seen
-/// from one inside (a view sample that rounding put below its own surface), still once. Open surfaces count whole.
+/// Counts one layer of each solid. Methods that add hidden areas, instead of uniting them, would count a closed surface
+/// twice: a segment that enters it leaves it again. So of a *closed part* only those triangles count through which
+/// segments toward the light leave into the region that contains the light's centre. Seen from a point outside, each
+/// solid counts once; seen from inside (a view sample that rounding put below its own surface), also once. Open
+/// surfaces count completely.
 ///
-/// A closed part: triangles connected through edges, exactly two at every edge, that can be wound alike. A soup with a
-/// hole, a fin or a T-junction is open, and a segment through both its sides counts two.
+/// A closed part consists of triangles connected through edges, exactly two at every edge, that can be wound
+/// consistently. A soup with a hole, a fin or a T-junction is open, and a segment through both its sides counts two.
 namespace penumbra::visibility {
 
 /// The closed parts of a mesh. Found once: lights may move.
@@ -25,30 +26,32 @@ class ClosedCasters {
   ClosedCasters() = default;
   ClosedCasters(const mesh::MeshView& mesh, const mesh::EdgeGraph& graph);
 
-  /// For each triangle of a closed part, the side (as mesh::Side, of the triangle as stored) on which the light's
-  /// centre's region lies: outside of the part, or, if it is around c, inside. `on` for open ones. `light` reads ties.
-  /// Exact except for which side is outside: the sign of the enclosed volume, in double. `mesh` is the constructor's.
+  /// Returns for each triangle of a closed part the side (as mesh::Side, of the triangle as stored) on which the region
+  /// of the light's centre lies: outside of the part, or, if the part is around c, inside. Returns `on` for triangles
+  /// of open parts. `light` resolves ties. Exact, except that the outside is found by the sign of the enclosed volume,
+  /// in double. `mesh` is the constructor's.
   [[nodiscard]] std::vector<mesh::Side> light_sides(const mesh::MeshView& mesh, const Light& light,
                                                     const glm::vec3& c) const;
 
  private:
   struct Part {
     std::vector<std::uint32_t> triangles;
-    int outside = 1;  // the side, once the triangles are wound by turn_
+    int outside = 1;  // the outside, once the triangles are wound by turn_
     glm::dvec3 lower{0}, upper{0};
   };
   [[nodiscard]] bool is_around(const Part& part, const mesh::MeshView& mesh, const Light& light,
                                const glm::vec3& c) const;
 
   std::vector<Part> parts_;
-  std::vector<std::int8_t> turn_;  // ±1 for each triangle: as stored, or the other way round
+  std::vector<std::int8_t> turn_;  // for each triangle 1 (winding as stored) or −1 (reversed)
 };
 
-/// ClosedCasters(mesh, graph).light_sides, where only one light is asked for.
+/// Returns ClosedCasters(mesh, graph).light_sides, for a single light.
 std::vector<mesh::Side> light_sides(const mesh::MeshView& mesh, const mesh::EdgeGraph& graph, const Light& light,
                                     const glm::vec3& c);
 
-/// Turns `on` the facings of what does not count, given mesh::facings from the light's centre, or from a view sample.
+/// Sets the facings of triangles that do not count to `on`; `facings` is mesh::facings from the light's centre, or from
+/// a view sample.
 void keep_one_layer(std::span<const mesh::Side> light_sides, bool from_light, std::span<mesh::Side> facings);
 
 }  // namespace penumbra::visibility

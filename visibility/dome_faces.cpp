@@ -1,3 +1,5 @@
+// Faces of a dome's cube as lights, and integrals over its light samples.
+
 #include "visibility/dome_faces.hpp"
 
 #include "base/assert.hpp"
@@ -17,7 +19,7 @@ bool is_side(std::size_t face) {
   return face < 4;
 }
 
-/// Of each face, the axes (negative: the other way) of its middle, u and v: v of a side is up.
+/// For each face, the axes (negative: reversed) of its middle, u and v: v of a side face is up.
 constexpr std::array<std::array<int, 3>, kDomeFaces> kFaces{
     {{1, -2, 3}, {-1, 2, 3}, {2, 1, 3}, {-2, -1, 3}, {3, 2, 1}, {-3, 1, 2}}};
 
@@ -103,7 +105,7 @@ double dome_form_factor(const Light& dome, const glm::dvec3& n) {
 }
 
 double dome_cosines(const Light& dome, std::span<const std::uint32_t> mask, const glm::vec3& n) {
-  constexpr std::size_t kLanes = 8;  // partial sums, so that compilers make vectors of them
+  constexpr std::size_t kLanes = 8;  // partial sums, so that compilers vectorise the loop
   const glm::dvec3 normal(n);
   std::array<double, kLanes> sums{};
   const std::size_t count = dome.points.size();

@@ -1,3 +1,5 @@
+// Directions of a sky picture's texels, and stratified light samples in proportion to luminance times solid angle.
+
 #include "visibility/dome_picture.hpp"
 
 #include <glm/geometric.hpp>
@@ -16,7 +18,8 @@ double luminance_of(const glm::vec3& color) {
   return 0.2126 * c.r + 0.7152 * c.g + 0.0722 * c.b;
 }
 
-/// Of `up_to`, sums that grow: the first that is more than `share` of the last, and how far into its step that is.
+/// The step of a growing list of sums `up_to` that contains the fraction `share` of the last sum, and the position
+/// within that step.
 struct Step {
   std::size_t index = 0;
   double within = 0;  // [0, 1)
@@ -30,7 +33,7 @@ Step step_at(const std::vector<double>& up_to, double share) {
           std::clamp((wanted - before) / (*found - before), 0.0, 1 - 0x1p-53)};
 }
 
-/// Heights of the upper and lower end of row `row` of `count`, above the horizon if only that counts.
+/// Heights of the upper and lower end of row `row` of `count`, clamped to the horizon for half a dome.
 struct Heights {
   double upper = 1, lower = -1;
 };
@@ -64,7 +67,7 @@ DomeFrame dome_frame(const glm::dvec3& up, double degrees) {
   const double length = glm::length(up);
   frame.up = up / length;
   const glm::dvec3& c = frame.up;
-  // The shortest turn from +Y to c (Rodrigues, with axis Y × c = (c.z, 0, −c.x)), of +X and of −Z.
+  // The smallest rotation from +Y to c (Rodrigues, with axis Y × c = (c.z, 0, −c.x)), applied to +X and −Z.
   if (c.y > -1 + 0x1p-40) {
     const double k = 1 / (1 + c.y);
     frame.right = {1 - k * c.x * c.x, -c.x, -k * c.x * c.z};
@@ -95,7 +98,7 @@ DomeSamples dome_samples(const scenes::Texture* picture, bool half, const std::v
     return picture != nullptr ? luminance_of(picture->texels[row * width + x]) : 1.0;
   };
   DomeSamples samples;
-  std::vector<double> rows;  // of rows up to each, ∫ luminance dω
+  std::vector<double> rows;  // for each row, ∫ luminance dω up to its end
   for (std::size_t row = 0; row < height; ++row) {
     const auto [upper, lower] = heights_of(row, height, half);
     double sum = 0;
@@ -104,7 +107,7 @@ DomeSamples dome_samples(const scenes::Texture* picture, bool half, const std::v
     rows.push_back(samples.power);
   }
   if (!(samples.power > 0)) return samples;
-  std::vector<std::vector<double>> columns(height);  // of rows that are asked for, up to each texel
+  std::vector<std::vector<double>> columns(height);  // for used rows, the sums up to each texel
   for (const glm::dvec2& at : unit) {
     const auto [row, down] = step_at(rows, at.y);
     std::vector<double>& sums = columns[row];

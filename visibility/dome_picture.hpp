@@ -7,37 +7,37 @@
 
 #include <vector>
 
-/// Where in the sky the texels of a dome's picture are, and light samples in proportion to their light.
+/// Directions of the texels of a dome's picture, and light samples in proportion to their light.
 namespace penumbra::visibility {
 
-/// A direction by its height, the cosine of the angle to `up`, and the angle around, in turns from the picture's left:
-/// 1/2 is its middle.
+/// A direction by its height, the cosine of the angle to `up`, and the azimuth, in turns from the picture's left: 1/2
+/// is its middle.
 struct SkyPlace {
   double height = 0, turn = 0;
 };
 
-/// A dome's axes in world space, unit and at right angles: `right` × `ahead` = `up`. `ahead` is what the picture's
-/// middle column looks along.
+/// A dome's axes in world space, orthonormal: `right` × `ahead` = `up`. The picture's middle column shows the direction
+/// `ahead`.
 struct DomeFrame {
   glm::dvec3 right{1, 0, 0}, ahead{0, 0, -1}, up{0, 1, 0};
 
   [[nodiscard]] glm::dvec3 direction(const SkyPlace& place) const;
   [[nodiscard]] SkyPlace place(const glm::dvec3& direction) const;
 };
-/// The shortest turn takes +Y to `up`, and −Z and +X to `ahead` and `right`; then these are turned by `degrees`,
-/// right-handed, about `up`. Of −Y the turn is about X.
+/// Returns a dome's axes. The smallest rotation takes +Y to `up`, and −Z and +X to `ahead` and `right`; then these are
+/// rotated by `degrees`, right-handed, about `up`. For −Y the rotation is about X.
 DomeFrame dome_frame(const glm::dvec3& up, double degrees);
 
-/// The texel at a place; of a border, the right one and the lower one.
+/// Returns the texel at a place; on a border, the right one and the lower one.
 std::size_t sky_texel(const scenes::Texture& picture, const SkyPlace& place);
 
 struct DomeSamples {
   std::vector<SkyPlace> places;
-  std::vector<glm::vec3> colors;  ///< of a picture: of the texel, over its luminance
+  std::vector<glm::vec3> colors;  ///< for a picture: colour of the texel, over its luminance
   double power = 0;               ///< ∫ luminance dω
 };
-/// One for each point of the unit square, each standing for the same share of ∫ luminance dω. `picture`: null for one
-/// radiance. Empty: the picture has no light there.
+/// Returns a light sample for each point of the unit square, each for the same fraction of ∫ luminance dω. `picture`:
+/// null for constant radiance. Empty if the picture has no light there.
 DomeSamples dome_samples(const scenes::Texture* picture, bool half, const std::vector<glm::dvec2>& unit);
 
 }  // namespace penumbra::visibility

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-/// What makes a method wrong, cause by cause, and which other runs do without each: docs/error-budget.md.
+/// Causes of a method's error, and runs without each of them: docs/error-budget.md.
 namespace penumbra::visibility {
 
 enum class ErrorCause : std::uint8_t { resolution, view, layers, fusion, gaps, bias };
@@ -17,34 +17,35 @@ constexpr const char* name_of(ErrorCause cause) {
   return kNames[static_cast<std::size_t>(cause)];
 }
 
-/// A run of a method, or of one that differs from it only in what is repaired.
+/// A run of a method, or of one that differs from it only in the repaired cause.
 struct RepairRun {
   std::string method;
   MethodOptions options;
-  std::uint32_t light_parts = 1;    ///< the light is cut in so many parts along each axis; V is their mean
-  std::uint32_t light_samples = 0;  ///< of the light, or of each part; 0: those of the command line
+  std::uint32_t light_parts = 1;    ///< the light is divided into this many parts along each axis; V is their mean
+  std::uint32_t light_samples = 0;  ///< light samples of the light, or of each part; 0: those of the command line
 };
 
-/// How runs lead to the state without a cause.
+/// Relation of a sequence of runs to the state without a cause.
 enum class RepairEnd : std::uint8_t {
-  last,   ///< the last is it
-  limit,  ///< each halves what the cause lives from; the limit is estimated from the last three, the run as asked first
-  settled,  ///< the first that gives the same V as the one before is it
+  last,   ///< the last run has that state
+  limit,  ///< each run halves the size of the cause; the limit is estimated from the last three, where the original run
+          ///< counts as the first
+  settled,  ///< the first run with the same V as its predecessor has that state
 };
 
-/// One cause repaired alone.
+/// Repair of a single cause.
 struct ErrorRepair {
   ErrorCause cause = ErrorCause::resolution;
   RepairEnd end = RepairEnd::last;
-  std::vector<RepairRun> runs = {};  ///< in this order; none: the cause cannot be separated
-  std::string words = {};            ///< what is done, or why nothing can be; no full stop
+  std::vector<RepairRun> runs = {};  ///< in this order; empty: the cause cannot be separated
+  std::string words = {};            ///< description of the repair, or why there is none; without a full stop
 };
 
 struct ErrorRepairs {
-  std::vector<ErrorRepair> alone;  ///< one a cause, in the order of kErrorCauses
-  /// All that can be combined, the most thorough first: the first that runs counts.
+  std::vector<ErrorRepair> alone;  ///< one for each cause, in the order of kErrorCauses
+  /// Runs with all possible repairs together, the most thorough first: the first that succeeds counts.
   std::vector<RepairRun> together;
-  std::vector<RepairRun> one_view = {};  ///< likewise, of the view; none where `view` cannot be separated
+  std::vector<RepairRun> one_view = {};  ///< like `together`, for the view; empty if `view` cannot be separated
 };
 
 }  // namespace penumbra::visibility

@@ -1,4 +1,4 @@
-// What there is to ask of a light in scene floats: its kind, its frame, its centre, its points as p sees them.
+// Properties of a light in scene floats: its kind, its frame, its centre, its points as p sees them.
 
 #include "visibility/light_samples.hpp"
 
@@ -57,7 +57,7 @@ glm::dvec3 way_to(const Light& light, const glm::vec3& p, const glm::vec3& l) {
 
 Bounds point_bounds(const Light& light) {
   if (is_body(light.kind)) {
-    // The disks are inside the ball; their points are rounded to float32, as the bounds are.
+    // The disks are inside the ball; their points are rounded to float32, and so are the bounds.
     const float farthest = std::max({std::abs(light.center.x), std::abs(light.center.y), std::abs(light.center.z)});
     const float reach =
         std::nextafter(static_cast<float>(light.radius) * 1.0001f, std::numeric_limits<float>::infinity()) +

@@ -1,3 +1,5 @@
+// Texture of a rectangle light: luminance, texel look-up, and weights of light samples that add up to exactly 1.
+
 #include "visibility/light_texture.hpp"
 
 #include "base/assert.hpp"
@@ -14,7 +16,7 @@ double luminance_of(const glm::dvec3& color) {
   return 0.2126 * color.r + 0.7152 * color.g + 0.0722 * color.b;
 }
 
-/// Which of `count` cells of [0, 1] holds `share`.
+/// Returns the one of `count` cells of [0, 1] that contains `share`.
 std::uint32_t cell_at(double share, std::uint32_t count) {
   const double cell = std::floor(share * count);
   return static_cast<std::uint32_t>(std::clamp(cell, 0.0, static_cast<double>(count - 1)));
@@ -51,8 +53,9 @@ std::vector<double> sample_weights(const LightTexture& texture, const std::vecto
         "coarser texture",
         light, coordinates.size(), texture.width, texture.height);
   }
-  // Sums are rounded to the grid, not weights: then the weights add up. Neighbouring sums share their rounding except
-  // for the last addition, division and step: four steps at most; `sum` itself is off by 4096 · 2⁻⁵³ of its size.
+  // Sums are rounded to the grid, not weights, so that weights add up to exactly 1. Neighbouring sums share their
+  // rounding except for the last addition, division and step: four steps at most; `sum` itself is off by 4096 · 2⁻⁵³ of
+  // its size.
   constexpr double kStep = 0x1p-52;
   std::vector<double> weights;
   double before = 0;

@@ -1,5 +1,5 @@
-// Texels of a lightmap as view samples: the triangle in the map that covers a texel's centre says where on the surface
-// the sample lies.
+// Texels of a lightmap as view samples: the triangle that covers a texel's centre in the map gives the sample's place
+// on the surface.
 
 #include "visibility/lightmap.hpp"
 
@@ -20,7 +20,7 @@
 namespace penumbra::visibility {
 namespace {
 
-/// Twice the signed area of (a, b, c): its sign for an edge a b and a point c is the same for both triangles at it.
+/// Returns twice the signed area of (a, b, c), with the same sign for both triangles at the edge a b.
 double turn(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) {
   if (std::pair(b.x, b.y) < std::pair(a.x, a.y)) return -turn(b, a, c);
   return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
@@ -40,7 +40,7 @@ TexelRange range_of(double low, double high, std::uint32_t size) {
           static_cast<std::int64_t>(std::clamp(std::ceil(high * size - 0.5), 0.0, most))};
 }
 
-/// Are the stored corners, which are sorted, in the soup's turning order?
+/// Returns whether the stored corners, which are sorted, have the soup's cyclic order.
 bool same_order(const Triangle& stored, const mesh::Triangle& soup) {
   const auto first = static_cast<std::size_t>(std::ranges::find(soup, stored[0]) - soup.begin());
   return soup[(first + 1) % 3] == stored[1];
@@ -131,7 +131,7 @@ std::vector<std::int64_t> margin_sources(std::span<const SurfacePoint> points, s
   const auto columns = static_cast<std::int64_t>(width), rows = static_cast<std::int64_t>(points.size() / width);
   for (std::uint32_t step = 0; step < margin && !front.empty(); ++step) {
     std::vector<std::size_t> next;
-    // Neighbours in rows and columns are nearer than those across corners.
+    // Neighbours in rows and columns are nearer than diagonal ones.
     const auto spread = [&](const std::array<std::pair<int, int>, 4>& directions) {
       for (const std::size_t i : front) {
         const std::int64_t x = static_cast<std::int64_t>(i) % columns, y = static_cast<std::int64_t>(i) / columns;

@@ -9,9 +9,9 @@
 
 namespace penumbra::visibility {
 
-/// What a method makes of a mesh as it stands (`penumbra inspect`).
+/// Quality of a method's results for an unrepaired mesh (`penumbra inspect`).
 enum class Verdict {
-  exact,         ///< each answer is that of the triangles as they stand
+  exact,         ///< each result is correct for the triangles as stored
   conservative,  ///< wrong on one known side only
   approximate,
   refused,
@@ -23,14 +23,14 @@ struct MeshVerdict {
   std::string reason;
 };
 
-/// Something that holds of `count` parts of the mesh: "needles, which may be thinner than a texel".
+/// A property of `count` parts of the mesh: "needles, which may be thinner than a texel".
 struct Remark {
   std::uint64_t count = 0;
   std::string_view what;
 };
 
-/// The sentence, and after it each remark whose count is not 0: "sentence; needles, which …: 5". What rounding to scene
-/// floats costs comes last: it is the same for every method.
+/// Returns the sentence, followed by each remark whose count is not 0: "sentence; needles, which …: 5". The effect of
+/// rounding to scene floats comes last: it is the same for every method.
 std::string reason_with(std::string_view sentence, const mesh::Diagnosis& mesh, std::initializer_list<Remark> remarks);
 
 }  // namespace penumbra::visibility

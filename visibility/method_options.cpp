@@ -13,7 +13,7 @@
 namespace penumbra::visibility {
 namespace {
 
-/// The whole text as a finite number, or nothing. `12.` and `1e3` are numbers.
+/// Returns the whole text as a finite number, or nullopt. `12.` and `1e3` are numbers.
 std::optional<double> number_in(std::string_view text) {
   double number = 0;
   const char* end = text.data() + text.size();
@@ -22,7 +22,8 @@ std::optional<double> number_in(std::string_view text) {
   return number;
 }
 
-/// Which of the choices a text is, or its number; nothing if the option cannot have this value.
+/// Returns the index of the choice, or the number, that the text stands for; nullopt if the option cannot have this
+/// value.
 std::optional<double> parse_value(const OptionDescription& option, const std::string& text) {
   if (!option.choices.empty()) {
     const auto choice = std::ranges::find(option.choices, text);

@@ -13,40 +13,40 @@
 
 /// The options of a method. A method declares each once, as a constant:
 ///
-///   constexpr visibility::ChoiceOption kCoverage{
-///       "coverage", {{"analytic", Coverage::analytic}, {"table", Coverage::table}}, Coverage::analytic, "what it
-///       does"};
-///   constexpr visibility::IntegerOption kSize{"size", 8, 16384, 1024, "texels on a side of a map"};
+///     constexpr visibility::ChoiceOption kCoverage{
+///         "coverage", {{"analytic", Coverage::analytic}, {"table", Coverage::table}}, Coverage::analytic, "what it
+///         does"};
+///     constexpr visibility::IntegerOption kSize{"size", 8, 16384, 1024, "texels on a side of a map"};
 ///
-/// lists `kCoverage.description()` in its MethodDescription, and reads typed values from what parse_options made of the
-/// user's texts: `options[kCoverage]` is a Coverage. What `penumbra methods` prints, what is refused, the messages, and
-/// the default all come from that one declaration.
+/// lists `kCoverage.description()` in its MethodDescription, and reads typed values from the result of parse_options:
+/// `options[kCoverage]` is a Coverage. The output of `penumbra methods`, the accepted values, the messages, and the
+/// default all derive from that one declaration.
 namespace penumbra::visibility {
 
 /// KEY=VALUE pairs as the user gave them.
 using MethodOptions = std::map<std::string, std::string>;
 
-/// An option as text: what `penumbra methods` prints, and what a value is checked against.
+/// An option as text: printed by `penumbra methods`, and used to check values.
 struct OptionDescription {
   std::string name;
-  std::vector<std::string> choices{};  ///< the values it can have; empty: a number
-  double least = 0, most = 0;          ///< of a number, both included
-  bool whole = false;                  ///< only whole numbers, written in digits
+  std::vector<std::string> choices{};  ///< the possible values; empty: a number
+  double least = 0, most = 0;          ///< range of a number, both ends included
+  bool whole = false;                  ///< only integers, written in digits
   std::string default_value;
   std::string help;
 
-  /// "on|off": one of these; "1 … 4096": a whole number; "0.0 … 8.0": any number, both ends included.
+  /// Returns "on|off": one of these; "1 … 4096": an integer; "0.0 … 8.0": any number, both ends included.
   [[nodiscard]] std::string values() const;
 };
 
-/// A name that the user may give, and what it stands for.
+/// A name that the user may give, and the value that it stands for.
 template <typename Value>
 struct NamedValue {
   const char* name;
   Value value;
 };
 
-/// One of a few names, each of which stands for a value.
+/// An option with a few named values.
 template <typename V, std::size_t kCount>
 class ChoiceOption {
  public:
@@ -67,7 +67,7 @@ class ChoiceOption {
     for (const NamedValue<V>& choice : choices_) text.choices.emplace_back(choice.name);
     return text;
   }
-  /// `number`: which of the choices.
+  /// `number`: index of the choice.
   [[nodiscard]] constexpr V value_of(double number) const { return choices_[static_cast<std::size_t>(number)].value; }
 
  private:
@@ -79,12 +79,12 @@ class ChoiceOption {
 template <typename V, std::size_t kCount>
 ChoiceOption(const char*, const NamedValue<V> (&)[kCount], V, const char*) -> ChoiceOption<V, kCount>;
 
-/// on or off.
+/// Declares an option with the values on and off.
 constexpr ChoiceOption<bool, 2> flag_option(const char* name, bool otherwise, const char* help) {
   return {name, {{"on", true}, {"off", false}}, otherwise, help};
 }
 
-/// A number from `least` to `most`, both included.
+/// An option that is a number from `least` to `most`, both included.
 template <typename V>
 struct NumberOption {
   using Value = V;
@@ -100,19 +100,19 @@ struct NumberOption {
 using IntegerOption = NumberOption<std::uint32_t>;
 using RealOption = NumberOption<double>;
 
-/// A method's options as given, each one that it has, with a value that it can have; defaults for the rest.
+/// A method's options with checked values; defaults for those not given.
 class ParsedOptions {
  public:
-  /// Throws UsageError for a key that is none of `options` and for a value that its option cannot have; the message
-  /// says what there is, and what was perhaps meant. `method` is for messages.
+  /// Throws UsageError for a key that is not in `options` and for a value that its option cannot have; the message
+  /// lists the possibilities, and the closest one. `method` is for messages.
   ParsedOptions(std::string_view method, std::span<const OptionDescription> options, const MethodOptions& given);
 
-  /// Asserts that the method has the option.
+  /// Returns the option's value. Asserts that the method has the option.
   template <typename Option>
   [[nodiscard]] typename Option::Value operator[](const Option& option) const {
     return option.value_of(find(option.name()).number);
   }
-  /// Did the user give it?
+  /// Returns whether the user gave the option.
   template <typename Option>
   [[nodiscard]] bool given(const Option& option) const {
     return find(option.name()).given;
@@ -120,7 +120,7 @@ class ParsedOptions {
 
  private:
   struct Entry {
-    double number = 0;  ///< of a choice, which one; else the number itself
+    double number = 0;  ///< index of a choice; else the number itself
     bool given = false;
   };
   [[nodiscard]] const Entry& find(std::string_view name) const;

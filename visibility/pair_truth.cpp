@@ -39,13 +39,13 @@ struct EdgeSign {
   bool was_zero = false;
 };
 
-/// The sign of (p, l; a b): on which side of the line p→l the edge a→b passes. It is the sign of
-/// det(l − p, a − p, b − p), affine in l; so at l + ε·u + ε²·v it is, where it vanishes at l, the sign of
-/// det(u, a − p, b − p), and where that vanishes too, of det(v, a − p, b − p). Antisymmetric in a and b: neighbouring
-/// triangles agree about their edge. All three vanish only if p is on the line a b (then p is on the triangle's plane,
-/// and it is not met anyway) or on the light's plane (then condition (2) has already refused the pair). Of a sun l is a
-/// direction and stands for l − p; its axes span a plane that holds no direction to it. Of a dome the axes are those of
-/// the face that l is on.
+/// Returns the sign of (p, l; a b): the side of the line p→l on which the edge a→b passes. It is the sign of det(l − p,
+/// a − p, b − p), affine in l; so at l + ε·u + ε²·v it is, where it vanishes at l, the sign of det(u, a − p, b − p),
+/// and where that vanishes too, of det(v, a − p, b − p). Antisymmetric in a and b: neighbouring triangles agree about
+/// their edge. All three vanish only if p is on the line a b (then p is on the triangle's plane, and the triangle is
+/// not met) or on the light's plane (then condition (2) has already refused the pair). For a sun l is a direction and
+/// stands for l − p; its axes span a plane that contains no direction to it. For a dome the axes are those of the face
+/// that contains l.
 EdgeSign edge_sign(const glm::vec3& p, const glm::vec3& l, const glm::vec3& a, const glm::vec3& b, const Light& light) {
   const int sign = static_cast<int>(light.sun ? side_of_direction(p, a, b, l) : side_of_plane(p, l, a, b));
   if (sign != 0) return {sign, false};
@@ -101,8 +101,8 @@ Meeting segment_meets_triangle(const glm::vec3& p, const glm::vec3& l, const std
   const bool plane_zero = side_p == Side::on || side_l == Side::on;
   if (!plane_zero && side_p == side_l) return {};
 
-  // The line p→l crosses the plane, or touches it at p or l. It passes the triangle iff all three edges pass it on the
-  // same side.
+  // The line p→l crosses the plane, or touches it at p or l. It passes through the triangle iff all three edges pass it
+  // on the same side.
   bool some_left = false, some_right = false, edge_zero = false;
   for (std::size_t i = 0; i < 3; ++i) {
     const EdgeSign edge = edge_sign(p, l, corners[i], corners[(i + 1) % 3], light);
@@ -111,7 +111,7 @@ Meeting segment_meets_triangle(const glm::vec3& p, const glm::vec3& l, const std
     some_left |= edge.sign > 0;
     some_right |= edge.sign < 0;
   }
-  if (some_left && some_right) return {};  // past it, whatever the zeros are read as
+  if (some_left && some_right) return {};  // it misses the triangle, however zeros are resolved
   if (plane_zero) return {false, !collinear(a, b, c)};
   if (!edge_zero) return {true, false};
   bool all_left = true, all_right = true;
@@ -134,8 +134,8 @@ bool meets_before_light(const glm::vec3& p, const PlanePoint& l, const std::arra
                         const Light& light) {
   if (const std::optional<bool> certain = certainly_meets(glm::dvec3(p), l.rounded, corners, l.off)) return *certain;
   const auto& [a, b, c] = corners;
-  // Nothing of it is between p and the light's plane: cheaper to test than what follows, and it decides triangles in
-  // the light's plane.
+  // Tests whether a part of the triangle is between p and the light's plane: cheaper than the tests below, and decides
+  // triangles in the light's plane.
   const auto side = [&](const glm::vec3& x) { return side_of_plane(light.center, light.center_u, light.center_v, x); };
   const Side before = side(p);
   if (std::ranges::none_of(corners, [&](const glm::vec3& corner) { return side(corner) == before; })) return false;
@@ -174,11 +174,11 @@ int sign_above(const Light& light, const std::array<glm::vec3, 3>& carrier, cons
   return static_cast<int>(light.sun ? side_of_direction(a, b, c, l) : side_of_plane(a, b, c, l));
 }
 
-/// |p − c| > r, for the stored centre and the radius in double.
+/// Returns whether |p − c| > r, for the stored centre and the radius in double.
 bool outside_sphere(const Light& light, const glm::vec3& p) {
   const glm::dvec3 d = glm::dvec3(p) - glm::dvec3(light.center);
   const double far = glm::dot(d, d), near = light.radius * light.radius;
-  // Differences, squares and two sums: less than 8 roundings of either; what underflows is not certain.
+  // Differences, squares and two sums: less than 8 roundings of either; results that underflow are not certain.
   const double error = 0x1p-49 * (far + near);
   if (error > 0x1p-900 && std::abs(far - near) > error) return far > near;
   const ExactVector exact = difference(p, light.center);
@@ -206,7 +206,7 @@ PairTruth decide_pair(const SceneFloats& scene, const ViewSamples& samples, std:
   PENUMBRA_ASSERT(light_sample < light.sample_count(), "light sample {} of {}", light_sample, light.sample_count());
   const auto carrier = static_cast<std::uint32_t>(samples.triangle[pixel]);
   const glm::vec3& p = samples.p[pixel];
-  // In a sphere there are no light points that could be above or below anything.
+  // Inside a sphere no light points are defined that could be above or below a plane.
   if (is_body(light.kind) && !in_front_of_light(light, p)) return {PairOutcome::behind, false};
   std::vector<glm::vec3> points(light.sample_count());
   light_points_for(light, p, points.data());
@@ -218,7 +218,8 @@ PairTruth decide_pair(const SceneFloats& scene, const ViewSamples& samples, std:
   if (!in_front_of_light(light, p)) {
     return {PairOutcome::behind, side_of_plane(light.center, light.center_u, light.center_v, p) == Side::on};
   }
-  // A triangle that is met without doubt settles the pair; one that is met by the reading of a zero leaves a mark.
+  // A triangle that is met without doubt decides the pair; one that is met only by the resolution of a zero is
+  // recorded.
   PairTruth truth;
   for (std::uint32_t triangle = 0; triangle < scene.triangles.size(); ++triangle) {
     if (!may_occlude(scene, light, carrier, triangle)) continue;

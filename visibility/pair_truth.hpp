@@ -15,37 +15,37 @@ namespace penumbra::visibility {
 
 using mesh::collinear, mesh::coplanar, mesh::Side, mesh::side_of_direction, mesh::side_of_plane;
 
-/// What an exact segment–triangle test found, and whether some predicate on the way was exactly zero.
+/// Result of an exact segment–triangle test, and whether some predicate was exactly zero.
 struct Meeting {
   bool meets = false;
-  bool zero_predicate = false;  ///< an edge sign or a plane side was exactly zero (and read as defined), and
-                                ///< the signs that are not zero do not already say that the line passes the triangle by
+  bool zero_predicate = false;  ///< an edge sign or a plane side was exactly zero (and resolved as defined), and the
+                                ///< signs that are not zero do not already decide that the line misses the triangle
 };
 
-/// Everywhere below, of a sun l is a direction: the way is the ray p + t · l, t > 0, and l − p is to be read as l.
+/// In all functions below, for a sun l is a direction: the segment is the ray p + t · l, t > 0, and l − p stands for l.
 ///
-/// On which side of the line p→l the edge a→b passes: the sign of det(l − p, a − p, b − p), and where that is zero what
-/// docs/definitions.md reads it as, so that neighbouring triangles agree about their edge. 0 only if p is on the line a
-/// b or on the light's plane. Exact.
+/// Returns the side of the line p→l on which the edge a→b passes: the sign of det(l − p, a − p, b − p), resolved as in
+/// docs/definitions.md where that is zero, so that neighbouring triangles agree about their edge. 0 only if p is on the
+/// line a b or on the light's plane. Exact.
 int edge_side(const glm::vec3& p, const glm::vec3& l, const glm::vec3& a, const glm::vec3& b, const Light& light);
 
-/// Does the open segment p→l meet the triangle? Exact. An edge sign that is zero is read as that of
-/// l + ε(u) + ε²(v), with u, v the light's frame axes; zero-area triangles, and triangles whose plane contains p or l,
-/// are not met. Does not know about carriers: coplanar triangles are the caller's.
+/// Returns whether the open segment p→l meets the triangle. Exact. An edge sign that is zero is resolved as that of l +
+/// ε(u) + ε²(v), with u, v the light's frame axes; zero-area triangles, and triangles whose plane contains p or l, are
+/// not met. Ignores carriers: the caller handles coplanar triangles.
 Meeting segment_meets_triangle(const glm::vec3& p, const glm::vec3& l, const std::array<glm::vec3, 3>& corners,
                                const Light& light);
 
-/// The point centre + s u + t v of a light's plane, of its stored points. Not of a sphere or sun.
+/// The point centre + s u + t v of a light's plane, of its stored points. Not for a sphere or sun.
 struct PlanePoint {
   PlanePoint(const Light& light, const glm::dvec2& at);
 
   glm::dvec2 st{0};
-  glm::dvec3 rounded{0};  ///< in double
-  double off = 0;         ///< that is no farther from the point
+  glm::dvec3 rounded{0};  ///< the point, rounded to double
+  double off = 0;         ///< upper bound of its distance from the exact point
 };
 
-/// Does something of the triangle that is strictly between p and the light's plane meet the way from p to this very
-/// point? Exact; zeros are read as by segment_meets_triangle.
+/// Returns whether a part of the triangle strictly between p and the light's plane meets the segment from p to exactly
+/// this point. Exact; zeros are resolved as in segment_meets_triangle.
 bool meets_before_light(const glm::vec3& p, const PlanePoint& l, const std::array<glm::vec3, 3>& corners,
                         const Light& light);
 
@@ -59,33 +59,34 @@ enum class PairOutcome : std::uint8_t {
 struct PairTruth {
   PairOutcome outcome = PairOutcome::visible;
   bool zero_predicate = false;
-  bool by_mask = false;  ///< decided by the texels of a surface with holes: nothing that stops all light is in between
+  bool by_mask = false;  ///< decided by the texels of a surface with holes: no opaque surface is between p and l
 };
 
-/// Condition (1): l strictly on the viewer's side of the carrier's plane; `facing` is ViewSamples::facing (+1: the
-/// viewer is where (b − a) × (c − a) points, −1: behind). Exact.
+/// Returns condition (1): l strictly on the viewer's side of the carrier's plane; `facing` is ViewSamples::facing (+1:
+/// the viewer is on the side that (b − a) × (c − a) points to, −1: behind). Exact.
 bool above_horizon(const std::array<glm::vec3, 3>& carrier, std::int8_t facing, const glm::vec3& l);
-/// The same of any light's points, a sun's directions among them.
+/// Returns condition (1) for any light's points, including a sun's directions.
 bool above_horizon(const Light& light, const std::array<glm::vec3, 3>& carrier, std::int8_t facing, const glm::vec3& l);
 
-/// Condition (2): p strictly on an emitting side of the light's plane; of a sphere, strictly outside it; always of a
-/// sun. Exact.
+/// Returns condition (2): p strictly on an emitting side of the light's plane; for a sphere, strictly outside it;
+/// always true for a sun. Exact.
 bool in_front_of_light(const Light& light, const glm::vec3& p);
 
-/// Can this triangle hide the light from a view sample on `carrier`? (It casts shadow, has area, is not coplanar with
-/// the carrier, and is not the body of the light itself.)
+/// Returns whether this triangle can hide the light from a view sample on `carrier`: it casts shadows, has an area, is
+/// not coplanar with the carrier, and is not the body of the light itself.
 inline bool may_occlude(const SceneFloats& scene, const Light& light, std::uint32_t carrier, std::uint32_t triangle) {
   return scene.casts_shadow[triangle] != 0 && scene.plane[triangle] != scene.plane[carrier] &&
          scene.emits[triangle] != light.index;
 }
 
-/// The same of a triangle that lets light through (SurfaceAlphas::casters).
+/// Returns whether a triangle that lets light through (SurfaceAlphas::casters) can attenuate the light.
 inline bool may_filter(const SceneFloats& scene, const Light& light, std::uint32_t carrier, std::uint32_t triangle) {
   return scene.plane[triangle] != scene.plane[carrier] && scene.emits[triangle] != light.index;
 }
 
-/// The truth of a pair (docs/definitions.md): the last judge. Tries every triangle whose box the segment's box
-/// touches: microseconds per thousand triangles; for hundreds of pairs, not for images. `pixel` must not be background.
+/// Returns the truth of a pair (docs/definitions.md): the final oracle. Tests every triangle whose box the segment's
+/// box touches: microseconds per thousand triangles; for hundreds of pairs, not for images. `pixel` must not be
+/// background.
 PairTruth decide_pair(const SceneFloats& scene, const ViewSamples& samples, std::size_t pixel, const Light& light,
                       std::uint32_t light_sample);
 

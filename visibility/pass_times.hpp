@@ -8,13 +8,13 @@
 
 namespace penumbra::visibility {
 
-/// A GPU pass, or a stage on the processor, and how long it took.
+/// Time of a GPU pass, or of a stage on the processor.
 struct PassTime {
   std::string name;
   double milliseconds = 0;
 };
 
-/// Sums of those of the same name, in the order in which they first came.
+/// Sums of times with equal names, in the order of first occurrence.
 class PassTimes {
  public:
   void add(const PassTime& time) {
@@ -28,7 +28,7 @@ class PassTimes {
   void add(const std::vector<PassTime>& times) {
     for (const PassTime& time : times) add(time);
   }
-  /// Adds how long `work` takes, and returns what it does.
+  /// Adds the duration of `work`, and returns its result.
   template <typename Work>
   auto add(const std::string& name, Work&& work) {
     const auto start = std::chrono::steady_clock::now();
@@ -36,7 +36,7 @@ class PassTimes {
     add({name, std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count()});
     return result;
   }
-  /// What was added since the last call.
+  /// Returns the times added since the last call.
   std::vector<PassTime> take() { return std::exchange(sums_, {}); }
 
  private:

@@ -1,11 +1,11 @@
-// Which triangles are exactly coplanar, for a million triangles in a fraction of a second.
+// Finds exactly coplanar triangles, for a million triangles in a fraction of a second.
 //
 // A plane is the ratio n.x : n.y : n.z : n·a with n = (b − a) × (c − a). Finite floats are integers times powers of
 // two, and the ring of those numbers maps homomorphically onto the integers modulo p = 2⁶¹ − 1 (where 2⁻¹ exists). So
 // the four numbers, computed modulo p without any rounding and divided by the first that is not zero, are *equal* for
-// exactly coplanar triangles: they find all candidates. Different planes can only collide; every candidate is therefore
-// verified with an exact predicate before it gets its number. The one exception, all four zero modulo p although the
-// triangle has an area, is kept apart and compared with every plane.
+// exactly coplanar triangles: comparing them finds all candidates. Different planes can only collide; every candidate
+// is therefore verified with an exact predicate before it gets its number. The one exception, all four zero modulo p
+// although the triangle has an area, is handled separately and compared with every plane.
 
 #include "visibility/plane_ids.hpp"
 
@@ -33,7 +33,7 @@ __extension__ using UInt128 = unsigned __int128;
 // ---- Arithmetic modulo the Mersenne prime p = 2⁶¹ − 1. Values are kept in [0, p).
 constexpr std::uint64_t kPrime = (std::uint64_t{1} << 61) - 1;
 
-/// Of up to three products' sum, or what is below 2¹²⁴.
+/// Holds the sum of up to three products, below 2¹²⁴.
 std::uint64_t reduce(UInt128 x) {  // 2⁶¹ ≡ 1: fold the high bits onto the low ones
   std::uint64_t r = static_cast<std::uint64_t>(x & kPrime) + static_cast<std::uint64_t>(x >> 61);  // < 2⁶⁴
   r = (r & kPrime) + (r >> 61);                                                                    // < p + 6
@@ -79,11 +79,11 @@ Dyadic dyadic(float value) {
   return {(bits >> 31) != 0 ? -static_cast<std::int64_t>(mantissa) : static_cast<std::int64_t>(mantissa), exponent};
 }
 
-/// How far each exponent turns: 2^e ≡ 2^(e mod 61), by which a number of 61 bits is turned around.
+/// Rotation for each exponent: 2^e ≡ 2^(e mod 61), a rotation of a number of 61 bits.
 constexpr std::array<std::uint8_t, 256> kTurn = [] {
   std::array<std::uint8_t, 256> turn{};
   for (int biased = 0; biased < 256; ++biased) {
-    const int exponent = std::max(biased, 1) - 150;  // of the mantissa's last bit
+    const int exponent = std::max(biased, 1) - 150;  // exponent of the mantissa's last bit
     turn[static_cast<std::size_t>(biased)] = static_cast<std::uint8_t>((exponent % 61 + 61) % 61);
   }
   return turn;
@@ -98,7 +98,7 @@ std::uint64_t residue(float value) {
   return (bits >> 31) != 0 && magnitude != 0 ? kPrime - magnitude : magnitude;
 }
 
-/// n and n·a modulo p. All zero: no ratio.
+/// n and n·a modulo p. All zero: there is no ratio.
 using PlaneResidues = std::array<std::uint64_t, 4>;
 
 PlaneResidues plane_of(const std::array<glm::vec3, 3>& corners) {
@@ -111,7 +111,7 @@ PlaneResidues plane_of(const std::array<glm::vec3, 3>& corners) {
     u[axis] = sub(q[1][axis], q[0][axis]);
     v[axis] = sub(q[2][axis], q[0][axis]);
   }
-  const auto minor = [&](int i, int j) {  // p² ≡ 0 keeps it from becoming negative
+  const auto minor = [&](int i, int j) {  // adding p² ≡ 0 keeps the difference from becoming negative
     return reduce(wide_product(u[i], v[j]) + (wide_product(kPrime, kPrime) - wide_product(u[j], v[i])));
   };
   PlaneResidues plane = {minor(1, 2), minor(2, 0), minor(0, 1), 0};
@@ -120,15 +120,16 @@ PlaneResidues plane_of(const std::array<glm::vec3, 3>& corners) {
   return plane;
 }
 
-/// The first number that is not zero, or 1.
+/// Returns the first number that is not zero, or 1.
 std::uint64_t pivot_of(const PlaneResidues& plane) {
   const auto found = std::ranges::find_if(plane, [](std::uint64_t x) { return x != 0; });
   return found == plane.end() ? 1 : *found;
 }
 
-constexpr std::uint64_t kFlat = 0, kNoRatio = 1;  // no keys of planes
+constexpr std::uint64_t kFlat = 0, kNoRatio = 1;  // reserved keys
 
-/// Equal for exactly coplanar triangles; kNoRatio if the plane has none modulo p. `scale`: pivot⁻¹.
+/// Returns a key that is equal for exactly coplanar triangles; kNoRatio if the plane has none modulo p. `scale`:
+/// pivot⁻¹.
 std::uint64_t key_of(const PlaneResidues& plane, std::uint64_t scale) {
   if ((plane[0] | plane[1] | plane[2] | plane[3]) == 0) return kNoRatio;
   std::uint64_t key = 0x9e3779b97f4a7c15ull;
@@ -136,10 +137,10 @@ std::uint64_t key_of(const PlaneResidues& plane, std::uint64_t scale) {
   return std::max(key, kNoRatio + 1);
 }
 
-/// The keys of some triangles. One inverse for all: that of their pivots' product (Montgomery).
+/// Computes the keys of some triangles. One inverse for all: that of their pivots' product (Montgomery).
 void find_keys(const SceneFloats& scene, std::uint32_t first, std::span<std::uint64_t> keys) {
   std::vector<PlaneResidues> planes(keys.size());
-  std::vector<std::uint64_t> before(keys.size());  // the product of the pivots of all planes before
+  std::vector<std::uint64_t> before(keys.size());  // the product of the pivots of all previous planes
   std::uint64_t product = 1;
   for (std::size_t i = 0; i < keys.size(); ++i) {
     const std::array<glm::vec3, 3> corners = scene.corners(first + static_cast<std::uint32_t>(i));
@@ -156,8 +157,8 @@ void find_keys(const SceneFloats& scene, std::uint32_t first, std::span<std::uin
 
 // ---- Verification.
 
-/// One axis of two triangles as integers in units of the axis' smallest bit; a determinant's sign is the same in
-/// units that differ by axis. False if they take more than 62 bits.
+/// Converts one axis of two triangles to integers in units of the axis' smallest bit; a determinant's sign does not
+/// depend on units that differ by axis. Returns false if they take more than 62 bits.
 bool to_integers(const std::array<glm::vec3, 3>& carrier, const std::array<glm::vec3, 3>& other, int axis,
                  std::array<std::int64_t, 6>& out) {
   std::array<Dyadic, 6> values;
@@ -175,7 +176,8 @@ bool to_integers(const std::array<glm::vec3, 3>& carrier, const std::array<glm::
   return true;
 }
 
-/// coplanar() for the usual case that it is true, where filtered predicates are slow: in 128-bit integers if they do.
+/// Equals coplanar(), fast for the usual result true, where filtered predicates are slow: in 128-bit integers if the
+/// coordinates fit.
 bool coplanar_quickly(const std::array<glm::vec3, 3>& carrier, const std::array<glm::vec3, 3>& other) {
   std::array<std::array<std::int64_t, 6>, 3> q{};
   int bits = 3;  // a determinant is a sum of six products
@@ -214,8 +216,8 @@ std::vector<std::uint32_t> plane_ids(const SceneFloats& scene) {
     }
   });
 
-  // Each triangle against the first one of its key. Left are keys that collided (about one pair in 2⁶⁴) and planes
-  // without a key (contrived): each against every plane that could be its own, in order of triangles.
+  // Compares each triangle with the first one of its key. Remaining are keys that collided (about one pair in 2⁶⁴) and
+  // planes without a key (contrived): each is compared with every plane that could be its own, in order of triangles.
   const std::vector<std::uint32_t> first = first_of_same(
       count, [&](std::size_t i) { return keys[i]; }, [&](std::size_t i, std::size_t j) { return keys[i] == keys[j]; });
   tbb::concurrent_vector<std::uint32_t> collided, keyless;

@@ -9,8 +9,8 @@
 
 namespace penumbra::visibility {
 
-/// Who receives shadow of a light (Light::index): not its own body, nor what says that it receives none. There V = 1,
-/// whatever casts.
+/// Returns whether a triangle receives shadows of a light (Light::index): not the light's own body, nor objects that
+/// receive none. For those V = 1, regardless of casters.
 [[nodiscard]] inline bool is_receiver(const SceneFloats& scene, std::int32_t light, std::uint32_t triangle) {
   return scene.emits[triangle] != light && scene.receives_shadow[triangle] != 0;
 }
@@ -18,12 +18,12 @@ namespace penumbra::visibility {
   return is_receiver(scene, light.index, triangle);
 }
 
-/// Does the light light this triangle's object (a mesh's `lights`)?
+/// Returns whether the light lights this triangle's object (a mesh's `lights`).
 [[nodiscard]] inline bool is_lit_by(const SceneFloats& scene, const Light& light, std::uint32_t triangle) {
   return light.unlit.empty() || light.unlit[scene.object[triangle]] == 0;
 }
 
-/// Does the surface that a pixel shows receive shadow of the light? Background does not.
+/// Returns whether the surface that a pixel shows receives shadows of the light; false for background.
 [[nodiscard]] inline bool is_receiver(const SceneFloats& scene, std::int32_t light, const ViewSamples& samples,
                                       std::size_t pixel) {
   const std::int32_t carrier = samples.triangle[pixel];

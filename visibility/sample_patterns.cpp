@@ -43,8 +43,8 @@ std::uint32_t owen_scramble(std::uint32_t x, std::uint32_t seed) {
   return reverse_bits(x);
 }
 
-/// Sobol's second dimension (primitive polynomial x + 1): direction numbers v₀ = ½, vᵢ = vᵢ₋₁ ⊕ vᵢ₋₁ / 2. The first
-/// dimension is the radical inverse.
+/// Returns Sobol's second dimension (primitive polynomial x + 1): direction numbers v₀ = ½, vᵢ = vᵢ₋₁ ⊕ vᵢ₋₁ / 2. The
+/// first dimension is the radical inverse.
 std::uint32_t sobol_second(std::uint32_t index) {
   std::uint32_t result = 0;
   for (std::uint32_t direction = 0x80000000u; index != 0; index >>= 1, direction ^= direction >> 1) {
@@ -62,8 +62,9 @@ std::vector<glm::dvec2> sobol(std::uint32_t count, std::uint32_t seed) {
   return samples;
 }
 
-/// One point in each of `count` strata of equal area. Rows hold ⌊count/rows⌋ or ⌈count/rows⌉ strata and are as tall as
-/// their share, so that no count needs rounding; if rows divide count the strata are the cells of an L × B grid.
+/// Returns one point in each of `count` strata of equal area. Rows hold ⌊count/rows⌋ or ⌈count/rows⌉ strata and have
+/// heights in proportion, so that no count needs rounding; if rows divide count the strata are the cells of an L × B
+/// grid.
 std::vector<glm::dvec2> jittered(const SampleLayout& layout, std::uint32_t seed) {
   std::vector<glm::dvec2> samples;
   samples.reserve(layout.count);
@@ -78,9 +79,9 @@ std::vector<glm::dvec2> jittered(const SampleLayout& layout, std::uint32_t seed)
   return samples;
 }
 
-/// Square tiles of four points each, one in every row and column of the tile's 4 x 4 cells: a turned square ("rotated
-/// grid supersampling"). 8 x 8 tiles are the pattern of Eisemann et al. 2009, "Casting shadows in real time", section
-/// 5.2.3.2.
+/// Returns square tiles of four points each, one in every row and column of the tile's 4 x 4 cells: a rotated square
+/// ("rotated grid supersampling"). 8 x 8 tiles are the pattern of Eisemann et al. 2009, "Casting shadows in real time",
+/// section 5.2.3.2.
 std::vector<glm::dvec2> turned_squares(std::uint32_t rows, std::uint32_t columns) {
   constexpr std::array<glm::dvec2, 4> kSquare{{{1.5, 0.5}, {3.5, 1.5}, {0.5, 2.5}, {2.5, 3.5}}};
   std::vector<glm::dvec2> samples;
@@ -95,8 +96,8 @@ std::vector<glm::dvec2> turned_squares(std::uint32_t rows, std::uint32_t columns
   return samples;
 }
 
-/// Of turned squares: ⌈count / 4⌉ tiles or more, in round(√) rows as other patterns have points; of LxB as many rows
-/// and columns of tiles as hold L rows of B points, two by two.
+/// Returns the layout of rotated squares: ⌈count / 4⌉ tiles or more, in round(√) rows as other patterns have points;
+/// for LxB as many rows and columns of tiles as contain L rows of B points, two by two.
 SampleLayout tiles_of(const SampleRequest& request, std::uint32_t count) {
   const auto tiles = (count + 3) / 4;
   const auto rows = request.rows != 0 ? (request.rows + 1) / 2
@@ -151,7 +152,7 @@ SampleLayout layout_of(const SampleRequest& request) {
 }
 
 double row_shift_of(std::uint32_t row) {
-  // The golden ratio's multiples modulo 1 (40503 / 2¹⁶) spread any number of rows evenly over a cell; 40503 is odd, so
+  // Multiples of the golden ratio modulo 1 (40503 / 2¹⁶) spread any number of rows evenly over a cell; 40503 is odd, so
   // no two of 65536 rows share a shift and −0.5 itself is reached by row 32768 only.
   return ((row * 40503u + 32768u) % 65536u - 32768.0) / 65536.0;
 }

@@ -1,4 +1,4 @@
-// World space in double minus the origin, rounded once to float32; triangles in an order of vertices of their own.
+// Scene floats: world space in double minus the origin, rounded once to float32; triangles with sorted vertices.
 
 #include "visibility/scene_floats.hpp"
 
@@ -30,7 +30,7 @@ bool lexicographically_less(const glm::vec3& a, const glm::vec3& b) {
   return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
 }
 
-/// Vertices at the same place are told apart by nothing that is computed from places, so their order is free.
+/// The order of vertices at the same place is arbitrary: no value computed from places depends on it.
 Triangle sorted(Triangle t, const std::vector<glm::vec3>& positions) {
   const auto put_in_order = [&](std::uint32_t& a, std::uint32_t& b) {
     if (lexicographically_less(positions[b], positions[a])) std::swap(a, b);
@@ -43,7 +43,7 @@ Triangle sorted(Triangle t, const std::vector<glm::vec3>& positions) {
 
 constexpr auto kOpaque = scenes::Alpha::Mode::opaque;
 
-/// The box around points, in parallel. Without any: its corners are what they are made from.
+/// Bounds of points, computed in parallel; without points the corners keep their initial values.
 template <typename Point>
 struct Around {
   Point lower{std::numeric_limits<typename Point::value_type>::infinity()}, upper = -lower;
@@ -89,8 +89,8 @@ bool is_finite(const glm::vec3& x) {
                    position, at.x, at.y, at.z, owner, origin.x, origin.y, origin.z);
 }
 
-/// Below this, products of coordinates with a picture's other numbers are subnormal on devices, which may take them for
-/// 0.
+/// Below this, products of coordinates with other numbers of a picture are subnormal on devices, which may flush them
+/// to 0.
 constexpr float kSmallestScene = 0x1p-120F;
 
 void refuse_subnormal(const SceneFloats& floats) {
@@ -141,7 +141,7 @@ std::vector<std::uint32_t> ranks(const SceneFloats& scene) {
 SceneFloats make_scene_floats(const scenes::Scene& scene) {
   constexpr std::uint64_t kTriangle = sizeof(Triangle) + 3 * sizeof(std::uint32_t) + 2;  // see SceneFloats
   constexpr std::uint64_t kSorting = 3 * sizeof(std::uint32_t);
-  // Sides of triangles are numbered by 32 bits (mesh/sorted_sides.hpp), and triangles by 31 in the picture.
+  // Sides of triangles have 32-bit indices (mesh/sorted_sides.hpp), and triangles 31-bit ones in the picture.
   constexpr std::uint64_t kMostTriangles = (std::uint64_t{1} << 32U) / 3;
   const std::uint64_t count_of_triangles = scene.soup.triangles.size();
   if (count_of_triangles > kMostTriangles) {

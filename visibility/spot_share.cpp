@@ -1,4 +1,4 @@
-// How bright the cone of a spot lamp is.
+// Brightness of the cone of a spot lamp, by quadrature over the lamp's disk for smooth cones.
 
 #include "visibility/light_samples.hpp"
 
@@ -14,26 +14,27 @@
 namespace penumbra::visibility {
 namespace {
 
-/// The lamp's disk as p sees it, in units of the disk's radius: x along what is nearest to the cone's axis, y across.
+/// The lamp's disk as p sees it, in units of the disk's radius: x toward the cone's axis, y across.
 struct FacingDisk {
   double size = 0;    ///< its radius over its distance
-  double cosine = 0;  ///< of the angle between the cone's axis and the way from the middle to p
+  double cosine = 0;  ///< of the angle between the cone's axis and the direction from the middle to p
   double sine = 0;    ///< of the same angle
-  double tilt = 0;    ///< by how much p's cosine grows along x, over its cosine of the middle
+  double tilt = 0;    ///< growth of p's cosine along x, over its cosine at the middle
   double scale = 1, offset = 0;
 
-  /// Length of the way to p, over the middle's.
+  /// Returns the distance of a point from p, over that of the middle.
   [[nodiscard]] double way(double x, double y) const { return std::sqrt(1 + size * size * (x * x + y * y)); }
 
-  /// What p gets of the point, over what it would get if it shone fully from the middle: less by the square of its way,
-  /// and by the cosines there and here.
+  /// Returns the irradiance from the point, over that of full emission at the middle: reduced by the squared distance,
+  /// and by the cosines at both ends.
   [[nodiscard]] double share(double x, double y) const {
     const double length = way(x, y), c = (cosine - size * sine * x) / length;
     const double t = glm::clamp(c * scale + offset, 0.0, 1.0);
     return std::max(1 + tilt * x, 0.0) * c * t * t * (3 - 2 * t) / (length * length * length * length);
   }
 
-  /// Where on the chord at y the cosine is `wanted`: both solutions, some of which may be of its negative; NaN: none.
+  /// Returns the places on the chord at y where the cosine is `wanted`: both solutions, some of which may belong to the
+  /// negative cosine; NaN if there is none.
   [[nodiscard]] std::array<double, 2> where(double wanted, double y) const {
     const double a = size * size * (sine * sine - wanted * wanted), b = -size * sine * cosine;
     const double c = cosine * cosine - wanted * wanted * (1 + size * size * y * y);
@@ -48,7 +49,7 @@ constexpr std::array<double, 4> kPoints{-0.8611363115940526, -0.3399810435848563
 constexpr std::array<double, 4> kWeights{0.3478548451374538, 0.6521451548625461, 0.6521451548625461,
                                          0.3478548451374538};
 
-/// The integral over x within the chord at y, piece by piece between the ends of the cone's edge.
+/// Returns the integral over x within the chord at y, piece by piece between the ends of the cone's edge.
 double over_chord(const FacingDisk& disk, double y, double half) {
   std::array<double, 6> ends{-half, half};
   std::size_t count = 2;
@@ -67,7 +68,7 @@ double over_chord(const FacingDisk& disk, double y, double half) {
   return sum;
 }
 
-/// Over chords at Chebyshev's points of the second kind, symmetric about y = 0: half of them suffice.
+/// Integrates over chords at Chebyshev points of the second kind, symmetric about y = 0: half of them suffice.
 double mean_over_chords(const FacingDisk& disk, int chords) {
   double sum = 0;
   for (int i = 0; i < chords; ++i) {
@@ -78,20 +79,20 @@ double mean_over_chords(const FacingDisk& disk, int chords) {
 }
 
 double mean_over(const FacingDisk& disk) {
-  // The cosines of the points farthest from the cone's axis and nearest to it: the middle's angle, and the disk's about
-  // it.
+  // The cosines of the points farthest from the cone's axis and nearest to it: the middle's angle plus and minus the
+  // disk's.
   const double rim = std::sqrt(1 + disk.size * disk.size), along = disk.cosine / rim,
                across = disk.size * disk.sine / rim;
   const double least = along - across, most = disk.sine > disk.size * disk.cosine ? along + across : 1.0;
   const double darkest = least * disk.scale + disk.offset, brightest = most * disk.scale + disk.offset;
   if (brightest <= 0) return 0;
   if (darkest >= 1) {
-    // The means of 1 / way⁵ and of x² / way⁵ over the disk.
+    // Means of 1 / way⁵ and of x² / way⁵ over the disk.
     const double cube = rim * rim * rim, plain = (rim * rim + rim + 1) / (1.5 * cube * (rim + 1));
     const double squared = (2 * rim + 1) / (3 * cube * (rim + 1) * (rim + 1));
     return disk.cosine * plain - disk.tilt * disk.size * disk.sine * squared;
   }
-  // Where no end of the cone's edge crosses the disk, all is smooth.
+  // If no end of the cone's edge crosses the disk, the integrand is smooth.
   return mean_over_chords(disk, darkest >= 0 && brightest <= 1 ? 3 : 12);
 }
 
@@ -109,7 +110,8 @@ double spot_share(const Light& light, const glm::vec3& p, const glm::vec3& n) {
   }
   FacingDisk disk{
       .size = light.radius / length, .cosine = cosine, .scale = light.spot->scale, .offset = light.spot->offset};
-  // From p's middle of the lamp toward the axis lies what the lamp's direction has across the way, turned round.
+  // From the lamp's middle as p sees it, the axis lies in the direction of the reversed component of the lamp's
+  // direction across the line of sight.
   const glm::dvec3 across = light.spot->direction - cosine * way / length;
   disk.sine = glm::length(across);
   const double facing = -glm::dot(way, glm::dvec3(n)) / length;

@@ -1,3 +1,5 @@
+// Alpha of surfaces with holes and translucent ones, from factor, texel and vertex values.
+
 #include "visibility/surface_alpha.hpp"
 
 #include "scenes/texel_number.hpp"
@@ -57,7 +59,7 @@ glm::dvec3 shares_on_line(const glm::dvec3& p, const glm::dvec3& way, const std:
 
 namespace {
 
-/// A vertex value linear over a triangle; exactly the corners' where all three have the same.
+/// Interpolates a vertex value linearly over a triangle; exact where all three corners have the same value.
 template <class T>
 T between(const T& a, const T& b, const T& c, const glm::dvec3& shares) {
   return a + shares.y * (b - a) + shares.z * (c - a);

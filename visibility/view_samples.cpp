@@ -1,4 +1,5 @@
-// What each pixel sees, in double arithmetic on the scene floats: the definition that a rasteriser has to agree with.
+// View samples: the visible point of each pixel, in double arithmetic on the scene floats; the definition that a
+// rasteriser has to match.
 
 #include "visibility/view_samples.hpp"
 
@@ -26,7 +27,7 @@
 namespace penumbra::visibility {
 namespace {
 
-/// Where the pixel's ray meets the triangle's plane, computed from the sorted vertices.
+/// Intersection of the pixel's ray with the triangle's plane, computed from the sorted vertices.
 struct PlaneHit {
   double t = 0;           // distance along the view axis
   double eye_height = 0;  // normal · (eye − a): positive if the normal points to the viewer's side
@@ -43,23 +44,24 @@ std::optional<PlaneHit> meet_plane(const ViewRay& ray, const glm::dvec3& a, cons
   return hit;
 }
 
-/// Which side of the sorted triangle's plane the ray's start is on: exact; if it is exactly on the plane (seen edge-on,
-/// covered by rounding alone), the side that rounding saw it on.
+/// Returns the exact side of the sorted triangle's plane that the ray's start is on; if it is exactly on the plane
+/// (seen edge-on, covered by rounding alone), the side given by rounding.
 std::int8_t facing_of(const ViewRay& ray, const mesh::SidesOfPlane& sides, double eye_height) {
   const Side side = sides(ray.start);
   if (side != Side::on) return static_cast<std::int8_t>(side);
   return eye_height > 0 ? std::int8_t{1} : std::int8_t{-1};
 }
 
-/// The sphere as a whole strictly above the carrier's plane: n · (c − a) > r |n|, in double (a radius is no float32).
+/// Returns whether the whole sphere is strictly above the carrier's plane: n · (c − a) > r |n|, in double (a radius is
+/// not a float32).
 bool sphere_above(const std::array<glm::vec3, 3>& carrier, std::int8_t facing, const Light& light) {
   const glm::dvec3 a = carrier[0];
   const glm::dvec3 normal = glm::cross(glm::dvec3(carrier[1]) - a, glm::dvec3(carrier[2]) - a);
   return facing * glm::dot(normal, glm::dvec3(light.center) - a) > light.radius * glm::length(normal);
 }
 
-/// n · d, n = (b − a) × (c − a), and a bound of what it is off by: two differences, their products, the differences of
-/// those, three products more and two sums are off by no more than 8 · 2⁻⁵³ of all terms without their signs; twice
+/// n · d, n = (b − a) × (c − a), and a bound of its error: two differences, their products, the differences of those,
+/// three more products and two sums are off by at most 8 · 2⁻⁵³ of the sum of all terms' magnitudes; the bound is twice
 /// that.
 struct Height {
   double value, error;
@@ -72,8 +74,8 @@ Height height_along(const std::array<glm::vec3, 3>& carrier, const glm::vec3& d)
   return {glm::dot(glm::cross(b, c), glm::dvec3(d)), 16 * 0x1p-53 * glm::dot(terms, wide_d)};
 }
 
-/// The cone of a sun as a whole strictly above the carrier's plane: n · c > tan |(n · u, n · v)|, exactly, for what is
-/// stored.
+/// Returns whether the whole cone of a sun is strictly above the carrier's plane: n · c > tan |(n · u, n · v)|, exactly
+/// for the stored values.
 bool cone_above(const std::array<glm::vec3, 3>& carrier, std::int8_t facing, const Light& light) {
   const Height over = height_along(carrier, light.center), to_u = height_along(carrier, light.sun->axis_u),
                to_v = height_along(carrier, light.sun->axis_v);
@@ -99,7 +101,7 @@ bool cone_above(const std::array<glm::vec3, 3>& carrier, std::int8_t facing, con
   return CGAL::sign(middle * middle - tangent * tangent * (u * u + v * v)) == CGAL::POSITIVE;
 }
 
-/// What pixels are for one light.
+/// Classifies pixels for one light.
 class Classifier {
  public:
   Classifier(const SceneFloats& scene, const ViewSamples& samples, const Light& light)
@@ -131,7 +133,7 @@ PixelClass Classifier::operator()(std::size_t pixel) const {
   if (!is_receiver(scene, light, carrier)) return PixelClass::unshadowed;
   if (!in_front(samples.p[pixel])) return PixelClass::behind;
   if (scene.emits[carrier] >= 0) return PixelClass::other_body;
-  if (is_dome(light.kind)) return PixelClass::judged;  // its V is of what is above the plane
+  if (is_dome(light.kind)) return PixelClass::judged;  // a dome's V depends only on the part above the plane
   const std::array<glm::vec3, 3> corners = scene.corners(carrier);
   if (light.sun) {
     return cone_above(corners, samples.facing[pixel], light) ? PixelClass::judged : PixelClass::horizon;
@@ -209,7 +211,7 @@ PinholeCamera make_camera(const scenes::Camera& camera, const glm::dvec3& origin
                      camera.up.x, camera.up.y, camera.up.z);
   }
   result.right = glm::normalize(right);
-  // So short a product has rounding along `forward`: places on the screen are found by axes at right angles.
+  // So short a product has rounding along `forward`: places on the screen require orthogonal axes.
   if (glm::length(right) < 0x1p-16 * glm::length(camera.up))
     result.right = glm::normalize(result.right - glm::dot(result.right, result.forward) * result.forward);
   result.up = glm::cross(result.right, result.forward);
@@ -231,12 +233,12 @@ PinholeCamera make_camera(const scenes::Camera& camera, const glm::dvec3& origin
 std::optional<double> cover(const ViewRay& ray, const std::array<glm::vec3, 3>& corners) {
   const glm::dvec3 a = glm::dvec3(corners[0]) - ray.start, b = glm::dvec3(corners[1]) - ray.start,
                    c = glm::dvec3(corners[2]) - ray.start;
-  // On which side of the ray each edge passes. The sorted vertices make a→b, b→c and a→c the edges' one direction,
-  // whatever triangle they belong to; going around the triangle takes a→c backwards.
+  // Sides of the ray on which the edges pass. The sorted vertices give a→b, b→c and a→c as the edges' unique
+  // directions, for every triangle; the cycle around the triangle takes a→c backwards.
   const double ab = glm::dot(ray.direction, glm::cross(a, b)), bc = glm::dot(ray.direction, glm::cross(b, c)),
                ca = -glm::dot(ray.direction, glm::cross(a, c));
   const bool left = ab >= 0 && bc >= 0 && ca >= 0, right = ab <= 0 && bc <= 0 && ca <= 0;
-  if (left == right) return std::nullopt;  // neither; or all zero: edge-on or without area
+  if (left == right) return std::nullopt;  // no common side; or all zero: edge-on or without area
   const glm::dvec3 first = corners[0];
   const std::optional<PlaneHit> hit =
       meet_plane(ray, first, glm::cross(glm::dvec3(corners[1]) - first, glm::dvec3(corners[2]) - first));
@@ -260,7 +262,7 @@ ViewSamples complete_view_samples(const SceneFloats& scene, const PinholeCamera&
   samples.camera = camera;
   samples.eye = glm::vec3(camera.eye);
   samples.triangle = std::move(triangles);
-  resize_on_all_cores(samples.p, pixels);  // 0 where there is nothing
+  resize_on_all_cores(samples.p, pixels);  // 0 for background
   resize_on_all_cores(samples.n, pixels);
   resize_on_all_cores(samples.depth, pixels);
   samples.facing.assign(pixels, 0);

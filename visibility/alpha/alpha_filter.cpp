@@ -1,5 +1,6 @@
-// For each view sample, the triangles in the pyramid from it to what it still sees of the light; for each of them, in
-// double, the light samples that are not certainly beside it; for each of those, the exact predicate and the texel.
+// Attenuation of masks by surfaces with holes and translucent surfaces: for each view sample, finds the triangles in
+// the pyramid from the view sample to the visible part of the light; for each of them, in double, the light samples not
+// certainly missed; for each of those, applies the exact predicate and the texel's alpha.
 
 #include "visibility/alpha/alpha_filter.hpp"
 
@@ -26,7 +27,7 @@
 namespace penumbra::visibility {
 namespace {
 
-/// A rectangle of slopes: of a way's sides over its part along the middle.
+/// A rectangle of slopes: sideways components of a direction over its component along the middle.
 struct Slopes {
   glm::dvec2 least{std::numeric_limits<double>::infinity()}, greatest{-std::numeric_limits<double>::infinity()};
 
@@ -34,7 +35,7 @@ struct Slopes {
     least = glm::min(least, slope);
     greatest = glm::max(greatest, slope);
   }
-  /// A slope is rounded by a few 2⁻⁵³ of what it is made from.
+  /// A slope is rounded by a few 2⁻⁵³ of its terms.
   [[nodiscard]] bool touches(const Slopes& other) const {
     const double slack =
         0x1p-30 * (1 + std::abs(least.x) + std::abs(least.y) + std::abs(greatest.x) + std::abs(greatest.y));
@@ -43,10 +44,11 @@ struct Slopes {
   }
 };
 
-/// A pyramid around ways from p, for boxes: four sides and an end. Culls only; its slack outweighs rounding.
+/// A pyramid around directions from p, for tests of boxes: four sides and an end. Only culls; its slack exceeds
+/// rounding.
 class Pyramid {
  public:
-  /// `ways`: not empty. `ends`: each way is the whole segment.
+  /// `ways`: not empty. `ends`: each vector is a whole segment.
   Pyramid(const glm::dvec3& p, std::span<const glm::dvec3> ways, bool ends) : p_(p) {
     glm::dvec3 middle(0);
     for (const glm::dvec3& way : ways) middle += way;
@@ -60,7 +62,7 @@ class Pyramid {
     Slopes all;
     for (const glm::dvec3& way : ways) {
       const std::optional<glm::dvec2> slope = slope_of(way);
-      if (!slope) return;  // all around: nothing is culled
+      if (!slope) return;  // all directions: nothing is culled
       farthest = std::max(farthest, glm::dot(way, middle_));
       all.add(*slope);
       const std::size_t number = slopes_++;
@@ -77,8 +79,8 @@ class Pyramid {
     if (ends) planes_[count_++] = {middle_, farthest};
   }
 
-  static constexpr std::size_t kBlock = 16;  ///< ways that are left out together
-  /// What triangles are held against; nothing: all ways of a block may meet it.
+  static constexpr std::size_t kBlock = 16;  ///< directions that are culled together
+  /// Returns the slopes of a triangle, for comparison with blocks; nullopt: all directions of a block may meet it.
   [[nodiscard]] std::optional<Slopes> slopes_around(const std::array<glm::dvec3, 3>& corners) const {
     if (count_ == 0) return std::nullopt;
     Slopes slopes;
@@ -89,10 +91,10 @@ class Pyramid {
     }
     return slopes;
   }
-  /// Of ways kBlock · block on.
+  /// Returns the slopes of the directions from index kBlock · number on.
   [[nodiscard]] const Slopes& block(std::size_t number) const { return blocks_[number]; }
 
-  /// May something of the box be on the inner side of all planes?
+  /// Returns whether a part of the box may be on the inner side of all planes.
   [[nodiscard]] bool touches(const glm::vec3& lower, const glm::vec3& upper) const {
     const glm::dvec3 from = glm::dvec3(lower) - p_, to = glm::dvec3(upper) - p_;
     for (std::size_t i = 0; i < count_; ++i) {
@@ -109,7 +111,7 @@ class Pyramid {
     glm::dvec3 normal{0};
     double offset = 0;  // inside: normal · (x − p) ≤ offset
   };
-  /// Nothing: it does not go forward enough.
+  /// Returns the slopes of a direction; nullopt if it does not point forward enough.
   [[nodiscard]] std::optional<glm::dvec2> slope_of(const glm::dvec3& way) const {
     const double along = glm::dot(way, middle_);
     if (!(along > 0x1p-20 * glm::length(way))) return std::nullopt;
@@ -141,7 +143,7 @@ class PixelFilter {
         holes_(question.holes),
         points_(question.light.sample_count()) {}
 
-  /// Are transmittances touched?
+  /// Filters a pixel's mask. Returns whether transmittances changed.
   bool filter(std::size_t pixel, std::span<std::uint32_t> mask, std::span<float> transmittances, AlphaCounts& counts) {
     if (!is_receiver(scene_, light_, samples_, pixel)) return false;
     find_ways(pixel, mask);
@@ -157,15 +159,15 @@ class PixelFilter {
   }
 
  private:
-  /// What became of one light sample's light.
+  /// State of one light sample's ray.
   struct WayEnd {
-    double left = 1;       // after what is translucent
-    bool dimmed = false;   // something was
-    bool by_mask = false;  // texels of some MASK were asked
-    bool stopped = false;  // and one is there
+    double left = 1;       // fraction left after translucent surfaces
+    bool dimmed = false;   // a translucent surface was met
+    bool by_mask = false;  // texels of a MASK surface were tested
+    bool stopped = false;  // a texel of a MASK surface stops the ray
   };
 
-  /// A sun of one direction has one way: the first light sample's.
+  /// Returns whether all rays are equal, for a sun of one direction: only the first light sample is tested.
   [[nodiscard]] bool has_one_way() const { return light_.sun && light_.sun->tangent == 0; }
 
   void find_ways(std::size_t pixel, std::span<const std::uint32_t> mask) {
@@ -192,7 +194,7 @@ class PixelFilter {
       if (!holes_ && alpha_mode(scene_, triangle) == scenes::Alpha::Mode::mask) return;
       if (may_filter(scene_, light_, carrier, triangle)) triangles_.push_back(triangle);
     });
-    // Products are rounded: in an order that is not the file's, they are the same whatever order that has.
+    // Products are rounded: sorting makes them independent of the order in the file.
     std::ranges::sort(triangles_, [&](std::uint32_t a, std::uint32_t b) {
       return scene_.comes_before(a, b) || (!scene_.comes_before(b, a) && a < b);
     });
@@ -207,7 +209,7 @@ class PixelFilter {
     // way · (a × b) is rounded by fewer than 16 · 2⁻⁵³ · 6 of the product of the lengths (visibility/certain_meeting).
     const double reach = std::max({glm::length(d[0]), glm::length(d[1]), glm::length(d[2])});
     const double error = 0x1p-46 * reach * reach;
-    // p's height over the triangle, times twice its area; rounded like these.
+    // p's height over the triangle, times twice its area; rounded like the products above.
     const double height = glm::dot(d[0], edges[1]), height_error = 4 * error * reach;
     const bool is_mask = alpha_mode(scene_, triangle) == scenes::Alpha::Mode::mask;
     const std::optional<Slopes> around = pyramid.slopes_around(d);
@@ -221,7 +223,7 @@ class PixelFilter {
       const double ab = glm::dot(way, edges[0]), bc = glm::dot(way, edges[1]), ca = glm::dot(way, edges[2]);
       const double off = error * (std::abs(way.x) + std::abs(way.y) + std::abs(way.z));
       if (std::min({ab, bc, ca}) < -off && std::max({ab, bc, ca}) > off) continue;
-      // The way goes down by this much; it ends below the plane where that is more than p's height.
+      // Descent of the segment; it ends below the plane if that exceeds p's height.
       const double drop = ab + bc + ca, drop_error = 4 * off;
       const bool inside = std::min({ab, bc, ca}) > off || std::max({ab, bc, ca}) < -off;
       const bool crosses = std::abs(height) > height_error && (height > 0) == (drop > 0) &&
@@ -265,12 +267,12 @@ class PixelFilter {
   const Light& light_;
   bool holes_;
   std::vector<glm::vec3> points_;
-  std::vector<std::uint32_t> lit_;  // light samples whose bits are set, with their ways
+  std::vector<std::uint32_t> lit_;  // light samples whose bits are set, with their directions
   std::vector<glm::dvec3> ways_;
   std::optional<Pyramid> pyramid_;
   std::vector<std::uint32_t> triangles_;
   std::vector<WayEnd> ends_;
-  std::size_t open_ = 0;  // of them, not stopped
+  std::size_t open_ = 0;  // number of these that are not stopped
 };
 
 }  // namespace

@@ -1,14 +1,15 @@
-// A triangle is met on no way from p to the light if a plane parts it from the hull of both. Tried are, as for any two
-// convex bodies (Gottschalk, Lin, Manocha 1996), the planes of their faces: those through p and two neighbouring
-// corners of the light, the light's own, the carrier's (what is below it is on no way to a light point above it), those
-// through p and an edge of the triangle, and the triangle's own. Each with room for rounding on the side of meeting:
+// A triangle is met on no segment from p to the light if a plane separates it from the hull of both. As for any two
+// convex bodies (Gottschalk, Lin, Manocha 1996), the planes of their faces are tried: those through p and two
+// neighbouring corners of the light, the light's own, the carrier's (objects below it are on no segment to a light
+// point above it), those through p and an edge of the triangle, and the triangle's own. Each test allows for rounding
+// in favour of meeting:
 //
-// - A point of the light, however it is computed from what is stored, is within kRoom · size of the hull of the corners
-//   used here, size the largest coordinate of p and light (of a sun's directions: 1 + tangent). Stored corners are
-//   rounded to float32 once, frames are differences of such: at most four roundings of 2⁻²⁴ · size in a coordinate, a
-//   distance of √3 · 2⁻²² · size.
-// - Products of differences of floats, in double, are rounded by less than kRounding of the product of their lengths:
-//   a difference by 2⁻⁵³ of itself, a cross product of two and its product with a third by fewer than 16 · 2⁻⁵³.
+// - A computed point of the light is within kRoom · size of the hull of the corners used here, size the largest
+//   coordinate of p and light (for a sun's directions: 1 + tangent). Stored corners are rounded to float32 once, frames
+//   are differences of stored corners: at most four roundings of 2⁻²⁴ · size in a coordinate, a distance of √3 · 2⁻²² ·
+//   size.
+// - Products of differences of floats, in double, are rounded by less than kRounding of the product of their lengths: a
+//   difference by 2⁻⁵³ of itself, a cross product of two and its product with a third by fewer than 16 · 2⁻⁵³.
 
 #include "visibility/alpha/alpha_reach.hpp"
 
@@ -38,17 +39,17 @@ bool sees_it(PixelClass pixel) {
   return pixel == PixelClass::judged || pixel == PixelClass::horizon || pixel == PixelClass::other_body;
 }
 
-/// A half-space in which all ways lie: normal · (x − p) ≤ most + slope · |x − p|.
+/// A half-space that contains all segments: normal · (x − p) ≤ most + slope · |x − p|.
 struct Wall {
   glm::dvec3 normal{0};
   double most = 0, slope = 0;
 };
 
-/// All ways from one p to a light.
+/// All segments (or rays) from one p to a light.
 class Ways {
  public:
   explicit Ways(const Light& light) : light_(light), ends_(!light.sun) {
-    if (light.dome) {  // all around: only what is behind the carrier is not met
+    if (light.dome) {  // all directions: only objects behind the carrier are not met
     } else if (light.sun) {
       const glm::dvec3 u = light.sun->tangent * glm::dvec3(light.sun->axis_u),
                        v = light.sun->tangent * glm::dvec3(light.sun->axis_v), middle(light.center);
@@ -89,7 +90,7 @@ class Ways {
       add_wall(normal_);
       add_wall(-normal_);
     }
-    // Heights over the carrier's plane are between p's, which is not rounded to be 0, and that of a light point above.
+    // Heights over the carrier's plane are between p's, which is taken as exactly 0, and that of a light point above.
     const auto [a, b, c] = scene.corners(static_cast<std::uint32_t>(samples.triangle[pixel]));
     const glm::dvec3 first = glm::dvec3(b) - glm::dvec3(a), second = glm::dvec3(c) - glm::dvec3(a);
     const glm::dvec3 down = -static_cast<double>(samples.facing[pixel]) * glm::cross(first, second),
@@ -98,7 +99,7 @@ class Ways {
     walls_.push_back({down, std::max(glm::dot(down, to_plane), 0.0) + rounding * size1(to_plane), rounding});
   }
 
-  /// May something of the box be met?
+  /// Returns whether the box may be met.
   [[nodiscard]] bool touch(const glm::vec3& lower, const glm::vec3& upper) const {
     const glm::dvec3 from = glm::dvec3(lower) - p_, to = glm::dvec3(upper) - p_;
     const double reach = size1(glm::max(glm::abs(from), glm::abs(to)));
@@ -108,7 +109,7 @@ class Ways {
     });
   }
 
-  /// May something of the triangle be met?
+  /// Returns whether the triangle may be met.
   [[nodiscard]] bool touch(const std::array<glm::vec3, 3>& corners) const {
     const std::array to{glm::dvec3(corners[0]) - p_, glm::dvec3(corners[1]) - p_, glm::dvec3(corners[2]) - p_};
     const double reach = std::max({size1(to[0]), size1(to[1]), size1(to[2])});
@@ -123,17 +124,17 @@ class Ways {
   }
 
  private:
-  /// Through p, or as far along the normal as the ways reach.
+  /// Adds a wall through p, or as far along the normal as the segments reach.
   void add_wall(const glm::dvec3& normal) {
     double most = 0;
     for (const glm::dvec3& way : ways_) most = std::max(most, glm::dot(normal, way));
     const double size = size1(normal), reach = most + size * room_;
-    // A direction is no shorter than 1 − 2⁻²⁰: x is at most |x − p| (1 + 2⁻¹⁹) of them away.
+    // A direction has a length of at least 1 − 2⁻²⁰: x is at most |x − p| (1 + 2⁻¹⁹) of it away.
     walls_.push_back(ends_ ? Wall{normal, reach, kRounding * size}
                            : Wall{normal, 0, reach * (1 + 0x1p-18) + kRounding * size});
   }
 
-  /// The plane through p and the edge a b: the third corner on one side of it, the light on the other?
+  /// Returns whether the plane through p and the edge a b has the third corner on one side and the light on the other.
   [[nodiscard]] bool is_beside_edge(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& third) const {
     if (ways_.empty()) return false;
     glm::dvec3 normal = glm::cross(a, b);
@@ -144,7 +145,7 @@ class Ways {
         ways_, [&](const glm::dvec3& way) { return glm::dot(normal, way) < -size * (room_ + kRounding * size1(way)); });
   }
 
-  /// p and the light on one side of the triangle's plane?
+  /// Returns whether p and the light are on one side of the triangle's plane.
   [[nodiscard]] bool is_beside_plane(const std::array<glm::dvec3, 3>& to) const {
     if (ways_.empty()) return false;
     const glm::dvec3 first = to[1] - to[0], second = to[2] - to[0];
@@ -153,23 +154,24 @@ class Ways {
     const double error = kRounding * size * size1(to[0]);
     if (!(std::abs(height) > error)) return false;
     if (height < 0) normal = -normal;
-    const double least = ends_ ? -(std::abs(height) - error) : 0;  // of a way's end, less p's; of directions
+    const double least = ends_ ? -(std::abs(height) - error) : 0;  // of a segment's end, minus p's height; of a
+                                                                   // direction
     return std::ranges::all_of(ways_, [&](const glm::dvec3& way) {
       return glm::dot(normal, way) > least + size * (room_ + kRounding * size1(way));
     });
   }
 
   const Light& light_;
-  bool ends_;                        // ways are segments, not rays
-  std::vector<glm::dvec3> corners_;  // of a sun, directions; of a dome none
-  glm::dvec3 normal_{0};             // of the light's plane
+  bool ends_;                        // segments, not rays
+  std::vector<glm::dvec3> corners_;  // for a sun, directions; for a dome none
+  glm::dvec3 normal_{0};             // normal of the light's plane
   double room_ = 0;
   glm::dvec3 p_{0};
   std::vector<glm::dvec3> ways_;
   std::vector<Wall> walls_;
 };
 
-/// A box around all ways from a block of pixels. Culls blocks far from anything that lets light through.
+/// A box around all segments from a block of pixels. Culls blocks far from all surfaces that let light through.
 class BlockWays {
  public:
   explicit BlockWays(const Light& light) {
@@ -191,7 +193,7 @@ class BlockWays {
     const glm::vec3 aside = static_cast<float>(light.sun->tangent * (1 + kRoom)) *
                             (glm::abs(light.sun->axis_u) + glm::abs(light.sun->axis_v));
     const float room = 4 * static_cast<float>(kRoom * (1 + light.sun->tangent));
-    for (int axis = 0; axis < 3; ++axis) {  // a way that may go down does so for ever
+    for (int axis = 0; axis < 3; ++axis) {  // a ray that may go down does so without end
       if (light.center[axis] - aside[axis] < room) lower_[axis] = -kEndless;
       if (light.center[axis] + aside[axis] > -room) upper_[axis] = kEndless;
     }
@@ -210,7 +212,7 @@ class BlockWays {
   glm::vec3 lower_{kEndless}, upper_{-kEndless};
 };
 
-/// Is there a triangle for which `meets(triangle)` holds, in a box that `volume` touches?
+/// Returns whether `meets(triangle)` is true for a triangle in a box that `volume` touches.
 template <typename Volume, typename Meets>
 bool any_in(const TriangleTree& tree, const Volume& volume, Meets&& meets) {
   bool found = false;

@@ -11,16 +11,17 @@
 
 namespace penumbra::visibility {
 
-/// Where what lets light through may take part in V: at all other view samples the answer of what stops all light is
-/// the whole answer, whatever light samples there are, and an area is exact.
+/// Finds the view samples at which surfaces that let light through may affect V: at all others the result for opaque
+/// surfaces is the whole result, for any light samples, and an area is exact.
 class AlphaReach {
  public:
-  /// `scene` must outlive it.
+  /// `scene` must outlive this object.
   explicit AlphaReach(const SceneFloats& scene);
 
-  /// For each pixel, 1: a triangle that lets light through may be met on the way from p to some point of the light. 0:
-  /// certainly none is, and wherever V follows from `classes` (classify_pixels) alone. Empty: 0 everywhere. It errs to
-  /// the side of 1 alone, by about 10⁻⁶ of the light's size or distance, and where a disk's corners would be.
+  /// Returns for each pixel 1 if a triangle that lets light through may be met on the segment from p to some point of
+  /// the light; 0 if certainly none is, and where V follows from `classes` (classify_pixels) alone. Empty: 0
+  /// everywhere. Errs only toward 1, by about 10⁻⁶ of the light's size or distance, and for a disk as far as the
+  /// corners of its square reach.
   [[nodiscard]] std::vector<std::uint8_t> reached(const ViewSamples& samples, const Light& light,
                                                   std::span<const PixelClass> classes) const;
 
@@ -29,7 +30,7 @@ class AlphaReach {
   TriangleTree tree_;  // over scene.alphas.casters
 };
 
-/// Over the boxes of scene.alphas.casters, in their order.
+/// Makes a tree over the boxes of scene.alphas.casters, in their order.
 TriangleTree make_tree_over_alphas(const SceneFloats& scene);
 
 }  // namespace penumbra::visibility

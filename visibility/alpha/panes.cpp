@@ -1,3 +1,5 @@
+// Layers of translucent surfaces in front of each pixel's carrier.
+
 #include "visibility/alpha/panes.hpp"
 
 #include "base/assert.hpp"
@@ -17,11 +19,11 @@ namespace penumbra::visibility {
 
 namespace {
 
-/// A share or a distance below this is rounding: both come of some ten operations in double.
+/// Fractions or distances below this are rounding: both result from about ten operations in double.
 constexpr double kNothing = 0x1p-40;
 
-/// Does a ray through a common edge or corner of two triangles meet one surface twice? cover() is of closed triangles.
-/// Not where they coincide: those are two surfaces.
+/// Returns whether hits a and b are one surface: a ray through a common edge or corner of two triangles meets both,
+/// since cover() uses closed triangles. Coinciding triangles are two surfaces.
 bool are_one(const SceneFloats& scene, const ViewRay& ray, const ViewWalk::Met& a, const ViewWalk::Met& b) {
   if (!(std::abs(b.t - a.t) <= kNothing * std::abs(b.t))) return false;
   const auto common = [](const std::array<glm::vec3, 3>& corners, const std::array<glm::vec3, 3>& others,

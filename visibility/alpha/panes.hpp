@@ -8,21 +8,21 @@
 
 namespace penumbra::visibility {
 
-/// View samples of translucent surfaces, with their alpha; pixels without are background with alpha 0.
+/// View samples of translucent surfaces, with their alpha; pixels without one are background with alpha 0.
 struct PaneLayer {
   ViewSamples samples;
   std::vector<float> alpha;
 };
 
-/// The translucent surfaces (BLEND) that pixels are seen through. Where their alpha is 0 there is none.
+/// The translucent surfaces (BLEND) in front of each pixel's carrier, except where their alpha is 0.
 class Panes {
  public:
-  /// Those before what carries each pixel of `seen`. Both are looked at again by layer().
+  /// Collects the translucent surfaces in front of each pixel's carrier. `scene` and `seen` must outlive this object.
   Panes(const SceneFloats& scene, const ViewSamples& seen);
 
-  /// The most that one pixel is seen through.
+  /// Returns the largest number of translucent layers in front of any pixel.
   [[nodiscard]] std::size_t depth() const { return depth_; }
-  /// Of each pixel the one with this number, counted from the eye.
+  /// Returns for each pixel its layer with this number, counted from the eye.
   [[nodiscard]] PaneLayer layer(std::size_t number) const;
 
  private:
@@ -32,7 +32,7 @@ class Panes {
   };
   const SceneFloats& scene_;
   PinholeCamera camera_;
-  std::vector<std::vector<Pane>> panes_;  // of each pixel, nearest first; empty: there are none at all
+  std::vector<std::vector<Pane>> panes_;  // for each pixel, nearest first; empty: there are none at all
   std::size_t depth_ = 0;
 };
 

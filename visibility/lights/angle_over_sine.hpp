@@ -4,14 +4,14 @@
 #include <cmath>
 #include <numbers>
 
-/// What an edge of Lambert's sum costs: an arc tangent, in operations that IEEE 754 rounds in one way everywhere, so
-/// that one element at a time and many side by side (whole_form_factors.hpp) have the same bits. Inside
-/// visibility/lights/ only.
+/// The term θ / sin θ of an edge in Lambert's sum: an arc tangent, in operations that IEEE 754 rounds identically
+/// everywhere, so that scalar and vector code (whole_form_factors.hpp) give the same bits. Inside visibility/lights/
+/// only.
 namespace penumbra::visibility {
 
-/// atan(√q) / √q for q up to tan²(π/8) = 3 − √8: the polynomial that meets it at twelve of Chebyshev's points,
-/// coefficients rounded. The function is analytic but for q ≤ −1, so such polynomials lose a factor of 25 a term; the
-/// test measures 2^−57.8.
+/// Coefficients of atan(√q) / √q for q up to tan²(π/8) = 3 − √8: the polynomial that interpolates it at twelve
+/// Chebyshev points, coefficients rounded. The function is analytic except for q ≤ −1, so such polynomials gain a
+/// factor of 25 with each term; the test measures an error of 2^−57.8.
 constexpr std::array<double, 12> kArcSeries{0x1.0000000000000p+0,  -0x1.555555555552fp-2, 0x1.999999999466ap-3,
                                             -0x1.2492492259b3ep-3, 0x1.c71c70cb775cep-4,  -0x1.745cf64dcc6b8p-4,
                                             0x1.3b10f0f5b11c2p-4,  -0x1.10ea1d157f295p-4, 0x1.def9ecd69dff6p-5,
@@ -20,7 +20,7 @@ constexpr double kArcSeriesEnd = 0x1.5f619980c4337p-3;  ///< tan²(π/8), rounde
 constexpr double kArcSeriesFar = 0x1.3504f333f9de6p+1;  ///< tan(3π/8) = 1 + √2
 constexpr double kPerTurn = 0.5 * std::numbers::inv_pi;
 
-/// Even and odd terms for themselves: half as many steps wait for one another.
+/// Even and odd terms are summed separately, which halves the chain of dependent steps.
 inline double arc_series(double q) {
   const double qq = q * q;
   double even = kArcSeries[10], odd = kArcSeries[11];
@@ -31,9 +31,9 @@ inline double arc_series(double q) {
   return odd * q + even;
 }
 
-/// θ / sin θ / |a| |b| for a, b with the product |a × b|² = squared > 0 and a · b = along: what a × b is to be
-/// multiplied with. Short edges need no root. Others are turned by π/4 or π/2, so that the series takes the rest, and
-/// mirrored where a · b < 0. A few roundings: 2⁻⁵¹ relatively (the test derives it).
+/// Returns θ / sin θ / |a| |b| for a, b with the product |a × b|² = squared > 0 and a · b = along: the factor of a × b
+/// in the sum. Short edges need no root. Others are rotated by π/4 or π/2 into the range of the series, and mirrored
+/// where a · b < 0. A few roundings: relative error 2⁻⁵¹ (the test derives it).
 inline double angle_over_sine(double squared, double along) {
   const double square = along * along;
   if (along > 0 && squared <= kArcSeriesEnd * square) return arc_series(squared / square) / along;

@@ -8,7 +8,7 @@
 namespace penumbra::visibility {
 namespace {
 
-/// Where sign · coordinate ≤ sign · limit.
+/// Returns the part where sign · coordinate ≤ sign · limit.
 std::vector<glm::dvec2> clipped(const std::vector<glm::dvec2>& polygon, int axis, double limit, double sign) {
   const auto in = [&](const glm::dvec2& corner) { return sign * corner[axis] <= sign * limit; };
   std::vector<glm::dvec2> inside;

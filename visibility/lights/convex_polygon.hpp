@@ -6,12 +6,13 @@
 
 namespace penumbra::visibility {
 
-/// What of a convex polygon has coordinate `axis` at most `limit` (Sutherland and Hodgman 1974), in the same order.
+/// Returns the part of a convex polygon with coordinate `axis` at most `limit` (Sutherland and Hodgman 1974), in the
+/// same order.
 std::vector<glm::dvec2> clipped_above(const std::vector<glm::dvec2>& polygon, int axis, double limit);
-/// The same, at least `limit`.
+/// Returns the part with coordinate `axis` at least `limit`.
 std::vector<glm::dvec2> clipped_below(const std::vector<glm::dvec2>& polygon, int axis, double limit);
 
-/// Of a polygon without crossings; in either order.
+/// Returns the area of a polygon without self-intersections, for either orientation.
 double area_of(const std::vector<glm::dvec2>& polygon);
 
 }  // namespace penumbra::visibility

@@ -1,3 +1,5 @@
+// Planar lights in the float32 frame of device passes, with bounds on the distance of their stored samples.
+
 #include "visibility/lights/device_light.hpp"
 
 #include "base/assert.hpp"
@@ -13,7 +15,8 @@
 namespace penumbra::visibility {
 namespace {
 
-/// A rectangle in the light's plane, in double, unscaled: the rectangle itself, or one around any other planar light.
+/// A rectangle in the light's plane, in double, unscaled: the rectangle light itself, or a rectangle around any other
+/// planar light.
 struct Span {
   glm::dvec3 center, u, v;
 };
@@ -24,7 +27,7 @@ Span span_of(const Light& light) {
   const glm::dvec3 axis_u = glm::normalize(to_u);
   const glm::dvec3 axis_v = glm::normalize(glm::cross(glm::cross(to_u, to_v), axis_u));
   glm::dvec2 lower(0), upper(0);
-  const auto include = [&, &center = center](const glm::vec3& point) {  // clang 14 captures no binding by itself
+  const auto include = [&, &center = center](const glm::vec3& point) {  // clang 14 cannot capture structured bindings
     const glm::dvec2 at(glm::dot(glm::dvec3(point) - center, axis_u), glm::dot(glm::dvec3(point) - center, axis_v));
     lower = glm::min(lower, at);
     upper = glm::max(upper, at);
@@ -35,7 +38,7 @@ Span span_of(const Light& light) {
   return {center + middle.x * axis_u + middle.y * axis_v, half.x * axis_u, half.y * axis_v};
 }
 
-/// (s, t) of one stored point in the frame as rounded. u and v are (nearly) orthogonal, but nothing here needs that.
+/// Returns (s, t) of one stored point in the rounded frame. u and v are nearly orthogonal, but this is not required.
 glm::vec2 coordinates_of(const DeviceLight& frame, const glm::dvec3& point) {
   const glm::dvec3 u(frame.u), v(frame.v), at = point - glm::dvec3(frame.center);
   const double uu = glm::dot(u, u), vv = glm::dot(v, v), uv = glm::dot(u, v), det = uu * vv - uv * uv;
@@ -44,7 +47,7 @@ glm::vec2 coordinates_of(const DeviceLight& frame, const glm::dvec3& point) {
   return glm::vec2(glm::clamp(exact, glm::dvec2(-1), glm::dvec2(1)));
 }
 
-/// The smaller half of a light, and how far it reaches from the scene's origin.
+/// Returns the smaller half-size of a light, and its reach from the scene's origin.
 LightSpan sizes_of(const DeviceLight& frame) {
   const auto size = [](const glm::vec3& x) { return std::max({std::abs(x.x), std::abs(x.y), std::abs(x.z)}); };
   return {std::min(size(frame.u), size(frame.v)), size(frame.center) + size(frame.u) + size(frame.v)};
@@ -61,7 +64,7 @@ double shift_of(std::uint32_t row, std::uint32_t step) {
   return (static_cast<double>((row * step + kShiftUnit / 2) % kShiftUnit) - kHalf) / kShiftUnit;
 }
 
-/// The step that gives the light's row shifts, if the samples form rows that have one.
+/// Returns the step that gives the light's row shifts, if the samples form rows with such a step.
 std::optional<std::uint32_t> shift_step_of(const Light& light) {
   if (!is_parallelogram(light.kind) || light.rows == 0) return std::nullopt;
   if (light.row_shift.size() < 2) return 0;
@@ -98,7 +101,7 @@ DeviceLight make_device_light(const Light& light, float scale) {
                              static_cast<double>(at.y) * glm::dvec3(frame.v);
     deviation = std::max(deviation, glm::length(point - there));
   }
-  // Devices compute (s, t) of rows in float: a handful of roundings of numbers up to 2.
+  // Devices compute (s, t) of rows in float: a few roundings of numbers up to 2.
   deviation += 0x1p-20 * (glm::length(glm::dvec3(frame.u)) + glm::length(glm::dvec3(frame.v)));
   frame.deviation = static_cast<float>(deviation * 1.0001);
   return frame;

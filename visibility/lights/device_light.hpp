@@ -13,7 +13,7 @@
 
 namespace penumbra::visibility {
 
-/// A planar light as device passes see it: its samples lie at center + s·u + t·v with s, t in [−1, 1], up to
+/// A planar light in the form of device passes: its samples lie at center + s·u + t·v with s, t in [−1, 1], up to
 /// `deviation`. u × v points to the emitting side. In float32, scaled by `scale`.
 struct DeviceLight {
   glm::vec3 center{0}, u{0}, v{0};
@@ -23,24 +23,26 @@ struct DeviceLight {
   float deviation = 0;                 ///< the largest distance of a stored sample from its place in this frame
 };
 
-/// A sphere's size, as that of planar lights is asked for: no frame that it has.
+/// Returns a frame with a sphere's size, for checks of size as for planar lights; not a frame of the sphere.
 DeviceLight box_of_sphere(const Light& light, float scale);
 
-/// Of a rectangle its own frame; of a disk, ellipse or polygon a rectangle around it along the first stored axis.
-/// `scale` is a power of two. Not for spheres.
+/// Returns the frame of a rectangle; for a disk, ellipse or polygon that of a rectangle around it along the first
+/// stored axis. `scale` is a power of two. Not for spheres.
 DeviceLight make_device_light(const Light& light, float scale);
 
-/// Whether the light samples are rows of a rectangle: DeviceLight::rows.
+/// Returns whether the light samples are rows of a rectangle: DeviceLight::rows.
 bool has_rows(const Light& light);
 
-/// At least the largest coordinate, in size, of anything in scene and light, times `scale`: what rounding errors of
-/// positions grow with.
+/// Returns at least the largest magnitude of a coordinate in scene and light, times `scale`: rounding errors of
+/// positions are proportional to it.
 float reach_of(const SceneFloats& scene, const DeviceLight& frame, float scale);
 
-/// Whether a method that holds lights of these sizes holds this one. Every method holds suns, which have no size.
+/// Returns whether a method with this span of light sizes supports the light. Every method supports suns, which have no
+/// size.
 bool can_span(const LightSpan& span, const Light& light, const SceneFloats& scene);
 
-/// Throws InputError where float32 (kFloatSpan) cannot span light and scene together; `method` names the error.
+/// Throws InputError if float32 (kFloatSpan) cannot represent light and scene together; `method` names the method in
+/// the message.
 void check_size(const Light& light, const DeviceLight& frame, const std::string& method);
 
 }  // namespace penumbra::visibility

@@ -1,3 +1,5 @@
+// Intersection of a convex polygon with the unit disk, edge by edge.
+
 #include "visibility/lights/disk_part.hpp"
 
 #include "base/assert.hpp"
@@ -36,7 +38,7 @@ void DiskPart::add_edge(const glm::dvec2& a, const glm::dvec2& b) {
   const double length = glm::length(way);
   if (length == 0) return;
   const glm::dvec2 along = way / length;
-  const double beside = cross(a, along);  // of the line from the centre
+  const double beside = cross(a, along);  // distance of the line from the centre
   const bool a_inside = glm::dot(a, a) <= 1, b_inside = glm::dot(b, b) <= 1;
   if (!a_inside && !b_inside && std::abs(beside) >= 1) return add_arc(angle(a, b));
   const glm::dvec2 foot = beside * glm::dvec2(along.y, -along.x);

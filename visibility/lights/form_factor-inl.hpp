@@ -1,5 +1,5 @@
-// Lambert's sum on vectors of doubles: the operations of form_factor.cpp in their order, none of which is contracted,
-// so that a lane has the bits of one element at a time. Included once a target. Inside visibility/lights/ only.
+// Lambert's sum on vectors of doubles: the operations of form_factor.cpp in their order, without contraction, so that
+// each lane has the bits of the scalar code. Included once for each target. Inside visibility/lights/ only.
 
 #if defined(PENUMBRA_FORM_FACTOR_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef PENUMBRA_FORM_FACTOR_INL_HPP
@@ -61,7 +61,7 @@ V series_of_arc(V q) {
   return hn::Add(hn::Mul(odd, q), even);
 }
 
-/// angle_over_sine, each lane by its own branch.
+/// Vector form of angle_over_sine; each lane takes its own branch.
 V angles_over_sines(V squared, V along) {
   const V zero = hn::Zero(D()), square = hn::Mul(along, along);
   const M small = hn::Le(squared, hn::Mul(number(kArcSeriesEnd), square)), ahead = hn::Gt(along, zero),
@@ -82,7 +82,7 @@ V angles_over_sines(V squared, V along) {
   return hn::Div(hn::IfThenElse(is_short, series, angle), hn::IfThenElse(is_short, along, length));
 }
 
-/// form_factor_term.
+/// Vector form of form_factor_term.
 V terms(const V3& a, const V3& b, const V3& direction, const V3& n) {
   const V3 product = times(number(0.5), cross(a + b, direction));
   const V squared = dot(product, product);
@@ -94,4 +94,4 @@ V terms(const V3& a, const V3& b, const V3& direction, const V3& n) {
 }  // namespace penumbra::visibility::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
-#endif  // once a target
+#endif  // once for each target

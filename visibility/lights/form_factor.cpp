@@ -1,3 +1,6 @@
+// Form factors of polygons, disks and ellipses in closed form (Lambert 1760; Baum et al. 1989); form_factor.hpp has the
+// equations.
+
 #include "visibility/lights/form_factor.hpp"
 
 #include "visibility/lights/angle_over_sine.hpp"
@@ -17,7 +20,7 @@ namespace {
 
 using std::numbers::pi;
 
-/// What a disk's rim looks like from an element: ∫ 1, cos φ, sin φ over A − B cos φ, from one angle to another.
+/// A disk's rim as seen from an element: ∫ 1, cos φ, sin φ over A − B cos φ, from one angle to another.
 class Rim {
  public:
   Rim(double radius, double off_axis, double height)
@@ -36,7 +39,7 @@ class Rim {
   [[nodiscard]] double of_cosine(double from, double to) const {
     const double ratio = b_ / a_;
     if (ratio > 1.0 / 64) return (a_ * of_one(from, to) - (to - from)) / b_;
-    // 1/A Σ (B/A)^(k−1) ∫ cosᵏ: cut off where 64⁻⁹ = 2⁻⁵⁴ is left.
+    // 1/A Σ (B/A)^(k−1) ∫ cosᵏ: cut off where 64⁻⁹ = 2⁻⁵⁴ remains.
     double sum = 0, power = 1, before = to - from, last = std::sin(to) - std::sin(from);  // ∫ cos⁰, ∫ cos¹
     for (int k = 1; k <= 9; ++k) {
       sum += power * last;
@@ -55,12 +58,12 @@ class Rim {
   }
 
  private:
-  /// A − B cos φ, without the difference.
+  /// Returns A − B cos φ, without cancellation.
   [[nodiscard]] double at(double angle) const {
     const double sine = std::sin(angle / 2);
     return least_ + 2 * b_ * sine * sine;
   }
-  /// ∫ √(A² − B²) / (A − B cos φ) from 0, continuous over all turns.
+  /// Returns ∫ √(A² − B²) / (A − B cos φ) from 0, continuous over all turns.
   [[nodiscard]] double turned(double angle) const {
     const double turns = std::round(angle / (2 * pi)), rest = angle - 2 * pi * turns;
     return 2 * std::atan2(std::sqrt(most_) * std::sin(rest / 2), std::sqrt(least_) * std::cos(rest / 2)) +
@@ -70,9 +73,8 @@ class Rim {
   double b_, a_, least_, most_, root_;
 };
 
-/// A symmetric matrix turned to its axes by Jacobi's rotations: eigenvalues on the diagonal, eigenvectors in columns.
-/// An off-diagonal element is taken off the diagonal, t · b each, so that small eigenvalues beside large ones keep
-/// their digits.
+/// A symmetric matrix diagonalised by Jacobi rotations: eigenvalues on the diagonal, eigenvectors in columns. Each
+/// rotation subtracts t · b from the diagonal, so that small eigenvalues next to large ones keep their precision.
 struct Axes3 {
   glm::dmat3 matrix, vectors{1.0};
 
@@ -114,13 +116,13 @@ double form_factor_term(const FormFactorEdge& edge, const glm::dvec3& n) {
 }
 
 double form_factor_arc(const FormFactorArc& arc, const glm::dvec3& n) {
-  // Positive nodes and their weights.
+  // Positive nodes and their weights (Gauss–Legendre).
   constexpr std::array<std::array<double, 2>, 5> kNodes{{{0.1488743389816312, 0.2955242247147529},
                                                          {0.4333953941292472, 0.2692667193099964},
                                                          {0.6794095682990244, 0.2190863625159820},
                                                          {0.8650633666889845, 0.1494513491505806},
                                                          {0.9739065285171717, 0.0666713443086881}}};
-  constexpr double kLongest = 1, kShortest = 0x1p-40;  // half a piece
+  constexpr double kLongest = 1, kShortest = 0x1p-40;  // half-length of a piece
   const double along_n = glm::dot(n, glm::cross(arc.u, arc.v)), sine = -glm::dot(n, glm::cross(arc.center, arc.u)),
                cosine = glm::dot(n, glm::cross(arc.center, arc.v)), size = glm::length(arc.u) + glm::length(arc.v);
   const auto at = [&](double angle) { return arc.center + std::cos(angle) * arc.u + std::sin(angle) * arc.v; };
@@ -188,12 +190,12 @@ double form_factor(const FormFactorDisk& disk, const glm::dvec3& n) {
   const double nx = glm::dot(n, x), ny = glm::dot(n, y), nz = glm::dot(n, z);
   const Rim rim(r, rho, h);
 
-  // Over the element's plane the rim is R k cos(φ − ψ) + n · centre high.
+  // The rim has the height R k cos(φ − ψ) + n · centre over the element's plane.
   const double k = std::sqrt(nx * nx + ny * ny), middle = glm::dot(n, disk.center);
   if (middle <= -r * k) return 0;
   if (middle >= r * k) {
     const double q = r * r + h * h - rho * rho, s = rim.root();
-    const double upper = q >= 0 ? q + s : 4 * rho * rho * h * h / (s - q);  // A + S − 2ρ² without the difference
+    const double upper = q >= 0 ? q + s : 4 * rho * rho * h * h / (s - q);  // A + S − 2ρ² without cancellation
     const double sum = nx * h * r * rim.b() + nz * r * r * upper;
     return std::max(0.0, -sum / (s * (rim.a() + s)));
   }
@@ -201,7 +203,7 @@ double form_factor(const FormFactorDisk& disk, const glm::dvec3& n) {
   const double from = psi - half, to = psi + half;
   const double sum = (h * r * nx - rho * r * nz) * rim.of_cosine(from, to) + h * r * ny * rim.of_sine(from, to) +
                      nz * r * r * rim.of_one(from, to);
-  // And back along the chord, which lies in the horizon.
+  // Closes the loop along the chord, which lies in the horizon.
   const auto at = [&](double angle) { return disk.center + r * (std::cos(angle) * x + std::sin(angle) * y); };
   const glm::dvec3 down = at(to), up = at(from);
   return std::max(0.0, -sum / (2 * pi) - form_factor_term({down, up, up - down}, n));
@@ -209,7 +211,8 @@ double form_factor(const FormFactorDisk& disk, const glm::dvec3& n) {
 
 double form_factor(const FormFactorEllipse& ellipse, const glm::dvec3& n) {
   // Planes through the element that touch the ellipse have normals m with (m · u)² + (m · v)² = (m · c)²: the cone's
-  // dual is u uᵀ + v vᵀ − c cᵀ. Along c its elements are as graded as its eigenvalues, however far away the ellipse is.
+  // dual is u uᵀ + v vᵀ − c cᵀ. In axes along c its elements are graded like its eigenvalues, however far away the
+  // ellipse is.
   const double distance = glm::length(ellipse.center);
   if (distance == 0) return 0;
   const glm::dvec3 z = ellipse.center / distance;
@@ -226,8 +229,8 @@ double form_factor(const FormFactorEllipse& ellipse, const glm::dvec3& n) {
   const double alpha = axes.matrix[order[0]][order[0]] / along,
                beta = axes.matrix[order[1]][order[1]] / along;  // squares
   if (!(along > 0) || !(beta > 0)) return 0;                    // no wider than rounding
-  // The plane Z = 1 + m Y cuts it in a circle: m² = (α² − β²) / (β² (1 + α²)). With q = β m it reaches from
-  // Y = −β / (1 + q) to β / (1 − q).
+  // The plane Z = 1 + m Y cuts the cone in a circle: m² = (α² − β²) / (β² (1 + α²)). With q = β m the circle extends
+  // from Y = −β / (1 + q) to β / (1 − q).
   const double q = std::sqrt((alpha - beta) / (1 + alpha)), b = std::sqrt(beta), m = q / b;
   const double reach = b * (1 + alpha) / (1 + beta);  // β / (1 − q²)
   const double stretch = std::hypot(1.0, m);

@@ -1,3 +1,5 @@
+// Condition (1) of the truth of a pair for many light points, in double with an error bound, exact where needed.
+
 #include "visibility/lights/horizon.hpp"
 
 #include "visibility/pair_truth.hpp"
@@ -10,10 +12,10 @@
 
 namespace penumbra::visibility {
 
-// The height of l is h = Σ nᵢ (lᵢ − aᵢ), n = u × v; of a direction, Σ nᵢ lᵢ. With δ = 2⁻⁵³ and to first order: the
+// The height of l is h = Σ nᵢ (lᵢ − aᵢ), n = u × v; for a direction, Σ nᵢ lᵢ. With δ = 2⁻⁵³ and to first order: the
 // differences u, v and l − a are off by a factor 1 ± δ each; nᵢ, a difference of two products, by at most 4δ Nᵢ where
 // Nᵢ is the sum of the products' magnitudes; nᵢ (lᵢ − aᵢ) by 6δ Nᵢ |lᵢ − aᵢ|; and the sum of three by 8δ Σ Nᵢ |lᵢ −
-// aᵢ|. Twice that is taken, at the largest |lᵢ − aᵢ|. Products of three differences of floats neither overflow nor
+// aᵢ|. The bound is twice that, at the largest |lᵢ − aᵢ|. Products of three differences of floats neither overflow nor
 // underflow in double.
 HorizonTest::HorizonTest(const Light& light, const std::array<glm::vec3, 3>& carrier, std::int8_t facing,
                          const Bounds& bounds)

@@ -1,4 +1,4 @@
-// Lights from scenes: what does not depend on their kind. Frames, outlines and light samples: lights/kinds/.
+// Makes lights from scenes, independent of their kind. Frames, outlines and light samples: lights/kinds/.
 
 #include "visibility/light_samples.hpp"
 
@@ -44,7 +44,7 @@ void add_links(Light& light, const scenes::Scene& scene, std::uint32_t light_ind
   }
 }
 
-/// Which of a scene's lights, or which piece of it, and what shape that is.
+/// One of a scene's lights, or a piece of it.
 struct Part {
   const scenes::Scene& scene;
   std::uint32_t light_index, piece;

@@ -1,3 +1,5 @@
+// Divides planar lights into parts (Yang et al. 2009, section 5) by a grid over their bounding rectangle.
+
 #include "visibility/lights/light_parts.hpp"
 
 #include "visibility/lights/convex_polygon.hpp"
@@ -13,12 +15,12 @@
 namespace penumbra::visibility {
 namespace {
 
-/// How much of [from, to] texel k of n covers, all of them over [0, 1].
+/// Returns the length of [from, to] covered by texel k of n, where all texels cover [0, 1].
 double overlap(double from, double to, std::uint32_t k, std::uint32_t n) {
   return std::max(0.0, std::min(to, (k + 1.0) / n) - std::max(from, static_cast<double>(k) / n));
 }
 
-/// The integral of the texture's luminance over a part, of the light's coordinates scaled to [0, 1]².
+/// Returns the integral of the texture's luminance over a part, in the light's coordinates scaled to [0, 1]².
 double luminance_in(const LightTexture& texture, const glm::dvec2& lower, const glm::dvec2& upper) {
   double sum = 0;
   for (std::uint32_t y = 0; y < texture.height; ++y) {
@@ -31,7 +33,7 @@ double luminance_in(const LightTexture& texture, const glm::dvec2& lower, const 
   return sum;
 }
 
-/// The light's outline in its frame's coordinates.
+/// Returns the light's outline in its frame's coordinates.
 std::vector<glm::dvec2> outline_of(const Light& light, const LightFrame& frame) {
   std::vector<glm::dvec2> outline;
   if (is_round(light.kind)) {
@@ -53,7 +55,7 @@ std::vector<glm::dvec2> outline_of(const Light& light, const LightFrame& frame) 
   return outline;
 }
 
-/// `corners` in frame coordinates, counter-clockwise as seen from where it emits.
+/// Returns a polygon light. `corners` in frame coordinates, counter-clockwise as seen from the emitting side.
 Light polygon_of(const Light& light, const LightFrame& frame, const std::vector<glm::dvec2>& corners) {
   Light part = light;
   part.kind = LightKind::polygon;
@@ -61,7 +63,7 @@ Light polygon_of(const Light& light, const LightFrame& frame, const std::vector<
   part.area = area_of(corners) * glm::length(glm::cross(frame.u, frame.v));
   part.outline.clear();
   for (const glm::dvec2& at : corners) part.outline.emplace_back(frame.center + at.x * frame.u + at.y * frame.v);
-  // The frame's three corners: those that span the most.
+  // Chooses the frame's three corners: those that span the largest triangle.
   glm::vec3 best{0};
   double most = -1;
   for (std::size_t i = 1; i + 1 < corners.size(); ++i) {

@@ -1,3 +1,5 @@
+// Finds triangles that touch a light's plane close to its samples, conservatively, by a tree of boxes.
+
 #include "visibility/lights/light_touch.hpp"
 
 #include "mesh/predicates.hpp"
@@ -16,7 +18,7 @@
 namespace penumbra::visibility {
 namespace {
 
-/// The light's plane in double, and places in it in cells of a grid of about as many as there are light samples.
+/// The light's plane in double; places in it are in cells of a grid with about as many cells as light samples.
 class Plane {
  public:
   explicit Plane(const Light& light) : center_(light.center) {
@@ -37,7 +39,7 @@ class Plane {
   }
   [[nodiscard]] double cells_a_length() const { return std::max(glm::length(across_), glm::length(along_)); }
   [[nodiscard]] double length_of_cell() const { return length_of_cell_; }
-  /// 1 / sin of the angle between the light's sides.
+  /// Returns 1 / sin of the angle between the light's sides.
   [[nodiscard]] double skew() const { return skew_; }
 
  private:
@@ -54,7 +56,7 @@ struct Box {
   }
 };
 
-/// Of a triangle, the part whose heights are within ±`most`, in cells.
+/// Returns the part of a triangle whose heights are within ±`most`, in cells.
 std::vector<glm::dvec2> near_plane(const Plane& plane, const std::array<glm::vec3, 3>& corners, double most) {
   const glm::dvec3 heights(plane.height(corners[0]), plane.height(corners[1]), plane.height(corners[2]));
   const auto [least, highest] = std::minmax({heights.x, heights.y, heights.z});
@@ -75,8 +77,8 @@ std::vector<glm::dvec2> near_plane(const Plane& plane, const std::array<glm::vec
   return cells;
 }
 
-/// Does the convex polygon meet the box? Separating axes: the box's, and across each side. One of no length separates
-/// nothing.
+/// Returns whether the convex polygon meets the box. Separating axes: the box's, and across each side. A side without
+/// length separates nothing.
 bool meets_box(std::span<const glm::dvec2> polygon, const glm::dvec2& low, const glm::dvec2& high) {
   const glm::dvec2 middle = 0.5 * (low + high), half = 0.5 * (high - low);
   const auto separates = [&](const glm::dvec2& axis) {
@@ -97,12 +99,12 @@ bool meets_box(std::span<const glm::dvec2> polygon, const glm::dvec2& low, const
   return true;
 }
 
-/// The light samples as the search sees them.
+/// The light samples, prepared for the search.
 struct Samples {
   std::vector<glm::dvec2> places;   // in cells
   std::vector<bool> on_plane;       // exactly
-  std::vector<std::uint32_t> by_y;  // their numbers
-  double off = 0;                   // how far one is off the plane, in double
+  std::vector<std::uint32_t> by_y;  // indices of samples by y
+  double off = 0;                   // largest distance of a sample from the plane, in double
 
   Samples(const Plane& plane, const Light& light) : by_y(light.points.size()) {
     for (const glm::vec3& point : light.points) {
@@ -114,7 +116,7 @@ struct Samples {
     std::ranges::sort(by_y, {}, [&](std::uint32_t j) { return places[j].y; });
   }
 
-  /// Calls `visit(j)` for those with y in low … high.
+  /// Calls `visit(j)` for the samples with y in low … high.
   template <typename Visit>
   void for_each_between(double low, double high, Visit visit) const {
     const auto first = std::ranges::lower_bound(by_y, low, {}, [&](std::uint32_t j) { return places[j].y; });
@@ -137,13 +139,13 @@ LightTouch find_touch(const SceneFloats& scene, const TriangleTree& tree, const 
   }
   const glm::vec3 largest =
       glm::max(glm::max(glm::abs(scene.lower), glm::abs(scene.upper)), glm::max(glm::abs(box.low), glm::abs(box.high)));
-  // A height's: the normal is off by some 2⁻⁵¹ / sin γ, times a way of up to four times the largest coordinate; a few
-  // roundings more. Taken 32 times.
+  // Error of a height: the normal is off by about 2⁻⁵¹ / sin γ, times a distance of up to four times the largest
+  // coordinate; a few more roundings. The bound is 32 times that.
   const double rounding = 0x1p-44 * plane.skew() * static_cast<double>(std::max({largest.x, largest.y, largest.z}));
   const double delta = samples.off + rounding, around = 1.0 / 64 + 1024 * delta * plane.cells_a_length();
   const bool all_on_plane = std::ranges::find(samples.on_plane, false) == samples.on_plane.end();
-  // As far as the flattest way gets while it rises by 3 δ: where the level is certain (bound level), H is at least 2⁻²⁰
-  // of p's distance from the light's middle and 2⁻²⁰ of the light, so no light sample is farther than 2²⁰ H.
+  // Distance that the flattest segment covers while it rises by 3 δ: where the level is certain (bound level), H is at
+  // least 2⁻²⁰ of p's distance from the light's middle and 2⁻²⁰ of the light, so no light sample is farther than 2²⁰ H.
   const double flat = 0x1p22 * delta, flat_cells = around + flat * plane.cells_a_length();
   const auto reach = static_cast<float>(1.01 * (flat + around * plane.length_of_cell()));
 
@@ -152,7 +154,7 @@ LightTouch find_touch(const SceneFloats& scene, const TriangleTree& tree, const 
   tree.for_each_near(box.low - reach, box.high + reach, [&](std::uint32_t triangle) {
     if (scene.emits[triangle] == light.index) return;
     const std::array<glm::vec3, 3> corners = scene.corners(triangle);
-    // Where double knows exactly which corners are in the plane, light samples in the plane are safe.
+    // Where double decides exactly which corners are in the plane, light samples in the plane are safe.
     const bool clear = std::ranges::all_of(corners, [&](const glm::vec3& corner) {
       const double height = plane.height(corner);
       return height == 0 || std::abs(height) > rounding;

@@ -1,5 +1,5 @@
-// Form factors of parts of a light, many of them side by side. Lanes repeat the operations of UnshadowedLight::part in
-// their order, cuts at the horizon (FormFactorLoop) included.
+// Form factors of parts of a light, a vector of parts at a time. Lanes repeat the operations of UnshadowedLight::part
+// in their order, including cuts at the horizon (FormFactorLoop).
 #include "visibility/lights/part_form_factors.hpp"
 
 #include <algorithm>
@@ -17,7 +17,7 @@ namespace {
 
 struct PartCorner {
   V s, t;
-  V3 at;  // from p
+  V3 at;  // relative to p
   V height;
 };
 
@@ -31,7 +31,7 @@ V add_where(M mask, V sum, V term) {
   return hn::Add(sum, hn::IfThenElseZero(mask, term));
 }
 
-/// FormFactorLoop of many parts whose edges follow one another.
+/// FormFactorLoop of a vector of parts; edges are added in order.
 class Loops {
  public:
   explicit Loops(const V3& n) : n_(n) {}
@@ -64,7 +64,7 @@ class Loops {
  private:
   V3 n_;
   V sum_ = hn::Zero(D());
-  V3 down_{sum_, sum_, sum_}, up_{sum_, sum_, sum_};  // where it went below the horizon, and came back
+  V3 down_{sum_, sum_, sum_}, up_{sum_, sum_, sum_};  // where the loop went below the horizon, and came back
   M has_down_ = hn::FirstN(D(), 0), has_up_ = has_down_;
 };
 

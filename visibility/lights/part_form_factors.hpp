@@ -10,14 +10,14 @@
 
 namespace penumbra::visibility {
 
-/// Parts of a light with four corners each, counter-clockwise in the frame's coordinates: lists of the first corners,
-/// the second ones and so on, each with room for a vector that begins at its last.
+/// Parts of a light with four corners each, counter-clockwise in the frame's coordinates: a list of all first corners,
+/// one of all second corners and so on, each padded for a vector that begins at its last element.
 class FourCorneredParts {
  public:
   using Corners = std::array<glm::dvec2, 4>;
 
   [[nodiscard]] std::size_t size() const { return size_; }
-  /// Before set().
+  /// Call before set().
   void resize(std::size_t count) {
     size_ = count;
     if (count + kRoom <= lists_[0].s.size()) return;
@@ -26,7 +26,7 @@ class FourCorneredParts {
   void clear() { size_ = 0; }
   void add(const Corners& corners) {
     const std::size_t part = size_;
-    // Lists that grow take twice their length.
+    // Lists grow to twice their length.
     if (part + 1 + kRoom > lists_[0].s.size()) resize(2 * part + 1);
     size_ = part + 1;
     set(part, corners);
@@ -50,8 +50,8 @@ class FourCorneredParts {
   std::size_t size_ = 0;
 };
 
-/// The sum of UnshadowedLight::part() of all of them, in their order, on the processor's vector units: the same bits,
-/// whatever their width. Of a rectangle or polygon.
+/// Returns the sum of UnshadowedLight::part() of all parts, in their order, on the processor's vector units: the same
+/// bits for every vector width. For a rectangle or polygon.
 double sum_of_parts(const UnshadowedLight& seen, const FourCorneredParts& parts);
 
 }  // namespace penumbra::visibility

@@ -1,3 +1,5 @@
+// Form factors of an unoccluded light and of its parts, with horizon and emitting side.
+
 #include "visibility/lights/unshadowed_light.hpp"
 
 #include "base/assert.hpp"
@@ -31,7 +33,7 @@ UnshadowedLight::UnshadowedLight(const Light& light, const glm::vec3& p, const g
   } else {
     radius_ = light.radius;
     const glm::dvec3 front = glm::normalize(glm::cross(u_, v_));
-    // Which side is exact, as for a pair; a point of the plane itself is on neither.
+    // The side is exact, as for a pair; a point of the plane itself is on neither side.
     const Side side = side_of_plane(light.center, light.center_u, light.center_v, p);
     if (side == Side::front) side_ = 1;
     if (side == Side::back && light.two_sided) side_ = -1;
@@ -68,11 +70,11 @@ double UnshadowedLight::part(std::span<const glm::dvec2> corners) const {
     a = b;
     height_a = height_b;
   }
-  return -side_ * loop.sum();  // counter-clockwise in (s, t) is what is seen from the front
+  return -side_ * loop.sum();  // counter-clockwise in (s, t) is the orientation as seen from the front
 }
 
 double UnshadowedLight::part_of_disk(std::span<const glm::dvec2> corners) const {
-  // The horizon cuts the polygon first: so all that is left of the rim is above it.
+  // The horizon cuts the polygon first, so that all remaining parts of the rim are above it.
   std::array<glm::dvec2, DiskPart::kMostCorners> above;
   std::size_t count = 0;
   const auto height = [&](const glm::dvec2& st) { return height_ + st.x * height_u_ + st.y * height_v_; };

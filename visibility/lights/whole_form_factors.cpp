@@ -1,6 +1,7 @@
-// The form factor of a whole light, many elements side by side. Lanes repeat the operations of unshadowed_light.cpp and
-// form_factor.cpp in their order, none of which is contracted, so that all have the bits of those. What the horizon
-// cuts, what is so near to the light's plane that double does not know its side, and ellipses are left to them.
+// Form factors of a whole light at many elements, a vector of elements at a time. Lanes repeat the operations of
+// unshadowed_light.cpp and form_factor.cpp in their order, without contraction, so that all have the bits of the scalar
+// code. Elements whose horizon cuts the light, elements so close to the light's plane that double does not decide their
+// side, and ellipses are left to the scalar code.
 #include "visibility/lights/whole_form_factors.hpp"
 
 #include "base/assert.hpp"
@@ -24,15 +25,15 @@ namespace {
 /// A corner as p sees it: (centre + u) + v.
 struct OutlineCorner {
   glm::dvec3 u, v;
-  glm::dvec3 edge;  ///< from the corner before it
+  glm::dvec3 edge;  ///< from the previous corner
 };
 
-/// What all elements share.
+/// Data shared by all elements.
 struct WholeLight {
-  LightFrame frame;                    // not of a sphere
-  std::vector<OutlineCorner> corners;  // none: round
-  glm::dvec3 front{0};                 // unit, where it emits
-  glm::dvec3 across{0}, at_most{0};    // u × v, and the sizes of the products that it is made of
+  LightFrame frame;                    // unused for a sphere
+  std::vector<OutlineCorner> corners;  // empty: round
+  glm::dvec3 front{0};                 // unit, toward the emitting side
+  glm::dvec3 across{0}, at_most{0};    // u × v, and the sum of the magnitudes of its products
 };
 
 WholeLight make_whole_light(const Light& light) {
@@ -50,7 +51,8 @@ WholeLight make_whole_light(const Light& light) {
     const auto in_plane = [&](const glm::dvec3& way) { return way - glm::dot(whole.front, way) * whole.front; };
     const std::size_t count = light.outline.size();
     for (std::size_t i = 0; i < count; ++i) {
-      const glm::dvec3 from(light.outline[i]), to(light.outline[(i + 1) % count]);  // in the order of its sum
+      // in the order of form_factor.cpp's sum
+      const glm::dvec3 from(light.outline[i]), to(light.outline[(i + 1) % count]);
       whole.corners.push_back({in_plane(to - c), glm::dvec3(0), in_plane(to - from)});
     }
   }
@@ -81,18 +83,18 @@ V3 normalize(const V3& a) {
   return times(hn::Div(number(1), hn::Sqrt(dot(a, a))), a);
 }
 
-/// A vector's elements, one coordinate after the other.
+/// A vector of elements, coordinate by coordinate.
 struct ElementLanes {
   std::array<std::array<double, kWidest>, 3> p, n;
 };
 
-/// F where `known`.
+/// F, valid where `known`.
 struct Wholes {
   V value;
   M known;
 };
 
-/// On which side of the light's plane p is, `center` the way from it to the light's centre.
+/// Side of the light's plane that p is on; `center` is the vector from p to the light's centre.
 struct Sides {
   M front, known;
 };
@@ -105,14 +107,14 @@ Sides sides_of(const WholeLight& light, const V3& center) {
   return {hn::Gt(determinant, hn::Zero(D())), hn::Gt(hn::Abs(determinant), error)};
 }
 
-/// Dark sides are 0, and what the horizon hides.
+/// Elements on dark sides, and those with the light below the horizon, get 0.
 Wholes of_polygon(const Light& light, const WholeLight& whole, const V3& p, const V3& n) {
   const V zero = hn::Zero(D());
   const V3 center = vector(whole.frame.center) - p;
   const Sides sides = sides_of(whole, center);
   const bool is_rectangle = is_parallelogram(light.kind);
   const V height = dot(n, center), height_u = dot(n, vector(whole.frame.u)), height_v = dot(n, vector(whole.frame.v));
-  // The rectangle's heights as UnshadowedLight::part has them; a polygon's as whole().
+  // Heights of the corners: a rectangle's as in UnshadowedLight::part; a polygon's as in whole().
   const auto corner_of = [&](std::size_t i) {
     return (center + vector(whole.corners[i].u)) + vector(whole.corners[i].v);
   };
@@ -133,7 +135,7 @@ Wholes of_polygon(const Light& light, const WholeLight& whole, const V3& p, cons
     sum = hn::Add(sum, terms(before, corner, vector(whole.corners[i].edge), n));
     before = corner;
   }
-  // A rectangle runs counter-clockwise as seen from its front, an outline either way around.
+  // A rectangle runs counter-clockwise as seen from its front, an outline may have either orientation.
   const V signed_sum = hn::IfThenElse(sides.front, hn::Neg(sum), sum);
   const V value = is_rectangle ? hn::IfThenElse(hn::Gt(signed_sum, zero), signed_sum, zero) : hn::Abs(sum);
   const M lit = light.two_sided ? above : hn::And(above, sides.front);
@@ -141,7 +143,7 @@ Wholes of_polygon(const Light& light, const WholeLight& whole, const V3& p, cons
   return {hn::IfThenElseZero(lit, value), hn::And(sides.known, hn::Or(lit, dark))};
 }
 
-/// form_factor of a disk that is above the horizon or below it.
+/// Vector form of form_factor for a disk above or below the horizon.
 Wholes of_disk(const V3& center, const V3& normal, V radius, const V3& n) {
   const V zero = hn::Zero(D());
   const V toward = hn::Neg(dot(normal, center));
@@ -156,7 +158,7 @@ Wholes of_disk(const V3& center, const V3& normal, V radius, const V3& n) {
       hn::Gt(rho, hn::Mul(number(0x1p-50), hn::Sqrt(dot(center, center))));  // on the axis x is any direction
   const V3 x = over(off, rho), y = cross(z, x);
   const V nx = dot(n, x), ny = dot(n, y), nz = dot(n, z);
-  // Rim
+  // Equations of class Rim.
   const V b = hn::Mul(hn::Mul(number(2), rho), radius);
   const V rr = hn::Mul(radius, radius), oo = hn::Mul(rho, rho), hh = hn::Mul(h, h);
   const V a = hn::Add(hn::Add(rr, oo), hh);
@@ -191,7 +193,7 @@ Wholes of_sun(const Light& light, const WholeLight& whole, const V3& n) {
   return {hn::IfThenElseZero(hn::Gt(cosine, hn::Zero(D())), cosine), hn::Eq(cosine, cosine)};
 }
 
-/// light_frame_from, and the disk that it is.
+/// Vector form of light_frame_from, and of the form factor of its disk.
 Wholes of_sphere(const Light& light, const V3& p, const V3& n) {
   const V one = number(1), r = number(light.radius);
   const V3 c = vector(glm::dvec3(light.center)), q = p - c;
@@ -205,7 +207,7 @@ Wholes of_sphere(const Light& light, const V3& p, const V3& n) {
   const V share = hn::Div(r, d), k = hn::Mul(share, share), radius = hn::Div(hn::Mul(r, hn::Sqrt(touching)), d);
   const V3 u = times(radius, axis);
   const Wholes disk = of_disk((c + times(k, q)) - p, normalize(c - p), hn::Sqrt(dot(u, u)), n);
-  // d is off by less than 4 ε of itself: so much farther from the sphere, p is outside.
+  // d has an error below 4 ε of itself: p is outside if it is farther than that from the sphere.
   return {disk.value, hn::And(disk.known, hn::Gt(d, hn::Mul(r, number(1 + 0x1p-48))))};
 }
 

@@ -12,28 +12,28 @@
 
 namespace penumbra::visibility {
 
-// A file of `--bits`, format penumbra-bits/1, little-endian: every pair's answer, for outside judges.
+// A file of `--bits`, format penumbra-bits/1, little-endian: the result of every pair, for external verification.
 //
-//   ASCII          "penumbra-bits/1 W H N\n"
-//   3 double       origin of the scene floats
-//   N × 3 float    light samples, relative to the origin; of a sun, directions
-//   W·H times, in scan-line order:
-//     3 float      view sample, relative to the origin (0 for background)
-//     1 int32      carrying triangle, −1 background
-//     ⌈N/32⌉ uint32  bit j mod 32 of word ⌊j/32⌋ is set iff light sample j is visible
+//     ASCII          "penumbra-bits/1 W H N\n"
+//     3 double       origin of the scene floats
+//     N × 3 float    light samples, relative to the origin; for a sun, directions
+//     W·H times, in scan-line order:
+//       3 float      view sample, relative to the origin (0 for background)
+//       1 int32      carrying triangle, −1 background
+//       ⌈N/32⌉ uint32  bit j mod 32 of word ⌊j/32⌋ is set iff light sample j is visible
 
-/// Writes such a file in bands of rows, as tiles come; it appears whole with commit() or not at all. `samples` must
-/// outlive the writer.
+/// Writes such a file in bands of rows, as tiles are finished; it appears whole with commit() or not at all. `samples`
+/// must outlive the writer.
 class BitsWriter {
  public:
   /// Throws UsageError for a sphere light: its points differ from pixel to pixel.
   BitsWriter(const std::filesystem::path& path, const glm::dvec3& origin, const ViewSamples& samples,
              const Light& light);
 
-  /// The masks of the next pixels in scan-line order, words_per_mask() words each.
+  /// Appends the masks of the next pixels in scan-line order, words_per_mask() words each.
   void append(std::span<const std::uint32_t> masks);
 
-  /// After the last pixel: AtomicFile's.
+  /// Call after the last pixel; as AtomicFile's functions.
   void settle();
   void commit();
 

@@ -1,3 +1,5 @@
+// Domes for methods that support rectangles infinitely far away: evaluates the faces of a cube one after the other.
+
 #include "visibility/masks/dome_method.hpp"
 
 #include "base/assert.hpp"
@@ -59,9 +61,9 @@ class DomeMethod final : public Method {
   std::vector<Light> faces_;
   const ViewSamples* samples_ = nullptr;
   Tile tile_;
-  std::size_t pixels_ = 0;  // of the tile
+  std::size_t pixels_ = 0;  // pixels of the tile
   std::vector<std::uint32_t> masks_, part_;
-  std::vector<std::uint8_t> sees_all_;  // of each face so far, all
+  std::vector<std::uint8_t> sees_all_;  // for each face so far, whether all of it is visible
   std::vector<double> form_factors_;
   std::vector<float> part_visibility_;
   std::vector<glm::dvec3> part_form_factors_;
@@ -113,7 +115,7 @@ void DomeMethod::evaluate(const Tile& tile) {
   }
 }
 
-/// A face's bits to where the dome has its light samples.
+/// Copies a face's bits to the dome's light samples.
 void DomeMethod::add_masks(const Light& face, std::size_t first_pixel, std::size_t count) {
   const std::size_t own = face.words_per_mask(), words = dome_->words_per_mask();
   const std::uint32_t at = dome_->dome->first[static_cast<std::size_t>(face.dome->face)], shift = at % 32;
@@ -138,7 +140,8 @@ void DomeMethod::add_form_factors(std::size_t first_pixel, std::size_t count) {
   method_->read_form_factors(part_form_factors_);
   for (std::size_t i = 0; i < count; ++i) {
     if (part_visibility_[i] != 1) sees_all_[first_pixel + i] = 0;
-    if (part_visibility_[i] != 0) form_factors_[first_pixel + i] += part_form_factors_[i].x;  // NaN: not wanted
+    // NaN: the pixel is not wanted
+    if (part_visibility_[i] != 0) form_factors_[first_pixel + i] += part_form_factors_[i].x;
   }
 }
 

@@ -1,3 +1,5 @@
+// V of masks: counts of bits, or sums of weights.
+
 #include "visibility/masks/visible_share.hpp"
 
 #include "base/assert.hpp"
@@ -17,7 +19,7 @@ float visible_share(const Light& light, std::span<const std::uint32_t> mask) {
     for (const std::uint32_t word : mask) visible += std::popcount(word);
     return static_cast<float>(visible) / static_cast<float>(light.sample_count());
   }
-  double share = 0;  // exact: sample_weights says why
+  double share = 0;  // exact, as explained at sample_weights
   for (std::size_t i = 0; i < mask.size(); ++i) {
     for (std::uint32_t left = mask[i]; left != 0; left &= left - 1) {
       share += light.weights[32 * i + static_cast<std::size_t>(std::countr_zero(left))];

@@ -10,13 +10,13 @@
 /// Inside visibility/tree/ only.
 namespace penumbra::visibility {
 
-/// The box around others: empty, or as large as what is included takes. Of four floats a corner, the last means
-/// nothing: so a vector unit takes all of them at once.
+/// Bounds of boxes: empty, or just containing all included boxes. The fourth float of a corner is unused, so that a
+/// vector unit handles a corner at once.
 class BoxAround {
  public:
   using Corner = float __attribute__((vector_size(16)));  // GCC's and clang's
 
-  /// `Box`: a lower and an upper corner, a word after each (NumberedBox, BoxGroup).
+  /// `Box`: a lower and an upper corner, each followed by a word (NumberedBox, BoxGroup).
   template <typename Box>
   void include(const Box& box) {
     static_assert(sizeof(Box) == 2 * sizeof(Corner) && offsetof(Box, lower) == 0);
@@ -32,7 +32,7 @@ class BoxAround {
 
   [[nodiscard]] glm::vec3 lower() const { return {lower_[0], lower_[1], lower_[2]}; }
   [[nodiscard]] glm::vec3 upper() const { return {upper_[0], upper_[1], upper_[2]}; }
-  /// Half of its surface; 0 if it is empty. In double: no product of floats is too large for it.
+  /// Returns half of its surface area; 0 if it is empty. In double: no product of floats overflows.
   [[nodiscard]] double area() const {
     if (lower_[0] > upper_[0]) return 0;
     const glm::dvec3 size = glm::dvec3(upper()) - glm::dvec3(lower());

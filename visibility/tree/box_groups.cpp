@@ -1,6 +1,6 @@
-// Morton's order for hierarchies: C. Lauterbach, M. Garland, S. Sengupta, D. Luebke, D. Manocha, Fast BVH construction
-// on GPUs, 2009; its cells as what the surface area heuristic divides: J. Pantaleoni, D. Luebke, HLBVH, 2010. There all
-// cells are of one size; here they are as large as their boxes allow, and dense ones get a grid of their own.
+// Groups boxes by Morton order: C. Lauterbach, M. Garland, S. Sengupta, D. Luebke, D. Manocha, Fast BVH construction on
+// GPUs, 2009; groups as the items that the surface area heuristic divides: J. Pantaleoni, D. Luebke, HLBVH, 2010. In
+// those papers all cells have one size; here they are as large as their boxes allow, and dense ones get their own grid.
 
 #include "visibility/tree/box_groups.hpp"
 
@@ -22,7 +22,7 @@ namespace {
 
 constexpr unsigned kAxisBits = 10, kWordBits = 3 * kAxisBits;
 
-/// A bit, and after it two zeros.
+/// Inserts two zeros after each bit.
 std::uint32_t spread(std::uint32_t bits) {
   bits = (bits | bits << 16U) & 0x030000ffU;
   bits = (bits | bits << 8U) & 0x0300f00fU;
@@ -30,7 +30,7 @@ std::uint32_t spread(std::uint32_t bits) {
   return (bits | bits << 2U) & 0x09249249U;
 }
 
-/// Cubic cells, as many along the longest side as there are numbers for.
+/// Cubic cells, as many along the longest side as the word has values.
 class Grid {
  public:
   explicit Grid(const BoxAround& middles) : lower_(middles.lower()) {
@@ -48,10 +48,10 @@ class Grid {
  private:
   static constexpr double kCells = 1U << kAxisBits;
   glm::dvec3 lower_;
-  double cells_ = 0;  // a unit; 0: all middles are one
+  double cells_ = 0;  // cells in a unit of length; 0: all middles are equal
 };
 
-/// Sorts by word; equal ones stay as they are. Digit by digit.
+/// Radix sort by word, stable.
 void sort_by_word(std::span<Parts::Item> items, unsigned bits, std::vector<Parts::Item>& space) {
   constexpr std::size_t kFew = 48;
   if (items.size() <= kFew) {
@@ -75,13 +75,13 @@ void sort_by_word(std::span<Parts::Item> items, unsigned bits, std::vector<Parts
   if (from.data() != items.data()) std::ranges::copy(from, items.begin());
 }
 
-/// Makes groups of boxes that are in order of their words.
+/// Makes groups of boxes that are sorted by their words.
 class Cutter {
  public:
-  /// `first`: of all in the list.
+  /// `first`: index of the first box in the list.
   Cutter(std::span<NumberedBox> list, std::vector<BoxGroup>& groups) : list_(list), groups_(groups) {}
 
-  /// Of the boxes from `first` on, whose words these are; they agree above `bit`.
+  /// Groups the boxes from `first` on, which have these words; the words agree above `bit`.
   void cut(std::uint32_t first, std::span<const Parts::Item> words, unsigned bit) {
     if (words.size() <= kGroup) return add(first, static_cast<std::uint32_t>(words.size()));
     if (bit == 0) return add_close(first, static_cast<std::uint32_t>(words.size()));
@@ -93,7 +93,7 @@ class Cutter {
   }
 
  private:
-  /// Of one cell: to be grouped again, or, where all middles are one, as they come.
+  /// Groups the boxes of one cell: by a finer grid, or, if all middles are equal, in their order.
   void add_close(std::uint32_t first, std::uint32_t count) {
     const std::span<const NumberedBox> boxes = list_.subspan(first, count);
     const glm::vec3 middle = boxes.front().middle();
@@ -103,7 +103,7 @@ class Cutter {
   }
 
   void add(std::uint32_t first, std::uint32_t count) {
-    // The box that, alone, makes the group large goes to the end and out of it.
+    // A single box that makes the group large is moved to the end and out of it.
     for (; count > 1; --count) {
       const std::span<NumberedBox> boxes = list_.subspan(first, count);
       BoxAround all;
@@ -143,11 +143,12 @@ BoxAround joined(BoxAround a, const BoxAround& b) {
   return a;
 }
 
-/// Puts boxes into `to`, in the order of groups. `middles`: the box around theirs.
+/// Writes boxes to `to`, in the order of groups. `middles`: bounds of their middles.
 std::vector<BoxGroup> group(std::span<const NumberedBox> from, const BoxAround& middles, std::span<NumberedBox> to) {
   const Grid grid(middles);
   const std::size_t good = Parts::good_count(from.size());
-  const unsigned bits = kWordBits - static_cast<unsigned>(std::countr_zero(good));  // in which a part's words differ
+  // bits in which words of a part differ
+  const unsigned bits = kWordBits - static_cast<unsigned>(std::countr_zero(good));
   const Parts parts =
       into_parts(from.size(), good, bits, [&](std::size_t i) { return grid.word_of(from[i].middle()); });
   std::vector<std::vector<BoxGroup>> groups(parts.size());

@@ -9,11 +9,11 @@
 #include <span>
 #include <vector>
 
-/// Boxes that lie together, in groups: what a tree is made of instead of single boxes, a tenth as many. Inside
+/// Groups of neighbouring boxes: a tree is built over them instead of single boxes, a tenth as many. Inside
 /// visibility/tree/ only.
 namespace penumbra::visibility {
 
-/// Not initialised: lists of them are filled on all cores.
+/// Uninitialised: lists of these are filled on all cores.
 struct NumberedBox {
   glm::vec3 lower;
   std::uint32_t number;
@@ -23,7 +23,7 @@ struct NumberedBox {
   [[nodiscard]] glm::vec3 middle() const { return 0.5F * lower + 0.5F * upper; }
 };
 
-/// Boxes that follow one another in a list, and a box around them.
+/// Consecutive boxes of a list, and their bounds.
 struct BoxGroup {
   glm::vec3 lower{0};
   std::uint32_t first = 0;
@@ -33,7 +33,7 @@ struct BoxGroup {
   [[nodiscard]] glm::vec3 middle() const { return 0.5F * lower + 0.5F * upper; }
 };
 
-/// Groups of at most so many, unless their middles lie so close to one another that they must be grouped again.
+/// Most boxes in a group, unless their middles are so close together that they must be grouped again.
 constexpr std::uint32_t kGroup = 16;
 
 struct GroupedBoxes {
@@ -41,14 +41,14 @@ struct GroupedBoxes {
   std::vector<BoxGroup> groups;
 };
 
-/// Sorts boxes by the cell of a fine grid that their middle is in, along a curve that leaves no cell of a coarser grid
-/// before it has seen all of it (Morton's), and cuts that where coarser grids do, as coarse as groups allow. A box so
-/// large that it alone makes its group large is a group of its own. `box(i)` is called on all cores. Linear; the same
-/// whatever the number of threads.
+/// Sorts boxes by the cell of a fine grid that contains their middle, along a curve that leaves no cell of a coarser
+/// grid before it has visited all of it (Morton's), and cuts the curve at cells of coarser grids, as coarse as groups
+/// allow. A box so large that it alone makes its group large becomes its own group. `box(i)` is called on all cores.
+/// Linear time; the result does not depend on the number of threads.
 GroupedBoxes group_boxes(std::size_t count, const std::function<NumberedBox(std::size_t)>& box);
 
-/// The same of boxes in a list, where they are put in the order of groups, and of their own grid; more than one group
-/// if there are more than kGroup of them. `BoxGroup::first` counts from the list's beginning.
+/// Groups boxes of a list by their own grid, and reorders them by groups; gives more than one group if there are more
+/// than kGroup boxes. `BoxGroup::first` counts from the list's beginning.
 std::vector<BoxGroup> group_again(std::span<NumberedBox> boxes);
 
 }  // namespace penumbra::visibility

@@ -1,3 +1,5 @@
+// Selection of the smallest items along an axis, by counting on vector units.
+
 #include "visibility/tree/halves.hpp"
 
 #include <algorithm>
@@ -14,7 +16,7 @@ namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// How many of the first `count` keys are below each of them. Keys and numbers have room for whole vectors.
+/// Counts for each of the first `count` keys the smaller ones. Keys and counts must be padded to whole vectors.
 void count_below(const std::int32_t* keys, std::size_t count, std::int32_t* below) {
   const hn::CappedTag<std::int32_t, 16> d;
   for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
@@ -35,8 +37,8 @@ namespace {
 
 HWY_EXPORT(count_below);
 
-/// Of so many items and fewer the place of each is counted, each against each, which vector units do faster than a
-/// search for the median goes from branch to branch.
+/// For at most this many items the rank of each is counted, each against each, which vector units do faster than a
+/// search for the median with its branches.
 constexpr std::size_t kCounted = 64;
 
 }  // namespace
@@ -49,7 +51,7 @@ void put_least_first(std::span<Divided> items, std::size_t first, int axis, floa
                      });
     return;
   }
-  constexpr std::int32_t kSteps = 1 << 24;  // and below each as many places as there may be
+  constexpr std::int32_t kSteps = 1 << 24;  // keys along the axis, each with as many places below it as items
   alignas(64) std::array<std::int32_t, kCounted> keys, below;
   const double steps = upper > lower ? kSteps / (static_cast<double>(upper) - lower) : 0;
   for (std::size_t i = 0; i < items.size(); ++i) {

@@ -8,20 +8,22 @@
 #include <limits>
 #include <span>
 
-/// Dividing the last boxes of a tree, where the surface area heuristic says nothing. Inside visibility/tree/ only.
+/// Division of the last boxes of a tree, where the surface area heuristic gives no information. Inside visibility/tree/
+/// only.
 namespace penumbra::visibility {
 
-/// A box that is divided: its middle, or twice that, and which one it is.
+/// A box to be divided: its middle, or twice that, and its index.
 struct Divided {
   glm::vec3 middle;
   std::uint32_t at;
 };
 
-/// Puts the `first` that are least along an axis, which they reach from `lower` to `upper`, before all others: to 2⁻²⁴
-/// of that, which no tree notices. Equal ones keep their order.
+/// Moves the `first` smallest items along an axis, on which they extend from `lower` to `upper`, in front of all
+/// others: with a resolution of 2⁻²⁴ of that, which does not affect the tree's quality. Equal items keep their order.
 void put_least_first(std::span<Divided> items, std::size_t first, int axis, float lower, float upper);
 
-/// Calls take(part) with parts of `step` items, the last may have fewer: halves along the longest side of middles.
+/// Calls take(part) with parts of `step` items, of which the last may have fewer: halves along the longest side of the
+/// middles' bounds.
 template <typename Take>
 void halve(std::span<Divided> items, std::size_t step, const Take& take) {
   const std::size_t parts = (items.size() + step - 1) / step, first = parts / 2 * step;

@@ -14,7 +14,7 @@
 
 namespace penumbra::visibility {
 
-/// decide_pair along a hierarchy: for the pairs that a method's arithmetic leaves open. Exact.
+/// decide_pair with a hierarchy: for pairs that a method's arithmetic leaves open. Exact.
 struct PairJudge {
   const SceneFloats& scene;
   const TriangleTree& tree;
@@ -25,7 +25,7 @@ struct PairJudge {
     return may_occlude(scene, light, static_cast<std::uint32_t>(samples.triangle[pixel]), triangle) &&
            segment_meets_triangle(samples.p[pixel], l, scene.corners(triangle), light).meets;
   }
-  /// How many triangles the segment to l meets.
+  /// Returns the number of triangles that the segment to l meets.
   [[nodiscard]] std::uint32_t depth(std::size_t pixel, const glm::vec3& l) const {
     std::uint32_t met = 0;
     static_cast<void>(any_along(pixel, l, [&](std::uint32_t triangle) {
@@ -34,9 +34,9 @@ struct PairJudge {
     }));
     return met;
   }
-  /// How many triangles the segment to the exact point centre + s u + t v of the light's plane meets: a triangle counts
-  /// where it is strictly between p and that plane. Nothing: in double it is not certain which triangles to test
-  /// (SegmentInBox).
+  /// Returns the number of triangles that the segment to the exact point centre + s u + t v of the light's plane meets:
+  /// a triangle counts where it is strictly between p and that plane. Returns nullopt if double does not determine the
+  /// triangles to test (SegmentInBox).
   [[nodiscard]] std::optional<std::uint32_t> depth_in_plane(std::size_t pixel, const glm::dvec2& st) const {
     const PlanePoint l(light, st);
     const glm::dvec3 p(samples.p[pixel]);

@@ -1,3 +1,5 @@
+// Builds a tree over many boxes with the divisions of an existing tree of triangles.
+
 #include "visibility/tree/tree_along.hpp"
 
 #include "base/assert.hpp"
@@ -21,8 +23,8 @@ namespace {
 using Child = TriangleTree::Child;
 
 constexpr std::size_t kWidth = TriangleTree::kWidth;
-constexpr std::size_t kTogether = kWidth * kWidth;    // of so many boxes and fewer the guide says nothing
-constexpr std::size_t kTask = std::size_t{1} << 13U;  // boxes worth one
+constexpr std::size_t kTogether = kWidth * kWidth;    // for at most this many boxes the guide is not used
+constexpr std::size_t kTask = std::size_t{1} << 13U;  // boxes worth a task
 
 bool is_leaf(std::uint32_t reference) {
   return (reference & TriangleTree::kLeafBit) != 0;
@@ -38,7 +40,7 @@ Bounds nothing() {
   return {glm::vec3(kFar), glm::vec3(-kFar)};
 }
 
-/// How many nodes and leaves a subtree has, its root included, and how many nodes are on its longest way down.
+/// Numbers of nodes and leaves of a subtree, including its root, and of nodes on its longest path.
 struct Size {
   std::uint32_t nodes = 0, leaves = 0, depth = 0;
 
@@ -47,14 +49,14 @@ struct Size {
     leaves += times * child.leaves;
     depth = std::max(depth, child.depth);
   }
-  /// A node over what was added.
+  /// Adds a node above the added subtrees.
   void close() {
     ++nodes;
     ++depth;
   }
 };
 
-/// Parts of eight times eight times … boxes, so that all leaves but the last are full: of how many, below a node.
+/// Returns the number of boxes in each part below a node: 8, 64, … so that all leaves but the last are full.
 std::size_t step_of(std::size_t count) {
   std::size_t step = kWidth;
   while (step * kWidth < count) step *= kWidth;
@@ -71,7 +73,7 @@ Size size_of(std::size_t count) {
   return size;
 }
 
-/// Where a subtree begins: its root is the first of its nodes, or, if it has none, its leaf.
+/// Begin of a subtree: its root is the first of its nodes, or, if it has none, its leaf.
 struct Place {
   std::uint32_t node = 0, leaf = 0;
 
@@ -84,7 +86,7 @@ struct Place {
   }
 };
 
-/// Divides boxes in halves, into places of a tree. One a thread.
+/// Divides boxes in halves, into places of a tree. One for each thread.
 class Divider {
  public:
   Bounds divide(const BoxesNear& all, std::span<const std::uint32_t> numbers, const Place& place, TriangleTree& tree) {
@@ -129,7 +131,7 @@ class Divider {
   }
 
   TriangleTree* tree_ = nullptr;
-  std::span<const std::uint32_t> numbers_;  // of what is divided
+  std::span<const std::uint32_t> numbers_;  // indices of the boxes to divide
   std::vector<Bounds> boxes_;
   std::vector<Divided> items_;
 };
@@ -162,7 +164,7 @@ class Along {
     const Part whole{0, 0};
     find_size(whole);
     Size all = size_of_part(whole);
-    const bool alone = all.nodes == 0;  // one leaf, which gets a node above it
+    const bool alone = all.nodes == 0;  // a single leaf gets a node above it
     if (alone) all.close();
     tree_.leaves.resize(all.leaves);
     tree_.nodes.resize(all.nodes);
@@ -173,12 +175,12 @@ class Along {
   }
 
  private:
-  /// What hangs below one of the guide's nodes or is one of its leaves: leaves from `first` on.
+  /// A subtree of the guide: a node or leaf, and its first leaf.
   struct Part {
     std::uint32_t reference, first;
   };
 
-  /// The leaves below a node follow one another; where those below this one end.
+  /// The leaves below a node are contiguous; returns the end of those below this one.
   std::uint32_t find_end(std::uint32_t node, std::uint32_t first) {
     for (const Child& child : guide_.nodes[node]) {
       if (child.reference == TriangleTree::kNoChild) continue;
@@ -206,19 +208,19 @@ class Along {
     }
   }
 
-  /// Only leaves are below, or it is one.
+  /// Returns whether only leaves are below, or it is one.
   [[nodiscard]] bool is_last(std::uint32_t reference) const {
     return is_leaf(reference) || std::ranges::all_of(guide_.nodes[reference], [](const Child& child) {
              return child.reference == TriangleTree::kNoChild || is_leaf(child.reference);
            });
   }
 
-  /// Does the guide divide it?
+  /// Returns whether the guide divides the part.
   [[nodiscard]] bool is_divided(const Part& part) const {
     return boxes_of(part).size() > kTogether && !is_last(part.reference);
   }
 
-  /// Of the guide's nodes that divide.
+  /// Computes sizes for the guide's nodes that divide.
   void find_size(const Part& part) {
     if (!is_divided(part)) return;
     Size size;
@@ -242,7 +244,7 @@ class Along {
     TriangleTree::Node& node = tree_.nodes[at.node] = {};
     for_each_child(part, [&](const Part& child) {
       const Size size = size_of_part(child);
-      if (size.leaves == 0) return;  // no box is near it
+      if (size.leaves == 0) return;  // no box is near the part
       node[count].reference = next.reference(size);
       const auto below = [this, child, next, &box = boxes[count]] { box = place(child, next); };
       if (boxes_of(child).size() > kTask)
@@ -264,9 +266,9 @@ class Along {
 
   const TriangleTree& guide_;
   const BoxesNear& boxes_;
-  std::vector<std::uint32_t> end_;  // of each of the guide's nodes
+  std::vector<std::uint32_t> end_;  // for each of the guide's nodes, the end of its leaves
   Buckets by_leaf_;
-  std::vector<Size> size_;  // of each of them that divides
+  std::vector<Size> size_;  // for each node that divides
   TriangleTree tree_;
   tbb::enumerable_thread_specific<Divider> dividers_;
 };

@@ -1,3 +1,5 @@
+// Refitting of a hierarchy's boxes for the next frame, and its cost by the surface area heuristic.
+
 #include "visibility/tree/tree_refit.hpp"
 
 #include "base/assert.hpp"
@@ -59,7 +61,7 @@ void refit_tree(TriangleTree& tree, const std::function<Bounds(std::uint32_t)>& 
       if (number != TriangleTree::kNoTriangle) add_to(its, box(number));
     }
   });
-  // Nodes have lower numbers than those below them. There are few: one for some fifty triangles.
+  // Nodes have lower indices than those below them. There are few: one for about fifty triangles.
   std::vector<Bounds> of_node(tree.nodes.size());
   for (std::size_t node = tree.nodes.size(); node-- > 0;) {
     Bounds all = nowhere();

@@ -1,3 +1,5 @@
+// Hierarchies as texels for shaders, with boxes rounded outward.
+
 #include "visibility/tree/tree_texels.hpp"
 
 #include "base/parallel.hpp"
@@ -18,7 +20,7 @@ float device_scale(const SceneFloats& scene) {
   float largest = 0;
   for (int axis = 0; axis < 3; ++axis)
     largest = std::max({largest, std::abs(scene.lower[axis]), std::abs(scene.upper[axis])});
-  // Of subnormal floats the inverse is none: they are scaled as far as floats go.
+  // Subnormal floats have no finite inverse: they are scaled as far as floats allow.
   return largest > 0 ? std::ldexp(1.0F, std::min(-std::ilogb(largest), 127)) : 1.0F;
 }
 
@@ -30,11 +32,11 @@ bool normal_is_known(const std::array<glm::vec3, 3>& corners) {
 
 namespace {
 
-/// Of a flat box: half an extent that no coordinate's last digit notices, but far from the subnormal numbers, each
-/// product with which costs a processor a hundred and more cycles.
+/// Half extent of a flat box: too small to change any coordinate, but far from subnormal numbers, each product with
+/// which costs a processor more than a hundred cycles.
 constexpr float kThinnest = 0x1p-40F;
 
-/// Of a positive float; as std::nextafter, which is a call.
+/// Returns the next larger float of a positive one; as std::nextafter, which is a function call.
 float next_above(float x) {
   constexpr float kMost = std::numeric_limits<float>::max();
   return std::bit_cast<float>(std::bit_cast<std::uint32_t>(std::min(x, kMost)) + 1);

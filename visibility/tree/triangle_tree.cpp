@@ -1,6 +1,7 @@
-// Binned surface area heuristic: I. Wald, On fast construction of SAH-based bounding volume hierarchies, 2007; eight
-// children as in Wald, Benthin, Boulos, Getting rid of packets, 2008: the largest is divided until there are eight.
-// What is divided are groups of neighbouring boxes (box_groups.hpp), and the last dozens in halves.
+// Builds an eight-wide bounding volume hierarchy by the binned surface area heuristic: I. Wald, On fast construction of
+// SAH-based bounding volume hierarchies, 2007; eight children as in Wald, Benthin, Boulos, Getting rid of packets,
+// 2008: the largest child is divided until there are eight. The divided items are groups of neighbouring boxes
+// (box_groups.hpp), and the last dozens are divided in halves.
 
 #include "visibility/tree/triangle_tree.hpp"
 
@@ -24,16 +25,16 @@ namespace {
 
 constexpr std::uint32_t kWidth = TriangleTree::kWidth;
 
-/// Of so many and fewer the heuristic says little that is worth its time: one node, whose leaves are full. Their edges,
-/// half as many again, fill another (tree_along.cpp).
+/// For at most this many boxes the heuristic is not worth its time: one node, whose leaves are full. Their edges, half
+/// as many again, fill another (tree_along.cpp).
 constexpr std::uint32_t kTogether = 5 * kWidth;
 
-/// Below so many nodes, groups are halved whatever they look like: a tree is never as deep as its boxes are many.
+/// Below this depth, groups are halved regardless of their shape: this bounds the tree's depth.
 constexpr std::uint32_t kDeep = 24;
 
-constexpr std::uint32_t kTask = 1U << 13U;  // boxes worth one
+constexpr std::uint32_t kTask = 1U << 13U;  // boxes worth a task
 
-/// Groups that follow one another.
+/// Consecutive groups.
 struct Range {
   std::span<BoxGroup> groups;
   std::uint32_t boxes = 0;
@@ -51,24 +52,24 @@ Range range_of(std::span<BoxGroup> groups) {
   return range;
 }
 
-/// What a division costs: boxes are tested in blocks of eight, as often as a ray meets what is around them.
+/// Returns the cost of a division: boxes are tested in blocks of eight, as often as a ray meets their bounds.
 double cost(double area, std::uint32_t boxes) {
   const std::uint32_t blocks = (boxes + kWidth - 1) / kWidth;
   return area * blocks;
 }
 
-/// Where groups may be divided, the cheapest way so far.
+/// The cheapest division of groups found so far.
 struct Division {
   double cost = std::numeric_limits<double>::infinity();
-  std::uint32_t uneven = 0;  // of equal costs, the one whose halves differ less
+  std::uint32_t uneven = 0;  // at equal costs, the division with the more even halves wins
   int axis = -1;
-  std::size_t bin = 0;       // the second half's first
-  std::uint32_t groups = 0;  // of the first half
+  std::size_t bin = 0;       // first bin of the second half
+  std::uint32_t groups = 0;  // groups of the first half
   std::array<std::uint32_t, 2> boxes{};
   std::array<BoxAround, 2> box;
 };
 
-/// Slabs of equal width along each axis, and what has its middle in each.
+/// Slabs of equal width along each axis, and the groups with their middles in each.
 class Bins {
  public:
   explicit Bins(const Range& range) : count_(std::clamp<std::size_t>(range.groups.size(), 4, kMost)) {
@@ -93,7 +94,7 @@ class Bins {
     const double middle = 0.5F * group.lower[axis] + 0.5F * group.upper[axis];
     return std::min(static_cast<std::size_t>((middle - lower_[axis]) * slabs_[axis]), count_ - 1);
   }
-  /// axis < 0: all middles are one.
+  /// Returns the best division; axis < 0: all middles are equal.
   [[nodiscard]] Division best(const Range& range) const {
     Division best;
     for (int axis = 0; axis < 3; ++axis) {
@@ -111,7 +112,7 @@ class Bins {
 
   void find_better(const Range& range, int axis, Division& best) const {
     const std::array<Bin, kMost>& bins = bins_[static_cast<std::size_t>(axis)];
-    std::array<double, kMost> areas;  // from each slab on
+    std::array<double, kMost> areas;  // areas from each slab on
     BoxAround box;
     for (std::size_t i = count_; i-- > 1;) {
       box.include(bins[i].box);
@@ -121,7 +122,7 @@ class Bins {
     std::uint32_t boxes = 0, groups = 0;
     bool is_better = false;
     for (std::size_t i = 1; i < count_; ++i) {
-      if (bins[i - 1].groups == 0) continue;  // as before
+      if (bins[i - 1].groups == 0) continue;  // same division as before
       box.include(bins[i - 1].box);
       boxes += bins[i - 1].boxes;
       groups += bins[i - 1].groups;
@@ -137,7 +138,7 @@ class Bins {
   }
 
   std::size_t count_;
-  glm::dvec3 lower_{0}, slabs_{0};  // slabs a unit
+  glm::dvec3 lower_{0}, slabs_{0};  // slabs in a unit of length
   std::array<std::array<Bin, kMost>, 3> bins_;
 };
 
@@ -148,7 +149,7 @@ Halves in_the_middle(const Range& range) {
   return {range_of(range.groups.first(half)), range_of(range.groups.subspan(half))};
 }
 
-/// Of at least two groups.
+/// Divides at least two groups.
 Halves divided(const Range& range) {
   const Bins bins(range);
   const Division best = bins.best(range);
@@ -159,11 +160,11 @@ Halves divided(const Range& range) {
           Range{range.groups.subspan(best.groups), best.boxes[1], best.box[1]}};
 }
 
-/// A node with what is below it, until all is put into its place: how many nodes and leaves that is, itself included.
+/// A node with its subtree, before it is placed: numbers of nodes and leaves, including itself.
 struct Planned {
   Range range;
   std::uint32_t nodes = 0, leaves = 0, depth = 0;
-  std::vector<Planned> children;  // none: at most kTogether boxes
+  std::vector<Planned> children;  // empty: at most kTogether boxes
 
   [[nodiscard]] bool is_leaf() const { return nodes == 0; }
 };
@@ -208,7 +209,7 @@ class Builder {
     return planned;
   }
 
-  /// Depth first, so that the leaves below a node follow one another.
+  /// Places nodes depth first, so that the leaves below a node are contiguous.
   void place(const Planned& planned, std::uint32_t number, std::uint32_t first_leaf) {
     TriangleTree::Node& node = tree.nodes[number] = {};
     if (planned.children.empty()) return place_leaves(planned, node, first_leaf);
@@ -238,7 +239,7 @@ class Builder {
   TriangleTree tree;
 
  private:
-  /// Which of two is divided later?
+  /// Returns whether a is divided later than b.
   [[nodiscard]] static bool before(const Range& a, const Range& b, std::uint32_t depth) {
     if (a.is_last() != b.is_last()) return a.is_last();
     const double area_a = depth < kDeep ? a.box.area() : 0, area_b = depth < kDeep ? b.box.area() : 0;
@@ -259,7 +260,7 @@ class Builder {
     return grouped_again_.emplace_back(std::move(groups));
   }
 
-  /// Leaves of at most kTogether boxes, as children of a node.
+  /// Places leaves of at most kTogether boxes, as children of a node.
   void place_leaves(const Planned& planned, TriangleTree::Node& node, std::uint32_t next_leaf) {
     std::array<Divided, kTogether> items;
     std::array<const NumberedBox*, kTogether> boxes;

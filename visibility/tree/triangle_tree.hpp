@@ -16,9 +16,9 @@
 
 namespace penumbra::visibility {
 
-/// An eight-wide bounding volume hierarchy over the triangles that cast shadow, by the surface area heuristic in blocks
-/// of eight. Made for one lane a child and one lane a triangle. A function of the scene alone, whatever the number of
-/// threads.
+/// An eight-wide bounding volume hierarchy over the triangles that cast shadows, by the surface area heuristic in
+/// blocks of eight. Designed for one lane for each child and one for each triangle. A function of the scene alone,
+/// independent of the number of threads.
 struct TriangleTree {
   static constexpr std::uint32_t kWidth = 8;
   static constexpr std::uint32_t kNoChild = 0xffffffffu;
@@ -32,23 +32,24 @@ struct TriangleTree {
   using Node = std::array<Child, kWidth>;
   using Leaf = std::array<std::uint32_t, kWidth>;  ///< triangles; kNoTriangle in unused slots at the end
 
-  UnsetList<Node> nodes;    ///< the root is node 0; empty when nothing casts shadow
-  UnsetList<Leaf> leaves;   ///< depth first: those below a node follow one another
-  std::uint32_t depth = 0;  ///< nodes on the longest way from root to leaf
+  UnsetList<Node> nodes;    ///< the root is node 0; empty if nothing casts shadows
+  UnsetList<Leaf> leaves;   ///< depth first: leaves below a node are contiguous
+  std::uint32_t depth = 0;  ///< nodes on the longest path from root to leaf
 
   /// Calls `visit(triangle)` for each triangle in a leaf whose box touches [lower, upper].
   template <typename Visit>
   void for_each_near(const glm::vec3& lower, const glm::vec3& upper, Visit&& visit) const;
 
-  /// Calls `visit(triangle)` for each triangle in a leaf whose box the volume touches: `volume.touches(lower, upper)`.
+  /// Calls `visit(triangle)` for each triangle in a leaf whose box satisfies `volume.touches(lower, upper)`.
   template <typename Volume, typename Visit>
   void for_each_in(const Volume& volume, Visit&& visit) const;
 
-  /// Does `visit(triangle)` hold for one of the triangles in the leaves whose boxes the segment p→l touches? Stops at
-  /// the first. Boxes are taken a little larger than they are (2⁻⁴⁰ of the segment), which outweighs double rounding.
+  /// Returns whether `visit(triangle)` is true for one of the triangles in leaves whose boxes the segment p→l touches;
+  /// stops at the first. Boxes are enlarged (by 2⁻⁴⁰ of the segment), which exceeds double rounding.
   template <typename Visit>
   bool any_along(const glm::dvec3& p, const glm::dvec3& l, Visit&& visit) const;
-  /// Likewise of the ray p + t · way, t ≥ 0.
+  /// Returns whether `visit(triangle)` is true for one of the triangles near the ray p + t · way, t ≥ 0, as any_along
+  /// does.
   template <typename Visit>
   bool any_along_ray(const glm::dvec3& p, const glm::dvec3& way, Visit&& visit) const;
 
@@ -59,7 +60,7 @@ struct TriangleTree {
 
 TriangleTree make_triangle_tree(const SceneFloats& scene);
 
-/// A tree of the same form over any boxes (those of edges, for example): leaves hold their numbers.
+/// Makes a tree of the same form over any boxes (of edges, for example): leaves contain their indices.
 TriangleTree make_tree_over(std::span<const Bounds> boxes);
 
 template <typename Visit>
@@ -86,8 +87,8 @@ void TriangleTree::for_each_near(const glm::vec3& lower, const glm::vec3& upper,
   }
 }
 
-/// A line p + t · way and a box: calls narrow(first, last) with the stretch of t between each pair of opposite planes;
-/// false if the line runs beside a pair.
+/// A line p + t · way and a box: calls narrow(first, last) with the range of t between each pair of opposite planes;
+/// returns false if the line is parallel to a pair and outside of it.
 class LineAndBox {
  public:
   LineAndBox(const glm::dvec3& p, const glm::dvec3& way) : p_(p), inverse_(1.0 / way) {}
@@ -111,7 +112,7 @@ class LineAndBox {
   glm::dvec3 p_, inverse_;
 };
 
-/// The stretch of a segment from p along `way` (p→l), 0 … 1, that is in a box.
+/// Computes the range of a segment from p along `way` (p→l), within 0 … 1, that is in a box.
 class SegmentInBox : private LineAndBox {
  public:
   using LineAndBox::LineAndBox;
@@ -127,8 +128,8 @@ class SegmentInBox : private LineAndBox {
   }
 };
 
-/// Does the ray p + t · way, t ≥ 0, touch a box? p is a float, so where it begins is not rounded; ends are taken a
-/// little apart, by more than double rounding of them.
+/// Tests whether the ray p + t · way, t ≥ 0, touches a box. p is a float, so its start is not rounded; ends of ranges
+/// are widened by more than their double rounding.
 class RayInBox : private LineAndBox {
  public:
   using LineAndBox::LineAndBox;

@@ -1,6 +1,6 @@
-// The definition of view samples (visibility/view_samples.hpp) along a tree. A pixel that cover() gives to a triangle
-// by rounding is beside it by less than a pixel, as rasterisers assume too (render/visibility_buffer.vert): so much do
-// boxes stick out.
+// View samples (visibility/view_samples.hpp) by traversal of a tree. A pixel that cover() gives to a triangle because
+// of rounding is outside of the triangle by less than a pixel, as rasterisers assume, too
+// (render/visibility_buffer.vert): boxes are enlarged by that much.
 
 #include "visibility/tree/view_walk.hpp"
 
@@ -37,7 +37,7 @@ TriangleTree tree_for(const SceneFloats& scene, const PinholeCamera& camera, std
   return make_tree_over(boxes);
 }
 
-/// The part of space that a rectangle of pixels sees: what is behind none of the four planes through its sides.
+/// The part of space that a rectangle of pixels sees: in front of the four planes through its sides.
 class SeenThrough {
  public:
   SeenThrough(const PinholeCamera& camera, std::span<const std::uint32_t> pixels) {
@@ -46,7 +46,7 @@ class SeenThrough {
       const std::uint32_t x = pixel % camera.width, y = pixel / camera.width;
       left = std::min(left, x), right = std::max(right, x), top = std::min(top, y), bottom = std::max(bottom, y);
     }
-    // A pixel more where there is one: the planes differ.
+    // One more pixel if there is one, so that the planes differ.
     left -= left > 0 ? 1 : 0, top -= top > 0 ? 1 : 0, ++right, ++bottom;
     const std::array corners{camera.ray(left, top), camera.ray(right, top), camera.ray(right, bottom),
                              camera.ray(left, bottom)};
@@ -60,7 +60,7 @@ class SeenThrough {
     }
   }
 
-  /// Certainly not of a box outside; boxes have a pixel to spare, beside which double rounds nothing.
+  /// Returns false only for boxes certainly outside; boxes are enlarged by a pixel, which exceeds double rounding.
   [[nodiscard]] bool may_meet(const Bounds& box) const {
     const glm::dvec3 middle = 0.5 * (glm::dvec3(box.lower) + glm::dvec3(box.upper)),
                      half = 0.5 * (glm::dvec3(box.upper) - glm::dvec3(box.lower));
@@ -76,7 +76,7 @@ class SeenThrough {
   std::array<Plane, 4> planes_;
 };
 
-/// Background stays where nothing is found.
+/// Completes view samples; pixels without a hit keep the background.
 ViewSamples complete(const SceneFloats& scene, const PinholeCamera& camera, const ViewWalk& walk,
                      std::span<const std::uint32_t> pixels, std::vector<std::int32_t> carriers) {
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, pixels.size(), 64), [&](const auto& range) {
@@ -98,7 +98,7 @@ void ViewWalk::meet(std::uint32_t x, std::uint32_t y, std::vector<Met>& met) con
     const std::uint32_t triangle = triangles_[i];
     if (const std::optional<double> t = cover(ray, scene_.corners(triangle))) met.push_back({*t, triangle});
   });
-  // Two triangles of the same corners: the first of the file.
+  // Two triangles with equal corners: the first of the file wins.
   std::ranges::sort(met, [&](const Met& a, const Met& b) {
     if (a.t != b.t) return a.t < b.t;
     if (scene_.comes_before(a.triangle, b.triangle)) return true;

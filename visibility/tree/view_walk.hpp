@@ -9,8 +9,8 @@
 
 namespace penumbra::visibility {
 
-/// What pixels' rays meet, by a tree of boxes: for cameras that rasterisers do not know, and for pixels where what is
-/// nearest has a hole. Agrees with carrier_of; microseconds a pixel.
+/// Finds the hits of pixels' rays by a tree of boxes: for cameras that rasterisers do not support, and for pixels whose
+/// nearest surface has a hole. Agrees with carrier_of; takes microseconds for a pixel.
 class ViewWalk {
  public:
   struct Met {
@@ -18,29 +18,30 @@ class ViewWalk {
     std::uint32_t triangle = 0;
   };
 
-  /// Of these triangles of the scene. Both must outlive it.
+  /// Uses only these triangles of the scene. `scene` and `camera` must outlive this object.
   ViewWalk(const SceneFloats& scene, const PinholeCamera& camera, std::vector<std::uint32_t> triangles);
 
-  /// All of them that cover the pixel, nearest first; at equal t in the order of SceneFloats::comes_before.
+  /// Lists all of the triangles that cover the pixel, nearest first; at equal t in the order of
+  /// SceneFloats::comes_before.
   void meet(std::uint32_t x, std::uint32_t y, std::vector<Met>& met) const;
-  /// carrier_of, if all triangles are among these.
+  /// Returns carrier_of, if all triangles are included.
   [[nodiscard]] std::int32_t carrier(std::uint32_t x, std::uint32_t y) const;
 
  private:
   const SceneFloats& scene_;
   const PinholeCamera& camera_;
   std::vector<std::uint32_t> triangles_;
-  TriangleTree tree_;  // its boxes stick out by a pixel: cover() rounds
+  TriangleTree tree_;  // its boxes are enlarged by a pixel: cover() rounds
 };
 
-/// All triangles that may be seen: those that have area.
+/// Returns all triangles that may be visible: those with an area.
 std::vector<std::uint32_t> triangles_with_area(const SceneFloats& scene);
 
-/// View samples of any camera.
+/// Returns the view samples of any camera.
 ViewSamples walk_view_samples(const SceneFloats& scene, const PinholeCamera& camera);
 
-/// View samples that were found as if every surface were solid: where what carries one has a hole, or is translucent,
-/// it is given to what is behind.
+/// Corrects view samples that were found as if every surface were opaque: where the carrier has a hole, or is
+/// translucent, the pixel is given to the surface behind.
 ViewSamples look_through(const SceneFloats& scene, const PinholeCamera& camera, ViewSamples solid);
 
 }  // namespace penumbra::visibility

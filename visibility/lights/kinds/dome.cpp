@@ -1,7 +1,7 @@
-// Domes: directions all around. Light samples are strata of luminance × solid angle, so that a sun in a picture has as
-// many as it has light: the unit square's y chooses the row of texels, and the place in it, by the sums of all rows, x
-// the texel of the row by its luminance (M. Pharr, W. Jakob, G. Humphreys, Physically Based Rendering, 12.6). Of one
-// radiance, rows of equal solid angle: heights are even, and angles around.
+// Domes: directions all around. Light samples are strata of luminance × solid angle, so that a sun in a picture gets
+// samples in proportion to its light: the unit square's y selects the row of texels, and the place in it, by the sums
+// of all rows, x the texel of the row by its luminance (M. Pharr, W. Jakob, G. Humphreys, Physically Based Rendering,
+// 12.6). For constant radiance, rows have equal solid angle: heights are evenly spaced, and so are angles.
 
 #include "base/assert.hpp"
 #include "base/error.hpp"
@@ -23,7 +23,7 @@
 namespace penumbra::visibility {
 namespace {
 
-/// Light samples by face.
+/// Adds light samples, sorted by face.
 void add_samples(Light& light, const std::vector<glm::vec3>& directions, const std::vector<glm::vec3>& colors) {
   std::array<std::vector<std::uint32_t>, kDomeFaces> of_face;
   for (std::uint32_t i = 0; i < directions.size(); ++i)
@@ -48,14 +48,14 @@ void make_dome(const scenes::LightShape& shape, const LightBuilder& to) {
         light.name, dome.up.x, dome.up.y, dome.up.z, dome.rotate);
   const DomeFrame frame = dome_frame(dome.up, 0), turned = dome_frame(dome.up, dome.rotate);
   light.dome = Light::Dome{};
-  // Right-handed: right × ahead of it is up.
+  // right-handed: right × ahead is up
   light.dome->axes = {glm::vec3(frame.right) + 0.0f, glm::vec3(frame.ahead) + 0.0f, glm::vec3(frame.up) + 0.0f};
   light.dome->half = dome.half;
   light.dome->even = to.picture == nullptr;
   light.sun = Light::Directions{light.dome->axes[0], light.dome->axes[1], 1};
   light.center = light.center_u = light.center_v = light.dome->axes[2];
   light.area = (dome.half ? 2 : 4) * std::numbers::pi;
-  light.rows = light.columns = 0;  // on no plane
+  light.rows = light.columns = 0;  // not on a plane
   light.row_shift.clear();
   const DomeSamples samples = dome_samples(to.picture, dome.half, to.unit);
   if (samples.places.empty())
@@ -65,7 +65,7 @@ void make_dome(const scenes::LightShape& shape, const LightBuilder& to) {
   std::vector<glm::vec3> directions;
   for (const SkyPlace& place : samples.places) {
     glm::vec3 direction = glm::vec3(turned.direction(place)) + 0.0f;
-    // Rounding must not take a direction below the plane that half a dome ends at.
+    // Rounding must not move a direction below the plane at which half a dome ends.
     if (dome.half && !(glm::dot(glm::dvec3(direction),
                                 glm::cross(glm::dvec3(light.dome->axes[0]), glm::dvec3(light.dome->axes[1]))) > 0))
       direction = light.dome->axes[2];
@@ -75,7 +75,7 @@ void make_dome(const scenes::LightShape& shape, const LightBuilder& to) {
 }
 
 bool is_dome_above_horizon(const UnshadowedLight& seen) {
-  if (seen.light().dome->face < 0) return true;  // what is below plays no part in V
+  if (seen.light().dome->face < 0) return true;  // the part below does not affect V
   const UnshadowedLight::Frame frame = seen.frame();
   return std::ranges::all_of(dome_face_corners(seen.light()), [&](const glm::dvec2& st) {
     return frame.height + st.x * frame.height_u + st.y * frame.height_v > 0;

@@ -1,4 +1,4 @@
-// Lights from scenes: what all kinds have in common.
+// Makes lights from scenes: parts common to all kinds.
 
 #include "visibility/lights/kinds/light_builder.hpp"
 

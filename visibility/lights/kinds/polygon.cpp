@@ -1,4 +1,4 @@
-// Polygons: flat and convex, with corners of their own.
+// Polygons: flat and convex, with their own corners.
 
 #include "visibility/lights/form_factor.hpp"
 #include "visibility/lights/kinds/light_kinds.hpp"
@@ -16,17 +16,17 @@
 namespace penumbra::visibility {
 namespace {
 
-/// The least of a triangle's heights: what a corner that rounding moved turns its plane by is in proportion to its
-/// inverse.
+/// Returns the smallest of a triangle's heights: the rotation of its plane by a rounded corner is inversely
+/// proportional to it.
 double least_height(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
   const double longest = std::max({glm::length(b - a), glm::length(c - b), glm::length(a - c)});
   return longest > 0 ? glm::length(glm::cross(b - a, c - a)) / longest : 0;
 }
 
-/// How high a triangle of a polygon's stored corners must be for its plane to be the polygon's: so that rounding
-/// of one corner, by √3 · 2⁻²⁴ of the largest coordinate at most, turns it by √3 / 128 (.8 degrees) at most, and of all
-/// three by twice that: gradients of barycentric coordinates are no longer than 1 / height and add up to 0. Of a
-/// polygon that is smaller than that, an eighth of the highest there is, about.
+/// Returns the height that a triangle of a polygon's stored corners needs to define the polygon's plane: so that
+/// rounding of one corner, by √3 · 2⁻²⁴ of the largest coordinate at most, rotates it by √3 / 128 (0.8 degrees) at
+/// most, and of all three by twice that: gradients of barycentric coordinates are no longer than 1 / height and add up
+/// to 0. For a polygon that is smaller than that, about an eighth of the largest height.
 double enough_height(const std::vector<glm::vec3>& corners) {
   const glm::dvec3 first(corners.front());
   glm::dvec3 farthest = first;
@@ -49,7 +49,7 @@ void make_polygon(const scenes::LightShape& shape, const LightBuilder& to) {
   if (count < 3) to.refuse_zero_area(" (a polygon needs three corners)");
 
   std::vector<double> area_up_to(count - 1, 0.0);  // of the fan triangles 1 … i; triangle i has corners 0, i, i + 1
-  glm::dvec3 normal{0};                            // twice the polygon's area long
+  glm::dvec3 normal{0};                            // length: twice the polygon's area
   for (std::size_t i = 1; i + 1 < count; ++i) {
     const glm::dvec3 doubled = glm::cross(corners[i] - corners[0], corners[i + 1] - corners[0]);
     normal += doubled;
@@ -60,8 +60,8 @@ void make_polygon(const scenes::LightShape& shape, const LightBuilder& to) {
   for (const glm::dvec3& corner : corners) light.outline.push_back(to.stored(corner));
 
   // The plane of condition (2): the first three corners that are not on a line, nor so nearly that rounding would
-  // choose the plane. If rounding has turned them, they are swapped so that the light still emits to the side it was
-  // meant to.
+  // determine the plane. If rounding has reversed them, they are swapped so that the light still emits to the intended
+  // side.
   const double enough = enough_height(light.outline);
   bool found = false;
   for (std::size_t i = 0; i < count && !found; ++i) {
@@ -117,7 +117,7 @@ bool is_polygon_above_horizon(const UnshadowedLight& seen) {
 double polygon_form_factor(const UnshadowedLight& seen) {
   const Light& light = seen.light();
   const glm::dvec3 center = seen.frame().center, &along = seen.along(), &n = seen.normal();
-  // In the frame's plane, as V and parts have it: three corners that are close together may tilt it a good deal.
+  // Computed in the frame's plane, as V and parts are: three corners that are close together may tilt it considerably.
   const auto in_plane = [&](const glm::dvec3& way) { return way - glm::dot(along, way) * along; };
   FormFactorLoop loop(n);
   for (std::size_t i = 0; i < light.outline.size(); ++i) {
@@ -126,7 +126,7 @@ double polygon_form_factor(const UnshadowedLight& seen) {
                      b = center + in_plane(to - glm::dvec3(light.center));
     loop.add({a, b, in_plane(to - from)}, glm::dot(n, a), glm::dot(n, b));
   }
-  return std::abs(loop.sum());  // an outline may run either way around
+  return std::abs(loop.sum());  // an outline may have either orientation
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Spheres: each p sees a disk of its own (light_frame_from), so that no points are stored. With a cone: spot lamps.
+// Spheres: each p sees a different disk (light_frame_from), so that no points are stored. With a cone: spot lamps.
 
 #include "visibility/lights/kinds/light_kinds.hpp"
 

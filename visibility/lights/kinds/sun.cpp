@@ -1,4 +1,4 @@
-// Suns: directions around one, the disk at distance 1 whose radius is the tangent of half the angle.
+// Suns: directions around a middle one, the disk at distance 1 whose radius is the tangent of half the angle.
 
 #include "base/error.hpp"
 #include "visibility/axes_around.hpp"
