@@ -6,7 +6,7 @@
 
 namespace penumbra::volumes {
 
-/// The family's table of methods; the best come first.
+/// Returns the family's table of methods, the best first.
 std::span<const engines::MethodRow> methods();
 
 }  // namespace penumbra::volumes

@@ -51,7 +51,8 @@ void put_least_first(std::span<Divided> items, std::size_t first, int axis, floa
                      });
     return;
   }
-  constexpr std::int32_t kSteps = 1 << 24;  // keys along the axis, each with as many places below it as items
+  // Keys along the axis; below each, as many positions as items.
+  constexpr std::int32_t kSteps = 1 << 24;
   alignas(64) std::array<std::int32_t, kCounted> keys, below;
   const double steps = upper > lower ? kSteps / (static_cast<double>(upper) - lower) : 0;
   for (std::size_t i = 0; i < items.size(); ++i) {

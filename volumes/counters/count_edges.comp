@@ -4,55 +4,63 @@
 #include "volumes/edges/device/edge_scatter.glsl"
 #include "volumes/counters/depth_complexity.shared.h"
 
-// Second pass of depth complexity, a workgroup a view sample: one counter a light sample. D, the number of triangles
-// between p and a light point, is counted triangle by triangle at the corner c0 of the light's frame. On the straight way from c0 to a
-// light sample it changes by k_e(p) wherever the way crosses a projected edge. One lane an edge while edges are projected,
-// one lane a light sample while they are counted. Light samples as near to an edge as rounding reaches are asked about.
-// What is right about this, and every bound: docs/depth-complexity.md.
+// Second pass of depth complexity (Laine et al. 2005), a workgroup for each view sample: one counter for each light
+// sample. D, the number of triangles between p and a light point, is counted triangle by triangle at the corner c0 of
+// the light's frame. On the straight segment from c0 to a light sample D changes by k_e(p) at each crossing with a
+// projected edge. One lane for each edge while edges are projected, one lane for each light sample while they are
+// counted. Light samples within rounding of an edge become questions to the host. docs/depth-complexity.md has the
+// proof and derives every bound.
 
 layout(constant_id = 2) const uint kSamples = 256;        // light samples
-layout(constant_id = 3) const uint kWords = 8;            // of a mask
-layout(constant_id = 4) const uint kHalves = 0;           // 1: a silhouette counts ±1 and no D at c0 is known (variant=laine)
-layout(constant_id = 5) const uint kKeepsDepths = 0;      // 1: write the counters too
+layout(constant_id = 3) const uint kWords = 8;            // words of a mask
+layout(constant_id = 4) const uint kHalves = 0;           // 1: a silhouette counts ±1 and D at c0 is unknown
+                                                          // (variant=laine)
+layout(constant_id = 5) const uint kKeepsDepths = 0;      // 1: writes the counters, too
 
-// An edge record (EdgeTexels), a texel buffer each: (a, plane 1), (b, plane 2), (n 1), (anchor 1), (n 2), (anchor 2).
+// An edge record (EdgeTexels), a texel buffer for each: (a, plane 1), (b, plane 2), (n 1), (anchor 1), (n 2), (anchor
+// 2).
 layout(binding = 3) uniform usamplerBuffer record_a;
 layout(binding = 4) uniform usamplerBuffer record_b;
 layout(binding = 5) uniform usamplerBuffer record_n1;
 layout(binding = 6) uniform usamplerBuffer record_anchor1;
 layout(binding = 7) uniform usamplerBuffer record_n2;
 layout(binding = 8) uniform usamplerBuffer record_anchor2;
-// A triangle: (a, triangle), (b, plane), (c, light that it is the body of).
+// A triangle: (a, triangle), (b, plane), (c, light whose body it is).
 layout(binding = 9) uniform usamplerBuffer corner_a;
 layout(binding = 10) uniform usamplerBuffer corner_b;
 layout(binding = 11) uniform usamplerBuffer corner_c;
-layout(scalar, binding = 12) readonly buffer Places { vec2 places[]; };   // light samples in the frame, from c0: [0, 2]²
-layout(scalar, binding = 13) writeonly buffer Masks { uint masks[]; };    // visible: bit j mod 32 of word j / 32
+layout(scalar, binding = 12) readonly buffer Places { vec2 places[]; };   // light samples in the frame, relative to c0:
+                                                                          // [0, 2]²
+layout(scalar, binding = 13) writeonly buffer Masks { uint masks[]; };    // visible samples: bit j mod 32 of word j /
+                                                                          // 32
 layout(scalar, binding = 14) writeonly buffer Counts { uint counts[]; };  // visible light samples of a pixel
 layout(scalar, binding = 15) buffer Questions {
   QuestionHead asked;
   DepthQuestion questions[];
 };
 layout(scalar, binding = 16) writeonly buffer Depths { int depths[]; };
-layout(scalar, binding = 17) readonly buffer Touched { uint touched_words[]; };  // light samples that something touches
+// light samples that some triangle touches
+layout(scalar, binding = 17) readonly buffer Touched { uint touched_words[]; };
 
 const uint kQueue = 64;
-const uint kEach = 8;                                     // light samples of a lane at a time
+const uint kEach = 8;                                     // light samples that a lane handles at a time
 
 shared int counters[kSamples];
 shared uint open_words[kWords], visible_words[kWords];
-shared vec4 queue_ends[kQueue];                           // (a, b) from c0
+shared vec4 queue_ends[kQueue];                           // (a, b) relative to c0
 shared vec2 queue_more[kQueue];                           // (error, k)
 
 ViewSample at;
 vec3 from_center;
-float lift_per_length;                                    // lift_of
-bool open_pixel, cut_off;                                 // everything is for the host; a loop did not run to its end
-bool side_in_doubt, on_triangle;                          // p within rounding of a triangle's plane; on one that occludes
+float lift_per_length;                                    // see lift_of
+bool open_pixel, cut_off;                                 // open_pixel: the host decides everything; cut_off: a loop
+                                                          // ended early
+bool side_in_doubt, on_triangle;                          // side_in_doubt: p is within rounding of a triangle's plane;
+                                                          // on_triangle: p is on one that occludes
 
-// The passes below run with cells of the frame's half-sizes: (X, Y) from the middle is (s, t).
+// The passes below use cells of the frame's half-sizes: (X, Y) from the middle is (s, t).
 
-// Where p + d appears on the light, from c0, and its height over p.
+// Returns the place of p + d on the light, relative to c0, and its height over p.
 precise vec3 project(vec3 d) {
   precise const float w = -dot(axis, d);
   precise const float q = at.height / w;
@@ -60,7 +68,7 @@ precise vec3 project(vec3 d) {
   return vec3(seen, w);
 }
 
-// The error of a projected point's coordinates. (bound X)
+// Returns the error of a projected point's coordinates. (bound X)
 float error_of(float far, float w, float from_foot, float away) {
   const float q = at.height / w, along_normal = (4.0 + 4.0 * skew) * (far / w + away / at.height);
   return kRound * (8.0 * per_length * far * q + from_foot * (along_normal + 8.0) + per_length * 4.0 * away +
@@ -68,7 +76,7 @@ float error_of(float far, float w, float from_foot, float away) {
          (per_length + from_foot / at.height) * push.deviation;
 }
 
-// sgn(n · (p − anchor)); `open` if that is within its error.
+// Returns sgn(n · (p − anchor)); sets `open` if it is within its error.
 int side_seen(vec3 n, vec3 anchor, inout bool open) {
   precise const vec3 d = at.p - anchor;
   precise const float f = dot(n, d);
@@ -76,8 +84,8 @@ int side_seen(vec3 n, vec3 anchor, inout bool open) {
   return f > 0.0 ? 1 : f < 0.0 ? -1 : 0;
 }
 
-// What a triangle adds to k_e. That of the carrier's plane: nothing; where silhouettes of closed meshes must stay closed,
-// what it adds as seen from a little above p.
+// Returns a triangle's contribution to k_e. The carrier's plane contributes nothing; but where silhouettes of closed
+// meshes must stay closed, it contributes as seen from slightly above p.
 int side_of(vec3 n, vec3 anchor, uint plane, inout bool open) {
   const bool own = plane == at.plane && n != vec3(0.0);
   if (own && kHalves == 0) return 0;
@@ -88,14 +96,14 @@ int side_of(vec3 n, vec3 anchor, uint plane, inout bool open) {
 }
 
 struct Edge {
-  vec2 a, b;                                              // from c0
+  vec2 a, b;                                              // relative to c0
   float error;
   int k;
   bool matters;
 };
 
-// This lane's edge. Its part that appears beyond a window of twice the light is cut away, so that ends near p's height, or
-// behind p, do not spoil what is in it; an uncut end is the same for all edges that meet in it.
+// Computes this lane's edge. Its part outside of a window of twice the light is clipped, so that ends near p's height,
+// or behind p, do not affect precision in the window; an unclipped end is the same for all edges that meet in it.
 Edge see(uint slot, bool used) {
   const int texel = int(slot);
   const uvec4 t0 = texelFetch(record_a, texel), t1 = texelFetch(record_b, texel), t2 = texelFetch(record_n1, texel);
@@ -127,7 +135,7 @@ Edge see(uint slot, bool used) {
   const float away = length(from_center);
   const vec2 foot = at.foot - (first_cell - half_cells);
   const float foot_a = length(seen_a.xy - foot), foot_b = length(seen_b.xy - foot);
-  // p within rounding of a triangle's plane: seen from it that is a sliver. (bound sliver)
+  // p within rounding of a triangle's plane: seen from p the triangle is a sliver. (bound sliver)
   const float sliver = open ? 16.0 * kRound * max(length(anchor1 - at.p), length(anchor2 - at.p)) : 0.0;
   const float far_start = (cut ? far : far_a) + (from > 0.0 ? mix(cut_off_by.x, cut_off_by.y, from) : cut_off_by.x);
   const float far_end = (cut ? far : far_b) + (to < 1.0 ? mix(cut_off_by.x, cut_off_by.y, to) : cut_off_by.y);
@@ -137,7 +145,7 @@ Edge see(uint slot, bool used) {
   const bool seen = used && (both != 0 || open) && from <= to;
   const float least = 64.0 * kRound;
   const bool through_p = seen && (seen_a.z < least * max(far, far_start) || seen_b.z < least * max(far, far_end));
-  open_pixel = open_pixel || through_p;                   // it passes through p within rounding
+  open_pixel = open_pixel || through_p;                   // the edge passes through p within rounding
   side_in_doubt = side_in_doubt || (seen && open);
   Edge edge;
   edge.a = seen_a.xy;
@@ -151,18 +159,20 @@ Edge see(uint slot, bool used) {
   return edge;
 }
 
-// The direction of an edge that appears with these differences of its ends; any direction where they are so near that it
-// is a point beside its error of 2⁻¹⁷ of a cell or more (bound near). (1e-12)² is a normal float, so the length is right.
+// Returns the unit direction of an edge with these differences of its ends; any direction where the ends are so close
+// that the edge is a point relative to its error of 2⁻¹⁷ of a cell or more (bound near). (1e-12)² is a normal float, so
+// the length is right.
 vec2 direction_of(vec2 d, float size) { return size > 1e-12 ? d / size : vec2(1.0, 0.0); }
 
-// Is x as near to the edge from a to b as `error`? `direction` is of unit length.
+// Returns whether x is within `error` of the edge from a to b. `direction` has unit length.
 bool is_near(vec2 x, vec2 a, vec2 direction, float size, float error) {
   const vec2 d = x - a;
   const float forward = dot(d, direction), aside = direction.x * d.y - direction.y * d.x;
   return abs(aside) < error && forward > -error && forward < size + error;
 }
 
-// Which side of the way from c0 to x a point is on: one decision for all edges that meet in it.
+// Returns the side of the segment from c0 to x on which a point lies: one decision for all edges that meet in the
+// point.
 precise float beside_way(vec2 x, vec2 point) {
   precise const float left = x.x * point.y;
   precise const float right = x.y * point.x;
@@ -214,7 +224,8 @@ void drain(uint queued) {
   subgroupBarrier();
 }
 
-// Some devices run what a branch leaves out: `drain` is called once for many edges, not in the loop that collects them.
+// Some devices execute code that a branch skips: `drain` is called once for many edges, not in the loop that collects
+// them.
 void count_list(uint head) {
   uint queued = 0, piece = head, i = 0;
   uint count = piece == kNone ? 0 : lists[piece + 1];
@@ -222,7 +233,7 @@ void count_list(uint head) {
     for (; i < count && queued + kLanes <= kQueue; i += kLanes) {
       const bool used = i + gl_SubgroupInvocationID < count;
       const Edge edge = see(lists[piece + 2 + (used ? i + gl_SubgroupInvocationID : 0)], used);
-      // c0 as near to it: D at c0 is not that of the edges as projected.
+      // If c0 is that close to an edge, D at c0 does not correspond to the edges as projected.
       const vec2 d = edge.b - edge.a;
       const float size = sqrt(dot(d, d));
       open_pixel = open_pixel || (edge.matters && is_near(vec2(0.0), edge.a, direction_of(d, size), size, edge.error));
@@ -240,7 +251,7 @@ void count_list(uint head) {
       i = 0;
       count = piece == kNone ? 0 : lists[piece + 1];
     } else if (room) {
-      cut_off = true;                                     // the loop above was
+      cut_off = true;                                     // the loop above was cut off
       break;
     }
     if (!room || piece == kNone) {
@@ -258,15 +269,15 @@ void ask(uint pixel, uint word, uint bits) {
   if (question < push.question_capacity) questions[question] = DepthQuestion(pixel, word, bits);
 }
 
-// The whole mask is one answer: all visible, none (nobody reads the mask then), or all open. Without a loop: a driver that
-// ended one may have no turns left.
+// Writes one result for the whole mask: all visible, none visible (the mask is then not read), or all open. Has no
+// loop: a driver that ended a loop may have no iterations left.
 void settle_whole(uint pixel, bool visible, bool open) {
   if (gl_SubgroupInvocationID != 0) return;
   counts[pixel] = visible ? kSamples : 0;
   if (open) ask(pixel, kAllWords, 0);
 }
 
-// Takes light samples not strictly above the carrier's plane away: `dark` for counters. (bound horizon)
+// Sets counters of light samples not strictly above the carrier's plane to `kDark`. (bound horizon)
 const int kDark = 0x40000000;
 void cut_at_horizon(vec3 above, float error) {
   uint j = gl_SubgroupInvocationID;
@@ -281,7 +292,8 @@ void cut_at_horizon(vec3 above, float error) {
 
 bool is_open(uint j) { return (open_words[j / 32] >> (j % 32) & 1) != 0; }
 
-// (counter, light sample) of the light sample with the least counter of those that are not open; kNone if there is none.
+// Returns (counter, light sample) of the light sample with the smallest counter among those that are not open; kNone if
+// there is none.
 uvec2 least() {
   int low = kDark;
   uint j = gl_SubgroupInvocationID;
@@ -312,14 +324,15 @@ void main() {
   on_triangle = false;
 
   const bool receives = at.carrier != kNone;
-  // (2) p strictly on an emitting side of the light's plane. (bound level)
+  // Condition (2): p strictly on an emitting side of the light's plane. (bound level)
   const float error_level = level_error(at.p);
   const bool this_side = receives && at.height > error_level, other_side = receives && at.height < -error_level;
   if (!this_side) {
     if (push.side > 0.0 && !(other_side && push.keeps_rest != 0)) settle_whole(pixel, !receives, receives && !other_side);
     return;
   }
-  // (1) The light sample strictly above the carrier's plane: one half-plane of the light. (bound horizon)
+  // Condition (1): the light sample strictly above the carrier's plane, which is one half-plane of the light. (bound
+  // horizon)
   const vec3 towards = -from_center;
   const vec3 above = vec3(dot(at.normal, push.u), dot(at.normal, push.v), dot(at.normal, towards));
   const float error_above = 16.0 * kRound * (size1(towards) + size1(push.u) + size1(push.v) + size1(at.p)) + push.deviation;
@@ -344,7 +357,7 @@ void main() {
     cut_off = cut_off || j < kSamples;
   }
   const bool flat_way = sees_flat(length(from_center), at.height);
-  // On a triangle within rounding: half of all ways from p depend on which side of it p is. (bound on)
+  // p is on a triangle within rounding: half of all directions from p depend on the side that p is on. (bound on)
   const bool on_some = subgroupAny(side_in_doubt) && subgroupAny(on_triangle);
   if (subgroupAny(open_pixel || cut_off) || on_some || flat_way || below) {
     settle_whole(pixel, false, !below);

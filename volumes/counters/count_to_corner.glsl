@@ -1,9 +1,9 @@
-// D at the corner of the light's frame. Included by count_edges.comp, after what it knows of its view sample.
+// Counts D at the corner of the light's frame. Included by count_edges.comp, after its data about the view sample.
 
-// How many triangles the segment from p to c0 meets, one lane a triangle (Woop et al. 2013: in coordinates with the ray as
-// third axis, what decides is three products in two dimensions). (bound corner)
+// Returns the number of triangles that the segment from p to c0 meets, one lane for each triangle (Woop et al. 2013: in
+// coordinates with the ray as third axis, three two-dimensional products decide). (bound corner)
 uint count_to_corner(uint head) {
-  const vec2 lean = (first_cell - half_cells - at.foot) / at.height;  // the ray's way for one unit of height
+  const vec2 lean = (first_cell - half_cells - at.foot) / at.height;  // the ray's direction for one unit of height
   uint met = 0, piece = head;
   for (; piece != kNone; piece = lists[piece]) {
     const uint count = lists[piece + 1];
@@ -25,7 +25,8 @@ uint count_to_corner(uint head) {
       const float error = (2.0 * error_x + 4.0 * kRound * size) * size + 2.0 * error_x * error_x;
       const bool one_sign = all(greaterThan(f, vec3(error))) || all(lessThan(f, vec3(-error)));
       const bool passes = any(greaterThan(f, vec3(error))) && any(lessThan(f, vec3(-error)));
-      // The height over p at which the line meets the triangle's plane: a mean of the corners', with weights f.
+      // Height over p of the intersection of line and triangle's plane: the mean of the corners' heights, with weights
+      // f.
       const float total = f.x + f.y + f.z, meeting = (f.y * w.x + f.z * w.y + f.x * w.z) / total;
       const float slack = 16.0 * kRound * (far + push.reach), error_w = slack + 6.0 * error * far / max(abs(total), 1e-30);
       const float lowest = min(w.x, min(w.y, w.z)), highest = max(w.x, max(w.y, w.z));

@@ -1,7 +1,7 @@
 // S. Laine, T. Aila, U. Assarsson, J. Lehtinen, T. Akenine-Möller, Soft shadow volumes for ray tracing, 2005: counters
-// of light samples changed at silhouette edges. We depart from it (docs/depth-complexity.md): candidates come from a
-// hierarchy of edges instead of wedges in a hemicube, signed multiplicities make it right for any soup, the constant is
-// counted at a certified corner, and what rounding leaves open is decided exactly.
+// of light samples that change at silhouette edges. Departures (docs/depth-complexity.md): candidates come from a
+// hierarchy of edges instead of wedges in a hemicube, signed multiplicities make it correct for any soup, the constant
+// is counted at a certified corner, and cases left open by rounding are decided exactly.
 
 #include "volumes/counters/methods.hpp"
 
@@ -27,7 +27,7 @@
 namespace penumbra::volumes {
 namespace {
 
-constexpr std::uint32_t kQueued = 64;         // edges, as in count_edges.comp
+constexpr std::uint32_t kQueued = 64;         // edges in the queue, as in count_edges.comp
 constexpr std::size_t kMostEdges = 1U << 29;  // |k_e| of a record is at most 2: no counter can overflow
 
 enum class Variant { soup, laine, forest };
@@ -71,12 +71,12 @@ visibility::MeshVerdict depth_complexity_verdict(const mesh::Diagnosis& mesh) {
             "triangles without area, which cast nothing, and where variant=laine is only approximate"}})};
 }
 
-/// What vector units can do: variant=soup, which leaves out edges that are no silhouettes.
+/// Returns whether vector units support the options: variant=soup, which skips edges that are not silhouettes.
 bool can_be_native(const visibility::ParsedOptions& options) {
   return options[kVariant] == Variant::soup && options[kCrop];
 }
 
-/// Throws UsageError where the chosen variant does not have an option that is given.
+/// Throws UsageError if the chosen variant does not have a given option.
 visibility::ParsedOptions parse(const visibility::MethodDescription& description,
                                 const visibility::MethodOptions& given) {
   visibility::ParsedOptions options = visibility::parse_options(description, given);
@@ -130,7 +130,8 @@ class DepthComplexity final : public EdgeMethod, public DepthCounters {
   void evaluate(const visibility::Tile& tile) override {
     asked_.clear();
     const std::uint32_t pixels = tile.row_count * samples().width;
-    if (variant_ == Variant::laine) questions().want(pixels + pixels / 8);  // each asks for its reference ray
+    // every view sample asks for its reference ray
+    if (variant_ == Variant::laine) questions().want(pixels + pixels / 8);
     EdgeMethod::evaluate(tile);
   }
 
@@ -164,7 +165,7 @@ class DepthComplexity final : public EdgeMethod, public DepthCounters {
     return {.words = light().words_per_mask()};
   }
 
-  /// One counter a light sample, two bits of masks, and the queue of edges.
+  /// Shared memory: a counter for each light sample, two bits of masks, and the queue of edges.
   void check_shared_memory() const {
     const std::uint64_t needed = 4ULL * light().sample_count() + 8ULL * light().words_per_mask() + 24ULL * kQueued;
     if (needed <= device().limits().max_shared_memory) return;
@@ -196,7 +197,7 @@ class DepthComplexity final : public EdgeMethod, public DepthCounters {
 
   [[nodiscard]] gpu::ScatterPush make_push() const override {
     gpu::ScatterPush push{};
-    push.rows = push.columns = 2;  // cells as large as the frame's half-sizes
+    push.rows = push.columns = 2;  // cells have the size of the frame's half-sizes
     return push;
   }
 
@@ -249,7 +250,7 @@ class DepthComplexity final : public EdgeMethod, public DepthCounters {
     return open;
   }
 
-  /// Where a reference ray is blocked (variant=laine), all that is not asked about singly is dark.
+  /// If a reference ray is blocked (variant=laine), all light samples that are not separate questions are dark.
   void answer(std::span<const device::OpenBits> questions) override {
     std::vector<device::gpu::MaskWord> dark;
     const std::uint32_t words = light().words_per_mask();
@@ -276,9 +277,9 @@ class DepthComplexity final : public EdgeMethod, public DepthCounters {
   std::vector<std::uint32_t> constants_;
   std::optional<render::Buffer> places_, touched_;
   std::unique_ptr<render::Buffer> depths_;
-  std::vector<gpu::DepthQuestion> asked_;                           // of the tile
-  std::vector<device::OpenBits> reference_rays_;                    // of the band, laine's
-  std::uint64_t references_ = 0, open_words_ = 0, open_pairs_ = 0;  // to be counted
+  std::vector<gpu::DepthQuestion> asked_;                           // questions of the tile
+  std::vector<device::OpenBits> reference_rays_;                    // of the band, for variant=laine
+  std::uint64_t references_ = 0, open_words_ = 0, open_pairs_ = 0;  // counters
 };
 
 }  // namespace

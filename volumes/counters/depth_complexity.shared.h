@@ -1,4 +1,4 @@
-// One struct, two languages (scalar layout): what the depth-complexity pass asks the host.
+// Structs shared by C++ and GLSL (scalar layout): questions of the depth-complexity pass to the host.
 #ifdef __cplusplus
 #pragma once
 #include <cstdint>
@@ -6,9 +6,9 @@ namespace penumbra::volumes::gpu {
 using uint = std::uint32_t;
 #endif
 
-// Light samples of a pixel (of the tile): those of `bits` of a word of its mask. With kReference: `word` is the number
+// Light samples of a pixel (of the tile): those of `bits` of a word of its mask. With kReference: `word` is the index
 // of the one light sample whose ray the whole mask depends on; `bits` is 0. With kAllWords: all light samples of the
-// pixel, whatever else is asked about it.
+// pixel, regardless of other questions about it.
 struct DepthQuestion {
   uint pixel;
   uint word;

@@ -1,8 +1,8 @@
 // V. Forest, L. Barthe, M. Paulin, Accurate shadows by depth complexity sampling, Computer Graphics Forum 27 (2), 2008:
-// a counter of each light sample in a few packed words a view sample, changed by the silhouettes of the light's centre
-// where their wedges are on the screen; shadow volumes of the centre give the constant. Departures: integers in 64 bits
-// in place of floats that blend; any soup, by signed multiplicity; five certified signs in place of look-up tables of
-// ±1; what rounding or overflow leaves open is decided exactly (docs/depth-complexity.md).
+// counters of light samples in a few packed words for each view sample, changed by the silhouettes of the light's
+// centre where their wedges are on the screen; shadow volumes of the centre give the constant. Departures: integers in
+// 64 bits instead of floats that blend; any soup, by signed multiplicity; five certified signs instead of look-up
+// tables of ±1; cases left open by rounding or overflow are decided exactly (docs/depth-complexity.md).
 
 #include "volumes/counters/packed_counters.hpp"
 
@@ -38,10 +38,10 @@ using visibility::SceneFloats;
 using visibility::Tile;
 using visibility::ViewSamples;
 
-/// All that a crossing has to do with: the light's hull, its centre and its samples. Where rounding to float32 has
-/// moved some of these out of the hull, they are corners, too.
+/// Returns the hull of all points that crossings depend on: the light's hull, its centre and its samples. Points that
+/// rounding to float32 has moved out of the hull become corners, too.
 LightHull hull_of(const Light& light) {
-  constexpr std::uint32_t kSides = 8;  // of a disk: loose, but quick
+  constexpr std::uint32_t kSides = 8;  // of a disk: loose, but fast
   LightHull hull = light_hull(light, kSides);
   const auto on_plane = [&](const glm::dvec3& x) {
     return mesh::side_of_plane(hull.corners[0], hull.corners[1], hull.corners[2], x) == mesh::Side::on;
@@ -57,11 +57,11 @@ LightHull hull_of(const Light& light) {
   return hull;
 }
 
-/// What packed_counters.frag reads of the light.
+/// Returns the light's data that packed_counters.frag reads.
 std::vector<double> table_of(const Light& light) {
   const gpu::WedgePush frame = wedge_push(light);
   const auto vector = [](const double(&x)[3]) { return glm::dvec3(x[0], x[1], x[2]); };
-  glm::dvec2 lower(0), upper(0);  // the centre
+  glm::dvec2 lower(0), upper(0);  // relative to the centre
   double off = 0;
   for (const glm::vec3& l : light.points) {
     const glm::dvec3 from_center = glm::dvec3(l) - vector(frame.c);
@@ -77,8 +77,8 @@ std::vector<double> table_of(const Light& light) {
   return table;
 }
 
-/// Does the triangle touch the way from the light's centre to this sample? Not if its plane holds the centre: then it
-/// has no silhouette.
+/// Returns whether the triangle touches the segment from the light's centre to this sample. False if its plane contains
+/// the centre: then it has no silhouette.
 bool touches(const std::array<glm::vec3, 3>& corners, const glm::vec3& center, const glm::vec3& l) {
   const auto& [a, b, c] = corners;
   const mesh::Side side = mesh::side_of_plane(a, b, c, center);
@@ -160,9 +160,9 @@ class PackedCounters final : public DepthCounters {
   bool as_published_;
   VolumeCount count_;
   visibility::TriangleTree tree_;
-  std::vector<std::uint32_t> on_plane_;  // how many triangles are on each SceneFloats::plane
+  std::vector<std::uint32_t> on_plane_;  // number of triangles on each SceneFloats::plane
   std::unique_ptr<WedgeRaster> raster_;
-  std::vector<std::uint32_t> constants_;  // of raster_
+  std::vector<std::uint32_t> constants_;  // specialization constants of raster_
   LightWedges wedges_;
   std::optional<std::vector<gpu::WedgeFace>> faces_;  // for this view
   const SceneFloats* scene_ = nullptr;
@@ -170,8 +170,8 @@ class PackedCounters final : public DepthCounters {
   const ViewSamples* samples_ = nullptr;
 
   Tile tile_;
-  std::vector<std::uint32_t> above_;  // of each pixel, the light samples over its carrier
-  std::vector<std::uint32_t> open_;   // those left to exact predicates
+  std::vector<std::uint32_t> above_;  // for each pixel, the light samples above its carrier's plane
+  std::vector<std::uint32_t> open_;   // light samples left to exact predicates
   std::vector<std::uint32_t> masks_;
   std::map<std::string, std::uint64_t> totals_;
   visibility::PassTimes host_times_;
@@ -205,7 +205,7 @@ void PackedCounters::prepare_light(const Light& light) {
   totals_.clear();
 }
 
-/// Between the light's centre and a light sample D would change where no edge is.
+/// Refuses triangles between the light's centre and a light sample, where D would change without an edge.
 void PackedCounters::refuse_what_reaches_through() const {
   const glm::vec3 center = visibility::center_of(*light_);
   for (const glm::vec3& l : light_->points) {
@@ -219,7 +219,7 @@ void PackedCounters::refuse_what_reaches_through() const {
   }
 }
 
-/// What the wedges are to look at. Leaves masks at what is known without them.
+/// Returns the receivers that the wedges apply to. Leaves masks at values that are known without wedges.
 std::vector<gpu::WedgeReceiver> PackedCounters::classify() {
   using Kind = VolumeCount::Kind;
   const std::span<const Kind> kinds = count_.kinds();
@@ -238,7 +238,7 @@ std::vector<gpu::WedgeReceiver> PackedCounters::classify() {
         CarrierHorizon(*scene_, tree_, carrier, samples_->facing[first + i], on_plane_[scene_->plane[carrier]] == 1)
             .at(p, count_.center(), *light_);
     above_[i] = horizon.above;
-    // On a triangle: it is crossed where p→l leaves it, but not met.
+    // p is on a triangle, which is crossed where p→l leaves it, but not met.
     const bool doubtful = count_.doubts()[i] != 0 || !appears_in_place(samples_->camera, p, first + i);
     if (kinds[i] == Kind::dark || doubtful) {
       open_[i] = horizon.above;
@@ -250,7 +250,7 @@ std::vector<gpu::WedgeReceiver> PackedCounters::classify() {
   return receivers;
 }
 
-/// By how much the edges have changed a counter: its digit.
+/// Returns the change of a counter by the edges: its digit.
 std::int64_t PackedCounters::change_of(std::size_t pixel, std::uint32_t sample) const {
   const std::uint64_t half = std::uint64_t{1} << (bits_ - 1);
   std::uint64_t word = static_cast<std::uint64_t>(raster_->sums()[pixel * (words() + 1) + sample / per_word()]);
@@ -259,13 +259,13 @@ std::int64_t PackedCounters::change_of(std::size_t pixel, std::uint32_t sample) 
   return static_cast<std::int64_t>(digit) - static_cast<std::int64_t>(half);
 }
 
-/// No counter has changed by more than the last word says.
+/// Returns whether a counter may have overflowed: none has changed by more than the last word.
 bool PackedCounters::may_have_overflowed(std::size_t pixel) const {
   const std::int64_t most = (std::int64_t{1} << (bits_ - 1)) - 1;
   return raster_->sums()[pixel * (words() + 1) + words()] > most;
 }
 
-/// A counted pixel's mask.
+/// Computes the mask of a counted pixel.
 void PackedCounters::resolve(std::size_t pixel) {
   if (!as_published_)
     open_[pixel] |= may_have_overflowed(pixel) ? above_[pixel] : raster_->doubts()[pixel] & above_[pixel];
@@ -296,7 +296,7 @@ void PackedCounters::evaluate(const Tile& tile) {
   answer();
 }
 
-/// Exactly.
+/// Decides open pairs exactly.
 void PackedCounters::answer() {
   std::vector<device::OpenBits> questions;
   for (std::size_t i = 0; i < open_.size(); ++i) {

@@ -9,19 +9,21 @@
 #include "volumes/counters/packed_counters.shared.h"
 #include "volumes/raster/determinant.glsl"
 
-// What one silhouette edge changes the counters of light samples by (V. Forest, L. Barthe, M. Paulin 2008): k where the
-// way from the light's centre c to the light sample l crosses it as seen from p, that is where the edge meets the
-// triangle p c l. Five signs of determinants say so; where one of them may be due to rounding, the host decides.
+// Change of the counters of light samples by one silhouette edge (V. Forest, L. Barthe, M. Paulin 2008): k where the
+// segment from the light's centre c to the light sample l crosses the edge as seen from p, that is where the edge meets
+// the triangle p c l. Five signs of determinants decide this; where one of them may be due to rounding, the host
+// decides.
 
 layout(constant_id = 0) const uint kSamples = 16;
-layout(constant_id = 1) const uint kBits = 16;             // of a counter
+layout(constant_id = 1) const uint kBits = 16;             // bits of a counter
 
-layout(scalar, binding = 0) readonly buffer Faces { WedgeFace faces[]; };  // the vertex shader's; one set for both
+layout(scalar, binding = 0) readonly buffer Faces { WedgeFace faces[]; };  // used by the vertex shader; one set for
+                                                                           // both stages
 layout(scalar, binding = 1) readonly buffer Receivers { WedgeReceiver receivers[]; };
 layout(scalar, binding = 2) buffer Sums { int64_t sums[]; };
-layout(scalar, binding = 3) buffer Doubts { uint doubts[]; };              // a bit a light sample
-// A box around c and the light samples in the light's frame: lower X, Y, upper X, Y; half of the room it has on every
-// side; how far a sample is off the light's plane, at most, in lengths of n; then the light samples, x y z.
+layout(scalar, binding = 3) buffer Doubts { uint doubts[]; };              // a bit for each light sample
+// A box around c and the light samples in the light's frame: lower X, Y, upper X, Y; half of its margin; the largest
+// distance of a sample from the light's plane, in lengths of n; then the light samples, x y z.
 layout(scalar, binding = 4) readonly buffer Samples { double samples[]; };
 layout(scalar, push_constant) uniform Push { WedgePush push; };
 
@@ -46,16 +48,16 @@ dvec3 sample_at(uint j) {
   return dvec3(samples[at], samples[at + 1], samples[at + 2]);
 }
 
-/// Takes away the part of an edge where an affine function, d at one end and e at the other, is negative.
+/// Clips the part of an edge where an affine function, d at one end and e at the other, is negative.
 void cut_range(double d, double e, inout double first, inout double last) {
   const double at = d / (d - e);
   if (d < 0.0LF) first = e < 0.0LF ? 2.0LF : max(first, at);
   if (d >= 0.0LF && e < 0.0LF) last = min(last, at);
 }
 
-/// False only if the edge does not appear among c and the light samples: most fragments need no sign. A point that is
-/// off the light's plane by g appears from p, G away from it, beside its place by less than 2 g / G of its way from p's
-/// foot: no more than the box has room for, or nothing is left out.
+/// Returns false only if the edge does not appear among c and the light samples: most fragments need no sign. A point
+/// at distance g from the light's plane appears from p, at distance G, displaced by less than 2 g / G of its distance
+/// from p's foot: at most the box's margin, else nothing is skipped.
 bool may_appear(dvec3 a, dvec3 b, dvec3 p) {
   const Foot foot = foot_of(p);
   const dvec3 from = project(a - p, foot), to = project(b - p, foot);
@@ -80,13 +82,13 @@ void main() {
   const dvec3 p = dvec3(receiver.p), a = dvec3(face_a), b = dvec3(face_b);
   const uint looked_at = may_appear(a, b, p) ? kSamples : 0;
   const dvec3 to_a = a - p, to_b = b - p, to_c = push.c - p, a_from_c = a - push.c, b_from_c = b - push.c;
-  // Of (p, c, a, b): the side of the plane p a b that c is on.
+  // Sign of (p, c, a, b): the side of the plane p a b that c is on.
   const Value center = det(to_c, to_a, to_b);
   const uint at_center = signs(center.value, center.bound);
   const int change = (at_center & kUp) != 0 ? -face_weight : face_weight;
 
-  // Those that are not certainly on the same side; hardly any in most of a footprint. Some devices run what a branch
-  // leaves out, but turn no more often than they must: so loops do the skipping.
+  // Light samples that are not certainly on the same side; hardly any in most of a footprint. Some devices execute code
+  // that a branch skips, but no more loop iterations than needed: so loops do the skipping.
   uint left = 0;
   for (uint j = 0; j < looked_at; ++j) {
     const Value here = det(sample_at(j) - p, to_a, to_b);
@@ -102,7 +104,7 @@ void main() {
     const dvec3 l = sample_at(j), to_l = l - p;
     const Value here = det(to_l, to_a, to_b), beyond = det(l - push.c, a_from_c, b_from_c);
     const Value first = det(to_a, to_c, to_l), last = det(to_b, to_c, to_l);
-    // The line a b goes through the triangle: between p and c, c and l, l and p it passes on one side.
+    // The line a b passes through the triangle: it passes the edges between p and c, c and l, l and p on one side.
     const uint around = at_center | opposite(signs(here.value, here.bound)) | signs(beyond.value, beyond.bound);
     const uint from = signs(first.value, first.bound), to = signs(last.value, last.bound);
     const bool apart = from == kUp && to == kUp || from == kDown && to == kDown;

@@ -1,4 +1,4 @@
-// Written once for C++ and GLSL: how counters of light samples are packed (docs/depth-complexity.md, variant=forest).
+// Shared by C++ and GLSL: packing of counters of light samples (docs/depth-complexity.md, variant=forest).
 #ifdef __cplusplus
 #pragma once
 #include <cstdint>
@@ -6,17 +6,17 @@ namespace penumbra::volumes::gpu {
 using uint = std::uint32_t;
 #endif
 
-/// Light samples, at most.
+/// Largest number of light samples.
 const uint kMostPacked = 16;
 
 /// A counter is a digit of `bits` bits, from the lowest on. A sum of digits d_j · 2^(bits · j) modulo 2⁶⁴, in any
-/// order, says each d_j as long as every |d_j| < 2^(bits − 1) at the end. The last word is the sum of |k_e| of all
-/// edges that changed a counter: no |d_j| is larger.
+/// order, determines each d_j as long as every |d_j| < 2^(bits − 1) at the end. The last word is the sum of |k_e| of
+/// all edges that changed a counter: no |d_j| is larger.
 
 /// Doubles before the light samples (packed_counters.frag).
 const uint kPackedHead = 6;
-/// Relative to the terms that X, Y and W are sums of, three roundings each: 2⁻⁴⁶ is more than 2⁴ times their error, so
-/// that what is kept of an edge is longer than its parameters' rounding, too.
+/// Relative to the terms of the sums X, Y and W, three roundings each: 2⁻⁴⁶ is more than 2⁴ times their error, so that
+/// the kept part of an edge is longer than its parameters' rounding, too.
 const double kAppearError = 1.0 / 70368744177664.0;
 
 #ifdef __cplusplus

@@ -1,3 +1,5 @@
+// Exact places where edges cross a light's plane, in rationals, for areas that rounding to float would affect.
+
 #include "volumes/edges/cut_ends.hpp"
 
 #include <glm/common.hpp>
@@ -30,7 +32,7 @@ mpq_class dot(const Rationals& a, const Rationals& b) {
 
 }  // namespace
 
-/// x = centre + s u + t v + h n: s is (x − centre) · (v × n) / n · n, t is (x − centre) · (n × u) / n · n.
+/// With x = centre + s u + t v + h n: s is (x − centre) · (v × n) / n · n, t is (x − centre) · (n × u) / n · n.
 struct CutEnds::Plane {
   glm::dvec3 center;
   LightWindow window;
@@ -48,8 +50,8 @@ struct CutEnds::Plane {
   [[nodiscard]] glm::dvec2 place(const glm::dvec3& a, const glm::dvec3& b) const {
     const Rationals from = difference(a, center), to = difference(b, center);
     mpq_class ha = abs(dot(n, from)), hb = abs(dot(n, to));
-    if (ha == 0 && hb == 0) ha = hb = 1;  // a and b are one point of the plane
-    // The mean of both, weighted with the other's height.
+    if (ha == 0 && hb == 0) ha = hb = 1;  // a and b are the same point of the plane
+    // The mean of both ends, each weighted with the other's height.
     const auto mean = [&](const Rationals& along) {
       return mpq_class((dot(along, from) * hb + dot(along, to) * ha) / ((ha + hb) * squared));
     };
@@ -85,7 +87,8 @@ std::optional<glm::dvec3> CutEnds::far_crossing(const glm::dvec3& a, const glm::
   const glm::dvec3 u = side_.plane[1] - side_.plane[0], v = side_.plane[2] - side_.plane[0], n = glm::cross(u, v);
   const glm::dvec3 from = a - side_.plane[0], to = b - side_.plane[0];
   const double ha = glm::dot(n, from), hb = glm::dot(n, to), between = std::abs(ha - hb);
-  // A determinant of three differences (certain_meeting.cpp), and the share of the way that it makes uncertain.
+  // Error of a determinant of three differences (certain_meeting.cpp), and the resulting uncertainty of the crossing's
+  // position.
   const double error = 0x1p-46 * glm::length(u) * glm::length(v) * (glm::length(from) + glm::length(to));
   if (!(between > 16 * error)) return std::nullopt;
   const glm::dvec3 x = from + (ha / (ha - hb)) * (to - from);
@@ -93,7 +96,7 @@ std::optional<glm::dvec3> CutEnds::far_crossing(const glm::dvec3& a, const glm::
   const glm::dvec2 at = in_window(x), size = side_.window.size();
   const double per_length =
       2 * std::max(glm::length(v - side_.window.shear * u) / size.x, glm::length(u) / size.y) / glm::length(n);
-  // Beside the window by an eighth of its half, of which the uncertainty is no more than a quarter.
+  // Outside of the window by an eighth of its half-size, of which the uncertainty is at most a quarter.
   const bool beside = std::max(std::abs(at.x), std::abs(at.y)) > 1.125;
   return beside && moved * per_length < 1.0 / 32 ? std::optional(side_.plane[0] + x) : std::nullopt;
 }
@@ -116,7 +119,7 @@ std::uint32_t CutEnds::in_plane(const Crossing& from, const Crossing& to) {
   const auto far = [&](const Crossing& at) {
     return at.a == at.b ? std::optional<glm::dvec3>() : far_crossing(stored(at.a), stored(at.b));
   };
-  // Both certainly on one outer side of the window? Then the edge is, too.
+  // If both ends are certainly outside of the same side of the window, so is the edge.
   const std::optional<glm::dvec3> one = far(from), other = far(to);
   if (one && other) {
     const glm::dvec2 a = in_window(*one - side_.plane[0]), b = in_window(*other - side_.plane[0]);

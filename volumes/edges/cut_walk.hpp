@@ -9,32 +9,33 @@
 #include <cstdint>
 #include <vector>
 
-/// A hierarchy of edges cut at a light's plane: only what the plane cuts is looked at, on either engine. Inside
+/// Cuts a hierarchy of edges at a light's plane: visits only parts that the plane cuts, for either engine. Inside
 /// volumes/ only.
 namespace penumbra::volumes {
 
-/// What casts shadow of a light, to be cut at its plane.
+/// Casters of a light, to be cut at its plane.
 struct CutInput {
   const visibility::SceneFloats& scene;
-  const visibility::TriangleTree& triangles;  ///< of the scene
+  const visibility::TriangleTree& triangles;  ///< triangles of the scene
   const EdgeCasters& casters;
-  std::int32_t without;  ///< the light whose body is not among them, or −1
+  std::int32_t without;  ///< the light whose body is excluded, or −1
   LightSide side;
-  bool exact_ends = false;  ///< keep where edges pass through the plane as it is before rounding
+  bool exact_ends = false;  ///< keeps the exact crossings with the plane, before rounding
 };
 
 enum class PlaneSide : std::uint8_t { in_front, behind, across };
-/// Of a box, not scaled. Certain of all but what is across: its corners are closer to the plane than rounding here can
-/// be wrong.
+/// Returns the side of an unscaled box. Certain except for boxes across the plane: their corners are closer to the
+/// plane than the rounding error.
 PlaneSide place_of(const LightSide& side, const glm::dvec3& middle, const glm::dvec3& half);
 
-/// Casters whose boxes the plane may cut, ascending.
+/// Returns casters whose boxes the plane may cut, ascending.
 std::vector<std::uint32_t> triangles_across(const CutInput& input);
 
-/// Drops from `tree` what is behind the plane and what it cuts; `records` gets of the latter what is in front. `Tree`
-/// says what a hierarchy is made of, eight children a node, eight records a leaf: roots(), reference(node, child)
-/// (TriangleTree::Child::reference), middle(node, child) and half(node, child), scaled; drop_child(node, child);
-/// has_record(leaf, slot), record(leaf, slot), not scaled; drop_record(leaf, slot).
+/// Removes from `tree` everything behind the plane and everything that the plane cuts; appends the parts of cut records
+/// in front of it to `records`. `Tree` gives access to a hierarchy with eight children for each node and eight records
+/// for each leaf: roots(), reference(node, child) (TriangleTree::Child::reference), middle(node, child) and half(node,
+/// child), scaled; drop_child(node, child); has_record(leaf, slot), record(leaf, slot), not scaled; drop_record(leaf,
+/// slot).
 template <typename Tree>
 void cut_hierarchy(Tree& tree, const LightSide& side, CutEnds* ends, std::vector<EdgeRecord>& records) {
   using visibility::TriangleTree;

@@ -1,3 +1,6 @@
+// Cuts edge records at a light's plane, and finds the edges that cut triangles have in the plane
+// (docs/signed-crossings.md, cut edges).
+
 #include "volumes/edges/edge_cut.hpp"
 
 #include "mesh/predicates.hpp"
@@ -16,7 +19,7 @@ namespace {
 
 using visibility::SceneFloats;
 
-/// Where the edge a b passes through the side's plane. The same for (b, a).
+/// Returns the point where the edge a b crosses the side's plane; the same for (b, a).
 glm::vec3 cut(const LightSide& side, const glm::vec3& a, const glm::vec3& b) {
   const glm::dvec3 n = glm::cross(side.u, side.v);
   glm::dvec3 from(side.stored(a)), to(side.stored(b));
@@ -25,11 +28,11 @@ glm::vec3 cut(const LightSide& side, const glm::vec3& a, const glm::vec3& b) {
     std::swap(from, to);
     std::swap(h0, h1);
   }
-  // Double heights within rounding of 0 may have one sign where the exact ones have two.
+  // Rounded heights close to 0 may have equal signs where the exact ones differ.
   return glm::vec3(h0 == h1 ? from : from + (to - from) * std::clamp(h0 / (h0 - h1), 0.0, 1.0));
 }
 
-/// May the segment a b in the light's plane touch the light? With an eighth of the light around it.
+/// Returns whether the segment a b in the light's plane may touch the light, enlarged by an eighth.
 bool may_touch_light(const LightSide& side, const glm::vec3& a, const glm::vec3& b) {
   const auto at = [&](const glm::vec3& x) {
     const glm::dvec3 d = glm::dvec3(x) - side.center;
@@ -66,7 +69,7 @@ bool keep_in_front(EdgeRecord& record, const LightSide& side, CutEnds* ends) {
   if (at_a <= 0 && at_b <= 0) return false;
   if (at_a > 0 && at_b > 0) return true;
   if (ends != nullptr) {
-    // An end in the plane, too: where edges in the plane begin, and at no other place by rounding.
+    // An end in the plane counts as well: there edges in the plane begin, and rounding must not move it.
     record.cut = ends->of_edge(record.a, record.b, at_a <= 0);
   } else if (at_a < 0 || at_b < 0) {
     (at_a < 0 ? record.a : record.b) = cut(side, record.a, record.b);
@@ -81,7 +84,7 @@ std::vector<EdgeRecord> edges_in_plane(const SceneFloats& scene, const EdgeCaste
   const auto rounded = [&](const Crossing& at) { return at.a == at.b ? at.a : cut(side, at.a, at.b); };
   for (const std::uint32_t triangle : triangles) {
     const std::array<glm::vec3, 3> corners = scene.corners(triangle);
-    // Around the triangle: where it leaves the front, and where it comes back.
+    // Walking around the triangle: the points where its boundary leaves the front, and where it returns.
     std::optional<Crossing> leaves, returns;
     for (std::size_t i = 0; i < 3; ++i) {
       const glm::vec3 &a = corners[i], &b = corners[(i + 1) % 3];
@@ -90,7 +93,7 @@ std::vector<EdgeRecord> edges_in_plane(const SceneFloats& scene, const EdgeCaste
       if (from <= 0 && to > 0) returns = from == 0 ? Crossing{a, a} : Crossing{a, b};
     }
     if (!leaves || !returns) continue;
-    // Run around as the corners do: in front where those are counter-clockwise.
+    // Oriented like the corners: in front where those are counter-clockwise.
     EdgeRecord record{{}, {}, {plane_of(scene, casters, triangle), EdgeSide{}}};
     if (ends != nullptr) {
       record.cut = ends->in_plane(*leaves, *returns);

@@ -8,40 +8,41 @@
 #include <span>
 #include <vector>
 
-/// Edges at a light's plane: what is behind it shades nothing, and its projection could be anywhere.
+/// Edges at a light's plane: objects behind the plane cast no shadow, and their projection could be anywhere.
 namespace penumbra::volumes {
 
-/// A half-space on one side of a light's plane. The rectangle tells which triangles reach through the light.
+/// A half-space on one side of a light's plane. The rectangle determines the triangles that reach through the light.
 struct LightSide {
-  std::array<glm::dvec3, 3> plane{};  ///< three points of it, as stored: (1 − 0) × (2 − 0) points to where sign is +1
+  std::array<glm::dvec3, 3> plane{};  ///< three stored points of the plane: (1 − 0) × (2 − 0) points to the side with
+                                      ///< sign +1
   glm::dvec3 center{0}, u{0}, v{0};
-  double sign = 1;          ///< +1: where u × v points; −1: behind
-  float scale = 1;          ///< visibility::device_scale: positions are taken as devices store them
-  LightWindow window = {};  ///< where CutEnds keeps places
+  double sign = 1;          ///< +1: the side that u × v points to; −1: behind
+  float scale = 1;          ///< visibility::device_scale: positions are rounded as on devices
+  LightWindow window = {};  ///< coordinates of CutEnds' places
 
-  /// As devices store it: rounded where its scaled value is subnormal.
+  /// Returns x as devices store it: rounded where its scaled value is subnormal.
   [[nodiscard]] glm::vec3 stored(const glm::vec3& x) const { return x * scale / scale; }
-  /// 1 in front of the plane, 0 in it, −1 behind. Exact.
+  /// Returns 1 in front of the plane, 0 in it, −1 behind. Exact.
   [[nodiscard]] int place_of(const glm::vec3& x) const;
 };
 
-/// Does anything lie behind that plane, so that records must be cut?
+/// Returns whether anything lies behind the plane, so that records must be cut.
 bool reaches_behind(const visibility::SceneFloats& scene, const LightSide& side);
 
 class CutEnds;
 
-/// Cuts the record at the plane; false: nothing of it is in front. What is cut is rounded to float. With `ends` the
-/// record stays whole, and has the number of its ends there (EdgeRecord::cut).
+/// Cuts the record at the plane; returns false if nothing of it is in front. Cut ends are rounded to float. With `ends`
+/// the record stays whole, and gets the index of its cut ends (EdgeRecord::cut).
 bool keep_in_front(EdgeRecord& record, const LightSide& side, CutEnds* ends = nullptr);
 
-/// Third edges, in the plane, of those triangles that it cuts and that may pass through the light itself
-/// (docs/signed-crossings.md, cut edges): beside the light, no light sample is between those and any p. `ends`, if
-/// given, takes their ends before rounding.
+/// Returns third edges, in the plane, of those triangles that the plane cuts and that may pass through the light itself
+/// (docs/signed-crossings.md, cut edges): outside of the light, no light sample is between a third edge and any p.
+/// `ends`, if given, receives their ends before rounding.
 std::vector<EdgeRecord> edges_in_plane(const visibility::SceneFloats& scene, const EdgeCasters& casters,
                                        std::span<const std::uint32_t> triangles, const LightSide& side,
                                        CutEnds* ends = nullptr);
 
-/// All records in front of the plane, cut, and the third edges.
+/// Returns all records in front of the plane, cut, and the third edges.
 std::vector<EdgeRecord> cut_records(const visibility::SceneFloats& scene, const EdgeCasters& casters,
                                     const LightSide& side);
 

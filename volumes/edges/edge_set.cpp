@@ -1,3 +1,6 @@
+// Records of signed edges: an edge with the planes of two of its triangles, computed on demand from positions and
+// casters.
+
 #include "volumes/edges/edge_set.hpp"
 
 #include "base/pages.hpp"
@@ -21,13 +24,13 @@ namespace {
 
 using visibility::SceneFloats;
 
-/// Scene triangle's normal in double, of its sorted corners.
+/// Returns the scene triangle's normal in double, from its sorted corners.
 glm::dvec3 normal_of(const std::array<glm::vec3, 3>& corners) {
   const glm::dvec3 a(corners[0]);
   return glm::cross(glm::dvec3(corners[1]) - a, glm::dvec3(corners[2]) - a);
 }
 
-/// Of exactly coplanar triangles the largest: for each plane number. `triangles` ascend.
+/// Returns for each plane the largest of its exactly coplanar triangles. `triangles` ascend.
 std::vector<std::uint32_t> largest_in_planes(const SceneFloats& scene, std::span<const std::uint32_t> triangles) {
   const auto size_of = [&](std::uint32_t triangle) {
     const glm::dvec3 n = normal_of(scene.corners(triangle));
@@ -37,7 +40,7 @@ std::vector<std::uint32_t> largest_in_planes(const SceneFloats& scene, std::span
   std::vector<std::uint32_t> largest;
   resize_on_all_cores(largest, scene.triangles.size());
   mesh::for_each_index(largest.size(), [&](std::size_t plane) { largest[plane] = kNone; });
-  // A plane has the number of a triangle in it, most often the only one, or else the first.
+  // A plane has the index of a triangle in it, usually the only one, or else the first.
   mesh::for_each_index(triangles.size(), [&](std::size_t i) {
     if (scene.plane[triangles[i]] == triangles[i]) largest[triangles[i]] = triangles[i];
   });
@@ -46,7 +49,7 @@ std::vector<std::uint32_t> largest_in_planes(const SceneFloats& scene, std::span
                        [&](std::uint32_t triangle) { return scene.plane[triangle] != triangle; });
   std::vector<double> sizes(others.size());
   mesh::for_each_index(others.size(), [&](std::size_t i) { sizes[i] = size_of(others[i]); });
-  std::uint32_t known = kNone;  // the plane of which `size` is that of the largest
+  std::uint32_t known = kNone;  // the plane whose largest triangle has `size`
   double size = 0;
   for (std::size_t i = 0; i < others.size(); ++i) {
     const std::uint32_t plane = scene.plane[others[i]];
@@ -61,7 +64,7 @@ std::vector<std::uint32_t> largest_in_planes(const SceneFloats& scene, std::span
   return largest;
 }
 
-/// Of two coplanar triangles: do they run the same way around? Asked at points off their plane.
+/// Returns whether two coplanar triangles have the same orientation, tested at points off their plane.
 bool turned_alike(const SceneFloats& scene, std::uint32_t x, std::uint32_t y) {
   if (x == y) return true;
   const std::array<glm::vec3, 3> a = scene.corners(x), b = scene.corners(y);
@@ -120,8 +123,8 @@ void EdgeRecords::keep_places() {
   });
 }
 
-/// Which casters, or the triangles that their planes are of, have another corner than in the last frame. False:
-/// vertices have met or parted, somewhere.
+/// Marks casters with a corner, or a plane's triangle with a corner, that has moved since the last frame. Returns false
+/// if vertices were merged or separated.
 bool EdgeRecords::find_moved() {
   const SceneFloats& scene = *scene_;
   std::vector<std::uint8_t> other(scene.positions.size());
@@ -155,15 +158,15 @@ void EdgeRecords::find_planes() {
   });
 }
 
-/// In front where (a, b, apex) runs counter-clockwise, for the edge a→b.
+/// Returns a side of an edge a→b: in front where (a, b, apex) runs counter-clockwise.
 EdgeSide EdgeRecords::side(std::uint32_t of) const {
   if (of == kNoSide) return {};
   EdgeSide side = planes_[of & ~kReversed];
-  if ((of & kReversed) != 0) side.n = -side.n;  // triangles are sorted like those that n is of
+  if ((of & kReversed) != 0) side.n = -side.n;  // n refers to the sorted corners of a triangle
   return side;
 }
 
-/// Is k_e 0 for every p: two triangles of one plane, on either side of the edge?
+/// Returns whether k_e is 0 for every p: two triangles of one plane, on either side of the edge.
 bool EdgeRecords::is_flat(const Pair& pair) const {
   if (pair.sides[1] == kNoSide) return false;
   const std::uint32_t plane = scene_->plane[triangle_of(pair.sides[0])];
@@ -208,7 +211,8 @@ void EdgeRecords::find_pairs(std::span<const mesh::Triangle> triangles, Flat fla
   kept_.vertex = std::move(vertex);
 }
 
-/// Are both ends still ends of both triangles? Then also which way these run, since they are sorted by place.
+/// Returns whether both ends are still corners of both triangles. Updates the triangles' orientations, which depend on
+/// sorted positions.
 bool EdgeRecords::follow(Pair& pair, std::span<const std::uint32_t> vertex) const {
   for (std::uint32_t& side : pair.sides) {
     if (side == kNoSide) continue;
@@ -226,8 +230,8 @@ bool EdgeRecords::follow(Pair& pair, std::span<const std::uint32_t> vertex) cons
   return true;
 }
 
-/// The casters of before, and each side of each where it was: so none is new, and edges have the sides that they had,
-/// in the same order, that of triangles' numbers.
+/// The casters are the same, and each side of each is at the same edge: so no edge is new, and edges have the same
+/// sides in the same order, by triangle index.
 EdgeRecords::Followed EdgeRecords::follow(const SceneFloats& scene, const EdgeCasters& casters) {
   if (casters.triangle != kept_.casters || scene.positions.size() != kept_.places.size()) return Followed::nothing;
   scene_ = &scene;
@@ -245,8 +249,8 @@ EdgeRecords::Followed EdgeRecords::follow(const SceneFloats& scene, const EdgeCa
   const auto bends = [&](const Pair& pair) { return !is_flat(pair); };
   const auto moves = [&](const Pair& pair) { return has_moved(pair); };
   auto bent = std::partition(flat, pairs_.end(), bends);
-  // Where much of what moves bends, the rest is flat by chance, and each of the next frames would bend some of it. Few
-  // beside the records are taken in anyway: the hierarchy hardly grows, and need not be built again for each of them.
+  // If much of the moving surface bends, the rest is flat by chance, and each of the next frames would bend some of it:
+  // all of it becomes records. Otherwise few records are added, the hierarchy hardly grows, and need not be rebuilt.
   constexpr std::ptrdiff_t kMuch = 8;
   const std::ptrdiff_t moved = std::count_if(flat, pairs_.end(), moves);
   if (bent > flat && (kMuch * (bent - flat) > moved || kMuch * moved < flat - pairs_.begin()))

@@ -13,81 +13,82 @@
 #include <span>
 #include <vector>
 
-/// The edges of everything that casts shadow, as device passes take them: each with the planes that its signed
-/// multiplicity k_e(p) is made of.
+/// The edges of all casters in the form of device passes: each with the planes that determine its signed multiplicity
+/// k_e(p).
 namespace penumbra::volumes {
 
-/// One of an edge's triangles: sgn(n · (p − anchor)) is what it adds to k_e(p). All three edges of a triangle have the
-/// same `anchor` and the same n up to its sign, so that p is on one side of it for all three, however the device
-/// rounds.
+/// One of an edge's triangles, which contributes sgn(n · (p − anchor)) to k_e(p). All three edges of a triangle have
+/// the same `anchor` and the same n up to its sign, so that p is on one side of the triangle for all three, regardless
+/// of the device's rounding.
 struct EdgeSide {
   glm::vec3 n{0};  ///< not of unit length; 0: no triangle
   glm::vec3 anchor{0};
-  std::uint32_t plane = visibility::SceneFloats::kNoPlane;  ///< SceneFloats::plane: the carrier's own adds nothing
+  std::uint32_t plane = visibility::SceneFloats::kNoPlane;  ///< SceneFloats::plane: the carrier's own plane contributes
+                                                            ///< nothing
 };
 
-/// An edge with two of its triangles; an edge of n triangles is ⌈n / 2⌉ records: k_e is their sum.
+/// An edge with two of its triangles; an edge with n triangles has ⌈n / 2⌉ records: k_e is their sum.
 struct EdgeRecord {
   glm::vec3 a{0}, b{0};
   std::array<EdgeSide, 2> sides;
-  std::uint32_t cut = 0;  ///< CutEnds: the number of its ends as they are before rounding; 0: a and b are not rounded
+  std::uint32_t cut = 0;  ///< index in CutEnds of its ends before rounding; 0: a and b are not rounded
 };
 
-/// The triangles that may shade a light.
+/// The triangles that may cast shadows of a light.
 struct EdgeCasters {
-  std::vector<std::uint32_t> triangle;          ///< into the scene's
-  std::vector<std::uint32_t> largest_in_plane;  ///< for each SceneFloats::plane: of these triangles, the largest
+  std::vector<std::uint32_t> triangle;          ///< indices of the scene's triangles
+  std::vector<std::uint32_t> largest_in_plane;  ///< for each SceneFloats::plane: the largest of these triangles
 };
-/// `light_index`: what is this light's own body is left out; −1: nothing is.
+/// `light_index`: this light's own body is excluded; −1: nothing is.
 EdgeCasters edge_casters(const visibility::SceneFloats& scene, std::int32_t light_index);
 
-/// The plane of one of the casters, in front where its sorted corners run counter-clockwise. Exactly coplanar triangles
-/// take n and anchor from one of them, the largest: the edges between them are not among the records, so p must be on
-/// one side of all of them, however the device rounds.
+/// Returns the plane of one of the casters, in front where its sorted corners run counter-clockwise. Exactly coplanar
+/// triangles take n and anchor from one of them, the largest: the edges between them are not among the records, so p
+/// must be on one side of all of them, regardless of the device's rounding.
 EdgeSide plane_of(const visibility::SceneFloats& scene, const EdgeCasters& casters, std::uint32_t triangle);
 
-/// All records with k_e not 0 everywhere. Each is computed when it is asked for, from what is there once of edges and
-/// planes; a list of them takes half a gigabyte for ten million edges.
+/// All records whose k_e is not 0 everywhere. Each is computed on demand from stored edges and planes; a list of
+/// records would take half a gigabyte for ten million edges.
 class EdgeRecords {
  public:
-  /// What becomes of edges with k_e 0 everywhere.
+  /// Treatment of edges with k_e 0 everywhere.
   enum class Flat : std::uint8_t {
     dropped,
-    kept,  ///< aside: in another frame they may not be flat
+    kept,  ///< stored separately: in another frame they may not be flat
   };
-  /// Both must outlive it; records and their normals ask the scene alone.
+  /// Both arguments must outlive this object; records and their normals use only the scene.
   EdgeRecords(const visibility::SceneFloats& scene, const EdgeCasters& casters, Flat flat = Flat::dropped);
 
   enum class Followed : std::uint8_t {
-    all,      ///< each record is of the same edge as before; those with is_flat() add nothing now
-    more,     ///< after these there are others, which were flat, and some that still are
-    nothing,  ///< other edges: vertices have met or parted, or others cast. What was known is lost
+    all,      ///< each record is of the same edge as before; flat ones (is_flat()) contribute nothing now
+    more,     ///< after the old records there are new ones, which were flat; some of them still are
+    nothing,  ///< edges have changed: vertices were merged or separated, or casters differ. Earlier data is lost
   };
-  /// The records of the next frame, in which vertices have moved; of one made with Flat::kept. Who shares an edge with
-  /// whom is checked, not found again.
+  /// Updates records made with Flat::kept to the next frame, in which vertices have moved. The adjacency of edges is
+  /// checked, not recomputed.
   [[nodiscard]] Followed follow(const visibility::SceneFloats& scene, const EdgeCasters& casters);
   [[nodiscard]] bool is_flat(std::size_t record) const { return is_flat(pairs_[record]); }
-  /// After follow: may any of its floats be another than before?
+  /// Returns, after follow(), whether any float of the record may have changed.
   [[nodiscard]] bool has_moved(std::size_t record) const { return has_moved(pairs_[record]); }
 
   [[nodiscard]] std::size_t size() const { return size_; }
   [[nodiscard]] EdgeRecord operator[](std::size_t record) const;
   [[nodiscard]] std::uint64_t memory_bytes() const {
-    constexpr std::size_t kKept = sizeof(mesh::Triangle) + 9;  // of each caster
+    constexpr std::size_t kKept = sizeof(mesh::Triangle) + 9;  // bytes for each caster
     return planes_.size() * sizeof(EdgeSide) + pairs_.size() * sizeof(Pair) + kept_.casters.size() * kKept +
            kept_.places.size() * (sizeof(glm::vec3) + 4);
   }
   [[nodiscard]] visibility::Bounds box(std::size_t record) const;
-  /// n of its sides.
+  /// Returns n of its sides.
   [[nodiscard]] std::array<glm::vec3, 2> normals(std::size_t record) const;
-  /// One of its triangles: the scene's number.
+  /// Returns the scene index of one of its triangles.
   [[nodiscard]] std::uint32_t triangle(std::size_t record) const { return triangle_of(pairs_[record].sides[0]); }
 
  private:
-  static constexpr std::uint32_t kReversed = 0x80000000u;  // of casters' numbers: the winding runs from b to a
+  static constexpr std::uint32_t kReversed = 0x80000000u;  // bit in casters' indices: the winding runs from b to a
   static constexpr std::uint32_t kNoSide = 0xffffffffu;
 
-  /// Two of an edge's triangles, or its last.
+  /// Two of an edge's triangles, or its last one.
   struct Pair {
     std::uint32_t a, b;                  // positions
     std::array<std::uint32_t, 2> sides;  // casters
@@ -107,20 +108,20 @@ class EdgeRecords {
 
   const visibility::SceneFloats* scene_;
   const EdgeCasters* casters_;
-  UnsetList<EdgeSide> planes_;  // of each caster (plane_of)
-  UnsetList<Pair> pairs_;       // the records, then what is flat and kept
-  std::size_t size_ = 0;        // records
-  /// With Flat::kept, as the last frame had it.
+  UnsetList<EdgeSide> planes_;  // for each caster (plane_of)
+  UnsetList<Pair> pairs_;       // the records, then flat edges that are kept
+  std::size_t size_ = 0;        // number of records
+  /// Data of the last frame, for Flat::kept.
   struct Kept {
     std::vector<glm::vec3> places;
     std::vector<std::uint32_t> vertex;            // mesh::merge_equal
-    std::vector<std::uint32_t> casters, largest;  // of each caster: its number, and plane_of's choice
-    std::vector<mesh::Triangle> corners;          // of each caster
-    std::vector<std::uint8_t> moved;              // of each caster: itself, or what its plane is that of
+    std::vector<std::uint32_t> casters, largest;  // for each caster: its index, and plane_of's choice
+    std::vector<mesh::Triangle> corners;          // for each caster
+    std::vector<std::uint8_t> moved;              // for each caster: it or its plane's triangle moved
   } kept_;
 };
 
-/// All of them at once.
+/// Returns all records as a list.
 std::vector<EdgeRecord> edge_records(const visibility::SceneFloats& scene, const EdgeCasters& casters);
 
 }  // namespace penumbra::volumes

@@ -1,3 +1,5 @@
+// Chooses the edge records of a light: with or without its body, and cut at its plane if something lies behind it.
+
 #include "volumes/edges/edge_sides.hpp"
 
 #include <glm/geometric.hpp>
@@ -7,7 +9,7 @@
 namespace penumbra::volumes {
 namespace {
 
-/// The light's plane as its stored points span it, in double, and the frame's rectangle in it.
+/// Returns the light's plane from its stored points, in double, and the frame's rectangle in it.
 LightSide front_of_light(const visibility::Light& light, const visibility::DeviceLight& frame, float scale) {
   const auto [center, u, v] = visibility::light_frame(light);
   const std::array plane{center, glm::dvec3(light.center_u), glm::dvec3(light.center_v)};

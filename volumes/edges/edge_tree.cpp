@@ -1,3 +1,5 @@
+// Builds hierarchies over edge records with cones of normals, and converts them to texels for devices.
+
 #include "volumes/edges/edge_tree.hpp"
 
 #include "base/parallel.hpp"
@@ -86,12 +88,12 @@ EdgeTexels texels_of(const TriangleTree& tree, const Records& records, float sca
       normals.n[normals.count] = {n(2).value, n(4).value};
     return normals;
   };
-  constexpr std::size_t kTexels = std::size_t{3} * TriangleTree::kWidth;  // of a node
+  constexpr std::size_t kTexels = std::size_t{3} * TriangleTree::kWidth;  // texels of a node
   texels.nodes.resize(tree.nodes.size() * kTexels);
   for_each_edge_node(tree, scale, normals_of, [&](std::size_t node, std::span<const EdgeChild> children) {
     for (std::size_t i = 0; i < kTexels; ++i) texels.nodes[node * kTexels + i] = children[i / 3][i % 3];
   });
-  if (texels.nodes.empty()) texels.nodes.emplace_back();  // a buffer is never empty
+  if (texels.nodes.empty()) texels.nodes.emplace_back();  // a buffer must not be empty
   for (auto& list : texels.slots) {
     if (list.empty()) list.emplace_back();
   }
@@ -123,8 +125,8 @@ void for_each_edge_node(const TriangleTree& tree, float scale,
     for (std::size_t child = 0; child < children.size(); ++child) {
       const auto [middle, half] = visibility::child_texels(tree.nodes[node][child], scale);
       const Cone& cone = cones.of_child(node, child);
-      // A little wider than it is: float32 rounds axis and cosine, by 2⁻²⁴ each; and near 0 an angle is off by the root
-      // of what rounds its cosine, 2⁻²⁶, a few times a level, which is less than a quarter of this in 20 levels.
+      // Slightly widened: float32 rounds axis and cosine by 2⁻²⁴ each; and near 0 an angle is off by the root of its
+      // cosine's rounding, 2⁻²⁶, a few times for each level, which is less than a quarter of the margin in 20 levels.
       const auto cosine = static_cast<float>(std::max(cone.cosine - 0x1p-18, 0.0));
       children[child] = {
           middle, half, {glm::vec3(cone.axis), std::bit_cast<std::uint32_t>(cone.is_all() ? 0.0F : cosine)}};

@@ -14,33 +14,36 @@
 #include <span>
 #include <vector>
 
-/// A hierarchy over edges' records that knows where k_e cannot be anything but 0: boxes, and cones of normals.
+/// A hierarchy over edges' records that excludes subtrees with k_e = 0: boxes, and cones of normals.
 namespace penumbra::volumes {
 
-/// A hierarchy over all records of a scene, along the tree over its triangles; its leaves hold numbers of records.
+/// Makes a hierarchy over all records of a scene, guided by the tree over its triangles; its leaves contain indices of
+/// records.
 visibility::TriangleTree edge_tree(const EdgeRecords& records, const visibility::TriangleTree& triangles);
-/// Over any records.
+/// Makes a hierarchy over any records.
 visibility::TriangleTree edge_tree(std::span<const EdgeRecord> records);
 
-/// Of leaves; of a hierarchy that is refit, those that have not moved stay.
+/// Cones of leaves; in a refit hierarchy, leaves that have not moved keep theirs.
 struct LeafCones {
   UnsetList<NormalCone> cones;                      ///< empty: none is known
   std::function<bool(std::size_t leaf)> has_moved;  ///< called on all cores
 };
-/// A child of a hierarchy's node as EdgeTexels has it.
+/// A child of a hierarchy's node in the format of EdgeTexels.
 using EdgeChild = std::array<visibility::Texel, 3>;
-/// Gives all children of each node of a hierarchy at once to `take(node, children)`. Both are called on all cores.
+/// Passes all children of each node of a hierarchy at once to `take(node, children)`. Both functions are called on all
+/// cores.
 void for_each_edge_node(const visibility::TriangleTree& tree, float scale,
                         const std::function<LeafNormals(std::size_t leaf)>& normals_of,
                         const std::function<void(std::size_t node, std::span<const EdgeChild> children)>& take,
                         LeafCones* kept = nullptr);
 
-/// As texels: the hierarchy, three a child (visibility::node_texels' two, and the cone of normals: axis, cosine of its
-/// half-angle), and for each leaf slot one in each of six lists: (a, plane 1), (b, plane 2), (n 1), (anchor 1), (n 2),
-/// (anchor 2), the numbers of the last four 0 for an empty slot and else 1, of the very last 1 + EdgeRecord::cut.
+/// A hierarchy as texels: three for each child (the two of visibility::node_texels, and the cone of normals: axis,
+/// cosine of its half-angle), and for each leaf slot one in each of six lists: (a, plane 1), (b, plane 2), (n 1),
+/// (anchor 1), (n 2), (anchor 2), the integers of the last four 0 for an empty slot and else 1, of the very last 1 +
+/// EdgeRecord::cut.
 ///
-/// A cone holds, up to sign, the two normals of each record below such that k_e(p) = 0 where p is in front of both, or
-/// behind both. Cosine 0: at least one record below that has none, or normals that point all over.
+/// A cone contains, up to sign, the two normals of each record below such that k_e(p) = 0 where p is in front of both,
+/// or behind both. Cosine 0: at least one record below has no second normal, or normals point in all directions.
 struct EdgeTexels {
   std::vector<visibility::Texel> nodes;
   std::array<std::vector<visibility::Texel>, 6> slots;

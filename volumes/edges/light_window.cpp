@@ -1,3 +1,5 @@
+// The window of a light: a parallelogram of its plane, exact in the stored numbers.
+
 #include "volumes/edges/light_window.hpp"
 
 #include "base/size1.hpp"

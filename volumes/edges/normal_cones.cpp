@@ -1,3 +1,5 @@
+// Cones of normals of edge records, on vector units, and their unions.
+
 #include "volumes/edges/normal_cones.hpp"
 
 #include <glm/geometric.hpp>
@@ -11,14 +13,14 @@
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
 #include <hwy/highway.h>
 
-#ifndef PENUMBRA_VOLUMES_EDGES_NORMAL_CONES_CPP  // once, not once a target
+#ifndef PENUMBRA_VOLUMES_EDGES_NORMAL_CONES_CPP  // once, not once for each target
 #define PENUMBRA_VOLUMES_EDGES_NORMAL_CONES_CPP
 namespace penumbra::volumes {
 namespace {
 
 constexpr std::size_t kWidth = visibility::TriangleTree::kWidth;
 constexpr NormalCone kAllDirections{{0, 0, 0}, 0};
-constexpr double kWidest = 1.57;  // radians: cones of nearly a half-space leave nothing out
+constexpr double kWidest = 1.57;  // radians: cones of nearly a half-space exclude nothing
 
 const double kLeastCosine = std::cos(kWidest);
 
@@ -26,10 +28,10 @@ NormalCone unless_wide(const NormalCone& cone) {
   return cone.cosine <= kLeastCosine ? kAllDirections : cone;
 }
 
-/// The middle of directions, each turned to the side of the sum of those before; 0: there is none.
+/// The mean of directions, each reversed if it opposes the sum of the previous ones; 0: there is none.
 class Middle {
  public:
-  /// False: it must be turned.
+  /// Adds a direction. Returns false if it was reversed.
   bool add(const glm::dvec3& one) {
     const bool turn = glm::dot(sum_, one) < 0;
     sum_ = turn ? sum_ - one : sum_ + one;
@@ -61,7 +63,7 @@ struct Directions {
 
   [[nodiscard]] glm::dvec3 operator[](std::size_t i) const { return {of[0][i], of[1][i], of[2][i]}; }
 
-  /// To unit length, as glm::normalize.
+  /// Normalises to unit length, as glm::normalize does.
   void normalise() {
     const D d;
     for (std::size_t i = 0; i < kWidth; i += hn::Lanes(d)) {
@@ -73,7 +75,7 @@ struct Directions {
       hn::Store(hn::Mul(z, inverse), d, &of[2][i]);
     }
   }
-  /// Times the axis, each negated where its sign says so.
+  /// Returns the dot products with the axis, each negated if its sign is negative.
   [[nodiscard]] hn::Vec<D> cosines(const glm::dvec3& axis, const double* signs, std::size_t i) const {
     const D d;
     const auto part = [&](int k) {
@@ -83,11 +85,11 @@ struct Directions {
   }
 };
 
-/// The second normal is turned so that k_e = 0 where p is on the same side of both.
+/// The second normal is oriented so that k_e = 0 where p is on the same side of both.
 NormalCone cone_of_records(const LeafNormals& records) {
   if (records.count == 0) return {};
   std::array<Directions, 2> n;
-  for (std::size_t i = 0; i < kWidth; ++i) {  // beyond the last, the first again, which changes nothing
+  for (std::size_t i = 0; i < kWidth; ++i) {  // the first record fills the unused lanes, which changes nothing
     const auto& sides = records.n[i < records.count ? i : 0];
     if (sides[0] == glm::vec3(0) || sides[1] == glm::vec3(0)) return kAllDirections;
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -133,7 +135,7 @@ NormalCone joined(std::span<const NormalCone> cones) {
   for (std::size_t i = 0; i < cones.size(); ++i) {
     const double between = glm::dot(all.axis, axes[i]), own = cones[i].cosine;
     if (between <= 0) return kAllDirections;
-    // Both angles are below 90 degrees: the cosine of their sum.
+    // Both angles are below 90 degrees: this is the cosine of their sum.
     const auto sine = [](double cosine) { return std::sqrt(std::max(1 - cosine * cosine, 0.0)); };
     all.cosine = std::min(all.cosine, between * own - sine(between) * sine(own));
   }

@@ -10,7 +10,7 @@
 
 namespace penumbra::volumes {
 
-/// Directions within an angle of an axis, up to sign. cosine ≤ 0: all.
+/// Directions within an angle of an axis, up to sign. cosine ≤ 0: all directions.
 struct NormalCone {
   glm::dvec3 axis{0};
   double cosine = 1;
@@ -18,15 +18,16 @@ struct NormalCone {
   [[nodiscard]] bool is_all() const { return cosine <= 0; }
 };
 
-/// n of both sides of a leaf's records (EdgeRecord::sides).
+/// The normals of both sides of a leaf's records (EdgeRecord::sides).
 struct LeafNormals {
   std::array<std::array<glm::vec3, 2>, visibility::TriangleTree::kWidth> n;
   std::size_t count = 0;
 };
 
-/// Holds, up to sign, the two normals of each record such that k_e(p) = 0 where p is in front of both, or behind both.
+/// Returns a cone that contains, up to sign, the two normals of each record such that k_e(p) = 0 where p is in front of
+/// both, or behind both.
 NormalCone cone_of(const LeafNormals& records);
-/// Holds all of these: at most as many as a node has children.
+/// Returns a cone that contains all of these: at most as many as a node has children.
 NormalCone joined(std::span<const NormalCone> cones);
 
 }  // namespace penumbra::volumes

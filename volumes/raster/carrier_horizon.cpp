@@ -1,3 +1,5 @@
+// Effects of a carrier's plane on sums over edges at a view sample that rounding moved off the plane.
+
 #include "volumes/raster/carrier_horizon.hpp"
 
 #include "base/assert.hpp"
@@ -17,7 +19,7 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t kMostSamples = 32;
 
-/// Off by less than 2⁻⁴⁰ of itself and of the coordinates.
+/// Error below 2⁻⁴⁰ of the result and of the coordinates.
 double distance_to_rim(const glm::vec3& p, const std::array<glm::vec3, 3>& corners) {
   double nearest = kInfinity;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -28,7 +30,7 @@ double distance_to_rim(const glm::vec3& p, const std::array<glm::vec3, 3>& corne
   return nearest;
 }
 
-/// x moved outward by at least `room`.
+/// Returns x moved outward by at least `room`.
 float moved(float x, double room, float outward) {
   return std::nextafter(static_cast<float>(x + std::copysign(room, static_cast<double>(outward))), outward);
 }
@@ -79,8 +81,8 @@ bool CarrierHorizon::is_behind(const glm::vec3& p) const {
   return static_cast<int>(visibility::side_of_plane(corners_[0], corners_[1], corners_[2], p)) * facing_ < 0;
 }
 
-/// How far from p, at most, the way to l goes through the plane, and what distances are off by. Infinite where l is
-/// hardly above the plane.
+/// Returns an upper bound of the distance from p at which the segment to l crosses the plane, including the error of
+/// distances. Infinite if l is hardly above the plane.
 double CarrierHorizon::reach(const glm::vec3& p, const glm::vec3& l) const {
   const double off = std::abs(height(p)) + error(p), h = height(l) - error(l);
   if (!(h > 0)) return kInfinity;
@@ -88,7 +90,7 @@ double CarrierHorizon::reach(const glm::vec3& p, const glm::vec3& l) const {
   return 1.001 * off / h * glm::length(glm::dvec3(l) - glm::dvec3(p)) + rounding;
 }
 
-/// From p to the edges of triangles on the plane: of the carrier, and of the others no farther than `farthest`.
+/// Returns the distance from p to the edges of triangles on the plane: of the carrier, and of others within `farthest`.
 double CarrierHorizon::distance_to_edges(const glm::vec3& p, double farthest) const {
   double nearest = distance_to_rim(p, corners_);
   const double room = std::min(nearest, farthest);

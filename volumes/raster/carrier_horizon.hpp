@@ -11,23 +11,23 @@
 
 namespace penumbra::volumes {
 
-/// What a carrier's plane says of a view sample on it: bits of light samples, at most 32.
+/// Relation of at most 32 light samples to the carrier's plane, as bits.
 struct Horizon {
-  std::uint32_t above = 0;  ///< strictly above it. Exact
-  std::uint32_t open = 0;   ///< of those, the ones that sums over edges may be wrong for
+  std::uint32_t above = 0;  ///< strictly above the plane; exact
+  std::uint32_t open = 0;   ///< those of `above` for which sums over edges may be wrong
 };
 
-/// Triangles on the carrier's plane are not met, but their edges count. Where p was rounded to behind the plane, the
-/// ways from p to a point l go through the plane no farther from p than |h(p)| / h(l) of them, h the height over it. If
-/// no edge of a triangle on it is that near, the ways to the light's centre and to a light sample go through the same
-/// of these triangles, and what the centre's exact count leaves out is what the sum over edges leaves out for both.
+/// Triangles on the carrier's plane are not met, but their edges count. If rounding moved p behind the plane, the
+/// segments from p to a point l cross the plane no farther from p than |h(p)| / h(l) of their length, h the height over
+/// it. If no edge of a triangle on the plane is that near, the segments to the light's centre and to a light sample
+/// cross the same of these triangles, and the exact count at the centre and the sum over edges omit the same for both.
 class CarrierHorizon {
  public:
   /// `alone`: no other triangle is on its plane. `facing`: ViewSamples::facing.
   CarrierHorizon(const visibility::SceneFloats& scene, const visibility::TriangleTree& tree, std::uint32_t carrier,
                  std::int8_t facing, bool alone);
 
-  /// The light's centre must be above the plane for `open` to say anything.
+  /// Computes the horizon at p. `open` is meaningful only if the light's centre is above the plane.
   [[nodiscard]] Horizon at(const glm::vec3& p, const glm::vec3& center, const visibility::Light& light) const;
 
  private:
@@ -44,7 +44,7 @@ class CarrierHorizon {
   bool alone_;
   std::array<glm::vec3, 3> corners_;
   glm::dvec3 normal_{0};  // toward the viewer; heights are in units of its length
-  double size_ = 0;       // what errors of heights are in proportion to
+  double size_ = 0;       // errors of heights are proportional to it
 };
 
 }  // namespace penumbra::volumes

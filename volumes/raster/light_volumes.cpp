@@ -1,5 +1,5 @@
-// Shadow volumes of any triangle soup (F. Crow 1977; P. Bergeron 1986 for open meshes): a volume a triangle, their
-// common faces gone by the signed multiplicity of edges.
+// Shadow volumes of any triangle soup (F. Crow 1977; P. Bergeron 1986 for open meshes): a volume for each triangle,
+// their common faces removed by the signed multiplicity of edges.
 
 #include "volumes/raster/light_volumes.hpp"
 
@@ -19,7 +19,7 @@
 namespace penumbra::volumes {
 namespace {
 
-/// Signs that must all be one sign for something to be so; GLSL twin in volume_count.frag.
+/// Signs that must all agree for a statement to be true; GLSL twin in volume_count.frag.
 struct Agreement {
   bool up = false, down = false, doubt = false;
   void look(double value, double bound) {
@@ -27,7 +27,7 @@ struct Agreement {
     down |= value < -bound;
     doubt |= !(value > bound || value < -bound);
   }
-  /// Nothing if it depends on a sign that may be due to rounding.
+  /// Returns nullopt if the result depends on a sign that may be due to rounding.
   [[nodiscard]] std::optional<bool> agree() const {
     if (up && down) return false;
     if (doubt) return std::nullopt;
@@ -39,19 +39,20 @@ void look_at_determinant(Agreement& signs, const glm::dvec3& a, const glm::dvec3
   signs.look(glm::dot(a, glm::cross(b, c)), gpu::kDeterminantError * norm1(a) * norm1(b) * norm1(c));
 }
 
-/// Is the direction d within the cone of the cap from l?
+/// Returns whether the direction d is within the cone of the cap from l.
 std::optional<bool> in_cone(const LightVolumes& volumes, const VolumeCap& cap, const glm::dvec3& d) {
   Agreement signs;
   const glm::dvec3 l = volumes.l;
   for (std::size_t i = 0; i < 3; ++i) {
     look_at_determinant(signs, glm::dvec3(cap.corners[i]) - l, glm::dvec3(cap.corners[(i + 1) % 3]) - l, d);
   }
-  // The cone, not the one opposite: (a, b, c) as directions from l are negative for corners counter-clockwise from l.
+  // Selects the cone, not its opposite: (a, b, c) as directions from l are negative for corners counter-clockwise from
+  // l.
   signs.look(-1, 0);
   return signs.agree();
 }
 
-/// The sums over the parts' caps of what `inside` says, or nothing if it is ever silent.
+/// Returns the sums of `inside` over the parts' caps, or nullopt if `inside` is undecided for any.
 template <typename Inside>
 std::optional<std::vector<std::int32_t>> count(const LightVolumes& volumes, const Inside& inside) {
   std::vector<std::int32_t> sums(std::max<std::size_t>(volumes.parts.size(), 1));

@@ -20,77 +20,80 @@ namespace penumbra::volumes {
 /// A silhouette edge as seen from the light's centre l: its side face runs from a b away from l to infinity.
 struct VolumeEdge {
   glm::vec3 a, b;
-  std::int32_t multiplicity = 0;  ///< k_e(l), never 0: how many volumes end here, with sign (mesh/silhouettes.hpp)
-  std::uint32_t part = 0;         ///< of LightVolumes::parts
-  std::uint32_t caster = 0;       ///< one of the triangles around it, of ShadowCasters
+  std::int32_t multiplicity = 0;  ///< k_e(l), never 0: the number of volumes that end here, with sign
+                                  ///< (mesh/silhouettes.hpp)
+  std::uint32_t part = 0;         ///< index into LightVolumes::parts
+  std::uint32_t caster = 0;       ///< one of the triangles at the edge, index into ShadowCasters
 };
 
 /// A triangle that bounds its own volume toward the light.
 struct VolumeCap {
   std::array<glm::vec3, 3> corners;  ///< counter-clockwise as seen from l
   std::uint32_t plane = 0;           ///< SceneFloats::plane
-  std::uint32_t part = 0;            ///< of LightVolumes::parts
-  std::uint32_t caster = 0;          ///< of ShadowCasters
+  std::uint32_t part = 0;            ///< index into LightVolumes::parts
+  std::uint32_t caster = 0;          ///< index into ShadowCasters
 };
 
-/// The boundary of all shadow volumes of one point, the far end left out. Each triangle has a volume of its own, all
-/// that it hides from l; between two triangles that l sees side by side no face is left.
+/// The boundary of all shadow volumes of one point, without the far end. Each triangle has its own volume, everything
+/// that it hides from l; between two triangles that are adjacent as seen from l no face remains.
 struct LightVolumes {
   glm::vec3 l{0};
   std::vector<VolumeEdge> edges;
-  std::vector<VolumeCap> caps;         ///< of every triangle whose plane does not hold l
-  std::vector<std::uint8_t> left_out;  ///< for each of the scene's triangles: by Layers::one_a_solid, beside the
-                                       ///< light's own body; empty: none
-  std::vector<gpu::VolumePart> parts;  ///< each with all edges and caps of some volumes; empty: one without bounds
+  std::vector<VolumeCap> caps;         ///< of every triangle whose plane does not contain l
+  std::vector<std::uint8_t> left_out;  ///< for each of the scene's triangles: excluded by Layers::one_a_solid, in
+                                       ///< addition to the light's own body; empty: none
+  std::vector<gpu::VolumePart> parts;  ///< each with all edges and caps of some volumes; empty: one part without bounds
 };
 
-/// Which triangles have a volume.
+/// Triangles that have a volume.
 enum class Layers {
   every_triangle,
-  one_a_solid,  ///< of closed parts only what makes one layer of them: closed_casters.hpp
+  one_a_solid,  ///< of closed parts only the triangles of one layer: closed_casters.hpp
 };
 
-/// Everything that casts shadow, with its edges. `scene` must outlive it.
+/// Everything that casts shadows, with its edges. `scene` must outlive this object.
 class ShadowCasters {
  public:
   explicit ShadowCasters(const visibility::SceneFloats& scene, Layers layers = Layers::every_triangle);
 
-  /// Seen from `l`, without the body of that light. Exact.
+  /// Returns the volumes as seen from `l`, without the body of that light. Exact.
   [[nodiscard]] LightVolumes seen_from(const glm::vec3& l, const visibility::Light& light) const;
-  /// The volumes of some casters alone: `kept` has a word for each, 0 for those that are left out.
+  /// Returns the volumes of some casters only: `kept` has a word for each caster, 0 for those that are excluded.
   [[nodiscard]] LightVolumes seen_from(const glm::vec3& l, const visibility::Light& light,
                                        std::span<const std::uint8_t> kept) const;
 
-  /// The part of that which needs no facing: for each caster, the sides on which l must be for it to count (bit 0:
-  /// front, bit 1: back).
+  /// Returns the part of seen_from() that needs no facings: for each caster, the sides on which l must be for it to
+  /// count (bit 0: front, bit 1: back).
   [[nodiscard]] std::vector<std::uint32_t> counted_sides(const glm::vec3& l, const visibility::Light& light) const;
-  /// The rest, given for each caster the side that l is on in bits 0 and 1, those of them that count in bits 2 and 3,
-  /// and the edges with k_e(l) ≠ 0 of what counts.
+  /// Returns the volumes, given for each caster the side that l is on in bits 0 and 1, those of them that count in bits
+  /// 2 and 3, and the edges with k_e(l) ≠ 0 of counting casters.
   [[nodiscard]] LightVolumes assembled(const glm::vec3& l, std::span<const std::uint32_t> sides,
                                        std::span<const mesh::SilhouetteEdge> edges) const;
 
   [[nodiscard]] std::size_t size() const { return casters_.size(); }
   [[nodiscard]] std::span<const mesh::Triangle> triangles() const { return triangles_; }
-  /// The number of each caster's component, of what hangs together by edges; from 0 on.
+  /// Returns the index of each caster's component, connected by edges; from 0 on.
   [[nodiscard]] std::vector<std::uint32_t> components() const;
-  /// For each, its number among the scene's triangles.
+  /// Returns for each caster its index among the scene's triangles.
   [[nodiscard]] std::span<const std::uint32_t> numbers() const { return casters_; }
   [[nodiscard]] const mesh::EdgeGraph& graph() const { return graph_; }
 
  private:
   const visibility::SceneFloats* scene_;
   std::vector<glm::dvec3> positions_;
-  std::vector<std::uint32_t> casters_;     // into the scene's triangles
+  std::vector<std::uint32_t> casters_;     // indices of the scene's triangles
   std::vector<mesh::Triangle> triangles_;  // their corners
   mesh::EdgeGraph graph_;
   Layers layers_;
   visibility::ClosedCasters parts_;  // for one_a_solid
 };
 
-/// The number of triangles of each part that the ray from l in this direction meets; nothing if double cannot tell.
+/// Returns the number of triangles of each part that the ray from l in this direction meets; nullopt if double cannot
+/// decide.
 std::optional<std::vector<std::int32_t>> counts_along(const LightVolumes& volumes, const glm::dvec3& direction);
 
-/// The number of each part's volumes that x is in, whatever bounds the part has; nothing if double cannot tell.
+/// Returns the number of each part's volumes that contain x, regardless of the part's bounds; nullopt if double cannot
+/// decide.
 std::optional<std::vector<std::int32_t>> counts_at(const LightVolumes& volumes, const glm::dvec3& x);
 
 }  // namespace penumbra::volumes

@@ -1,3 +1,5 @@
+// View samples in cells of directions from a light point, on the faces of a cube, clustered by depth.
+
 #include "volumes/raster/receiver_cells.hpp"
 
 #include "base/parallel.hpp"
@@ -22,7 +24,7 @@ using visibility::ViewSamples;
 constexpr double kCellPad = 1e-6;  // of a cell: far beyond the rounding of places
 constexpr std::uint32_t kBuckets = 256;
 
-/// As the face sees x: across, down, and depth.
+/// Returns x in the coordinates of a face: across, down, and depth.
 glm::dvec3 seen_on(std::uint32_t face, const glm::dvec3& x) {
   const int axis = static_cast<int>(face / 2);
   return {x[(axis + 1) % 3], x[(axis + 2) % 3], face % 2 == 0 ? x[axis] : -x[axis]};
@@ -47,13 +49,13 @@ struct Keyed {
   std::size_t pixel;
 };
 
-/// The logarithmic bucket of a depth: up to eight an octave, around the scene's size.
+/// Returns the logarithmic bucket of a depth: up to eight for each octave, around the scene's size.
 std::uint64_t bucket_of(double depth, double size) {
   const double at = 8 * std::log2(std::max(depth, 1e-30) / size) + 0.75 * kBuckets;
   return static_cast<std::uint64_t>(std::clamp(at, 0.0, kBuckets - 1.0));
 }
 
-/// The part of a polygon in the cone of a face: where |across| and |down| are no more than the depth.
+/// Returns the part of a polygon in the cone of a face: where |across| and |down| are at most the depth.
 std::vector<glm::dvec3> in_cone(std::uint32_t face, std::span<const glm::dvec3> polygon) {
   std::vector<glm::dvec3> clipped;
   for (const glm::dvec3& x : polygon) clipped.push_back(seen_on(face, x));
@@ -128,7 +130,7 @@ std::vector<CellBlock> blocks_of(std::span<const glm::dvec3> polygon) {
       lower = glm::min(lower, at - kCellPad);
       upper = glm::max(upper, at + kCellPad);
     }
-    if (!(block.least > 0)) {  // l is on it: anywhere
+    if (!(block.least > 0)) {  // l is on the plane: depths are unknown
       lower = glm::dvec2(0);
       upper = glm::dvec2(ReceiverCells::kSide);
     }
@@ -190,7 +192,8 @@ std::vector<CellSegment> segments_of(const glm::dvec3& a, const glm::dvec3& b) {
       }
     }
     if (!any) continue;
-    if (!(from.z > 0 && to.z > 0)) {  // through l: taken for both diagonals' ends, which mark most of the face
+    // passes through l: replaced by the ends of both diagonals, which mark most of the face
+    if (!(from.z > 0 && to.z > 0)) {
       segments.push_back({face, {0, 0}, glm::dvec2(ReceiverCells::kSide)});
       continue;
     }

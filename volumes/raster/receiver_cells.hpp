@@ -22,12 +22,12 @@ namespace penumbra::volumes {
 struct CellBlock {
   std::uint32_t face = 0;
   std::array<std::uint32_t, 2> first{}, last{};  ///< columns and rows, both ends included
-  double least = 0, most = 0;                    ///< of its depths, along the face's axis
+  double least = 0, most = 0;                    ///< range of its depths, along the face's axis
 };
 
 /// The view samples for which shadow volumes of a point l are counted, in cells of directions from l: a cube of six
-/// faces, each of kSide² cells. In a cell, view samples of similar depth are one cluster. All that is said of what
-/// appears where, or how deep, is conservative.
+/// faces, each of kSide² cells. In a cell, view samples of similar depth form one cluster. All results about places and
+/// depths are conservative.
 class ReceiverCells {
  public:
   static constexpr std::uint32_t kSide = 96;
@@ -35,8 +35,8 @@ class ReceiverCells {
   static constexpr std::uint32_t kManyPlanes = 0xfffffffeU;
 
   struct Cluster {
-    glm::dvec3 lower, upper;  ///< box, from l
-    double depth;             ///< the greatest, along the face's axis
+    glm::dvec3 lower, upper;  ///< box, relative to l
+    double depth;             ///< the largest, along the face's axis
     std::uint32_t plane;      ///< SceneFloats::plane of all carriers, or kManyPlanes
   };
 
@@ -57,7 +57,7 @@ class ReceiverCells {
   std::vector<Cluster> clusters_;
 };
 
-/// The blocks of a convex polygon with corners relative to l, in general and of a box.
+/// Return the blocks of a convex polygon with corners relative to l, and of a box.
 std::vector<CellBlock> blocks_of(std::span<const glm::dvec3> polygon);
 std::vector<CellBlock> blocks_of_box(const glm::dvec3& lower, const glm::dvec3& upper);
 
@@ -73,7 +73,7 @@ class PlaneDepths {
     double least, most;
   };
   [[nodiscard]] Range in(const CellBlock& block, std::uint32_t x, std::uint32_t y) const;
-  /// Does a ray through the middle of the cell meet the triangle, for sure? For all triangles the same ray.
+  /// Returns whether a ray through the middle of the cell certainly meets the triangle. The same ray for all triangles.
   [[nodiscard]] bool covers_middle(std::uint32_t face, std::uint32_t x, std::uint32_t y) const;
 
  private:
@@ -83,10 +83,10 @@ class PlaneDepths {
   std::array<double, 3> errors_;
 };
 
-/// From l, on a face of the cube: (across, down, 1) for place (x, y) in cells.
+/// Returns the vector from l, on a face of the cube: (across, down, 1) for place (x, y) in cells.
 glm::dvec3 direction_of(std::uint32_t face, double x, double y);
 
-/// A segment's ends where it appears on a face, in cells; nothing if it does not.
+/// A segment's ends on a face, in cells; segments_of omits faces on which it does not appear.
 struct CellSegment {
   std::uint32_t face;
   glm::dvec2 from, to;

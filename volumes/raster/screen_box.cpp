@@ -1,6 +1,6 @@
-// Clips in homogeneous coordinates (I. Sutherland, G. Hodgman, Reentrant polygon clipping, 1974), so that points at
-// infinity and faces that the eye is in are no special cases; then takes the smallest of the rectangles that have an
-// edge along one of the polygon's.
+// Screen boxes of volumes' faces. Clips in homogeneous coordinates (I. Sutherland, G. Hodgman, Reentrant polygon
+// clipping, 1974), so that points at infinity and faces that contain the eye are no special cases; then takes the
+// smallest of the rectangles that have an edge along one of the polygon's.
 
 #include "volumes/raster/screen_box.hpp"
 
@@ -16,19 +16,19 @@
 namespace penumbra::volumes {
 namespace {
 
-/// An eighth of a pixel is what callers may rely on. The rest is for the rasteriser: corners snap to a grid of at least
-/// 2⁴ places a pixel (Vulkan's minimum of subPixelPrecisionBits), so move by up to √2/32 = 0.045, and are floats, off
-/// by less than 0.01 in pictures up to 2¹⁵ pixels wide.
+/// Callers may rely on an eighth of a pixel. The rest is for the rasteriser: corners snap to a grid of at least 2⁴
+/// places a pixel (Vulkan's minimum of subPixelPrecisionBits), so move by up to √2/32 = 0.045, and are floats, off by
+/// less than 0.01 in pictures up to 2¹⁵ pixels wide.
 constexpr double kBoxPad = 0.25;
 
-/// x and y in units of w, which is the distance along the view axis (of a direction: its part along it).
+/// x and y in units of w, which is the distance along the view axis (for a direction: its component along the axis).
 struct SeenPolygon {
   std::array<glm::dvec3, 8> corners;
   std::size_t size = 0;
   void add(const glm::dvec3& corner) { corners[size++] = corner; }
 };
 
-/// The part where `limit` · w + `sign` · corner[axis] ≥ 0. Each plane adds at most one corner.
+/// Returns the part where `limit` · w + `sign` · corner[axis] ≥ 0. Each plane adds at most one corner.
 SeenPolygon cut_to_side(const SeenPolygon& polygon, int axis, double sign, double limit) {
   const auto inside = [&](const glm::dvec3& v) { return limit * v.z + sign * v[axis]; };
   SeenPolygon out;
@@ -112,10 +112,9 @@ std::optional<ScreenBox> BoxFinder::around(std::span<const FaceCorner> polygon) 
   }
   // In double a corner is off by 8 · 2⁻⁵³ · reach · a (a: the longer of across_ and upward_, at least 1, forward_'s
   // length). At a depth of more than 1e-9 · reach · a its projection, up to two of these over the depth, times up to
-  // 16384 pixels, is off by less than a thirtieth of a pixel: kBoxPad has room for that beside the eighth that is
-  // promised.
+  // 16384 pixels, is off by less than a thirtieth of a pixel: kBoxPad covers that in addition to the guaranteed eighth.
   const double least_depth = 1e-9 * reach * glm::max(1.0, glm::max(glm::length(across_), glm::length(upward_)));
-  // A pixel more than the screen on every side: what appears there can still come within an eighth of one.
+  // One pixel more than the screen on every side: a face there can still come within an eighth of a pixel.
   const glm::dvec2 limit = 1.0 + 1.0 / half_;
   for (int axis = 0; axis < 2 && clipped.size > 0; ++axis) {
     clipped = cut_to_side(cut_to_side(clipped, axis, 1, limit[axis]), axis, -1, limit[axis]);
@@ -137,7 +136,7 @@ std::optional<ScreenBox> BoxFinder::around(std::span<const FaceCorner> polygon) 
 bool BoxFinder::appears_at(const glm::dvec3& x, const glm::dvec2& there) const {
   constexpr double kMost = 1.0 / 16;
   const glm::dvec2 offset = glm::abs(project(x) - there);
-  return offset.x <= kMost && offset.y <= kMost;  // not for NaN
+  return offset.x <= kMost && offset.y <= kMost;  // false for NaN
 }
 
 }  // namespace penumbra::volumes

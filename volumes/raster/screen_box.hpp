@@ -11,35 +11,36 @@
 
 namespace penumbra::volumes {
 
-/// A corner of a volume's face: a point, or a direction, which is the point infinitely far that way.
+/// A corner of a volume's face: a point, or a direction, which is the point at infinity in that direction.
 struct FaceCorner {
   glm::dvec3 at{0};  ///< relative to the scene's origin
   bool infinite = false;
 };
 
-/// A rectangle on the screen, turned as suits what it holds: its corners in pixels from the picture's upper left, as a
-/// triangle strip takes them.
+/// A rectangle on the screen, rotated to fit its content: its corners in pixels from the picture's upper left, in the
+/// order of a triangle strip.
 struct ScreenBox {
   std::array<glm::vec2, 4> corners;
 };
 
-/// Throws InputError for a camera that looks from no point: what is drawn here is drawn in perspective.
+/// Throws InputError for an orthographic camera: volumes are drawn in perspective.
 void require_perspective(const visibility::PinholeCamera& camera);
 
-/// Where the rasteriser has to look for the pixels of a face. It only proposes: shaders decide (volumes/README.md,
-/// Counting).
+/// Finds the region in which the rasteriser looks for the pixels of a face. The region only proposes: shaders decide
+/// (volumes/README.md, Counting).
 class BoxFinder {
  public:
   explicit BoxFinder(const visibility::PinholeCamera& camera);
 
-  /// Holds every pixel whose centre is within an eighth of a pixel of the projection of the convex polygon (three or
-  /// four corners, its part behind the eye left out), cut to the screen. Empty: no pixel.
+  /// Returns a box that contains every pixel whose centre is within an eighth of a pixel of the projection of the
+  /// convex polygon (three or four corners, without its part behind the eye), clipped to the screen. Returns nullopt if
+  /// it contains no pixel.
   [[nodiscard]] std::optional<ScreenBox> around(std::span<const FaceCorner> polygon) const;
 
-  /// Where x appears, in pixels; only for what is in front of the eye.
+  /// Returns the projection of x, in pixels; only for points in front of the eye.
   [[nodiscard]] glm::dvec2 project(const glm::dvec3& x) const;
-  /// Whether x appears within a sixteenth of a pixel of there, along either axis: boxes and footprints have room for an
-  /// eighth.
+  /// Returns whether x is projected to within a sixteenth of a pixel of `there`, along either axis: boxes and
+  /// footprints have a margin of an eighth.
   [[nodiscard]] bool appears_at(const glm::dvec3& x, const glm::dvec2& there) const;
 
  private:

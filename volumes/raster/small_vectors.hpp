@@ -10,7 +10,7 @@ inline double norm1(const glm::dvec3& v) {
   return std::abs(v.x) + std::abs(v.y) + std::abs(v.z);
 }
 
-/// Into push constants, which have three doubles where C++ has a vector of them.
+/// Copies a vector into push constants, which have three doubles instead.
 inline void store(double (&to)[3], const glm::dvec3& from) {
   for (int i = 0; i < 3; ++i) to[i] = from[i];
 }

@@ -1,8 +1,8 @@
 // Shadow volumes: F. Crow, Shadow algorithms for computer graphics, 1977; counted per pixel, T. Heidmann, Real shadows,
-// real time, 1991; beyond the pixel's surface (B. Bilodeau, M. Songy 1999; J. Carmack 2000) and out to infinity
-// (C. Everitt, M. Kilgard, Practical and robust stenciled shadow volumes, 2002). Departures: integers in a buffer in
-// place of a stencil, which wraps; any soup, by signed multiplicity; the far end is a fan a silhouette edge, not a cap
-// a triangle; the rasteriser proposes, and signs in double decide (volumes/README.md, Counting).
+// real time, 1991; beyond the pixel's surface (B. Bilodeau, M. Songy 1999; J. Carmack 2000) and out to infinity (C.
+// Everitt, M. Kilgard, Practical and robust stenciled shadow volumes, 2002). Departures: integers in a buffer instead
+// of a stencil, which wraps; any soup, by signed multiplicity; the far end is a fan for each silhouette edge, not a cap
+// for each triangle; the rasteriser proposes, and signs in double decide (volumes/README.md, Counting).
 
 #include "volumes/raster/volume_count.hpp"
 
@@ -50,8 +50,8 @@ render::RasterPass make_pass(const render::Device& device, FaceKind kind, bool b
                                      .triangle_strip = true});
 }
 
-/// Does p appear where its pixel is, and does the place where the line from p to l meets the carrier's plane? Rounding
-/// p moved it off both; next to the camera, or under grazing light, that can be pixels.
+/// Returns whether p is projected into its pixel, and so is the intersection of the line from p to l with the carrier's
+/// plane. Rounding moved p off both; next to the camera, or under grazing light, that can be pixels.
 bool appears_in_place(const BoxFinder& boxes, const std::array<glm::vec3, 3>& carrier, const glm::vec3& p,
                       const glm::vec3& l, const glm::dvec2& center) {
   const glm::dvec3 a = carrier[0], to_light = glm::dvec3(l) - glm::dvec3(p);
@@ -73,7 +73,7 @@ struct VolumeCount::State {
   const render::Device* device;
   CountVariant variant;
   Layers layers;
-  std::array<std::optional<render::RasterPass>, 20> passes;  // made when they are first needed
+  std::array<std::optional<render::RasterPass>, 20> passes;  // made when first needed
 
   const SceneFloats* scene = nullptr;
   const visibility::Light* light = nullptr;
@@ -127,7 +127,7 @@ void VolumeCount::prepare_light(const visibility::Light& light) {
 
 void VolumeCount::prepare_light(const visibility::Light& light, LightVolumes volumes) {
   State& s = *state_;
-  // Counts are sums of at most three faces a triangle and edge; far from what 32 bits hold.
+  // Counts are sums of at most three faces for each triangle and edge: far below the range of 32 bits.
   PENUMBRA_ASSERT(s.scene != nullptr && volumes.caps.size() < (1u << 28), "{} triangles", volumes.caps.size());
   s.light = &light;
   s.volumes = std::move(volumes);
@@ -238,7 +238,7 @@ void VolumeCount::State::rasterise(const Tile& tile) {
       times.add(commands.submit());
     }
   }
-  commands.submit();  // the fill, where there was no face
+  commands.submit();  // runs the fill if there was no face
   counts.resize(pixels);
   count_buffer->read<std::int32_t>(counts);
   doubt_buffer->read<std::uint32_t>(doubts);

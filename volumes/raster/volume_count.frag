@@ -5,20 +5,23 @@
 #include "volumes/raster/volume_count.shared.h"
 #include "volumes/raster/determinant.glsl"
 
-// Where does the ray from p away from the eye (z-fail), or the segment from the eye to p (z-pass), go through this face
-// of shadow volumes, and in or out? Signs of determinants in double that must all be one sign; volumes/README.md, Counting,
-// derives which. Where it depends on a sign that may be due to rounding, the pixel is marked and the host counts.
+// Intersection of the ray from p away from the eye (z-fail), or of the segment from the eye to p (z-pass), with this
+// face of shadow volumes, inward or outward. Decided by signs of determinants in double that must all agree;
+// volumes/README.md, Counting, derives them. Where the result depends on a sign that may be due to rounding, the pixel
+// is marked and the host counts.
 //
-// P, A, B: p, a, b from l.  D: p from the eye.  (x, y, z): their determinant.
+// P, A, B: p, a, b relative to l.  D: p relative to the eye.  (x, y, z): their determinant.
 
 layout(constant_id = 0) const uint kFace = 0;   // 0: side, 1: fan at infinity, 2: cap, 3: fan at lower, 4: at upper
 layout(constant_id = 1) const uint kZPass = 0;
-layout(constant_id = 2) const uint kParts = 0;  // 1: faces belong to parts, whose bounds hold
+layout(constant_id = 2) const uint kParts = 0;  // 1: faces belong to parts, whose bounds apply
 
-layout(scalar, binding = 0) readonly buffer Faces { VolumeFace faces[]; };  // the vertex shader's; one set for both
+layout(scalar, binding = 0) readonly buffer Faces { VolumeFace faces[]; };  // used by the vertex shader; one set for
+                                                                            // both stages
 layout(scalar, binding = 1) readonly buffer Receivers { VolumeReceiver receivers[]; };
 layout(scalar, binding = 2) buffer Counts { int counts[]; };
-layout(scalar, binding = 3) buffer Doubts { uint doubts[]; };  // kDoubtBit; below it, how often the pixel's count changed
+layout(scalar, binding = 3) buffer Doubts { uint doubts[]; };  // kDoubtBit; below it, the number of changes of the
+                                                               // pixel's count
 layout(scalar, binding = 4) readonly buffer Parts { VolumePart parts[]; };
 layout(scalar, push_constant) uniform Push { VolumePush push; };
 
@@ -48,7 +51,7 @@ const uint kUp = 1, kDown = 2, kDoubt = 4;
 
 uint signs(Value v) { return v.value > v.bound ? kUp : v.value < -v.bound ? kDown : kDoubt; }
 
-/// 1 or −1 if all are that sign; 0 if they differ; kUnknown if that depends on a doubtful sign.
+/// Returns 1 or −1 if all signs agree; 0 if they differ; kUnknown if that depends on a doubtful sign.
 const int kUnknown = 2;
 int agreement(uint seen) {
   if ((seen & (kUp | kDown)) == (kUp | kDown)) return 0;
@@ -56,7 +59,7 @@ int agreement(uint seen) {
   return seen == kUp ? 1 : -1;
 }
 
-/// Is it the segment from the eye to p that is followed, not the ray beyond p? The same for all faces of a part.
+/// Returns whether the segment from the eye to p is followed, not the ray beyond p. The same for all faces of a part.
 bool counts_before(dvec3 P) {
   if (kParts == 0 || (parts[face_part].bounds & kToggles) == 0) return kZPass != 0;
   precise const dvec3 b = parts[face_part].barrier * P;
@@ -64,7 +67,7 @@ bool counts_before(dvec3 P) {
   return height > 0.0LF;
 }
 
-/// Signs that are h's where the ray meets a side between the planes of its part, at P − (f / h) d.
+/// Returns signs that equal h's where the ray meets a side between the planes of its part, at P − (f / h) d.
 uint between_planes(dvec3 P, dvec3 d, Value h, Value f) {
   if (kParts == 0) return 0;
   const uint bounds = parts[face_part].bounds;
@@ -81,7 +84,7 @@ uint between_planes(dvec3 P, dvec3 d, Value h, Value f) {
   return seen;
 }
 
-/// What a side adds: +1 where the ray leaves the volumes of multiplicity 1, −1 where it enters.
+/// Returns the contribution of a side: +1 where the ray leaves the volumes of multiplicity 1, −1 where it enters.
 int side(dvec3 p, dvec3 d, dvec3 l, dvec3 a, dvec3 b) {
   const dvec3 P = p - l, A = a - l, B = b - l;
   const Value h = det(A, B, d), f = det(A, B, P);
@@ -92,7 +95,7 @@ int side(dvec3 p, dvec3 d, dvec3 l, dvec3 a, dvec3 b) {
   return way == kUnknown ? kUnknown : -way;
 }
 
-/// What the fan of an edge at infinity adds.
+/// Returns the contribution of an edge's fan at infinity.
 int fan(dvec3 P, dvec3 d, dvec3 l, dvec3 apex, dvec3 a, dvec3 b) {
   if (counts_before(P)) return 0;
   const dvec3 A = a - l, B = b - l;
@@ -101,7 +104,8 @@ int fan(dvec3 P, dvec3 d, dvec3 l, dvec3 apex, dvec3 a, dvec3 b) {
   return way == kUnknown ? kUnknown : -way;
 }
 
-/// What the fan of an edge adds in the plane n · x = offset, which the ray beyond p meets at Q = (r P + g d) / r.
+/// Returns the contribution of an edge's fan in the plane n · x = offset, which the ray beyond p meets at Q = (r P + g
+/// d) / r.
 int fan_in_plane(dvec3 P, dvec3 d, dvec3 l, double offset, dvec3 a, dvec3 b) {
   const dvec3 A = a - l, B = b - l, n = parts[face_part].axis;
   const Value r = along(n, d), g = sum(Value(offset, 0.0LF), negative(along(n, P)));
@@ -127,7 +131,8 @@ int cap(dvec3 p, dvec3 d, dvec3 l, dvec3 a, dvec3 b, dvec3 c) {
   return way == kUnknown ? kUnknown : -way;
 }
 
-/// A cap on the carrier's plane: adds what makes its volume count nothing, whichever side of the plane p was rounded to.
+/// Returns the contribution of a cap on the carrier's plane: cancels its volume, regardless of the side of the plane
+/// that p was rounded to.
 int coplanar_cap(dvec3 p, dvec3 d, dvec3 l, dvec3 a, dvec3 b, dvec3 c) {
   const int eye = agreement(passes(p, d, a, b, c)), light = agreement(passes(p, p - l, a, b, c));
   const uint fall = signs(det(b - a, c - a, d)), height = signs(det(b - a, c - a, p - a));

@@ -1,4 +1,4 @@
-// Structs written once for C++ and GLSL: faces of shadow volumes, view samples, push constants.
+// Structs shared by C++ and GLSL: faces of shadow volumes, view samples, push constants.
 #ifdef __cplusplus
 #pragma once
 #include <glm/vec2.hpp>
@@ -17,31 +17,32 @@ using glm::vec3;
 /// Doubt): 2⁻⁴⁸.
 const double kDeterminantError = 1.0 / 281474976710656.0;
 
-/// A face of shadow volumes: a side (edge a b, k_e in weight), its fan at the far end (the same), or a cap (a, b, c).
+/// A face of shadow volumes: a side (edge a b, k_e in weight), its fan at the far end (the same fields), or a cap (a,
+/// b, c).
 struct VolumeFace {
   vec3 a, b, c;
   int weight;
-  uint plane;       // of a cap
-  uint part;        // of VolumePart, where there are any
+  uint plane;       // plane of a cap
+  uint part;        // index of its VolumePart, if there are parts
   vec2 corners[4];  // its screen box
 };
 
-/// Volumes that are counted together and in one way; n is the axis and x is taken from l.
+/// Volumes that are counted together in the same direction; n is the axis and x is relative to l.
 struct VolumePart {
   DOUBLE3(axis);
-  double lower, upper;  // what is left of the volumes: lower < n · x < upper
+  double lower, upper;  // the remaining part of the volumes: lower < n · x < upper
   DOUBLE3(barrier);     // of a part that toggles: counted before p where barrier · p > 0, else beyond p
-  uint bounds;          // which of these hold: kHasLower, kHasUpper, kToggles
+  uint bounds;          // valid bounds: kHasLower, kHasUpper, kToggles
   uint unused;
 };
 const uint kHasLower = 1, kHasUpper = 2, kToggles = 4;
 
-/// In the word of a pixel that counts how often it was changed.
+/// Bit of the word that counts a pixel's changes.
 const uint kDoubtBit = 0x80000000u;
 
 struct VolumeReceiver {
   vec3 p;
-  uint plane;  // of the carrier; kNotCounted: leave this pixel alone
+  uint plane;  // plane of the carrier; kNotCounted: skip this pixel
 };
 const uint kNotCounted = 0xffffffffu;
 
@@ -49,7 +50,7 @@ struct VolumePush {
   DOUBLE3(eye);
   DOUBLE3(apex);  // the direction where all fans meet
   vec3 l;
-  uint width;                 // of the whole picture
+  uint width;                 // width of the whole picture
   uint first_row, row_count;  // the tile
 };
 

@@ -1,8 +1,9 @@
-// D. B. Lloyd, J. Wendt, N. Govindaraju, D. Manocha, CC shadow volumes, EGSR 2004; M. Stich, C. Wächter, A. Keller,
-// Efficient and robust shadow volumes using hierarchical occlusion culling and geometry shaders, GPU Gems 3, 2007; S.
-// Laine, Split-plane shadow volumes, Graphics Hardware 2005. Departures: what a caster may hide is asked of the view
-// samples themselves, in cells of directions from the light, where the papers draw bounding boxes and query how many
-// fragments pass; stretches are between planes across each caster's axis, where Lloyd's slices go through the eye.
+// Reduced shadow volumes: D. B. Lloyd, J. Wendt, N. Govindaraju, D. Manocha, CC shadow volumes, EGSR 2004; M. Stich, C.
+// Wächter, A. Keller, Efficient and robust shadow volumes using hierarchical occlusion culling and geometry shaders,
+// GPU Gems 3, 2007; S. Laine, Split-plane shadow volumes, Graphics Hardware 2005. Departures: a caster is tested
+// against the view samples themselves, in cells of directions from the light, where the papers draw bounding boxes and
+// query the number of passing fragments; stretches are between planes across each caster's axis, where Lloyd's slices
+// contain the eye.
 
 #include "volumes/raster/volume_culling.hpp"
 
@@ -26,8 +27,8 @@ using visibility::SceneFloats;
 using visibility::ViewSamples;
 
 constexpr double kUnbounded = std::numeric_limits<double>::infinity();
-/// A caster is behind another only if it is by this share of the distance: then what coincides with the other, or with
-/// a view sample's own plane, is not between them.
+/// A caster is behind another only if it is farther by this factor: then objects that coincide with the other, or with
+/// a view sample's own plane, are not between them.
 constexpr double kBehind = 1.02;
 constexpr std::size_t kMostStretches = 4;
 
@@ -37,13 +38,13 @@ std::array<glm::dvec3, 3> from(const glm::vec3& l, const std::array<glm::vec3, 3
   return result;
 }
 
-/// For each cell how deep it is, at most, to a caster that is all over the cell; infinite where none is.
+/// For each cell an upper bound of the depth of a caster that covers the whole cell; infinite if there is none.
 class Covers {
  public:
   Covers() : depth_(ReceiverCells::kCells, kUnbounded), most_(ReceiverCells::kCells), state_(ReceiverCells::kCells) {}
 
-  /// Caps and silhouette edges of one caster. No edge of its silhouette in a cell: as many of its triangles are in
-  /// front of all of the cell as of its middle.
+  /// Adds caps and silhouette edges of one caster. Without an edge of its silhouette in a cell, as many of its
+  /// triangles are in front of all of the cell as of its middle.
   void add(const glm::vec3& l, std::span<const VolumeCap* const> caps, std::span<const VolumeEdge* const> edges) {
     for (const VolumeCap* cap : caps) {
       const std::array<glm::dvec3, 3> corners = from(l, cap->corners);
@@ -109,7 +110,7 @@ void for_each_behind(const ReceiverCells& cells, const Covers* covers, const Vol
   }
 }
 
-/// Stretches along a caster's axis; those that overlap are one.
+/// Stretches along a caster's axis; overlapping ones are merged.
 class Stretches {
  public:
   void add(double lower, double upper) {
@@ -117,8 +118,8 @@ class Stretches {
     if (all_.size() > 4096) join(0);
   }
 
-  /// Merges stretches until at most `most` remain, the narrowest gaps first; closes gaps below a tenth of what is left,
-  /// too.
+  /// Merges stretches until at most `most` remain, across the narrowest gaps first; also closes gaps below a tenth of
+  /// the whole range.
   std::vector<std::pair<double, double>> few(std::size_t most) {
     join(0);
     if (all_.empty()) return {};
@@ -153,10 +154,10 @@ struct Caster {
   std::vector<const VolumeCap*> caps;
   std::vector<const VolumeEdge*> edges;
   glm::dvec3 axis{0};           // unit, from l toward its middle
-  double nearest = 0, end = 0;  // of its corners, along the axis
+  double nearest = 0, end = 0;  // range of its corners along the axis
 };
 
-/// Casters whose corners are all well before l along the axis can be cut across it.
+/// Casters whose corners are all well in front of l along the axis can be cut across it.
 constexpr double kLeastCosine = 0.05;
 
 std::vector<Caster> casters_in(const LightVolumes& volumes, const std::vector<std::uint32_t>& components) {
@@ -190,7 +191,7 @@ std::vector<Caster> casters_in(const LightVolumes& volumes, const std::vector<st
   return casters;
 }
 
-/// The volumes with the caps and edges of these parts of casters alone.
+/// Volumes with the caps and edges of these parts of casters only.
 struct PartOf {
   const Caster* caster;
   gpu::VolumePart part;
@@ -212,7 +213,7 @@ LightVolumes assembled(const LightVolumes& all, std::span<const PartOf> parts) {
   return result;
 }
 
-/// Puts back those triangles of a caster whose absence gives it more silhouette edges than it had: each has a face.
+/// Restores those triangles of a caster whose removal gives it more silhouette edges than before: each edge has a face.
 void keep_simple(const ShadowCasters& casters, const glm::vec3& l, const Light& light,
                  std::vector<std::uint8_t>& kept) {
   const std::vector<std::uint32_t> components = casters.components();
@@ -253,7 +254,7 @@ LeanVolumes culled_and_clamped(const SceneFloats& scene, const ShadowCasters& ca
         const glm::dvec3 low = caster.axis * cluster.lower, high = caster.axis * cluster.upper;
         const glm::dvec3 least = glm::min(low, high), most = glm::max(low, high);
         stretches.add(least.x + least.y + least.z, most.x + most.y + most.z);
-        return can_be_cut;  // else one is enough
+        return can_be_cut;  // otherwise one stretch suffices
       });
       if (lean[i].hides && !can_be_cut) break;
     }
@@ -264,7 +265,7 @@ LeanVolumes culled_and_clamped(const SceneFloats& scene, const ShadowCasters& ca
     }
     for (const auto& [lower, upper] : stretches.few(kMostStretches)) {
       const double room = 1e-6 * (std::abs(lower) + std::abs(upper));
-      if (upper + room <= caster.nearest) continue;  // before all of the caster
+      if (upper + room <= caster.nearest) continue;  // in front of the whole caster
       gpu::VolumePart part{};
       store(part.axis, caster.axis);
       part.lower = lower - room;

@@ -1,5 +1,5 @@
 // The faces of shadow volumes on the screen, after C. Everitt and M. Kilgard 2002: sides to infinity, caps, far ends.
-// Departure: the far end is a fan a silhouette edge, not a cap a triangle (volumes/README.md, Counting).
+// Departure: the far end is a fan for each silhouette edge, not a cap for each triangle (volumes/README.md, Counting).
 
 #include "volumes/raster/volume_faces.hpp"
 
@@ -19,7 +19,7 @@
 namespace penumbra::volumes {
 namespace {
 
-/// Its side, or its fan; no box yet.
+/// Returns an edge's side, or its fan, without a screen box.
 gpu::VolumeFace face_of(const VolumeEdge& edge) {
   return {edge.a, edge.b, edge.a, edge.multiplicity, 0, edge.part, {}};
 }
@@ -60,7 +60,7 @@ class Finder {
   VolumeFaces found_;
 };
 
-/// Adds what `make` makes of each item and a screen box can be found for.
+/// Adds the face `make` returns for each item, if it has a screen box.
 template <typename Item, typename Make>
 void Finder::add_faces(FaceKind kind, const std::vector<Item>& items, const Make& make) {
   std::vector<gpu::VolumeFace> faces(items.size());
@@ -79,8 +79,8 @@ void Finder::add_faces(FaceKind kind, const std::vector<Item>& items, const Make
   found_.kinds.push_back({kind, std::move(faces)});
 }
 
-/// Behind the camera, where fans hardly ever come onto the screen; a little aside if rounding cannot tell what is
-/// there.
+/// Chooses an apex behind the camera, from which fans hardly ever reach the screen; moved slightly if rounding does not
+/// determine the count there.
 void Finder::choose_apex() {
   constexpr int kTries = 64;
   for (int i = 0; i < kTries; ++i) {
@@ -91,7 +91,8 @@ void Finder::choose_apex() {
     for (std::uint32_t part = 0; part < counts->size(); ++part) {
       if (is_bounded(part, gpu::kHasUpper) || (*counts)[part] == 0) continue;
       found_.at_start += (*counts)[part];
-      if (is_bounded(part, gpu::kToggles)) found_.parts[part].bounds &= ~gpu::kToggles;  // starts elsewhere than at 0
+      // the count starts at another value than 0
+      if (is_bounded(part, gpu::kToggles)) found_.parts[part].bounds &= ~gpu::kToggles;
     }
     return;
   }
@@ -102,13 +103,13 @@ bool Finder::is_bounded(std::uint32_t part, std::uint32_t by) const {
   return part < found_.parts.size() && (found_.parts[part].bounds & by) != 0;
 }
 
-/// How many times as far from l as x is, what is beyond x on the part's plane.
+/// Returns the factor by which points beyond x on the part's plane are farther from l than x.
 double Finder::offset_of(const glm::dvec3& x, std::uint32_t part, double plane) const {
   const double(&n)[3] = found_.parts[part].axis;
   return plane / glm::dot(glm::dvec3(n[0], n[1], n[2]), x - glm::dvec3(volumes_.l));
 }
 
-/// A part in which the eye is is counted beyond p everywhere.
+/// A part that contains the eye is counted beyond p everywhere.
 void Finder::stop_toggling_at_eye() {
   if (found_.parts.empty()) return;
   const std::optional<std::vector<std::int32_t>> counts = counts_at(volumes_, camera_.eye);
@@ -145,7 +146,7 @@ void Finder::add_caps() {
   });
 }
 
-/// The ends of volumes at infinity, or in the planes that cut parts.
+/// Adds the ends of volumes at infinity, or in the planes that cut parts.
 void Finder::add_fans(FaceKind kind) {
   const glm::dvec3 l = volumes_.l;
   add_faces(kind, volumes_.edges, [&](const VolumeEdge& edge, gpu::VolumeFace& face) -> Corners {

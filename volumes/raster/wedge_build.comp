@@ -6,30 +6,31 @@
 #include "volumes/edges/device/silhouette.shared.h"
 #include "volumes/raster/wedge_build.shared.h"
 
-// Penumbra wedges of the construction `original` (Assarsson and Akenine-Möller 2003), a lane a silhouette edge: the twin
-// of original_planes (penumbra_wedge.cpp). However a plane is found, it leaves only with proof: the signs of
-// bounds_penumbra, each beyond its error bound (docs/wedges.md, On the device). A wedge that lacks one is the host's.
+// Builds penumbra wedges of the construction `original` (Assarsson and Akenine-Möller 2003), one lane for each
+// silhouette edge: the twin of original_planes (penumbra_wedge.cpp). Every plane in the result is proved: by the signs
+// of bounds_penumbra, each beyond its error bound (docs/wedges.md, On the device). The host builds wedges without a
+// proof.
 
 layout(local_size_x = 64) in;
 layout(scalar, binding = 0) readonly buffer Silhouettes { Silhouette silhouettes[]; };
 layout(scalar, binding = 1) readonly buffer Ends { uvec2 ends[]; };  // of every edge
 layout(scalar, binding = 2) readonly buffer Positions { vec3 positions[]; };
-layout(scalar, binding = 3) readonly buffer Corners { dvec3 corners[]; };  // of the light's hull
+layout(scalar, binding = 3) readonly buffer Corners { dvec3 corners[]; };  // corners of the light's hull
 layout(scalar, binding = 4) writeonly buffer Wedges { BuiltWedge wedges[]; };
 layout(scalar, push_constant) uniform Push { WedgeBuildPush push; };
 
-const double kProofError = 1.0LF / 562949953421312.0LF;  // 2⁻⁴⁹, of the sum of the terms' sizes
-const double kLeast = 7.6e-37LF;                         // 2⁻¹²⁰: positions below 2⁻¹²⁶ may have been read as 0
-const double kMostTurn = 1.0LF / 1048576.0LF;            // 2⁻²⁰, as bounding_plane
+const double kProofError = 1.0LF / 562949953421312.0LF;  // 2⁻⁴⁹, relative to the sum of the terms' magnitudes
+const double kLeast = 7.6e-37LF;                         // 2⁻¹²⁰: positions below 2⁻¹²⁶ may have been flushed to 0
+const double kMostTurn = 1.0LF / 1048576.0LF;            // 2⁻²⁰, as in bounding_plane
 
 double largest(dvec3 v) { return max(max(abs(v.x), abs(v.y)), abs(v.z)); }
 
 struct Sum {
   double value;
-  double bound;  // |exact − value| is less
+  double bound;  // upper bound of |exact − value|
 };
 
-/// n · g + d, where g may be a difference of two doubles and d a product.
+/// Returns n · g + d, where g may be a difference of two doubles and d a product.
 Sum sum_of(dvec3 n, dvec3 g, double d) {
   precise const dvec3 terms = n * g;
   precise const double value = terms.x + terms.y + terms.z + d;
@@ -38,7 +39,7 @@ Sum sum_of(dvec3 n, dvec3 g, double d) {
 
 struct Caster {
   dvec3 a, b;
-  dvec3 away;  // a direction from the light to the edge, or what comes nearest to one
+  dvec3 away;  // a direction from the light to the edge, or an approximation
 };
 
 double least_way(dvec3 m, Caster caster) {
@@ -49,8 +50,8 @@ double least_way(dvec3 m, Caster caster) {
   return least;
 }
 
-/// Of the light's normal and the way to the edge's nearest point the one along which they are farther apart. Only tried:
-/// what is turned that way is proved afterwards.
+/// Returns, of the light's normal and the direction to the edge's nearest point, the one along which edge and light are
+/// farther apart. A heuristic: planes rotated toward it are proved afterwards.
 dvec3 away_of(Caster caster) {
   const dvec3 across = cross(corners[1] - corners[0], corners[2] - corners[0]);
   const dvec3 normal = across / length(across) * (dot(across, caster.a - corners[0]) < 0.0LF ? -1.0LF : 1.0LF);
@@ -60,7 +61,7 @@ dvec3 away_of(Caster caster) {
   return least_way(normal, caster) > least_way(way, caster) ? normal : way;
 }
 
-/// By how much of `away` the normal must be turned, so that no n · (x − l) is below twice its bound.
+/// Returns the multiple of `away` by which the normal must be rotated, so that no n · (x − l) is below twice its bound.
 double turn_of(dvec3 n, Caster caster) {
   double turn = 0.0LF;
   for (uint i = 0; i < push.corner_count; ++i) {
@@ -72,9 +73,9 @@ double turn_of(dvec3 n, Caster caster) {
   return turn;
 }
 
-bool is_proved(Sum sum) { return sum.value >= sum.bound; }  // not for NaN
+bool is_proved(Sum sum) { return sum.value >= sum.bound; }  // false for NaN
 
-/// h(x) ≥ 0 and n · (x − l) ≥ 0 for both ends x and all corners l.
+/// Proves h(x) ≥ 0 and n · (x − l) ≥ 0 for both ends x and all corners l.
 bool bounds_penumbra(dvec3 n, double d, Caster caster) {
   bool proved = is_proved(sum_of(n, caster.a, d)) && is_proved(sum_of(n, caster.b, d));
   for (uint i = 0; i < push.corner_count; ++i) {
@@ -84,7 +85,8 @@ bool bounds_penumbra(dvec3 n, double d, Caster caster) {
   return proved;
 }
 
-/// Of the planes that contain `at` and `direction` and a corner, the one that leaves no corner beyond (tangent_normal).
+/// Returns the normal of the plane that contains `at`, `direction` and a corner, and leaves no corner beyond
+/// (tangent_normal).
 dvec3 tangent_normal(dvec3 at, dvec3 direction, double turn) {
   dvec3 extreme = turn * cross(direction, corners[0] - at);
   for (uint i = 1; i < push.corner_count; ++i) {
@@ -101,7 +103,7 @@ void main() {
   Caster caster = Caster(dvec3(positions[edge_ends.x]), dvec3(positions[edge_ends.y]), dvec3(0.0LF));
   caster.away = away_of(caster);
 
-  // The far end moved towards the light's centre, until both are equally far.
+  // Moves the far end towards the light's centre, until both ends are equally far.
   const dvec3 c = push.center;
   const double to_a = length(caster.a - c), to_b = length(caster.b - c);
   const dvec3 a = to_a > to_b ? c + (caster.a - c) * (to_b / to_a) : caster.a;
@@ -109,8 +111,9 @@ void main() {
 
   bool proved = true;
   for (uint k = 0; k < kBuiltPlanes; ++k) {
-    // Front and back contain the moved edge; the sides an end, and what is at right angles to edge and way to the light.
-    // The other end is as far from c: of the two tangents, only one can have it on its positive side.
+    // Front and back contain the moved edge; the sides contain an end, and the direction orthogonal to the edge and to
+    // the direction to the light. The other end is as far from c: only one of the two tangents can have it on its
+    // positive side.
     const dvec3 through = k == 3 ? b : a;
     const dvec3 direction = k < 2 ? b - a : cross(b - a, c - through);
     const dvec3 wanted = tangent_normal(through, direction, k == 0 || k == 3 ? 1.0LF : -1.0LF);
@@ -121,7 +124,7 @@ void main() {
     const double offset = -dot(n, through), least = max(-at_a.value, -at_b.value);
     const double reach = max(largest(caster.a), largest(caster.b));
     const double d = max(offset, least) + 4.0LF * (at_a.bound + at_b.bound + kProofError * abs(offset));
-    // As bounding_plane: what would have to be turned or moved by more is no plane of this wedge.
+    // As in bounding_plane: a plane that would have to be rotated or moved by more is not a plane of this wedge.
     proved = proved && turn <= kMostTurn && least - offset <= kMostTurn * reach && bounds_penumbra(n, d, caster);
     wedges[i].planes[k] = BuiltPlane(n.x, n.y, n.z, d);
   }

@@ -1,4 +1,4 @@
-// One struct, two languages (scalar layout): penumbra wedges that the device builds.
+// Structs shared by C++ and GLSL (scalar layout): penumbra wedges that the device builds.
 #ifdef __cplusplus
 #pragma once
 #include <cstdint>
@@ -11,7 +11,7 @@ using uint = std::uint32_t;
 
 const uint kBuiltPlanes = 4;  // front, back, and one at either end
 
-/// As Plane.
+/// Coefficients of a Plane.
 struct BuiltPlane {
   double a, b, c, d;
 };
@@ -24,9 +24,9 @@ struct BuiltWedge {
 
 struct WedgeBuildPush {
   DOUBLE3(center);
-  uint first;  // of the silhouettes
+  uint first;  // first of the silhouettes
   uint count;
-  uint corner_count;  // of the light's hull
+  uint corner_count;  // corners of the light's hull
   uint unused;
 };
 

@@ -1,4 +1,5 @@
-// The host's half of silhouette_*.comp and wedge_build.comp: docs/wedges.md, On the device.
+// The host's half of silhouette_*.comp and wedge_build.comp: silhouettes and penumbra wedges on the device or the host.
+// docs/wedges.md, On the device.
 
 #include "volumes/raster/wedge_builder.hpp"
 
@@ -35,18 +36,18 @@ Wedge wedge_of(const gpu::BuiltWedge& built, const VolumeEdge& edge, std::size_t
   return wedge;
 }
 
-/// The device's wedges, and in the place of those without proof the host's.
+/// Returns the device's wedges, with the host's in place of those without a proof.
 std::vector<Wedge> merged(const std::vector<VolumeEdge>& edges, const std::vector<gpu::BuiltWedge>& built,
                           const std::vector<std::uint32_t>& missing, std::vector<Wedge> hosts) {
   std::vector<Wedge> wedges(edges.size() - missing.size() + hosts.size());
-  std::vector<std::size_t> place(edges.size() + 1);  // of each edge's first wedge
+  std::vector<std::size_t> place(edges.size() + 1);  // for each edge, its first wedge
   for (const Wedge& wedge : hosts) ++place[missing[wedge.source] + 1];
   for (std::size_t i = 0; i < edges.size(); ++i) place[i + 1] += place[i] + built[i].proved;
   mesh::for_each_index(edges.size(), [&](std::size_t i) {
     if (built[i].proved != 0) wedges[place[i]] = wedge_of(built[i], edges[i], i);
   });
   for (std::size_t j = 0; j < hosts.size();) {
-    const std::size_t first = j;  // of one edge's pieces
+    const std::size_t first = j;  // range of one edge's pieces
     const std::uint32_t which = hosts[first].source, source = missing[which];
     for (; j < hosts.size() && hosts[j].source == which; ++j) {
       Wedge& wedge = wedges[place[source] + (j - first)] = std::move(hosts[j]);
@@ -60,7 +61,7 @@ std::vector<Wedge> merged(const std::vector<VolumeEdge>& edges, const std::vecto
 }  // namespace
 
 struct WedgeBuilder::State {
-  /// What only the device needs.
+  /// Objects that only the device needs.
   struct Device {
     Device(const render::Device& on, std::uint64_t most_bytes)
         : silhouettes(on, most_bytes),
@@ -139,7 +140,7 @@ void WedgeBuilder::State::add_wedges(Built& built, const visibility::Light& ligh
   built.wedges = {edges, merged(edges, proposed, missing, std::move(hosts))};
 }
 
-/// As many at a time as a buffer holds.
+/// Builds as many wedges at a time as a buffer holds.
 std::vector<gpu::BuiltWedge> WedgeBuilder::State::build_on_device(const LightHull& hull) {
   Device& d = *gpu;
   std::vector<gpu::BuiltWedge> built(d.silhouettes.count());

@@ -17,25 +17,25 @@ namespace penumbra::volumes {
 
 enum class WedgesOn { device, host };
 
-/// The option `wedges` of a method that builds them.
+/// Declares the option `wedges` of a method that builds them.
 constexpr auto wedges_option(const char* help) {
   return visibility::ChoiceOption{
       "wedges", {{"device", WedgesOn::device}, {"host", WedgesOn::host}}, WedgesOn::device, help};
 }
 
-/// The silhouettes of a light's centre and their wedges, built for each light: what a moving light needs in each frame.
+/// Silhouettes of a light's centre and their wedges, built for each light: needed in each frame for a moving light.
 ///
-/// Silhouettes of device and host are the same edges in the same order. Wedges are not the same numbers, but either way
-/// every plane satisfies bounds_penumbra, exactly. The device builds `original` wedges of four planes; where it cannot
-/// prove one, or there are fewer, it is the host's (build_wedges), as are all wedges of `tight`. A mesh too large for
-/// the device's buffers (SilhouettePass::most_triangles) is the host's, whole.
+/// Silhouettes of device and host are the same edges in the same order. Wedges differ in their numbers, but every plane
+/// satisfies bounds_penumbra exactly in both cases. The device builds `original` wedges of four planes; the host builds
+/// (build_wedges) wedges that the device cannot prove, wedges with fewer planes, and all wedges of `tight`. The host
+/// handles a mesh too large for the device's buffers (SilhouettePass::most_triangles) completely.
 class WedgeBuilder {
  public:
   struct Options {
     WedgesOn on = WedgesOn::device;
     Construction construction = Construction::original;
     Layers layers = Layers::one_a_solid;
-    std::uint64_t most_bytes = 0;  ///< of any buffer; 0: the device's limit. Tests make it small
+    std::uint64_t most_bytes = 0;  ///< limit of any buffer; 0: the device's limit. Tests make it small
   };
   WedgeBuilder(const render::Device& device, const Options& options);
   ~WedgeBuilder();
@@ -49,9 +49,9 @@ class WedgeBuilder {
     LightVolumes volumes;
     LightWedges wedges;
     std::uint64_t facings_on_host = 0;  ///< triangles whose side floats left open, or all
-    std::uint64_t edges_on_host = 0;    ///< whose wedges the host built, perhaps all
+    std::uint64_t edges_on_host = 0;    ///< edges whose wedges the host built, possibly all
   };
-  /// Planar lights.
+  /// Builds silhouettes and wedges of a planar light.
   [[nodiscard]] Built build(const visibility::Light& light);
 
   std::vector<visibility::PassTime> take_pass_times();

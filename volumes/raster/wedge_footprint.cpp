@@ -1,5 +1,6 @@
-// A wedge is cut by the receivers' box and by a plane in front of the nearest receiver, so no corner is behind the eye,
-// and nothing is special about an eye within. The convex hull of what is left, projected, is the footprint.
+// Screen footprints of penumbra wedges. A wedge is cut by the receivers' box and by a plane in front of the nearest
+// receiver, so no corner is behind the eye, and an eye inside the wedge is no special case. The footprint is the convex
+// hull of the projected remainder.
 
 #include "volumes/raster/wedge_footprint.hpp"
 
@@ -15,18 +16,18 @@
 namespace penumbra::volumes {
 namespace {
 
-/// An eighth of a pixel is what callers may rely on; the rest is for the rasteriser, as in screen_box.cpp.
+/// Callers may rely on an eighth of a pixel; the rest is for the rasteriser, as in screen_box.cpp.
 constexpr double kPad = 0.25;
 
 double cross(const glm::dvec2& u, const glm::dvec2& v) {
   return u.x * v.y - u.y * v.x;
 }
 
-/// A convex polyhedron by its faces; each has its own copies of the corners. Half-spaces are moved outward by 2⁻⁴⁰ of
-/// the terms that their heights are made of, more than rounding takes here.
+/// A convex polyhedron by its faces; each face has its own copies of the corners. Half-spaces are moved outward by 2⁻⁴⁰
+/// of the terms of their heights, more than the rounding here.
 using Loop = std::vector<glm::dvec3>;
 
-/// The corners on a plane of this normal, in order around their middle.
+/// Returns the corners on a plane with this normal, in order around their middle.
 Loop cap_of(Loop corners, const glm::dvec3& normal) {
   glm::dvec3 middle(0);
   for (const glm::dvec3& x : corners) middle += x / static_cast<double>(corners.size());
@@ -44,7 +45,7 @@ double margin_of(const Plane& plane, double reach) {
   return 0x1p-40 * (3 * largest(plane.normal()) * reach + std::abs(plane.d));
 }
 
-/// Is no point of the box in the half-space?
+/// Returns whether no point of the box is in the half-space.
 bool is_beyond(const Box& box, const Plane& plane) {
   const double reach = std::max(largest(box.lower), largest(box.upper));
   double highest = plane.d + margin_of(plane, reach);
@@ -94,7 +95,7 @@ std::vector<Loop> faces_of(const Box& box) {
 
 using Points = std::vector<glm::dvec2>;
 
-/// Counter-clockwise where y goes up (A. M. Andrew 1979).
+/// Returns the convex hull, counter-clockwise with y upward (A. M. Andrew 1979).
 Points hull_of(Points points) {
   std::ranges::sort(points, [](const auto& p, const auto& q) { return p.x != q.x ? p.x < q.x : p.y < q.y; });
   Points hull;
@@ -110,7 +111,7 @@ Points hull_of(Points points) {
   return hull;
 }
 
-/// What two convex polygons have in common.
+/// Returns the intersection of two convex polygons.
 Points clip(Points polygon, const Points& by) {
   for (std::size_t side = 0; side < by.size(); ++side) {
     const glm::dvec2 &start = by[side], way = by[(side + 1) % by.size()] - start;
@@ -126,7 +127,8 @@ Points clip(Points polygon, const Points& by) {
   return polygon;
 }
 
-/// Takes away the edge that adds least when its neighbours are extended until they meet. False: none do.
+/// Removes the edge that adds the least area when its neighbours are extended until they meet. Returns false if no
+/// neighbours meet.
 bool drop_edge(Points& polygon) {
   const std::size_t n = polygon.size();
   double least = std::numeric_limits<double>::infinity();
@@ -162,7 +164,7 @@ Receivers::Receivers(const visibility::ViewSamples& samples, const std::optional
     if (samples.triangle[i] == visibility::ViewSamples::kBackground) continue;
     const glm::dvec3 p(samples.p[i]);
     if (center) {
-      // n is a unit vector in float32, off by some 2⁻²²; p off its plane by an ulp of its coordinates.
+      // n is a unit vector in float32, off by about 2⁻²²; p is off its plane by an ulp of its coordinates.
       const glm::dvec3 way = *center - p;
       const double size = largest(way) + largest(p) + largest(*center);
       if (glm::dot(glm::dvec3(samples.n[i]), way) < -0x1p-18 * size) continue;
@@ -202,7 +204,7 @@ void FootprintFinder::add_projection(const Wedge& wedge, Points& points) const {
   }
 }
 
-/// Corners of the blocks in the polygon that may have a receiver in one of the wedges.
+/// Returns the corners of blocks in the polygon that may have a receiver in one of the wedges.
 Points FootprintFinder::blocks_in(std::span<const Wedge> pieces, const Points& polygon) const {
   glm::dvec2 lower = polygon.front(), upper = lower;
   for (const glm::dvec2& p : polygon) {

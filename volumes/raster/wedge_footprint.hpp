@@ -24,24 +24,26 @@ struct Footprint {
   std::size_t size = 0;
 };
 
-/// Which receivers footprints are to hold (E. Lengyel, Advanced stencil shadow and penumbral wedge rendering, GDC 2005,
-/// leaves out fragments by depth and by orientation; here whole parts of footprints are).
+/// Receivers that footprints must contain (E. Lengyel, Advanced stencil shadow and penumbral wedge rendering, GDC 2005,
+/// discards fragments by depth and by orientation; here whole parts of footprints are discarded).
 enum class WedgeTests {
   none,  ///< wedges are cut by the box of all receivers
-  z,     ///< and footprints by the hull of the blocks of pixels whose receivers' box is not beyond a plane of the wedge
-  both,  ///< and receivers that face away from the light's centre, which are dark, do not count
+  z,     ///< footprints are also cut by the hull of the blocks of pixels whose receivers' box is not beyond a plane of
+         ///< the wedge
+  both,  ///< as z; receivers that face away from the light's centre, which are dark, are ignored
 };
 
-/// Where receivers lie, by square blocks of pixels: what wedges, which have no caps, are cut by.
+/// Places of receivers, by square blocks of pixels: wedges, which have no caps, are cut by them.
 class Receivers {
  public:
-  /// Of all pixels that are not background, or of those that do not face away from `center`.
+  /// Uses all pixels that are not background, or only those that do not face away from `center`.
   explicit Receivers(const visibility::ViewSamples& samples, const std::optional<glm::dvec3>& center = {});
 
   [[nodiscard]] bool empty() const { return !(nearest_ > 0); }
-  /// Of all.
+  /// Returns the bounds of all receivers.
   [[nodiscard]] const Box& bounds() const { return bounds_; }
-  /// body(lower, upper, bounds) for each block that has one and meets these pixels: its pixels' corners and its box.
+  /// Calls body(lower, upper, bounds) for each block that has receivers and meets these pixels: its pixels' corners and
+  /// its box.
   template <typename Body>
   void for_each_block(const glm::dvec2& lower, const glm::dvec2& upper, const Body& body) const {
     const auto block = [](double at, std::uint32_t count) {
@@ -55,27 +57,29 @@ class Receivers {
       }
     }
   }
-  /// Along the view axis: half of the nearest one's, so that nothing that is seen is cut off or projects to infinity.
+  /// Returns a distance along the view axis: half of the nearest receiver's, so that no visible point is cut off or
+  /// projected to infinity.
   [[nodiscard]] double nearest() const { return nearest_; }
-  /// The largest coordinate.
+  /// Returns the largest coordinate.
   [[nodiscard]] double reach() const { return reach_; }
 
  private:
   static constexpr std::uint32_t kBlock = 8;  // pixels a side
   std::uint32_t columns_ = 0, rows_ = 0;
-  std::vector<Box> blocks_;  // lower > upper where there is none
+  std::vector<Box> blocks_;  // lower > upper for blocks without receivers
   Box bounds_;
   double nearest_ = 0, reach_ = 0;
 };
 
-/// Where on the screen the receivers in a wedge may be. It only proposes: shaders decide.
+/// Finds the screen region of the receivers in a wedge. The region only proposes: shaders decide.
 class FootprintFinder {
  public:
   /// Borrows the receivers.
   FootprintFinder(const visibility::PinholeCamera& camera, const Receivers& receivers, WedgeTests tests);
 
-  /// Holds every pixel whose centre is within an eighth of a pixel of where a receiver in one of the wedges appears
-  /// (pieces of one edge; `split` ones are passed over). Nothing: no pixel. The eye may be inside.
+  /// Returns a footprint that contains every pixel whose centre is within an eighth of a pixel of a receiver in one of
+  /// the wedges (pieces of one edge; `split` ones are skipped). Returns nullopt if it contains no pixel. The eye may be
+  /// inside.
   [[nodiscard]] std::optional<Footprint> around(std::span<const Wedge> pieces) const;
 
  private:

@@ -13,7 +13,7 @@ layout(scalar, push_constant) uniform Push {
   WedgePush push;
 };
 
-// Handed on, not looked up again: some drivers load from buffers one lane after the other.
+// Passed on instead of read again: some drivers read buffers one lane after the other.
 layout(location = 0) flat out vec3 a;
 layout(location = 1) flat out vec3 b;
 layout(location = 2) flat out int weight;
@@ -24,7 +24,8 @@ void main() {
   b = faces[gl_InstanceIndex].b;
   weight = faces[gl_InstanceIndex].weight;
   number = faces[gl_InstanceIndex].number;
-  // Triangle t of the fan has corners 0, t + 1, t + 2; those beyond the last are the last, so without area.
+  // Triangle t of the fan has corners 0, t + 1, t + 2; corners beyond the last are clamped to it, which gives triangles
+  // without area.
   const uint triangle = gl_VertexIndex / 3, which = gl_VertexIndex % 3;
   const uint corner = min(which == 0 ? 0 : triangle + which, faces[gl_InstanceIndex].corner_count - 1);
   const vec2 at = faces[gl_InstanceIndex].corners[corner] - vec2(0.0, float(push.first_row));

@@ -1,3 +1,5 @@
+// Host of the passes that rasterise penumbra wedges and add up a fragment shader's integers at each receiver.
+
 #include "volumes/raster/wedge_raster.hpp"
 
 #include "base/assert.hpp"
@@ -158,7 +160,7 @@ void WedgeRaster::add(std::span<const gpu::WedgeFace> faces, std::span<const gpu
     s.pass.record(commands, std::as_bytes(std::span(&push, 1)), buffers, draw);
     s.times.add(commands.submit());
   }
-  commands.submit();  // the fills, where there was no face
+  commands.submit();  // runs the fills if there was no face
   s.sum_buffer->read<std::int64_t>(s.sums);
   s.doubt_buffer->read<std::uint32_t>(s.doubts);
 }

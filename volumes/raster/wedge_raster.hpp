@@ -20,33 +20,35 @@ namespace penumbra::volumes {
 /// The silhouette edges of one light with their wedges.
 struct LightWedges {
   std::vector<VolumeEdge> edges;
-  std::vector<Wedge> wedges;  ///< of edge i: those whose source is i, in order (build_wedges)
+  std::vector<Wedge> wedges;  ///< wedges whose source is edge i belong to it, in order (build_wedges)
 };
 LightWedges wedges_of(const LightVolumes& volumes, const visibility::Light& light, Construction construction);
 
-/// Their faces that may have a receiver on the screen. `center` is the light's.
+/// Returns the faces of wedges that may have a receiver on the screen. `center` is the light's.
 std::vector<gpu::WedgeFace> faces_of(const LightWedges& wedges, const visibility::ViewSamples& samples,
                                      WedgeTests tests, const glm::dvec3& center);
 
-/// How many pixels the faces propose, about: the areas of their footprints.
+/// Returns the approximate number of pixels that the faces propose: the areas of their footprints.
 std::uint64_t fragments_of(std::span<const gpu::WedgeFace> faces);
 
-/// The duals of a planar light's axes (visibility::LightFrame) around center_of, and no tile yet.
+/// Returns push constants with the duals of a planar light's axes (visibility::LightFrame) around center_of, without a
+/// tile.
 gpu::WedgePush wedge_push(const visibility::Light& light);
 
-/// Does p appear within a sixteenth of a pixel of its pixel's centre? Else footprints may miss it: rounding moved p,
-/// which next to the camera can be pixels.
+/// Returns whether p is projected to within a sixteenth of a pixel of its pixel's centre. If not, footprints may miss
+/// it: rounding moved p, next to the camera by up to several pixels.
 bool appears_in_place(const visibility::PinholeCamera& camera, const glm::vec3& p, std::size_t pixel);
 
 struct WedgeShader {
   std::string name;
   std::span<const std::uint32_t> fragment;
   std::vector<std::uint32_t> constants{};
-  std::uint32_t words = 1;  ///< of sums, for each receiver
-  bool table = true;        ///< does it read one?
+  std::uint32_t words = 1;  ///< words of sums for each receiver
+  bool table = true;        ///< whether it reads a table
 };
 
-/// Rasterises wedges and adds up what a fragment shader makes of each at each receiver: in integers, so in any order.
+/// Rasterises wedges and adds up the fragment shader's result for each wedge at each receiver: in integers, so the
+/// order is irrelevant.
 class WedgeRaster {
  public:
   WedgeRaster(const render::Device& device, const WedgeShader& shader);
@@ -54,16 +56,15 @@ class WedgeRaster {
   WedgeRaster(WedgeRaster&&) noexcept;
   WedgeRaster& operator=(WedgeRaster&&) noexcept;
 
-  /// What the shader reads at its last binding; one 0 until then.
+  /// Sets the content of the shader's last binding; one 0 by default.
   void set_table(std::span<const double> table);
 
-  /// The tile's receivers, row by row; `push.width` and the tile's rows are filled
-  /// in.
+  /// Adds the faces' sums at the tile's receivers, row by row; sets `push.width` and the tile's rows.
   void add(std::span<const gpu::WedgeFace> faces, std::span<const gpu::WedgeReceiver> receivers, gpu::WedgePush push,
            const visibility::Tile& tile, std::uint32_t width);
 
-  /// For each receiver of the last add: its sums, mostly in units of gpu::kSumUnit, and whether the host must see to
-  /// it.
+  /// Returns for each receiver of the last add() its sums, usually in units of gpu::kSumUnit, and whether the host must
+  /// handle it.
   [[nodiscard]] std::span<const std::int64_t> sums() const;
   [[nodiscard]] std::span<const std::uint32_t> doubts() const;
 

@@ -1,4 +1,4 @@
-// Structs written once for C++ and GLSL: footprints of penumbra wedges, view samples, push constants.
+// Structs shared by C++ and GLSL: footprints of penumbra wedges, view samples, push constants.
 #ifdef __cplusplus
 #pragma once
 #include <glm/vec2.hpp>
@@ -13,39 +13,39 @@ using glm::vec3;
 #define DOUBLE3(name) f64vec3 name
 #endif
 
-/// A silhouette edge a b, `weight` times (VolumeEdge), and where on the screen its wedge is.
+/// A silhouette edge a b with multiplicity `weight` (VolumeEdge), and the screen region of its wedge.
 struct WedgeFace {
   vec3 a, b;
   int weight;
-  uint number;  // of the edge, in LightWedges
+  uint number;  // index of the edge in LightWedges
   uint corner_count;
   vec2 corners[8];
 };
 
 struct WedgeReceiver {
   vec3 p;
-  uint counted;  // 0: leave this pixel alone
+  uint counted;  // 0: skip this pixel
 };
 
 /// The light's frame. A point x of its plane has the coordinates (u_dual · (x − c), v_dual · (x − c)): a rectangle is
-/// [−1, 1]², a disk the unit disk. n points to where u × v does, of any length.
+/// [−1, 1]², a disk the unit disk. n has the direction of u × v and any length.
 struct WedgePush {
   DOUBLE3(c);
   DOUBLE3(u_dual);
   DOUBLE3(v_dual);
   DOUBLE3(n);
-  uint width;                 // of the whole picture
+  uint width;                 // width of the whole picture
   uint first_row, row_count;  // the tile
-  uint texels;                // of a texture: width, and height · 2¹⁶
+  uint texels;                // size of a texture: width, and height · 2¹⁶
 };
 
-/// Sums are whole multiples of 2⁻³² of the light, in 64 bits. A term is off by 2⁻³³: 2¹⁶ of them by less than 10⁻⁵.
-/// Each is at most |k| lights, and all |k| add up to less than 3 · 2²⁸ (VolumeCount): no sum leaves its 64 bits.
+/// Sums are integer multiples of 2⁻³² of the light, in 64 bits. A term is off by 2⁻³³: 2¹⁶ of them by less than 10⁻⁵.
+/// Each is at most |k| lights, and all |k| add up to less than 3 · 2²⁸ (VolumeCount): no sum overflows 64 bits.
 const double kSumUnit = 1.0 / 4294967296.0;
 
 const uint kRectangle = 0, kDisk = 1;
 
-/// Two points of the light beside its centre, in its frame, for votes on how many layers there are (soft-volume).
+/// Two points of the light other than its centre, in its frame, for votes on the number of layers (soft-volume).
 const uint kVoters = 2;
 #ifdef __cplusplus
 inline constexpr double kVoterAt[kVoters][2] = {{0.40625, 0.28125}, {-0.28125, 0.34375}};
@@ -53,7 +53,7 @@ inline constexpr double kVoterAt[kVoters][2] = {{0.40625, 0.28125}, {-0.28125, 0
 const dvec2 kVoterAt[kVoters] = dvec2[kVoters](dvec2(0.40625LF, 0.28125LF), dvec2(-0.28125LF, 0.34375LF));
 #endif
 
-/// How much of the light is on a side of an edge: its area; by a table; of a texture, texel by texel.
+/// Measures of the part of the light on a side of an edge: its area; by a table; for a texture, texel by texel.
 const uint kArea = 0, kTable = 1, kTexture = 2;
 
 #ifdef __cplusplus

@@ -1,5 +1,5 @@
 // Depth complexity by silhouette edges (Laine et al. 2005), for any soup by signed multiplicities (Bergeron 1986), on a
-// grid of light samples, or on light samples anywhere in rows of about the same height: docs/edge-scatter.md.
+// grid of light samples, or on arbitrary light samples in rows of similar height: docs/edge-scatter.md.
 
 #include "volumes/scatter/methods.hpp"
 
@@ -33,7 +33,7 @@ namespace penumbra::volumes {
 namespace {
 
 constexpr std::uint32_t kBlock = 8;           // pixels, as in edge_scatter.glsl
-constexpr std::uint32_t kMostBandWords = 16;  // 64 light rows: what a question can name
+constexpr std::uint32_t kMostBandWords = 16;  // 64 light rows: the capacity of a question
 
 constexpr visibility::ChoiceOption kExactRows{
     "rows",
@@ -62,7 +62,7 @@ class EdgeScatter final : public EdgeMethod {
   }
 
  private:
-  /// As many light rows at a time as the histograms of a subgroup leave room for.
+  /// Handles as many light rows at a time as fit into the histograms of a subgroup.
   device::MaskLayout prepare_kernel() override {
     const bool in_rows = device_light().rows;
     device::MaskLayout layout = in_rows ? arrange_rows() : arrange_points();
@@ -84,12 +84,12 @@ class EdgeScatter final : public EdgeMethod {
     return layout;
   }
 
-  /// Words of shared memory that a lane may have.
+  /// Returns the words of shared memory available to a lane.
   [[nodiscard]] std::uint32_t room() const {
     return device().limits().max_shared_memory / (4 * device().limits().subgroup_size);
   }
 
-  /// Words of 8 columns × 4 rows, those of a column of words one after the other.
+  /// Masks in words of 8 columns × 4 rows; the words of a column are contiguous.
   device::MaskLayout arrange_rows() {
     points_.reset();
     rows_ = light().rows;
@@ -112,15 +112,15 @@ class EdgeScatter final : public EdgeMethod {
   [[nodiscard]] std::uint32_t row_words() const { return (rows_ + 3) / 4; }
   [[nodiscard]] std::uint32_t column_words() const { return (columns_ + 7) / 8; }
 
-  /// As scatter_points.comp counts a lane's words; `rows` is a multiple of kPointRowsAtOnce.
+  /// Returns a lane's words, as scatter_points.comp counts them; `rows` is a multiple of kPointRowsAtOnce.
   static std::uint32_t words_of_points(std::uint32_t fours, std::uint32_t rows) {
     return rows * fours + rows / 4 + rows * fours / 8;
   }
 
-  /// A bit a slot; bands of as nearly the same height as there is room for.
+  /// Masks with a bit for each slot; bands of nearly equal height within the available memory.
   device::MaskLayout arrange_points() {
     constexpr std::uint32_t kStep = gpu::kPointRowsAtOnce;
-    constexpr std::uint32_t kWordsAFour = kStep + kStep / 8;  // and words_of_points has kStep / 4 more
+    constexpr std::uint32_t kWordsAFour = kStep + kStep / 8;  // words_of_points has kStep / 4 more
     PointRows points = make_point_rows(device_light().coordinates, (room() - kStep / 4) / kWordsAFour);
     rows_ = points.rows;
     columns_ = points.columns;
@@ -135,7 +135,7 @@ class EdgeScatter final : public EdgeMethod {
     band_rows_ = (steps + bands - 1) / bands * kStep;
     const std::uint32_t slots = bands * band_rows_ * points.fours * gpu::kPointsAtOnce;
     points.sample_of.resize(slots, PointRows::kNone);
-    points.places.resize(slots / 2);  // nothing is made of what these rows say
+    points.places.resize(slots / 2);  // the content of these rows is unused
     std::vector<glm::uvec2> words(slots / 32, glm::uvec2(0));
     std::vector<char> touched(light().sample_count(), 0);
     for (const std::uint32_t sample : edges().touch().samples) touched[sample] = 1;
@@ -184,7 +184,8 @@ class EdgeScatter final : public EdgeMethod {
     return open;
   }
 
-  /// Of a band of which all is asked, nothing is asked singly: a driver may have ended the loop that does that.
+  /// Questions about single samples of a band are ignored if the whole band is a question: a driver may have ended the
+  /// loop that asks them.
   std::vector<device::OpenBits> open_points(std::uint32_t count) {
     std::vector<gpu::PointQuestion> asked(count);
     questions().read(std::span(asked));
@@ -228,7 +229,7 @@ class EdgeScatter final : public EdgeMethod {
     for (const std::uint32_t sample : {question.sample_1, question.sample_2}) {
       if (sample == gpu::kNoSample) continue;
       const std::uint32_t row = sample / columns_, column = sample % columns_;
-      if ((rows >> (row - question.first_row) & 1U) != 0) continue;  // asked already
+      if ((rows >> (row - question.first_row) & 1U) != 0) continue;  // already a question
       open.push_back({question.pixel, column / 8 * row_words() + row / 4, 1U << (row % 4 * 8 + column % 8)});
     }
   }
@@ -248,14 +249,14 @@ class EdgeScatter final : public EdgeMethod {
   std::uint32_t band_rows_ = 1;
   struct Points {
     render::Buffer places, starts, slots;
-    std::uint32_t fours;            ///< PointRows
-    std::vector<glm::uvec2> words;  ///< what `slots` has
+    std::uint32_t fours;            ///< as in PointRows
+    std::vector<glm::uvec2> words;  ///< content of `slots`
   };
-  std::optional<Points> points_;  // of light samples that form no rows of a rectangle
+  std::optional<Points> points_;  // for light samples that are not in rows of a rectangle
   std::optional<render::ComputePass> scatter_;
   std::vector<std::uint32_t> constants_;
-  bool passes_rows_ = false;                                        // what scatter_ is for
-  std::uint64_t open_pixels_ = 0, open_rows_ = 0, open_pairs_ = 0;  // to be counted
+  bool passes_rows_ = false;                                        // current mode of scatter_
+  std::uint64_t open_pixels_ = 0, open_rows_ = 0, open_pairs_ = 0;  // counters
 };
 
 visibility::MethodDescription describe() {

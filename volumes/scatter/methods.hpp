@@ -5,22 +5,22 @@
 
 #include <memory>
 
-/// Factory and description of each method; a description needs no device.
+/// Factory and description of each method. Descriptions are callable without a Vulkan device.
 namespace penumbra::volumes {
 
-/// `edge-scatter`: signed silhouette edges scattered into a grid of light samples, one running sum a light row.
-/// Any light, one- and two-sided, any pattern, any triangle soup, no bias; on the device planar lights. Every bit is
-/// the truth of its pair: what float arithmetic leaves open is decided by exact predicates. docs/edge-scatter.md.
+/// Makes `edge-scatter`: signed silhouette edges scattered into a grid of light samples, with a running sum for each
+/// light row. Any light, one- and two-sided, any pattern, any triangle soup, no bias; on the device planar lights only.
+/// Every bit is the truth of its pair: cases that float arithmetic leaves open are decided by exact predicates.
+/// docs/edge-scatter.md.
 std::unique_ptr<visibility::Method> make_edge_scatter(const render::Machine& machine,
                                                       const visibility::MethodOptions& options);
 
-/// Are this light's shadows computed on the processor's vector units, though the method is given a device?
+/// Returns whether this light's shadows are computed on the processor's vector units although the method has a device.
 bool edge_scatter_on_vectors(const render::Machine& machine, const visibility::MethodOptions& options,
                              const visibility::Light& light);
 
-/// What it is; needs no device.
-/// With these options, which must be among its own: rows=exact has no masks. Throws UsageError for options that exclude
-/// each other.
+/// Returns the description with the given options; rows=exact has no masks. Callable without a Vulkan device. Throws
+/// UsageError for unknown options and options that exclude each other.
 visibility::MethodDescription edge_scatter_description(const visibility::MethodOptions& options = {});
 
 }  // namespace penumbra::volumes

@@ -1,3 +1,5 @@
+// Sorts arbitrary light samples into rows of similar height with start tables, for scatter_points.comp.
+
 #include "volumes/scatter/point_rows.hpp"
 
 #include <glm/common.hpp>
@@ -33,7 +35,7 @@ void add_row(PointRows& all, std::span<const glm::vec2> places, const Row& row) 
     all.places.push_back(y);
   }
   for (std::uint32_t start = 0; start < all.columns * gpu::kStartsPerCell; ++start) {
-    // A little early: who looks it up has rounded.
+    // Slightly early: the shader rounds before looking up.
     const float x = (static_cast<float>(start) - 0x1p-8F) / gpu::kStartsPerCell - 0.5F;
     const auto first = std::ranges::lower_bound(row, x, {}, [&](std::uint32_t j) { return places[j].x; });
     const auto four = static_cast<std::uint32_t>(first - row.begin()) / gpu::kPointsAtOnce;
@@ -45,7 +47,7 @@ std::size_t longest(const std::vector<Row>& rows) {
   return std::ranges::max_element(rows, {}, &Row::size)->size();
 }
 
-/// In cells of so many rows.
+/// Returns places in cells of a grid with `cells.rows` rows.
 std::vector<glm::vec2> places_of(std::span<const glm::vec2> coordinates, const PointRows& cells) {
   const glm::dvec2 half(0.5 * cells.columns, 0.5 * cells.rows);
   std::vector<glm::vec2> places;
@@ -67,7 +69,7 @@ PointRows make_point_rows(std::span<const glm::vec2> coordinates, std::uint32_t 
   PointRows all;
   std::vector<glm::vec2> places;
   std::vector<Row> rows;
-  // As high as cells are wide: errors are those of the finer side of a cell.
+  // Starts with square cells: errors are those of the finer side of a cell.
   for (double height = 1;; height /= 2) {
     all.rows = static_cast<std::uint32_t>(std::max(1.0, std::round(std::sqrt(count) / height)));
     all.columns = static_cast<std::uint32_t>(std::max(1.0, std::round(count / all.rows)));

@@ -11,21 +11,21 @@
 
 namespace penumbra::volumes {
 
-/// Light samples anywhere on a light, for scatter_points.comp: row r has those whose y, in cells, is within half a cell
-/// of r, from left to right in slots, of which each row has as many as the longest, rounded up to fours.
+/// Arbitrary light samples of a light, for scatter_points.comp: row r has those whose y, in cells, is within half a
+/// cell of r, from left to right in slots; each row has as many slots as the longest, rounded up to a multiple of four.
 struct PointRows {
   static constexpr std::uint32_t kNone = 0xffffffffU;
 
   std::uint32_t rows = 0, columns = 0;     ///< cells of the light's frame: the rows, and about as many columns
-  std::uint32_t fours = 0;                 ///< of slots, in a row
-  std::vector<std::uint32_t> sample_of{};  ///< of each slot; kNone: no light sample
-  std::vector<glm::vec4> places{};  ///< of each four slots their x and their y in cells; x of no light sample 1e30
+  std::uint32_t fours = 0;                 ///< slots of a row, in fours
+  std::vector<std::uint32_t> sample_of{};  ///< for each slot; kNone: no light sample
+  std::vector<glm::vec4> places{};  ///< for each four slots their x and their y in cells; x of empty slots is 1e30
   std::vector<std::uint32_t>
-      starts{};  ///< of each row and half cell, left to right: the four with the first at or after it
+      starts{};  ///< for each row and half cell, left to right: the four slots with the first sample at or after it
 };
 
-/// `coordinates`: (s, t) of light samples, in [−1, 1]². About √N rows; more where a row would have more than
-/// `most_fours`, which it has all the same if too many light samples are of one height.
+/// Makes the rows. `coordinates`: (s, t) of light samples, in [−1, 1]². About √N rows; more if a row would have more
+/// than `most_fours`, which is still exceeded if too many light samples have the same height.
 PointRows make_point_rows(std::span<const glm::vec2> coordinates, std::uint32_t most_fours);
 
 }  // namespace penumbra::volumes

@@ -1,4 +1,4 @@
-// One struct, two languages (scalar layout): what the device knows of light samples anywhere, and asks about them.
+// Constants and structs shared by C++ and GLSL (scalar layout): arbitrary light samples, and questions about them.
 #ifdef __cplusplus
 #pragma once
 #include <cstdint>
@@ -6,16 +6,16 @@ namespace penumbra::volumes::gpu {
 using uint = std::uint32_t;
 #endif
 
-// Light samples that are tested together, side by side in a row. Slots are numbered four after four along a row, row
-// after row; a slot is a bit of the mask.
+// Light samples that are tested together, side by side in a row. Slots are numbered in fours along a row, row after
+// row; a slot is a bit of the mask.
 const uint kPointsAtOnce = 4;
-// Rows whose slots are whole words of masks, however many they are.
+// Number of rows whose slots fill whole words of masks, for every row length.
 const uint kPointRowsAtOnce = 8;
-const uint kStartsPerCell = 2;  // places along a row from which on the first light sample is known
+const uint kStartsPerCell = 2;  // places for each cell of a row at which the first light sample is known
 
-// Slots that float arithmetic left open of a pixel (of the tile): `bits` of a word of its mask. With kWholePixel: all
-// light samples of `words` words from this one on, and nothing of them is in the mask yet. As large as a RowQuestion:
-// one list holds either.
+// Slots of a pixel (of the tile) that float arithmetic left open: `bits` of a word of its mask. With kWholePixel: all
+// light samples of `words` words from this one on, none of which is in the mask yet. As large as a RowQuestion: one
+// list holds either.
 struct PointQuestion {
   uint pixel, word, bits, words;
   uint unused_1, unused_2;

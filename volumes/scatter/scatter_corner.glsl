@@ -1,8 +1,8 @@
-// The depth at the light's corner, to which the changes are added. Part of scatter_edges.comp and
-// scatter_points.comp.
+// The depth at the light's corner, to which changes are added. Part of scatter_edges.comp and scatter_points.comp.
 
-// Where p is on a triangle within rounding, its side of it is not certain, and half of all ways from p depend on that, not only
-// what is near its edges. Such a triangle is in the list of those that the way to the corner may meet. (bound on)
+// Opens the pixel if p is within rounding of a triangle whose side is not certain: half of all directions from p depend
+// on that side, not only those close to its edges. Such a triangle is in the list of those that the segment to the
+// corner may meet. (bound on)
 void open_where_on(uint head, bool on) {
   uint piece = head;
   for (; piece != kNone; piece = lists[piece]) {
@@ -20,14 +20,15 @@ void open_where_on(uint head, bool on) {
   cut_off = cut_off || piece != kNone;
 }
 
-// How many triangles the segment from p to the light's lower left corner meets (Woop et al. 2013: in coordinates with the
-// ray as third axis, what decides is three products in two dimensions).
-// One is as good as many where no edge changes the count (`one_will_do`).
+// Returns the number of triangles that the segment from p to the light's lower left corner meets (Woop et al. 2013: in
+// coordinates with the ray as third axis, three two-dimensional products decide). With `one_will_do`, for view samples
+// whose edges do not change the count, stops at one.
 uint count_to_corner(uint head, bool on, bool one_will_do) {
   const vec4 none = vec4(-1e18);
   const Shaft shaft = make_shaft(-half_cells, -half_cells, subgroupMax(on ? slopes_of(-half_cells, -half_cells, at.foot, at.height) : none),
                                  subgroupMax(on ? at.height : 0.0));
-  const vec2 lean = (first_cell - half_cells - at.foot) / at.height;  // the ray's way in cells for one unit of height
+  const vec2 lean = (first_cell - half_cells - at.foot) / at.height;  // the ray's direction in cells for one unit of
+                                                                      // height
   uint met = 0;
   uint piece = head;
   for (; piece != kNone; piece = lists[piece]) {
@@ -54,7 +55,7 @@ uint count_to_corner(uint head, bool on, bool one_will_do) {
           const vec2 xb = vec2(dot(across, db), dot(along, db)) - lean * w.y;
           const vec2 xc = vec2(dot(across, dc), dot(along, dc)) - lean * w.z;
           const vec3 f = vec3(xa.x * xb.y - xa.y * xb.x, xb.x * xc.y - xb.y * xc.x, xc.x * xa.y - xc.y * xa.x);
-          // (bound corner)
+          // Error bound: (bound corner).
           const float far = max(length(da), max(length(db), length(dc)));
           const float lengths = away / at.height;
           const float error_x = kRound * far * (5.0 * per_length * (1.0 + lengths) + (8.0 + 5.0 * lengths) * length(lean));
@@ -62,7 +63,8 @@ uint count_to_corner(uint head, bool on, bool one_will_do) {
           const float error = (2.0 * error_x + 4.0 * kRound * size) * size + 2.0 * error_x * error_x;
           const bool all_above = all(greaterThan(f, vec3(error))), all_below = all(lessThan(f, vec3(-error)));
           const bool passes = any(greaterThan(f, vec3(error))) && any(lessThan(f, vec3(-error)));
-          // The height over p at which the line meets the triangle's plane: a mean of the corners', with weights f.
+          // Height over p of the intersection of line and triangle's plane: the mean of the corners' heights, with
+          // weights f.
           const float total = f.x + f.y + f.z, at_meeting = (f.y * w.x + f.z * w.y + f.x * w.z) / total;
           const float error_w = 16.0 * kRound * (far + push.reach) + 6.0 * error * far / max(abs(total), 1e-30);
           const bool before_all = max(w.x, max(w.y, w.z)) < -16.0 * kRound * far;

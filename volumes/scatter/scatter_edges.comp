@@ -3,11 +3,11 @@
 #include "engines/device/mask.shared.h"
 #include "volumes/edges/device/edge_scatter.glsl"
 
-// Second pass of edge scatter, a workgroup a few neighbouring view samples (one a lane) and a band of light rows: how many
-// triangles are between p and each light sample. D at the light's lower left corner is counted triangle by triangle. From
-// there it changes by ∓k_e(p) at each projected edge: up the light's left side, then along each row. Edges are scattered
-// into a histogram [column][row] of such changes, in bytes; one running sum makes depths of them.
-// Derivation, bounds and what becomes of light rows that rounding leaves open: docs/edge-scatter.md.
+// Second pass of edge scatter, a workgroup for a few neighbouring view samples (one in each lane) and a band of light
+// rows: the number of triangles between p and each light sample. D at the light's lower left corner is counted triangle
+// by triangle. From there D changes by ∓k_e(p) at each projected edge: up the light's left side, then along each row.
+// Edges are scattered into a histogram [column][row] of such changes, in bytes; a running sum converts it to depths.
+// Derivation, bounds and the handling of light rows that rounding leaves open: docs/edge-scatter.md.
 
 #include "volumes/scatter/scatter_view_samples.glsl"
 #include "volumes/scatter/scatter_one.glsl"

@@ -1,5 +1,5 @@
-// Which edges of a list matter to the view samples of a subgroup, one lane an edge; those are scattered. Part of scatter_edges.comp and
-// scatter_points.comp.
+// Selects the edges of a list that affect the view samples of a subgroup, one lane for each edge, and scatters them.
+// Part of scatter_edges.comp and scatter_points.comp.
 
 // The box of the group's view samples in each frame that edges are tested in.
 struct GroupBounds {
@@ -26,10 +26,10 @@ GroupBounds bounds_of_group(bool on) {
   return g;
 }
 
-// Where x appears on the light for any view sample of the group: lower and upper (X, Y), if `bounded`. With h the height
-// of x over the light's plane and H that of p, X' = X + (X − foot) h / (H − h): linear in both, so the corners bound it.
-// X − foot and H − h are ways, taken from the group's middle: h / (H − h) may be thousands, and feet are rounded over the
-// light.
+// Bounds of the place of x on the light for any view sample of the group: lower and upper (X, Y), if `bounded`. With h
+// the height of x over the light's plane and H that of p, X' = X + (X − foot) h / (H − h): linear in both, so the
+// corners bound it. X − foot and H − h are differences taken from the group's middle: h / (H − h) may be thousands, and
+// feet are rounded over the light.
 struct Range {
   vec2 low, high;
   bool bounded;
@@ -54,8 +54,8 @@ Range range_of(vec3 x, GroupBounds g) {
   return range;
 }
 
-// Of one edge for each of the group's view samples, a bit a lane: k_e > 0, k_e < 0, |k_e| = 2, and whether rounding leaves
-// it open.
+// An edge's multiplicities for each of the group's view samples, a bit for each lane: k_e > 0, k_e < 0, |k_e| = 2, and
+// whether rounding leaves it open.
 struct Multiplicities {
   uvec2 positive, negative, two, open;
 };
@@ -66,7 +66,7 @@ uvec2 bit_of(uint lane, bool set) {
 }
 bool has_bit(uvec2 bits) { return ((kLanes <= 32 || gl_SubgroupInvocationID < 32 ? bits.x : bits.y) >> (gl_SubgroupInvocationID & 31) & 1) != 0; }
 
-// One lane an edge, view sample after view sample.
+// Computes one edge in each lane, view sample by view sample.
 Multiplicities multiplicities(vec3 n1, vec3 anchor1, uint plane1, vec3 n2, vec3 anchor2, uint plane2, bool on) {
   Multiplicities m = Multiplicities(uvec2(0), uvec2(0), uvec2(0), uvec2(0));
   for (uint lane = 0; lane < kLanes; ++lane) {
@@ -87,8 +87,9 @@ Multiplicities multiplicities(vec3 n1, vec3 anchor1, uint plane1, vec3 n2, vec3 
   return m;
 }
 
-const uint kQueue = kLanes > 32 ? 2 * kLanes : 64;        // one more vote of the subgroup must fit whenever there is room
-uint queue[kQueue];                                       // edges; every lane has all of it: shared memory is the histogram's
+const uint kQueue = kLanes > 32 ? 2 * kLanes : 64;        // one more vote of the subgroup must always fit
+uint queue[kQueue];                                       // edges; every lane has a copy: shared memory holds the
+                                                          // histogram
 uint queued;
 
 // Projects and scatters the queued edges.
@@ -96,7 +97,7 @@ void drain(bool on, GroupBounds g) {
   const vec2 light_low = first_cell - half_cells, light_high = first_cell + half_cells;
   uint i = 0;
   for (; i < queued; i += kLanes) {
-    // One lane an edge: can it matter to this group, and to which view samples?
+    // Tests, one edge in each lane, whether the edge can affect this group, and which view samples.
     const bool used = i + gl_SubgroupInvocationID < queued;
     const int texel = int(used ? queue[i + gl_SubgroupInvocationID] : 0);
     const uvec4 t0 = texelFetch(record_a, texel), t1 = texelFetch(record_b, texel), t2 = texelFetch(record_n1, texel);
@@ -133,7 +134,7 @@ void drain(bool on, GroupBounds g) {
   queued = 0;
 }
 
-// Edges of the list go to the queue unless all of the group sees their triangles from the same side.
+// Queues edges of the list unless the whole group sees their triangles from the same side.
 void scatter_list(uint head, bool on) {
   const GroupBounds g = bounds_of_group(on);
   queued = 0;
@@ -166,7 +167,7 @@ void scatter_list(uint head, bool on) {
       i = 0;
       count = piece == kNone ? 0 : lists[piece + 1];
     } else if (room) {
-      cut_off = true;                                     // the loop above was
+      cut_off = true;                                     // the loop above was cut off
       break;
     }
     if (!room || piece == kNone) drain(on, g);

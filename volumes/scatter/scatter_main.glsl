@@ -1,4 +1,4 @@
-// A few view samples, from lists to bits. Part of scatter_edges.comp and scatter_points.comp.
+// Computes a few view samples, from lists to bits. Part of scatter_edges.comp and scatter_points.comp.
 
 void main() {
   make_frame();
@@ -23,15 +23,16 @@ void main() {
 
   bool on = inside && at.carrier != kNone;
   const bool receives = on;
-  // (2) p strictly on an emitting side of the light's plane. (bound level)
+  // Condition (2): p strictly on an emitting side of the light's plane. (bound level)
   const float error_level = level_error(at.p);
   if (on && abs(at.height) <= error_level) {
-    open_pixel = push.side > 0.0;                         // one of two dispatches asks
+    open_pixel = push.side > 0.0;                         // only one of two dispatches asks
     on = false;
   }
   const bool other_side = receives && at.height < -error_level;
   if (other_side) on = false;
-  // (1) The light sample strictly above the carrier's plane: one half-plane of the light. (bound horizon)
+  // Condition (1): the light sample strictly above the carrier's plane, which is one half-plane of the light. (bound
+  // horizon)
   const vec3 towards = -from_center;
   const vec3 above = vec3(dot(at.normal, push.u), dot(at.normal, push.v), dot(at.normal, towards));
   const float error_above = 16.0 * kRound * (size1(towards) + size1(push.u) + size1(push.v) + size1(at.p)) + push.deviation;
@@ -40,7 +41,8 @@ void main() {
   if (below) on = false;
 
   if (on && sees_flat(away, at.height)) open_pixel = true;
-  // Of the light, not of this band: where a pixel's mask is read, each of its bands has to have written its words.
+  // Refers to the whole light, not to this band: if a pixel's mask is read, each of its bands must have written its
+  // words.
   const bool any_touched = subgroupAny(on && (push.touched_low | push.touched_high) != 0);
 
   uint visible = receives ? 0 : all_samples;

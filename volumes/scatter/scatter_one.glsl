@@ -1,7 +1,8 @@
-// One edge as it appears to one view sample: what it changes, and what rounding leaves open because of it. Part of scatter_edges.comp and
-// scatter_points.comp.
+// One projected edge for one view sample: its changes, and the samples that rounding leaves open because of it. Part of
+// scatter_edges.comp and scatter_points.comp.
 
-// p + d as p sees it: (across, along) · d and its height over p; it appears at foot + height / w (x, y).
+// Returns p + d in the coordinates of projections: (across, along) · d and its height over p; its place is foot +
+// height / w (x, y).
 vec3 seen_way(vec3 d) {
   precise const float w = -dot(axis, d);
   precise const vec2 way = vec2(dot(across, d), dot(along, d));
@@ -14,7 +15,7 @@ vec2 appears(vec3 way) {
   return seen;
 }
 
-// The error of a projected point's coordinates in cells. (bound X)
+// Returns the error of a projected point's coordinates in cells. (bound X)
 float error_of(float far, float w, float height, float from_foot, float away) {
   const float q = height / w;
   return kRound * (4.0 * per_length * far * q + from_foot * (4.0 * far / w + 4.0 * away / height + 8.0) +
@@ -22,11 +23,11 @@ float error_of(float far, float w, float height, float from_foot, float away) {
          (per_length + from_foot / height) * push.deviation;
 }
 
-// Adds one projected edge to the changes of depths, k times. `error_a`, `error_b`: of its ends' coordinates. In
-// scatter_rows.glsl or scatter_points.glsl.
+// Adds one projected edge to the changes of depths, k times. `error_a`, `error_b`: errors of its ends' coordinates.
+// Defined in scatter_rows.glsl or scatter_points.glsl.
 void scatter(vec2 a, vec2 b, int k, float error_a, float error_b);
 
-// sgn(n · (p − anchor)); `open` if that is within its error.
+// Returns sgn(n · (p − anchor)); sets `open` if it is within its error.
 int side_seen(vec3 p, vec3 n, vec3 anchor, inout bool open) {
   precise const vec3 d = p - anchor;
   precise const float f = dot(n, d);
@@ -34,10 +35,10 @@ int side_seen(vec3 p, vec3 n, vec3 anchor, inout bool open) {
   return f > 0.0 ? 1 : f < 0.0 ? -1 : 0;
 }
 
-// One edge, k times. Unless it stays well above p for the whole group (`settled`), what appears beyond a window of about
-// twice the light is cut away, so that ends near p's height, or behind p, do not spoil what is in it. Where p is within
-// rounding of one of the triangles' planes (`open`), that triangle is a sliver: samples it may hide are as near to its edges
-// as if the edges were off their places by `sliver`. (bound window, bound sliver)
+// Scatters one edge, k times. Unless the edge stays well above p for the whole group (`settled`), its part outside of a
+// window of about twice the light is clipped, so that ends near p's height, or behind p, do not affect precision in the
+// window. Where p is within rounding of one of the triangles' planes (`open`), that triangle is a sliver: the samples
+// that it may hide are as close to its edges as if the edges were displaced by `sliver`. (bound window, bound sliver)
 void scatter_seen(vec3 a, vec3 b, int k, bool open, bool settled, float sliver) {
   const vec3 da = a - at.p, db = b - at.p;
   const vec3 way_a = seen_way(da), way_b = seen_way(db);
@@ -64,7 +65,7 @@ void scatter_seen(vec3 a, vec3 b, int k, bool open, bool settled, float sliver) 
   const bool matters = (k != 0 || open) && from <= to;
   const float least = 64.0 * kRound;
   const bool through_p = !settled && (start.z < least * max(far, far_start) || end.z < least * max(far, far_end));
-  if (matters && through_p) open_pixel = true;            // it passes through p within rounding
+  if (matters && through_p) open_pixel = true;            // the edge passes through p within rounding
   side_in_doubt = side_in_doubt || open;
   if (matters && !through_p) scatter(seen_a, seen_b, k, error_a, error_b);
 }

@@ -3,8 +3,8 @@
 #include "engines/device/mask.shared.h"
 #include "volumes/edges/device/edge_scatter.glsl"
 
-// scatter_edges.comp for light samples anywhere: those of about the same height are a row (point_rows.cpp), and an edge
-// changes a row from one light sample on, as there. What differs is which light samples those are: docs/edge-scatter.md,
+// Variant of scatter_edges.comp for arbitrary light samples: samples of similar height form a row (point_rows.cpp), and
+// an edge changes a row from one light sample on. The selection of these light samples differs: docs/edge-scatter.md,
 // "Light samples anywhere".
 
 #include "volumes/scatter/scatter_view_samples.glsl"

@@ -1,27 +1,27 @@
-// Light samples anywhere, in rows (point_rows.hpp): what one edge changes of them, and what rounding leaves open. Part of
-// scatter_points.comp.
+// Arbitrary light samples, in rows (point_rows.hpp): changes by one edge, and samples that rounding leaves open. Part
+// of scatter_points.comp.
 #include "volumes/scatter/point_rows.shared.h"
 
-layout(constant_id = 3) const uint kFours = 4;            // of slots, in a row
+layout(constant_id = 3) const uint kFours = 4;            // slots of a row, in fours
 layout(constant_id = 4) const uint kBandRows = 16;        // a multiple of kPointRowsAtOnce
 
 layout(scalar, binding = 14) buffer Questions {
   QuestionHead asked;
   PointQuestion questions[];
 };
-// Of each four slots of a row their x and their y, in cells: from left to right, and then slots without a light sample.
+// For each four slots of a row their x and their y, in cells: from left to right, then slots without a light sample.
 layout(scalar, binding = 15) readonly buffer Places { vec4 places[]; };
-// Of each row and each place along it, left to right: no light sample before these four is as far right.
+// For each row and each place along it, left to right: the four slots with the first light sample that is as far right.
 layout(scalar, binding = 16) readonly buffer Starts { uint starts[]; };
-// A bit a slot, in words of masks: is it a light sample? Does something touch that?
+// A bit for each slot, in words of masks: whether it is a light sample, and whether some triangle touches that sample.
 layout(scalar, binding = 17) readonly buffer Slots { uvec2 slots[]; };
 
-// A lane's words: changes from a slot on to the end of its row, a byte a slot; changes of whole rows from one on upward, a
-// byte a row; open slots, a bit each.
+// A lane's words: changes from a slot on to the end of its row, a byte for each slot; changes of whole rows from one on
+// upward, a byte for each row; open slots, a bit each.
 const uint kChanges = kBandRows * kFours, kMaskWords = kChanges / 8, kLeftWord = kChanges, kOpenWord = kLeftWord + kBandRows / 4;
-const float kBeyond = 1e29;                               // where no light sample is
+const float kBeyond = 1e29;                               // x of slots without light sample
 
-int corner_change;                                        // at the light's corner
+int corner_change;                                        // change at the light's corner
 
 uint lane_word(uint word) { return word * kLanes + gl_SubgroupInvocationID; }
 uint band_count() { return (push.rows + kBandRows - 1) / kBandRows; }
@@ -49,8 +49,8 @@ void ask_about(uint pixel, uint word, uint bits, uint words) {
   if (question < push.question_capacity) questions[question] = PointQuestion((push.first_pixel + pixel) | whole, first_word() + word, bits, words, 0, 0);
 }
 
-// Asks the host about what is open of the pixel. `listed`: the histogram says which light samples are. If a driver ends the
-// loop, all of them are: that is said without one.
+// Asks the host about the pixel's open light samples. `listed`: the histogram has the open samples. If a driver ends
+// the loop, all samples are open: this question needs no loop.
 void ask(uint pixel, bool listed) {
   uint word = 0;
   if (listed && !open_pixel) {
@@ -63,36 +63,38 @@ void ask(uint pixel, bool listed) {
   if (open_pixel) ask_about(pixel, 0, 0, kMaskWords);
 }
 
-// No edge is too short: each may pass a light sample.
+// Every edge counts: even a short one may pass a light sample.
 bool may_change(vec2 low, vec2 high) { return true; }
 
-// > 0: x is right of the line from `low` by `way`, which leads upward; twice the area between the three.
+// Returns twice the area between the three points: > 0 if x is right of the line from `low` along `way`, which points
+// upward.
 float side_of(vec2 x, vec2 low, vec2 way) { return (x.x - low.x) * way.y - (x.y - low.y) * way.x; }
 
-// Adds to bytes, and notes where a byte may soon have no room: changes are in −63 … 63.
+// Adds to bytes, and records bytes that may overflow: valid changes are in −63 … 63.
 void add_bytes(uint word, uint by) {
   const uint changed = bytes_sum(histogram[lane_word(word)], by);
   histogram[lane_word(word)] = changed;
   out_of_range |= bytes_sum(changed, 0x40404040u) & 0x80808080u;
 }
 
-// The changes of all rows from height y on.
+// Adds a change to all rows from height y on.
 void change_left(float y, int by, bool when) {
   const int from = int(clamp(ceil(y), float(first_row), float(last_row + 1)));
   const uint band_row = uint(min(from, last_row) - first_row);
   add_bytes(kLeftWord + band_row / 4, when && from <= last_row ? uint(by & 0xff) << (band_row % 4 * 8) : 0);
 }
 
-// One projected edge, k times. The way to a light sample leads from the light's corner up its left side to the middle of its
-// row, along that to under or over it, and there to it. The last part crosses only edges that have the light sample's x.
+// Adds one projected edge, k times. The path to a light sample runs from the light's corner up its left side to the
+// middle of its row, along the row to a place under or over the light sample, and vertically to it. The last part
+// crosses only edges at the light sample's x.
 void scatter(vec2 a, vec2 b, int k, float error_a, float error_b) {
   k = push.side < 0.0 ? -k : k;                           // seen from behind, counter-clockwise is clockwise in (X, Y)
   const bool up = a.y < b.y;
   const vec2 low = up ? a : b, high = up ? b : a, way = high - low, size = abs(way);
-  const int jump = up ? -k : k;                           // of the depth, to the right of it
+  const int jump = up ? -k : k;                           // change of the depth to the right of it
   const float left = min(low.x, high.x), right = max(low.x, high.x);
 
-  // The farther end's error enters by the share of the edge that is on the light. (bound side of a point)
+  // The farther end's error counts by the fraction of the edge that is on the light. (bound side of a point)
   const vec2 to_a = abs(a - first_cell), to_b = abs(b - first_cell);
   const bool turn = to_b.x + to_b.y < to_a.x + to_a.y;
   const vec2 from_middle = turn ? to_b : to_a;
@@ -104,7 +106,8 @@ void scatter(vec2 a, vec2 b, int k, float error_a, float error_b) {
   const vec2 low_near = vec2(left, low.y) - around, high_near = vec2(right, high.y) + around;
   if (any(lessThan(high_near, vec2(-0.5))) || any(greaterThan(low_near, first_cell + half_cells))) return;
 
-  // The light's corner, where changes begin; and what is left of the light, as if it went on from there straight to the left.
+  // Handles the light's corner, where changes begin; and the part left of the light, as if the edge continued straight
+  // to the left.
   const float corner_side = side_of(vec2(-0.5), low, way);
   if (all(lessThanEqual(low_near, vec2(-0.5))) && !(abs(corner_side) > near)) open_pixel = true;
   const bool corner_is_right = right <= -0.5 || (left <= -0.5 && corner_side > 0.0);
@@ -114,14 +117,14 @@ void scatter(vec2 a, vec2 b, int k, float error_a, float error_b) {
   change_left(high.y, jump, high.x < -0.5);
   change_left(low.y, -jump, low.x < -0.5);
 
-  // A flatter one may be beside any light sample of a row. (bound side of a point)
+  // A flatter edge may be next to any light sample of a row. (bound side of a point)
   const bool leans = size.y > 1e-6 * size.x;
   const float slope = leans ? way.x / way.y : 0.0;
   const float beside = leans ? aside * (1.0 + abs(slope)) + 16.0 * kRound * (abs(low.x) + size.x) : 1e30;
   int row = int(clamp(ceil(low_near.y - 0.5), float(first_row), float(last_row + 1)));
   const int end = int(clamp(floor(high_near.y + 0.5) + 1.0, float(first_row), float(last_row + 1)));
-  uint four = kNone;                                      // the next of this row
-  int before = 0;                                         // how often the jump is in the changes up to there
+  uint four = kNone;                                      // the next four slots of this row
+  int before = 0;                                         // number of times that the jump is in the changes up to there
   do {
     const bool on = row < end;
     const float middle = float(row), bottom = max(middle - 0.5, low_near.y), top = min(middle + 0.5, high_near.y);
@@ -135,8 +138,8 @@ void scatter(vec2 a, vec2 b, int k, float error_a, float error_b) {
     const vec4 x = places[place], y = places[place + 1];
     const vec4 side = (x - low.x) * way.y - (y - low.y) * way.x;
     const bool spans = low.y <= middle && middle < high.y;
-    // Is the place on the row's middle under or over a light sample right of the edge? If the edge crosses the middle, that
-    // does not matter: what it changes before that place, it changes again after it.
+    // Whether the place on the row's middle under or over a light sample is right of the edge. If the edge crosses the
+    // middle, this does not matter: its change before that place is reverted after it.
     const int bend = !spans && (middle < low.y) == (way.x > 0.0) ? 1 : 0;
     uint changes = 0, near_bits = 0;
     for (uint i = 0; i < kPointsAtOnce; ++i) {

@@ -1,11 +1,11 @@
-// From changes to depths, from depths to masks, for light samples anywhere. Part of scatter_points.comp.
+// Converts changes to depths, and depths to masks, for arbitrary light samples. Part of scatter_points.comp.
 
 uint mask_word(uint pixel, uint word) { return (push.first_pixel + pixel) * (band_count() * kMaskWords) + first_word() + word; }
 
-// Depths from changes; a light sample is visible where the depth is 0.
+// Sums changes to depths; a light sample is visible where the depth is 0.
 uint count_visible(uint pixel, uint depth_at_corner, bool on) {
   uint visible = 0, in_row = 0, row = 0, word = 0, depths = 0, outside = 0;
-  int left = int(depth_at_corner) - corner_change;        // where the row begins
+  int left = int(depth_at_corner) - corner_change;        // the depth at the beginning of the row
   do {
     uint bits = 0;
     for (uint i = 0; i < 8; ++i) {
@@ -15,8 +15,8 @@ uint count_visible(uint pixel, uint depth_at_corner, bool on) {
         depths = uint(left & 0xff) << 24;
         ++row;
       }
-      // Depths are in 0 … 127. More than that: 128 … 190, since none of the changes exceeds 63. Negative, −63 … −1, are
-      // those of light samples that are open anyway.
+      // Depths are in 0 … 127. Larger ones: 128 … 190, since no change exceeds 63. Negative ones, −63 … −1, are those
+      // of light samples that are open anyway.
       uint sums = histogram[lane_word(word * 8 + i)];
       sums = bytes_sum(sums, sums << 8);
       sums = bytes_sum(sums, sums << 16);
@@ -34,7 +34,7 @@ uint count_visible(uint pixel, uint depth_at_corner, bool on) {
   return visible;
 }
 
-// Light samples not strictly above the carrier's plane are not visible: A·X + B·Y + C > 0. (bound horizon)
+// Clears light samples that are not strictly above the carrier's plane: A·X + B·Y + C > 0. (bound horizon)
 uint cut_at_horizon(uint pixel, vec3 above, float error) {
   uint visible = 0, word = 0;
   do {

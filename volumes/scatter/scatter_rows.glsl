@@ -1,23 +1,25 @@
-// Light samples in rows of a rectangle: what one edge changes of them, and what rounding leaves open. Part of scatter_edges.comp.
+// Light samples in rows of a rectangle: changes by one edge, and samples that rounding leaves open. Part of
+// scatter_edges.comp.
 
-layout(constant_id = 3) const uint kColumns = 16;         // of light samples
-layout(constant_id = 4) const uint kWordsPerColumn = 4;   // four light rows a word: rows of a band / 4
+layout(constant_id = 3) const uint kColumns = 16;         // columns of light samples
+layout(constant_id = 4) const uint kWordsPerColumn = 4;   // four light rows in a word: rows of a band / 4
 
 layout(scalar, binding = 14) buffer Questions {
   QuestionHead asked;
   RowQuestion questions[];
 };
 
-uint left_changes[kWordsPerColumn];                       // where edges cross the light's left side, a byte a row
-uvec2 open_rows;                                          // light rows of the band for the host
-uvec2 open_samples;                                       // and two more light samples, or kNone
+uint left_changes[kWordsPerColumn];                       // changes where edges cross the light's left side, a byte for
+                                                          // each row
+uvec2 open_rows;                                          // light rows of the band that the host decides
+uvec2 open_samples;                                       // two more light samples that the host decides, or kNone
 
-// Of the first `count` of 64 rows.
+// Returns a mask of the first `count` of 64 rows.
 uvec2 first_rows(int count) {
   return uvec2(count >= 32 ? 0xffffffffu : (1u << count) - 1, count >= 64 ? 0xffffffffu : count > 32 ? (1u << (count - 32)) - 1 : 0);
 }
 
-// Those of the band in which something touches light samples.
+// Returns the rows of the band in which some triangle touches light samples.
 uvec2 touched_rows() {
   uvec2 rows = uvec2(push.touched_low, push.touched_high);
   if (push.rows <= 64 && first_row >= 32) rows = uvec2(rows.y, 0);
@@ -41,7 +43,7 @@ uint samples_of_band() { return uint(last_row - first_row + 1) * kColumns; }
 
 void open_touched() { open_rows = touched_rows(); }
 
-// Asks the host about what is open of the pixel.
+// Asks the host about the pixel's open light samples.
 void ask(uint pixel, bool on) {
   if (!on) open_rows = uvec2(0);
   if (!open_pixel && (open_rows.x | open_rows.y) == 0 && open_samples.x == kNone) return;
@@ -62,7 +64,7 @@ void open_row(float row, bool when) {
   }
 }
 
-// A light sample that is open. If there are more than two of the pixel, its row is.
+// Records an open light sample. If the pixel has more than two, the whole row is recorded.
 void open_sample(float row, float column, bool when) {
   const uint light_sample = uint(int(row)) * kColumns + uint(int(column));
   const bool known = open_samples.x == light_sample || open_samples.y == light_sample;
@@ -75,11 +77,12 @@ float row_shift(int row) {
   return float(int((uint(row) * push.shift_step + 32768u) & 0xffffu) - 32768) / 65536.0;
 }
 
-// May an edge that appears in these limits, and not beside the light, change the depth at some light sample?
+// Returns whether an edge that appears within these limits, and not outside of the light, may change the depth at some
+// light sample.
 bool may_change(vec2 low, vec2 high) { return low.x < -0.5 || floor(high.y) >= ceil(low.y); }
 
-// What is open where the changes at (row, x) may be anywhere within `error` of x: the nearest light sample, if it is that
-// near; the row, if others are too, or if x may be on either side of where the row begins.
+// Records the open samples where the change at (row, x) may be anywhere within `error` of x: the nearest light sample,
+// if it is that close; the whole row, if others are, too, or if x may be on either side of the beginning of the row.
 void open_near(float row, float x, float error, bool when) {
   const bool in_band = row >= float(first_row) && row <= float(last_row);
   const float column = x - row_shift(int(clamp(row, 0.0, float(push.rows - 1)))), nearest = round(column);
@@ -91,7 +94,8 @@ void open_near(float row, float x, float error, bool when) {
 
 void scatter(vec2 a, vec2 b, int k, float error_a, float error_b) {
   k = push.side < 0.0 ? -k : k;                           // seen from behind, counter-clockwise is clockwise in (X, Y)
-  // From the end nearer to the light's middle, so that far ends' errors, which grow with their distance, stay small.
+  // Computed from the end nearer to the light's middle, so that errors of far ends, which grow with their distance,
+  // have little effect.
   const vec2 to_a = abs(a - first_cell), to_b = abs(b - first_cell);
   const bool turn = to_b.x + to_b.y < to_a.x + to_a.y;
   const vec2 near = turn ? b : a, far = turn ? a : b;
@@ -100,12 +104,12 @@ void scatter(vec2 a, vec2 b, int k, float error_a, float error_b) {
   const vec2 way = far - near, low = min(a, b), high = max(a, b);
   const float slope = way.x / way.y, steep = way.y == 0.0 ? 1e30 : abs(slope);
 
-  // Ends within their error of a row: on which side they are is open, and so is what that row has there.
+  // Ends within their error of a row may be on either side of it, which leaves the row open there.
   const vec2 rows = vec2(round(near.y), round(far.y));
   open_near(rows.x, near.x, 1.2 * error_near * (1.0 + steep), abs(near.y - rows.x) < error_near);
   open_near(rows.y, far.x, 1.2 * error_far * (1.0 + steep), abs(far.y - rows.y) < error_far);
 
-  // What the far end's error makes of a crossing on the light.
+  // Effect of the far end's error on a crossing on the light.
   const float weight = min(1.0, (abs(near.y - first_cell.y) + 2.0 * half_cells.y) / abs(way.y));
   const float error_x = 1.2 * (error_near + weight * error_far) * (1.0 + steep) + 8.0 * kRound * (half_cells.x + abs(near.x));
 
@@ -115,7 +119,7 @@ void scatter(vec2 a, vec2 b, int k, float error_a, float error_b) {
     const bool crossed = row < end;
     const float x = clamp(near.x + (float(row) - near.y) * slope, low.x, high.x);
     const float column = x - row_shift(row), nearest = round(column);
-    const bool counts = crossed && x >= -0.5;             // else it crosses left of the light
+    const bool counts = crossed && x >= -0.5;             // else the edge crosses left of the light
     const float first = max(ceil(column), 0.0);
     const bool lands = counts && first < float(kColumns);
     const bool open_one = crossed && abs(column - clamp(nearest, 0.0, float(kColumns) - 1.0)) < error_x;
@@ -135,13 +139,14 @@ void scatter(vec2 a, vec2 b, int k, float error_a, float error_b) {
   } while (++row < end);
   cut_off = cut_off || row < end;
 
-  // An outline that may pass the light's corner on either side, also along the left side: D is counted there.
+  // A silhouette that may pass the light's corner on either side, also along the left side: D is counted there.
   const float around = error_near + error_far, at_corner = clamp(near.x + (-0.5 - near.y) * slope, low.x, high.x);
   const bool holds_corner = all(lessThanEqual(low - around, vec2(-0.5))) && all(greaterThanEqual(high + around, vec2(-0.5)));
   if (holds_corner && !(abs(at_corner + 0.5) >= error_x)) open_pixel = true;
 
-  // Where it crosses the left side. Should rounding put y on another side of a row, or of the corner, than that row's x, or
-  // at_corner, is of the left side: then these are within error_x of it, and what is on that row, or all, is open. (bound left)
+  // Crossing of the left side. If rounding puts y on another side of a row, or of the corner, than that row's x, or
+  // at_corner, is of the left side, then these are within error_x of it, and that row, or the whole pixel, is open.
+  // (bound left)
   if ((a.x < -0.5) != (b.x < -0.5)) {
     const float y = clamp(near.y + (-0.5 - near.x) * (way.y / way.x), low.y, high.y);
     if (y > -0.5 && y <= float(last_row)) {

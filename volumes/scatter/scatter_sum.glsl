@@ -1,19 +1,20 @@
-// From changes to depths, from depths to masks, for light samples in rows of a rectangle. Part of scatter_edges.comp.
+// Converts changes to depths, and depths to masks, for light samples in rows of a rectangle. Part of
+// scatter_edges.comp.
 
 uint words_per_mask() { return (push.columns + 7) / 8 * ((push.rows + 3) / 4); }
 uint mask_word(uint pixel, uint column_word, uint row_word) {
   return (push.first_pixel + pixel) * words_per_mask() + column_word * ((push.rows + 3) / 4) + row_word;
 }
 
-// Depths from changes; a light sample is visible where the depth is 0.
+// Sums changes to depths; a light sample is visible where the depth is 0.
 uint count_visible(uint pixel, uint depth_at_corner, bool on) {
   int depth = int(depth_at_corner);
   uint visible = 0;
   const uint first_word = uint(first_row) >> 2;
   uint cells = 0;
   for (uint word = 0; word < kWordsPerColumn; ++word) {
-    // Depths are in 0 … 127. More than that: 128 … 190, since none of the changes exceeds 63. Negative, −63 … −1, are those
-    // of light samples that are open anyway.
+    // Depths are in 0 … 127. Larger ones: 128 … 190, since no change exceeds 63. Negative ones, −63 … −1, are those of
+    // light samples that are open anyway.
     uint depths = 0, outside = 0;
     const uint changes = left_changes[word];
     for (int row = 0; row < 4; ++row) {
@@ -45,7 +46,7 @@ uint count_visible(uint pixel, uint depth_at_corner, bool on) {
   return visible;
 }
 
-// Light samples not strictly above the carrier's plane are not visible: A·X + B·Y + C > 0. (bound horizon)
+// Clears light samples that are not strictly above the carrier's plane: A·X + B·Y + C > 0. (bound horizon)
 uint cut_at_horizon(uint pixel, vec3 above, float error) {
   uint visible = 0, bits_seen = 0;
   for (int row = first_row; row <= last_row; row += 4) {

@@ -1,4 +1,4 @@
-// Twin of coverage_table.glsl: where the points are, and what lies beyond the edges between them.
+// Twin of coverage_table.glsl: places of the table's points, and the shares beyond the edges between them.
 
 #include "volumes/soft/coverage_table.hpp"
 

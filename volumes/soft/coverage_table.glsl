@@ -1,6 +1,6 @@
-// A light's points to look edges up by (Assarsson and Akenine-Möller 2003: a 4D table, here 32⁴). Twin of
-// coverage_table.cpp. No point is at the centre, and each is in the quadrant of all that are moved to it: so a cone's
-// sector changes by less than half a light, and which way round it goes is known. Points on the rim stay there.
+// Points of a light for looking up edges (Assarsson and Akenine-Möller 2003: a 4D table, here 32⁴). Twin of
+// coverage_table.cpp. No point is at the centre, and each is in the quadrant of all places that are moved to it: so a
+// cone's sector changes by less than half a light, and its orientation is known. Points on the rim stay there.
 
 const int kTableSide = 32;  // rectangle: 32 × 32 points; disk: 16 circles of 64
 
@@ -12,7 +12,7 @@ struct TablePoint {
 TablePoint square_point(dvec2 q) {
   const dvec2 place = round((q + 1.0LF) * (0.5LF * double(kTableSide - 1)));
   const ivec2 cell = clamp(ivec2(place), 0, kTableSide - 1);
-  // In steps of half a cell from the centre: integers, so that both sides call the same points steep.
+  // In steps of half a cell from the centre: integers, so that both sides classify the same points as steep.
   const ivec2 steps = 2 * cell - (kTableSide - 1);
   return TablePoint(uint(cell.y * kTableSide + cell.x), square_fan(double(steps.y), double(steps.x)));
 }

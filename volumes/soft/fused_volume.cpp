@@ -1,5 +1,5 @@
 // U. Assarsson, M. Dougherty, M. Mounier, T. Akenine-Möller, An optimized soft shadow volume algorithm with real-time
-// performance, Graphics Hardware 2003: occluders one by one, in place of all added. Course notes 1.3, 5.3.2.2.
+// performance, Graphics Hardware 2003: occluders one by one, instead of all together. Course notes 1.3, 5.3.2.2.
 
 #include "volumes/soft/fused_volume.hpp"
 
@@ -20,7 +20,7 @@ using visibility::SceneFloats;
 using visibility::Tile;
 using visibility::ViewSamples;
 
-/// A copy of a scene in which one object casts at a time.
+/// A copy of a scene in which one object casts shadows at a time.
 class OneCaster {
  public:
   explicit OneCaster(const SceneFloats& scene) : scene_(scene) {
@@ -29,7 +29,7 @@ class OneCaster {
     }
     std::ranges::fill(scene_.casts_shadow, std::uint8_t{0});
   }
-  /// The scene in which nothing casts, or what `cast` chose.
+  /// Returns the scene in which nothing casts, or only the object chosen by `cast`.
   [[nodiscard]] const SceneFloats& scene() const& { return scene_; }
   const SceneFloats& scene() const&& = delete;
   void cast(std::uint32_t object) {
@@ -46,7 +46,7 @@ class OneCaster {
   }
 
   SceneFloats scene_;
-  std::map<std::uint32_t, std::vector<std::uint32_t>> triangles_;  // that cast, of each object
+  std::map<std::uint32_t, std::vector<std::uint32_t>> triangles_;  // casting triangles of each object
   std::uint32_t casting_ = 0;
 };
 
@@ -106,14 +106,14 @@ class FusedVolume final : public visibility::Method {
   FusedOptions options_;
   const SceneFloats* scene_ = nullptr;
   const ViewSamples* samples_ = nullptr;
-  std::vector<std::uint32_t> occluders_;  // objects with triangles that cast
+  std::vector<std::uint32_t> occluders_;  // objects with casting triangles
   std::vector<Light> parts_;
   Tile tile_;
   std::vector<float> visibility_;  // of the whole picture
   std::map<std::string, std::uint64_t> counters_;
 };
 
-/// V of the whole picture, of the scene that `alone_` has.
+/// Returns V of the whole picture for the current scene of `alone_`.
 std::vector<float> FusedVolume::visible_with(const Light& part) {
   alone_->prepare_light(part);
   alone_->prepare_view(*samples_);

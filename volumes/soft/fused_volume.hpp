@@ -6,17 +6,17 @@
 
 namespace penumbra::volumes {
 
-/// How the shares of a light that different occluders hide, each found as if it were alone, become one (course notes,
-/// 1.3). max ≤ what is hidden ≤ sum, if each share is right.
+/// Combination of the shares of a light that different occluders hide, each computed alone (course notes, 1.3). max ≤
+/// true hidden share ≤ sum, if each share is right.
 enum class Fusion {
-  sum,      ///< as if none hid what another hides
-  max,      ///< as if all hid what the darkest one hides
-  product,  ///< as if they hid independently of one another
-  average,  ///< the middle between max and sum
+  sum,      ///< as if hidden regions never overlapped
+  max,      ///< as if all hidden regions were within the largest
+  product,  ///< as if they were independent
+  average,  ///< the mean of max and sum
 };
 
-/// Accumulates what occluders hide from one view sample; `whole` is V without occluders, `hidden` an occluder's share
-/// of it.
+/// Accumulates occluders' hidden shares for one view sample; `whole` is V without occluders, `hidden` an occluder's
+/// share of it.
 class FusedShare {
  public:
   void add(double hidden, double whole) {
@@ -24,7 +24,7 @@ class FusedShare {
     sum_ += hidden;
     rest_ *= whole > 0 ? 1 - hidden / whole : 0;
   }
-  /// V.
+  /// Returns V.
   [[nodiscard]] double visible(Fusion rule, double whole) const {
     const double all = sum_ < whole ? sum_ : whole;
     switch (rule) {
@@ -44,8 +44,8 @@ class FusedShare {
   double largest_ = 0, sum_ = 0, rest_ = 1;
 };
 
-/// U. Assarsson, M. Dougherty, M. Mounier, T. Akenine-Möller 2003: asks `alone`, a method for planar lights that adds
-/// what occluders hide, for each object of the scene by itself, and fuses what they hide, in each of the light's parts.
+/// U. Assarsson, M. Dougherty, M. Mounier, T. Akenine-Möller 2003: evaluates `alone`, a method for planar lights that
+/// adds hidden shares, for each object of the scene separately, and fuses the results, in each of the light's parts.
 struct FusedOptions {
   Fusion rule = Fusion::sum;
   std::uint32_t split = 1;

@@ -15,9 +15,8 @@
 
 namespace penumbra::volumes {
 
-/// The common part of methods that count the hard volumes of the light's centre and draw wedges beside them: what is
-/// kept of scene, light and view samples, and what is told of passes and memory. A method adds prepare_light() and
-/// evaluate().
+/// Base of methods that count the hard volumes of the light's centre and draw wedges in addition: stores scene, light
+/// and view samples, and reports passes and memory. A derived method adds prepare_light() and evaluate().
 class HardAndWedges : public visibility::Method {
  public:
   [[nodiscard]] const visibility::MethodDescription& description() const override { return description_; }
@@ -69,8 +68,8 @@ class HardAndWedges : public visibility::Method {
   const visibility::ViewSamples* samples_ = nullptr;
   LightWedges wedges_;
   std::optional<std::vector<gpu::WedgeFace>> faces_;  ///< for this view
-  std::vector<float> visibility_;                     ///< of the tile last evaluated
-  std::uint64_t on_host_ = 0;                         ///< pixels that the host evaluated
+  std::vector<float> visibility_;                     ///< of the tile evaluated last
+  std::uint64_t on_host_ = 0;                         ///< pixels evaluated by the host
 };
 
 }  // namespace penumbra::volumes

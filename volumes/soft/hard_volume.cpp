@@ -1,8 +1,7 @@
 // Crow 1977, Heidmann 1991, Everitt and Kilgard 2002: V is 1 where no shadow volume of the light's centre is counted.
-// volume_count.cpp says how it counts, and where it departs from them. ZP+ is S. Hornus, J. Hoberock, S. Lefebvre, J.
-// Hart, ZP+: correct z-pass stencil shadows, I3D 2005: there the counts on the near plane are drawn from the light;
-// here the near plane is at the eye, and there is one count, the host's. volume_culling.cpp names the other variants'
-// papers.
+// volume_count.cpp documents the count and its departures. ZP+ is S. Hornus, J. Hoberock, S. Lefebvre, J. Hart, ZP+:
+// correct z-pass stencil shadows, I3D 2005: there the counts on the near plane are drawn from the light; here the near
+// plane is at the eye, and the host computes the one count. volume_culling.cpp names the other variants' papers.
 
 #include "volumes/soft/methods.hpp"
 
@@ -123,7 +122,7 @@ class HardVolume final : public visibility::Method {
   [[nodiscard]] std::uint64_t memory_bytes() const override { return count_.memory_bytes(); }
 
  private:
-  /// Which volumes there are depends on the view, too.
+  /// Returns whether the volumes depend on the view.
   [[nodiscard]] bool is_for_a_view() const {
     return variant_ == Variant::cc || variant_ == Variant::split || variant_ == Variant::hierarchical;
   }

@@ -7,7 +7,7 @@
 
 namespace penumbra::volumes {
 
-/// A rectangle cut in n × n equal rectangles, each a light of its own (without samples): stored in floats, so that
+/// Returns a rectangle cut into n × n equal rectangles, each a light without samples: stored in floats, so that
 /// neighbours meet to within an ulp of their coordinates. n = 1: the light itself.
 std::vector<visibility::Light> light_parts(const visibility::Light& light, std::uint32_t n);
 

@@ -1,3 +1,6 @@
+// Depth of a point in the outer penumbra of an edge (E. Haines, Soft planar shadows using plateaus, 2001), on the
+// point's own plane.
+
 #include "volumes/soft/outer_penumbra.hpp"
 
 #include "volumes/soft/plateaus.shared.h"
@@ -11,7 +14,7 @@ namespace penumbra::volumes {
 
 double OuterPenumbra::depth_at(const glm::dvec3& p, const glm::dvec3& normal, const glm::dvec3& a,
                                const glm::dvec3& b) const {
-  // Heights over the plane, the light's being 1; the part of the edge between the plane and the light.
+  // Heights over the plane, relative to the light's; the part of the edge between the plane and the light.
   const double height = glm::dot(normal, center - p);
   const double at_a = glm::dot(normal, a - p) / height, at_b = glm::dot(normal, b - p) / height;
   double first = 0, last = 1;
@@ -23,7 +26,7 @@ double OuterPenumbra::depth_at(const glm::dvec3& p, const glm::dvec3& normal, co
   cut(at_a, at_b);
   cut(gpu::kHighest - at_a, gpu::kHighest - at_b);
   if (!(first <= last)) return 0;
-  // Where the ends are projected to on the plane, from p, and the radii of their disks.
+  // Projections of the ends onto the plane, relative to p, and the radii of their disks.
   const auto end = [&](double t, double& reach) {
     const glm::dvec3 x = a + t * (b - a);
     const double h = at_a + t * (at_b - at_a);
@@ -32,7 +35,7 @@ double OuterPenumbra::depth_at(const glm::dvec3& p, const glm::dvec3& normal, co
   };
   double r = 0, s = 0;
   const glm::dvec3 from = end(first, r), to = end(last, s), way = to - from;
-  // Least distance over radius of from + t way, r + t (s − r): where its derivative is 0, or at an end.
+  // Minimum of distance over radius along from + t way, r + t (s − r): where its derivative is 0, or at an end.
   const double square = glm::dot(way, way), slope = s - r;
   double nearest = 0;
   if (square > 0) {

@@ -4,19 +4,20 @@
 
 namespace penumbra::volumes {
 
-/// A spherical light around `center` that stands for any; edges darken what lies up to `radius` times their height over
-/// the receiver's plane, by the light's over them, from their hard shadow (E. Haines 2001).
+/// A spherical light around `center` that replaces any light; edges darken points within `radius` times their height
+/// over the receiver's plane, by the light's height over them, of their hard shadow (E. Haines 2001).
 struct OuterPenumbra {
   glm::dvec3 center{0};
   double radius = 0;
 
-  /// How deep p, on a plane with this normal, is in the outer penumbra of the edge a b: 1 on the edge's projection from
-  /// the centre, 0 at its disks' rims and beyond. The C++ twin of plateaus.frag.
+  /// Returns the depth of p, on a plane with this normal, in the outer penumbra of the edge a b: 1 on the edge's
+  /// projection from the centre, 0 at its disks' rims and beyond. The C++ twin of plateaus.frag.
   [[nodiscard]] double depth_at(const glm::dvec3& p, const glm::dvec3& normal, const glm::dvec3& a,
                                 const glm::dvec3& b) const;
 };
 
-/// What of the light is hidden at this depth: 3 τ² − 2 τ³, for (1 + sin(π τ − π/2)) / 2 (S. Parker et al. 1998).
+/// Returns the hidden share of the light at this depth: 3 τ² − 2 τ³, for (1 + sin(π τ − π/2)) / 2 (S. Parker et al.
+/// 1998).
 inline double hidden_at(double depth) {
   return depth * depth * (3 - 2 * depth);
 }

@@ -7,20 +7,22 @@
 #include "volumes/raster/wedge_raster.shared.h"
 #include "volumes/soft/plateaus.shared.h"
 
-// How deep a view sample is in the outer penumbra of one edge; the deepest counts, as the highest plateau hides the others
-// (E. Haines 2001). Twin: OuterPenumbra::depth_at.
+// Depth of a view sample in the outer penumbra of one edge; the largest depth counts, as the highest plateau hides the
+// others (E. Haines 2001). Twin: OuterPenumbra::depth_at.
 
-layout(scalar, binding = 0) readonly buffer Faces { WedgeFace faces[]; };  // the vertex shader's; one set for both
+layout(scalar, binding = 0) readonly buffer Faces { WedgeFace faces[]; };  // used by the vertex shader; one set for
+                                                                           // both stages
 layout(scalar, binding = 1) readonly buffer Receivers { WedgeReceiver receivers[]; };
 layout(scalar, binding = 2) buffer Sums { int64_t sums[]; };
 layout(scalar, binding = 3) writeonly buffer Doubts { uint doubts[]; };
-layout(scalar, binding = 4) readonly buffer Table { double table[]; };  // the radius; a normal for each carrier, less 1
+layout(scalar, binding = 4) readonly buffer Table { double table[]; };  // the radius; a normal for each carrier, minus
+                                                                        // 1
 layout(scalar, push_constant) uniform Push { WedgePush push; };
 
 layout(location = 0) flat in vec3 face_a;
 layout(location = 1) flat in vec3 face_b;
 
-/// The part of [first, last] where what is d at 0 and e at 1 is not negative.
+/// Clips to the part of [first, last] where a linear function, d at 0 and e at 1, is not negative.
 void cut_range(double d, double e, inout double first, inout double last) {
   if (d < 0.0LF && e < 0.0LF) last = -1.0LF;
   if (d < 0.0LF && e >= 0.0LF) first = max(first, d / (d - e));

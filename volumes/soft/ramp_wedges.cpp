@@ -1,3 +1,5 @@
+// Penumbra wedges of Akenine-Möller and Assarsson 2002 (wedge-ramp), with shared sides, and their ramps in double.
+
 #include "volumes/soft/ramp_wedges.hpp"
 
 #include "base/parallel.hpp"
@@ -15,8 +17,8 @@
 namespace penumbra::volumes {
 namespace {
 
-/// The cosine of the sharpest turn that is bisected: a right angle and a little. Fine meshes' silhouettes run to and
-/// fro; bisected, the wedges of edges that run back would lie on the other side, and not cancel.
+/// The cosine of the sharpest turn that is bisected: slightly more than a right angle. Silhouettes of fine meshes run
+/// back and forth; bisected, the wedges of edges that run back would lie on the other side, and not cancel.
 constexpr double kSharpest = -0.1;
 
 Plane plane_through(const glm::dvec3& at, const glm::dvec3& normal) {
@@ -28,13 +30,13 @@ double height(const Plane& plane, const glm::dvec3& p) {
   return glm::dot(plane.normal(), p) + plane.d;
 }
 
-/// More than the rounding errors of front's and back's heights above p add up to: products of numbers as large as |p|
-/// and |a|, of planes whose normals are off by a few units in the last place.
+/// Returns more than the rounding errors of front's and back's heights above p: products of numbers as large as |p| and
+/// |a|, of planes whose normals are off by a few units in the last place.
 double height_error(const Wedge& wedge, const glm::vec3& p) {
   return 0x1p-45 * (glm::length(glm::dvec3(p)) + glm::length(wedge.a) + glm::length(wedge.b));
 }
 
-/// The end of an edge, so that equal ones sort together.
+/// The end of an edge, with a key by which equal ends sort together.
 struct End {
   glm::vec3 at{0};
   std::size_t edge = 0;
@@ -66,7 +68,7 @@ class Builder {
   }
 
  private:
-  /// Unit normal of (c, a, b) toward where the edge's triangles do not hide the light.
+  /// Returns the unit normal of (c, a, b) toward the side on which the edge's triangles do not hide the light.
   [[nodiscard]] glm::dvec3 lit_side(const VolumeEdge& e) const {
     const glm::dvec3 n = glm::cross(glm::dvec3(e.a) - center_, glm::dvec3(e.b) - center_);
     const double length = glm::length(n);
@@ -74,9 +76,9 @@ class Builder {
     return n / (e.multiplicity > 0 ? length : -length);
   }
 
-  /// The plane through the edge that touches the light from behind the edge, and bounds the wedge on the side of (c, a,
-  /// b) that `normal` points to: what lies there sees the light past the edge from its other side. Nothing if there is
-  /// none.
+  /// Returns the plane through the edge that touches the light from behind the edge, and bounds the wedge on the side
+  /// of (c, a, b) that `normal` points to: points beyond it see the light past the edge from its other side. Returns
+  /// nullopt if there is none.
   [[nodiscard]] std::optional<Plane> tangent(const Wedge& wedge, const glm::dvec3& normal) const {
     const glm::dvec3 away = 0.5 * (wedge.a + wedge.b) - center_;
     for (const glm::dvec3& touched : hull_.corners) {
@@ -93,7 +95,7 @@ class Builder {
     return std::nullopt;
   }
 
-  /// Holds c and the end, the other end on its positive side.
+  /// Returns a plane that contains c and the end, with the other end on its positive side.
   [[nodiscard]] Plane side(std::size_t edge, const glm::vec3& end, const glm::vec3& other) const {
     const glm::dvec3 own = lit_side(volumes_.edges[edge]), spoke = glm::dvec3(end) - center_;
     glm::dvec3 along = own;
@@ -107,7 +109,7 @@ class Builder {
     return {-plane.a, -plane.b, -plane.c, -plane.d};
   }
 
-  /// The one other silhouette edge at this end, if there is just one and it is as strong.
+  /// Returns the only other silhouette edge at this end, if there is exactly one with equal |k|.
   [[nodiscard]] std::optional<std::size_t> neighbour(std::size_t edge, const glm::vec3& end) const {
     const auto key = End{end, 0}.key();
     const auto first = std::ranges::lower_bound(ends_, key, {}, &End::key);
@@ -144,7 +146,7 @@ double ramp_sum(const LightWedges& wedges, const visibility::Light& light, const
     if (std::ranges::any_of(at, [](double h) { return h < 0; })) continue;
     const VolumeEdge& edge = wedges.edges[i];
     const bool lit = visibility::edge_side(p, c, edge.a, edge.b, light) < 0;
-    // On the edge, where front and back meet, the wedge has no width: the shadow is the hard one's.
+    // On the edge, where front and back meet, the wedge has no width: the shadow is the hard one.
     if (!(at[kFront] + at[kBack] > height_error(wedge, p))) continue;
     const double ramp = at[kFront] / (at[kFront] + at[kBack]);
     sum += edge.multiplicity * (lit ? ramp : ramp - 1);

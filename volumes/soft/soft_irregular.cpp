@@ -1,11 +1,11 @@
 // G. Johnson, W. Hunt, A. Hux, W. Mark, C. Burns and S. Junkins, Soft irregular shadow mapping: fast, high-quality, and
-// robust soft shadows, I3D 2009: an irregular shadow map says who is in the umbra of the light's centre; the penumbra
-// wedge of each silhouette edge of the centre is drawn, in light space, over view samples in a grid shaped like the
-// light's frustum; each in it adds the signed area that the edge covers, by an arc cosine.
+// robust soft shadows, I3D 2009: an irregular shadow map decides the umbra of the light's centre; the penumbra wedge of
+// each silhouette edge of the centre is drawn, in light space, over view samples in a grid shaped like the light's
+// frustum; for each view sample inside, the signed area that the edge covers is added, by an arc cosine.
 //
 // Departures (docs/soft-irregular.md). Cells of the grid are lists of light pixels without slices of depth: a wedge
 // skips lists that end before it. The umbra is decided by exact predicates, without bias. A view sample outside of the
-// frustum tries every edge. Polygons and textures, which have no arcs.
+// frustum tests every edge. Polygons and textures, which have no arcs, are supported.
 
 #include "volumes/soft/methods.hpp"
 
@@ -31,8 +31,8 @@
 namespace penumbra::volumes {
 namespace {
 
-constexpr double kPerLightPixel = 2;            ///< view samples, on average
-constexpr std::size_t kMostPixels = 1U << 18U;  ///< of a tile: each has a projection and a list of edges
+constexpr double kPerLightPixel = 2;            ///< average number of view samples
+constexpr std::size_t kMostPixels = 1U << 18U;  ///< of a tile: each pixel has a projection and a list of edges
 
 enum class Umbra : std::uint8_t { map, layers };
 constexpr visibility::ChoiceOption kUmbra{"umbra",
@@ -71,13 +71,13 @@ visibility::MethodDescription describe_soft_irregular() {
           .verdict_on = soft_irregular_verdict};
 }
 
-/// A view sample in front of the light, and what is found of it.
+/// A view sample in front of the light, and its results.
 struct Receiver {
-  std::uint32_t pixel = 0;  ///< of the tile
+  std::uint32_t pixel = 0;  ///< pixel of the tile
   LitPoint at;
   LightProjection projection;
-  std::optional<std::int32_t> layers = {};             ///< at the light's centre; none: not in the map
-  std::vector<SoftVisibility::Silhouette> edges = {};  ///< that may appear on the light, ascending
+  std::optional<std::int32_t> layers = {};             ///< at the light's centre; nullopt: not in the map
+  std::vector<SoftVisibility::Silhouette> edges = {};  ///< edges that may appear on the light, ascending
   bool tries_all = false;
 };
 
@@ -101,7 +101,7 @@ class SoftIrregular final : public visibility::Method {
     casters_ = casters_of(*scene_, light);
     seen_.emplace(*scene_, light, casters_, arc_);
     box_ = pairs::make_light_box(light);
-    for (const glm::vec3& corner : light.outline) {  // of the light, beyond its samples
+    for (const glm::vec3& corner : light.outline) {  // beyond the light's samples
       const glm::dvec2 at(box_.place(glm::dvec3(corner)));
       box_.lower = glm::min(box_.lower, at);
       box_.upper = glm::max(box_.upper, at);
@@ -128,7 +128,7 @@ class SoftIrregular final : public visibility::Method {
   void draw_umbra(std::vector<Receiver>& receivers);
   void draw_wedges(std::vector<Receiver>& receivers);
   void resolve(const std::vector<Receiver>& receivers);
-  /// Frusta on the sides that the light emits to.
+  /// Returns frusta on the emitting sides of the light.
   [[nodiscard]] std::vector<pairs::FarPlane> planes(const pairs::LightBox& box,
                                                     const std::vector<Receiver>& receivers) const;
   template <typename Stage>
@@ -161,7 +161,7 @@ void SoftIrregular::evaluate(const visibility::Tile& tile) {
   timed("areas", [&] { resolve(receivers); });
 }
 
-/// Others are bright, or dark where the light does not emit.
+/// Returns the receivers; all other pixels are bright, or dark where the light does not emit.
 std::vector<Receiver> SoftIrregular::receivers_of(const visibility::Tile& tile) {
   const std::size_t first = std::size_t{tile.first_row} * samples_->width;
   visibility_.assign(std::size_t{tile.row_count} * samples_->width, 1);
@@ -196,7 +196,7 @@ std::vector<pairs::FarPlane> SoftIrregular::planes(const pairs::LightBox& box,
   return planes;
 }
 
-/// Aila and Laine's lists: the footprint of a triangle as the light's centre sees it.
+/// Draws Aila and Laine's lists: the footprint of a triangle as the light's centre sees it.
 void SoftIrregular::draw_umbra(std::vector<Receiver>& receivers) {
   pairs::LightBox center = box_;
   center.origin = glm::dvec3(visibility::center_of(*light_));

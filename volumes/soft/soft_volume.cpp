@@ -1,8 +1,9 @@
 // U. Assarsson, T. Akenine-Möller, A geometry-based soft shadow volume algorithm using graphics hardware, SIGGRAPH
-// 2003: shadow volumes of the light's centre count the layers there; a penumbra wedge an edge finds the pixels where
-// the edge changes that for a part of the light, and adds the part. Departures: any soup, by signed multiplicity; sums
-// of integers in a buffer in place of blending; the edge cut by the light is its own test of being in the wedge; signs
-// in double decide which way round an edge goes, as they decide the count, and where they cannot, the host does.
+// 2003: shadow volumes of the light's centre count the layers there; a penumbra wedge for each edge finds the pixels
+// where the edge changes that count for a part of the light, and adds the part. Departures: any soup, by signed
+// multiplicity; sums of integers in a buffer instead of blending; clipping the edge by the light is itself the test of
+// being in the wedge; signs in double decide an edge's orientation, as they decide the count, and where they cannot,
+// the host does.
 
 #include "volumes/soft/methods.hpp"
 
@@ -97,19 +98,19 @@ visibility::MethodDescription soft_volume_description() {
 
 namespace {
 
-/// The light, or one of the parts it is cut in.
+/// The light, or one of the parts into which it is cut.
 struct CountedPart {
   explicit CountedPart(const render::Device& device) : count(device, CountVariant::z_fail, Layers::one_a_solid) {}
 
   VolumeCount count;
-  std::vector<VolumeCount> voters;  // of other points; none: the centre alone decides
+  std::vector<VolumeCount> voters;  // of other points; empty: only the centre decides
   Light light;
   LightOutline outline;
   std::optional<TextureWeights> texture;
-  std::vector<double> table;  // what the shader reads of this light
-  double weight = 1;          // of the whole light, which is 1
+  std::vector<double> table;  // data of this light for the shader
+  double weight = 1;          // fraction of the whole light
   LightWedges wedges;
-  std::uint64_t facings_on_host = 0, edges_on_host = 0;  // WedgeBuilder::Built
+  std::uint64_t facings_on_host = 0, edges_on_host = 0;  // as in WedgeBuilder::Built
   std::optional<std::vector<gpu::WedgeFace>> faces;      // for this view
   struct Host {
     Host(const SceneFloats& scene, const Light& light)
@@ -219,14 +220,14 @@ class SoftVolume final : public visibility::Method {
   WedgeBuilder builder_;
   WedgeTests tests_;
   bool votes_;
-  std::vector<gpu::uint> kind_;            // of raster_: shape and measure
-  const CountedPart* prepared_ = nullptr;  // whose table raster_ has
+  std::vector<gpu::uint> kind_;            // constants of raster_: shape and measure
+  const CountedPart* prepared_ = nullptr;  // the part whose table raster_ has
   std::unique_ptr<WedgeRaster> raster_;
   std::vector<std::unique_ptr<CountedPart>> parts_;
   const SceneFloats* scene_ = nullptr;
   const ViewSamples* samples_ = nullptr;
   Tile tile_;
-  std::vector<double> sums_;  // of V over the parts
+  std::vector<double> sums_;  // sums of V over the parts
   std::uint64_t doubtful_ = 0, overruled_ = 0, undecided_ = 0;
 };
 
@@ -309,7 +310,8 @@ void SoftVolume::add(CountedPart& part) {
   });
 }
 
-/// Layers at the light's centre as most of three points say: each by its own count, less the layers between.
+/// Returns the layers at the light's centre by majority of three points: each by its own count, minus the layers
+/// between.
 std::vector<std::int64_t> SoftVolume::layers_by_vote(CountedPart& part) {
   using Kind = VolumeCount::Kind;
   const std::span<const Kind> kinds = part.count.kinds();
@@ -333,7 +335,7 @@ std::vector<std::int64_t> SoftVolume::layers_by_vote(CountedPart& part) {
   return layers;
 }
 
-/// By exact signs, and from another point of the light where an edge ends at its centre.
+/// Adds pixels by exact signs, and with another reference point of the light where an edge ends at its centre.
 void SoftVolume::add_doubtful(CountedPart& part, const std::vector<std::size_t>& pixels) {
   if (pixels.empty()) return;
   doubtful_ += pixels.size();
@@ -347,7 +349,7 @@ void SoftVolume::add_doubtful(CountedPart& part, const std::vector<std::size_t>&
   });
 }
 
-/// Of the part, above the plane of the pixel's carrier.
+/// Returns the share of the part above the plane of the pixel's carrier.
 double SoftVolume::share_above(const CountedPart& part, std::size_t pixel) const {
   const auto [a, b, c] = scene_->corners(static_cast<std::uint32_t>(samples_->triangle[pixel]));
   const glm::dvec3 n = static_cast<double>(samples_->facing[pixel]) *
@@ -410,7 +412,7 @@ std::unique_ptr<visibility::Method> make_soft_volume(const render::Device& devic
   if (!rule) return std::make_unique<SoftVolume>(device, parsed);
   visibility::MethodOptions alone = options;
   alone.erase("fusion");
-  alone.erase("split");  // each part by itself
+  alone.erase("split");  // applied by the fusion to each part
   return make_fused(soft_volume_description(),
                     std::make_unique<SoftVolume>(device, visibility::parse_options(soft_volume_description(), alone)),
                     {.rule = *rule, .split = parsed[kSplit]});

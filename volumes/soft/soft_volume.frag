@@ -8,18 +8,20 @@
 #include "volumes/raster/wedge_raster.shared.h"
 #include "volumes/raster/determinant.glsl"
 
-// What one silhouette edge adds to the part of the light that is hidden from p. Outside the edge's penumbra nothing of
-// it is left once it is cut by the light: no plane of the wedge is looked at again.
+// Contribution of one silhouette edge to the part of the light that is hidden from p. Outside the edge's penumbra
+// nothing of the edge remains after clipping by the light: no plane of the wedge is tested again.
 
 layout(constant_id = 0) const uint kShape = 0;
 layout(constant_id = 1) const uint kMeasure = 0;
-layout(constant_id = 2) const uint kVote = 0;  // 1: sides as floats round them, and what lies between the centre and the voters
+layout(constant_id = 2) const uint kVote = 0;  // 1: sides as rounded by floats, and the layers between the centre and
+                                               // the voters
 
-layout(scalar, binding = 0) readonly buffer Faces { WedgeFace faces[]; };  // the vertex shader's; one set for both
+layout(scalar, binding = 0) readonly buffer Faces { WedgeFace faces[]; };  // used by the vertex shader; one set for
+                                                                           // both stages
 layout(scalar, binding = 1) readonly buffer Receivers { WedgeReceiver receivers[]; };
 layout(scalar, binding = 2) buffer Sums { int64_t sums[]; };
 layout(scalar, binding = 3) writeonly buffer Doubts { uint doubts[]; };
-layout(scalar, binding = 4) readonly buffer Table { double table[]; };  // of kMeasure
+layout(scalar, binding = 4) readonly buffer Table { double table[]; };  // data of kMeasure
 layout(scalar, push_constant) uniform Push { WedgePush push; };
 
 layout(location = 0) flat in vec3 face_a;
@@ -31,34 +33,34 @@ layout(location = 2) flat in int face_weight;
 #include "volumes/soft/coverage_table.glsl"
 #include "volumes/wedges/texture_weights.glsl"
 
-/// Of the light, what lies beyond the edge from q0 to q1.
+/// Returns the share of the light beyond the edge from q0 to q1.
 double share_of(Cone cone, dvec2 q0, dvec2 q1) {
   const double whole = kShape == kDisk ? 2.0LF * kHalfPi : 4.0LF;
   if (kMeasure == kTable) {
     const bool disk = kShape == kDisk;
     const TablePoint from = disk ? disk_point(q0) : square_point(q0), to = disk ? disk_point(q1) : square_point(q1);
-    // The table's cones do not go round the centre; this one goes round as the edge itself does.
+    // The table's cones do not wind around the centre; this one winds like the edge itself.
     const double round_trips = round((cone.sector - (to.fan - from.fan)) / whole);
     return table[from.index * uint(kTableSide * kTableSide) + to.index] + round_trips;
   }
   if (kMeasure == kTexture) {
     const uvec2 texels = uvec2(push.texels & 0xffffu, push.texels >> 16);
     const double round_trips = round((cone.sector - (cone.to - cone.from)) / whole);
-    // Without the ways from both ends to the rim: neighbours have them, too, the other way round.
+    // The segments from both ends to the rim are omitted: neighbours have them, too, in the opposite direction.
     return weight_of_fan(cone.to, texels) - weight_of_fan(cone.from, texels) + round_trips -
            weight_left_of(q0, q1, texels);
   }
   return (cone.sector - cone.triangle) / whole;
 }
 
-/// The side of the plane (c, a, b) that p is on, as a fragment of 2003 decides it.
+/// Returns the side of the plane (c, a, b) that p is on, in float, as a fragment of 2003 decides it.
 int rounded_turn_of(dvec3 a, dvec3 b, dvec3 p, Foot foot) {
   const vec3 A = vec3(a - push.c), B = vec3(b - push.c), P = vec3(p - push.c);
   return dot(cross(A, B), P) < 0.0 ? -facing_of(foot) : facing_of(foot);
 }
 
-/// How the number of layers changes on the way from the centre to a voter, q, at this edge, which turns around the centre
-/// by `turn`. Half open, so that the way passes a vertex on one side of it.
+/// Returns the change of the number of layers at this edge on the segment from the centre to a voter, q; the edge turns
+/// around the centre by `turn`. Half open, so that the segment passes a vertex on one side of it.
 int layers_between(Segment cut, int turn, dvec2 q) {
   const dvec2 from = cut.from.xy - q * cut.from.z, to = cut.to.xy - q * cut.to.z;
   const int turn_at_q = from.x * to.y - from.y * to.x < 0.0LF ? -1 : 1;

@@ -1,8 +1,8 @@
 // V. Forest, L. Barthe, M. Paulin, Realistic soft shadows by penumbra-wedges blending, Graphics Hardware 2006: four
-// quarters of the light at once, their common corner the point that silhouettes are seen from, and in each a box around
-// what is covered, by which what another occluder adds is lessened. Departures: an occluder is an object of the scene,
-// and they are taken in the scene's order, so no order of triangles shows; boxes hold covered corners of the light,
-// too.
+// quarters of the light at once, their common corner is the point from which silhouettes are seen, and in each quarter
+// a box around the covered part reduces the contributions of further occluders. Departures: an occluder is an object of
+// the scene, and occluders are processed in the scene's order, so the result does not depend on the order of triangles;
+// boxes include covered corners of the light, too.
 
 #include "volumes/soft/methods.hpp"
 
@@ -29,7 +29,7 @@ using visibility::SceneFloats;
 using visibility::Tile;
 using visibility::ViewSamples;
 
-constexpr std::size_t kMostOccluders = 32;  // each has passes of its own; further objects share the last
+constexpr std::size_t kMostOccluders = 32;  // each has its own passes; further objects share the last
 
 constexpr auto kBlendWedges = wedges_option("where silhouettes and wedges are built for each light, object by object");
 
@@ -56,7 +56,7 @@ visibility::MethodDescription soft_volume_blend_description() {
 
 namespace {
 
-/// An object, as a scene in which nothing else casts shadow.
+/// An object, as a scene in which nothing else casts shadows.
 struct Occluder {
   Occluder(const render::Device& device, WedgesOn wedges_on, const SceneFloats& all, std::size_t object, bool and_later)
       : scene(all),
@@ -74,11 +74,11 @@ struct Occluder {
   VolumeCount count;
   WedgeBuilder builder;
   LightWedges wedges;
-  std::uint64_t facings_on_host = 0, edges_on_host = 0;  // WedgeBuilder::Built
+  std::uint64_t facings_on_host = 0, edges_on_host = 0;  // as in WedgeBuilder::Built
   std::optional<std::vector<gpu::WedgeFace>> faces;      // for this view
 };
 
-/// A quarter's cover by one occluder, from the words that its edges add up to and the count at the centre.
+/// Returns a quarter's cover by one occluder, from the sums of its edges' words and the count at the centre.
 Cover cover_of(std::span<const std::int64_t> words, std::uint32_t quarter, std::int32_t count) {
   const auto number = [&](std::size_t word) { return gpu::kSumUnit * static_cast<double>(words[word]); };
   const std::size_t at = std::size_t{quarter} * gpu::kQuarterWords;
@@ -182,7 +182,7 @@ void SoftVolumeBlend::prepare_mesh(const SceneFloats& scene) {
     const bool last = occluders_.size() + 1 == kMostOccluders;
     occluders_.push_back(std::make_unique<Occluder>(*device_, wedges_on_, scene, object, last));
   }
-  // Where nothing casts shadow, one that does not, either: its count knows the horizon.
+  // If nothing casts shadows, one occluder without triangles is used: its count includes the horizon.
   if (occluders_.empty())
     occluders_.push_back(std::make_unique<Occluder>(*device_, wedges_on_, scene, casts.size(), false));
 }
@@ -215,7 +215,7 @@ void SoftVolumeBlend::evaluate(const Tile& tile) {
   add_doubtful(tile);
 }
 
-/// Blends in what this occluder covers. Leaves V at 0 where the light's centre is below the horizon.
+/// Blends in this occluder's cover. Leaves V at 0 where the light's centre is below the horizon.
 void SoftVolumeBlend::add(Occluder& occluder, const Tile& tile) {
   using Kind = VolumeCount::Kind;
   if (!occluder.faces) {
@@ -244,7 +244,7 @@ void SoftVolumeBlend::add(Occluder& occluder, const Tile& tile) {
   });
 }
 
-/// Where a sign is in doubt: soft-volume's sum, which knows no boxes.
+/// Handles pixels with doubtful signs: soft-volume's sum, without boxes.
 void SoftVolumeBlend::add_doubtful(const Tile& tile) {
   const auto doubtful = static_cast<std::uint64_t>(std::ranges::count(on_host_, 1));
   if (doubtful == 0) return;
@@ -289,7 +289,7 @@ Cover blend(const Cover& there, const Cover& added) {
   if (there.box_area() > 0 && added.box_area() > 0) {
     kept -= common.box_area() / added.box_area() * std::min(there.share / there.box_area(), 1.0);
   }
-  // Boxes are a guess; that the whole is no less than either part is not.
+  // Boxes are a heuristic; the whole is certainly no less than either part.
   result.share = std::clamp(there.share + added.share * kept, std::max(there.share, added.share), 1.0);
   result.box = {std::min(there.box[0], added.box[0]), std::min(there.box[1], added.box[1]),
                 std::max(there.box[2], added.box[2]), std::max(there.box[3], added.box[3])};

@@ -1,4 +1,4 @@
-// Written once for C++ and GLSL: what one occluder's edges add up to at one receiver, in 64-bit words.
+// Shared by C++ and GLSL: sums of one occluder's edges at one receiver, in 64-bit words.
 #ifdef __cplusplus
 #pragma once
 #include <cstdint>
@@ -7,9 +7,9 @@ using uint = std::uint32_t;
 #endif
 
 /// Words of each quarter q (bit 0: u < 0, bit 1: v < 0): its share; then 1 − the lower ends and the upper ends of the
-/// box around its edges, so that 0 is none. Shares and ends in units of kSumUnit.
+/// box around its edges, so that 0 means empty. Shares and ends in units of kSumUnit.
 const uint kQuarterWords = 5;
-/// Then what crossing the edges adds to the count between the centre and the points around it, at 45° each from (1, 0)
+/// Next, the changes of the count by crossed edges between the centre and the points around it, at 45° each from (1, 0)
 /// on.
 const uint kPointWord = 4 * kQuarterWords;
 const uint kPoints = 8;

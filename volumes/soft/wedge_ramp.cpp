@@ -1,6 +1,6 @@
 // T. Akenine-Möller, U. Assarsson, Approximate soft shadows on arbitrary surfaces using penumbra wedges, EGWR 2002:
-// hard shadow volumes of the light's centre, and between the front and back plane of a wedge an edge, in place of the
-// hard step, light that falls linearly. Departures: any soup and rectangle, disk and ellipse lights, not a sphere;
+// hard shadow volumes of the light's centre, and between the front and back plane of a wedge for each edge, instead of
+// the hard step, light that falls linearly. Departures: any soup and rectangle, disk and ellipse lights, not a sphere;
 // integer sums.
 
 #include "volumes/soft/methods.hpp"

@@ -1,3 +1,6 @@
+// Checks the invariant `coverage` (docs/coverage.md): the sums over silhouettes equal the sums over triangles, or lie
+// between the exact area of the union and the sum of layers. Not from a paper.
+
 #include "volumes/wedges/coverage_validation.hpp"
 
 #include "volumes/wedges/layer_areas.hpp"

@@ -8,35 +8,36 @@
 
 namespace penumbra::volumes {
 
-/// What the summed coverage may be off by where it must be exact: far above what rounding adds (1e-14 measured,
-/// docs/coverage.md), far below what one wrong edge changes on a visible part of the light. Not a bound but a limit
-/// that `wedges --validate` states.
+/// Largest permitted error of the summed coverage where the sum must be exact: far above the rounding error (1e-14
+/// measured, docs/coverage.md), far below the change from one wrong edge on a visible part of the light. A limit stated
+/// by `wedges --validate`, not a proved bound.
 inline constexpr double kCoverageTolerance = 1e-6;
-/// Layers that overlap by less of the light are taken for a single one: a tenth of the tolerance.
+/// Layers that overlap by less than this fraction of the light count as a single layer: a tenth of the tolerance.
 inline constexpr double kSingleLayer = 1e-7;
 
-/// One view sample's sums, and what they are held against.
+/// Sums of one view sample and the values they are checked against.
 struct CoveragePoint {
   LitPoint sample;
-  double center = 0, receiver = 0;  ///< `blocked` by the centre's silhouettes, by the receiver's own
-  double layers = 0;                ///< the receiver's `blocked`, summed triangle by triangle (layer_areas.hpp)
-  double overlap = 0;               ///< of layers; beyond `kMostOverlap` it was not summed further
+  double center = 0, receiver = 0;  ///< `blocked` from the silhouettes of the centre and of the receiver
+  double layers = 0;                ///< `blocked` of the receiver, summed triangle by triangle (layer_areas.hpp)
+  double overlap = 0;               ///< overlap of the layers; beyond `kMostOverlap` the summation stopped
   double tolerance = kCoverageTolerance;
-  bool touches_light = false;  ///< something meets the light itself: nothing is held against anything
+  bool touches_light = false;  ///< a caster meets the light itself: no check applies to this sample
 
   [[nodiscard]] bool is_single_layer() const { return !touches_light && overlap <= kSingleLayer; }
 };
 inline constexpr double kMostOverlap = 4;
 
-/// Invariant `coverage` (f): the receiver's silhouettes add up to its layers, to kCoverageTolerance, at each sample,
-/// which must be in front of the light (asserted). The difference of the centre's is only told. Parallel; violations
-/// are added in the order of samples. A sphere is at each sample the disk that it sees. Under a texture areas are
-/// weights, and the tolerance grows by how much brighter than the mean its brightest texel is.
+/// Checks the invariant `coverage` (f): the receiver's silhouettes add up to its layers, to kCoverageTolerance, at each
+/// sample; samples must be in front of the light (asserted). The difference of the centre's sum is only reported. Runs
+/// in parallel; violations are added in the order of samples. A sphere is at each sample the disk visible from there.
+/// For a textured light areas are weights, and the tolerance grows by the ratio of the brightest texel to the mean.
 std::vector<CoveragePoint> check_coverage(const SoftVisibility& soft, const visibility::Light& light,
                                           std::span<const LitPoint> samples, ValidationReport& report);
 
-/// Checks the invariant `coverage` against the exact area of the union, `hidden`, which the caller knows: the sum is at
-/// least that and at most `overlap` more; so for a single layer equal to it. `error` bounds that of `hidden` itself.
+/// Checks the invariant `coverage` against `hidden`, the exact area of the union as computed by the caller: the sum is
+/// at least `hidden` and at most point.overlap more; for a single layer therefore equal to `hidden`. `error` bounds the
+/// error of `hidden`.
 void check_union(const CoveragePoint& point, double hidden, double error, ValidationReport& report);
 
 }  // namespace penumbra::volumes

@@ -1,3 +1,6 @@
+// Computes the hidden part of a light triangle by triangle: projects each triangle to the light's plane, clips by
+// Sutherland and Hodgman 1974, and sums areas. Used to check the sums over silhouettes.
+
 #include "volumes/wedges/layer_areas.hpp"
 
 #include "mesh/predicates.hpp"
@@ -14,7 +17,7 @@
 namespace penumbra::volumes {
 namespace {
 
-/// What is left of a convex polygon where `height`, which is affine, is not negative.
+/// Returns the part of a convex polygon where `height`, an affine function, is not negative.
 template <typename Point, typename Height, typename Mix>
 std::vector<Point> cut(const std::vector<Point>& polygon, const Height& height, const Mix& mix) {
   std::vector<Point> left;
@@ -27,18 +30,18 @@ std::vector<Point> cut(const std::vector<Point>& polygon, const Height& height, 
   return left;
 }
 
-/// (X, Y, W) as in radial_coverage.hpp.
+/// Returns (X, Y, W) as in radial_coverage.hpp.
 glm::dvec3 homogeneous(const Projected& q) {
   return {q.x, q.y, q.w};
 }
 
-/// Convex, counter-clockwise; of a disk, the square around it.
+/// Returns a convex, counter-clockwise polygon around the outline; for a disk, the square around the disk.
 Polygon polygon_around(const LightOutline& outline) {
   return outline.corners.empty() ? Polygon{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}} : outline.corners;
 }
 
-/// The area of the unit disk within the triangle (0, a, b), signed: along the chord where the edge is inside, along
-/// the arc where it is not.
+/// Returns the signed area of the unit disk within the triangle (0, a, b): along the chord where the edge is inside,
+/// along the arc where the edge is outside.
 double disk_triangle(const glm::dvec2& a, const glm::dvec2& b) {
   const glm::dvec2 d = b - a;
   const auto arc = [](const glm::dvec2& from, const glm::dvec2& to) {
@@ -62,11 +65,11 @@ double area_within(const LightOutline& outline, const Polygon& polygon) {
 
 const auto kMix = [](const auto& a, const auto& b, double t) { return a + t * (b - a); };
 
-/// Sides shorter than this are no sides: rounding to 2⁻⁴⁸ may turn them by their own length. That moves an area by as
-/// little as the side is long.
+/// Sides shorter than this are skipped: rounding to 2⁻⁴⁸ may turn a side by its own length. Skipping a side changes an
+/// area by no more than the side's length.
 constexpr double kShortestSide = 0x1p-24;
 
-/// Empty, or with an area.
+/// Returns the intersection of two convex polygons: empty, or with positive area.
 Polygon common_part(Polygon one, const Polygon& other) {
   for (std::size_t i = 0; i < other.size() && one.size() > 2; ++i) {
     const glm::dvec2 corner = other[i], side = other[(i + 1) % other.size()] - corner;
@@ -78,11 +81,11 @@ Polygon common_part(Polygon one, const Polygon& other) {
   return one;
 }
 
-/// From 0 to the nearest point of the triangle.
+/// Returns the distance from 0 to the nearest point of the triangle.
 double distance_to(const std::array<glm::dvec3, 3>& triangle) {
   const auto& [a, b, c] = triangle;
   const glm::dvec3 n = glm::cross(b - a, c - a);
-  bool within = glm::dot(n, n) > 0;  // is the nearest point of the plane
+  bool within = glm::dot(n, n) > 0;  // the nearest point of the plane is within the triangle
   double nearest = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < 3; ++i) {
     const glm::dvec3 &from = triangle[i], way = triangle[(i + 1) % 3] - from;
@@ -93,7 +96,7 @@ double distance_to(const std::array<glm::dvec3, 3>& triangle) {
   return within ? std::min(nearest, std::abs(glm::dot(n, a)) / glm::length(n)) : nearest;
 }
 
-constexpr double kHair = 0x1p-20;  ///< of the light: far more than rounding, and nothing to the eye
+constexpr double kHair = 0x1p-20;  ///< fraction of the light: far above rounding, far below what is visible
 
 struct Bounds {
   glm::dvec2 lower, upper;
@@ -152,7 +155,7 @@ bool touches_light(const visibility::Light& light, const std::array<glm::vec3, 3
                       glm::dot(glm::cross(frame.u, x - frame.center), n)) /
            glm::dot(n, n);
   };
-  Polygon met;  // of the triangle and the plane: a point, a segment, or the triangle
+  Polygon met;  // intersection of the triangle and the plane: a point, a segment or the triangle
   for (std::size_t i = 0; i < 3; ++i) {
     const glm::dvec3 a = triangle[i], b = triangle[(i + 1) % 3];
     const mesh::Side at_a = sides[i], at_b = sides[(i + 1) % 3];

@@ -1,3 +1,6 @@
+// Constructs a convex hull around a light: a circumscribed regular polygon (disk, ellipse) or icosahedron (sphere),
+// enlarged by a bound of the rounding error. Not from a paper.
+
 #include "volumes/wedges/light_hull.hpp"
 
 #include "base/assert.hpp"
@@ -11,18 +14,19 @@
 namespace penumbra::volumes {
 namespace {
 
-/// By how much of the radius the hull is made larger, for rounding here and for what storage in float32 may have moved
-/// points by: half an ulp of each coordinate of the centre and of a point of the rim, less than 2⁻²² of their size.
+/// Returns the fraction of the radius by which the hull is enlarged, for rounding here and for the displacement of
+/// points by storage in float32: half an ulp of each coordinate of the centre and of a point of the rim, less than 2⁻²²
+/// of their size.
 double margin_of(const visibility::Light& light, double radius) {
   const double farthest = std::max({std::abs(light.center.x), std::abs(light.center.y), std::abs(light.center.z)});
   return 0x1p-20 + 0x1p-22 * (farthest + radius) / radius;
 }
 
-/// Of a disk or ellipse: what is circumscribed to the unit disk, in the frame's coordinates.
+/// Returns the hull of a disk or ellipse: a polygon circumscribed to the unit disk, in the frame's coordinates.
 LightHull round_hull(const visibility::Light& light, std::uint32_t sides) {
   const auto [center, u, v] = visibility::light_frame(light);
   double least = light.radius, most = light.radius;
-  if (!is_circle(light.kind)) {  // bounds of its axes: their squares add up to u² + v²
+  if (!is_circle(light.kind)) {  // bounds of the ellipse's axes, whose squares add up to u² + v²
     most = std::hypot(glm::length(u), glm::length(v));
     least = glm::length(glm::cross(u, v)) / most;
   }
@@ -34,7 +38,8 @@ LightHull round_hull(const visibility::Light& light, std::uint32_t sides) {
   return hull;
 }
 
-/// The icosahedron that the sphere is inscribed in: its faces are 0.7947 of its corners' distance away.
+/// Returns an icosahedron with the sphere inscribed: the distance of its faces is 0.7947 of the distance of its
+/// corners.
 LightHull sphere_hull(const visibility::Light& light) {
   const double golden = std::numbers::phi;
   const double inradius = golden * golden / std::sqrt(3.0), circumradius = std::sqrt(golden * golden + 1);  // edge 2

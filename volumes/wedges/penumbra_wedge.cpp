@@ -1,3 +1,7 @@
+// Constructs penumbra wedges: `original` after Assarsson and Akenine-Möller 2003 (with splits where the paper's planes
+// do not exist), `tight` as the facets of the convex hull of the penumbra (not from a paper). Departs from the paper:
+// every plane is checked by exact signs and rounded outward.
+
 #include "volumes/wedges/penumbra_wedge.hpp"
 
 #include "base/parallel.hpp"
@@ -25,7 +29,7 @@ double cross(const glm::dvec2& a, const glm::dvec2& b) {
 
 // ---- tight
 
-/// Two directions at right angles to n (and to each other), so that (s, t, n) is right-handed.
+/// Returns two directions at right angles to n (and to each other), so that (s, t, n) is right-handed.
 std::array<glm::dvec3, 2> across(const glm::dvec3& n) {
   const glm::dvec3 size = glm::abs(n);
   const glm::dvec3 axis = size.x <= size.y && size.x <= size.z ? glm::dvec3(1, 0, 0)
@@ -35,10 +39,11 @@ std::array<glm::dvec3, 2> across(const glm::dvec3& n) {
   return {s, glm::normalize(glm::cross(n, s))};
 }
 
-/// The extreme rays of the cone of all x − l, counter-clockwise as m points at the eye. Two for a flat cone.
+/// Returns the extreme rays of the cone of all x − l, counter-clockwise with m pointing at the viewer. Two rays for a
+/// flat cone.
 std::vector<glm::dvec3> extreme_rays(const EdgeAndLight& cast, const glm::dvec3& m) {
   struct Ray {
-    glm::dvec2 at;  // where it meets the plane m · v = 1
+    glm::dvec2 at;  // intersection of the ray with the plane m · v = 1
     glm::dvec3 v;
   };
   const auto [s, t] = across(m);
@@ -51,8 +56,9 @@ std::vector<glm::dvec3> extreme_rays(const EdgeAndLight& cast, const glm::dvec3&
   }
   std::ranges::sort(rays,
                     [](const Ray& a, const Ray& b) { return a.at.x != b.at.x ? a.at.x < b.at.x : a.at.y < b.at.y; });
-  // Andrew's monotone chain: the lower half from left to right, then the upper half back. Rounding may keep a ray that
-  // is not quite extreme or lose one that hardly is: bounding_plane repairs or drops what comes of it.
+  // Andrew's monotone chain: the lower half from left to right, then the upper half from right to left. Rounding may
+  // keep a ray that is not quite extreme or lose one that is barely extreme: bounding_plane corrects or drops the
+  // resulting plane.
   std::vector<Ray> hull;
   const auto extend = [&](const Ray& ray, std::size_t floor) {
     while (hull.size() >= floor + 2 && cross(hull.back().at - hull[hull.size() - 2].at, ray.at - hull.back().at) <= 0) {
@@ -69,10 +75,10 @@ std::vector<glm::dvec3> extreme_rays(const EdgeAndLight& cast, const glm::dvec3&
   return extreme;
 }
 
-/// Facets of the convex hull of the penumbra, e + C with C the cone of all x − l. Their normals are the extreme rays of
-/// C's dual, those of C's facets, where they stay extreme for the sum: each touches e in an end; and where two
-/// neighbours among them touch different ends, the direction between them that is at right angles to e: it touches all
-/// of e.
+/// Returns the facets of the convex hull of the penumbra, e + C with C the cone of all x − l. Their normals are the
+/// extreme rays of C's dual (the normals of C's facets) where these stay extreme for the sum: each touches e at one
+/// end; and, where two neighbours touch different ends, the direction between the two at right angles to e, which
+/// touches all of e.
 std::vector<Plane> tight_planes(const EdgeAndLight& cast, const glm::dvec3& m) {
   const std::vector<glm::dvec3> rays = extreme_rays(cast, m);
   const std::size_t count = rays.size();
@@ -84,7 +90,7 @@ std::vector<Plane> tight_planes(const EdgeAndLight& cast, const glm::dvec3& m) {
   for (const glm::dvec3& normal : normals) add(planes, bounding_plane(normal, cast, m));
   for (std::size_t i = 0; i < count; ++i) {
     const glm::dvec3 &before = normals[(i + count - 1) % count], &after = normals[i];
-    if (count == 2) {  // a flat cone: its ends in its own plane
+    if (count == 2) {  // a flat cone: its two boundary rays in its own plane
       const glm::dvec3 end = glm::cross(normals[0], rays[i]);
       add(planes, bounding_plane(glm::dot(end, rays[1 - i]) > 0 ? end : -end, cast, m));
     } else if (glm::dot(before, edge) * glm::dot(after, edge) < 0) {
@@ -97,12 +103,12 @@ std::vector<Plane> tight_planes(const EdgeAndLight& cast, const glm::dvec3& m) {
 
 // ---- original
 
-/// The plane through `at` along `direction` and through a corner of the light that has the whole light on its negative
-/// side: of the corners, the one that leaves none beyond. `wanted` > 0 picks between the two tangents: the one on whose
-/// positive side that point is.
+/// Returns the normal of the plane through `at` along `direction` and through a corner of the light, with the whole
+/// light on the plane's negative side: the corner that leaves no other corner beyond. The sign of `turn` selects one of
+/// the two tangents.
 std::optional<glm::dvec3> tangent_normal(const glm::dvec3& at, const glm::dvec3& direction,
                                          std::span<const glm::dvec3> light, double turn) {
-  // Seen along `direction` the light is a fan of directions from `at`; a tangent is its first or last one.
+  // Seen along `direction`, the light is a fan of directions from `at`; a tangent is the fan's first or last direction.
   std::optional<glm::dvec3> extreme;
   for (const glm::dvec3& l : light) {
     const glm::dvec3 normal = turn * glm::cross(direction, l - at);
@@ -116,15 +122,16 @@ std::optional<glm::dvec3> tangent_normal(const glm::dvec3& at, const glm::dvec3&
   return extreme;
 }
 
-/// The edge with its far end moved towards the light's centre, so that both are equally far.
+/// Returns the edge with its farther end moved towards the light's centre, so that both ends are equally far from the
+/// centre.
 std::array<glm::dvec3, 2> evened(const EdgeAndLight& cast, const glm::dvec3& center) {
   const double to_a = glm::length(cast.a - center), to_b = glm::length(cast.b - center), near = std::min(to_a, to_b);
   return {to_a > near ? center + (cast.a - center) * (near / to_a) : cast.a,
           to_b > near ? center + (cast.b - center) * (near / to_b) : cast.b};
 }
 
-/// Empty if front or back cannot be: the moved edge's line meets the light. A side that cannot be is left out, which
-/// only loosens the bound.
+/// Returns an empty list if the front or back plane does not exist (the moved edge's line meets the light). A side
+/// plane that does not exist is left out, which only loosens the bound.
 std::vector<Plane> original_planes(const EdgeAndLight& cast, const glm::dvec3& center, const glm::dvec3& m) {
   const auto [a, b] = evened(cast, center);
   const glm::dvec3 edge = b - a;
@@ -152,7 +159,7 @@ class Builder {
  public:
   Builder(const LightHull& light, Construction construction) : light_(light), construction_(construction) {}
 
-  /// Parents are numbers in the result.
+  /// Returns the wedge of `edge` and the pieces of its splits. Parents are indices in the result.
   [[nodiscard]] std::vector<Wedge> build(const WedgeEdge& edge) const {
     std::vector<Wedge> wedges;
     add_piece(edge, std::nullopt, 0, wedges);
@@ -176,7 +183,7 @@ class Builder {
       wedges.push_back(std::move(wedge));
       return;
     }
-    // The pieces must be the edge, to the last bit: their common end must lie on it exactly.
+    // The pieces must equal the edge, to the last bit: their common end must lie on the edge exactly.
     const glm::dvec3 middle = 0.5 * edge.a + 0.5 * edge.b;
     const bool can_split =
         m && splits < kMostSplits && middle != edge.a && middle != edge.b && mesh::collinear(edge.a, middle, edge.b);

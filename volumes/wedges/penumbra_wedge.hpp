@@ -10,39 +10,40 @@
 #include <span>
 #include <vector>
 
-/// Penumbra wedges: a few half-spaces whose intersection contains the penumbra of an edge (wedge_plane.hpp). All
-/// coordinates are scene floats (relative to the scene's origin), as doubles.
+/// Penumbra wedges: sets of a few half-spaces whose intersection contains the penumbra of an edge (wedge_plane.hpp).
+/// All coordinates are scene floats (relative to the scene's origin), as doubles.
 namespace penumbra::volumes {
 
 enum class Construction {
-  /// Assarsson and Akenine-Möller 2003 (course notes, 5.3.2.2): the endpoint farther from the light's centre is moved
-  /// towards it until both are equally far; front and back plane contain the moved edge and touch the light from either
-  /// side; left and right plane contain an endpoint and the direction edge × (centre − endpoint), and touch the light.
+  /// Construction of Assarsson and Akenine-Möller 2003 (course notes, 5.3.2.2): the endpoint farther from the light's
+  /// centre is moved towards the centre until both are equally far; front and back plane contain the moved edge and
+  /// touch the light from either side; left and right plane contain an endpoint and the direction edge × (centre −
+  /// endpoint), and touch the light.
   original,
-  /// Ours: the facets of the convex hull of the penumbra, e + cone{x − l}: the penumbra's closure, since that is convex
-  /// (wedge_tightness.hpp).
+  /// Not from a paper: the facets of the convex hull of the penumbra, e + cone{x − l}. The wedge is the penumbra's
+  /// closure, since the penumbra is convex (wedge_tightness.hpp).
   tight,
 };
 
 enum class WedgeOutcome {
-  wedge,       ///< `planes` bound it
+  wedge,       ///< bounded by `planes`
   split,       ///< no planes; its two pieces follow, with `parent`
-  everywhere,  ///< the edge touches the light, or no planes can be proved: every p may be in its penumbra
-  empty,       ///< nothing can be: an edge of no length
+  everywhere,  ///< the edge touches the light, or no planes can be proved: every p may be in the edge's penumbra
+  empty,       ///< no p is in the penumbra: an edge of no length
 };
 const char* name_of(WedgeOutcome outcome);
 
 struct Wedge {
-  glm::dvec3 a{0}, b{0};  ///< the edge, or the piece of it
+  glm::dvec3 a{0}, b{0};  ///< the edge, or a piece of the edge
   WedgeOutcome outcome = WedgeOutcome::wedge;
   std::vector<Plane> planes;            ///< p is inside iff every half-space holds, evaluated exactly
-  std::optional<std::uint32_t> parent;  ///< the `split` wedge that this is a piece of
-  std::uint32_t source = 0;             ///< the edge's number in the list that was asked for
+  std::optional<std::uint32_t> parent;  ///< the `split` wedge whose piece this wedge is
+  std::uint32_t source = 0;             ///< the edge's index in the caller's list
 };
 
 struct WedgeEdge {
   glm::dvec3 a{0}, b{0};
-  /// Half-spaces that a caller proved to contain what it asks for, beside the penumbra: the planes of adjacent
+  /// Half-spaces that the caller proved to contain the requested points, beside the penumbra: the planes of adjacent
   /// triangles (Lehtinen et al. 2006). Added to every wedge of the edge.
   std::vector<Plane> crop;
 };
@@ -62,7 +63,7 @@ struct WedgeEdge {
 /// | edge of no length | empty | empty |
 std::vector<Wedge> build_wedges(std::span<const WedgeEdge> edges, const LightHull& light, Construction construction);
 
-/// Exact.
+/// Returns whether p is inside all half-spaces of the wedge. Exact.
 bool is_inside(const Wedge& wedge, const glm::dvec3& p);
 
 }  // namespace penumbra::volumes

@@ -11,13 +11,13 @@ namespace penumbra::volumes {
 /// Corners in the light's plane, in order.
 using Polygon = std::vector<glm::dvec2>;
 
-/// The z component of a × b.
+/// Returns the z component of a × b.
 inline double cross2(const glm::dvec2& a, const glm::dvec2& b) {
   return a.x * b.y - a.y * b.x;
 }
 
-/// Signed area: positive if the corners run counter-clockwise. Relative to corner 0, so that little cancels far from
-/// the origin.
+/// Returns the signed area: positive if the corners run counter-clockwise. Computed relative to corner 0, so that
+/// little cancels far from the origin.
 inline double area_of(const Polygon& polygon) {
   double doubled = 0;
   for (std::size_t i = 1; i + 1 < polygon.size(); ++i) {
@@ -26,7 +26,7 @@ inline double area_of(const Polygon& polygon) {
   return doubled / 2;
 }
 
-/// The largest magnitude among the components.
+/// Returns the largest magnitude among the components.
 inline double largest(const glm::dvec3& v) {
   return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
 }

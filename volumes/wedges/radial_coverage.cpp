@@ -1,6 +1,6 @@
-// The coverage integral of soft shadow volumes: U. Assarsson, T. Akenine-Möller, "A geometry-based soft shadow volume
-// algorithm using graphics hardware", 2003. They look sectors up in a table of arc tangents; here a sector of a polygon
-// is a linear function along each of its sides, and nothing is tabulated. C need not be the centre.
+// Computes the coverage integral of soft shadow volumes: U. Assarsson, T. Akenine-Möller, "A geometry-based soft shadow
+// volume algorithm using graphics hardware", 2003. Departs from the paper: instead of a table of arc tangents for
+// sectors, a sector of a polygon is a linear function along each side of the polygon; C need not be the light's centre.
 
 #include "volumes/wedges/radial_coverage.hpp"
 
@@ -24,7 +24,7 @@ namespace {
 
 constexpr std::array kSquare = {glm::dvec2(-1, -1), glm::dvec2(1, -1), glm::dvec2(1, 1), glm::dvec2(-1, 1)};
 
-/// |a × b| before anything cancels.
+/// Returns the sizes of the terms of a × b, before cancellation.
 glm::dvec3 cross_size(const glm::dvec3& a, const glm::dvec3& b) {
   const glm::dvec3 x = glm::abs(a), y = glm::abs(b);
   return {x.y * y.z + x.z * y.y, x.z * y.x + x.x * y.z, x.x * y.y + x.y * y.x};
@@ -34,7 +34,8 @@ glm::dvec3 cross_size(const glm::dvec3& a, const glm::dvec3& b) {
 struct Range {
   double from = 0, to = 1;
 
-  /// What is left where a height that is `a` at 0 and `b` at 1 is positive. False: nothing.
+  /// Keeps the part of the range where a height that is `a` at 0 and `b` at 1 is positive. Returns false if nothing is
+  /// left.
   bool cut(double a, double b) {
     if (a <= 0 && b <= 0) return false;
     if (a < 0) from = std::max(from, a / (a - b));
@@ -43,8 +44,9 @@ struct Range {
   }
 };
 
-/// What of an edge within the square around it is within the disk. On the light's plane, not before: where an edge
-/// passes p closely, X² + Y² ≤ W² would be decided by the squares of small differences.
+/// Returns the part within the disk of an edge already clipped to the square around the disk. Computed on the light's
+/// plane, not before projection: where an edge passes p closely, X² + Y² ≤ W² would be decided by the squares of small
+/// differences.
 std::optional<ClippedEdge> cut_by_disk(const ClippedEdge& edge) {
   const glm::dvec2 way = edge.to - edge.from;
   const double size = glm::dot(way, way), half = glm::dot(edge.from, way), rest = glm::dot(edge.from, edge.from) - 1;
@@ -121,8 +123,8 @@ double Projected::error() const {
   return (error_x + error_y + (at.x + at.y) * error_w) / w;
 }
 
-// r = p − o, d = x − p: S = −det(r, v, d), T = −det(u, r, d), W = −det(u, v, d), over K = det(u, v, r), as in
-// areas/back_projection.hpp. d is taken first: an edge that nearly touches p is seen as sharply as any other.
+// With r = p − o, d = x − p: S = −det(r, v, d), T = −det(u, r, d), W = −det(u, v, d), over K = det(u, v, r), as in
+// areas/back_projection.hpp. d is computed first: an edge that nearly touches p is as precise as any other.
 LightProjection::LightProjection(const visibility::Light& light, const glm::vec3& p) : p_(p) {
   if (is_body(light.kind)) {
     turn_ = in_front_of_light(light, p) ? 1 : 0;
@@ -133,7 +135,8 @@ LightProjection::LightProjection(const visibility::Light& light, const glm::vec3
   const auto [center, u, v] = visibility::light_frame_from(light, p);
   const glm::dvec3 r = p_ - center, n = glm::cross(u, v);
   double k = glm::dot(n, r);
-  if (k * turn_ <= 0) k = turn_ * std::numeric_limits<double>::min();  // so near the plane that double cannot tell
+  // so near the plane that double precision cannot resolve K
+  if (k * turn_ <= 0) k = turn_ * std::numeric_limits<double>::min();
   row_x_ = glm::cross(v, r) / k;
   row_y_ = glm::cross(r, u) / k;
   row_w_ = -n / k;
@@ -174,7 +177,7 @@ std::optional<ClippedEdge> clip_to_light(const LightOutline& outline, const Proj
     if (!range.cut(height(a), height(b))) return std::nullopt;
   }
   const Projected from = range.from == 0 ? a : mix(a, b, range.from), to = range.to == 1 ? b : mix(a, b, range.to);
-  if (!(from.w > 0) || !(to.w > 0)) return std::nullopt;  // p is on the edge: it has no extent
+  if (!(from.w > 0) || !(to.w > 0)) return std::nullopt;  // p is on the edge: the edge has no extent
   const ClippedEdge edge{from.point(), to.point(), from.error(), to.error()};
   return is_disk ? cut_by_disk(edge) : edge;
 }
@@ -190,7 +193,7 @@ RadialCoverage::RadialCoverage(const LightOutline& outline, const glm::dvec2& re
   }
 }
 
-/// The area that a ray from C has swept when it points this way, up to multiples of |L|.
+/// Returns the area that a ray from C has swept when the ray points in `direction`, up to multiples of |L|.
 double RadialCoverage::fan_area(const glm::dvec2& direction) const {
   if (outline_->corners.empty()) {
     // The ray leaves at h; Green's theorem along the arc: ½ ∮ (q − C) × dq = ½ φ − ½ C × h, up to a constant.
@@ -225,8 +228,8 @@ double RadialCoverage::beyond(const ClippedEdge& edge, int side) const {
   }
   double sector = fan_area(to) - fan_area(from);
   if (glm::dot(from, to) > 0) {
-    // Less than a quarter turn: rounding may have turned it over, but it is as small as it seems. No quarter turn
-    // around a point well inside holds 15/16 of a convex region; and no rounding is 1/16.
+    // Less than a quarter turn: rounding may have reversed the sector's sign, but its magnitude is right. No quarter
+    // turn around a point well inside holds 15/16 of a convex region; and no rounding reaches 1/16.
     if (sector < (turned > 0 ? -area / 16 : -area * 15 / 16)) sector += area;
     if (sector > (turned < 0 ? area / 16 : area * 15 / 16)) sector -= area;
   } else {

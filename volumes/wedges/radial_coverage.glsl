@@ -1,16 +1,16 @@
-// How much of a light one edge takes or gives back as seen from p (U. Assarsson, T. Akenine-Möller 2003): the cone from
-// the light's centre over the edge's projection, cut by the light, less the triangle within. docs/coverage.md derives
-// it. The light is [−1, 1]² or the unit disk in its own coordinates, its centre (0, 0).
+// Computes the part of a light that one edge takes or gives back as seen from p (U. Assarsson, T. Akenine-Möller 2003):
+// the cone from the light's centre over the edge's projection, cut by the light, less the triangle within; derived in
+// docs/coverage.md. The light is [−1, 1]² or the unit disk in its own coordinates, with centre (0, 0).
 //
-// (X, Y) / W is where a point appears on the light; W is its height above p, the light's being 1.
+// (X, Y) / W is the projection of a point to the light; W is the point's height above p, relative to the light's.
 
-/// Decides what the device may not trust its rounding with: relative to the terms that X and Y are sums of, 2⁸ times
-/// their error. So directions that are trusted are off by less than 2⁻⁸.
+/// Threshold below which the sign of a rounded quantity is doubtful: relative to the terms that X and Y are sums of, 2⁸
+/// times their error. Trusted directions are therefore off by less than 2⁻⁸.
 const double kNearCenter = 1.0 / 1099511627776.0;  // 2⁻⁴⁰
 
 const double kHalfPi = 1.57079632679489661923LF;
 
-/// For |r| ≤ √2 − 1, by Taylor: the next term is below 2⁻³⁶.
+/// Returns atan(r) for |r| ≤ √2 − 1, by Taylor: the next term is below 2⁻³⁶.
 double small_atan(double r) {
   const double s = r * r;
   double sum = 0.0LF;
@@ -18,7 +18,7 @@ double small_atan(double r) {
   return r * sum;
 }
 
-/// The angle of (x, y) in (−π, π]; the built-in one has float's few bits.
+/// Returns the angle of (x, y) in (−π, π]; the built-in function has float precision only.
 double angle_of(double y, double x) {
   const double ax = abs(x), ay = abs(y);
   const double high = max(ax, ay), low = min(ax, ay);
@@ -30,7 +30,8 @@ double angle_of(double y, double x) {
   return y < 0.0LF ? -angle : angle;
 }
 
-/// Of the square: the fan from the centre between the direction (1, 0) and (x, y). Eight halves of 1/2 each.
+/// Returns the area of the square's fan from the centre between the direction (1, 0) and (x, y). Eight halves of 1/2
+/// each.
 double square_fan(double y, double x) {
   const bool steep = abs(y) > abs(x);
   const double rest = (steep ? -x : y) / (steep ? y : x);
@@ -43,14 +44,14 @@ struct Segment {
   bool any;
 };
 
-/// Takes away the part of the parameter range where an affine function, d at 0 and e at 1, is negative.
+/// Removes the part of the parameter range where an affine function, d at 0 and e at 1, is negative.
 void cut_range(double d, double e, inout double first, inout double last) {
   const double at = d / (d - e);
   if (d < 0.0LF) first = e < 0.0LF ? 2.0LF : max(first, at);
   if (d >= 0.0LF && e < 0.0LF) last = min(last, at);
 }
 
-/// The part of the edge that appears in the light.
+/// Returns the part of the edge that appears in the light's square.
 Segment cut_by_square(dvec3 a, dvec3 b) {
   double first = 0.0LF, last = 1.0LF;
   cut_range(a.z - a.x, b.z - b.x, first, last);
@@ -58,11 +59,12 @@ Segment cut_by_square(dvec3 a, dvec3 b) {
   cut_range(a.z - a.y, b.z - b.y, first, last);
   cut_range(a.z + a.y, b.z + b.y, first, last);
   cut_range(1.0LF - a.z, 1.0LF - b.z, first, last);
-  // An end that is not cut off stays what it is: its neighbours' ends are then the same numbers.
+  // An end that is not cut off is returned unchanged: the ends of neighbouring edges are then the same numbers.
   return Segment(first > 0.0LF ? a + (b - a) * first : a, last < 1.0LF ? a + (b - a) * last : b, first < last);
 }
 
-/// X² + Y² ≤ W² with W ≥ 0: between the roots of a quadratic, or beyond them on the cone's own side.
+/// Returns the part of the edge where X² + Y² ≤ W² with W ≥ 0: between the roots of a quadratic, or beyond the roots on
+/// the cone's own side.
 Segment cut_by_disk(dvec3 a, dvec3 b) {
   double first = 0.0LF, last = 1.0LF;
   cut_range(a.z, b.z, first, last);
@@ -71,7 +73,7 @@ Segment cut_by_disk(dvec3 a, dvec3 b) {
   const double square = d.x * d.x + d.y * d.y - d.z * d.z, middle = a.x * d.x + a.y * d.y - a.z * d.z;
   const double rest = a.x * a.x + a.y * a.y - a.z * a.z, root2 = middle * middle - square * rest;
   const double root = sqrt(max(root2, 0.0LF));
-  // The two roots without cancellation.
+  // The two roots, computed without cancellation.
   const double big = -(middle + (middle < 0.0LF ? -root : root));
   const double r0 = big / square, r1 = rest / big;
   const double low = min(r0, r1), high = max(r0, r1);
@@ -80,7 +82,7 @@ Segment cut_by_disk(dvec3 a, dvec3 b) {
     first = root2 > 0.0LF ? max(first, low) : 2.0LF;
     last = min(last, high);
   } else {
-    // It runs within the cone from one root on; which, W tells: it grows that way.
+    // The line runs within the cone beyond one of the roots: the root on the side where W grows.
     if (d.z > 0.0LF) first = max(first, high);
     if (d.z < 0.0LF) last = min(last, low);
   }
@@ -89,15 +91,17 @@ Segment cut_by_disk(dvec3 a, dvec3 b) {
 
 const int kNoTurn = 2;  // within rounding
 
-/// The cone from the centre over what is left of an edge.
+/// Area of the cone from the centre over a clipped edge.
 struct Cone {
-  double from, to;  // of the square: the fans of both ends, in [−1/2, 7/2]
-  double sector;    // its area within the light; positive: counter-clockwise. to − from, and perhaps the whole light
-  double triangle;  // the part before the edge, likewise
+  double from, to;  // fans of both ends on the square, in [−1/2, 7/2]
+  double sector;    // area of the sector within the light, counter-clockwise positive: to − from, possibly ± the whole
+                    // light
+  double triangle;  // area of the triangle before the edge, with the same sign
   bool doubtful;
 };
 
-/// `turn` is the exact sign of the turn from a to b, or kNoTurn; `size` what X and Y are sums of, at most.
+/// Returns the cone of `cut`. `turn` is the exact sign of the turn from a to b, or kNoTurn; `size` an upper bound of
+/// the terms that X and Y are sums of.
 Cone cone_of(Segment cut, int turn, double size, bool disk) {
   const dvec3 from = cut.from, to = cut.to;
   const double near = kNearCenter * size;
@@ -113,7 +117,7 @@ Cone cone_of(Segment cut, int turn, double size, bool disk) {
     cone.sector = cone.to - cone.from;
     cone.sector += cone.sector > 2.0LF ? -4.0LF : cone.sector < -2.0LF ? 4.0LF : 0.0LF;
   }
-  // Nearly half a turn: the count at c depends on which way round it is, too, and both must be decided by one sign.
+  // Nearly half a turn: the count at c also depends on the direction of the turn, and one sign must decide both.
   if (along < 0.0LF && double(turn) * cone.sector < 0.0LF) cone.sector += 2.0LF * half_light * double(turn);
   cone.triangle = 0.5LF * across / weight;
   cone.doubtful = at_center || (along < 0.0LF && turn == kNoTurn) || !(weight > 0.0LF);

@@ -1,6 +1,7 @@
-// U. Assarsson, T. Akenine-Möller 2003, at one view sample and without a raster. Beyond the paper: any soup, by signed
-// multiplicities; exact decisions where a rounded one would cost a whole light; another reference point where an edge
-// ends at the light's centre; silhouettes from the receiver, too.
+// Computes soft shadow volumes (U. Assarsson, T. Akenine-Möller 2003) at one view sample and without a raster. Beyond
+// the paper: arbitrary triangle soups, by signed multiplicities; exact decisions where a rounded one would change the
+// result by a whole light; another reference point where an edge ends at the light's centre; also silhouettes from the
+// receiver.
 
 #include "volumes/wedges/soft_visibility.hpp"
 
@@ -35,7 +36,7 @@ bool box_misses(const std::array<glm::vec3, 3>& corners, const glm::vec3& lower,
          glm::any(glm::greaterThan(glm::min(a, glm::min(b, c)), upper));
 }
 
-/// What a triangle seen from `side` gives to k of one of its edges (mesh/silhouettes.hpp).
+/// Returns the contribution of a triangle seen from `side` to k of one of its edges (mesh/silhouettes.hpp).
 int share_of(const mesh::EdgeGraph& graph, std::uint32_t edge, std::uint32_t triangle, Side side) {
   int sum = 0;
   for (const mesh::Incidence& incidence : graph.around(edge)) {
@@ -75,7 +76,8 @@ SoftVisibility::SoftVisibility(const SceneFloats& scene, const visibility::Light
   }
 }
 
-/// Coplanar with the carrier; or p is on its plane and in its box: it may touch p, and appears as a line or not at all.
+/// Returns true if the caster is coplanar with the carrier; or if p is on the caster's plane and in its box: the caster
+/// may then touch p, and appears as a line or not at all.
 bool SoftVisibility::is_left_out(std::uint32_t caster, const LitPoint& sample) const {
   const std::uint32_t triangle = casters_.triangle[caster];
   if (scene_.plane[triangle] == scene_.plane[sample.carrier]) return true;
@@ -84,12 +86,13 @@ bool SoftVisibility::is_left_out(std::uint32_t caster, const LitPoint& sample) c
   return mesh::side_of_plane(corners[0], corners[1], corners[2], sample.p) == Side::on;
 }
 
-/// As keep_one_layer does, for one triangle.
+/// Returns the rule of keep_one_layer for one triangle.
 bool SoftVisibility::counts_for_receiver(std::uint32_t caster, Side seen) const {
   return seen != Side::on && (light_sides_[caster] == Side::on || light_sides_[caster] == mesh::opposite(seen));
 }
 
-/// Those of all view samples, less what the triangles left out here gave to them.
+/// Returns the silhouettes common to all view samples, less the contributions of the triangles left out for this
+/// sample.
 std::vector<SoftVisibility::Silhouette> SoftVisibility::center_silhouettes(const LitPoint& sample,
                                                                            std::span<const Silhouette> of_all) const {
   std::vector<std::uint32_t> left_out;
@@ -144,21 +147,22 @@ std::vector<SoftVisibility::Silhouette> SoftVisibility::silhouettes(const LitPoi
   return viewer == Viewer::center ? center_silhouettes(sample, silhouettes_) : receiver_silhouettes(sample);
 }
 
-/// The light's centre, or that of what p sees of a sphere.
+/// Returns the light's centre; of a sphere, the centre of the disk visible from p.
 glm::vec3 SoftVisibility::center_from(const glm::vec3& p) const {
   if (!is_body(light_.kind)) return center_;
   return glm::vec3(visibility::light_frame_from(light_, p).center);
 }
 
-/// What bounds the light as p sees it: of a sphere, the square around its disk, in floats.
+/// Returns corners that bound the light as seen from p: of a sphere, the square around its disk, in floats.
 std::vector<glm::vec3> SoftVisibility::corners_from(const glm::vec3& p) const {
   if (!is_body(light_.kind)) return light_.outline;
   const auto [c, u, v] = visibility::light_frame_from(light_, p);
   return {glm::vec3(c - u - v), glm::vec3(c + u - v), glm::vec3(c + u + v), glm::vec3(c - u + v)};
 }
 
-/// The centre; or, if an edge's end appears there, a point half or a quarter of the way to a corner. (Of a sphere that
-/// point, and its disk's centre, are an ulp off the disk: they stand for where lines from p through them meet it.)
+/// Returns the centre; or, if an edge's end appears there, a point half or a quarter of the distance to a corner. (For
+/// a sphere this point and the centre of its disk are an ulp off the disk: they stand for the points where lines from p
+/// through them meet the disk.)
 glm::vec3 SoftVisibility::choose_reference(const glm::vec3& p, const LightProjection& projection,
                                            std::span<const Candidate> edges) const {
   const auto clear = [&](const glm::vec3& l) {
@@ -177,7 +181,7 @@ glm::vec3 SoftVisibility::choose_reference(const glm::vec3& p, const LightProjec
       if (clear(l)) return l;
     }
   }
-  return center;  // vertices at every one of them: then no point is better
+  return center;  // vertices at every one of these points: then no point is better
 }
 
 bool SoftVisibility::counts_at_center(std::uint32_t triangle) const {
@@ -190,7 +194,7 @@ bool SoftVisibility::may_appear(const LightProjection& from, std::uint32_t edge)
   return !from.misses(casters_.positions[a], casters_.positions[b], lower_, upper_);
 }
 
-/// Of a triangle that p→l meets the sign that its edges have been given; of others 0.
+/// Returns, for a triangle met by p→l, the sign that the triangle's edges have been given; for other triangles 0.
 std::int32_t SoftVisibility::layer_of(std::uint32_t triangle, const LitPoint& sample, const glm::vec3& l,
                                       Viewer viewer) const {
   const std::uint32_t caster = caster_of_[triangle];
@@ -198,13 +202,13 @@ std::int32_t SoftVisibility::layer_of(std::uint32_t triangle, const LitPoint& sa
   const std::array<glm::vec3, 3> corners = scene_.corners(triangle);
   if (box_misses(corners, glm::min(sample.p, l), glm::max(sample.p, l)) || is_left_out(caster, sample)) return 0;
   if (!visibility::segment_meets_triangle(sample.p, l, corners, light_).meets) return 0;
-  // By the casters' own order of corners, which facings speak of: it is the scene's.
+  // The order of corners is the casters' own, to which facings refer: the scene's order.
   const Side seen = mesh::side_of_plane(corners[0], corners[1], corners[2], sample.p);
   if (viewer == Viewer::center) return -sign_of(center_facings_[caster]) * sign_of(seen);
   return counts_for_receiver(caster, seen) ? 1 : 0;
 }
 
-/// D at a point of the light.
+/// Returns D at the point l of the light.
 std::int32_t SoftVisibility::layers_at(const LitPoint& sample, const glm::vec3& l, Viewer viewer) const {
   std::int32_t layers = 0;
   tree_.for_each_near(glm::min(sample.p, l), glm::max(sample.p, l),
@@ -242,7 +246,8 @@ double SoftVisibility::share_above_carrier(const LitPoint& sample) const {
   return share_above(outline_, glm::dot(n, center - glm::dvec3(a)), {glm::dot(n, u), glm::dot(n, v)});
 }
 
-/// Of the light, or with a texture of its weight; with the sign of the turn around the reference point.
+/// Returns the area beyond the edge as a fraction of the light, or with a texture of its weight, with the sign of the
+/// turn around the reference point.
 double SoftVisibility::area_beyond(const Candidate& edge, int side, const RadialCoverage& coverage,
                                    const glm::dvec2& reference) const {
   if (!texture_) return coverage.beyond(edge.clipped, side) / outline_.area;
@@ -261,7 +266,7 @@ LayerSum SoftVisibility::at_center(const LitPoint& sample, std::span<const Silho
 LayerSum SoftVisibility::sum_of(const LitPoint& sample, Viewer viewer, std::span<const Silhouette> edges,
                                 const CenterCount& count) const {
   LayerSum result;
-  const bool no_disk = is_body(light_.kind) &&  // p is outside by less than double holds
+  const bool no_disk = is_body(light_.kind) &&  // p is outside by less than double precision resolves
                        visibility::light_frame_from(light_, sample.p).u == glm::dvec3(0);
   result.in_front = visibility::in_front_of_light(light_, sample.p) && !no_disk;
   if (!result.in_front) return result;
@@ -280,7 +285,8 @@ LayerSum SoftVisibility::sum_of(const LitPoint& sample, Viewer viewer, std::span
   result.constant = count.layers && !result.moved ? *count.layers : layers_at(sample, result.reference, viewer);
   if (count.at_most_one) result.constant = std::min(result.constant, 1);
   const RadialCoverage coverage(outline_, result.reference_at, arc_);
-  // k counts triangles counter-clockwise as the viewer sees them; between c and p, c sees them the other way around.
+  // k counts triangles counter-clockwise as seen by the viewer; for triangles between c and p, the orientation seen
+  // from c is the reverse.
   const int sense = viewer == Viewer::center ? -projection.turn() : projection.turn();
   for (const Candidate& candidate : candidates) {
     const auto [a, b] = casters_.graph.edges[candidate.edge];

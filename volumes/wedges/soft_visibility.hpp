@@ -20,91 +20,95 @@
 
 namespace penumbra::volumes {
 
-/// A view sample, as ViewSamples stores it.
+/// View sample as stored by ViewSamples.
 struct LitPoint {
   glm::vec3 p{0};
   std::uint32_t carrier = 0;
   std::int8_t facing = 0;
 };
 
-/// Whose silhouettes are added up.
+/// Viewpoint whose silhouettes are summed.
 enum class Viewer {
-  center,    ///< k_e(c), one set for all view samples: the method
-  receiver,  ///< k_e(p): the layers as they are
+  center,    ///< k_e(c), one set for all view samples: the method's choice
+  receiver,  ///< k_e(p): the actual layers
 };
 
-/// An edge that takes from the light, or gives back to it, as a view sample sees it.
+/// Edge that takes from the light, or gives back to the light, as seen from a view sample.
 struct CoveredEdge {
-  std::uint32_t edge = 0;         ///< of the casters' graph
-  std::int32_t multiplicity = 0;  ///< k_e of what counts, never 0 (closed_casters.hpp)
+  std::uint32_t edge = 0;         ///< index in the casters' graph
+  std::int32_t multiplicity = 0;  ///< k_e of the counted triangles, never 0 (closed_casters.hpp)
   std::int8_t side = 0;           ///< +1: the clipped edge turns counter-clockwise around the reference point. Exact
   ClippedEdge clipped;            ///< in frame coordinates
-  double area = 0;                ///< what it adds to `blocked`: ± k_e times the area beyond it, of |L|, or its weight
+  double area = 0;  ///< contribution to `blocked`: ± k_e times the area beyond the edge, as a fraction of
+                    ///< |L|, or times its weight
 };
 
 struct LayerSum {
-  bool in_front = false;       ///< of the light; if not, nothing else is set, and V = 0
-  glm::vec3 reference{0};      ///< the point of the light that areas are seen from: its centre, unless edges end there
+  bool in_front = false;       ///< p is in front of the light; if false, no other member is set, and V = 0
+  glm::vec3 reference{0};      ///< point of the light from which areas are measured: its centre, unless edges end there
   glm::dvec2 reference_at{0};  ///< the reference point in frame coordinates
-  bool moved = false;          ///< it is not the centre
+  bool moved = false;          ///< the reference point is not the centre
   std::int32_t constant = 0;   ///< layers at the reference point. Exact
-  std::vector<CoveredEdge> edges;  ///< by their numbers; those that appear on the light
-  double sum = 0;                  ///< of their areas
+  std::vector<CoveredEdge> edges;  ///< edges that appear on the light, by index
+  double sum = 0;                  ///< sum of the edges' areas
   double blocked = 0;              ///< constant + sum: the mean number of layers over the light
-  double above = 1;                ///< share of the light above the carrier's plane
+  double above = 1;                ///< fraction of the light above the carrier's plane
   double visibility = 0;           ///< 1 − blocked, but not below 0 nor beyond `above`
 };
 
-/// Soft shadow volumes (Assarsson and Akenine-Möller 2003) at one view sample: the plain C++ twin of the method
-/// `soft-volume`, for rectangle, convex polygon and disk lights; and for spheres, each p with the disk that it sees.
-/// docs/coverage.md derives it.
+/// Soft shadow volumes (Assarsson and Akenine-Möller 2003) at one view sample: C++ twin of the method `soft-volume`,
+/// for rectangle, convex polygon and disk lights; and for spheres, each p with the disk visible from p.
+/// docs/coverage.md derives the equations.
 ///
-/// A textured light weighs: in place of |L| and areas stand the integral of its luminance and the shares of that.
-/// `above` stays a share of |L|, as in the method.
+/// For a textured light, |L| and areas are replaced by the integral of its luminance and the fractions of this
+/// integral. `above` stays a fraction of |L|, as in the method.
 ///
-/// With D(l) the number of layers between p and the light point l, `blocked` is its mean over the light. From the
-/// receiver's own silhouettes D counts the triangles that p→l meets (of closed parts half of them: closed_casters.hpp),
-/// and `blocked` is the hidden share where no layers overlap. From the centre's, a triangle that has p and c on one
-/// side counts −1: there the method approximates.
+/// With D(l) the number of layers between p and the light point l, `blocked` is its mean over the light. With the
+/// receiver's own silhouettes D counts the triangles met by p→l (of closed parts half of them: closed_casters.hpp), and
+/// `blocked` is the hidden fraction where no layers overlap. With the centre's silhouettes, a triangle with p and c on
+/// one side counts −1: there the method approximates.
 ///
-/// What is coplanar with the carrier does not count, nor does a triangle that touches p. D at the reference point and
-/// the side of every edge are exact, ties read as docs/definitions.md says, so that nothing jumps by a whole light.
+/// Triangles coplanar with the carrier do not count, nor does a triangle that touches p. D at the reference point and
+/// the side of every edge are exact, with ties as defined in docs/definitions.md, so that no result is off by a whole
+/// light.
 class SoftVisibility {
  public:
-  /// Borrows all three; `casters` are casters_of(scene, light). ResourceError: a texture too large (TextureWeights).
+  /// Borrows all three arguments; `casters` are casters_of(scene, light). Throws ResourceError if a texture is too
+  /// large (TextureWeights).
   SoftVisibility(const visibility::SceneFloats& scene, const visibility::Light& light, const Casters& casters,
                  Arc arc = Arc::tangent);
 
   [[nodiscard]] LayerSum at(const LitPoint& sample, Viewer viewer) const;
 
-  /// Edges of what counts, with their k_e, by number.
+  /// Edge of the counted triangles and its k_e, by index.
   using Silhouette = std::pair<std::uint32_t, std::int32_t>;
-  /// As at() with Viewer::center, in parts. Edges may be left out that do not appear on the light.
+  /// Count of the layers at the light's centre for at() with Viewer::center, given in parts. Edges that do not appear
+  /// on the light may be left out.
   struct CenterCount {
-    std::optional<std::int32_t> layers = {};  ///< at the light's centre, if they are counted already
-    bool at_most_one = false;                 ///< however many there are
+    std::optional<std::int32_t> layers = {};  ///< layers at the light's centre, if already counted
+    bool at_most_one = false;                 ///< clamp the number of layers to one
   };
   [[nodiscard]] LayerSum at_center(const LitPoint& sample, std::span<const Silhouette> edges,
                                    const CenterCount& count) const;
-  /// k_e(c) ≠ 0, the same for all view samples.
+  /// Returns the edges with k_e(c) ≠ 0, the same for all view samples.
   [[nodiscard]] const std::vector<Silhouette>& silhouettes_of_center() const { return silhouettes_; }
   [[nodiscard]] bool may_appear(const LightProjection& from, std::uint32_t edge) const;
-  /// Does one of the scene's triangles count as a layer at the light's centre, and what does it add there for a view
-  /// sample?
+  /// Returns whether a triangle of the scene counts as a layer at the light's centre (first function), and its
+  /// contribution there for a view sample (second function).
   [[nodiscard]] bool counts_at_center(std::uint32_t triangle) const;
   [[nodiscard]] std::int32_t layer_at_center(const LitPoint& sample, std::uint32_t triangle) const {
     return layer_of(triangle, sample, center_, Viewer::center);
   }
 
-  /// The triangles that count for the receiver and may appear on its light: of the layers, each by itself
-  /// (layer_areas.hpp makes `blocked` of them without edges).
+  /// Returns the triangles that count for the receiver and may appear on the receiver's light: the layers, each by
+  /// itself (layer_areas.hpp computes `blocked` from these triangles without edges).
   [[nodiscard]] std::vector<std::array<glm::vec3, 3>> layers(const LitPoint& sample) const;
 
-  /// Does any caster meet the light itself? No edge tells where its shadow ends there, and no sum is exact.
+  /// Returns whether any caster meets the light itself. No edge bounds the caster's shadow there, and no sum is exact.
   [[nodiscard]] bool something_touches_light() const;
 
   [[nodiscard]] const LightOutline& outline() const { return outline_; }
-  /// None: all of the light weighs the same.
+  /// Returns nullptr if the light has no texture: all of the light has the same weight.
   [[nodiscard]] const TextureWeights* texture() const { return texture_ ? &*texture_ : nullptr; }
   [[nodiscard]] std::vector<Silhouette> silhouettes(const LitPoint& sample, Viewer viewer) const;
 
@@ -139,13 +143,13 @@ class SoftVisibility {
   LightOutline outline_;
   Arc arc_;
   std::optional<TextureWeights> texture_;
-  glm::dvec2 lower_{-1}, upper_{1};  // of the outline
+  glm::dvec2 lower_{-1}, upper_{1};  // bounds of the outline
   glm::vec3 center_{0};
   visibility::TriangleTree tree_;
-  std::vector<std::uint32_t> caster_of_;                           // for each of the scene's triangles
+  std::vector<std::uint32_t> caster_of_;                           // for each triangle of the scene
   std::vector<std::pair<std::uint32_t, std::uint32_t>> by_plane_;  // plane, caster; sorted
   std::vector<mesh::Side> light_sides_;                            // closed_casters.hpp
-  std::vector<mesh::Side> center_facings_;                         // of what counts
+  std::vector<mesh::Side> center_facings_;                         // facings of the counted triangles
   std::vector<Silhouette> silhouettes_;
 };
 

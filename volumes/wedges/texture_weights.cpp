@@ -1,3 +1,6 @@
+// Integrates a light's texture over regions by Green's theorem, with prefix sums of rows of texels. Not from a paper;
+// derived in docs/coverage.md.
+
 #include "volumes/wedges/texture_weights.hpp"
 
 #include "base/error.hpp"
@@ -12,14 +15,15 @@
 namespace penumbra::volumes {
 namespace {
 
-constexpr std::uint32_t kMostTexels = 0xffff;  // a side; two sides share a word
+constexpr std::uint32_t kMostTexels = 0xffff;  // along one side; the two sides share a 32-bit word
 
-/// Which of `count` cells, each 1 long, `at` is in.
+/// Returns the index of the cell that contains `at`, of `count` cells, each 1 long.
 std::uint32_t cell_of(double at, std::uint32_t count) {
   return static_cast<std::uint32_t>(std::clamp(std::floor(at), 0.0, static_cast<double>(count - 1)));
 }
 
-/// Where the ray from `reference` through q leaves [−1, 1]², as its way along the rim from (1, −1), counter-clockwise.
+/// Returns the point where the ray from `reference` through q leaves [−1, 1]², as its distance along the rim from (1,
+/// −1), counter-clockwise.
 double rim_position(const glm::dvec2& reference, const glm::dvec2& q) {
   const glm::dvec2 d = q - reference;
   double least = std::numeric_limits<double>::infinity();
@@ -35,7 +39,7 @@ double rim_position(const glm::dvec2& reference, const glm::dvec2& q) {
   return d.y > 0 ? 3 - other : 7 + other;
 }
 
-/// The point of the rim there.
+/// Returns the point at distance `position` along the rim.
 glm::dvec2 rim_point(double position) {
   if (position < 2) return {1, position - 1};
   if (position < 4) return {3 - position, 1};
@@ -66,7 +70,7 @@ TextureWeights::TextureWeights(const visibility::LightTexture& texture)
     }
     words_[row + 1] = words_[row] + p * row_height;
   }
-  words_[height_] = 1;  // to the last bit: going round adds nothing
+  words_[height_] = 1;  // to the last bit: a full turn adds 0
   brightest_ = *std::ranges::max_element(texture.luminance) / texture.mean_luminance;
 }
 
@@ -98,7 +102,7 @@ double TextureWeights::left_of(const glm::dvec2& from, const glm::dvec2& to) con
       next.x = low.x + (high.x - low.x) * ((next.y - low.y) / rise);
     }
     const double wide = next.x - at.x;
-    // The mean of P over x: by PP, unless that cancels.
+    // Mean of P over x: from PP, unless the difference cancels.
     const double mean = std::abs(wide) > 0x1p-20 ? (row_sums(row, next.x).y - row_sums(row, at.x).y) / wide
                                                  : row_sums(row, 0.5 * (at.x + next.x)).x;
     sum += mean * (next.y - at.y);
@@ -113,10 +117,10 @@ double TextureWeights::along_rim(double position) const {
 
 double TextureWeights::beyond(const Edge& edge, const glm::dvec2& reference) const {
   const double first = rim_position(reference, edge.from), last = rim_position(reference, edge.to);
-  double way = last - first;  // of 8 in all
-  // An edge whose ends are less than 90° apart turns past at most 6 of the rim's 8: of the four axis directions it
+  double way = last - first;  // of 8, the length of the rim
+  // An edge whose ends are less than 90° apart passes at most 6 of the rim's 8: of the four axis directions the edge
   // passes at most one, so the rest of the turn passes three neighbours, which have a whole side of the square between
-  // them. So of way and way ± 8 one below 1 is the right one, whatever rounding says of its sign; above, its sign is
+  // them. So, of `way` and way ± 8, one below 1 is right, whatever its rounded sign; above 1, the sign of `way` is
   // certain.
   if (glm::dot(edge.from - reference, edge.to - reference) > 0 && std::abs(std::remainder(way, 8.0)) < 1) {
     way = std::remainder(way, 8.0);

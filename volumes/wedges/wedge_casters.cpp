@@ -1,3 +1,6 @@
+// Selects the silhouette edges that cast penumbrae and derives their crop planes (Lehtinen et al. 2006; extended to
+// triangle soups, see wedge_casters.hpp).
+
 #include "volumes/wedges/wedge_casters.hpp"
 
 #include "base/assert.hpp"
@@ -18,7 +21,7 @@ namespace {
 
 using mesh::Side;
 
-/// The side of (a, b, apex) that all corners are strictly on; `on` if there is none.
+/// Returns the side of (a, b, apex) that all corners are strictly on; `on` if there is none.
 Side strict_side(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& apex, const LightHull& light) {
   const Side first = mesh::side_of_plane(a, b, apex, light.corners.front());
   const bool common = std::ranges::all_of(
@@ -26,13 +29,13 @@ Side strict_side(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& ape
   return common ? first : Side::on;
 }
 
-/// h(l) = g · (l − a), g = (b − a) × (c − a), for points with exact coordinates, and a bound of its error.
+/// Value and error bound of h(l) = g · (l − a), g = (b − a) × (c − a), for points with exact coordinates.
 struct Signed {
   double value = 0, error = 0;
 };
 
 /// g's coordinates carry 2 differences, a product and a sum: 4 · 2⁻⁵³ of |P| + |Q| each; times a difference and in a
-/// sum of three: 4 more. 16 · 2⁻⁵³ of the sum of sizes leaves twice the room.
+/// sum of three: 4 more. 16 · 2⁻⁵³ of the sum of sizes leaves a margin of two.
 Signed height(const Crop& crop, const glm::dvec3& l) {
   const glm::dvec3 u = crop.triangle[1] - crop.triangle[0], v = crop.triangle[2] - crop.triangle[0],
                    w = l - crop.triangle[0];
@@ -42,7 +45,8 @@ Signed height(const Crop& crop, const glm::dvec3& l) {
   return {glm::dot(glm::cross(u, v), w), 0x1p-49 * sum};
 }
 
-/// n · (x − l) − κ s h(l) ≥ 0 for both ends and all corners, certainly: by more than the error of saying so.
+/// Returns true if n · (x − l) − κ s h(l) ≥ 0 for both ends and all corners, certainly: by more than the error of
+/// evaluation.
 bool holds_where_cropped(const glm::dvec3& n, double factor, const Crop& crop, const EdgeAndLight& cast) {
   return std::ranges::all_of(cast.light, [&](const glm::dvec3& l) {
     const Signed h = height(crop, l);

@@ -11,23 +11,23 @@
 #include <optional>
 #include <vector>
 
-/// Which edges of a scene cast penumbrae.
+/// Selection of the edges of a scene that cast penumbrae.
 ///
 /// The *crop* of an edge (Lehtinen et al. 2006; here for any soup). Let o_T(q) be the sign of (a, b, c; q) for a
 /// triangle T with apex c around the edge a b; k_e(q) = Σ o_T(q). For p = x + t (x − l), x on the edge, t > 0: T's
 /// plane h_T is affine and 0 at x, so h_T(p) = −t h_T(l), o_T(p) = −o_T(l), and k_e(p) = −k_e(l). Let all triangles but
-/// one, T, have the same sign ≠ 0 at all corners of the light's hull, hence on all of it, and let these signs sum to s
-/// = ±1. Then k_e(l) = s + o_T(l) is 0 exactly where o_T(l) = −s; so k_e(p) ≠ 0 implies s h_T(l) ≥ 0, that is s h_T(p)
-/// ≤ 0: one half-space. In every other case there is none:
+/// one, T, have the same sign ≠ 0 at all corners of the light's hull, hence on all of the hull, and let these signs sum
+/// to s = ±1. Then k_e(l) = s + o_T(l) is 0 exactly where o_T(l) = −s; so k_e(p) ≠ 0 implies s h_T(l) ≥ 0, therefore s
+/// h_T(p) ≤ 0: one half-space. In every other case there is no crop:
 /// - both triangles of a two-triangle edge mixed, or one of them only *touching* the light: the l with k_e(l) ≠ 0 are
 ///   no longer on one side of a plane;
 /// - an open edge (one triangle): k_e(l) = o_T(l) is 0 on T's plane only;
-/// - a non-manifold edge with two or more mixed triangles; or with a sum of the others that is 0 (as an open edge) or
-///   beyond ±1 (k_e is never 0).
+/// - a non-manifold edge with two or more mixed triangles; or with a sum of the other signs that is 0 (as an open edge)
+///   or beyond ±1 (k_e is never 0).
 namespace penumbra::volumes {
 
-/// The triangles that cast shadows in a light's light (not its own body), their edges once each. Positions are all
-/// scene floats; `triangle` says which of the scene's each triangle is.
+/// Triangles that cast shadows of a light (without the light's own body), each of their edges once. Positions are all
+/// scene floats; `triangle` is the scene's index of each triangle.
 struct Casters {
   std::vector<glm::dvec3> positions;
   std::vector<mesh::Triangle> triangles;
@@ -38,38 +38,39 @@ struct Casters {
 };
 Casters casters_of(const visibility::SceneFloats& scene, const visibility::Light& light);
 
-/// The whole soup as casters: for meshes that are no scene. Coordinates as they are.
+/// Returns the whole soup as casters: for meshes without a scene. Coordinates are unchanged.
 Casters casters_of(const mesh::TriangleSoup& soup);
 
-/// The bounding box of all positions, which polyhedra are cut by. Where it has no extent (a flat scene), it is made
-/// thicker by a sixteenth of its largest on either side.
+/// Returns the bounding box of all positions, used to cut polyhedra. An axis without extent (a flat scene) is enlarged
+/// by a sixteenth of the largest extent on either side.
 Box bounds_of(const Casters& casters);
 
 enum class SilhouettesFrom {
   center,    ///< k_e(the light's centre) ≠ 0
-  anywhere,  ///< perhaps k_e(l) ≠ 0 for some l in the light's hull
+  anywhere,  ///< possibly k_e(l) ≠ 0 for some l in the light's hull
 };
 
 struct CastingEdges {
-  std::vector<std::uint32_t> edges;  ///< of the graph, ascending
-  std::vector<WedgeEdge> wedges;     ///< for each: what build_wedges wants
+  std::vector<std::uint32_t> edges;  ///< indices in the graph, ascending
+  std::vector<WedgeEdge> wedges;     ///< for each edge, the input of build_wedges
 };
 
-/// `crop`: bound them by the planes of their triangles, too, where that follows; only with `anywhere`.
+/// Returns the edges that cast penumbrae. `crop`: also bound the wedges by the planes of their triangles, where such a
+/// bound follows; only with `anywhere`.
 CastingEdges casting_edges(const Casters& casters, const LightHull& light, SilhouettesFrom from, bool crop);
 
-/// For one edge of the graph, the triangle T of the crop and the sum s of the others; nothing where no crop follows.
-/// Exact.
+/// Triangle T of the crop of one edge of the graph, and the sum s of the other signs. crop_of returns nullopt where no
+/// crop follows. Exact.
 struct Crop {
   std::array<glm::dvec3, 3> triangle;  ///< a, b, apex
   int others = 0;                      ///< s
 };
 std::optional<Crop> crop_of(const Casters& casters, std::uint32_t edge, const LightHull& light);
 
-/// A half-space that contains all p of the edge's penumbra with s h_T(p) ≤ 0, rounded outward. It holds at the edge's
-/// ends and, with its normal n and some κ > 0, n·(x − l) ≥ κ s h_T(l) for the ends x and all corners l: both sides are
-/// affine in x and l, so where s h_T(l) ≥ 0, n·(x − l) ≥ 0 on all of edge and light. Nothing if the rounding would take
-/// more than 2⁻²⁰ of the normal.
+/// Returns a half-space that contains all p of the edge's penumbra with s h_T(p) ≤ 0, rounded outward. The half-space
+/// holds at the edge's ends and, with its normal n and some κ > 0, n·(x − l) ≥ κ s h_T(l) for the ends x and all
+/// corners l: both sides are affine in x and l, so where s h_T(l) ≥ 0, n·(x − l) ≥ 0 on all of edge and light. Returns
+/// nullopt if the rounding would change the normal by more than 2⁻²⁰ of its size.
 std::optional<Plane> crop_plane(const Crop& crop, const EdgeAndLight& cast);
 
 }  // namespace penumbra::volumes

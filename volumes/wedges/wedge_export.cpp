@@ -15,7 +15,7 @@ namespace {
 
 using scenes::Part;
 
-constexpr std::size_t kMostNames = 1000;  // of wedges; more share names
+constexpr std::size_t kMostNames = 1000;  // names of wedges; further wedges share names
 const glm::dvec4 kSound{0.25, 0.5, 0.9, 0.35}, kWrong{0.9, 0.15, 0.1, 0.5};
 const glm::dvec4 kEdge{0.05, 0.05, 0.05, 1}, kLight{1, 0.85, 0.3, 1}, kPoint{1, 0, 0.8, 1};
 
@@ -50,8 +50,8 @@ Part octahedron(std::string name, const glm::dvec3& center, double radius) {
   return part;
 }
 
-/// A flat hull as a fan, a solid one as the polyhedron that its faces bound: tried are all planes through three
-/// corners.
+/// Returns a flat hull as a fan, a solid hull as the polyhedron bounded by its faces: all planes through three corners
+/// are tried.
 Part light_part(const LightHull& light) {
   Part part{"light", kLight, light.corners, {}, {}};
   const auto count = static_cast<std::uint32_t>(light.corners.size());
@@ -74,7 +74,7 @@ Part light_part(const LightHull& light) {
   return part;
 }
 
-/// Both parts of the wedges first … last: their bodies, and their edges.
+/// Adds both parts of the wedges first … last: their bodies and their edges.
 void add_wedges(std::vector<Part>& parts, const WedgesToExport& what, const std::set<std::uint32_t>& wrong,
                 std::uint32_t first, std::uint32_t last) {
   const std::string numbers = first == last ? fmt::format(" {}", first) : fmt::format("s {} to {}", first, last);

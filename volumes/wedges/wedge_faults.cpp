@@ -45,8 +45,8 @@ class Careless {
     if (to_b > to_a) b = light_.center + (b - light_.center) * (to_a / to_b);
   }
 
-  /// The unit normal of the plane through `at` along `direction` and a corner of the light: the outermost on one side,
-  /// without a look at whether others are beyond; or, wrongly, the innermost.
+  /// Returns the unit normal of the plane through `at` along `direction` and a corner of the light: the outermost
+  /// corner on one side, without checking for other corners beyond; with `wrong`, the innermost.
   [[nodiscard]] glm::dvec3 tangent(const glm::dvec3& at, const glm::dvec3& direction, double turn, bool wrong) const {
     glm::dvec3 best(0);
     for (const glm::dvec3& l : light_.corners) {
@@ -87,7 +87,7 @@ std::vector<Wedge> without_splits(const std::vector<Wedge>& wedges, const Carele
   return whole;
 }
 
-/// The longest edge becomes `split`, and one piece follows.
+/// Makes the longest edge `split`, followed by one piece only.
 std::vector<Wedge> half_forgotten(std::vector<Wedge> wedges) {
   const auto longest =
       std::ranges::max_element(wedges, {}, [](const Wedge& wedge) { return glm::length(wedge.b - wedge.a); });

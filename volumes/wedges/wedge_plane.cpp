@@ -1,3 +1,6 @@
+// Decides by exact signs whether a half-space contains a penumbra, and rounds half-spaces outward until it does
+// (wedge_plane.hpp derives the criterion). Not from a paper.
+
 #include "volumes/wedges/wedge_plane.hpp"
 
 #include "mesh/predicates.hpp"
@@ -13,13 +16,13 @@
 namespace penumbra::volumes {
 namespace {
 
-/// Is n · (x − l) ≥ 0 for both ends and all corners?
+/// Returns whether n · (x − l) ≥ 0 for both ends and all corners.
 bool leads_away(const glm::dvec3& n, const EdgeAndLight& cast) {
   return std::ranges::all_of(
       cast.light, [&](const glm::dvec3& l) { return sign_along(n, cast.a, l) >= 0 && sign_along(n, cast.b, l) >= 0; });
 }
 
-/// The point of the segment v w nearest to zero.
+/// Returns the point of the segment v w nearest to zero.
 glm::dvec3 nearest_to_zero(const glm::dvec3& v, const glm::dvec3& w) {
   const glm::dvec3 d = w - v;
   const double length2 = glm::dot(d, d);
@@ -33,7 +36,7 @@ glm::dvec3 middle_of(std::span<const glm::dvec3> points) {
   return sum / static_cast<double>(points.size());
 }
 
-/// Of directions on offer (either way round) the one along which edge and light are farthest apart.
+/// Keeps, of all offered directions (and their opposites), the one along which edge and light are farthest apart.
 class Best {
  public:
   explicit Best(const EdgeAndLight& cast) : cast_(cast) {}
@@ -54,7 +57,7 @@ class Best {
     direction_ = above > below ? m : -m;
   }
 
-  /// Nothing unless it separates them exactly.
+  /// Returns nullopt unless the direction separates edge and light exactly.
   [[nodiscard]] std::optional<glm::dvec3> direction() const {
     if (gap_ <= 0) return std::nullopt;
     const bool separates = std::ranges::all_of(cast_.light, [&](const glm::dvec3& l) {
@@ -107,8 +110,9 @@ std::optional<Plane> bounding_plane(glm::dvec3 normal, const EdgeAndLight& cast,
 
 std::optional<glm::dvec3> separating_direction(const EdgeAndLight& cast) {
   Best best{cast};
-  // Two convex shapes that are apart are so along the normal of a face or at right angles to an edge of either; for a
-  // polygon and a segment that is its normal, and what is at right angles to the segment or the normal and a side.
+  // Two disjoint convex shapes are separated along the normal of a face or at right angles to an edge of either shape;
+  // for a polygon and a segment: the polygon's normal, and the directions at right angles to the segment and to the
+  // normal or a side.
   const std::span<const glm::dvec3> light = cast.light;
   const glm::dvec3 edge = cast.b - cast.a, normal = glm::cross(light[1] - light[0], light[2] - light[0]);
   best.offer(normal);
@@ -118,7 +122,8 @@ std::optional<glm::dvec3> separating_direction(const EdgeAndLight& cast) {
     best.offer(glm::cross(side, edge));
     best.offer(glm::cross(side, normal));
   }
-  // From the point of the edge nearest to a corner or to the middle: ends and corners, and solid hulls.
+  // Directions from a corner, or from the middle, to the nearest point of the edge: for ends and corners, and for solid
+  // hulls.
   for (const glm::dvec3& l : light) best.offer(nearest_to_zero(cast.a - l, cast.b - l));
   best.offer(nearest_to_zero(cast.a - middle_of(light), cast.b - middle_of(light)));
   return best.direction();

@@ -1,6 +1,6 @@
-// Clips the box by one half-space after the other (Sutherland and Hodgman, on all faces at once): corners beyond go,
-// edges that cross get a corner that both their faces share, and the new face is the loop of the edges left on the
-// plane.
+// Clips the box by one half-space after another (Sutherland and Hodgman, on all faces at once): corners beyond the
+// half-space are removed, edges that cross its plane get a corner shared by both their faces, and the new face is the
+// loop of the edges left on the plane.
 
 #include "volumes/wedges/wedge_polyhedron.hpp"
 
@@ -30,14 +30,14 @@ Vector cross(const Vector& u, const Vector& v) {
   return {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
 }
 
-/// The largest coordinate of a face's corners.
+/// Returns the largest coordinate of a face's corners.
 double size_of(const Polyhedron& polyhedron, const PolyhedronFace& face) {
   double size = 0;
   for (const std::uint32_t corner : face.loop) size = std::max(size, largest(polyhedron.corners[corner].near));
   return size;
 }
 
-/// Twice the area of a loop as a vector along its normal, by a fan.
+/// Returns twice the area of a loop as a vector along the loop's normal, by a fan.
 Vector face_area(const Polyhedron& polyhedron, const PolyhedronFace& face) {
   Vector sum{0, 0, 0};
   const ExactPoint& first = polyhedron.corners[face.loop[0]];
@@ -49,8 +49,9 @@ Vector face_area(const Polyhedron& polyhedron, const PolyhedronFace& face) {
   return sum;
 }
 
-/// Does the loop run clockwise seen from where the plane's normal points? In double where that is certain: differences
-/// are off by 6 · 2⁻⁵³ M and at most 2 M, so a coordinate of a triangle's area, of two products, by under 2⁻⁴⁶ M².
+/// Returns whether the loop runs clockwise seen from the side the plane's normal points to. In double where that is
+/// certain: differences are off by 6 · 2⁻⁵³ M and at most 2 M, so a coordinate of a triangle's area, of two products,
+/// by under 2⁻⁴⁶ M².
 bool runs_outward(const Polyhedron& polyhedron, const PolyhedronFace& face) {
   glm::dvec3 sum(0);
   const glm::dvec3& first = polyhedron.corners[face.loop[0]].near;
@@ -65,7 +66,7 @@ bool runs_outward(const Polyhedron& polyhedron, const PolyhedronFace& face) {
   return sgn(mpq_class(area[0] * mpq_class(n.x) + area[1] * mpq_class(n.y) + area[2] * mpq_class(n.z))) < 0;
 }
 
-/// Has the triangle an area? In double where that is certain, with the bound of runs_outward.
+/// Returns whether the triangle has an area. In double where the result is certain, with the bound of runs_outward.
 bool has_area(const ExactPoint& a, const ExactPoint& b, const ExactPoint& c) {
   const double size = std::max({largest(a.near), largest(b.near), largest(c.near)});
   if (largest(glm::cross(b.near - a.near, c.near - a.near)) > 0x1p-45 * size * size) return true;
@@ -134,7 +135,7 @@ class Cut {
     return entry->second;
   }
 
-  /// The loop of edges on the plane, run the other way round than in the faces that end there.
+  /// Returns the loop of edges on the plane, in the direction opposite to that of the faces that end there.
   [[nodiscard]] std::vector<std::uint32_t> lid(const std::vector<PolyhedronFace>& faces) const {
     std::map<std::uint32_t, std::uint32_t> next;
     for (const PolyhedronFace& face : faces) {
@@ -168,7 +169,7 @@ class Cut {
 
   Polyhedron& mesh_;
   const Plane& plane_;
-  std::vector<int> sides_;  // of each corner
+  std::vector<int> sides_;  // side of each corner
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> crossings_;
 };
 
@@ -195,8 +196,8 @@ int side_of(const Plane& plane, const ExactPoint& p) {
 int orientation(const ExactPoint& a, const ExactPoint& b, const ExactPoint& c, const ExactPoint& p) {
   const glm::dvec3 u = b.near - a.near, v = c.near - a.near, w = p.near - a.near;
   const double value = glm::dot(glm::cross(u, v), w);
-  // Coordinates are off by 2⁻⁵² M each, differences (below 2 M) by under 6 · 2⁻⁵³ M, that is 2⁻⁵⁰·⁴ of their bound. A
-  // product of three by thrice that and 5 roundings; there are six of at most 8 M³: below 48 · 2⁻⁴⁸ M³.
+  // Coordinates are off by 2⁻⁵² M each, differences (below 2 M) by under 6 · 2⁻⁵³ M = 2⁻⁵⁰·⁴ of their bound. A product
+  // of three by thrice this error and 5 roundings; there are six of at most 8 M³: below 48 · 2⁻⁴⁸ M³.
   const double size = std::max({largest(a.near), largest(b.near), largest(c.near), largest(p.near)});
   if (std::abs(value) > 0x1p-42 * size * size * size) return value > 0 ? 1 : -1;
   const Vector normal = cross(difference(b, a), difference(c, a)), way = difference(p, a);
@@ -241,7 +242,7 @@ std::optional<std::string> flaw_of(const Polyhedron& polyhedron) {
 bool mesh_holds(const Polyhedron& polyhedron, const glm::dvec3& p) {
   const ExactPoint point(p);
   return std::ranges::all_of(polyhedron.faces, [&](const PolyhedronFace& face) {
-    // Of the fan's triangles the first that has an area: a corner may lie between its neighbours.
+    // Uses the first triangle of the fan that has an area: a corner may lie on the segment between its neighbours.
     for (std::size_t i = 1; i + 1 < face.loop.size(); ++i) {
       const ExactPoint &a = polyhedron.corners[face.loop[0]], &b = polyhedron.corners[face.loop[i]],
                        &c = polyhedron.corners[face.loop[i + 1]];

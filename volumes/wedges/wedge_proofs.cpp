@@ -1,3 +1,6 @@
+// Proves the invariants of a single wedge with rational arithmetic, independent of the wedge's construction: witnesses
+// against planes, a second search for a separating direction (Gilbert 1966), sampled points of the penumbra.
+
 #include "volumes/wedges/wedge_proofs.hpp"
 
 #include "mesh/predicates.hpp"
@@ -13,7 +16,7 @@
 namespace penumbra::volumes {
 namespace {
 
-/// Numbers that depend on nothing but the wedge's (SplitMix64).
+/// Random numbers that depend on nothing but the wedge's index (SplitMix64).
 class Draw {
  public:
   explicit Draw(std::uint64_t seed) : state_(seed * 0x9e3779b97f4a7c15u) {}
@@ -23,7 +26,7 @@ class Draw {
     z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
     return static_cast<std::uint32_t>(((z ^ (z >> 31)) >> 32) % end);
   }
-  /// A multiple of 2⁻⁸ in [0, 1], often 0 or 1.
+  /// Returns a multiple of 2⁻⁸ in [0, 1], often 0 or 1.
   double share() { return below(3) == 0 ? below(2) : below(257) / 256.0; }
 
  private:
@@ -34,13 +37,13 @@ mpq_class dot(const glm::dvec3& n, const std::array<mpq_class, 3>& v) {
   return mpq_class(n.x) * v[0] + mpq_class(n.y) * v[1] + mpq_class(n.z) * v[2];
 }
 
-/// n · (x − l).
+/// Returns n · (x − l).
 mpq_class along(const glm::dvec3& n, const glm::dvec3& x, const glm::dvec3& l) {
   const ExactPoint p(x), q(l);
   return dot(n, {p.at[0] - q.at[0], p.at[1] - q.at[1], p.at[2] - q.at[2]});
 }
 
-/// (b − a) × (c − a) · (q − a).
+/// Returns (b − a) × (c − a) · (q − a).
 mpq_class volume(const std::array<glm::dvec3, 3>& triangle, const glm::dvec3& q) {
   const ExactPoint a(triangle[0]), b(triangle[1]), c(triangle[2]), p(q);
   std::array<mpq_class, 3> u, v, w;
@@ -52,7 +55,7 @@ mpq_class volume(const std::array<glm::dvec3, 3>& triangle, const glm::dvec3& q)
   return (u[1] * v[2] - u[2] * v[1]) * w[0] + (u[2] * v[0] - u[0] * v[2]) * w[1] + (u[0] * v[1] - u[1] * v[0]) * w[2];
 }
 
-/// from + share (to − from).
+/// Returns from + share (to − from).
 ExactPoint between(const ExactPoint& from, const ExactPoint& to, double share) {
   std::array<mpq_class, 3> at;
   for (std::size_t k = 0; k < 3; ++k) at[k] = from.at[k] + mpq_class(share) * (to.at[k] - from.at[k]);
@@ -63,8 +66,8 @@ double distance_beyond(const Plane& plane, const ExactPoint& p) {
   return -height_of(plane, p).get_d() / glm::length(plane.normal());
 }
 
-/// A point of the penumbra outside the plane, x + t (x − l), if an end x or a ray x − l says that there is one: of
-/// those tried the farthest outside.
+/// Returns a point of the penumbra outside the plane, x + t (x − l), if an end x or a ray x − l proves that there is
+/// one: of the points tried, the farthest outside.
 std::optional<ExactPoint> witness_against(const Plane& plane, const EdgeAndLight& cast) {
   std::optional<ExactPoint> farthest;
   double distance = 0;
@@ -73,7 +76,8 @@ std::optional<ExactPoint> witness_against(const Plane& plane, const EdgeAndLight
       const ExactPoint end(x), corner(l);
       const mpq_class above = height_of(plane, end), rise = above - height_of(plane, corner);
       if (sgn(above) >= 0 && sgn(rise) >= 0) continue;
-      mpq_class t = 1;  // if the ray falls, far enough to end below; if it rises, not so far that it ends above
+      mpq_class t = 1;  // if the ray falls, long enough to end below the plane; if the ray rises, short enough not to
+                        // end above
       if (sgn(above) >= 0) t = 1 - above / rise;
       if (sgn(above) < 0 && sgn(rise) > 0) t = -above / (2 * rise);
       std::array<mpq_class, 3> at;
@@ -87,8 +91,8 @@ std::optional<ExactPoint> witness_against(const Plane& plane, const EdgeAndLight
   return farthest;
 }
 
-/// A direction with positive products with all x − l, by walking to the point of their hull nearest to zero (Gilbert
-/// 1966): another way than separating_direction's.
+/// Returns a direction with positive products with all x − l, found by an iteration to the point of their hull nearest
+/// to zero (Gilbert 1966): independent of separating_direction.
 std::optional<glm::dvec3> other_separating_direction(const EdgeAndLight& cast) {
   std::vector<glm::dvec3> ways;
   for (const glm::dvec3& l : cast.light) ways.insert(ways.end(), {cast.a - l, cast.b - l});
@@ -126,7 +130,7 @@ struct WedgeProofs::Job {
 
 void WedgeProofs::check(std::uint32_t number, ValidationReport& report) const {
   const Wedge& wedge = input_.wedges[number];
-  const bool known = wedge.source < input_.casting.wedges.size();  // if not, `cover` has said so
+  const bool known = wedge.source < input_.casting.wedges.size();  // if false, `cover` has reported the wedge
   const std::span<const Plane> crops =
       known ? std::span<const Plane>(input_.casting.wedges[wedge.source].crop) : std::span<const Plane>();
   Job job{number, wedge, {wedge.a, wedge.b, input_.light.corners}, crops, report};
@@ -134,7 +138,7 @@ void WedgeProofs::check(std::uint32_t number, ValidationReport& report) const {
   if (wedge.outcome != WedgeOutcome::wedge) return;
   const std::size_t before = report.violations.size();
   check_numbers(job);
-  if (report.violations.size() != before) return;  // nothing can be said about such planes
+  if (report.violations.size() != before) return;  // no further statement is possible about such planes
   check_planes(job);
   check_points(job);
   check_polyhedron(job);
@@ -182,8 +186,8 @@ void WedgeProofs::check_planes(Job& job) const {
   }
 }
 
-/// n · (x − l) ≥ 0 on the part of the light where s h_T(l) ≥ 0: at its corners there, and where a segment between two
-/// corners leaves it. Of all segments, since stored corners need not be on one plane.
+/// Returns whether n · (x − l) ≥ 0 on the part of the light where s h_T(l) ≥ 0: at the light's corners there, and where
+/// a segment between two corners leaves this part. Tests all segments, since stored corners need not be on one plane.
 bool WedgeProofs::is_proved_crop(const Job& job, const Plane& plane) const {
   const auto same = [&](const Plane& crop) { return crop.normal() == plane.normal() && crop.d == plane.d; };
   if (std::ranges::none_of(job.crops, same)) return false;
@@ -241,7 +245,7 @@ void WedgeProofs::check_polyhedron(Job& job) const {
   const Polyhedron polyhedron = cut_box(box_, job.wedge.planes);
   job.checked(Invariant::polyhedron);
   if (polyhedron.extent == Extent::empty) {
-    // A wedge holds its edge, which the box holds.
+    // A wedge holds its edge, and the box holds the edge.
     job.fail(Invariant::polyhedron, {}, job.wedge.a, 0, "nothing of the wedge is in the scene's box");
   } else if (polyhedron.extent == Extent::flat) {
     ++job.report.flat;
@@ -259,7 +263,7 @@ void WedgeProofs::check_half_spaces(Job& job, const Polyhedron& polyhedron) cons
   };
   for (std::uint32_t i = 0; i < input_.points_per_wedge; ++i) {
     glm::dvec3 p;
-    if (i % 2 == 0) {  // in or near the polyhedron: between its corners, or a little beyond
+    if (i % 2 == 0) {  // in or near the polyhedron: between its corners, or slightly beyond
       p = glm::mix(glm::mix(corner(), corner(), draw.share()), corner(), 1.25 * draw.share());
     } else {
       p = glm::mix(box_.lower, box_.upper, glm::dvec3(draw.share(), draw.share(), draw.share()));

@@ -3,14 +3,14 @@
 #include "volumes/wedges/wedge_polyhedron.hpp"
 #include "volumes/wedges/wedge_validation.hpp"
 
-/// What is proved of a single wedge. Internal to this room.
+/// Proofs of a single wedge. Internal to this room.
 namespace penumbra::volumes {
 
 class WedgeProofs {
  public:
   explicit WedgeProofs(const WedgesToValidate& input) : input_(input), box_(bounds_of(input.casters)) {}
 
-  /// Adds what it finds, and what it checked, to the report.
+  /// Adds violations of the wedge with index `wedge`, and the number of checks, to the report.
   void check(std::uint32_t wedge, ValidationReport& report) const;
 
  private:

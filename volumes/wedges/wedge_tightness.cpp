@@ -1,3 +1,6 @@
+// Measures the area of wedges against the area of the penumbra on receiver planes (wedge_tightness.hpp derives the
+// penumbra's cross-section; hulls by Andrew's monotone chain). Not from a paper.
+
 #include "volumes/wedges/wedge_tightness.hpp"
 
 #include "base/parallel.hpp"
@@ -15,7 +18,7 @@
 namespace penumbra::volumes {
 namespace {
 
-constexpr double kReach = 16;  // times the penumbra's extent: where a cross-section counts as unbounded
+constexpr double kReach = 16;  // times the penumbra's extent: limit beyond which a cross-section counts as unbounded
 constexpr std::array kDepths = {0.5, 1.0, 2.0};
 
 Polygon hull_of(Polygon points) {
@@ -34,7 +37,7 @@ Polygon hull_of(Polygon points) {
   return hull;
 }
 
-/// The part of a polygon where n · q + d ≥ 0.
+/// Returns the part of a polygon where n · q + d ≥ 0.
 Polygon clipped(const Polygon& polygon, const glm::dvec2& n, double d) {
   Polygon part;
   for (std::size_t i = 0; i < polygon.size(); ++i) {
@@ -46,7 +49,7 @@ Polygon clipped(const Polygon& polygon, const glm::dvec2& n, double d) {
   return part;
 }
 
-/// A plane across: origin, two axes, and the direction m that it is at right angles to.
+/// Plane across the penumbra: origin, two axes, and the normal m.
 struct Receiver {
   glm::dvec3 origin, s, t, m;
 
@@ -64,7 +67,7 @@ Receiver receiver_beyond(const glm::dvec3& at, const glm::dvec3& m) {
   return {at, s, glm::cross(m, s), m};
 }
 
-/// Nothing for a penumbra without area; infinite for an unbounded cross-section.
+/// Returns nullopt for a penumbra without area; infinity for an unbounded cross-section.
 std::optional<double> ratio_on(const Receiver& receiver, const Wedge& wedge, std::span<const glm::dvec3> shape) {
   Polygon images;
   for (const glm::dvec3& x : {wedge.a, wedge.b}) {

@@ -25,7 +25,8 @@ ValidationReport joined(ValidationReport left, const ValidationReport& right) {
   return left;
 }
 
-/// Roots are the edges that were asked for, in order; a split wedge has two pieces that meet in a point of it, exactly.
+/// Checks the invariant `cover`. Roots are the requested edges, in order; a split wedge has two pieces that meet in a
+/// point of the edge, exactly.
 class Cover {
  public:
   Cover(const WedgesToValidate& input, ValidationReport& report)
@@ -85,7 +86,7 @@ class Cover {
   std::vector<std::vector<std::uint32_t>> pieces_;
 };
 
-/// k_e of each edge as the half-edge view's silhouette loops carry it; a loop that does not hang together is a
+/// Returns k_e of each edge as carried by the half-edge view's silhouette loops; a loop that is not connected is a
 /// violation. Faces that are not held are `on` in `sides`.
 std::vector<int> carried_by_loops(const Casters& casters, const mesh::HalfEdgeView& surface,
                                   std::span<const mesh::Side> sides, ValidationReport& report) {

@@ -1,6 +1,6 @@
-// depth-complexity on a processor: one counter a light sample, light samples side by side. Each edge that the straight
-// way from the light's corner to a light sample crosses changes its counter by k. docs/depth-complexity.md, "On vector
-// units".
+// depth-complexity on a processor: one counter for each light sample, in vectors of light samples. Each edge that the
+// straight segment from the light's corner to a light sample crosses changes its counter by k.
+// docs/depth-complexity.md, "On vector units".
 
 #include "volumes/counters/vectors/count_samples.hpp"
 
@@ -33,20 +33,20 @@ using Tile = hn::CappedTag<float, LightTiles::kWide>;
 using TileV = hn::Vec<Tile>;
 using TileM = hn::Mask<Tile>;
 
-constexpr float kCorner = -0.5F;  ///< both coordinates of the light's corner, where ways begin
+constexpr float kCorner = -0.5F;  ///< both coordinates of the light's corner, where segments begin
 
-/// An edge a→b as it appears, from the corner. Of the edge's line: side(x) = (x − a) × (b − a), > 0 to the right of it.
+/// A projected edge a→b, relative to the corner. Its line: side(x) = (x − a) × (b − a), > 0 to the right of it.
 enum SeenField : std::size_t {
   kAX,
   kAY,
   kBX,
   kBY,
-  kJumpLeft,    // what a way changes by that has a on its left and b on its right; else the negative
+  kJumpLeft,    // change of a segment with a on its left and b on its right; otherwise the negative
   kCornerSide,  // side of the corner
-  kOffA,        // a product of a way with a is off by this times the way's |x| + |y|
+  kOffA,        // error of the product of a segment with a, relative to the segment's |x| + |y|
   kOffB,
-  kNearSide,  // beside the edge, a light sample is certainly on one side where |side| is more
-  kAround,    // and no light sample farther than this from the edge's box is near it
+  kNearSide,  // a light sample is certainly on one side of the edge where |side| is larger
+  kAround,    // and no light sample farther from the edge's box than this is near it
   kSeenFields
 };
 static_assert(kSeenFields == CountScratch::kFields);
@@ -57,7 +57,7 @@ class SampleCount {
               OpenJudge& judge)
       : in_(in), tiles_(*in.grid.tiles), s_(scratch), c_(counting), at_(at), judge_(judge) {}
 
-  /// Whether a counter may differ from the depth at the corner, or something is open.
+  /// Returns whether a counter may differ from the depth at the corner, or something is open.
   bool operator()() {
     const auto special = [&](const SpecialEdges& edges) { place_special(in_, s_, at_, edges, judge_); };
     Projection{in_, at_, s_.lists, s_.crossing}(special);
@@ -90,7 +90,7 @@ class SampleCount {
     field(kOffB, i) = 16 * kRound * (std::abs(b.x) + std::abs(b.y));
     field(kNearSide, i) = around * (wide + high) + 16 * kRound * wide * high;
     field(kAround, i) = around;
-    // The corner may be on either side of it, not the same one for all ways.
+    // The corner may be on either side of the edge, and not on the same side for all segments.
     if (is_near(i, glm::vec2(0))) s_.open.pixel = s_.open.pixel || is_near_itself(i, glm::vec2(0));
   }
 
@@ -101,7 +101,7 @@ class SampleCount {
            std::min(a.y, b.y) - around <= x.y && x.y <= std::max(a.y, b.y) + around &&
            std::abs(from_a.x * way.y - from_a.y * way.x) <= field(kNearSide, i);
   }
-  /// Likewise with the errors of the edge's own ends.
+  /// Tests nearness with the errors of the edge's own ends.
   [[nodiscard]] bool is_near_itself(std::size_t i, const glm::vec2& x) {
     const CrossingTable& table = s_.crossing;
     const auto number = std::bit_cast<std::uint32_t>(table[kEdge][i]);
@@ -122,7 +122,7 @@ class SampleCount {
     if (is_near_itself(near.edge, x)) s_.open.samples.push_back(tiles_.sample_of[near.slot]);
   }
 
-  /// All edges for a tile's counters.
+  /// Adds all edges to a tile's counters.
   void count(std::uint32_t tile) {
     const Tile d;
     const std::size_t first = std::size_t{tile} * LightTiles::kWide;
@@ -190,7 +190,7 @@ class SampleCount {
   OpenJudge& judge_;
 };
 
-/// A light sample is visible where its counter and the depth at the corner add up to 0.
+/// Sets light samples visible whose counter and the depth at the corner add up to 0.
 void see_counted(const LightTiles& tiles, const CountScratch& counting, float depth, SampleMask& mask) {
   const Tile d;
   mask.visible = 0;
@@ -207,7 +207,8 @@ void see_counted(const LightTiles& tiles, const CountScratch& counting, float de
   }
 }
 
-/// D at the corner as the edges have it, from D at a light sample that is not open: exact predicates count there.
+/// Returns D at the corner as the edges require, from D at a light sample that is not open, counted by exact
+/// predicates.
 std::optional<float> depth_by_one(const LightTiles& tiles, const CountScratch& counting, const Open& open,
                                   const ClusterSample& at, OpenJudge& judge) {
   for (std::size_t slot = 0; slot < counting.counters.size(); ++slot) {

@@ -1,4 +1,4 @@
-// depth-complexity on a processor: edge-scatter's lists (VectorEdges), and a counter a light sample.
+// depth-complexity on a processor: edge-scatter's lists (VectorEdges), and a counter for each light sample.
 
 #include "volumes/counters/vectors/depth_complexity_vectors.hpp"
 
@@ -49,7 +49,7 @@ class VectorDepthComplexity final : public VectorEdges {
   }
 
  private:
-  /// Light samples in tiles, whether they form rows or not.
+  /// Puts light samples into tiles, even if they are in rows.
   [[nodiscard]] GridShape grid_shape() const override {
     GridShape shape = VectorEdges::grid_shape();
     shape.rows = shape.columns = 0;
@@ -61,7 +61,7 @@ class VectorDepthComplexity final : public VectorEdges {
     count_samples(input, scratch_.local(), counting, judge, masks);
   }
 
-  /// One for each side of the light that has edges of its own.
+  /// Builds a structure for each side of the light that has its own edges.
   void build_structures() {
     const auto begin = std::chrono::steady_clock::now();
     LightGrid back;
@@ -102,7 +102,7 @@ class VectorDepthComplexity final : public VectorEdges {
   }
 
   Search search_;
-  std::array<std::optional<EdgeSearch>, 2> structures_;  // of the light's front and back
+  std::array<std::optional<EdgeSearch>, 2> structures_;  // for the light's front and back
   double build_milliseconds_ = 0;
   tbb::enumerable_thread_specific<CountScratch> counting_;
 };

@@ -7,9 +7,9 @@
 
 namespace penumbra::volumes {
 
-/// `depth-complexity` on the processor's own vector units (depth-complexity with engine=native): variant=soup, every
-/// light and pattern. The same bits, since every one is the truth of its pair. docs/depth-complexity.md, "On vector
-/// units".
+/// Makes `depth-complexity` on the processor's own vector units (depth-complexity with engine=native): variant=soup,
+/// every light and pattern. Gives the same bits as the device, since every bit is the truth of its pair.
+/// docs/depth-complexity.md, "On vector units".
 std::unique_ptr<visibility::Method> make_depth_complexity_on_vectors(visibility::MethodDescription description,
                                                                      Search search);
 

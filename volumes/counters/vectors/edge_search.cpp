@@ -1,5 +1,6 @@
-// J. Lehtinen, S. Laine, T. Aila, An improved physically-based soft shadow volume algorithm, 2006 (kd-tree); S. Laine,
-// T. Aila, U. Assarsson, J. Lehtinen, T. Akenine-Möller, Soft shadow volumes for ray tracing, 2005 (hemicube).
+// Searches for silhouette candidates of view samples: J. Lehtinen, S. Laine, T. Aila, An improved physically-based soft
+// shadow volume algorithm, 2006 (kd-tree); S. Laine, T. Aila, U. Assarsson, J. Lehtinen, T. Akenine-Möller, Soft shadow
+// volumes for ray tracing, 2005 (hemicube).
 
 #include "volumes/counters/vectors/edge_search.hpp"
 
@@ -20,11 +21,11 @@ namespace {
 using vectors::kWide;
 using visibility::TriangleTree;
 
-constexpr std::size_t kFewWedges = 16, kFewPixels = 16;  ///< a cell is not divided
+constexpr std::size_t kFewWedges = 16, kFewPixels = 16;  ///< cells with fewer are not divided
 constexpr int kDeepest = 32;
-constexpr std::uint32_t kCells = 32;  ///< of a side of a face of the hemicube
-/// What the light is made larger by, so that nothing that rounding may bring to its rim is left out: beside where light
-/// samples are stored, off their places by up to DeviceLight::deviation.
+constexpr std::uint32_t kCells = 32;  ///< cells a side of a face of the hemicube
+/// Enlargement of the light, so that no edge is missed that rounding may move across its rim: in addition to the
+/// distance of stored light samples from their places, DeviceLight::deviation.
 constexpr double kAroundLight = 1 + 0x1p-10;
 
 using Edge = std::array<glm::dvec3, 2>;
@@ -36,8 +37,8 @@ Key key_of(const glm::vec3& a, const glm::vec3& b) {
   return {from.x, from.y, from.z, to.x, to.y, to.z};
 }
 
-/// A box around all stored light samples, in scene floats: its middle, then its corners. Seen along the light's plane
-/// from near it, how thick it is decides what may hide a sample.
+/// Returns a box around all stored light samples, in scene floats: its middle, then its corners. Seen along the light's
+/// plane from close to it, its thickness determines the objects that may hide a sample.
 LightHull hull_around(const visibility::DeviceLight& frame, float scale) {
   const double to_floats = 1 / static_cast<double>(scale), off = kAroundLight * static_cast<double>(frame.deviation);
   const glm::dvec3 u(frame.u), v(frame.v), n = glm::normalize(glm::cross(u, v));
@@ -54,7 +55,7 @@ LightHull hull_around(const visibility::DeviceLight& frame, float scale) {
 }
 
 enum class Overlap : std::uint8_t { none, some, all };
-/// Is the box in the wedge? What is not certain in double is `some`.
+/// Returns the box's overlap with the wedge. Cases that are not certain in double are `some`.
 Overlap overlap_of(const Wedge& wedge, const Box& box) {
   if (wedge.outcome == WedgeOutcome::empty) return Overlap::none;
   if (wedge.outcome != WedgeOutcome::wedge)
@@ -70,7 +71,7 @@ Overlap overlap_of(const Wedge& wedge, const Box& box) {
   return overlap;
 }
 
-/// Lists from (number, entry) pairs, each list ascending and without repetition.
+/// Makes lists from (index, entry) pairs, each list ascending and without duplicates.
 void fill(std::size_t count, std::vector<std::pair<std::uint32_t, std::uint32_t>>& pairs,
           std::vector<std::uint32_t>& begin, std::vector<std::uint32_t>& of) {
   std::ranges::sort(pairs);
@@ -84,7 +85,7 @@ void fill(std::size_t count, std::vector<std::pair<std::uint32_t, std::uint32_t>
   std::partial_sum(begin.begin(), begin.end(), begin.begin());
 }
 
-/// Leaves that can be reached: others are switched off.
+/// Returns the leaves that are reachable: others are disabled.
 std::vector<std::uint32_t> leaves_in_use(const vectors::WideEdgeTree& tree) {
   std::vector<std::uint32_t> stack = tree.roots, leaves;
   while (!stack.empty()) {
@@ -119,7 +120,7 @@ EdgeSearch::EdgeSearch(Search search, const EdgeSearchInput& input) : search_(se
   }
 }
 
-/// An edge is found in the tree by its ends.
+/// Maps edges to leaves of the tree, by their ends.
 void EdgeSearch::map_leaves(const EdgeSearchInput& input, const std::vector<Edge>& edges) {
   struct Slot {
     Key key;
@@ -145,7 +146,7 @@ void EdgeSearch::map_leaves(const EdgeSearchInput& input, const std::vector<Edge
   fill(input.scene.triangles.size(), of_plane, leaves_of_plane_.begin, leaves_of_plane_.of);
   std::ranges::sort(slots, {}, &Slot::key);
   std::vector<std::pair<std::uint32_t, std::uint32_t>> of_edge;
-  // Those that are no edge of the mesh were cut; those that are, and cast nothing, are nobody's silhouette.
+  // Skips edges created by cutting, and mesh edges of non-casters, which are never silhouettes.
   std::vector<Key> known;
   const Casters all = casters_of(input.scene, input.light);
   for (const mesh::Edge& edge : all.graph.edges)
@@ -181,7 +182,7 @@ void EdgeSearch::build_kd_tree(const EdgeSearchInput& input, const std::vector<W
   cells_ = static_cast<std::size_t>(std::ranges::count(nodes_, 0U, &Node::children));
 }
 
-/// `list`: wedges that meet the box and are kept with no node above.
+/// `list`: wedges that meet the box and are not stored at a node above.
 void EdgeSearch::divide(std::uint32_t node, const Box& box, std::span<const Wedge> wedges,
                         std::span<const std::uint32_t> list, std::vector<std::uint32_t>& pixels,
                         const visibility::ViewSamples& samples, int depth) {
@@ -228,7 +229,7 @@ struct Cell {
   double sign;
   glm::dvec2 low, high;
 
-  /// Certainly none of the cone of these directions is in it?
+  /// Returns whether certainly no direction of the cone of `ways` is in the cell.
   [[nodiscard]] bool misses(std::span<const glm::dvec3> ways) const {
     std::array<bool, 5> beyond;
     beyond.fill(true);
@@ -245,7 +246,8 @@ struct Cell {
   }
 };
 
-/// Calls `visit(column, row)` for the cells of a face that the cone may meet; those of `size` from (column, row).
+/// Calls `visit(column, row)` for the cells of a face that the cone may meet, within the block of `size` cells at
+/// (column, row).
 template <typename Visit>
 void for_each_cell(const Cell& face, std::uint32_t column, std::uint32_t row, std::uint32_t size,
                    std::span<const glm::dvec3> ways, const Visit& visit) {
@@ -259,8 +261,8 @@ void for_each_cell(const Cell& face, std::uint32_t column, std::uint32_t row, st
 
 }  // namespace
 
-/// p = x + t (x − l), x on the edge and t > 0, is seen from c in a direction (x − c) + t (x − l): in the cone of the
-/// ends' x − c and x − l.
+/// A point p = x + t (x − l), x on the edge and t > 0, is seen from c in a direction (x − c) + t (x − l): in the cone
+/// of the ends' x − c and x − l.
 void EdgeSearch::build_hemicube(const std::vector<Edge>& edges, std::span<const glm::dvec3> light) {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> in_cell;
   std::vector<glm::dvec3> ways;
@@ -293,7 +295,7 @@ std::size_t EdgeSearch::cell_of(const glm::vec3& p) const {
   return (face * kCells + place((axis + 2) % 3)) * kCells + place((axis + 1) % 3);
 }
 
-/// The lists of p's cell.
+/// Visits the lists of p's cell.
 template <typename Visit>
 void EdgeSearch::for_each_list(const glm::vec3& p, const Visit& visit) const {
   if (search_ == Search::hemicube) {

@@ -15,14 +15,16 @@
 #include <span>
 #include <vector>
 
-/// Which edges a view sample has to look at, found by structures over receivers. Inside volumes/ only.
+/// Structures over receivers that list the edges relevant to a view sample. Inside volumes/ only.
 namespace penumbra::volumes {
 
-/// How candidates for silhouettes are found.
+/// Search for candidates of silhouettes.
 enum class Search : std::uint8_t {
-  hierarchy,  ///< ours: a hierarchy over edges, walked with the shaft from a cluster of view samples to the light
+  hierarchy,  ///< a hierarchy over edges, traversed with the shaft from a cluster of view samples to the light (used by
+              ///< default)
   kd_tree,    ///< Lehtinen et al. 2006: a kd-tree over the space of receivers, with the wedges that meet each cell
   hemicube,   ///< Laine et al. 2005: a grid on a cube around the light's centre, with the wedges that appear in each
+              ///< cell
               ///< cell
 };
 
@@ -30,21 +32,22 @@ struct EdgeSearchInput {
   const visibility::SceneFloats& scene;
   const visibility::Light& light;
   const visibility::DeviceLight& frame;  ///< scaled
-  const vectors::WideEdgeTree& tree;     ///< what the counters are made of, scaled
+  const vectors::WideEdgeTree& tree;     ///< edges that the counters use, scaled
   float scale;
   const visibility::ViewSamples& samples;
 };
 
-/// Wedges of all edges that may be silhouettes as seen from some point of the light, in a structure. Planar lights.
+/// A structure over the wedges of all edges that may be silhouettes as seen from some point of the light. Planar
+/// lights.
 class EdgeSearch {
  public:
   EdgeSearch(Search search, const EdgeSearchInput& input);
 
-  /// How many wedges p is given to look at: those of its cell.
+  /// Returns the number of wedges in p's cell.
   [[nodiscard]] std::size_t count(const glm::vec3& p) const;
-  /// Leaves of the edge tree (with TriangleTree::kLeafBit) that hold all edges that may matter to these view samples,
-  /// ascending. Beside the cell's: edges of triangles that are coplanar with a carrier, since these count for nothing
-  /// there, and edges that were cut at the light's plane.
+  /// Finds the leaves of the edge tree (with TriangleTree::kLeafBit) that contain all edges that may affect these view
+  /// samples, ascending. In addition to the cell's edges: edges of triangles that are coplanar with a carrier, since
+  /// such triangles do not count there, and edges that were cut at the light's plane.
   void find_leaves(std::span<const glm::vec3> p, std::span<const std::uint32_t> planes,
                    std::vector<std::uint32_t>& leaves) const;
 
@@ -54,17 +57,17 @@ class EdgeSearch {
   [[nodiscard]] std::uint64_t bytes() const;
 
  private:
-  /// For each number a list.
+  /// A list for each index.
   struct Lists {
     std::vector<std::uint32_t> begin{0}, of;
     [[nodiscard]] std::span<const std::uint32_t> operator[](std::size_t i) const {
       return std::span(of).subspan(begin[i], begin[i + 1] - begin[i]);
     }
   };
-  /// Of the kd-tree, or of a face's quadtree. Wedges that a whole cell is in, or that were not divided further, are
-  /// kept with the node.
+  /// A node of the kd-tree, or of a face's quadtree. Wedges that contain a whole cell, or that were not divided
+  /// further, are stored at the node.
   struct Node {
-    std::uint32_t first = 0, count = 0;  ///< entries_
+    std::uint32_t first = 0, count = 0;  ///< range of entries_
     std::uint32_t children = 0;          ///< 0: a leaf
     int axis = 0;
     double split = 0;
@@ -83,7 +86,7 @@ class EdgeSearch {
   glm::dvec3 center_{0};
   Lists leaves_of_, leaves_of_plane_;
   std::vector<std::uint32_t> always_;   // leaves
-  std::vector<Node> nodes_;             // of the kd-tree
+  std::vector<Node> nodes_;             // nodes of the kd-tree
   std::vector<std::uint32_t> entries_;  // wedges
   Lists cells_of_;                      // of the hemicube: entries of each cell
   std::size_t cells_ = 0;

@@ -1,3 +1,6 @@
+// Host of find_edges.comp: prepares the hierarchies of edges and triangles for a light, runs the pass, and grows its
+// lists until they fit.
+
 #include "volumes/edges/device/edge_lists.hpp"
 
 #include "base/assert.hpp"
@@ -56,7 +59,8 @@ void EdgeLists::prepare_light(const visibility::Light& light, const visibility::
   build_pass();
 }
 
-/// Those of all casters, or without the light's body; cut at its plane where something lies behind that.
+/// Prepares the edges of all casters, or without the light's body; cut at the light's plane if something lies behind
+/// it.
 void EdgeLists::prepare_edges() {
   const LightEdges edges = sides_.prepare_light(*light_, frame_, scale_);
   is_cut_ = edges.front.has_value();
@@ -80,8 +84,9 @@ void EdgeLists::prepare_edges() {
   if (edges.front) front_->cut(input(*edges.front));
 }
 
-/// Its stack: depth first, a node a team at a time, each leaves at most seven more than it takes. Cut edges deepen a
-/// hierarchy by a level, and may be many; rounded up, so that not every scene needs a pass of its own.
+/// Stack of the traversal: in depth-first order, a node for each team at a time, each node adds at most seven more than
+/// it removes. Cut edges add a level to a hierarchy, and may be many; rounded up, so that few scenes need different
+/// passes.
 void EdgeLists::build_pass() {
   const std::uint32_t lanes = device_->limits().subgroup_size, of_teams = std::max(lanes, TriangleTree::kWidth);
   const std::uint32_t depth = std::max({tree_->depth, whole_->depth(), front_->depth(), back_ ? back_->depth() : 0U});

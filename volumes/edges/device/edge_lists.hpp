@@ -27,19 +27,19 @@
 
 namespace penumbra::volumes {
 
-/// Whose lists are wanted: of the view samples in a band of a tile's rows that are on one side of the light (+1: where
-/// u × v points; −1: behind).
+/// View samples for which lists are made: those in a band of a tile's rows that are on one side of the light (+1: the
+/// side that u × v points to; −1: behind).
 struct EdgeListInput {
   const device::ViewUpload& view;
   const device::TriangleUpload& triangles;
-  std::uint32_t width;  ///< of the picture
+  std::uint32_t width;  ///< width of the picture
   visibility::Tile tile, band;
   float side;
 };
 
-/// For each cluster of view samples of a block of pixels the edges between it and the light that may be silhouettes,
-/// and the triangles that may be between it and one corner of the light's rectangle: what find_edges.comp finds, and
-/// all that it reads. Any planar light. Lists that are too short grow; nothing is cut off.
+/// Lists, for each cluster of view samples in a block of pixels, the edges between it and the light that may be
+/// silhouettes, and the triangles that may be between it and one corner of the light's rectangle: runs find_edges.comp
+/// and holds its input. Any planar light. Lists that are too short grow; nothing is cut off.
 class EdgeLists {
  public:
   /// Head of lists().
@@ -47,26 +47,28 @@ class EdgeLists {
     std::uint32_t words = 0, unfinished = 0;
   };
 
-  /// `method` names errors. `crops`: else also edges that are no silhouettes as seen from their cluster.
+  /// `method` names the method in errors. `crops`: false includes edges that are not silhouettes as seen from their
+  /// cluster.
   EdgeLists(const render::Device& device, std::string method, bool crops = true);
 
-  /// `tree`: of the scene's triangles. `scale`: of everything on the device.
+  /// `tree`: over the scene's triangles. `scale`: of all lengths on the device.
   void prepare_mesh(const visibility::SceneFloats& scene, const visibility::TriangleTree& tree, float scale);
-  /// `frame`: make_device_light(light, scale). Throws InputError where float32 cannot span light and scene together.
+  /// `frame`: make_device_light(light, scale). Throws InputError if float32 cannot represent light and scene together.
   void prepare_light(const visibility::Light& light, const visibility::DeviceLight& frame);
 
-  /// Sets what it knows of `push`. False: the lists would be larger than a storage buffer can be.
+  /// Sets its fields of `push` and finds the lists. Returns false if the lists would exceed the largest storage buffer.
   [[nodiscard]] bool find(render::Commands& commands, gpu::ScatterPush& push, const EdgeListInput& input);
 
-  [[nodiscard]] std::size_t edge_count() const { return edge_count_; }  ///< records, none cut
+  [[nodiscard]] std::size_t edge_count() const { return edge_count_; }  ///< number of records without cut ones
   [[nodiscard]] const visibility::LightTouch& touch() const { return touch_; }
   // Of the last find:
-  [[nodiscard]] std::uint64_t words() const { return words_; }  ///< of the lists
+  [[nodiscard]] std::uint64_t words() const { return words_; }  ///< length of the lists
   [[nodiscard]] std::uint64_t retries() const { return retries_; }
   [[nodiscard]] const std::vector<visibility::PassTime>& times() const { return times_; }
   [[nodiscard]] const render::Buffer& heads() const { return *heads_; }
   [[nodiscard]] const render::Buffer& lists() const { return lists_.buffer(); }
-  /// Bindings 0 to 11 of the kernels over the lists: view samples, heads, lists, EdgeTexels::slots, triangles' corners.
+  /// Returns bindings 0 to 11 of the kernels over the lists: view samples, heads, lists, EdgeTexels::slots, triangles'
+  /// corners.
   [[nodiscard]] std::vector<render::BufferReference> inputs(const EdgeListInput& input) const;
 
  private:
@@ -87,15 +89,16 @@ class EdgeLists {
   const visibility::SceneFloats* scene_ = nullptr;
   const visibility::TriangleTree* tree_ = nullptr;
   float scale_ = 1;
-  std::optional<EdgeUpload> whole_;  // of all casters
+  std::optional<EdgeUpload> whole_;  // edges of all casters
   std::size_t edge_count_ = 0;
   struct WithoutBody {
     std::int32_t light;
     EdgeUpload edges;
   };
-  std::optional<WithoutBody> without_body_;  // what casts shadow of the last light with a body
-  EdgeUpload* front_ = nullptr;              // one of these
-  std::optional<EdgeUpload> back_;           // a copy of it, where the light's plane cuts and it emits to both sides
+  std::optional<WithoutBody> without_body_;  // edges without the body of the last light that has one
+  EdgeUpload* front_ = nullptr;              // one of the above
+  std::optional<EdgeUpload> back_;           // a copy of it, if the light's plane cuts and the light emits to both
+                                             // sides
 
   const visibility::Light* light_ = nullptr;
   visibility::DeviceLight frame_;

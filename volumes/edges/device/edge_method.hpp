@@ -11,8 +11,8 @@
 
 namespace penumbra::volumes {
 
-/// A mask method on the device over lists of signed edges: it adds one kernel, run once for each side that the light
-/// emits to.
+/// A mask method on the device over lists of signed edges: a derived class adds one kernel, run once for each emitting
+/// side of the light.
 class EdgeMethod : public device::MaskMethod {
  public:
   EdgeMethod(const render::Device& device, visibility::MethodDescription given, std::uint64_t question_bytes,
@@ -25,11 +25,11 @@ class EdgeMethod : public device::MaskMethod {
   }
 
  protected:
-  /// Once a light, after what the lists need of it.
+  /// Called once for each light, after the lists are prepared.
   virtual device::MaskLayout prepare_kernel() = 0;
-  /// What the kernel is told beside what the lists say.
+  /// Returns the kernel's push constants other than those of the lists.
   [[nodiscard]] virtual gpu::ScatterPush make_push() const = 0;
-  /// Records the kernel over a band's lists. `inputs`: its bindings from 0; its own follow.
+  /// Records the kernel over a band's lists. `inputs`: its bindings from 0; the kernel's own follow.
   virtual void record(const gpu::ScatterPush& push, std::vector<render::BufferReference> inputs,
                       const visibility::Tile& band) = 0;
   void count(std::map<std::string, std::uint64_t>& counters) override {
@@ -62,7 +62,7 @@ class EdgeMethod : public device::MaskMethod {
   }
 
   EdgeLists edges_;
-  std::uint64_t words_ = 0, retries_ = 0;  // to be counted
+  std::uint64_t words_ = 0, retries_ = 0;  // counters
 };
 
 }  // namespace penumbra::volumes

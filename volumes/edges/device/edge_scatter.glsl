@@ -1,4 +1,4 @@
-// What the passes of edge scatter share: a workgroup is one subgroup. Derivations of every bound: docs/edge-scatter.md.
+// Shared by the passes of edge scatter: a workgroup is one subgroup. docs/edge-scatter.md derives every bound.
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_KHR_shader_subgroup_basic : require
 #extension GL_KHR_shader_subgroup_ballot : require
@@ -10,10 +10,13 @@
 layout(local_size_x_id = 0) in;
 layout(constant_id = 1) const uint kLanes = 8;            // the workgroup's size, one subgroup
 
-layout(binding = 0) uniform usamplerBuffer view;          // 2 texels a pixel: (p, carrying triangle), (normal, plane)
-// 2 a cluster, kClusters clusters a block: its lists of edges and of triangles; then 1 a pixel: its cluster.
+layout(binding = 0) uniform usamplerBuffer view;          // 2 texels for each pixel: (p, carrying triangle), (normal,
+                                                          // plane)
+// 2 words for each cluster, kClusters clusters for each block: its lists of edges and of triangles; then 1 word for
+// each pixel: its cluster.
 layout(scalar, binding = 1) buffer Heads { uint heads[]; };
-// A list is pieces: where the next one is, how many items, the items (slots of the hierarchy's leaves).
+// A list is a chain of pieces: the index of the next piece, the number of items, the items (slots of the hierarchy's
+// leaves).
 layout(scalar, binding = 2) buffer Lists {
   uint list_words, unfinished;
   uint lists[];
@@ -21,14 +24,14 @@ layout(scalar, binding = 2) buffer Lists {
 layout(scalar, push_constant) uniform Push { ScatterPush push; };
 
 const uint kTeam = 8;                                     // children of a node, records of a leaf
-// A team of lanes looks at a node's children: several teams in a subgroup, or one that takes several turns.
+// A team of lanes handles a node's children: several teams in a subgroup, or one that takes several rounds.
 const uint kTeams = kLanes < kTeam ? 1 : kLanes / kTeam, kTurns = kLanes < kTeam ? kTeam / kLanes : 1;
 const uint kBlock = 8;                                    // a block is kBlock × kBlock pixels
-const uint kClusters = 4;                                 // of view samples, at most, in a block
+const uint kClusters = 4;                                 // most clusters of view samples in a block
 const uint kNone = 0xffffffffu, kLeafBit = 0x80000000u;
 const float kRound = 1.0 / 16777216.0;                    // 2⁻²⁴: half a unit in the last place of 1
 
-// Of the band.
+// Returns the number of blocks in the band.
 uint block_count() { return (push.width + kBlock - 1) / kBlock * ((push.row_count + kBlock - 1) / kBlock); }
 
 float size1(vec3 x) { return abs(x.x) + abs(x.y) + abs(x.z); }
@@ -53,13 +56,14 @@ void make_frame() {
   skew = size1(push.u) * size1(push.v) / sqrt(squared);
 }
 
-// A view sample: p and what depends on it alone.
+// A view sample: p and the values that depend on it alone.
 struct ViewSample {
   vec3 p;
   uint carrier, plane;
   vec3 normal;
   float height;                                           // over the light's plane (bound level)
-  vec2 foot;                                              // (X, Y) straight above p
+  vec2 foot;                                              // (X, Y) of the orthogonal projection of p onto the light's
+                                                          // plane
 };
 
 ViewSample view_sample_at(vec3 p) {
@@ -79,24 +83,25 @@ ViewSample fetch_view_sample(uint pixel) {
 
 float level_error(vec3 p) { return 16.0 * kRound * skew * (size1(push.center - p) + size1(p)) + push.deviation; }
 
-// Something is near the light's plane, and a way to a light sample may rise by less than 1 / 256. `away`: |p − center|.
-// (visibility/lights/light_touch)
+// Returns whether something is close to the light's plane, and a segment to a light sample may rise by less than 1 /
+// 256. `away`: |p − center|. (visibility/lights/light_touch)
 bool sees_flat(float away, float height) {
   const float farthest = away + 1.0001 * (length(push.u) + length(push.v)) + push.deviation;
   return push.near_plane != 0 && height < farthest / 256.0;
 }
 
-// How far below p's height, in lengths of an edge's farther end, an edge may pass through p within rounding. (bound window)
+// Returns the distance below p's height, in lengths of an edge's farther end, within which an edge may pass through p
+// within rounding. (bound window)
 float lift_of(ViewSample at, vec2 window) {
   const vec2 off = abs(at.foot - first_cell);
   return 64.0 * kRound * (1.0 + 0.125 * (max(off.x, off.y) + per_length * at.height) / min(window.x, window.y));
 }
 
-// What the rounding of an end at this height over the light's plane, which may have been cut there, comes to, as lengths
-// added to its way. (bound cut)
+// Returns the rounding of an end at this height over the light's plane, which may have been cut there, as a length
+// added to its vector. (bound cut)
 float cut_far(float over_light) { return over_light < 512.0 * kRound * push.reach ? push.cut_reach / 4.0 : 0.0; }
 
-// Is p on the triangle with corners p + da, p + db, p + dc, within rounding? (bound on)
+// Returns whether p is within rounding of the triangle with corners p + da, p + db, p + dc. (bound on)
 bool is_on_triangle(vec3 da, vec3 db, vec3 dc) {
   const vec3 n = cross(db - da, dc - da);
   const float size = length(n), far = max(length(da), max(length(db), length(dc))), unit = kRound * far;
@@ -105,8 +110,8 @@ bool is_on_triangle(vec3 da, vec3 db, vec3 dc) {
          least >= -(256.0 * unit * push.reach * size + 64.0 * unit * far * far * far);
 }
 
-// The hull of view samples and a rectangle of the light's plane, `low` to `high` in cells from the light's middle: between
-// two parallel planes, and in n·x ≤ beyond for four planes, one a component of nx, ny, nz. (bound shaft)
+// The hull of view samples and a rectangle of the light's plane, `low` to `high` in cells from the light's middle:
+// between two parallel planes, and in n·x ≤ beyond for four planes, one in each component of nx, ny, nz. (bound shaft)
 struct Shaft {
   float lowest, highest;                                  // along the axis
   vec4 nx, ny, nz, beyond;
@@ -136,8 +141,9 @@ vec4 slopes_of(vec2 low, vec2 high, vec2 foot, float height) {
   return over / height;
 }
 
-// What one triangle adds to k_e for all view samples in the box middle ± half_size: −1, 0, 1; or 2: not the same for all, or
-// not certain, or one of them may lie on it: p is off its carrier's plane by its own rounding. (bound side)
+// Returns a triangle's contribution to k_e for all view samples in the box middle ± half_size: −1, 0, 1; or 2 if the
+// contribution differs, is not certain, or one of them may lie on the triangle: p deviates from its carrier's plane by
+// its rounding. (bound side)
 int side_for_all(vec3 n, vec3 anchor, vec3 middle, vec3 half_size) {
   const vec3 d = middle - anchor;
   const float f = dot(n, d);

@@ -1,3 +1,5 @@
+// Uploads a hierarchy of edges, cuts it at a light's plane, and restores it for the next light.
+
 #include "volumes/edges/device/edge_upload.hpp"
 
 #include "visibility/tree/triangle_tree.hpp"
@@ -12,13 +14,13 @@ using visibility::Texel;
 using visibility::TriangleTree;
 
 constexpr std::uint32_t kPerChild = 3;  // texels of a node's child
-constexpr std::uint32_t kNear = 1024;   // texels between two changes that are cheaper to write than to leave out
-constexpr std::size_t kUsedList = 2;    // of EdgeTexels::slots: its numbers say which slots are in use
+constexpr std::uint32_t kNear = 1024;   // unchanged texels between two changes that are cheaper to write than to skip
+constexpr std::size_t kUsedList = 2;    // list of EdgeTexels::slots whose integers mark used slots
 constexpr std::size_t kLists = 6;
 
 }  // namespace
 
-/// For cut_hierarchy.
+/// Adapter for cut_hierarchy.
 class EdgeUpload::Dropping {
  public:
   Dropping(EdgeUpload& edges, float scale) : edges_(edges), texels_(edges.texels_), scale_(scale) {}
@@ -94,7 +96,7 @@ void EdgeUpload::restore() {
 
 void EdgeUpload::cut(const CutInput& input) {
   restore();
-  if (texels_.depth == 0) return;  // nothing casts shadow
+  if (texels_.depth == 0) return;  // nothing casts shadows
   is_cut_ = true;
   std::vector<EdgeRecord> records =
       edges_in_plane(input.scene, input.casters, triangles_across(input), input.side, nullptr);
@@ -106,7 +108,7 @@ void EdgeUpload::cut(const CutInput& input) {
   write_all(nodes, dropped_slots_);
 }
 
-/// Below a root of its own, beside the whole.
+/// Appends a tree below a root of its own, next to the first.
 void EdgeUpload::append(const EdgeTexels& more) {
   const auto first_node = static_cast<std::uint32_t>(whole_nodes_ / kPerChild / TriangleTree::kWidth);
   const auto first_leaf = static_cast<std::uint32_t>(whole_slots_ / TriangleTree::kWidth);
@@ -124,7 +126,7 @@ void EdgeUpload::append(const EdgeTexels& more) {
   add_root(0, first_node);
 }
 
-/// Of two nodes, with boxes around the whole scene and cones that hold all directions.
+/// Adds a root above two nodes, with boxes around the whole scene and cones that contain all directions.
 void EdgeUpload::add_root(std::uint32_t first, std::uint32_t second) {
   root_ = static_cast<std::uint32_t>(texels_.nodes.size() / kPerChild / TriangleTree::kWidth);
   const float everything = 2;  // visibility::device_scale
@@ -149,7 +151,7 @@ void EdgeUpload::write(std::unique_ptr<render::Buffer>& buffer, const char* name
   const std::span<const Texel> all(texels);
   const bool is_new = !buffer;
   if (is_new || buffer->bytes() < all.size_bytes()) {
-    // Room for the cut edges of lights to come.
+    // Reserves space for the cut edges of later lights.
     const std::size_t room = is_new ? all.size() : all.size() + (all.size() - std::min(first_new, all.size()));
     render::grow(*device_, buffer, name, room * sizeof(Texel), render::BufferUse::texels);
     buffer->write(all);

@@ -15,8 +15,8 @@
 namespace penumbra::volumes {
 
 /// A hierarchy of edges on the device (EdgeTexels) that is cut at a light's plane, and restored for the next light.
-/// Only what the plane cuts is computed again and written: subtrees behind it are left out, the cut edges are a second
-/// tree below a root of both. The twin of CutEdges on vector units.
+/// Only parts that the plane cuts are recomputed and written: subtrees behind it are removed, and cut edges form a
+/// second tree below a common root. The twin of CutEdges on vector units.
 class EdgeUpload {
  public:
   EdgeUpload(const render::Device& device, EdgeTexels texels);
@@ -24,10 +24,10 @@ class EdgeUpload {
   void cut(const CutInput& input);
   void restore();
 
-  /// As they are on the device; nodes at the end may be no longer in use.
+  /// Returns the texels on the device; nodes at the end may be unused.
   [[nodiscard]] const EdgeTexels& texels() const { return texels_; }
   [[nodiscard]] std::uint32_t root() const { return root_; }
-  [[nodiscard]] std::uint32_t depth() const { return texels_.depth; }  ///< from the root; 0: there is no edge
+  [[nodiscard]] std::uint32_t depth() const { return texels_.depth; }  ///< levels from the root; 0: no edges
   [[nodiscard]] const render::Buffer& nodes() const { return *nodes_; }
   [[nodiscard]] const render::Buffer& slots(std::size_t i) const { return *slots_[i]; }
 
@@ -37,7 +37,7 @@ class EdgeUpload {
 
   void append(const EdgeTexels& more);
   void add_root(std::uint32_t first, std::uint32_t second);
-  /// Brings `buffer` up to date where `changed` says, and from `first_new` on.
+  /// Updates `buffer` at the texels in `changed`, and from `first_new` on.
   void write(std::unique_ptr<render::Buffer>& buffer, const char* name, const Texels& texels,
              std::vector<std::uint32_t> changed, std::size_t first_new) const;
   void write_all(const std::vector<std::uint32_t>& nodes, const std::vector<std::uint32_t>& slots);
@@ -47,7 +47,7 @@ class EdgeUpload {
   std::uint32_t root_ = 0, whole_depth_ = 0;
   std::size_t whole_nodes_ = 0, whole_slots_ = 0;  // texels
   bool is_cut_ = false;
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> dropped_nodes_;  // texel, the reference that it had
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> dropped_nodes_;  // texel, and its previous reference
   std::vector<std::uint32_t> dropped_slots_;
   std::unique_ptr<render::Buffer> nodes_;
   std::array<std::unique_ptr<render::Buffer>, 6> slots_;

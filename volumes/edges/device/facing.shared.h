@@ -1,5 +1,5 @@
-// One struct, two languages (scalar layout): what a facing of a triangle is computed from. Lengths are in scene floats
-// times a power of two.
+// Structs shared by C++ and GLSL (scalar layout): input of a triangle's facing. Lengths are in scene floats times a
+// power of two.
 #ifdef __cplusplus
 #pragma once
 namespace penumbra::volumes::gpu {
@@ -11,12 +11,12 @@ namespace penumbra::volumes::gpu {
 struct FacingTriangle {
   FLOAT3(a);      // a corner
   FLOAT3(n);      // the normal, times a power of two
-  FLOAT3(slack);  // what n · g may be wrong by, for each unit of |g|; negative: no area
+  FLOAT3(slack);  // error of n · g for each unit of |g|; negative: no area
 };
 
 struct FacingPoint {
   FLOAT3(p);
-  float slack;  // what underflow may add; very large: too far away for floats, ask the host
+  float slack;  // error due to underflow; very large: too far away for floats, the host decides
 };
 
 #ifdef __cplusplus

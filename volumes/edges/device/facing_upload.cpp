@@ -1,5 +1,5 @@
-// The host's half of the filter: normals in double, rounded once, and what they and the device's arithmetic may be
-// wrong by. A change of an expression here or in silhouette_facing.comp needs one of its derivation in
+// The host's half of the facing filter: normals in double, rounded once, and error bounds of them and of the device's
+// arithmetic. A change of an expression here or in silhouette_facing.comp requires a change of its derivation in
 // volumes/README.md (Bounds).
 
 #include "volumes/edges/device/facing_upload.hpp"
@@ -18,10 +18,10 @@ namespace {
 
 constexpr double kRound = 0x1p-24;        // of float32
 constexpr double kRoundDouble = 0x1p-53;  // of double
-constexpr double kLeastNormal = 0x1p-40;  // normal coordinates below are taken for 0, and the slack says so
+constexpr double kLeastNormal = 0x1p-40;  // smaller normal coordinates are taken as 0, and the slack accounts for that
 constexpr int kGrid = 80;                 // coarse: scaled coordinates are multiples of 2⁻⁸⁰
 constexpr float kUnderflow = 0x1p-120F;   // (bound underflow)
-constexpr float kFar = 0x1p60F;           // beyond this many scenes floats are not asked
+constexpr float kFar = 0x1p60F;           // beyond this many scene sizes floats are not used
 constexpr float kAlwaysUndecided = 0x1p100F;
 constexpr gpu::FacingTriangle kNoArea = {{0, 0, 0}, {0, 0, 0}, {-1, -1, -1}};
 
@@ -38,7 +38,7 @@ struct Normal {
   std::array<double, 3> n{}, error{};
 };
 
-/// (b − a) × (c − a), and what each coordinate may be off by (bound normal).
+/// (b − a) × (c − a), and the error of each coordinate (bound normal).
 Normal normal_of(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
   const glm::dvec3 e1 = glm::dvec3(b) - glm::dvec3(a), e2 = glm::dvec3(c) - glm::dvec3(a);
   Normal normal;
@@ -51,8 +51,7 @@ Normal normal_of(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
   return normal;
 }
 
-/// What n · g may be wrong by for a unit of |g| in this coordinate (bound slack). Not much: rounded up, and room for
-/// it.
+/// Returns the error of n · g for a unit of |g| in this coordinate (bound slack). Rounded up, with a margin.
 double slack_of(double n, double error) {
   if (n == 0 && error == 0) return 0;
   const double slack = std::max(16 * kRound * std::abs(n) + 2 * error, kLeastNormal);

@@ -10,20 +10,19 @@
 
 namespace penumbra::volumes {
 
-/// Triangles and points as silhouette_facing.comp reads them, with the error bounds of volumes/README.md (Bounds)
-/// beside them.
+/// Triangles and points in the format of silhouette_facing.comp, with the error bounds of volumes/README.md (Bounds).
 class FacingUpload {
  public:
-  /// `positions`: of the mesh; fixes the power of two that brings their largest coordinate into [1, 2).
+  /// `positions`: of the mesh; determines the power of two that brings their largest coordinate into [1, 2).
   explicit FacingUpload(std::span<const glm::vec3> positions);
 
-  /// The triangles, and ones without area up to a whole number of words of 32.
+  /// Returns the triangles, padded with triangles without area to a whole number of words of 32.
   [[nodiscard]] std::vector<gpu::FacingTriangle> triangles(std::span<const mesh::Triangle> triangles) const;
   [[nodiscard]] std::vector<gpu::FacingPoint> points(std::span<const glm::vec3> points) const;
 
  private:
   std::span<const glm::vec3> positions_;
-  int exponent_ = 0;     // of the scale
+  int exponent_ = 0;     // exponent of the scale
   bool coarse_ = false;  // nothing underflows (bound underflow)
 };
 

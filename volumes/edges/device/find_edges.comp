@@ -2,40 +2,41 @@
 #extension GL_GOOGLE_include_directive : require
 #include "volumes/edges/device/edge_scatter.glsl"
 
-// First pass of edge scatter, a workgroup a block of pixels. The block's view samples fall into clusters where gaps are
-// between them. For each: the edges that the shaft from the cluster to the light meets and that may be silhouettes as seen
-// from it; and the triangles that the much thinner shaft to one corner of the light meets.
+// First pass of edge scatter, a workgroup for each block of pixels. The block's view samples are divided into clusters
+// at gaps. For each cluster it lists: the edges that the shaft from the cluster to the light meets and that may be
+// silhouettes as seen from it; and the triangles that the much thinner shaft to one corner of the light meets.
 
 layout(constant_id = 2) const uint kStackSize = 64;
-layout(constant_id = 3) const uint kCrops = 1;              // 0: list edges that are no silhouettes, too
+layout(constant_id = 3) const uint kCrops = 1;              // 0: lists edges that are not silhouettes, too
 
-layout(binding = 3) uniform usamplerBuffer edge_nodes;      // 3 texels a child: (centre, reference), (half extent, –),
-                                                            // cone of normals (axis, cosine)
-layout(binding = 4) uniform usamplerBuffer triangle_nodes;  // 2 texels a child
-// An edge record (EdgeTexels), a texel buffer each: (a, plane 1), (b, plane 2), (n 1), (anchor 1), (n 2), (anchor 2).
+layout(binding = 3) uniform usamplerBuffer edge_nodes;      // 3 texels for each child: (centre, reference), (half
+                                                            // extent, –), cone of normals (axis, cosine)
+layout(binding = 4) uniform usamplerBuffer triangle_nodes;  // 2 texels for each child
+// An edge record (EdgeTexels), a texel buffer for each: (a, plane 1), (b, plane 2), (n 1), (anchor 1), (n 2), (anchor
+// 2).
 layout(binding = 5) uniform usamplerBuffer record_a;
 layout(binding = 6) uniform usamplerBuffer record_b;
 layout(binding = 7) uniform usamplerBuffer record_n1;
 layout(binding = 8) uniform usamplerBuffer record_anchor1;
 layout(binding = 9) uniform usamplerBuffer record_n2;
 layout(binding = 10) uniform usamplerBuffer record_anchor2;
-// A triangle: (a, triangle), (b, plane), (c, light that it is the body of).
+// A triangle: (a, triangle), (b, plane), (c, light whose body it is).
 layout(binding = 11) uniform usamplerBuffer corner_a;
 layout(binding = 12) uniform usamplerBuffer corner_b;
 layout(binding = 13) uniform usamplerBuffer corner_c;
 
-const uint kBatch = 24;                                     // leaves looked into at a time
-const uint kMostLeaves = kBatch + kTeams * kTeam;           // with what one more turn of the loop brings
+const uint kBatch = 24;                                     // leaves handled at a time
+const uint kMostLeaves = kBatch + kTeams * kTeam;           // and those that one more iteration adds
 
 shared uint stack[kStackSize];
 shared uint leaves[kMostLeaves];
 shared uint items[kMostLeaves * kTeam];
 
-// The cluster's view samples as a box.
+// Bounding box of the cluster's view samples.
 vec3 middle, half_size;
 
-// Is every triangle around the edges below seen from the same side by the whole cluster? Then none is a silhouette: a
-// vector d = p − x lies in D ± e, and all normals within an angle of `cone.xyz`. (bound cone)
+// Returns whether the whole cluster sees every triangle around the edges below from the same side, so that none is a
+// silhouette: a vector d = p − x lies in D ± e, and all normals within an angle of `cone.xyz`. (bound cone)
 bool same_side(vec3 center, vec3 extent, vec4 cone) {
   const vec3 d = middle - center, e = half_size + extent;
   const float straight = abs(dot(cone.xyz, d)), aside = length(cross(cone.xyz, d));
@@ -71,7 +72,7 @@ bool triangle_matters(Shaft shaft, uint slot) {
   return t0.w != kNone && t2.w != push.light && meets(shaft, vec3(dot(axis, a), dot(axis, b), dot(axis, c)), least);
 }
 
-// More words than any buffer has: the counter of a list that grows beyond all bounds stays here and never comes round to 0.
+// More words than any buffer has: the counter of a list that grows beyond all bounds stays here and never wraps to 0.
 const uint kTooMany = 0xc0000000u;
 
 // Writes the collected items as a piece in front of the list.
@@ -93,8 +94,8 @@ uint emit(uint next, uint count) {
   return first;
 }
 
-// Lays the root of this dispatch's part of a hierarchy on the stack; or, if a leaf lies above the part's level, the leaf
-// with the first of the parts that it could belong to. Returns the sizes of stack and leaves.
+// Pushes the root of this dispatch's part of a hierarchy on the stack; or, if a leaf lies above the part's level,
+// collects the leaf in the first of the parts that it could belong to. Returns the sizes of stack and leaves.
 uvec2 first_of_part(bool edges) {
   uint node = edges ? push.edge_root : 0;
   uvec2 sizes = uvec2(1, 0);
@@ -107,12 +108,12 @@ uvec2 first_of_part(bool edges) {
       node = reference;
     }
   }
-  stack[0] = node;                                        // every lane writes the same
+  stack[0] = node;                                        // every lane writes the same value
   if (sizes.y == 1) leaves[0] = node & ~kLeafBit;
   return sizes;
 }
 
-// Adds to the list `head`, which it returns.
+// Traverses a hierarchy and adds to the list `head`; returns the new head.
 uint walk(Shaft shaft, bool edges, uint head) {
   const uint lane = gl_SubgroupInvocationID, team = lane / kTeam, member = lane % kTeam;
   const uvec2 sizes = first_of_part(edges);
@@ -122,7 +123,7 @@ uint walk(Shaft shaft, bool edges, uint head) {
     known_leaves = 0;
     subgroupMemoryBarrierShared();
     subgroupBarrier();
-    // Short, because some devices run all of a loop's body whatever its branches say.
+    // The body is short, because some devices execute all of a loop's body regardless of its branches.
     while (stack_size > 0 && leaf_count < kBatch) {
       const uint taken = min(stack_size, kTeams);
       const uint node = team < taken ? stack[stack_size - 1 - team] : 0;
@@ -151,7 +152,7 @@ uint walk(Shaft shaft, bool edges, uint head) {
       }
     }
     const uint end = leaf_count * kTurns;
-    for (; i < end; i += kTeams) {                          // turn after turn of the teams, leaf after leaf
+    for (; i < end; i += kTeams) {                          // one round of the teams after the other, leaf by leaf
       const uint number = i / kTurns + team;
       const bool used = number < leaf_count;
       const uint slot = (used ? leaves[number] : 0) * kTeam + i % kTurns * kLanes + member;
@@ -163,7 +164,7 @@ uint walk(Shaft shaft, bool edges, uint head) {
     subgroupMemoryBarrierShared();
     subgroupBarrier();
     if (item_count > 0) head = emit(head, item_count);
-    // Some processors' drivers end loops after 65535 turns. Never go on as if nothing had happened.
+    // Some drivers for processors end loops after 65535 iterations, which must be reported.
     if (i < end || (stack_size > 0 && leaf_count < kBatch)) {
       atomicOr(unfinished, 1u);
       break;
@@ -173,7 +174,7 @@ uint walk(Shaft shaft, bool edges, uint head) {
   return head;
 }
 
-// This lane's view samples of the block are numbers lane, lane + kLanes …; their clusters, two bits each.
+// This lane's view samples of the block have the indices lane, lane + kLanes …; their clusters take two bits each.
 const uint kEach = kBlock * kBlock / kLanes;
 uint cluster_of_each, on_each;
 vec3 place_of[kEach];
@@ -187,7 +188,8 @@ uint pixel_of(uint i, uint block) {
   return at.x < push.width && at.y < push.row_count ? at.y * push.width + at.x : kNone;
 }
 
-// Cuts a cluster in two in the middle of its box, if a gap is there of more than a third of it. Returns whether it did.
+// Divides a cluster in the middle of its box, if there is a gap of more than a third of the box. Returns whether it
+// did.
 bool split(uint cluster, uint new_cluster) {
   vec3 lower = vec3(1e30), upper = vec3(-1e30);
   for (uint i = 0; i < kEach; ++i) {
@@ -242,7 +244,7 @@ void list_for(uint cluster, uint block) {
   middle = 0.5 * lower + 0.5 * upper;
   half_size = (0.5 * upper - 0.5 * lower) * (1.0 + 8.0 * kRound);
   const uint place = 2 * (block * kClusters + cluster);
-  const bool first_part = push.part == 0;                 // the others go on with its lists
+  const bool first_part = push.part == 0;                 // other parts continue its lists
   uint edges = first_part ? kNone : heads[place], triangles = first_part ? kNone : heads[place + 1];
   if (push.edge_depth > 0) edges = walk(make_shaft(low, half_cells, slopes, height), true, edges);
   if (push.triangle_depth > 0) triangles = walk(make_shaft(low, low, corner_slopes, height), false, triangles);
@@ -261,7 +263,7 @@ void main() {
     const uint pixel = pixel_of(i, block);
     const ViewSample it = fetch_view_sample(pixel == kNone ? 0 : pixel);
     place_of[i] = it.p;
-    // Half: a compiler may round differently in the passes that ask for these lists.
+    // Factor 0.5: a compiler may round differently in the passes that use these lists.
     if (pixel != kNone && it.carrier != kNone && it.height > 0.5 * level_error(it.p)) on_each |= 1u << i;
   }
   if (!subgroupAny(on_each != 0)) return;

@@ -1,4 +1,4 @@
-// One struct, two languages (scalar layout): what the silhouette passes read and write.
+// Structs shared by C++ and GLSL (scalar layout): data of the silhouette passes.
 #ifdef __cplusplus
 #pragma once
 #include "volumes/edges/device/facing.shared.h"
@@ -8,15 +8,16 @@ namespace penumbra::volumes::gpu {
 using uint = std::uint32_t;
 #endif
 
-/// Bits 0 and 1 of a triangle's word: is the light in front of it, behind it (neither: on its plane, or no area)? Bits
-/// 2 and 3: the same if it counts so seen (ShadowCasters::counted_sides), else 0.
+/// Bits 0 and 1 of a triangle's word: the light is in front of it, behind it (neither: on its plane, or no area). Bits
+/// 2 and 3: the same bits if the triangle counts for that side (ShadowCasters::counted_sides), else 0.
 const uint kFrontBit = 1u, kBackBit = 2u, kBothBits = 3u, kCountedShift = 2u;
 
-/// An edge's triangles as the device reads them, triangle · 2, + 1 if it runs from b to a: two of them, where there is
-/// but one the other is a triangle that nothing counts of; or, with this bit, the edge's number among those with more.
+/// An edge's triangles in the device's format, triangle · 2, + 1 if its winding runs from b to a: two of them, where a
+/// missing one is replaced by a triangle that never counts; or, with this bit, the edge's index among those with more
+/// triangles.
 const uint kManyIncidences = 1u << 31;
 
-/// A triangle that floats cannot decide; in `side`, the host's answer.
+/// A triangle that floats cannot decide; `side` receives the host's answer.
 struct OpenFacing {
   uint triangle;
   uint side;
@@ -33,8 +34,8 @@ struct SilhouetteFacingPush {
   uint triangle_count;
 };
 
-const uint kEdgesPerBlock = 32u;  // whose silhouettes are counted together, and written by one lane
-/// Each adds up a stretch of the blocks. A device that stops loops at 2¹⁶ turns can take 5 · 10⁸ edges.
+const uint kEdgesPerBlock = 32u;  // edges whose silhouettes are counted together, and written by one lane
+/// Each lane adds up a range of the blocks. A device that stops loops at 2¹⁶ iterations can handle 5 · 10⁸ edges.
 const uint kScanLanes = 256u;
 
 #ifdef __cplusplus

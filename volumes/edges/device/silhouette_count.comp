@@ -4,11 +4,11 @@
 #include "volumes/edges/device/facing.shared.h"
 #include "volumes/edges/device/silhouette.shared.h"
 
-// k_e of every edge (mesh/silhouettes.hpp), and how many of each block of edges are not 0.
+// Computes k_e of every edge (mesh/silhouettes.hpp), and the number of non-zero ones in each block of edges.
 
 layout(local_size_x = 64) in;
-layout(scalar, binding = 0) readonly buffer Pairs { uvec2 pairs[]; };  // of every edge: silhouette.shared.h
-layout(scalar, binding = 1) readonly buffer First { uint first[]; };   // of those with more, CSR
+layout(scalar, binding = 0) readonly buffer Pairs { uvec2 pairs[]; };  // for every edge: see silhouette.shared.h
+layout(scalar, binding = 1) readonly buffer First { uint first[]; };   // for edges with more triangles, CSR
 layout(scalar, binding = 2) readonly buffer More { uint more[]; };
 layout(scalar, binding = 3) readonly buffer Sides { uint sides[]; };
 layout(scalar, binding = 4) writeonly buffer Multiplicities { int multiplicities[]; };

@@ -4,9 +4,9 @@
 #include "volumes/edges/device/facing.shared.h"
 #include "volumes/edges/device/silhouette.shared.h"
 
-// On which side of every triangle is one point? One lane for each triangle. A sign counts only beyond its error bound
-// (volumes/README.md, Bounds); a triangle whose sign is within it gets both bits and goes on a list for the host. No branch on
-// the way.
+// Computes the side of every triangle that one point is on, one lane for each triangle. A sign counts only beyond its
+// error bound (volumes/README.md, Bounds); a triangle whose sign is within the bound gets both bits and is listed for
+// the host. No branches.
 
 layout(local_size_x = 64) in;
 layout(scalar, binding = 0) readonly buffer Triangles { FacingTriangle triangles[]; };
@@ -14,7 +14,7 @@ layout(scalar, binding = 1) readonly buffer Counted { uint counted[]; };
 layout(scalar, binding = 2) writeonly buffer Sides { uint sides[]; };
 layout(scalar, binding = 3) buffer Open {
   uint open_count;
-  OpenFacing open[];  // room for every triangle
+  OpenFacing open[];  // space for every triangle
 };
 layout(scalar, push_constant) uniform Push { SilhouetteFacingPush push; };
 

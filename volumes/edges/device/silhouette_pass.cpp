@@ -1,3 +1,6 @@
+// Host of silhouette_*.comp: facings by floats with a bound, the rest by the exact predicate, then k_e and the list of
+// silhouettes.
+
 #include "volumes/edges/device/silhouette_pass.hpp"
 
 #include "base/assert.hpp"
@@ -24,13 +27,13 @@ std::uint64_t groups_of(std::uint64_t lanes) {
   return (lanes + 63) / 64;
 }
 
-/// The triangles around edges (silhouette.shared.h).
+/// The triangles at edges (silhouette.shared.h).
 struct Incidences {
-  std::vector<std::array<std::uint32_t, 2>> pairs;  // of every edge
-  std::vector<std::uint32_t> first{0}, more;        // of those with more than two, CSR
+  std::vector<std::array<std::uint32_t, 2>> pairs;  // for every edge
+  std::vector<std::uint32_t> first{0}, more;        // for edges with more than two triangles, CSR
 };
 
-/// `nothing`: the number of the triangle that nothing counts of.
+/// `nothing`: index of the triangle that never counts.
 Incidences incidences_of(const mesh::EdgeGraph& graph, std::uint32_t nothing) {
   Incidences result;
   result.pairs.resize(graph.edges.size(), {2 * nothing, 2 * nothing});
@@ -86,9 +89,9 @@ struct SilhouettePass::State {
   SilhouetteMesh mesh;
   std::optional<FacingUpload> upload;
   using BufferPointer = std::unique_ptr<render::Buffer>;
-  BufferPointer triangles, positions, pairs, first, more, ends;                    // of the mesh
-  BufferPointer counted_buffer, sides, open, multiplicities, blocks, silhouettes;  // of the point
-  std::vector<std::uint32_t> counted;                                              // what its buffer holds
+  BufferPointer triangles, positions, pairs, first, more, ends;                    // buffers of the mesh
+  BufferPointer counted_buffer, sides, open, multiplicities, blocks, silhouettes;  // buffers of the point
+  std::vector<std::uint32_t> counted;                                              // content of its buffer
   std::uint32_t found = 0;
   std::uint32_t open_facings = 0;
   visibility::PassTimes times;
@@ -101,7 +104,8 @@ SilhouettePass::SilhouettePass(SilhouettePass&&) noexcept = default;
 SilhouettePass& SilhouettePass::operator=(SilhouettePass&&) noexcept = default;
 
 std::uint32_t SilhouettePass::most_triangles() const {
-  // The largest element is a triangle's; an edge's are at most 8 bytes, and there are at most three edges a triangle.
+  // A triangle's element is the largest; an edge's takes at most 8 bytes, and there are at most three edges for each
+  // triangle.
   static_assert(sizeof(gpu::FacingTriangle) >= 3 * sizeof(gpu::Silhouette) + sizeof(std::uint32_t));
   const std::uint64_t most = state_->most_bytes / sizeof(gpu::FacingTriangle);
   return static_cast<std::uint32_t>(std::min<std::uint64_t>(most / 32 * 32, 1U << 28));
@@ -135,7 +139,7 @@ void SilhouettePass::State::make_buffers() {
   const std::uint64_t n = triangle_count(), edges = std::max(edge_count(), 1U);
   counted_buffer = std::make_unique<render::Buffer>(*device, "silhouette sides that count", n * sizeof(std::uint32_t));
   sides = std::make_unique<render::Buffer>(*device, "silhouette sides", (n + 1) * sizeof(std::uint32_t));
-  commands.fill(*sides, 0);  // the last one's, for good
+  commands.fill(*sides, 0);  // the sides of the padding stay 0
   commands.submit();
   open = std::make_unique<render::Buffer>(*device, "silhouette open facings", kListHead + n * sizeof(gpu::OpenFacing));
   multiplicities = std::make_unique<render::Buffer>(*device, "silhouette multiplicities", edges * sizeof(std::int32_t));
@@ -172,7 +176,7 @@ void SilhouettePass::State::find_facings(const glm::vec3& l) {
   facing.record(commands, push, {*triangles, *counted_buffer, *sides, *open}, groups_of(triangle_count()));
 }
 
-/// The exact predicate for what floats left open; and what follows from facings once more.
+/// Applies the exact predicate to open facings, and repeats the steps that depend on facings.
 void SilhouettePass::State::settle(const glm::vec3& l) {
   std::vector<gpu::OpenFacing> list(open_facings);
   open->read(std::span(list), kListHead);

@@ -4,7 +4,7 @@
 #include "volumes/edges/device/facing.shared.h"
 #include "volumes/edges/device/silhouette.shared.h"
 
-// Puts the facings that the host decided where they belong. Each triangle is on the list once, in any order.
+// Writes the facings that the host decided. Each triangle is on the list once, in any order.
 
 layout(local_size_x = 64) in;
 layout(scalar, binding = 0) readonly buffer Counted { uint counted[]; };

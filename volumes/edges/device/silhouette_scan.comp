@@ -4,11 +4,11 @@
 #include "volumes/edges/device/facing.shared.h"
 #include "volumes/edges/device/silhouette.shared.h"
 
-// Counts of blocks become their places: each the sum of those before it, and the sum of all behind the last. One
+// Converts the counts of blocks to places: each the sum of those before it, and the total behind the last. One
 // workgroup.
 
 layout(local_size_x = kScanLanes) in;
-layout(scalar, binding = 0) buffer Blocks { uint blocks[]; };  // one more than there are
+layout(scalar, binding = 0) buffer Blocks { uint blocks[]; };  // one more entry than there are blocks
 layout(scalar, push_constant) uniform Push { uint block_count; };
 
 shared uint sums[kScanLanes];

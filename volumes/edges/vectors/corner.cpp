@@ -29,7 +29,7 @@ std::optional<bool> certainly_meets(const CornerInput& in, const std::array<glm:
   return visibility::certainly_meets(p, p + way, corners, 0x1p-51 * static_cast<double>(in.grid.reach));
 }
 
-/// Of the triangles that float arithmetic leaves open.
+/// Returns the number of met triangles among those that float arithmetic leaves open.
 std::uint32_t count_precisely(const CornerInput& in, std::size_t i, M which, Open& open) {
   std::uint32_t met = 0;
   for_each_lane(which, [&](std::size_t lane) {
@@ -48,9 +48,9 @@ std::uint32_t count_precisely(const CornerInput& in, std::size_t i, M which, Ope
   return met;
 }
 
-/// How many triangles the segment from p to the light's lower left corner meets (Woop et al. 2013: in coordinates with
-/// the ray as third axis, what decides is three products in two dimensions). One is as good as many where no edge
-/// changes the count (`one_will_do`). (bound corner)
+/// Returns the number of triangles that the segment from p to the light's lower left corner meets (Woop et al. 2013: in
+/// coordinates with the ray as third axis, three two-dimensional products decide). With `one_will_do`, for view samples
+/// whose edges do not change the count, stops at one. (bound corner)
 std::uint32_t count_to_corner_here(const CornerInput& in, Open& open) {
   const D d;
   const TriangleTable& table = in.triangles;
@@ -83,7 +83,7 @@ std::uint32_t count_to_corner_here(const CornerInput& in, Open& open) {
         hn::AndNot(hn::Or(passes, same_bits(column(kTrianglePlane), bits(at.plane))), first_lanes(table.count - i));
     if (hn::AllFalse(d, near)) continue;
     const V w_most = hn::Max(a.w, hn::Max(b.w, c.w)), w_least = hn::Min(a.w, hn::Min(b.w, c.w));
-    // The height over p at which the line meets the triangle's plane: a mean of the corners', with weights f.
+    // Height over p of the intersection of line and triangle's plane: the mean of the corners' heights, with weights f.
     const V total = hn::Add(fab, hn::Add(fbc, fca));
     const V meeting = hn::Div(hn::Add(hn::Mul(fbc, a.w), hn::Add(hn::Mul(fca, b.w), hn::Mul(fab, c.w))), total);
     const V near_p = hn::Mul(set(16 * kRound), far),

@@ -1,3 +1,5 @@
+// Hierarchies of edges for vector units: their leaves, made on demand, and their cuts at a light's plane.
+
 #include "volumes/edges/vectors/cut.hpp"
 
 #include "base/assert.hpp"
@@ -21,7 +23,7 @@ glm::vec3 point(const WidePoints& points, std::size_t lane) {
 
 }  // namespace
 
-/// For cut_hierarchy: what is dropped is no longer in use.
+/// Adapter for cut_hierarchy: dropped children and records are marked as unused.
 class CutEdges::Dropping {
  public:
   Dropping(CutEdges& edges, float scale) : edges_(edges), tree_(edges.tree_), scale_(scale) {}
@@ -72,7 +74,7 @@ void store(WidePoints& points, std::size_t lane, const glm::vec3& x) {
   for (int axis = 0; axis < 3; ++axis) points[static_cast<std::size_t>(axis)][lane] = x[axis];
 }
 
-/// No record is left out.
+/// Predicate that excludes no record.
 constexpr auto kAllUsed = [](std::uint32_t) { return true; };
 
 std::array<glm::vec3, 2> normals_at(const EdgeRecords& records, std::size_t record) {
@@ -82,7 +84,7 @@ std::array<glm::vec3, 2> normals_at(const std::vector<EdgeRecord>& records, std:
   return {records[record].sides[0].n, records[record].sides[1].n};
 }
 
-/// Those of one leaf of a tree over records that are in use.
+/// Fills one leaf of a tree over records with those in use.
 template <typename Records, typename IsUsed>
 void fill(const visibility::TriangleTree::Leaf& slots, const Records& records, const IsUsed& is_used, float scale,
           WideEdges& leaf) {
@@ -101,7 +103,7 @@ void fill(const visibility::TriangleTree::Leaf& slots, const Records& records, c
   }
 }
 
-/// Above its leaves.
+/// Adds the nodes above the leaves.
 template <typename Records, typename IsUsed>
 void add_nodes(vectors::WideEdgeTree& wide, const visibility::TriangleTree& tree, const Records& records,
                const IsUsed& is_used, float scale, LeafCones* kept = nullptr) {
@@ -178,7 +180,7 @@ void CutEdges::restore() {
   if (!is_cut_) return;
   ends_.reset();
   plane_of_light_ = vectors::Cluster::kSeveral;
-  // Backwards: of one that was changed more than once, the first is what it was.
+  // In reverse: of an entry that was changed several times, the first saved value is the original.
   std::for_each(nodes_.rbegin(), nodes_.rend(), [&](const auto& node) { tree_.nodes[node.number].used = node.used; });
   std::for_each(leaves_.rbegin(), leaves_.rend(),
                 [&](const auto& leaf) { tree_.leaves[leaf.number].used = leaf.used; });

@@ -1,3 +1,6 @@
+// Edges that a sphere's disk cuts into casters that pass through it, on vector units with a scalar fallback.
+// docs/edge-scatter.md, "Ends".
+
 #include "volumes/edges/vectors/disk_cuts.hpp"
 
 #include "engines/vectors/disk_plane.hpp"
@@ -21,7 +24,7 @@
 #define PENUMBRA_DISK_CUTS_ONCE
 namespace penumbra::volumes {
 
-/// How places in the plane become crossings.
+/// Converts places in the plane to crossings.
 struct DiskCells {
   glm::dvec2 middle, half;
   double cells, rounding, per_far, fixed;
@@ -35,7 +38,7 @@ struct DiskCells {
         fixed(1.2 * static_cast<double>(in.at.on_light.fixed) + rounding * glm::length(middle)) {}
 };
 
-/// One caster, number by number: one that has a corner within rounding of the plane, or of whose plane p is.
+/// Handles one caster in scalar code: one that has a corner within rounding of the plane, or whose plane contains p.
 class SlowDiskCut {
  public:
   SlowDiskCut(const DiskCutInput& in, const vectors::DiskPlane& plane, double slab, double most)
@@ -56,7 +59,8 @@ class SlowDiskCut {
     if (std::ranges::min(height) > slab_ || std::ranges::max(height) < -slab_) return;
     glm::dvec2 from = place[0], to = from;
     const bool passes = std::ranges::min(height) < 0 && std::ranges::max(height) >= 0;
-    // Around what is before the plane, the corners in their order: out of it at `from`, back at `to`.
+    // Walking around the part in front of the plane, with the corners in order: the boundary leaves at `from`, and
+    // returns at `to`.
     for (const auto& [i, next] : {std::pair{0U, 1U}, std::pair{1U, 2U}, std::pair{2U, 0U}}) {
       if (!passes || (height[i] < 0) == (height[next] < 0)) continue;
       (height[i] < 0 ? from : to) = plane_.pass(corners[std::min(i, next)], corners[std::max(i, next)]);
@@ -86,7 +90,8 @@ class SlowDiskCut {
     const double share = squared > 0 ? std::clamp(glm::dot(x - from, way) / squared, 0.0, 1.0) : 0.0;
     return glm::length(x - from - share * way);
   }
-  /// How far what is within the slab may be from the segment where the caster passes through.
+  /// Returns the largest distance of the part within the slab from the segment where the caster passes through the
+  /// plane.
   [[nodiscard]] double around_cut(const std::array<glm::dvec2, 3>& place, const std::array<double, 3>& height,
                                   const glm::dvec2& from, const glm::dvec2& to) const {
     double wide = 0;
@@ -101,12 +106,13 @@ class SlowDiskCut {
     }
     return wide;
   }
-  /// +1: from p the corners run counter-clockwise; 0: p is in their plane, or they are so thin that nobody knows.
+  /// Returns +1 if the corners run counter-clockwise as seen from p, −1 if clockwise; 0 if p is in their plane, or if
+  /// they are so thin that the orientation is not certain.
   [[nodiscard]] int turn_from(const std::array<glm::dvec3, 3>& corners, std::uint32_t triangle,
                               OpenJudge& judge) const {
     const glm::dvec3 a = corners[0] - plane_.p, b = corners[1] - plane_.p, c = corners[2] - plane_.p;
     const double side = -glm::dot(a, glm::cross(b, c));
-    // As in visibility::certainly_meets.
+    // Error bound as in visibility::certainly_meets.
     if (std::abs(side) > 0x1p-46 * glm::length(a) * glm::length(b) * glm::length(c)) return side > 0 ? 1 : -1;
     const double along =
         glm::dot(judge.normal_towards(in_.at, triangle), glm::cross(corners[1] - corners[0], corners[2] - corners[0]));
@@ -145,8 +151,8 @@ Double along(const glm::dvec3& n, const Double3& x) {
   return product({number(n.x), number(n.y), number(n.z)}, x);
 }
 
-/// Casters side by side. Most of those that are near to some disk nearby do not pass through this one: each step leaves
-/// some out, and what is left of many vectors becomes few full ones.
+/// Handles casters in vectors. Most casters that are near some neighbouring disk do not pass through this one: each
+/// step discards some, and compacts the rest into full vectors.
 class FastDiskCuts {
  public:
   FastDiskCuts(const DiskCutInput& in, OpenJudge& judge, Open& open, CrossingTable& out)
@@ -171,7 +177,7 @@ class FastDiskCuts {
         return hn::Sub(column(vectors::NearSpheres::kMiddle + axis, i), number(of_p));
       };
       const Double3 way{middle(0, plane_.p.x), middle(1, plane_.p.y), middle(2, plane_.p.z)};
-      // A radius has room for rounding.
+      // A radius includes a margin for rounding.
       const Double most_off = hn::Add(column(vectors::NearSpheres::kRadius, i), number(slab_));
       const Which near = hn::And(hn::FirstN(d, near_.count - i), hn::Le(hn::Abs(height(way)), most_off));
       if (hn::AllFalse(d, near)) continue;
@@ -183,10 +189,10 @@ class FastDiskCuts {
   }
 
  private:
-  static constexpr std::size_t kMost = 128;  // that wait for a next step
-  /// With room for a vector beyond what is there.
+  static constexpr std::size_t kMost = 128;  // entries that wait for a next step
+  /// padded for a vector beyond the entries
   using Column = std::array<double, kMost + 2 * hn::MaxLanes(Doubles())>;
-  /// Numbers of casters.
+  /// Indices of casters.
   struct Waiting {
     void add(Double which, Which these) { count += pack(which, these, Doubles(), &numbers[count]); }
     [[nodiscard]] bool full() const { return count >= kMost; }
@@ -203,13 +209,13 @@ class FastDiskCuts {
       return {load(0), load(1), load(2)};
     }
   };
-  /// Some of them; beyond the last one the first of all casters.
+  /// Returns a vector of entries; lanes beyond the last one are the first of all casters.
   static Double some(const Waiting& waiting, std::size_t first) {
     const Doubles d;
     return hn::IfThenElseZero(hn::FirstN(d, waiting.count - first), hn::LoadU(d, &waiting.numbers[first]));
   }
 
-  /// Light samples are this near to the plane: stored ones are rounded, and it is computed in double.
+  /// Returns the distance of light samples from the plane: stored ones are rounded, and it is computed in double.
   static double thin_slab(const LightGrid::Cones& cones) {
     return 2 * static_cast<double>(cones.deviation) + 0x1p-40 * cones.reach;
   }
@@ -218,7 +224,7 @@ class FastDiskCuts {
     return hn::GatherIndex(Doubles(), rows_ + vectors::NearCasters::kPlane,
                            hn::ConvertTo(hn::RebindToSigned<Doubles>(), begins));
   }
-  /// As DiskPlane.
+  /// Computes as DiskPlane does.
   struct Corner {
     Double3 way;
     Double height, s, t;
@@ -229,7 +235,7 @@ class FastDiskCuts {
   }
   struct Passing {
     Double s, t;
-    Double wide;  // how far what is within the slab may be from it
+    Double wide;  // largest distance of the part within the slab
   };
   [[nodiscard]] Passing pass(const Corner& a, const Corner& b) const {
     const Double across = hn::Sub(a.height, b.height), share = hn::Div(a.height, across);
@@ -239,10 +245,10 @@ class FastDiskCuts {
             hn::Div(hn::Mul(number(1.01 * slab_), size), hn::Abs(across))};
   }
 
-  /// Of those whose spheres are near those that meet the plane, or nearly.
+  /// Selects, from casters whose spheres are near, those that meet the plane, or nearly do.
   void pick_meeting() {
     const Doubles d;
-    // Number by number, which takes a fraction of what vectors do that gather.
+    // A scalar copy takes a fraction of the time of vector gathers.
     for (std::size_t i = 0; i < spheres_.count; ++i) {
       const double* row = rows_ + static_cast<std::size_t>(spheres_.numbers[i]) * vectors::NearCasters::kRow;
       for (std::size_t field = 0; field < corners_.columns.size(); ++field) corners_.columns[field][i] = row[field];
@@ -280,14 +286,15 @@ class FastDiskCuts {
     const Double side = hn::Neg(product(a.way, {hn::Sub(hn::Mul(b.way.y, c.way.z), hn::Mul(b.way.z, c.way.y)),
                                                 hn::Sub(hn::Mul(b.way.z, c.way.x), hn::Mul(b.way.x, c.way.z)),
                                                 hn::Sub(hn::Mul(b.way.x, c.way.y), hn::Mul(b.way.y, c.way.x))}));
-    // As in visibility::certainly_meets.
+    // Error bound as in visibility::certainly_meets.
     const Double unsure =
         hn::Mul(number(0x1p-46),
                 hn::Sqrt(hn::Mul(product(a.way, a.way), hn::Mul(product(b.way, b.way), product(c.way, c.way)))));
     const Which sure = hn::And(hn::Gt(nearest, slab), hn::Gt(hn::Abs(side), unsure));
     add_slowly(which, hn::AndNot(sure, used));
     if (hn::AllFalse(d, hn::And(used, sure))) return;
-    // Around what is before the plane, the corners in their order: out of it at `from`, back at `to`.
+    // Walking around the part in front of the plane, with the corners in order: the boundary leaves at `from`, and
+    // returns at `to`.
     const Passing ab = pass(a, b), bc = pass(b, c), ac = pass(a, c);
     const Which a_before = hn::Lt(a.height, zero), b_before = hn::Lt(b.height, zero), c_before = hn::Lt(c.height, zero);
     const Which from_ab = hn::AndNot(b_before, a_before), from_bc = hn::AndNot(c_before, b_before),
@@ -316,7 +323,7 @@ class FastDiskCuts {
                                       hn::Add(hn::Mul(number(cells_.per_far), farthest), number(cells_.fixed))));
     const hn::Rebind<float, Doubles> floats;
     const auto store = [&](std::size_t field, Double x) {
-      // Not by Compress, for which Highway has a table in memory that g++ copies each time.
+      // Does not use Compress, for which Highway has a table in memory that g++ copies each time.
       HWY_ALIGN std::array<double, hn::MaxLanes(Doubles())> packed;
       pack(x, kept, d, packed.data());
       hn::StoreU(hn::DemoteTo(floats, hn::Load(d, packed.data())), floats, out_[field] + out_.count);
@@ -343,7 +350,7 @@ class FastDiskCuts {
 
   const DiskCutInput& in_;
   const vectors::NearSpheres& near_;
-  const double* rows_;  // of all casters
+  const double* rows_;  // rows of all casters
   vectors::DiskPlane plane_;
   DiskCells cells_;
   double slab_, most_;
@@ -353,7 +360,7 @@ class FastDiskCuts {
   CrossingTable& out_;
   Waiting spheres_, meeting_;
   Corners corners_;  // of those that wait as spheres
-  Corners ways_;     // from p, of those that meet the plane
+  Corners ways_;     // vectors from p, of those that meet the plane
 };
 
 void add_disk_cuts_here(const DiskCutInput& in, OpenJudge& judge, Open& open, CrossingTable& out) {

@@ -6,7 +6,7 @@
 
 #include <array>
 
-/// What a sphere's disk, as one view sample sees it, cuts casters into: only what is before the disk hides light
+/// Cuts of casters by a sphere's disk, as one view sample sees it: only objects in front of the disk hide light
 /// samples, so each caster that passes through it has one more edge there. docs/edge-scatter.md, "Ends". Inside
 /// volumes/ only.
 namespace penumbra::volumes {
@@ -15,15 +15,15 @@ struct DiskCutInput {
   const LightGrid& grid;
   const ClusterSample& at;
 };
-/// Adds these edges (kEdge: kDiskCut) to a table of crossings. All light samples within their errors are open. Those of
-/// k 0 cut nothing, but rounding may see it otherwise.
+/// Adds these edges (kEdge: kDiskCut) to a table of crossings. All light samples within their errors are open. Edges
+/// with k = 0 cut nothing, but are added since rounding may give another result.
 void add_disk_cuts(const DiskCutInput& input, OpenJudge& judge, Open& open, CrossingTable& out);
 
-/// Which ends of a mesh's edge are behind the disk, and where it passes through.
+/// Ends of a mesh's edge that are behind the disk, and the crossing.
 struct PassingEdge {
   std::array<bool, 2> behind{};
-  glm::vec2 place{0};  ///< if one is
-  float share = 0;     ///< of the way from a to b
+  glm::vec2 place{0};  ///< place of the crossing, if there is one
+  float share = 0;     ///< fraction of the edge from a to b
 };
 PassingEdge pass_disk(const DiskCutInput& input, const std::array<glm::dvec3, 2>& ends);
 

@@ -1,5 +1,5 @@
-// Edge scatter on a processor: a few neighbouring view samples sort out, together, which of their cluster's edges and
-// triangles matter to them.
+// Edge scatter on a processor: selects, for a few neighbouring view samples together, those of their cluster's edges
+// and triangles that affect them.
 
 #include "volumes/edges/vectors/group.hpp"
 
@@ -29,13 +29,13 @@ struct Box3 {
   glm::vec3 low{0}, high{0};
 };
 struct GroupBounds {
-  Box3 in_grid;  // (across, along, axis)
+  Box3 in_grid;  // bounds in (across, along, axis)
   glm::vec3 middle{0}, half_size{0};
   glm::vec2 foot_low{0}, foot_high{0};
   glm::vec2 lean_low{0}, lean_high{0};
   float height_high = 0, far = 0, per_way = 0, per_reach = 0, per_foot = 0, fixed = 0, per_lean = 0;
   LightGrid::Range window;
-  glm::vec3 turned{0};  // least and largest shares of a way's coordinates in how high it is over p on the light
+  glm::vec3 turned{0};  // smallest and largest ratios of a direction's coordinates to its height over p on the light
 };
 
 GroupBounds bounds_of(std::span<const ClusterSample> samples) {
@@ -71,11 +71,11 @@ GroupBounds bounds_of(std::span<const ClusterSample> samples) {
   return g;
 }
 
-/// Where an end of an edge appears for any view sample of the group.
+/// Bounds of the place of an edge's end for any view sample of the group.
 struct Range {
   V low_x, low_y, high_x, high_y, error;
   M bounded;
-  V level;  // over the light's plane
+  V level;  // height over the light's plane
 };
 
 class GroupFilter {
@@ -113,7 +113,7 @@ class GroupFilter {
     }
   }
 
-  /// Triangles that the ways from the group's p to the light's corner may meet.
+  /// Selects triangles that the segments from the group's p to the light's corner may meet.
   void triangles(TriangleTable& near) const {
     near.count = 0;
     near.reserve(in_.triangles.count);
@@ -139,7 +139,7 @@ class GroupFilter {
   }
 
  private:
-  /// May an edge meet the hull of the group and the light?
+  /// Returns whether an edge may meet the hull of the group and the light.
   [[nodiscard]] M in_hull(std::size_t i) const {
     return meets(hull_, std::array{Corners{column(kAx, i), column(kAy, i), column(kAh, i)},
                                    Corners{column(kBx, i), column(kBy, i), column(kBh, i)}});
@@ -150,7 +150,7 @@ class GroupFilter {
   struct Interval {
     V low, high;
   };
-  /// How far a point is beside the way from p to the light's corner, along one axis.
+  /// Returns the distance of a point from the segment from p to the light's corner, along one axis.
   [[nodiscard]] Interval beside_way(V x, V h, std::size_t axis) const {
     const auto i = static_cast<glm::length_t>(axis);
     const V w_low = hn::Sub(set(g_.in_grid.low.z), h), w_high = hn::Sub(set(g_.in_grid.high.z), h);
@@ -163,7 +163,7 @@ class GroupFilter {
   struct Sides {
     M positive, negative, none;
   };
-  /// What one of the edges' triangles is for all of the group's p. (bound side)
+  /// Classifies the side of one of the edges' triangles for all of the group's p. (bound side)
   [[nodiscard]] Sides sides(std::size_t first, std::size_t i) const {
     const V x = column(first, i), y = column(first + 1, i), z = column(first + 2, i);
     const V f = hn::Sub(hn::MulAdd(x, set(g_.middle.x), hn::MulAdd(y, set(g_.middle.y), hn::Mul(z, set(g_.middle.z)))),
@@ -184,8 +184,8 @@ class GroupFilter {
   }
 
   /// With h the height of x over the light's plane and H that of p, X' = X + (X − foot) h / (H − h): linear in both, so
-  /// the corners bound it. X − foot and H − h are ways, taken from the cluster's middle: h / (H − h) may be thousands,
-  /// and the feet are rounded over the light.
+  /// the corners bound it. X − foot and H − h are differences taken from the cluster's middle: h / (H − h) may be
+  /// thousands, and the feet are rounded over the light.
   [[nodiscard]] HWY_INLINE Range range_of(std::size_t first, std::size_t i) const {
     const V x = hn::Add(column(first, i), set(foot_.x)), y = hn::Add(column(first + 1, i), set(foot_.y));
     Range r;
@@ -194,7 +194,7 @@ class GroupFilter {
     const V w_low = hn::Sub(set(g_.in_grid.low.z), below), w_high = hn::Sub(set(g_.in_grid.high.z), below);
     r.bounded = hn::And(hn::Gt(w_low, hn::Mul(set(0.25F), w_high)), hn::Gt(w_low, set(256 * kRound * in_.grid.reach)));
     if (in_.grid.cones) {
-      // A group that sees the light from aside has a height of its own.
+      // A group that sees the light from the side has its own height.
       const auto aside = [&](std::size_t axis) {
         const auto j = static_cast<glm::length_t>(axis);
         const V at = column(first + axis, i);
@@ -222,10 +222,10 @@ class GroupFilter {
     const V foot =
         hn::Add(away(low_x, high_x, g_.foot_low.x, g_.foot_high.x), away(low_y, high_y, g_.foot_low.y, g_.foot_high.y));
     V far = hn::Add(column(kFar, i), set(g_.far));
-    if (in_.grid.cut_reach > 0)  // (bound cut)
+    if (in_.grid.cut_reach > 0)  // see (bound cut)
       far = hn::Add(far, hn::IfThenElseZero(hn::Lt(r.level, set(2 * near_cut(in_.grid))), set(cut_far(in_.grid))));
     const V way = hn::Mul(far, inverse);
-    // (bound X), a tenth more: the differences of height are not computed like the view samples'
+    // (bound X), enlarged by a tenth: the differences of height are computed differently than those of view samples
     r.error = hn::Mul(set(1.1F), hn::MulAdd(way, hn::MulAdd(set(g_.per_reach), foot, set(g_.per_way)),
                                             hn::MulAdd(set(g_.per_foot), foot, set(g_.fixed))));
     const V around = hn::Mul(set(4), r.error);
@@ -249,7 +249,7 @@ class GroupFilter {
   const ClusterInput& in_;
   const GroupBounds& g_;
   const Hull& hull_;
-  glm::vec2 foot_{0};  // of the cluster's middle
+  glm::vec2 foot_{0};  // foot of the cluster's middle
   float height_ = 0;
 };
 

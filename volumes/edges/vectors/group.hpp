@@ -9,11 +9,11 @@
 #include <cstdint>
 #include <span>
 
-/// A few neighbouring view samples sort out, together, what of their cluster's lists matters to them. Inside volumes/
-/// only.
+/// Selection, for a few neighbouring view samples together, of the entries of their cluster's lists that affect them.
+/// Inside volumes/ only.
 namespace penumbra::volumes {
 
-/// A cluster of view samples with the edges and triangles that may matter to it.
+/// A cluster of view samples with the edges and triangles that may affect it.
 struct ClusterInput {
   const LightGrid& grid;
   const visibility::LightTouch& touch;
@@ -23,17 +23,17 @@ struct ClusterInput {
   std::span<const ClusterSample> samples;
   const EdgeTable& edges;
   const TriangleTable& triangles;
-  std::size_t group;          ///< view samples that sort out edges together
-  bool exact_area;            ///< not of light samples but of the light
-  const CutEnds* ends;        ///< of edges of the tree (WideEdges::cut); null: none is cut
+  std::size_t group;          ///< view samples that select edges together
+  bool exact_area;            ///< computes an area of the light instead of light samples
+  const CutEnds* ends;        ///< ends of edges of the tree (WideEdges::cut); null: none is cut
   std::uint32_t light_plane;  ///< CutEdges::plane_of_light
 
-  /// Edges that cross no light row matter, too.
+  /// Returns whether edges matter that cross no light row.
   [[nodiscard]] bool between_rows() const { return exact_area || grid.tiles; }
 };
-/// Sets what of a view sample is open before any caster is tested: light samples that a triangle touches.
+/// Sets the initial open light samples of a view sample: those that a triangle touches.
 void reset_open(const LightGrid& grid, const visibility::LightTouch& touch, const GridSample& at, Open& open);
-/// What matters to a group of view samples. Settled edges stay well above all of its p.
+/// Edges and triangles that affect a group of view samples. Settled edges stay well above all of its p.
 struct GroupLists {
   GroupTable settled, unsettled;
   TriangleTable triangles;

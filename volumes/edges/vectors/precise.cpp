@@ -1,3 +1,6 @@
+// One edge for one view sample in scalar code, with the operations of the vector code, and its exact decisions.
+// docs/edge-scatter.md derives the bounds.
+
 #include "volumes/edges/vectors/precise.hpp"
 
 #include "volumes/edges/vectors/disk_cuts.hpp"
@@ -12,7 +15,7 @@
 namespace penumbra::volumes {
 namespace {
 
-/// A way from p: across, along, and up to the light. It appears at foot + height / w (x, y).
+/// A vector from p: across, along, and up to the light. Its place on the light is foot + height / w (x, y).
 using Way = glm::vec3;
 
 glm::vec2 appears(const Placing& place, const Way& way) {
@@ -20,7 +23,7 @@ glm::vec2 appears(const Placing& place, const Way& way) {
   return {place.foot.x + q * way.x, place.foot.y + q * way.y};
 }
 
-/// As the light is seen from p.
+/// Returns the vector in the coordinates of the light as seen from p.
 Way turned(const LightGrid& grid, const ClusterSample& at, const Way& way) {
   if (!grid.cones) return way;
   const auto along = [&](glm::length_t row) {
@@ -29,12 +32,13 @@ Way turned(const LightGrid& grid, const ClusterSample& at, const Way& way) {
   return {along(0), along(1), along(2)};
 }
 
-/// (bound X)
+/// Returns the error of a place. (bound X)
 float error_of(const Placing& place, float far, float w, float from_foot) {
   return far / w * (place.per_way + place.per_reach * from_foot) + place.per_foot * from_foot + place.fixed;
 }
 
-/// Of an end's way, as the bounds take it: with what the end is off if the light's plane cut it. (bound cut)
+/// Returns the length of an end's vector for the bounds: includes the end's error if the light's plane cut it. (bound
+/// cut)
 float far_of(const LightGrid& grid, const Placing& place, const Way& way, float far) {
   return place.height - way.z < near_cut(grid) ? far + cut_far(grid) : far;
 }
@@ -51,8 +55,8 @@ class Marks {
   }
   void corner() { open_.corner = true; }
 
-  /// What is open where the changes at (row, x) may be anywhere within `error` of x: the nearest light sample, if it is
-  /// that near; the row, if others are too.
+  /// Marks open samples where the change at (row, x) may be anywhere within `error` of x: the nearest light sample, if
+  /// it is that close; the whole row, if others are, too.
   void near(float row, float x, float error) {
     if (row < 0 || row >= static_cast<float>(grid_.rows)) return;
     const auto columns = static_cast<float>(grid_.columns);
@@ -91,7 +95,7 @@ float row_at_least(const LightGrid& grid, float y) {
   return std::clamp(std::ceil(y), 0.0F, static_cast<float>(grid.rows));
 }
 
-/// Of the light samples of a row, the first that the edge is left of: between `lowest` and one after `highest`.
+/// Returns the first light sample of a row that the edge is left of: between `lowest` and one after `highest`.
 float first_right_of(const PreciseInput& in, float row, float lowest, float highest, bool runs_up, Marks& marks) {
   float first = lowest;
   for (; first <= highest; ++first) {
@@ -100,14 +104,14 @@ float first_right_of(const PreciseInput& in, float row, float lowest, float high
     const int side = side_of_way(in, glm::dvec3(in.of.grid.points[sample]) - glm::dvec3(in.at.p));
     if (side == 0) {
       marks.sample(row, first);
-    } else if ((side < 0) == runs_up) {  // right of an edge that runs up
+    } else if ((side < 0) == runs_up) {  // right of an edge that runs upward
       break;
     }
   }
   return first;
 }
 
-/// Of a crossing's x on any row of the light.
+/// Returns the error of a crossing's x on any row of the light.
 float error_of_rows(const LightGrid& grid, const ProjectedEdge& s) {
   const float weight =
       std::min(1.0F, (std::abs(s.near.y - grid.first_cell.y) + 2 * grid.half_cells.y) / std::abs(s.far.y - s.near.y));
@@ -115,17 +119,18 @@ float error_of_rows(const LightGrid& grid, const ProjectedEdge& s) {
          8 * kRound * (grid.half_cells.x + std::abs(s.near.x));
 }
 
-/// May it pass the light's corner on either side? The depth there is counted in double, which may know better.
+/// Returns whether the edge may pass the light's corner on either side. The depth there is counted in double, which may
+/// be more precise.
 bool passes_corner(const LightGrid& grid, const ProjectedEdge& s) {
   const float around = s.error_near + s.error_far;
   if (s.low.x - around > -0.5F || s.high.x + around < -0.5F) return false;
   if (s.low.y - around > -0.5F || s.high.y + around < -0.5F) return false;
   const float x = std::clamp(s.near.x + (-0.5F - s.near.y) * s.slope, s.low.x, s.high.x);
-  return !(std::abs(x + 0.5F) >= error_of_rows(grid, s));  // level ones too, whose x is not known
+  return !(std::abs(x + 0.5F) >= error_of_rows(grid, s));  // also true for level edges, whose x is NaN
 }
 
-/// Returns the first row above where the edge crosses the light's left side, if it does. The x that decides it is the
-/// one that changes the rows, so that no row can count the edge twice, or not at all.
+/// Returns the first row above the point where the edge crosses the light's left side, if it does. The x that decides
+/// the crossing is also the one that changes the rows, so that no row counts the edge twice, or not at all.
 template <typename Counter>
 float cross_rows(const PreciseInput& in, const ProjectedEdge& s, Counter jump, const Changes<Counter>& changes,
                  Marks& marks) {
@@ -145,14 +150,14 @@ float cross_rows(const PreciseInput& in, const ProjectedEdge& s, Counter jump, c
     const float x = std::clamp(s.near.x + (row - s.near.y) * s.slope, s.low.x, s.high.x);
     const float column = x - grid.shift[static_cast<std::size_t>(row)];
     const float computed = std::max(std::ceil(column), 0.0F);
-    const bool on_light = x >= -0.5F;  // else it is one of those that the left side's depth has in it
+    const bool on_light = x >= -0.5F;  // else the crossing is included in the depth at the left side
     if (on_light == upper_right) from = std::min(from, row);
-    // Light samples that it may be on either side of.
+    // Light samples that may be on either side of the edge.
     const float lowest = std::max(std::ceil(column - error), 0.0F);
     const float highest = std::min(std::floor(column + error), columns - 1);
     float first = on_light ? computed : 0;
     if (lowest <= highest) {
-      // Where an end may be on either side of the row, so may be what crosses it.
+      // An end that may be on either side of the row makes its crossing uncertain.
       const bool at_end = std::abs(s.near.y - row) < 2 * s.error_near || std::abs(s.far.y - row) < 2 * s.error_far;
       if (at_end || s.may_be_cut) {
         if (lowest < highest) marks.row(row);
@@ -170,7 +175,7 @@ float cross_rows(const PreciseInput& in, const ProjectedEdge& s, Counter jump, c
   return from;
 }
 
-/// Where it crosses the light's left side: above the corner or below?
+/// Adds the crossing of the light's left side: above or below the corner.
 template <typename Counter>
 void cross_left_side(const PreciseInput& in, const ProjectedEdge& s, float from, Counter up,
                      const Changes<Counter>& changes, Marks& marks) {
@@ -183,14 +188,14 @@ void cross_left_side(const PreciseInput& in, const ProjectedEdge& s, float from,
                       8 * kRound * (grid.half_cells.y + std::abs(s.near.y));
   const float y = std::clamp(s.near.y + (-0.5F - s.near.x) * inverse, s.low.y, s.high.y);
   if (std::abs(y + 0.5F) < error) marks.corner();
-  // Beside light rows they know better than the division: only below the first of them is y asked.
+  // Next to light rows, these decide more precisely than the division: y is used only below the first of them.
   const bool over_corner = from > 0 || y > -0.5F;
   if (in.projected || !over_corner || from >= static_cast<float>(grid.rows)) return;
   Counter& row = changes.left[static_cast<std::size_t>(from)];
   row = static_cast<Counter>(row + up);
 }
 
-/// As stored.
+/// Returns the stored ends.
 std::array<glm::dvec3, 2> ends_of(const ClusterInput& in, std::size_t edge) {
   const auto slot = std::bit_cast<std::uint32_t>(in.edges[kEdgeSlot][edge]);
   const WideEdges& leaf = in.edge_tree.leaves[slot / kWide];
@@ -205,11 +210,12 @@ std::array<glm::dvec3, 2> ends_of(const ClusterInput& in, std::size_t edge) {
 struct WindowPart {
   Way start, end;
   float far_start, far_end;
-  bool passes_at_start = false, passes_at_end = false;  ///< through a sphere's disk
+  bool passes_at_start = false, passes_at_end = false;  ///< crosses a sphere's disk there
   bool is_empty = false;
 };
 
-/// Widened by the lift, so that rounding cannot put an edge at p's own height below the window.
+/// Clips an edge to the window. Widened by the lift, so that rounding cannot put an edge at p's own height below the
+/// window.
 WindowPart cut_to_window(const LightGrid& grid, const ClusterSample& at, const Way& a, const Way& b, float far_a,
                          float far_b, const PassingEdge& passing) {
   const Placing& place = at.on_light;
@@ -245,8 +251,8 @@ std::optional<float> exact_multiplicity(const EdgeTable& edges, std::size_t edge
     const auto plane = std::bit_cast<std::uint32_t>(edges[first + kPlane1 - kNormal1X][edge]);
     if (edges[first + kOffsetError1 - kNormal1X][edge] < 0 || plane == at.plane) continue;
     const glm::dvec3 n(edges[first][edge], edges[first + 1][edge], edges[first + 2][edge]);
-    const glm::dvec3 towards = judge.normal_towards(at, plane);  // a plane's number is that of a triangle in it
-    const double side = glm::dot(n, towards);  // their cosine is ±1 to a thousandth, unless one of them is not known
+    const glm::dvec3 towards = judge.normal_towards(at, plane);  // a plane's index is that of a triangle in it
+    const double side = glm::dot(n, towards);  // their cosine is ±1 to a thousandth, unless one of them is unknown
     if (!(std::abs(side) > 0.5 * glm::length(n) * glm::length(towards))) return std::nullopt;
     k += side > 0 ? 1.0F : -1.0F;
   }
@@ -257,10 +263,10 @@ int side_of_way(const PreciseInput& in, const glm::dvec3& l) {
   const auto [from, to] = ends_of(in.of, in.edge);
   const glm::dvec3 a = from - glm::dvec3(in.at.p), b = to - glm::dvec3(in.at.p);
   const double side = glm::dot(l, glm::cross(a, b));
-  // As in visibility::certainly_meets.
+  // Error bound as in visibility::certainly_meets.
   const double error = 0x1p-46 * glm::length(l) * glm::length(a) * glm::length(b);
   if (std::abs(side) <= error) return 0;
-  // From above, where the light is, the grid is turned over.
+  // As seen from above, where the light is, the grid is mirrored.
   return (side > 0) == (in.of.grid.side < 0) ? 1 : -1;
 }
 

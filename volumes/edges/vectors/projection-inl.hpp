@@ -1,4 +1,4 @@
-// Signed edges on a processor: where a group's edges appear to one of its view samples. Inside volumes/ only.
+// Signed edges on a processor: places of a group's edges as one of its view samples sees them. Inside volumes/ only.
 
 #if defined(PENUMBRA_VOLUMES_PROJECTION_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef PENUMBRA_VOLUMES_PROJECTION_INL_HPP
@@ -19,8 +19,8 @@ namespace {
 namespace hn = hwy::HWY_NAMESPACE;
 using namespace vectors::HWY_NAMESPACE;
 
-/// k_e at p, and whether rounding leaves it open. In one order, without fused multiplications, as everywhere where the
-/// same sign must come out for all edges of a triangle.
+/// k_e at p, and whether rounding leaves it open. Evaluated in a fixed order, without fused multiplications, since the
+/// same sign must result for all edges of a triangle.
 struct Multiplicity {
   V k;
   M open;
@@ -56,7 +56,7 @@ class Projection {
   Projection(const ClusterInput& in, const ClusterSample& at, const GroupLists& lists, CrossingTable& out)
       : in_(in), at_(at), place_(at.on_light), lists_(lists), out_(out) {}
 
-  /// `special` gets edges whose multiplicity is open, and those that pass through p within rounding.
+  /// `special` receives edges whose multiplicity is open, and those that pass through p within rounding.
   template <typename Special>
   void operator()(Special& special) {
     out_.count = 0;
@@ -66,8 +66,7 @@ class Projection {
   }
 
  private:
-  /// Without light samples whoever places an edge in double asks for the signs that float leaves open: there k is not a
-  /// number.
+  /// In exact-area mode undecided multiplicities are stored as NaN; the double-precision stage resolves them.
   [[nodiscard]] M open_ones(const Multiplicity& m) const { return in_.exact_area ? hn::FirstN(D(), 0) : m.open; }
   [[nodiscard]] V sure_or_none(const Multiplicity& m) const {
     return in_.exact_area ? hn::IfThenElse(m.open, set(kUnknown), m.k) : m.k;
@@ -94,7 +93,7 @@ class Projection {
     return {hn::Add(set(place_.foot.x), hn::Mul(q, way.x)), hn::Add(set(place_.foot.y), hn::Mul(q, way.y))};
   }
 
-  /// Edges well above p.
+  /// Projects edges well above p.
   template <typename Special>
   HWY_INLINE void settled(std::size_t i, Special& special) {
     const GroupTable& table = lists_.settled;
@@ -114,7 +113,7 @@ class Projection {
                   hn::AndNot(open, live));
   }
 
-  /// Edges that may come near p's height, or go below: as scatter_precisely cuts them. (bound window)
+  /// Projects edges that may come near p's height, or go below: clipped as in scatter_precisely. (bound window)
   template <typename Special>
   void unsettled(std::size_t i, Special& special) {
     const D d;
@@ -125,7 +124,7 @@ class Projection {
     if (hn::AllFalse(d, live)) return;
     const Ways a = way_to(table, kAx, i), b = way_to(table, kBx, i);
     const glm::vec2 window = 2.0F * grid.half_cells + 2.0F, off = place_.foot - grid.first_cell;
-    // Beyond the table's end there is anything.
+    // Lanes past the end of the table hold garbage.
     const V edge = hn::IfThenElseZero(first_lanes(table.count - i), hn::Load(d, table[kGroupEdge] + i));
     const V far = hn::Add(far_of(edge), set(at_.far));
     const V far_a = with_cut(far, a.w), far_b = with_cut(far, b.w);
@@ -145,7 +144,7 @@ class Projection {
       keep_inside(hn::Sub(wide_a, xa), hn::Sub(wide_b, xb));
       keep_inside(hn::Add(wide_a, xa), hn::Add(wide_b, xb));
     }
-    // What is behind a sphere's disk. (bound ends)
+    // Clips parts behind a sphere's disk. (bound ends)
     M at_end = hn::FirstN(d, 0);
     if (at_.meets_end) {
       const V slab = set(static_cast<float>(vectors::slab_of(*grid.cones)) * 1.0001F), end = set(place_.height);
@@ -174,13 +173,13 @@ class Projection {
   }
 
   [[nodiscard]] V far_of(V edge) const { return hn::GatherIndex(D(), in_.edges[kFar], hn::BitCast(I(), edge)); }
-  /// (bound cut)
+  /// Returns the length with the error of a cut. (bound cut)
   [[nodiscard]] V with_cut(V far, V w) const {
     if (in_.grid.cut_reach == 0) return far;
     const M may_be_cut = hn::Lt(hn::Sub(set(place_.height), w), set(near_cut(in_.grid)));
     return hn::Add(far, hn::IfThenElseZero(may_be_cut, set(cut_far(in_.grid))));
   }
-  /// (bound X)
+  /// Returns the error of a place. (bound X)
   [[nodiscard]] V error_of(const LightPoints& place, V w, V far) const {
     const V foot =
         hn::Add(hn::Abs(hn::Sub(place.x, set(place_.foot.x))), hn::Abs(hn::Sub(place.y, set(place_.foot.y))));
@@ -188,7 +187,8 @@ class Projection {
                       hn::MulAdd(set(place_.per_foot), foot, set(place_.fixed)));
   }
 
-  /// Not all of it in a corner of the grid to the right of all light samples, which are in no such corner of a disk.
+  /// Returns edges not completely in a corner of the grid to the right of all light samples; the samples of a disk
+  /// leave its corners empty.
   [[nodiscard]] M left_of_a_sample(V low_x, V low_y, V high_y) const {
     const float rounding = 8 * kRound * (in_.grid.half_cells.x + in_.grid.half_cells.y);
     const M before = hn::And(hn::Le(hn::Add(low_x, low_y), set(in_.grid.tiles->most_sum + rounding)),
@@ -200,7 +200,7 @@ class Projection {
     LightPoints a, b;
     V k, error, number;
   };
-  /// What crosses light rows or the light's left side, or may.
+  /// Keeps edges that cross light rows or the light's left side, or may do so.
   HWY_INLINE void keep_crossing(const ProjectedEdges& e, M live) {
     const D d;
     const V low_x = hn::Sub(hn::Min(e.a.x, e.b.x), e.error), high_x = hn::Add(hn::Max(e.a.x, e.b.x), e.error);
@@ -238,4 +238,4 @@ class Projection {
 }  // namespace penumbra::volumes::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
-#endif  // once a target
+#endif  // once for each target

@@ -1,3 +1,5 @@
+// Edges of a scene for vector units: made, refit for the next frame, and attributed to lights' bodies.
+
 #include "volumes/edges/vectors/scene_edges.hpp"
 
 #include "base/parallel.hpp"
@@ -56,8 +58,8 @@ SceneEdges::Made SceneEdges::make(const SceneMesh& mesh) {
   return made;
 }
 
-/// Coplanar triangles take their plane from the largest of them (plane_of): if that is of a body, others have another
-/// plane without it. Where no plane is shared, its largest triangle says whose it is.
+/// Coplanar triangles take their plane from the largest of them (plane_of): if that one belongs to a body, the others
+/// have another plane without it. A plane's largest triangle determines its owner if the plane is not shared.
 void SceneEdges::find_bodies(const SceneMesh& mesh) {
   bodies_.clear();
   const std::vector<std::int32_t>& emits = mesh.scene.emits;
@@ -73,7 +75,8 @@ void SceneEdges::find_bodies(const SceneMesh& mesh) {
     }
   }
   const vectors::WideLeaves<vectors::WideEdges>& leaves = edges_.tree().leaves;
-  mesh::for_each_index(leaves.size(), [&](std::size_t i) { static_cast<void>(leaves[i]); });  // made, on all cores
+  // makes all leaves, on all cores
+  mesh::for_each_index(leaves.size(), [&](std::size_t i) { static_cast<void>(leaves[i]); });
   for (std::uint32_t leaf = 0; leaf < leaves.size(); ++leaf) {
     for (std::uint32_t used = leaves[leaf].used; used != 0; used &= used - 1) {
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(used));

@@ -11,18 +11,17 @@
 /// Inside volumes/ only.
 namespace penumbra::volumes {
 
-/// What scene edges are made of.
+/// Input of scene edges.
 struct SceneMesh {
   const visibility::SceneFloats& scene;
-  const visibility::TriangleTree& triangles;  ///< over its casters
-  const EdgeCasters& casters;                 ///< all of them
+  const visibility::TriangleTree& triangles;  ///< over the scene's casters
+  const EdgeCasters& casters;                 ///< all casters
   float scale;
 };
 
-/// All edges of a scene, for walks on vector units. Of a frame that comes of another by moving, what does not move with
-/// vertices is kept: who shares an edge with whom, and who hangs below whom. Planes, boxes, cones and leaves are made
-/// anew, since all of them are of floats that were rounded after the movement: those of an object that has only been
-/// moved or turned are other floats, too. docs/frames.md.
+/// All edges of a scene, for traversals on vector units. In animations, topology (edge adjacency, tree structure) is
+/// reused; planes, boxes, cones and leaves are recomputed, since they derive from floats that were rounded after the
+/// movement, which differ even for an object that was only translated or rotated. docs/frames.md.
 class SceneEdges {
  public:
   void expect_frames() { keeps_ = true; }
@@ -36,8 +35,8 @@ class SceneEdges {
 
   [[nodiscard]] CutEdges& edges() { return edges_; }
   [[nodiscard]] const CutEdges& edges() const { return edges_; }
-  /// Which of them go where the body of this light does not cast. Nothing: its triangles are grown together with
-  /// others, by an edge or by a plane, so that these have other edges without it.
+  /// Returns the edges to exclude if the body of this light casts no shadow; nullopt if its triangles share an edge or
+  /// a plane with others, which then have other edges without the body.
   [[nodiscard]] std::optional<std::span<const EdgeSlot>> of_body(std::int32_t light) const;
   [[nodiscard]] std::uint64_t memory_bytes() const;
 
@@ -50,11 +49,11 @@ class SceneEdges {
     std::vector<EdgeSlot> slots;
     bool grown_together = false;
   };
-  std::map<std::int32_t, Body> bodies_;  // of lights
-  // Where frames are expected:
+  std::map<std::int32_t, Body> bodies_;  // for each light
+  // Kept if more frames are expected:
   std::optional<EdgeRecords> records_;
   visibility::TriangleTree tree_;
-  UnsetList<NormalCone> cones_;  // of its leaves
+  UnsetList<NormalCone> cones_;  // cones of its leaves
   double built_cost_ = 0;
   float scale_ = 0;
 };

@@ -1,5 +1,5 @@
-// Signed edges on a processor: a group's edges that are not for vectors, where light samples form no rows. Inside
-// volumes/ only.
+// Signed edges on a processor: a group's edges that vectors cannot handle, for light samples that are not in rows.
+// Inside volumes/ only.
 
 #if defined(PENUMBRA_VOLUMES_VECTORS_SPECIAL_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef PENUMBRA_VOLUMES_VECTORS_SPECIAL_INL_HPP
@@ -20,8 +20,8 @@ HWY_BEFORE_NAMESPACE();
 namespace penumbra::volumes::HWY_NAMESPACE {
 namespace {
 
-/// visit(edge, k) of each whose multiplicity is sure, if need be by exact predicates; the view sample is open where
-/// another's is not.
+/// Calls visit(edge, k) for each edge whose multiplicity is certain, by exact predicates if needed; any other one opens
+/// the view sample.
 template <typename Visit>
 [[maybe_unused]] void for_each_sure(const ClusterInput& in, const ClusterSample& at, const SpecialEdges& edges,
                                     OpenJudge& judge, Open& view_sample, Visit visit) {
@@ -38,7 +38,7 @@ template <typename Visit>
   });
 }
 
-/// Placed by themselves, they join the others in the table of crossings.
+/// Places edges individually and adds them to the table of crossings.
 [[maybe_unused]] void place_special(const ClusterInput& in, EdgeScratch& s, const ClusterSample& at,
                                     const SpecialEdges& edges, OpenJudge& judge) {
   for_each_sure(in, at, edges, judge, s.open, [&](std::uint32_t edge, float k) {

@@ -1,3 +1,5 @@
+// Lists of edges and triangles for regions and clusters of view samples, by traversals of their hierarchies.
+
 #include "volumes/edges/vectors/vector_edges.hpp"
 
 #include "engines/vectors/horizon.hpp"
@@ -8,14 +10,15 @@
 namespace penumbra::volumes {
 namespace {
 
-/// Leaves of triangles between a region and the light's corner from which on neighbouring pixels see other edges.
+/// Number of leaves of triangles between a region and the light's corner from which on neighbouring pixels see
+/// different edges.
 constexpr std::size_t kDense = 1024;
-constexpr std::size_t kEdgeGroup = 16, kDenseEdgeGroup = 8;  // view samples
+constexpr std::size_t kEdgeGroup = 16, kDenseEdgeGroup = 8;  // view samples in a group
 constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
 
-/// How many edges a cluster of `samples` may list before it is less work for each view sample to walk for itself, which
-/// then looks at some `leaves` of edges. Measured: an edge takes 65 cycles to list and 1.5 for each view sample; a
-/// walk 8,000, and 200 for each leaf and what leads to it.
+/// Returns the number of edges that a cluster of `samples` may list before a traversal for each view sample, which
+/// visits about `leaves` leaves of edges, is cheaper. Measured: an edge takes 65 cycles to list and 1.5 for each view
+/// sample; a traversal 8,000, and 200 for each leaf and its ancestors.
 std::size_t worth_of(std::size_t samples, std::size_t leaves) {
   return samples * (16000 + 400 * leaves) / (130 + 3 * samples);
 }
@@ -33,7 +36,7 @@ void VectorEdges::prepare_mesh(const visibility::SceneFloats& scene) {
   const SceneEdges::Made made = whole_.make({scene, tree(), sides_.casters(), scale()});
   if (made == SceneEdges::Made::built) count_for_mesh("edgesBuilt");
   count_for_mesh(made == SceneEdges::Made::refit ? "edgesRefit" : "edgeTreesBuilt");
-  prepare_triangles();  // after edges, which take the most on their way
+  prepare_triangles();  // after the edges, which take the most memory temporarily
   without_body_.reset();
   front_ = &whole_.edges();
 }
@@ -64,7 +67,7 @@ bool VectorEdges::prepare_casters() {
     front_->leave_out(left_out);
   touch_ = exact_area_ || !visibility::is_planar(light().kind) ? visibility::LightTouch()
                                                                : visibility::find_touch(scene(), tree(), light());
-  return edges.front.has_value() && !exact_area_;  // whose edges stay whole
+  return edges.front.has_value() && !exact_area_;  // for an exact area, edges stay whole
 }
 
 vectors::Blocks VectorEdges::begin_region(const LightGrid& grid, const Cluster& all) {

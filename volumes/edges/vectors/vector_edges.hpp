@@ -21,10 +21,11 @@
 /// Inside volumes/ only.
 namespace penumbra::volumes {
 
-/// A method of signed edges on a processor: finds each cluster's edges and triangles. The rest is vectors::MaskMethod.
+/// A method with signed edges on a processor: finds each cluster's edges and triangles. vectors::MaskMethod does the
+/// rest.
 class VectorEdges : public vectors::MaskMethod {
  public:
-  /// `exact_area`: not of light samples but of the light.
+  /// `exact_area`: computes an area of the light instead of light samples.
   VectorEdges(visibility::MethodDescription given, std::string pass, bool exact_area)
       : MaskMethod(std::move(given), std::move(pass)), sides_(description().name), exact_area_(exact_area) {}
 
@@ -40,22 +41,22 @@ class VectorEdges : public vectors::MaskMethod {
   struct Roots {
     const std::vector<std::uint32_t>&edges, &triangles;
   };
-  /// Finds all edges of a cluster (of several view samples), unless to find those of each view sample alone is less
-  /// work: then false.
+  /// Finds all edges of a cluster (of several view samples); returns false if a search for each view sample is cheaper.
   bool find_edges_together(const LightGrid& grid, std::span<const GridSample> view_samples, const Cluster& cluster,
                            const Roots& roots);
   void do_each_alone(const LightGrid& grid, std::span<const GridSample> view_samples, const Cluster& cluster,
                      const Roots& roots, OpenJudge& judge, std::span<SampleMask> masks);
   void do_list(const LightGrid& grid, std::span<const GridSample> view_samples, const Cluster& cluster,
                OpenJudge& judge, std::span<SampleMask> masks);
-  /// Edges that cross neither a row of light samples nor the light's left side change nothing.
+  /// Returns whether edges can be skipped that cross neither a row of light samples nor the light's left side.
   [[nodiscard]] bool skips_gaps(const LightGrid& grid) const { return !exact_area_ && !grid.tiles; }
   [[nodiscard]] static bool at_disk(const LightGrid& grid) { return grid.cones && grid.cones->near != nullptr; }
   [[nodiscard]] const CutEdges& cut_edges(const LightGrid& grid) const {
     return grid.side < 0 && !back_.tree().nodes.empty() ? back_ : *front_;
   }
 
-  /// View samples with nothing between them and the light. Here: all light samples above the horizon are visible.
+  /// Handles view samples with no caster between them and the light. Default: all light samples above the horizon are
+  /// visible.
   virtual void do_unoccluded(const LightGrid& grid, std::span<const GridSample> view_samples, OpenJudge& judge,
                              std::span<SampleMask> masks);
   virtual void do_occluded(const ClusterInput& input, OpenJudge& judge, std::span<SampleMask> masks) = 0;
@@ -67,19 +68,19 @@ class VectorEdges : public vectors::MaskMethod {
     std::int32_t light;
     CutEdges edges;
   };
-  /// What casts shadow of the last light whose body is grown together with other casters.
+  /// Casters of the last light whose body shares edges or planes with other casters.
   std::optional<WithoutBody> without_body_;
-  CutEdges* front_ = &whole_.edges();  // one of these
-  CutEdges back_;                      // a copy, where the light's plane cuts and it emits to both sides
+  CutEdges* front_ = &whole_.edges();  // one of the above
+  CutEdges back_;                      // a copy, if the light's plane cuts and the light emits to both sides
 
  protected:
-  /// Where the walk for a cluster's edges begins: subtrees that hold all that may matter to it.
+  /// Returns the roots of the traversal for a cluster's edges: subtrees that contain all edges that may affect it.
   virtual const std::vector<std::uint32_t>& edge_roots(const LightGrid& grid, std::span<const GridSample> view_samples);
-  /// As the grid's side of the light has them.
+  /// Returns the edges for the grid's side of the light.
   [[nodiscard]] const WideEdgeTree& edges_of(const LightGrid& grid) const { return cut_edges(grid).tree(); }
   void count(std::map<std::string, std::uint64_t>& counters) override;
 
-  LightWindow window_;  // of the light that is being prepared
+  LightWindow window_;  // window of the light that is being prepared
   tbb::enumerable_thread_specific<EdgeScratch> scratch_;
 
  private:

@@ -1,3 +1,5 @@
+// Exact areas for view samples whose share double cannot prove, made on first use.
+
 #include "volumes/scatter/vectors/areas_on_demand.hpp"
 
 #include "base/assert.hpp"
@@ -23,8 +25,8 @@ areas::ExactView AreasOnDemand::view(const visibility::ViewSamples& samples, std
   if (!is_ready_) {
     const std::lock_guard lock(mutex_);
     if (!is_ready_) {
-      // On all cores, but who waits for them does no other view sample meanwhile: that might ask here again, or take
-      // what this one is working with.
+      // Runs on all cores, but the waiting thread must not run another view sample's task: that could enter this
+      // function again, or overwrite this view sample's buffers.
       tbb::this_task_arena::isolate([&] {
         if (!area_) area_.emplace(*scene_, *tree_);
       });

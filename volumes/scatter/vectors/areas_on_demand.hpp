@@ -11,15 +11,15 @@
 
 namespace penumbra::volumes {
 
-/// The exact areas of the light last prepared, made when the first view sample asks for them: most scenes have none
-/// that does.
+/// The exact areas of the light prepared last, made when the first view sample needs them: most scenes have none that
+/// does.
 class AreasOnDemand {
  public:
-  /// All must outlive its use.
+  /// All arguments must outlive this object's use.
   void prepare_mesh(const visibility::SceneFloats& scene, const visibility::TriangleTree& tree);
   void prepare_light(const visibility::Light& light);
 
-  /// V and the form factor of a view sample. Threads may ask at the same time.
+  /// Returns V and the form factor of a view sample. Thread-safe.
   [[nodiscard]] areas::ExactView view(const visibility::ViewSamples& samples, std::size_t pixel);
   [[nodiscard]] std::uint64_t memory_bytes() const { return area_ ? area_->memory_bytes() : 0; }
 
@@ -29,7 +29,7 @@ class AreasOnDemand {
   const visibility::Light* light_ = nullptr;
   std::mutex mutex_;
   std::optional<areas::ExactArea> area_;
-  std::atomic<bool> is_ready_ = false;  // area_, for light_
+  std::atomic<bool> is_ready_ = false;  // area_ is ready for light_
 };
 
 }  // namespace penumbra::volumes

@@ -1,4 +1,4 @@
-// Edge scatter on a processor: what becomes of its lists (VectorEdges).
+// Edge scatter on a processor: evaluation of its lists (VectorEdges), by light samples or by areas.
 
 #include "volumes/scatter/vectors/edge_scatter_vectors.hpp"
 
@@ -24,7 +24,7 @@
 namespace penumbra::volumes {
 namespace {
 
-/// Light samples.
+/// Evaluation by light samples.
 class VectorEdgeScatter final : public VectorEdges {
  public:
   explicit VectorEdgeScatter(visibility::MethodDescription given)
@@ -43,7 +43,7 @@ class VectorEdgeScatter final : public VectorEdges {
   tbb::enumerable_thread_specific<PointScratch> points_;
 };
 
-/// rows=exact: shares of the light, and their form factors on request.
+/// rows=exact: fractions of the light, and their form factors on request.
 class VectorEdgeRows final : public VectorEdges {
  public:
   explicit VectorEdgeRows(visibility::MethodDescription given) : VectorEdges(std::move(given), "scatter edges", true) {}
@@ -70,11 +70,11 @@ class VectorEdgeRows final : public VectorEdges {
     PENUMBRA_ASSERT(false, "{} has no masks with rows=exact", description().name);
   }
   void read_visibility(std::span<float> visibility) override {
-    // All or nothing, where no share was asked for.
+    // Fully visible or hidden, where no fraction was computed.
     for (std::size_t i = 0; i < visibility.size(); ++i) visibility[i] = share_of(i);
   }
   void read_form_factors(std::span<glm::dvec3> form_factors) override {
-    if (!finds_radiance_) {  // once more, so that a caller who needs V alone did not wait for this
+    if (!finds_radiance_) {  // computed again, so that callers who need V alone did not wait for it
       finds_radiance_ = true;
       repeat();
       finds_radiance_ = wants_radiance_;
@@ -90,11 +90,11 @@ class VectorEdgeRows final : public VectorEdges {
  private:
   [[nodiscard]] bool asks_for_light_samples() const override { return false; }
   [[nodiscard]] bool cuts_casters() const override { return true; }
-  /// A sun of one direction has no area.
+  /// Returns whether the light is a sun of one direction, which has no area.
   [[nodiscard]] bool is_hard() const { return light().sun && light().sun->tangent == 0; }
-  /// Cells that have nothing to do with light samples.
+  /// Returns a grid of cells independent of light samples.
   [[nodiscard]] GridShape grid_shape() const override {
-    constexpr std::uint32_t kCells = 16;  // of a side
+    constexpr std::uint32_t kCells = 16;  // cells a side
     if (is_parallelogram(light().kind)) return {visibility::make_device_light(light(), scale()), true, kCells, kCells};
     const double to_scale = scale();
     const WindowAxes axes = axes_of(light(), window_);
@@ -114,12 +114,12 @@ class VectorEdgeRows final : public VectorEdges {
             vectors::LightGridInput::Window{corner, to_scale * axes.u, to_scale * axes.v, axes.skew},
             static_cast<float>(2 + axes.skew)};
   }
-  /// V of a pixel of the tile.
+  /// Returns V of a pixel of the tile.
   [[nodiscard]] float share_of(std::size_t pixel) const {
     return shares_[pixel].value_or(visible_samples()[pixel] != 0 ? 1.0F : 0.0F);
   }
-  /// Form factors of the tile's pixels from `begin` to `end`, where float32 says that all of the light is seen, or
-  /// nothing.
+  /// Computes form factors of the tile's pixels from `begin` to `end` for which float32 decided that all or nothing of
+  /// the light is visible.
   void shade_unshadowed(std::size_t begin, std::size_t end, std::span<glm::dvec3> form_factors) const {
     std::vector<std::uint32_t> wholes;
     for (std::size_t i = begin; i < end; ++i) {
@@ -135,7 +135,7 @@ class VectorEdgeRows final : public VectorEdges {
     visibility::whole_form_factors(light(), {samples().p, samples().n, wholes}, found);
     for (std::size_t k = 0; k < wholes.size(); ++k) form_factors[wholes[k] - first_pixel()] = glm::dvec3(found[k]);
   }
-  /// Of what nothing hides.
+  /// Returns the form factor of the unoccluded light.
   [[nodiscard]] glm::dvec3 unshadowed(std::size_t pixel) const {
     const visibility::UnshadowedLight seen(light(), samples().p[pixel], samples().n[pixel]);
     areas::FormFactorSum sum(seen, blocks_);
@@ -199,14 +199,15 @@ class VectorEdgeRows final : public VectorEdges {
   }
 
   AreasOnDemand areas_;
-  std::atomic<std::uint64_t> unproven_ = 0;     // view samples whose share double could not prove
+  std::atomic<std::uint64_t> unproven_ = 0;     // view samples whose fraction double could not prove
   std::optional<LightRegion> region_;           // of the light
   std::optional<areas::TextureBlocks> blocks_;  // of its texture
-  std::vector<std::optional<float>> shares_;    // of the tile; none: the light is behind, or below the horizon
-  bool wants_radiance_ = false;                 // after each tile
-  bool finds_radiance_ = false;                 // on the way to shares
+  std::vector<std::optional<float>> shares_;    // for the tile; nullopt: the light is behind, or below the horizon
+  bool wants_radiance_ = false;                 // form factors are requested after each tile
+  bool finds_radiance_ = false;                 // form factors are computed together with fractions
   using PartlySeen = std::vector<std::pair<std::uint32_t, glm::dvec3>>;
-  tbb::enumerable_thread_specific<PartlySeen> partly_seen_;  // pixels of the tile, and what they see of the light
+  tbb::enumerable_thread_specific<PartlySeen> partly_seen_;  // pixels of the tile that see a part of the light, with
+                                                             // their form factors
 };
 
 }  // namespace

@@ -6,9 +6,9 @@
 
 namespace penumbra::volumes {
 
-/// `edge-scatter` on the processor's own vector units (edge-scatter with engine=native): the same algorithm, and the
-/// same bits, since every one is the truth of its pair. Any number of light rows and columns. With
-/// `exact_rows` the share of the light that is visible, without light samples. docs/edge-scatter.md.
+/// Makes `edge-scatter` on the processor's own vector units (edge-scatter with engine=native): the same algorithm, and
+/// the same bits, since every bit is the truth of its pair. Any number of light rows and columns. With `exact_rows`
+/// computes the visible fraction of the light, without light samples. docs/edge-scatter.md.
 std::unique_ptr<visibility::Method> make_edge_scatter_on_vectors(visibility::MethodDescription description,
                                                                  bool exact_rows);
 

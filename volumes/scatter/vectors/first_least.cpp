@@ -1,3 +1,5 @@
+// Minimum of a list of doubles, on vector units.
+
 #include "volumes/scatter/vectors/first_least.hpp"
 
 #undef HWY_TARGET_INCLUDE

@@ -1,5 +1,4 @@
-// Edge scatter on a processor, rows=exact: from edges as they appear to the visible share of the light, without light
-// samples.
+// Edge scatter on a processor, rows=exact: visible fraction of the light from projected edges, without light samples.
 
 #include "volumes/scatter/vectors/integrate.hpp"
 
@@ -29,12 +28,12 @@ HWY_BEFORE_NAMESPACE();
 namespace penumbra::volumes::HWY_NAMESPACE {
 namespace {
 
-/// The depth at the light's corner, from that at a place that no edge comes near: exact predicates count there.
+/// Returns the depth at the light's corner, from that at a place away from all edges, counted by exact predicates.
 std::optional<std::int32_t> depth_by_other_place(const ClusterInput& in, const LightWindow& window, const RowSum& rows,
                                                  const GridSample& at, OpenJudge& judge) {
   constexpr int kTries = 64;
   for (int i = 0; i < kTries; ++i) {
-    // Kronecker's sequence with the square roots of 2 and 3: on no lattice.
+    // Kronecker's sequence with the square roots of 2 and 3: its points are on no lattice.
     const glm::dvec2 share = glm::fract(glm::dvec2(0.4142135623, 0.7320508075) * (i + 1.0));
     const std::optional<std::int32_t> relative = rows.relative_depth(share * 2.0 * glm::dvec2(in.grid.half_cells));
     if (!relative) continue;
@@ -44,7 +43,7 @@ std::optional<std::int32_t> depth_by_other_place(const ClusterInput& in, const L
   return std::nullopt;
 }
 
-/// The same for a sphere or sun, at one of the view sample's light samples.
+/// Returns the depth at the corner for a sphere or sun, from that at one of the view sample's light samples.
 std::optional<std::int32_t> depth_by_light_sample(const IntegralInput& in, const RowSum& rows, const GridSample& at,
                                                   OpenJudge& judge) {
   constexpr std::size_t kTries = 64;
@@ -55,7 +54,7 @@ std::optional<std::int32_t> depth_by_light_sample(const IntegralInput& in, const
   const std::vector<glm::dvec2>& places = in.light.coordinates;
   const std::size_t step = std::max<std::size_t>(1, places.size() / kTries);
   for (std::size_t i = step / 2; i < places.size(); i += step) {
-    // Edges beside the square are not stored.
+    // Edges outside of the square are not stored.
     if (glm::any(glm::greaterThan(glm::abs(places[i]) * half, half - off))) continue;
     const std::optional<std::int32_t> relative = rows.relative_depth((places[i] + 1.0) * half, off);
     if (relative) return static_cast<std::int32_t>(judge.depth(at, static_cast<std::uint32_t>(i))) - *relative;
@@ -63,7 +62,7 @@ std::optional<std::int32_t> depth_by_light_sample(const IntegralInput& in, const
   return std::nullopt;
 }
 
-/// `parts`: what is visible, if it is asked for and neither all nor nothing.
+/// `parts`: the visible parts, if requested and neither all nor nothing is visible.
 struct Rows {
   RowSum sum;
   const LightWindow& window;
@@ -71,7 +70,7 @@ struct Rows {
   bool parts_asked = false;
 };
 
-/// Nothing: double cannot prove it.
+/// Returns the visible fraction; nullopt if double cannot prove it.
 std::optional<double> share_of(const IntegralInput& input, EdgeScratch& scratch, const ClusterSample& at, Rows& all,
                                OpenJudge& judge) {
   const ClusterInput& in = input.cluster;
@@ -87,7 +86,7 @@ std::optional<double> share_of(const IntegralInput& input, EdgeScratch& scratch,
         open));
   }
   CrossingTable& crossing = scratch.crossing;
-  // The vectors only sort out; what they cannot place is looked at as well.
+  // The vectors only select; edges that they cannot place are included.
   const auto special = [&](const SpecialEdges& edges) {
     for_each_lane(edges.which, [&](std::size_t lane) {
       crossing[kK][crossing.count] = kUnknown;
@@ -100,7 +99,7 @@ std::optional<double> share_of(const IntegralInput& input, EdgeScratch& scratch,
   rows.add(crossing, in);
   if (rows.is_open()) return std::nullopt;
   if (open.corner || rows.corner_is_open()) {
-    if (at.meets_end) return std::nullopt;  // a light sample's place is off the disk by more than casters may be
+    if (at.meets_end) return std::nullopt;  // a light sample is farther off the disk than casters may be
     const std::optional<std::int32_t> found = in.grid.cones ? depth_by_light_sample(input, rows, at, judge)
                                                             : depth_by_other_place(in, all.window, rows, at, judge);
     if (!found) return std::nullopt;
@@ -115,7 +114,7 @@ std::optional<double> share_of(const IntegralInput& input, EdgeScratch& scratch,
   return rows.visible_share(depth, all.parts_asked ? &all.parts : nullptr);
 }
 
-/// Of view samples that see a part of the light.
+/// Form factors of view samples that see a part of the light.
 class PartlyLit {
  public:
   explicit PartlyLit(const IntegralInput& in)
@@ -136,7 +135,7 @@ class PartlyLit {
   }
 
  private:
-  /// Counter-clockwise, in the frame.
+  /// Returns the corners in the frame's coordinates, counter-clockwise.
   [[nodiscard]] std::array<glm::dvec2, 4> corners_of(const Trapezoid& part) const {
     const auto& [low, high] = part;
     const auto corner = [&](double x, double y) { return in_.region.window.frame_place(glm::dvec2(x, y) / cells_); };

@@ -17,9 +17,9 @@ class TextureBlocks;
 /// Edge scatter on a processor, rows=exact. Inside volumes/ only.
 namespace penumbra::volumes {
 
-/// Not light samples but the light: `shares` of it that are visible (RowSum). A view sample whose share double cannot
-/// prove gets it from integers (areas::ExactArea). `radiance`, if there: form factors of what is visible, where that is
-/// a part of the light.
+/// Results: `shares`, the visible fractions of the light (RowSum), without light samples. A fraction that double cannot
+/// prove is computed in integers (areas::ExactArea). `radiance`, if not empty: form factors of the visible region,
+/// where that is a part of the light.
 struct Integral {
   std::span<float> shares;
   std::span<glm::dvec3> radiance;
@@ -35,7 +35,7 @@ struct IntegralInput {
   AreasOnDemand& areas;
   float scale;  ///< visibility::device_scale
 };
-/// Returns of how many view samples double could not prove the share.
+/// Returns the number of view samples whose fraction double could not prove.
 std::size_t integrate(const IntegralInput& input, EdgeScratch& scratch, OpenJudge& judge, const Integral& out);
 
 }  // namespace penumbra::volumes

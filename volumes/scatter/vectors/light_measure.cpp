@@ -1,3 +1,5 @@
+// Area or luminance of parts of a light's window: plain, in the unit disk, or under a texture.
+
 #include "volumes/scatter/vectors/light_measure.hpp"
 
 #include "visibility/lights/disk_part.hpp"

@@ -8,7 +8,7 @@
 #include <cstddef>
 #include <optional>
 
-/// How much of a light a part of its window is: rows=exact of edge scatter. Inside volumes/ only.
+/// Measure of a part of a light's window: rows=exact of edge scatter. Inside volumes/ only.
 namespace penumbra::volumes {
 
 /// A part of the window between two of its rows: x of its two sides at both, in cells.
@@ -19,20 +19,21 @@ struct Trapezoid {
   Row low, high;
 };
 
-/// Weighs parts of a light's window, a grid of `size` cells: of a rectangle or polygon by their area, of a round light
-/// by the area that is in the disk, of a textured one by the texture's luminance over its mean.
+/// Measures parts of a light's window, a grid of `size` cells: for a rectangle or polygon their area, for a round light
+/// the area inside the disk, for a textured one the texture's luminance over its mean.
 class LightMeasure {
  public:
   LightMeasure(const visibility::Light& light, const glm::dvec2& size);
 
-  /// Are all parts weighed by their area?
+  /// Returns whether the measure is the area for all parts.
   [[nodiscard]] bool plain() const { return !round_ && !texture_; }
-  /// Of a trapezoid with sides of double precision; off by `rounding()` beside what a plain area is.
+  /// Returns the measure of a trapezoid with sides of double precision; its error is `rounding()` in addition to that
+  /// of a plain area.
   [[nodiscard]] double of(const Trapezoid& part) const;
   [[nodiscard]] double whole() const { return whole_; }
-  /// Of a polygon, whose outline is layers (RowSum).
+  /// Sets the measure of a polygon, whose outline counts as layers (RowSum).
   void set_whole(double cells) { whole_ = cells; }
-  /// At most so much more than its area does any part weigh.
+  /// Returns the largest ratio of a part's measure to its area.
   [[nodiscard]] double densest() const { return densest_; }
   [[nodiscard]] double rounding() const;
 

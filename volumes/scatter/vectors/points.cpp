@@ -1,5 +1,5 @@
-// Edge scatter on a processor for light samples that form no rows: an edge is tested against the tiles that it passes,
-// light samples side by side; of all others of a row to its right one number says how they change.
+// Edge scatter on a processor for light samples that are not in rows: an edge is tested against the tiles that it
+// passes, a vector of light samples at a time; for all others of a row to its right one number gives the change.
 // docs/edge-scatter.md, "Light samples anywhere".
 
 #include "volumes/scatter/vectors/points.hpp"
@@ -43,14 +43,14 @@ std::uint32_t bits_of(TileM which) {
   return word;
 }
 
-/// By how much the depth changes from the light's corner, less `corner`: up the light's left side to a row's lowest
-/// light sample, from there to the right to a tile, and within the tile to each light sample.
+/// Changes of the depth from the light's corner, minus `corner`: up the light's left side to a row's lowest light
+/// sample, from there to the right to a tile, and within the tile to each light sample.
 struct PointChanges {
-  std::int32_t* rows;   // this one, and those above
-  std::int32_t* tiles;  // this one, and those to the right; each row has a place more than tiles
+  std::int32_t* rows;   // for each row: change for it, and those above
+  std::int32_t* tiles;  // for each tile: change for it, and those to the right; each row has one more place than tiles
   vectors::SlotFloats& slots;
-  std::uint8_t* is_touched;  // of each tile: its slots may not be 0
-  std::uint32_t* touched;    // these tiles
+  std::uint8_t* is_touched;  // for each tile: its slots may not be 0
+  std::uint32_t* touched;    // indices of these tiles
   std::size_t touched_count = 0;
   std::int32_t corner = 0;
 };
@@ -60,7 +60,7 @@ class PointScatter {
   PointScatter(const ClusterInput& in, EdgeScratch& found, PointChanges& changes, OpenJudge& judge)
       : in_(in), tiles_(*in.grid.tiles), s_(found), changes_(changes), judge_(judge), find_(tiles_) {}
 
-  /// Whether the depth may change anywhere on the light, or something is open.
+  /// Returns whether the depth may change anywhere on the light, or something is open.
   bool operator()(const ClusterSample& at) {
     at_ = &at;
     own_.reset();
@@ -86,16 +86,16 @@ class PointScatter {
 
   static std::int32_t jump_of(const UpwardEdge& e) { return static_cast<std::int32_t>(e[kJump]); }
 
-  /// A way along a row has the edge between itself and the light's left side where the edge has its height and is left
+  /// A path along a row has the edge between itself and the light's left side where the edge has its height and is left
   /// of its end. The left side itself crosses the edge once for each of its ends that is left of it, as if the edge
-  /// went on from there to the left.
+  /// continued to the left.
   void change_beside(const UpwardEdge& e) {
     if (e[kBottom] <= -0.5F) change_corner(e);
     if (e[kHighX] < -0.5F) change_above(e[kHighY], jump_of(e));
     if (e[kLowX] < -0.5F) change_above(e[kLowY], -jump_of(e));
   }
 
-  /// The light's corner is where changes begin.
+  /// Handles the light's corner, where changes begin.
   void change_corner(const UpwardEdge& e) {
     constexpr float kCorner = -0.5F;
     const float side = e.side_of(kCorner, kCorner);
@@ -106,15 +106,15 @@ class PointScatter {
     if (e[kLowY] <= kCorner && e[kLowX] < kCorner) changes_.corner -= jump_of(e);
   }
 
-  /// All rows whose ways are at y and higher.
+  /// Adds a change to all rows whose paths are at y or higher.
   void change_above(float y, std::int32_t by) {
     const auto above = std::lower_bound(tiles_.rows.begin(), tiles_.rows.end(), y,
                                         [](const LightTiles::Row& row, float height) { return row.low < height; });
     changes_.rows[above - tiles_.rows.begin()] += by;
   }
 
-  /// An edge in a row of tiles: those that it passes are tested, those to the right of them change as a whole if it
-  /// crosses the row's way.
+  /// Adds an edge in a row of tiles: the tiles that it passes are tested, those to the right of them change as a whole
+  /// if it crosses the row's path.
   HWY_INLINE void cross(std::int32_t where, std::int32_t steps) {
     const Tile d;
     const auto edge = static_cast<std::size_t>(where & EdgesInRows::kEdges);
@@ -134,13 +134,13 @@ class PointScatter {
     }
   }
 
-  /// A tile that an edge passes. An end that is left of it (all lanes, or none) stands for where the edge crosses the
-  /// way up its left side, as if the edge went on from there to the left.
+  /// A tile that an edge passes. An end that is left of it (all lanes, or none) stands for the crossing of the edge
+  /// with the path up the tile's left side, as if the edge continued to the left.
   struct Passed {
     std::uint32_t tile;
     TileM low_left, high_left;
   };
-  /// From where the row's way meets the tile up to a light sample's height, and then to the right.
+  /// Tests the path from where the row's path meets the tile up to a light sample's height, and then to the right.
   HWY_INLINE void test(const Passed& passed, std::size_t edge) {
     const Tile d;
     const auto constant = [&](UpwardField field) { return hn::Set(d, edges_.fields[field][edge]); };
@@ -192,7 +192,7 @@ class PointScatter {
     return {in_, *at_, number & ~kUnsettled, s_.crossing[kK][e.crossing()], (number & kUnsettled) == 0, std::nullopt};
   }
 
-  /// Light samples that the edge's line passes within the group's error: `near`, a bit each.
+  /// Tests again the light samples that the edge's line passes within the group's error: `near`, a bit each.
   HWY_NOINLINE void look_again(const UpwardEdge& e, std::size_t slot, hn::Vec<Tile> side, std::uint32_t near) {
     HWY_ALIGN float sides[LightTiles::kWide];
     hn::Store(side, Tile(), sides);
@@ -208,7 +208,7 @@ class PointScatter {
     if (std::abs(side) > near) return;
     const std::uint32_t sample = tiles_.sample_of[slot];
     if (is_disk_cut(e)) return s_.open.samples.push_back(sample);
-    // Where an end may be on either side of it, so may be what goes on from there.
+    // An end that may be on either side of the sample's height makes the path's crossing uncertain.
     const bool at_end = std::abs(s.near.y - y) < 2 * s.error_near || std::abs(s.far.y - y) < 2 * s.error_far;
     const bool has_y = e[kLowY] <= y && y < e[kHighY];
     const int exact = at_end || s.may_be_cut || !has_y ? 0 : side_of_way(precise_of(e), judge_.way_to(*at_, sample));
@@ -224,12 +224,12 @@ class PointScatter {
   OpenJudge& judge_;
   RowsFinder find_;
   const ClusterSample* at_ = nullptr;
-  UpwardEdges edges_;           // that are being added
-  EdgesInRows rows_;            // of these
-  std::optional<OwnEdge> own_;  // of the one that was asked for last
+  UpwardEdges edges_;           // edges that are being added
+  EdgesInRows rows_;            // rows of these
+  std::optional<OwnEdge> own_;  // of the edge tested last
 };
 
-/// Calls `visit(tile, depth)` with the depth that changes give a tile, less what they say of its slots.
+/// Calls `visit(tile, depth)` with the depth that the changes give a tile, without those of its slots.
 template <typename Visit>
 void for_each_tile(const LightTiles& tiles, const PointChanges& changes, std::int32_t depth_at_corner, Visit visit) {
   std::int32_t at_left = depth_at_corner - changes.corner;
@@ -242,12 +242,12 @@ void for_each_tile(const LightTiles& tiles, const PointChanges& changes, std::in
   }
 }
 
-/// A light sample is visible where the depth is 0. Slots are 0 afterwards, and no tile is touched.
+/// Sums changes to depths; a light sample is visible where the depth is 0. Resets slots to 0, and tiles to untouched.
 void sum_up(const LightTiles& tiles, PointChanges& changes, std::int32_t depth_at_corner, std::int32_t* depths,
             SampleMask& mask) {
   const Tile d;
   for_each_tile(tiles, changes, depth_at_corner, [&](std::uint32_t tile, std::int32_t depth) { depths[tile] = depth; });
-  for (std::size_t tile = 0; tile < tiles.tile_count(); ++tile)  // without a branch, which is hard to foresee
+  for (std::size_t tile = 0; tile < tiles.tile_count(); ++tile)  // without a branch, which would be mispredicted
     mask.bits[tile] = static_cast<std::uint16_t>(tiles.used[tile] & -static_cast<std::int32_t>(depths[tile] == 0));
   for (std::size_t i = 0; i < changes.touched_count; ++i) {
     const std::uint32_t tile = changes.touched[i];
@@ -264,8 +264,8 @@ void sum_up(const LightTiles& tiles, PointChanges& changes, std::int32_t depth_a
   mask.count(tiles.tile_count());
 }
 
-/// D at the light's corner as the edges have it, from D at a light sample that is not open: exact predicates count
-/// there. It may be less than 0, since an edge may pass the corner on the wrong side.
+/// Returns D at the light's corner as the edges require, from D at a light sample that is not open, counted by exact
+/// predicates. May be negative, since an edge may pass the corner on the wrong side.
 std::int32_t depth_by_a_sample(const LightTiles& tiles, const PointChanges& changes, Open& open,
                                const ClusterSample& at, OpenJudge& judge) {
   std::optional<std::int32_t> depth;
@@ -283,7 +283,7 @@ std::int32_t depth_by_a_sample(const LightTiles& tiles, const PointChanges& chan
   return depth.value_or(0);
 }
 
-/// One view sample, its group's edges sorted out.
+/// Computes one view sample with its group's selected edges.
 void scatter_sample(const ClusterInput& in, EdgeScratch& found, PointScratch& scratch, const ClusterSample& at,
                     OpenJudge& judge, SampleMask& mask) {
   const LightTiles& tiles = *in.grid.tiles;

@@ -10,15 +10,15 @@
 /// Edge scatter on a processor, light samples in tiles. Inside volumes/ only.
 namespace penumbra::volumes {
 
-/// Buffers of one thread, beside EdgeScratch.
+/// Buffers of one thread, in addition to EdgeScratch.
 struct PointScratch {
-  std::vector<std::int32_t> tile_changes, row_changes, tile_depths;  // PointChanges
+  std::vector<std::int32_t> tile_changes, row_changes, tile_depths;  // as in PointChanges
   vectors::SlotFloats depths;                                        // 0 between view samples
-  std::vector<std::uint8_t> is_touched;                              // of each tile; 0 between view samples
+  std::vector<std::uint8_t> is_touched;                              // for each tile; 0 between view samples
   std::vector<std::uint32_t> touched;
 };
 
-/// As scatter.
+/// Computes masks as scatter does.
 void scatter_points(const ClusterInput& input, EdgeScratch& found, PointScratch& scratch, OpenJudge& judge,
                     std::span<SampleMask> masks);
 

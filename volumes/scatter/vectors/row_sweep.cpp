@@ -1,3 +1,6 @@
+// Area of depth zero by a sweep over projected edges (Bentley and Ottmann 1979), with a bound of its disorder.
+// docs/edge-scatter.md, "Without light samples".
+
 #include "volumes/scatter/vectors/row_sweep.hpp"
 
 #include "volumes/scatter/vectors/first_least.hpp"
@@ -15,8 +18,8 @@ constexpr double kNever = std::numeric_limits<double>::infinity();
 
 }  // namespace
 
-/// Mostly in linear time: as many buckets of heights as edges. By all that they are: sums do not depend on the order in
-/// which a hierarchy listed them.
+/// Linear time in most cases: as many buckets of heights as edges. Compares all fields, so that sums do not depend on
+/// the order in which a hierarchy listed the edges.
 void RowSweep::sort_edges() {
   constexpr std::size_t kFew = 16;
   const std::span<RowEdge> edges = in_.edges;
@@ -30,7 +33,7 @@ void RowSweep::sort_edges() {
   std::partial_sum(buckets_.begin(), buckets_.end(), buckets_.begin());
   by_bucket_.resize(edges.size());
   for (const RowEdge& edge : edges) by_bucket_[buckets_[bucket_of(edge)]++] = edge;
-  std::size_t begin = 0;  // of a bucket, whose end its number is now
+  std::size_t begin = 0;  // begin of a bucket, after which `ends` holds its end
   for (std::size_t bucket = 0; bucket < edges.size(); ++bucket) {
     const std::size_t end = buckets_[bucket];
     for (std::size_t i = begin; i < end; ++i) {
@@ -49,7 +52,7 @@ RowSweep::Line RowSweep::line_of(const RowEdge& edge) {
   return {edge.x0, edge.y0, (edge.x1 - edge.x0) / (edge.y1 - edge.y0), edge.y1, edge.x1, edge.k};
 }
 
-/// Nothing changes before it.
+/// Returns the height of the next event; nothing changes before it.
 double RowSweep::next_row() const {
   double next = in_.height;
   if (next_edge_ < in_.edges.size()) next = std::min(next, in_.edges[next_edge_].y0);
@@ -57,15 +60,14 @@ double RowSweep::next_row() const {
   return std::min(next, soonest_end_);
 }
 
-/// The gap whose sides cross before all others do, the leftmost of several. Looked for only where the last one found is
-/// gone.
+/// Finds the gap whose sides cross first, the leftmost of several. Searched only if the last one found is gone.
 void RowSweep::find_first_crossing() {
   const FirstLeast found = first_least(crossings_);
   soonest_ = found.least;
   first_ = found.at;
 }
 
-/// Gaps from here on get other numbers, or this one's crossing is gone.
+/// Invalidates the cached first crossing if gaps from here on are renumbered, or if this one's crossing is gone.
 void RowSweep::forget(std::size_t gap) {
   if (crossings_[gap] <= soonest_) first_ = kUnknown;
 }
@@ -98,7 +100,7 @@ void RowSweep::measure_gap(std::size_t number, double y) {
   if (in_.parts != nullptr && area > 0) in_.parts->push_back(part);
 }
 
-/// Its sides are new, or it is of another depth than before: where are they here, and where do they cross?
+/// Begins a gap with new sides or a new depth: computes its sides at y, and their crossing.
 void RowSweep::begin_gap(std::size_t number, double y) {
   const Line &left = lines_[number - 1], &right = lines_[number];
   Gap& gap = gaps_[number];
@@ -112,7 +114,7 @@ void RowSweep::begin_gap(std::size_t number, double y) {
   forget(number);
   crossing = kNever;
   if (last >= 0 || number == 1 || number + 1 == lines_.size()) return;  // edges lie between the light's sides
-  // Of lines that are one but for rounding the slopes may say that they crossed long ago: then where one ends.
+  // Nearly coincident lines can have a computed crossing below y; use the lower end of either line instead.
   const double closing = left.slope - right.slope;
   crossing = apart <= 0 ? y : closing > 0 ? std::min(y + apart / closing, end) : end;
   if (crossing < soonest_) {
@@ -130,7 +132,7 @@ void RowSweep::change_places(std::size_t number, double y) {
   if (first_end_ == number || first_end_ + 1 == number)
     first_end_ = ends_[number - 1] == soonest_end_ ? number - 1 : number;
   forget(number);
-  crossings_[number] = kNever;  // any two change places once
+  crossings_[number] = kNever;  // any two lines exchange places once
   Gap& gap = gaps_[number];
   gap.since = y;
   gap.left = lines_[number - 1].at(y);
@@ -141,8 +143,8 @@ void RowSweep::change_places(std::size_t number, double y) {
   begin_gap(number + 1, y);
 }
 
-/// Edges that begin where another ends take its place, so that outlines stay in order. False: depths change, or there
-/// are others that begin or end.
+/// Replaces edges that end by edges that begin there, so that outlines stay in order. Returns false if depths change,
+/// or if other edges begin or end.
 bool RowSweep::hand_over(double y) {
   bool all = true;
   for (std::size_t i = first_end_; i + 1 < lines_.size(); ++i) {
@@ -167,7 +169,7 @@ bool RowSweep::hand_over(double y) {
   return all && begin_.empty();
 }
 
-/// The gaps on both sides become one.
+/// Merges the gaps on both sides.
 void RowSweep::remove(std::size_t line, double y) {
   end_gap(line, y);
   end_gap(line + 1, y);
@@ -180,7 +182,8 @@ void RowSweep::remove(std::size_t line, double y) {
   gaps_[line].is_new = true;
 }
 
-/// Where it is in order at its lower end, and after those that it meets there and that lean more to the left.
+/// Inserts a line where it is in order at its lower end, after lines that it meets there and that lean more to the
+/// left.
 void RowSweep::insert(const RowEdge& edge, double y) {
   const Line line = line_of(edge);
   auto place = std::partition_point(lines_.begin() + 1, lines_.end() - 1,
@@ -199,7 +202,7 @@ void RowSweep::insert(const RowEdge& edge, double y) {
   if (first_ != kUnknown && first_ >= gap) ++first_;
 }
 
-/// Depths from left to right; what gaps with new sides or another depth were ends here.
+/// Updates depths from left to right; ends gaps whose sides or depth changed.
 void RowSweep::renew_gaps(double y) {
   std::int32_t depth = in_.depth;
   for (std::size_t i = 1; i < gaps_.size(); ++i) {
@@ -271,11 +274,11 @@ RowSweep::Area RowSweep::operator()(const Input& input) {
     }
   }
   for (std::size_t gap = 1; gap < lines_.size(); ++gap) end_gap(gap, in_.height);
-  // A gap that begins in order and ends no later than where its sides cross is in order but for rounding. Line::at
-  // rounds a difference, a product and a sum, none of them larger than the width by more than rounding: it is off by
-  // 3 · 2⁻⁵³ of the width, a gap's width as computed by 7, taken 8; between two heights a straight gap is no narrower
-  // than at one of them, so with rounding at both, and between, 16. Where its sides cross is off by 4 · 2⁻⁵³ of the
-  // height, and the gap there by that much of what its width changes in all, at most twice the light's: 8 more.
+  // A gap that begins in order and ends no later than the crossing of its sides is in order up to rounding. Line::at
+  // rounds a difference, a product and a sum, none of them larger than the width by more than rounding: it is off by 3
+  // · 2⁻⁵³ of the width, a computed gap width by 7, bounded by 8; between two heights a straight gap is no narrower
+  // than at one of them, so with rounding at both, and between, 16. The crossing of its sides is off by 4 · 2⁻⁵³ of the
+  // height, and the gap there by that fraction of the total change of its width, at most twice the light's: 8 more.
   area_.disorder += static_cast<double>(ends_in_order_) * 0x1p-48 * in_.width * in_.height;
   return area_;
 }

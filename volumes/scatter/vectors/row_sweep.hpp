@@ -8,12 +8,12 @@
 #include <tuple>
 #include <vector>
 
-/// Depth zero, measured without light samples: the second half of rows=exact of edge scatter. Inside volumes/ only.
+/// Area of depth zero without light samples: the second half of rows=exact of edge scatter. Inside volumes/ only.
 /// docs/edge-scatter.md, "Without light samples".
 namespace penumbra::volumes {
 
-/// A projected edge in the light, in cells from its lower left corner, upward: crossing it to the right, the depth
-/// changes by −k.
+/// A projected edge in the light, in cells from its lower left corner, upward: crossing it to the right changes the
+/// depth by −k.
 struct RowEdge {
   double x0 = 0, y0 = 0, x1 = 0, y1 = 0;
   std::int32_t k = 0;
@@ -22,7 +22,7 @@ struct RowEdge {
     return std::tie(a.y0, a.x0, a.y1, a.x1, a.k) < std::tie(b.y0, b.x0, b.y1, b.x1, b.k);
   }
 };
-/// The depth at the light's left side changes at y, going up.
+/// Change of the depth at the light's left side at y, going up.
 struct RowStep {
   double y = 0;
   std::int32_t change = 0;
@@ -32,30 +32,30 @@ struct RowStep {
   }
 };
 
-/// A row goes up the light (J. Bentley, T. Ottmann, "Algorithms for reporting and counting geometric intersections",
-/// 1979) and keeps the edges that it meets in order. Gaps between neighbours have one depth each; a gap's trapezoid
-/// ends where one of its sides does, crosses its neighbour, or another edge comes in between; what changes elsewhere on
-/// the row costs it nothing.
+/// Sweeps a row up the light (J. Bentley, T. Ottmann, "Algorithms for reporting and counting geometric intersections",
+/// 1979) and keeps the edges that it meets in order. Each gap between neighbours has one depth; a gap's trapezoid ends
+/// where one of its sides ends, crosses its neighbour, or another edge comes in between; events elsewhere on the row
+/// cost it nothing.
 ///
-/// Rounding. Two neighbours are in the right order when they are where the first of them ends; if not, they change
-/// places where they cross, or at once. So any two change places once at most, whatever rounding says elsewhere.
+/// Rounding. Two neighbours are in the right order if they are in order where the first of them ends; if not, they
+/// exchange places where they cross, or at once. So any two exchange places at most once, whatever the rounding
+/// elsewhere.
 class RowSweep {
  public:
-  /// `edges` and `steps` get sorted; edges lie in the light.
+  /// `edges` and `steps` are sorted in place; edges lie in the light.
   struct Input {
     double width = 0, height = 0;
     std::span<RowEdge> edges;
     std::span<RowStep> steps;
-    std::int32_t depth = 0;                   ///< at the light's corner
-    std::vector<Trapezoid>* parts = nullptr;  ///< gets what is visible, if given
-    const LightMeasure* measure = nullptr;    ///< weighs what is visible; none: by its area
+    std::int32_t depth = 0;                   ///< depth at the light's corner
+    std::vector<Trapezoid>* parts = nullptr;  ///< receives the visible parts, if not null
+    const LightMeasure* measure = nullptr;    ///< measure of visible parts; null: their area
   };
   struct Area {
-    double visible = 0;     ///< of depth 0, weighed
-    double impossible = 0;  ///< of less than that
-    std::size_t parts = 0;  ///< of depth 0, that were weighed one by one
-    double disorder =
-        0;  ///< what of gaps may have their left side right of their right side: there, depths may be wrong
+    double visible = 0;     ///< measure of depth 0
+    double impossible = 0;  ///< measure of negative depths
+    std::size_t parts = 0;  ///< parts of depth 0 that were measured individually
+    double disorder = 0;  ///< area of gaps whose left side may be right of their right side: depths may be wrong there
   };
   Area operator()(const Input& input);
 
@@ -66,12 +66,12 @@ class RowSweep {
 
     [[nodiscard]] double at(double height) const { return x + (height - y) * slope; }
   };
-  /// To the left of the line of the same number, since a row.
+  /// The gap to the left of the line with the same index, since a row.
   struct Gap {
-    double since = 0, left = 0, right = 0;  // and its sides there
+    double since = 0, left = 0, right = 0;  // row where it begins, and its sides there
     std::int32_t depth = 0;
-    bool is_in_order = false;  // its sides, when they became neighbours
-    bool is_new = false;       // its sides have become neighbours: neither crossing nor depth is known
+    bool is_in_order = false;  // its sides were in order when they became neighbours
+    bool is_new = false;       // its sides have just become neighbours: neither crossing nor depth is known
   };
   static Line line_of(const RowEdge& edge);
   void sort_edges();
@@ -93,18 +93,18 @@ class RowSweep {
   Input in_;
   Area area_;
   std::vector<Line> lines_;        // in order, between the light's two sides
-  std::vector<double> ends_;       // of lines; with kRoom more, as crossings_
-  std::vector<Gap> gaps_;          // [0] is none
-  std::vector<double> crossings_;  // where a gap's two sides cross
+  std::vector<double> ends_;       // of lines; padded by kRoom, as crossings_
+  std::vector<Gap> gaps_;          // [0] is unused
+  std::vector<double> crossings_;  // crossing of each gap's two sides
   std::vector<RowEdge> begin_;
   std::vector<RowEdge> by_bucket_;
   std::vector<std::uint32_t> buckets_;
   std::size_t next_edge_ = 0, next_step_ = 0;
-  std::size_t ends_in_order_ = 0;  // of gaps of depth > 0 that began so
-  double soonest_end_ = 0;         // of the lines, and the leftmost that has it
+  std::size_t ends_in_order_ = 0;  // gaps of depth > 0 that began in order
+  double soonest_end_ = 0;         // lowest end of the lines, and the leftmost that has it
   std::size_t first_end_ = 0;
-  double soonest_ = 0;     // no gap's sides cross before
-  std::size_t first_ = 0;  // the leftmost gap whose sides do there; kUnknown
+  double soonest_ = 0;     // lower bound of all crossings
+  std::size_t first_ = 0;  // the leftmost gap whose sides cross there; kUnknown
 };
 
 }  // namespace penumbra::volumes

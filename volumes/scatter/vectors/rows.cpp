@@ -1,3 +1,6 @@
+// rows=exact of edge scatter: places edges for one view sample in double with error bounds, and proves the visible
+// fraction of the light. docs/edge-scatter.md, "Without light samples" and "What double proves".
+
 #include "volumes/scatter/vectors/rows.hpp"
 
 #include "engines/vectors/disk_plane.hpp"
@@ -25,7 +28,7 @@ glm::dvec3 point(const WidePoints& points, std::size_t lane) {
   return {points[0][lane], points[1][lane], points[2][lane]};
 }
 
-/// Is the light's corner within `error` of the edge?
+/// Returns whether the light's corner is within `error` of the edge.
 bool passes_corner(const RowEdge& edge, double error) {
   const auto holds = [&](double a, double b) { return std::min(a, b) <= error && std::max(a, b) >= -error; };
   if (!holds(edge.x0, edge.x1) || !holds(edge.y0, edge.y1)) return false;
@@ -35,7 +38,7 @@ bool passes_corner(const RowEdge& edge, double error) {
 
 }  // namespace
 
-/// A corner of the outline is projected at right angles onto the plane, as p is. (bound foot)
+/// A corner of the outline is projected orthogonally onto the plane, as p is. (bound foot)
 LightRegion make_light_region(const visibility::Light& light, const LightWindow& window, const LightGrid& grid,
                               float scale) {
   const glm::dvec2 cells(grid.columns, grid.rows);
@@ -58,7 +61,7 @@ LightRegion make_light_region(const visibility::Light& light, const LightWindow&
     twice_area += a.x * b.y - a.y * b.x;
     region.outline.push_back({a.x, a.y, b.x, b.y, 0});
   }
-  // Counter-clockwise, the light is left of each of them: to the right there is a layer more.
+  // Counter-clockwise, the light is left of each edge: to the right there is one more layer.
   for (RowEdge& edge : region.outline) edge.k = twice_area > 0 ? -1 : 1;
   region.measure.set_whole(std::abs(twice_area) / 2);
   region.outline_error =
@@ -78,7 +81,7 @@ RowSum::RowSum(const LightGrid& grid, const LightRegion& region, const visibilit
       per_length_(std::max(glm::length(grid.axes[0]), glm::length(grid.axes[1]))),
       skew_(grid.skew) {}
 
-/// (bound foot)
+/// Error of the foot: (bound foot).
 void RowSum::set_view_sample(const GridSample& at) {
   edges_.clear();
   left_.clear();
@@ -98,8 +101,8 @@ void RowSum::set_view_sample(const GridSample& at) {
   is_open_ = !(height_ > 8 * error_height_);
 }
 
-/// A way is λ (middle + s u + t v): λ, s and t by determinants, since a sun's axes are floats and not quite at right
-/// angles. What middle is off by moves places as a foot does. (bound foot)
+/// A direction is λ (middle + s u + t v): λ, s and t by determinants, since a sun's axes are floats and not exactly
+/// orthogonal. The error of `middle` moves places like a foot's. (bound foot)
 void RowSum::see_cone(const LightCone& cone) {
   const auto& [m, u, v] = cone;
   const glm::dvec3 n = glm::cross(u, v);
@@ -117,17 +120,18 @@ void RowSum::see_cone(const LightCone& cone) {
   is_open_ = !(height_ > 8 * error_height_);
 }
 
-/// Which side of one of the edge's triangles is p on? n is the exact normal rounded to float: what that may change (16
-/// · 2⁻²⁴ of each term, bound side) exact predicates say.
+/// Returns the side of one of the edge's triangles that p is on. n is the exact normal rounded to float: exact
+/// predicates decide within the effect of that rounding (16 · 2⁻²⁴ of each term, bound side).
 int RowSum::side_of(const WideEdges& leaf, std::size_t side, std::size_t lane) const {
   const glm::dvec3 n = point(leaf.n[side], lane), from = p_ - point(leaf.anchor[side], lane);
   const double f = glm::dot(n, from), error = 16 * static_cast<double>(kRound) * glm::dot(glm::abs(n), glm::abs(from));
   if (std::abs(f) > error) return f > 0 ? 1 : -1;
-  const auto corners = scene_.corners(leaf.plane[side][lane]);  // a plane's number is that of a triangle in it
+  const auto corners = scene_.corners(leaf.plane[side][lane]);  // a plane's index is that of a triangle in it
   const glm::dvec3 unscaled = p_ / static_cast<double>(scale_);
   const auto at = mesh::side_of_plane(glm::dvec3(corners[0]), glm::dvec3(corners[1]), glm::dvec3(corners[2]), unscaled);
   if (at == mesh::Side::on) return 0;
-  // Both normals have the signs of the exact ones, which are parallel: so have all terms of their product.
+  // Both normals have the signs of the exact ones, which are parallel: so all terms of their product have the same
+  // sign.
   const bool alike = glm::dot(n, glm::dvec3(rounded_normal(corners))) > 0;
   return alike == (at == mesh::Side::front) ? 1 : -1;
 }
@@ -142,7 +146,7 @@ int RowSum::multiplicity(const WideEdges& leaf, std::size_t lane) const {
   return k;
 }
 
-/// (bound way)
+/// Returns the vector to a point, with its error. (bound way)
 RowSum::Way RowSum::way_to(const glm::dvec3& point) const {
   const glm::dvec3 d = point - p_;
   const double length = std::abs(d.x) + std::abs(d.y) + std::abs(d.z), error = kUnit * skew_ * length;
@@ -154,7 +158,7 @@ RowSum::Way RowSum::way_to(const glm::dvec3& point) const {
 
 RowSum::Way RowSum::way_to(const CutEnd& end) const {
   if (!end.place) {
-    Way way = way_to(end.point);  // computed from points no farther than `reach`
+    Way way = way_to(end.point);  // computed from points within `reach`
     const double off = 16 * kUnit * static_cast<double>(grid_.reach);
     way.error += off * per_length_;
     way.error_up += off;
@@ -178,15 +182,15 @@ RowSum::Ways RowSum::ways_of(const WideEdges& leaf, std::size_t lane, const CutE
   return {way_to(edge.a), way_to(edge.b)};
 }
 
-/// What double makes of how far the end of a way is inside a side of the window.
+/// Returns the double rounding error of the distance of a vector's end inside a side of the window.
 double RowSum::error_inside(const Way& way, int axis) const {
   const double middle = static_cast<double>(grid_.half_cells[axis]), window = 2 * middle + 2;
   return 2 * (height_ * way.error + (window + std::abs(foot_[axis] - middle)) * way.error_up +
               error_height_ * std::abs(way.to[axis]) + error_foot_ * std::abs(way.to.z));
 }
 
-/// An edge that is outside of one side of the window after the other: it passes by, unless it passes p within rounding.
-/// No nearer than that, whatever of it is on the light is so high over p that no error can have hidden it. (bound apex)
+/// True if an edge that was clipped away completely might still pass through p within rounding. If it is no nearer to p
+/// than that, every part of it on the light is so high above p that no error can have hidden it. (bound apex)
 bool RowSum::may_pass_p(const Ways& ways) const {
   const Way &a = ways.a, &b = ways.b;
   const double error = std::max({error_inside(a, 0), error_inside(a, 1), error_inside(b, 0), error_inside(b, 1)});
@@ -196,8 +200,8 @@ bool RowSum::may_pass_p(const Ways& ways) const {
   return !(nearest * steepness_ * static_cast<double>(std::min(grid_.half_cells.x, grid_.half_cells.y)) > 4 * error);
 }
 
-/// The part of an edge that appears in a window of about twice the light, before any division. (bound window) False:
-/// nothing of it is on the light.
+/// Clips an edge to a window of about twice the light, before any division. (bound window) Returns false if no part of
+/// it is on the light.
 bool RowSum::cut_to_window(Ways& ways) {
   Way &a = ways.a, &b = ways.b;
   const glm::dvec2 middle(grid_.half_cells), window = 2.0 * middle + 2.0;
@@ -214,7 +218,7 @@ bool RowSum::cut_to_window(Ways& ways) {
     for (const double sign : {-1.0, 1.0}) {
       const double inside_a = window[axis] * a.to.z + sign * xa, inside_b = window[axis] * b.to.z + sign * xb;
       if (inside_a < 0 && inside_b < 0) {
-        // The window is larger than the light: what is wrongly taken to be outside passes p, or is not on the light.
+        // The window is larger than the light: a part wrongly taken to be outside passes p, or is not on the light.
         const bool certain = inside_a <= -error_inside(a, axis) && inside_b <= -error_inside(b, axis);
         is_open_ = is_open_ || (!certain && may_pass_p(ways));
         return false;
@@ -245,8 +249,8 @@ bool RowSum::cut_to_window(Ways& ways) {
   return true;
 }
 
-/// Of ends that are off so far aside and up, of which the lower one is `stretch` times nearer to p's height than the
-/// light, and that appear so far from the foot. (bound place)
+/// Returns the error of a place, for ends with these errors sideways and upward, of which the lower one is `stretch`
+/// times nearer to p's height than the light, and whose places are `far` from the foot. (bound place)
 double RowSum::placing_error(double stretch, double error, double error_up, double far) const {
   return 2 * (error_foot_ + stretch * error + far * ((error_height_ + stretch * error_up) / height_ + 8 * kUnit) +
               8 * kUnit * (std::abs(foot_.x) + std::abs(foot_.y)));
@@ -261,7 +265,7 @@ std::optional<RowSum::Placed> RowSum::place(const WideEdges& leaf, std::size_t l
   const Way &a = ways.a, &b = ways.b;
   const double lowest = std::min(a.to.z, b.to.z), error = std::max(a.error, b.error),
                error_up = std::max(a.error_up, b.error_up);
-  if (!(lowest > 8 * error_up)) {  // it passes through p within rounding
+  if (!(lowest > 8 * error_up)) {  // the edge passes through p within rounding
     is_open_ = true;
     return std::nullopt;
   }
@@ -276,20 +280,20 @@ std::optional<RowSum::Placed> RowSum::place(const WideEdges& leaf, std::size_t l
   return std::nullopt;
 }
 
-/// Errors are rounded up to multiples of 2⁻⁵², whose sums up to 2 are exact, in whatever order.
+/// Adds an error, rounded up to a multiple of 2⁻⁵²: sums of these up to 2 are exact, in any order.
 void RowSum::count_error(double error) {
   error_ += std::ceil(error * 0x1p52) * 0x1p-52;
   largest_error_ = std::max(largest_error_, error);
 }
 
-/// A lower one has a slope that is more than 2¹³ (columns) times this, and products with it overflow; without it areas
-/// change by less than columns times this.
+/// A lower edge has a slope above 2¹³ (columns) times the inverse of this, and products with it overflow; without it
+/// areas change by less than columns times this.
 void RowSum::keep(const RowEdge& edge) {
   constexpr double kLevel = 0x1p-900;
   if (edge.y1 - edge.y0 > kLevel) edges_.push_back(edge);
 }
 
-/// The light, whatever rounding does.
+/// Returns whether the edge is outside of the light, even with its error.
 bool RowSum::is_beside(const RowEdge& edge, double error) const {
   const auto beside = [&](double from, double to, double size) {
     return std::max(from, to) < -2 * error || std::min(from, to) > size + 2 * error;
@@ -297,7 +301,8 @@ bool RowSum::is_beside(const RowEdge& edge, double error) const {
   return beside(edge.x0, edge.x1, grid_.columns) || beside(edge.y0, edge.y1, grid_.rows);
 }
 
-/// No part of it is on the light, whatever rounding does: it is beside, or the light is on one side of it.
+/// Returns whether no part of the edge is on the light, even with its error: it is outside, or the light is on one side
+/// of it.
 bool RowSum::passes_by(const RowEdge& edge, double error) const {
   const double width = grid_.columns, height = grid_.rows, along_x = edge.x1 - edge.x0, along_y = edge.y1 - edge.y0;
   const auto side = [&](double x, double y) { return along_x * (y - edge.y0) - along_y * (x - edge.x0); };
@@ -306,8 +311,8 @@ bool RowSum::passes_by(const RowEdge& edge, double error) const {
   return is_beside(edge, error) || least > off || most < -off;
 }
 
-/// `error`: of where its ends appear. What is beside the light says nothing of it, and counts nowhere, since not every
-/// hierarchy would have listed it. So nothing depends on which edges a hierarchy listed.
+/// Adds an edge. `error`: of its ends' places. Edges outside of the light count nowhere, since not every hierarchy
+/// would have listed them. So the result does not depend on the edges that a hierarchy lists.
 void RowSum::add(RowEdge edge, double error) {
   if (is_beside(edge, error)) return;
   if (!(error < 0.5)) {
@@ -323,7 +328,7 @@ void RowSum::add(RowEdge edge, double error) {
     // Crossing it upwards, if it runs to the right: +k.
     if (y > 0 && y < height) left_.push_back({y, edge.x0 < edge.x1 ? edge.k : -edge.k});
   }
-  // Cut to the light: first its sides, then top and bottom.
+  // Clipped to the light: first at its sides, then at top and bottom.
   for (const double side : {0.0, width}) {
     const bool out0 = side == 0 ? edge.x0 < 0 : edge.x0 > width, out1 = side == 0 ? edge.x1 < 0 : edge.x1 > width;
     if (out0 && out1) return;
@@ -347,7 +352,7 @@ void RowSum::add(RowEdge edge, double error) {
 
 std::optional<std::int32_t> RowSum::relative_depth(const glm::dvec2& place, double off) const {
   const auto [x, y] = std::pair(place.x, place.y);
-  // No true edge is nearer than half of this, nor is the rounding of what follows as large.
+  // No true edge is nearer than half of this, nor does the following rounding exceed it.
   const double near = off + 4 * largest_error_ + 64 * kUnit * region_.rounding * (grid_.columns + grid_.rows);
   std::int32_t depth = 0;
   for (const RowStep& step : left_) {
@@ -370,7 +375,7 @@ void RowSum::add_horizon(const HorizonLine& line) {
   if (region_.upper_half) add_line({{0, 1, 0}, glm::dvec3(0)});
 }
 
-/// What is below it counts as one layer more.
+/// The part below the line counts as one more layer.
 void RowSum::add_line(const HorizonLine& line) {
   const double width = grid_.columns, height = grid_.rows;
   // above · (s, t, 1) as a X + b Y + c, from the window's corner.
@@ -384,7 +389,7 @@ void RowSum::add_line(const HorizonLine& line) {
                s = std::max(std::abs(window.low.x), std::abs(window.high.x)) + std::abs(window.shear) * t;
   const double largest = std::abs(above.x) * s + std::abs(above.y) * t + std::abs(above.z);
   const double error = 4 * (line.error.x * s + line.error.y * t + line.error.z) + 16 * kUnit * largest;
-  // At the end of the side that is farther from the line, so that a line through the corner is counted once.
+  // Tested at the end of the side that is farther from the line, so that a line through the corner is counted once.
   if (!(std::max(std::abs(low), std::abs(high)) > error)) {
     is_open_ = true;
     return;
@@ -394,13 +399,13 @@ void RowSum::add_line(const HorizonLine& line) {
     return;
   }
   const std::size_t before = left_.size();
-  // Far beyond the light on either side, along the line.
+  // Ends far beyond the light on either side, along the line.
   const double squared = a * a + b * b, foot = -(c + a * width / 2 + b * height / 2) / squared;
   const double x = width / 2 + a * foot, y = height / 2 + b * foot, far = 2 * (width + height) / std::sqrt(squared);
   const double sign = a > 0 ? 1 : -1;  // upward
   const double off = 2 * error / std::sqrt(squared);
   if (std::max(std::abs(x), std::abs(y)) < 4 * (width + height) + off) {
-    // To the right of it, where it runs upward, is above the plane if a > 0: one layer less.
+    // The right side of the line, where it runs upward, is above the plane if a > 0: one layer less.
     const bool open = corner_is_open_;
     add({x + sign * b * far, y - sign * a * far, x - sign * b * far, y + sign * a * far, a > 0 ? 1 : -1},
         off + 64 * kUnit * (width + height));
@@ -427,7 +432,7 @@ std::optional<double> RowSum::visible_share(std::int32_t depth_at_corner, std::v
   const auto rounded = static_cast<double>(edges_.size() + left_.size() + 1) * 32 * kUnit * width * height;
   const auto [visible, impossible, weighed, disorder] =
       sweep_({width, height, edges_, left_, depth_at_corner + at_corner_, parts, measure.plain() ? nullptr : &measure});
-  // (bound share)
+  // Proof of the fraction: (bound share).
   const double off = error_ * (width + height + 2) + 4 * disorder + rounded;
   const double off_weighed = off * measure.densest() + static_cast<double>(weighed) * measure.rounding();
   if (!(off_weighed <= kProven * measure.whole()) || !(impossible <= off)) return std::nullopt;

@@ -1,4 +1,4 @@
-// rows=exact of a sphere that casters reach into: only what is before the disk that a view sample sees hides it.
+// rows=exact for a sphere that casters reach into: only objects in front of the disk that a view sample sees hide it.
 // docs/edge-scatter.md, "Ends".
 
 #include "engines/vectors/near_casters.hpp"
@@ -18,21 +18,21 @@ namespace penumbra::volumes {
 using vectors::NearCasters;
 using vectors::NearSpheres;
 
-/// What double makes of how high over the disk's plane a way ends: m is off by as much as error_height_ says, and what
-/// is λ times as far away by λ times that.
+/// Returns the double rounding error of the height of a vector's end over the disk's plane: m is off by error_height_,
+/// and a point λ times as far away by λ times that.
 double RowSum::error_over_disk(const Way& way) const {
   return way.error_up + error_height_ * std::max(1.0, way.to.z / height_);
 }
 
-/// −1: before it; 1: behind; 0: rounding hides on which side.
+/// Returns −1 for a point in front of the disk; 1 behind; 0 if rounding leaves the side open.
 int RowSum::side_of_disk(const Way& way) const {
   const double over = way.to.z - height_;
   if (!(std::abs(over) > 4 * error_over_disk(way))) return 0;
   return over > 0 ? 1 : -1;
 }
 
-/// Where the segment between ends on either side of the plane passes through it: always of the lexicographically first
-/// one, so that all edges that end there have the same numbers. (bound pass)
+/// Returns the crossing of the plane by the segment between ends on either side: always computed from the
+/// lexicographically first one, so that all edges that end there have the same numbers. (bound pass)
 RowSum::Way RowSum::pass_disk(const Way& first, const Way& second) const {
   const double across = first.to.z - second.to.z, share = (first.to.z - height_) / across;
   const glm::dvec2 aside = glm::dvec2(second.to) - glm::dvec2(first.to), to = glm::dvec2(first.to) + share * aside;
@@ -47,9 +47,9 @@ RowSum::Way RowSum::pass_disk(const Way& first, const Way& second) const {
 void RowSum::cut_at_disk(const GridSample& at) {
   cuts_at_disk_ = true;
   const LightCone& cone = grid_.cones->of[at.cone];
-  // A sphere that does not reach the square around the disk passes through it nowhere, whoever else is near to it: so
-  // nothing depends on what was near to other view samples. (Its corners are √2 of the axes away; more is room for
-  // rounding.)
+  // A sphere that does not reach the square around the disk never intersects it, regardless of other nearby casters: so
+  // no result depends on casters near other view samples. (The square's corners are √2 of the axes away; the excess
+  // covers rounding.)
   const double to_corner = 1.5 * std::max(glm::length(cone.u), glm::length(cone.v));
   const NearSpheres& near = *grid_.cones->near;
   const auto column = [&](std::size_t field) { return near.columns[field].data(); };
@@ -73,7 +73,7 @@ std::optional<RowSum::Placed> RowSum::place_disk_cut(std::size_t caster) {
   std::array<glm::dvec3, 3> corners;
   std::array<Way, 3> ways;
   std::array<int, 3> sides{};
-  RowEdge box{INFINITY, INFINITY, -INFINITY, -INFINITY, 0};  // around its corners, in the direction of the plane
+  RowEdge box{INFINITY, INFINITY, -INFINITY, -INFINITY, 0};  // bounds of its corners, in the direction of the plane
   double error = 0, error_up = 0, far = 0;
   for (std::size_t i = 0; i < 3; ++i) {
     corners[i] = {row[3 * i], row[3 * i + 1], row[3 * i + 2]};
@@ -88,11 +88,12 @@ std::optional<RowSum::Placed> RowSum::place_disk_cut(std::size_t caster) {
   }
   if (std::abs(sides[0] + sides[1] + sides[2]) == 3) return std::nullopt;
   if (sides[0] * sides[1] * sides[2] == 0) {
-    // Wherever it passes through the plane, it does so at a place between those of its corners.
+    // All its crossings with the plane lie between the places of its corners.
     is_open_ = is_open_ || !is_beside(box, kUnsure * placing_error(1, error, error_up, far));
     return std::nullopt;
   }
-  // Around what is before the plane, the corners in their order: out of it at `from`, back at `to`.
+  // Walking around the part in front of the plane, with the corners in order: the boundary leaves at `from`, and
+  // returns at `to`.
   Way from, to;
   for (const auto& [i, next] : {std::pair{0U, 1U}, std::pair{1U, 2U}, std::pair{2U, 0U}}) {
     if (sides[i] != sides[next])

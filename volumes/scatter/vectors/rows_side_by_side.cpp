@@ -1,4 +1,4 @@
-// rows=exact: the edges of one view sample are placed on vector units, but for those that need more.
+// rows=exact: places the edges of one view sample on vector units, except those that need more.
 
 #include "volumes/scatter/vectors/rows.hpp"
 

@@ -1,4 +1,4 @@
-// Edge scatter on a processor: what scatter_edges.comp does, with edges side by side instead of view samples.
+// Edge scatter on a processor: the algorithm of scatter_edges.comp, with vectors of edges instead of view samples.
 
 #include "volumes/scatter/vectors/scatter.hpp"
 
@@ -30,7 +30,7 @@ namespace {
 namespace hn = hwy::HWY_NAMESPACE;
 using namespace vectors::HWY_NAMESPACE;
 
-/// Where the group's edges appear to one view sample: those that vectors add, and those that are added one by one.
+/// Projects the group's edges for one view sample: those that vectors add, and those that are added individually.
 void project(const ClusterInput& in, EdgeScratch& found, RowScratch& scratch, const ClusterSample& at,
              OpenJudge& judge) {
   scratch.precise.clear();
@@ -42,7 +42,7 @@ void project(const ClusterInput& in, EdgeScratch& found, RowScratch& scratch, co
   Projection{in, at, found.lists, found.crossing}(special);
 }
 
-/// Adds their changes.
+/// Adds the changes of projected edges.
 template <typename Counter>
 class SampleScatter {
  public:
@@ -50,7 +50,7 @@ class SampleScatter {
                 const ClusterSample& at)
       : in_(in), f_(found), s_(scratch), changes_(changes), at_(at) {}
 
-  /// Whether the depth changes anywhere on the light, or something is open.
+  /// Returns whether the depth changes anywhere on the light, or something is open.
   bool operator()() {
     for (const PreciseEdge& one : s_.precise) precisely(one.edge, one.k, one.settled, std::nullopt);
     std::size_t landed = 0;
@@ -91,7 +91,7 @@ class SampleScatter {
     const V jump = hn::IfThenElse(hn::Xor(hn::Lt(near_y, far_y), turn), hn::Neg(k), k);
     const V rows = set(static_cast<float>(grid.rows)), columns = set(static_cast<float>(grid.columns));
 
-    // Coarse: whatever may be open by the group's bound is looked at again, precisely.
+    // A coarse test: edges that may leave samples open by the group's bound are handled again, precisely.
     M open = hn::Lt(hn::Abs(hn::Sub(near_y, hn::Round(near_y))), error);
     open = hn::Or(open, hn::Lt(hn::Abs(hn::Sub(far_y, hn::Round(far_y))), error));
     const V error_x = hn::MulAdd(hn::Mul(set(2.41F), error), hn::Add(set(1), steep),
@@ -108,7 +108,7 @@ class SampleScatter {
     const V stride = set(static_cast<float>(grid.padded_rows));
     const M left = hn::And(used, hn::Xor(hn::Lt(x0, set(-0.5F)), hn::Lt(x1, set(-0.5F))));
     const M upper_right = hn::Ge(hn::IfThenElse(hn::Lt(y0, y1), x1, x0), set(-0.5F));
-    V from = end;  // the first row above where it crosses the light's left side
+    V from = end;  // the first row above the edge's crossing with the light's left side
     for (;;) {
       const M crossed = hn::And(used, hn::Lt(row, end));
       if (hn::AllFalse(d, crossed)) break;
@@ -136,7 +136,7 @@ class SampleScatter {
       const V error_y = hn::MulAdd(hn::Mul(set(2.41F), error), hn::Add(set(1), hn::Abs(inverse)),
                                    hn::Mul(set(8.1F * kRound), hn::Add(set(grid.half_cells.y), hn::Abs(near_y))));
       open = hn::Or(open, hn::And(left, hn::Lt(hn::Abs(hn::Add(y, set(0.5F))), error_y)));
-      // Beside light rows they know better than the division: only below the first of them is y asked.
+      // Next to light rows, these decide more precisely than the division: y is used only below the first of them.
       const M over_corner = hn::Or(hn::Gt(from, set(0)), hn::Gt(y, set(-0.5F)));
       const M above = hn::And(left, hn::And(over_corner, hn::Lt(from, rows)));
       const V up = hn::IfThenElse(hn::Lt(x0, x1), k, hn::Neg(k));
@@ -184,7 +184,7 @@ class SampleScatter {
 
 // ---- depths to bits ------------------------------------------------------------------------------------------------
 
-/// A bit a lane, from bit `place` on: a multiple of eight, or of fewer lanes.
+/// Stores a bit for each lane, from bit `place` on: a multiple of eight, or of the number of lanes if smaller.
 template <class Tag>
 void store_bits(Tag d, hn::Mask<Tag> which, std::size_t place, std::uint8_t* bytes) {
   std::uint8_t found[8] = {};
@@ -197,7 +197,7 @@ void store_bits(Tag d, hn::Mask<Tag> which, std::size_t place, std::uint8_t* byt
   }
 }
 
-/// As many rows as there are lanes, from `row` on, from the depths at their left ends.
+/// Sums as many rows as there are lanes, from `row` on, from the depths at their left ends.
 template <class Tag, typename Counter>
 void sum_rows(Tag d, const LightGrid& grid, const Changes<Counter>& changes, std::size_t row, SampleMask& mask) {
   auto* const bytes = reinterpret_cast<std::uint8_t*>(mask.bits);
@@ -209,7 +209,7 @@ void sum_rows(Tag d, const LightGrid& grid, const Changes<Counter>& changes, std
   }
 }
 
-/// Depths from changes; a light sample is visible where the depth is 0.
+/// Sums changes to depths; a light sample is visible where the depth is 0.
 template <typename Counter>
 void sum_up(const LightGrid& grid, const Changes<Counter>& changes, std::uint32_t depth_at_corner, SampleMask& mask) {
   std::int32_t depth = static_cast<std::int32_t>(depth_at_corner);
@@ -225,14 +225,14 @@ void sum_up(const LightGrid& grid, const Changes<Counter>& changes, std::uint32_
   mask.count(mask_words(grid));
 }
 
-/// D at the light's corner, from D at a light sample that is not open: exact predicates count there.
+/// Returns D at the light's corner, from D at a light sample that is not open, counted by exact predicates.
 template <typename Counter>
 std::uint32_t depth_by_other_sample(const LightGrid& grid, const Changes<Counter>& changes, Open& open,
                                     const ClusterSample& at, OpenJudge& judge) {
   for (std::uint32_t row = 0, left = 0; row < grid.rows; ++row) {
     left += static_cast<std::uint32_t>(static_cast<std::int32_t>(changes.left[row]));
     if (std::find(open.rows.begin(), open.rows.end(), row) != open.rows.end()) continue;
-    std::uint32_t depth = left;  // less D(corner), modulo 2³²
+    std::uint32_t depth = left;  // minus D(corner), modulo 2³²
     for (std::uint32_t column = 0; column < grid.columns; ++column) {
       depth += static_cast<std::uint32_t>(
           static_cast<std::int32_t>(changes.cells[std::size_t{column} * grid.padded_rows + row]));
@@ -245,7 +245,7 @@ std::uint32_t depth_by_other_sample(const LightGrid& grid, const Changes<Counter
   return 0;
 }
 
-/// D at the light's corner where no edge changes the depth: that of any light sample that is not open.
+/// Returns D at the light's corner if no edge changes the depth: that of any light sample that is not open.
 std::uint32_t depth_by_any_sample(const LightGrid& grid, Open& open, const ClusterSample& at, OpenJudge& judge) {
   for (std::uint32_t sample = 0; sample < grid.rows * grid.columns; ++sample) {
     if (std::find(open.samples.begin(), open.samples.end(), sample) != open.samples.end()) continue;
@@ -255,8 +255,8 @@ std::uint32_t depth_by_any_sample(const LightGrid& grid, Open& open, const Clust
   return 0;
 }
 
-/// One view sample whose edges have been projected: adds all changes, and the depth at the light's corner. False:
-/// nothing changes anywhere on the light, and its corner's depth is that of all of it.
+/// Adds all changes, and the depth at the light's corner, for one view sample with projected edges. Returns false if
+/// nothing changes on the light, so that its corner's depth is that of all of it.
 template <typename Counter>
 bool scatter_changes(const ClusterInput& in, EdgeScratch& found, RowScratch& scratch, std::vector<Counter>& counters,
                      const ClusterSample& at, OpenJudge& judge, std::uint32_t& depth, SampleMask& mask) {
@@ -271,7 +271,7 @@ bool scatter_changes(const ClusterInput& in, EdgeScratch& found, RowScratch& scr
   return any;
 }
 
-/// One view sample, its group's edges sorted out.
+/// Computes one view sample with its group's selected edges.
 void scatter_sample(const ClusterInput& in, EdgeScratch& found, RowScratch& scratch, const ClusterSample& at,
                     OpenJudge& judge, SampleMask& mask) {
   const LightGrid& grid = in.grid;
@@ -283,9 +283,8 @@ void scatter_sample(const ClusterInput& in, EdgeScratch& found, RowScratch& scra
   bool changes_any = false;
   if (edges) {
     project(in, found, scratch, at, judge);
-    // Whoever goes from the corner up the left side and to a light sample crosses an edge once, or twice, which changes
-    // nothing. So no depth is larger, and where it is less than there are counts, none but 0 is counted as 0, whatever
-    // sums overflow on the way.
+    // A path corner → left side → sample crosses each edge at most twice, and twice cancels, so |depth| ≤ `most`; a
+    // counter type with more values than that cannot wrap to a false 0, whatever intermediate sums overflow.
     const std::size_t most =
         (found.open.corner ? triangles : depth) + 2 * (found.crossing.count + scratch.precise.size());
     if (most < 0x100)

@@ -1,5 +1,5 @@
-// In which rows of tiles of light samples edges are, edges side by side (points.cpp). Included once a target, after
-// foreach_target.h.
+// Finds the rows of tiles of light samples that a vector of edges is in (points.cpp). Included once for each target,
+// after foreach_target.h.
 
 #if defined(PENUMBRA_VOLUMES_TILE_ROWS_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef PENUMBRA_VOLUMES_TILE_ROWS_INL_HPP
@@ -21,22 +21,22 @@ namespace {
 namespace hn = hwy::HWY_NAMESPACE;
 using namespace vectors::HWY_NAMESPACE;
 
-/// Rows of tiles that a few edges are in: one of each is a row and an edge.
+/// Rows of tiles that a few edges are in: each entry is a row and an edge.
 struct EdgesInRows {
-  static constexpr std::int32_t kEdges = 0xff, kCrosses = 0x100;  // it crosses the row's way
+  static constexpr std::int32_t kEdges = 0xff, kCrosses = 0x100;  // kCrosses: the edge crosses the row's path
   static constexpr int kRowShift = 9;
   static constexpr std::size_t kMost = (LightTiles::kMostRows + 1) * hn::MaxLanes(D());
   HWY_ALIGN std::array<std::int32_t, kMost> where;  // the edge, kCrosses, and the row
-  HWY_ALIGN std::array<std::int32_t, kMost> steps;  // of LightTiles::tiles_at: from and, 2¹⁶ times, to
+  HWY_ALIGN std::array<std::int32_t, kMost> steps;  // steps of LightTiles::tiles_at: from and, times 2¹⁶, to
   std::size_t count = 0;
 };
 
-/// Finds in which rows of tiles a vector of edges is, and from where to where.
+/// Finds the rows of tiles of a vector of edges, with their extents.
 class RowsFinder {
  public:
   explicit RowsFinder(const LightTiles& tiles) : tiles_(tiles) {}
 
-  /// Into `out`, in place of what was there.
+  /// Writes the rows into `out`, replacing its content.
   void operator()(const UpwardVectors& e, EdgesInRows& out) const {
     const I di;
     out.count = 0;
@@ -62,7 +62,7 @@ class RowsFinder {
   }
 
  private:
-  /// There are sixteen rows at most, and one out of reach.
+  /// There are at most sixteen rows, and one out of reach.
   [[nodiscard]] static HWY_INLINE V of_row(const LightTiles::RowFloats& rows, hn::Vec<I> row) {
 #if HWY_TARGET <= HWY_AVX3
     return hn::IfThenElse(hn::RebindMask(D(), hn::Lt(row, hn::Set(I(), std::int32_t{LightTiles::kMostRows}))),
@@ -84,4 +84,4 @@ class RowsFinder {
 }  // namespace penumbra::volumes::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
-#endif  // once a target
+#endif  // once for each target

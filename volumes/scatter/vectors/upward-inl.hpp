@@ -1,5 +1,5 @@
-// Edges turned upward, side by side: what light samples anywhere are tested against (points.cpp). Included once a
-// target, after foreach_target.h.
+// Edges oriented upward, in vectors: the form in which arbitrary light samples are tested (points.cpp). Included once
+// for each target, after foreach_target.h.
 
 #if defined(PENUMBRA_VOLUMES_UPWARD_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef PENUMBRA_VOLUMES_UPWARD_INL_HPP
@@ -23,7 +23,7 @@ namespace {
 namespace hn = hwy::HWY_NAMESPACE;
 using namespace vectors::HWY_NAMESPACE;
 
-/// A few edges as they appear, side by side, each from its lower end to its upper one.
+/// A few projected edges in vectors, each from its lower end to its upper one.
 enum UpwardField : std::size_t {
   kLowX,
   kLowY,
@@ -31,41 +31,41 @@ enum UpwardField : std::size_t {
   kHighY,
   kWayX,
   kWayY,
-  kJump,       // of the depth to the right of it
-  kNear,       // a light sample that is no farther on either side (in areas: side_of) may be on the other one
-  kLeftmost,   // nor are such light samples left of here,
-  kRightmost,  // right of here,
-  kBottom,     // below
-  kTop,        // or above
+  kJump,       // change of the depth to the right of it
+  kNear,       // a light sample within this of either side (in areas: side_of) may be on the other one
+  kLeftmost,   // no such light sample is left of this,
+  kRightmost,  // right of this,
+  kBottom,     // below this
+  kTop,        // or above this
   kUpwardFields
 };
 struct UpwardEdges {
   HWY_ALIGN std::array<std::array<float, hn::MaxLanes(D())>, kUpwardFields> fields;
-  std::size_t first = 0;  // in the CrossingTable
+  std::size_t first = 0;  // index of the first edge in the CrossingTable
 };
-/// Edges in registers, and what only finding tiles takes.
+/// Edges in registers, with values that only the search for tiles uses.
 struct UpwardVectors {
   V low_x, low_y, high_x, high_y, jump, leftmost, rightmost, bottom, top;
-  V slope;         // of x
-  V beside;        // along a row: no farther from it are light samples that may be on the other side
-  hn::Vec<I> row;  // of tiles: none below it reaches up to `bottom`
+  V slope;         // slope of x
+  V beside;        // along a row: light samples within this may be on the other side
+  hn::Vec<I> row;  // row of tiles: none below it reaches up to `bottom`
   M used;
-  M beside_left;  // the light's corner or left side may have to do with them
+  M beside_left;  // the edge may affect the light's corner or left side
 };
-/// One of them.
+/// One edge of a vector.
 struct UpwardEdge {
   const UpwardEdges& edges;
   std::size_t lane;
 
   [[nodiscard]] float operator[](UpwardField field) const { return edges.fields[field][lane]; }
   [[nodiscard]] std::size_t crossing() const { return edges.first + lane; }
-  /// > 0: (x, y) is right of the line through it; twice the area between the three.
+  /// Returns twice the area between the three points: > 0 if (x, y) is right of the line through the edge.
   [[nodiscard]] float side_of(float x, float y) const {
     return (x - (*this)[kLowX]) * (*this)[kWayY] - (y - (*this)[kLowY]) * (*this)[kWayX];
   }
 };
 
-/// (bound side of a point)
+/// Error bounds: (bound side of a point).
 [[maybe_unused]] HWY_INLINE UpwardVectors turn_upward(const LightGrid& grid, const CrossingTable& table,
                                                       std::size_t first, UpwardEdges& out) {
   const D d;
@@ -73,7 +73,7 @@ struct UpwardEdge {
   const auto store = [&](UpwardField field, V v) { hn::Store(v, d, out.fields[field].data()); };
   const V x0 = column(kX0), y0 = column(kY0), x1 = column(kX1), y1 = column(kY1);
   const M up = hn::Lt(y0, y1);
-  const V k = grid.side < 0 ? hn::Neg(column(kK)) : column(kK);  // seen from behind, all turn the other way
+  const V k = grid.side < 0 ? hn::Neg(column(kK)) : column(kK);  // seen from behind, all orientations are reversed
   UpwardVectors e;
   e.used = first_lanes(table.count - first);
   e.low_x = hn::IfThenElse(up, x0, x1), e.low_y = hn::IfThenElse(up, y0, y1);
@@ -98,7 +98,7 @@ struct UpwardEdge {
   store(kRightmost, e.rightmost);
   store(kBottom, e.bottom);
   store(kTop, e.top);
-  // A flatter one may be beside any light sample of a row: right at every limit, which only keeps slopes finite.
+  // A flatter edge may be next to any light sample of a row: valid for every limit, which only keeps slopes finite.
   const M leans = hn::Gt(way_y, hn::Mul(set(1e-6F), wide));
   e.slope = hn::IfThenElseZero(leans, hn::Div(way_x, way_y));
   const V beside =
@@ -117,4 +117,4 @@ struct UpwardEdge {
 }  // namespace penumbra::volumes::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
-#endif  // once a target
+#endif  // once for each target

@@ -1,3 +1,5 @@
+// Places of edges for one view sample in vectors of doubles, with the operations of RowSum in the same order.
+
 #include "volumes/scatter/vectors/wide_places.hpp"
 
 #include <algorithm>
@@ -21,8 +23,8 @@ Double number(double x) {
   return hn::Set(Doubles(), x);
 }
 
-/// The operations are those of RowSum::way_to, cut_to_window, place and placing_error, in their order: an edge may be
-/// placed here or there, and its ends are ends of others.
+/// The operations are those of RowSum::way_to, cut_to_window, place and placing_error, in the same order: an edge may
+/// be placed by either code, and its ends are ends of other edges.
 class SideBySide {
  public:
   explicit SideBySide(const PlacesFrame& frame) : f_(frame) {}
@@ -97,7 +99,7 @@ class SideBySide {
     return {along(f_.axes[0]), along(f_.axes[1]), hn::Neg(along(f_.axes[2])),
             hn::Mul(hn::Mul(number(64), error), number(f_.per_length)), hn::Mul(number(32), error)};
   }
-  /// Is the end inside both sides of the window?
+  /// Returns whether the end is inside both sides of the window.
   [[nodiscard]] Which holds(Double x, Double z, Double window, Double off) const {
     const Double at = hn::Add(hn::Mul(x, number(f_.height)), hn::Mul(off, z)), wide = hn::Mul(window, z);
     return hn::And(hn::Ge(hn::Sub(wide, at), hn::Zero(Doubles())), hn::Ge(hn::Add(wide, at), hn::Zero(Doubles())));
