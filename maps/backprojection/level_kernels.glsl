@@ -1,14 +1,14 @@
-// Kernels on the levels (levels.glsl) of a receiver that a workgroup looks at (group_kernel.glsl): the second, on the
-// coarser of two levels, comes after the first. The shader defines
-//   Kernel kernel_at_level(MapFace face)    the receiver's kernel on the level at hand
+// Kernels on the levels (levels.glsl) of a receiver processed by a workgroup (group_kernel.glsl): the kernel on the
+// coarser of two levels comes after the one on the finer. The shader defines
+//   Kernel kernel_at_level(MapFace face)    the receiver's kernel on the current level
 #include "maps/backprojection/levels.glsl"
 
-float coarser_share = 0.0;  // what the coarser of two levels counts for
-bool coarser = false;       // the coarser of two is looked at now
+float coarser_share = 0.0;  // weight of the coarser of two levels
+bool coarser = false;       // true while the coarser of two levels is processed
 
 Kernel kernel_at_level(MapFace face);
 
-// A texel of the level at hand, as ask_texel has one of the map.
+// Returns a texel of the current level, as ask_texel returns one of the map.
 Tap ask_level(MapFace face, uint layer, uvec2 cell) {
   if (level() == 0) return ask_texel(face, layer, cell);
   Tap tap = level_tap(asked.view, face, layer, cell);
@@ -22,7 +22,7 @@ void begin_levels() {
   coarser = false;
 }
 
-// The kernel on the finer level of those that this kernel's extent on the level at hand asks for.
+// Returns the kernel on the finer of the levels selected by the extent of `kernel` on the current level.
 Kernel kernel_within_budget(MapFace face, Kernel kernel) {
   if (kLevels != kLevelsByBudget || is_empty(kernel)) return kernel;
   const float wanted = wanted_level(kernel.last - kernel.first + 1);
@@ -31,11 +31,11 @@ Kernel kernel_within_budget(MapFace face, Kernel kernel) {
   return level() == own.level ? kernel : kernel_at_level(face);
 }
 
-// The blocks of the level at hand that can hide some of the light, of which none is nearer to the light than `near`. What a
-// kernel's blocks and those beside them (whose depths patches and quads reach to) leave unhidden is out of it, twice.
-// Defined after the light's `lower` and `upper`, and search.glsl.
+// Returns the blocks of the current level that can hide some of the light, none of which is nearer to the light than
+// `near`. Removes, twice, the parts of the kernel that its blocks and the blocks beside them (to whose depths patches
+// and quads extend) leave unhidden. Defined after the light's `lower` and `upper`, and search.glsl.
 Kernel blocks_on_light(MapFace face, float near, int padding) {
-  // A face seen sideways has blocks whose lower border is many rows below the texel that is nearest.
+  // On a sideways face, the lower border of a block may be many rows below its nearest texel.
   if (face.axis != 2 && level() > 0) return Kernel(ivec2(0), ivec2(level_size()) - 1, false);
   const int shift = int(level());
   Kernel kernel = kernel_on(at_level(face), level_size(), asked.e, light.lower, light.upper, near, padding);

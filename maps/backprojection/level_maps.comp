@@ -3,12 +3,12 @@
 #extension GL_GOOGLE_include_directive : require
 #include "maps/backprojection/level_maps.shared.h"
 
-// A coarse level of maps: each texel has the nearest depth of 2^level x 2^level texels, and where among them there is
-// anything: the columns and rows of the box around it, eight bits each: first and last column, first and last row.
+// Computes a coarse level of maps: each texel has the nearest depth of 2^level x 2^level texels, and the box around its
+// non-empty texels: first and last column, first and last row, eight bits each.
 
 layout(local_size_x = 64) in;
 layout(scalar, binding = 0) readonly buffer Maps { float maps[]; };
-layout(scalar, binding = 1) writeonly buffer Levels { uvec2 levels[]; };  // the bits of the depth, the box
+layout(scalar, binding = 1) writeonly buffer Levels { uvec2 levels[]; };  // bits of the depth, and the box
 layout(scalar, push_constant) uniform Push { LevelPush push; };
 
 void main() {

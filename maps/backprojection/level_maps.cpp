@@ -1,3 +1,5 @@
+// Records the coarse levels of a light's maps (level_maps.comp), all layers and faces.
+
 #include "maps/backprojection/level_maps.hpp"
 
 #include "maps/backprojection/level_maps.comp.spv.hpp"

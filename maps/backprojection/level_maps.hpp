@@ -10,8 +10,8 @@
 namespace penumbra::maps {
 
 /// Coarse levels of all layers of a light's maps (Schwarz and Stamminger 2007, 2008), one after the other: the nearest
-/// depth of each block of 2^level texels a side, and the box around what there is in it. Two words a texel; of level 0
-/// nothing is made.
+/// depth of each block of 2^level texels a side, and the box around its non-empty texels. Two words a texel; level 0 is
+/// not stored.
 class LevelMaps final : public MapProduct {
  public:
   LevelMaps(const render::Device& device, std::uint32_t first, std::uint32_t last);

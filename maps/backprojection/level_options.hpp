@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <memory>
 
-/// The options of methods that look at coarse levels of their maps (levels.glsl).
+/// Options of methods that use coarse levels of their maps (levels.glsl).
 namespace penumbra::maps {
 
 inline constexpr visibility::IntegerOption kMapLevel{"level", 0, gpu::kCoarsestLevel, 0,
@@ -18,11 +18,11 @@ inline constexpr visibility::ChoiceOption<bool, 2> kBlendLevels =
     visibility::flag_option("blend", true, "with a budget: pass from one level to the next without steps");
 
 struct LevelChoice {
-  std::uint32_t level = 0;   ///< with a budget the finest
-  std::uint32_t budget = 0;  ///< 0: none
+  std::uint32_t level = 0;   ///< with a budget, the finest level
+  std::uint32_t budget = 0;  ///< 0: no budget
   bool blend = true;
 
-  /// gpu::kFinestLevel …: the shader's constant kLevels.
+  /// Returns the shader's constant kLevels: gpu::kFinestLevel …
   [[nodiscard]] std::uint32_t levels() const {
     return budget > 0 ? gpu::kLevelsByBudget : level > 0 ? gpu::kOneLevel : gpu::kFinestLevel;
   }
@@ -32,7 +32,7 @@ inline LevelChoice level_choice(const visibility::ParsedOptions& parsed) {
   return {parsed[kMapLevel], parsed[kTexelBudget], parsed[kBlendLevels]};
 }
 
-/// The levels that the choice may ask for.
+/// Returns the levels that `choice` may use.
 inline std::unique_ptr<LevelMaps> make_level_maps(const render::Device& device, const LevelChoice& choice) {
   if (choice.budget > 0) return std::make_unique<LevelMaps>(device, 1, gpu::kCoarsestLevel);
   return std::make_unique<LevelMaps>(device, choice.level, choice.level);

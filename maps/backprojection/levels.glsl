@@ -1,15 +1,16 @@
-// Coarse levels of a map in place of the map (Guennebaud, Barthe and Paulin 2007; Schwarz and Stamminger 2008): a texel of
-// level l has the nearest depth of 2^l x 2^l texels. Either one level for all receivers, or the finest whose kernel has no
-// more texels than a budget. A level between two whole ones is made of both: the coarser counts for the fraction. Included
-// after kernel.glsl and taps.glsl; the shader has own.level, own.budget and own.blend, and defines before
+// Coarse levels of a map in place of the map (Guennebaud, Barthe and Paulin 2007; Schwarz and Stamminger 2008): a texel
+// of level l has the nearest depth of 2^l x 2^l texels. Either one level for all receivers, or the finest whose kernel
+// has no more texels than a budget. A level between two whole levels is a blend of both: the coarser is weighted by the
+// fraction. Included after kernel.glsl and taps.glsl; the shader has own.level, own.budget and own.blend, and defines
+// before
 //   LEVEL_MAPS        the binding of LevelMaps' buffer
 //   const uint kLevels   kFinestLevel ...
 #include "maps/backprojection/level_maps.shared.h"
 
-layout(scalar, binding = LEVEL_MAPS) readonly buffer Levels { uvec2 levels[]; };  // level_maps.comp's
+layout(scalar, binding = LEVEL_MAPS) readonly buffer Levels { uvec2 levels[]; };  // written by level_maps.comp
 
 uint level_at_hand = 0;
-uint level_start = 0;  // where it begins among those that there are
+uint level_start = 0;  // first texel of the current level in `levels`
 
 uint level() { return kLevels == kFinestLevel ? 0 : level_at_hand; }
 
@@ -19,17 +20,17 @@ uint level_size() { return side_of_level(level()); }
 void look_at_level(uint l) {
   level_at_hand = l;
   level_start = 0;
-  if (kLevels != kLevelsByBudget) return;  // it is the only one
+  if (kLevels != kLevelsByBudget) return;  // the only level
   for (uint k = 1; k < l; ++k) level_start += lookup.layers * lookup.faces * side_of_level(k) * side_of_level(k);
 }
 
-// The face with texels of the level.
+// Returns the face with texels of the current level.
 MapFace at_level(MapFace face) {
   face.texel *= float(1u << level());
   return face;
 }
 
-// A texel of a coarse level, as tap_of (taps.glsl) has one of the map; `face` has texels of the level.
+// Returns a texel of a coarse level, as tap_of (taps.glsl) returns one of the map; `face` has texels of the level.
 Tap level_tap(LightView view, MapFace face, uint layer, uvec2 cell) {
   const uint side = level_size();
   const uint texel = level_start + ((face.map + layer * lookup.faces) * side + cell.y) * side + cell.x;
@@ -46,13 +47,13 @@ Tap level_tap(LightView view, MapFace face, uint layer, uvec2 cell) {
   return tap;
 }
 
-// The level that a kernel of so many texels asks for: a number that grows with it without steps.
+// Returns the level for a kernel of `extent` texels: a number that grows continuously with the extent.
 float wanted_level(ivec2 extent) {
   if (kLevels != kLevelsByBudget) return float(own.level);
   const float over = 0.5 * log2(float(extent.x) * float(extent.y) / float(own.budget));
   return min(float(own.level) + max(over, 0.0), float(kCoarsestLevel));
 }
 
-// The finer of the two levels that it is made of, and what the coarser counts for: without blending the next whole one.
+// Return the finer of the two levels of a blend, and the weight of the coarser; without blending, the next whole level.
 uint finer_level(float wanted) { return uint(own.blend != 0 ? floor(wanted) : ceil(wanted)); }
 float coarser_part(float wanted) { return own.blend != 0 ? fract(wanted) : 0.0; }

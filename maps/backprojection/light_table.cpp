@@ -1,3 +1,5 @@
+// Computes tables of prefix sums (Crow 1984) of the area of a light, exact at the nodes.
+
 #include "maps/backprojection/light_table.hpp"
 
 #include "base/assert.hpp"
@@ -16,22 +18,23 @@ namespace penumbra::maps {
 namespace {
 
 constexpr std::uint32_t kCells = 256;
-/// The share of its bounding rectangle that a light may leave out, by the rounding of its stored corners, and still be
-/// taken for all of it: V is off by no more than that. One that leaves more has a table, as any polygon.
+/// Fraction of its bounding rectangle that a rectangle light may leave out, by the rounding of its stored corners, and
+/// still count as the whole rectangle: V is off by no more than this. A light that leaves out more has a table, as any
+/// polygon.
 constexpr double kPerpendicular = 1e-6;
 
-/// ∫ √(1 − t²) dt from 0.
+/// Returns ∫ √(1 − t²) dt from 0 to t.
 double under_circle(double t) {
   return (t * std::sqrt(std::max(0.0, 1 - t * t)) + std::asin(t)) / 2;
 }
 
-/// The area of the unit disk's part above the height y ≥ 0 and left of x.
+/// Returns the area of the unit disk's part above the height y ≥ 0 and left of x.
 double cap_left_of(double x, double y) {
   const double half = std::sqrt(std::max(0.0, 1 - y * y)), to = std::clamp(x, -half, half);
   return under_circle(to) - under_circle(-half) - y * (to + half);
 }
 
-/// The share of the unit disk left of x and below y.
+/// Returns the fraction of the unit disk left of x and below y.
 double disk_share(double x, double y) {
   x = std::clamp(x, -1.0, 1.0);
   const double left = 2 * (under_circle(x) - under_circle(-1));
@@ -40,7 +43,7 @@ double disk_share(double x, double y) {
 }
 
 std::vector<float> shares_of_texture(const visibility::LightTexture& texture) {
-  // The texture's rows run from the top downward.
+  // Rows of the texture run from the top downward.
   const std::size_t width = texture.width, height = texture.height;
   std::vector<double> sums((width + 1) * (height + 1), 0.0);
   for (std::size_t y = 0; y < height; ++y) {

@@ -1,14 +1,15 @@
-// How much of the light a rectangle in its plane covers, and how much of it is above the receiver's horizon. Before it is
-// included LIGHT_TABLE is the binding of LightTable's buffer.
+// Fraction of the light covered by a rectangle in its plane, and fraction above the receiver's horizon. Includers
+// define LIGHT_TABLE first, the binding of LightTable's buffer.
 #include "maps/backprojection/light_table.shared.h"
 
 layout(scalar, binding = LIGHT_TABLE) readonly buffer Table {
   LightTableHead light;
-  float light_data[];  // corners of the outline, then shares
+  float light_data[];  // corners of the outline, then the table's fractions
 };
 
-// The share of the light left of and below `unit`, in [0, 1]^2 of its bounding rectangle, in parts of kWholeLight. Rounded
-// here, so that differences of neighbouring rectangles add up to exactly the difference of their union.
+// Returns the fraction of the light left of and below `unit`, in [0, 1]^2 of its bounding rectangle, in units of 1 /
+// kWholeLight. Rounded here, so that differences of neighbouring rectangles add up to exactly the difference of their
+// union.
 int light_up_to(vec2 unit) {
   precise float share = unit.x * unit.y;
   if (light.width * light.height > 1) {
@@ -23,7 +24,7 @@ int light_up_to(vec2 unit) {
   return int(share * float(kWholeLight) + 0.5);
 }
 
-// The share of the light between two corners in its plane, in either order.
+// Returns the fraction of the light between two corners in its plane, in either order.
 uint light_between(vec2 a, vec2 b) {
   const vec2 extent = light.upper - light.lower;
   precise const vec2 from = clamp((min(a, b) - light.lower) / extent, 0.0, 1.0);
@@ -33,16 +34,16 @@ uint light_between(vec2 a, vec2 b) {
   return uint(max(share, 0));
 }
 
-// The share of a disk of radius 1 on the one side of a line, t from its middle on the other. (Drivers may be 1e-4 off in
-// asin.)
+// Returns the fraction of a disk of radius 1 on one side of a line; the line is at distance t from the disk's centre on
+// the other side. (Drivers may be 1e-4 off in asin.)
 float disk_beside_line(float t) {
   if (abs(t) >= 1.0) return t > 0.0 ? 1.0 : 0.0;
   const float half_chord = sqrt((1.0 - t) * (1.0 + t));
   return (t * half_chord + atan(t, half_chord)) / 3.14159265358979 + 0.5;
 }
 
-// The share of the light's area that is strictly above the horizon of the receiver e, m its normal away from the light:
-// points s with m . (e - s) > 0.
+// Returns the fraction of the light's area strictly above the horizon of the receiver e, m its normal away from the
+// light: points s with m . (e - s) > 0.
 float light_above_horizon(vec3 e, vec3 m) {
   const float h = dot(m, e);
   const vec2 most = vec2(m.x > 0.0 ? light.upper.x : light.lower.x, m.y > 0.0 ? light.upper.y : light.lower.y);
@@ -50,7 +51,7 @@ float light_above_horizon(vec3 e, vec3 m) {
   if (dot(m.xy, most) < h) return 1.0;
   if (dot(m.xy, least) >= h) return 0.0;
   if (light.radius > 0.0) return disk_beside_line(h / (length(m.xy) * light.radius));
-  // Seen from a point of the horizon's line the edge along the line spans no area.
+  // Origin on the horizon's line: seen from there, the edge along the line spans no area.
   const vec2 o = m.xy * (h / dot(m.xy, m.xy));
   float twice = 0.0;
   for (uint i = 0; i < light.corners; ++i) {

@@ -8,10 +8,11 @@
 
 namespace penumbra::maps {
 
-/// A planar light as patches cut it: how much of it lies in any axis-parallel rectangle, by differences of a table of
-/// prefix sums (Crow 1984), bilinear between its nodes. Exact for a rectangle light: one cell, or one for each texel of
-/// its texture, whose luminance it weighs by. Others have 256 × 256 cells over their bounding rectangle, with the exact
-/// share of the light below and left of each node. A sphere's is that of its disk.
+/// Planar light in the form used for cutting by patches: the fraction of the light in any axis-parallel rectangle, by
+/// differences of a table of prefix sums (Crow 1984), bilinear between its nodes. Exact for a rectangle light: one
+/// cell, or one for each texel of its texture, weighted by luminance. Other lights have 256 × 256 cells over their
+/// bounding rectangle, with the exact fraction of the light below and left of each node. A sphere has the table of its
+/// disk.
 struct LightTableData {
   gpu::LightTableHead head;
   std::vector<float> outline;  ///< x, y of each corner
@@ -19,12 +20,12 @@ struct LightTableData {
 };
 LightTableData light_table(const visibility::Light& light, const LightBasis& basis);
 
-/// light_table on the device; light_table.glsl reads it.
+/// Buffer of light_table on the device, read by light_table.glsl.
 class LightTable final : public MapProduct {
  public:
   explicit LightTable(const render::Device& device) : device_(&device) {}
   void record(render::Commands& commands, const MapSet& maps) override;
-  /// Writes that of a light, at once.
+  /// Writes the table of a light, immediately.
   void write(const LightTableData& data);
   [[nodiscard]] const render::Buffer& buffer() const override;
 

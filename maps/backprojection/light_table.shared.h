@@ -1,12 +1,12 @@
-// One struct, two languages: what LightTable's buffer begins with.
+// Shared by C++ and GLSL: head of LightTable's buffer.
 #ifdef __cplusplus
 #pragma once
 #include "maps/host/map_view.shared.h"
 namespace penumbra::maps::gpu {
 #endif
 
-// A planar light in its basis. Behind it: `corners` corners of its outline (a disk has none), then (width + 1)(height +
-// 1) numbers, row by row: the share of the light in [0, x / width] x [0, y / height] of its bounding rectangle.
+// Planar light in its basis. Followed by `corners` corners of its outline (a disk has none), then (width + 1)(height +
+// 1) numbers, row by row: the fraction of the light in [0, x / width] x [0, y / height] of its bounding rectangle.
 struct LightTableHead {
   vec2 lower, upper;  // the bounding rectangle
   float radius;       // of a disk, else 0

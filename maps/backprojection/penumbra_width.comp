@@ -9,22 +9,23 @@
 #define PYRAMID_BINDING 6
 #include "maps/backprojection/search.glsl"
 
-// How narrow the narrowest penumbra at a receiver may be, parallel to the light: what hides light at depth z_o casts one of
-// (z - z_o) / z_o times the light's width on a receiver at z, the narrower the farther from the light it is. Each of up to
-// 8 x 8 nodes of the kernel says how far what it holds may be; infinity: nothing in the kernel hides light.
+// Computes a lower bound of the width of the narrowest penumbra at a receiver, parallel to the light: an occluder at
+// depth z_o casts a penumbra of (z - z_o) / z_o times the light's width on a receiver at z, narrower the farther the
+// occluder is from the light. Each of up to 8 x 8 nodes of the kernel gives the width for its largest possible z_o;
+// infinity: nothing in the kernel hides light.
 
 layout(scalar, binding = 4) readonly buffer Nearest { float nearest[2]; };
 
 const uint kInfinity = 0x7f800000u;
-shared uint narrowest;  // a float from 0 on: such floats are in the order of their bits
+shared uint narrowest;  // bits of a float >= 0: such floats have the order of their bits
 
 float width_of_node(MapFace face, Bounds receiver, ivec2 first, ivec2 last) {
   const vec2 depths = asked.view.far * depth_range(face.map, uvec2(first), uvec2(last));
   const vec2 shades = thresholds(receiver, face, first, last, asked.view.far);
   if (depths.x >= min(shades.y, asked.view.far)) return uintBitsToFloat(kInfinity);
-  // Where the deepest is the receiver's own surface, or nothing, only the nearest is known to hide light.
+  // If the deepest surface is the receiver's own, or there is none, only the nearest is known to hide light.
   const float depth = depths.y < shades.x ? depths.y : depths.x;
-  // Sideways a texel of row b is b times its depth over the light's plane.
+  // Sideways, the height over the light's plane of a texel of row b is b times its depth.
   const float height = face.axis == 2 ? depth : depth * (float(first.y) + 0.5) * face.texel.y;
   const vec2 width = light.upper - light.lower;
   return min(width.x, width.y) * max(asked.e.z / height - 1.0, 0.0);

@@ -1,3 +1,6 @@
+// Records penumbra_width.comp: a bound of the narrowest penumbra at each view sample, used by subsampled.cpp
+// (Guennebaud, Barthe and Paulin 2007 do not give the estimate).
+
 #include "maps/backprojection/penumbra_width.hpp"
 
 #include "maps/backprojection/light_table.hpp"

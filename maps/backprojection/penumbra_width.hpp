@@ -7,10 +7,10 @@
 
 namespace penumbra::maps {
 
-/// Answers as a method does, but with, for each view sample, how wide the narrowest penumbra there may be, in scene
-/// units parallel to the light: by the farthest from the light of what its map has in the kernel (penumbra_width.comp).
-/// Infinity: nothing there hides light. `options`: of a method with a map from the light's centre; others are passed
-/// over.
+/// Makes a method whose result at each view sample is the width of the narrowest possible penumbra there, in scene
+/// units parallel to the light: from the occluder of its map's kernel that is farthest from the light
+/// (penumbra_width.comp). Infinity: nothing in the kernel hides light. `options`: those of a method with a map from the
+/// light's centre; others are ignored.
 std::unique_ptr<visibility::Method> make_penumbra_widths(const render::Device& device,
                                                          const visibility::MethodOptions& options);
 

@@ -1,17 +1,16 @@
-// The search for a receiver's kernel (Guennebaud, Barthe and Paulin 2006): nothing in it is nearer to the light than its
-// nearest depth, which makes a narrower kernel, with a nearest depth of its own, until it stays as it is. Where its
-// deepest texel, too, is in front of the receiver, all of the light is hidden. Included after group_kernel.glsl, with
-// PYRAMID_BINDING.
+// Search for a receiver's kernel (Guennebaud, Barthe and Paulin 2006): the kernel's nearest depth gives a narrower
+// kernel, with a nearest depth of its own, until the kernel no longer changes. Where its deepest texel, too, is in
+// front of the receiver, all of the light is hidden. Included after group_kernel.glsl, with PYRAMID_BINDING.
 #include "maps/backprojection/thresholds.glsl"
 #include "maps/products/depth_pyramid.glsl"
 
 const int kSearchRounds = 4;
-// What is nearer to the receiver's height than this share of it is seen as far away as can be: a quotient by it is right to
-// 2^-24 of its thousand.
+// Smallest fraction of the receiver's height by which a point is below the receiver; nearer points are projected to the
+// largest distance: a quotient by this fraction is right to 2^-24 of its thousand.
 const float kLeastRise = 1e-3;
 
-// Is the receiver behind all that a kernel's texels hold? Bounds for blocks_light over the kernel: of the receiver's
-// plane, whose depth h / (m . c) is least where m . c is largest, at a corner, and of what the bias forgives there.
+// Returns whether the receiver is behind all surfaces in a kernel's texels. Bounds for blocks_light over the kernel: of
+// the receiver's plane, whose depth h / (m . c) is least where m . c is largest, at a corner, and of the bias there.
 bool behind_all(MapFace face, Kernel kernel, float deepest) {
   const vec2 lower = face.lower + (vec2(kernel.first) + 0.5) * face.texel;
   const vec2 upper = face.lower + (vec2(kernel.last) + 0.5) * face.texel;
@@ -21,7 +20,7 @@ bool behind_all(MapFace face, Kernel kernel, float deepest) {
   const float h = dot(m, asked.e);
   float limit = asked.e.z, slope = 0.0;
   if (lookup.own_depth == 0) {
-    if (h <= 0.0) return false;  // what is in front may be below the receiver's plane (above_plane)
+    if (h <= 0.0) return false;  // a surface in front may be below the receiver's plane (above_plane)
     if (h < limit * facing) limit = h / facing;
     const float across = abs(m.x) + abs(m.y);
     slope = across < kSteepest * least_facing ? across / least_facing : kSteepest;
@@ -29,10 +28,11 @@ bool behind_all(MapFace face, Kernel kernel, float deepest) {
   return deepest < limit - lookup.bias * max(face.texel.x, face.texel.y) * asked.e.z * (1.0 + slope);
 }
 
-// near: of the whole map, and then the kernel's; lower, upper, padding: as kernel_on takes them. `begins`: what stands for
-// a texel reaches up to so much of its height, 1 if it is all there. `umbra`: whether a kernel that hides as a whole ends
-// the search. `beside`: texels take the depth of others so many to their lower left (which an upper right one beside the
-// kernel may have from beside it, too: a narrower kernel has to allow for those).
+// Returns the narrowed kernel. `near`: the nearest depth of the whole map, on return that of the kernel; `lower`,
+// `upper`, `padding`: as for kernel_on. `begins`: a texel's occluder extends up to this fraction of its height, 1 if it
+// is all there. `umbra`: whether a kernel that hides all of the light ends the search. `beside`: texels take the depth
+// of others up to `beside` to their lower left (also from beside the kernel, for a texel to the upper right of it: a
+// narrower kernel has to allow for these).
 Kernel search_kernel(MapFace face, vec2 lower, vec2 upper, inout float near, float begins, int padding, bool umbra, int beside) {
   Kernel kernel = kernel_on(face, lookup.size, asked.e, lower, upper, begins * near, padding);
   for (int round = 0; round < kSearchRounds && !is_empty(kernel); ++round) {
@@ -40,7 +40,7 @@ Kernel search_kernel(MapFace face, vec2 lower, vec2 upper, inout float near, flo
     if (range.x >= 1.0) return kNoKernel;
     const ivec2 first = max(kernel.first - beside, ivec2(0));
     const float depth = asked.view.far * (beside > 0 ? depth_range(face.map, uvec2(first), uvec2(kernel.last)).x : range.x);
-    // Sideways, a texel of row b is b times its depth over the light's plane.
+    // Sideways, the height over the light's plane of a texel of row b is b times its depth.
     const float height = face.axis == 2 ? depth : depth * (float(first.y) + 0.5) * face.texel.y;
     if (umbra && face.axis == 2 && asked.side.face_count == 1 && kernel.whole && lookup.depth_use == kDepthFirst &&
         behind_all(face, kernel, range.y * asked.view.far)) {
@@ -57,16 +57,17 @@ Kernel search_kernel(MapFace face, vec2 lower, vec2 upper, inout float near, flo
   return kernel;
 }
 
-// Where on the light's plane the receiver sees what texels first ... last of a sideways face hold at depths.x ... depths.y,
-// a texel more on every side: lower ... upper hold it. A part of a pyramid below the light and above the receiver is seen
-// within its corners; of one that reaches down to the receiver's height no more is known than on which side of the
-// receiver it is, and that its highest point is seen nearest.
+// Returns the rectangle lower ... upper on the light's plane that bounds the projections, from the receiver, of texels
+// first ... last of a sideways face at depths depths.x ... depths.y, with a margin of one texel on every side. A part
+// of a pyramid above the light's plane and below the receiver projects within its corners' projections; of a part that
+// extends to the receiver's height, only the side of the receiver is known, and that its highest point projects
+// nearest.
 void seen_sideways(MapFace face, ivec2 first, ivec2 last, vec2 depths, out vec2 lower, out vec2 upper) {
   const vec2 from = face.lower + vec2(first - 1) * face.texel, to = face.lower + vec2(last + 2) * face.texel;
-  vec2 low = vec2(1e30), high = vec2(-1e30);  // of the part, from the receiver
+  vec2 low = vec2(1e30), high = vec2(-1e30);  // bounds of the part, relative to the receiver
   lower = low;
   upper = high;
-  float least = 1e30, nearest_rise = 1.0;  // so many times farther away than the part itself
+  float least = 1e30, nearest_rise = 1.0;  // ratio of the projection's distance to the part's own
   for (int k = 0; k < 8; ++k) {
     const vec3 corner = vec3((k & 1) == 0 ? from.x : to.x, (k & 2) == 0 ? from.y : to.y, 1.0);
     const vec3 q = from_face(face, corner) * ((k & 4) == 0 ? depths.x : depths.y);
@@ -84,9 +85,10 @@ void seen_sideways(MapFace face, ivec2 first, ivec2 last, vec2 depths, out vec2 
   upper = mix(asked.e.xy + high * least, vec2(1e30), greaterThan(high, vec2(0.0)));
 }
 
-// Texels first ... last of a face, all that a tile's answers depend on, in so many layers: is none of them near enough to the
-// light to shade the receiver, or are all of them, no nearer than their nearest, seen beside the light? `projected`: what
-// they hide is no wider than they are. Else what can hide light is at depths.x ... depths.y.
+// Returns true if none of the texels first ... last of a face, in `layers` layers, on which a tile's results depend, is
+// near enough to the light to shade the receiver, or if all of them, at their nearest depth, project beside the light.
+// `projected`: the area hidden by a texel is no wider than the texel. Otherwise texels that can hide light are at
+// depths.x ... depths.y.
 bool none_hides(MapFace face, ivec2 first, ivec2 last, uint layers, bool projected, out vec2 depths) {
   first = max(first, ivec2(0));
   last = min(last, ivec2(lookup.size) - 1);

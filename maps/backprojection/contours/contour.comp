@@ -13,36 +13,37 @@
 #include "maps/products/depth_pyramid.glsl"
 #include "maps/backprojection/thresholds.glsl"
 
-// Occluder contours (Guennebaud, Barthe and Paulin 2007), found below nodes of a pyramid and for packets of pixels (Yang
-// et al. 2009). A workgroup, one subgroup wide, answers a packet of w x h pixels, or a single one. What it knows of them is
-// here; outline.glsl has contours, packet_kernel.glsl which cells are looked at for which pixels together, and
-// outline_walk.glsl how.
+// Computes V from occluder contours (Guennebaud, Barthe and Paulin 2007), found below nodes of a pyramid and for
+// packets of pixels (Yang et al. 2009). A workgroup, one subgroup wide, processes a packet of w x h pixels, or a single
+// pixel. State of the packet is in this file; outline.glsl has contours, packet_kernel.glsl the cells to search and the
+// grouping of pixels, and outline_walk.glsl the search.
 
 layout(scalar, binding = 4) readonly buffer Nearest { float nearest[2]; };
-layout(scalar, binding = 7) readonly buffer Tree {  // the pyramid that is walked; that of `Pyramid`, or another
+layout(scalar, binding = 7) readonly buffer Tree {  // the pyramid used by the search: that of `Pyramid`, or another one
   PyramidHeader header;
   vec2 nodes[];
 } tree;
 layout(scalar, binding = 8) buffer Work { uint work[]; };
 
-layout(constant_id = 1) const uint kLevels = kFinestLevel;  // kFinestLevel ...
-layout(constant_id = 2) const bool kSearch = true;          // whether a pyramid says which cells a kernel holds
+layout(constant_id = 1) const uint kLevels = kFinestLevel;  // kFinestLevel ...: levels of the map that are used
+layout(constant_id = 2) const bool kSearch = true;          // true: a pyramid bounds the cells of a kernel
 #define LEVEL_MAPS 9
 #include "maps/backprojection/levels.glsl"
 
 shared vec3 pixel_e[kMostPacketPixels], pixel_m[kMostPacketPixels];
 shared uint pixel_state[kMostPacketPixels];
-shared int pixel_sum[kMostPacketPixels];   // inside - sum, in parts of kContourWhole
-shared int pixel_edges[kMostPacketPixels];  // the sum that is being added up
-shared int pixel_levels[kMostPacketPixels];  // of levels: inside - sum, of those that were looked at
-shared float pixel_wanted[kMostPacketPixels];  // the level that its kernel asks for
+shared int pixel_sum[kMostPacketPixels];   // inside - sum, in units of 1 / kContourWhole
+shared int pixel_edges[kMostPacketPixels];  // the sum in progress
+shared int pixel_levels[kMostPacketPixels];  // of levels: inside - sum, over the levels processed so far
+shared float pixel_wanted[kMostPacketPixels];  // the level requested by the pixel's kernel
 shared uint pixel_inside[kMostPacketPixels];   // 1: the light's centre is seen within a contour
-shared ivec4 pixel_cells[kMostPacketPixels];  // first and last cells of its kernel on the face at hand
-shared ivec2 pixel_own[kMostPacketPixels];    // the light's centre is seen between this texel's centre and the next ones
-shared vec2 pixel_at[kMostPacketPixels];      // so far from that centre, in texels
-const uint kLit = 2, kBehind = 3;             // states; 0 and 1: asks, on that side of the light's plane
+shared ivec4 pixel_cells[kMostPacketPixels];  // first and last cells of the pixel's kernel on the current face
+shared ivec2 pixel_own[kMostPacketPixels];    // the light's centre is seen between the centres of this texel and the
+                                              // next ones
+shared vec2 pixel_at[kMostPacketPixels];      // offset from this texel's centre, in texels
+const uint kLit = 2, kBehind = 3;             // states; 0 and 1: a receiver on this side of the light's plane
 
-// ---- pixels that are answered together: all of a packet that have cells to look at, or one of them ----
+// ---- pixels processed together: all of a packet that have cells to search, or one of them ----
 shared uint members[kMostPacketPixels];
 shared uint member_count, together;
 shared Bounds group;
@@ -54,11 +55,11 @@ shared uint work_done[kWorkCounts];
 
 LightView view;
 uint side_number;
-MapFace map_face;  // the face at hand,
-MapFace face;      // and with texels of the level at hand
+MapFace map_face;  // the current face,
+MapFace face;      // and the same with texels of the current level
 uint face_number;
-float face_turn;  // -1 where a turn to the left in the face is one to the right on the light
-WorkNumbers done;  // by this invocation
+float face_turn;  // -1 where a left turn in the face is a right turn on the light
+WorkNumbers done;  // work of this invocation
 
 void begin_level(uint l) {
   look_at_level(l);
@@ -74,7 +75,7 @@ uint group_count() {
   return (lookup.width + own.packet_width - 1) / own.packet_width * ((rows + own.packet_height - 1) / own.packet_height);
 }
 
-// The receiver of a pixel of this packet; false beyond the picture.
+// Returns the receiver of a pixel of this packet; false beyond the picture.
 bool receiver_of(uint pixel, out uint receiver) {
   const uint group_index = this_group();
   const uint across = (lookup.width + own.packet_width - 1) / own.packet_width;
@@ -150,7 +151,7 @@ void main() {
   count_work(0, done.nodes);
   count_work(1, done.cells);
   count_work(2, done.edges);
-  if (is_first_pass()) {  // of packets, however often they are asked
+  if (is_first_pass()) {  // counts packets once, independent of the number of passes
     count_work(3, done.shared_packets);
     count_work(4, done.parted);
     count_work(5, done.diverged);

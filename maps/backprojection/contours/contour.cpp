@@ -1,7 +1,8 @@
-// Guennebaud, Barthe and Paulin 2007, "High-quality adaptive soft shadow mapping": contours of the texels that shade,
-// by marching squares, integrated around the light's centre. Departures: which texels shade is asked of the receiver's
-// plane in each texel's direction (taps.glsl); what the light's centre is in follows from the contour itself, not from
-// the texel it falls on; up to five faces hold what one perspective image cannot; areas are added as integers.
+// Computes contours of the texels that shade by marching squares, integrated around the light's centre: Guennebaud,
+// Barthe and Paulin 2007, "High-quality adaptive soft shadow mapping". Departures: a texel is compared with the
+// receiver's plane in the texel's direction (taps.glsl); whether the light's centre is inside a contour follows from
+// the contour itself, not from the texel at the centre; up to five faces replace one perspective image; areas are added
+// as integers.
 
 #include "maps/backprojection/contours/methods.hpp"
 

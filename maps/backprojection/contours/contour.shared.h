@@ -1,6 +1,6 @@
-// One struct, two languages: what contour.comp has behind LookupPush, and what its products hold.
+// Shared by C++ and GLSL: push constants of contour.comp after LookupPush, and the contents of its products' buffers.
 #include "maps/host/map_view.shared.h"
-#ifndef PENUMBRA_MAPS_CONTOUR  // shaders include this in several ways
+#ifndef PENUMBRA_MAPS_CONTOUR  // included more than once by shaders, hence an include guard in place of #pragma once
 #define PENUMBRA_MAPS_CONTOUR
 #ifdef __cplusplus
 #pragma once
@@ -12,8 +12,8 @@ inline constexpr uint kWorkCounts = 8;
 #else
 const uint kFlat = 0, kHierarchy = 1, kMinMax = 2;
 const uint kMostPacketPixels = 64;
-// The light's area, in the parts that areas are added up in: a part is a float's rounding of an area, and sums of up to
-// 512 lights on either side of 0 fit.
+// Units of the light's area in which areas are added: a unit is a float's rounding of an area, and sums of up to 512
+// lights on either side of 0 fit.
 const int kContourWhole = 1 << 22;
 const uint kWorkCounts = 8;
 #endif
@@ -22,20 +22,22 @@ struct ContourPush {
   uint packet_width, packet_height;  // pixels; 1 x 1: no packets
   uint traversal;                    // kFlat ...
   uint level, budget, blend;         // levels.glsl
-  float divergence;                  // a packet more likely than this to have pixels with different contours is parted
+  float divergence;                  // a packet is split if its probability of pixels with different contours is
+                                     // greater
 };
 
-// The light as contours cut it, in its basis.
+// The light in the form used for clipping edges, in the light's basis.
 struct ContourLight {
-  vec2 lower, upper;   // its bounding rectangle
-  vec2 to_unit_x;      // a light point s is (dot(to_unit_x, s), dot(to_unit_y, s)) in [-1, 1]^2 of a rectangle, on a
-  vec2 to_unit_y;      // disk of radius 1; a polygon's are its own coordinates
-  uint corners;        // of a polygon: (x, y, share of the light swept up to it) each; 0: a rectangle
+  vec2 lower, upper;   // bounding rectangle of the light
+  vec2 to_unit_x;      // a light point s is (dot(to_unit_x, s), dot(to_unit_y, s)) in [-1, 1]^2 for a rectangle, on a
+  vec2 to_unit_y;      // disk of radius 1 for a disk or ellipse; a polygon keeps its own coordinates
+  uint corners;        // number of corners of a polygon: (x, y, fraction of the light swept up to the corner) each; 0:
+                       // a rectangle
   uint disk;           // 1: a disk or an ellipse
   float inverse_area;  // of a polygon
 };
 
-// What is counted of the work, and in this order by WorkCounts.
+// Counters of the work, in the order of WorkCounts.
 struct WorkNumbers {
   uint nodes, cells, edges, shared_packets, parted, diverged, trivial, kernel_cells;
 };

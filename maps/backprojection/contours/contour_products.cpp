@@ -1,3 +1,5 @@
+// Converts a planar light to the form used for clipping contours, and uploads it.
+
 #include "maps/backprojection/contours/contour_products.hpp"
 
 #include <glm/geometric.hpp>
@@ -14,7 +16,7 @@ double cross(const glm::dvec2& a, const glm::dvec2& b) {
   return a.x * b.y - a.y * b.x;
 }
 
-/// Rows that take a vector of the basis's plane to multiples of these axes.
+/// Sets the rows that take a vector of the basis's plane to multiples of the axes u and v.
 void set_to_unit(gpu::ContourLight& head, const glm::dvec2& u, const glm::dvec2& v) {
   const glm::dmat2 rows = glm::transpose(glm::inverse(glm::dmat2(u, v)));
   head.to_unit_x = rows[0];

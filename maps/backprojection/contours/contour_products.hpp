@@ -9,15 +9,16 @@
 
 namespace penumbra::maps {
 
-/// A planar light as contours cut it: a header, and of a polygon for each corner, counter-clockwise, its two
-/// coordinates and the share of the light between the rays from the centroid through the first corner and through it.
+/// Planar light in the form used for clipping contours: a header and, for each corner of a polygon, counter-clockwise,
+/// its two coordinates and the fraction of the light between the ray from the centroid through the first corner and the
+/// ray through this corner.
 struct ContourLightData {
   gpu::ContourLight head;
   std::vector<glm::vec3> corners;
 };
 ContourLightData contour_light(const visibility::Light& light, const LightBasis& basis);
 
-/// contour_light on the device; radial.glsl reads it.
+/// Buffer of contour_light on the device, read by radial.glsl.
 class ContourLightProduct final : public MapProduct {
  public:
   explicit ContourLightProduct(const render::Device& device) : device_(&device) {}
@@ -29,7 +30,7 @@ class ContourLightProduct final : public MapProduct {
   std::unique_ptr<render::Buffer> light_;
 };
 
-/// The buffer of another product, where a look-up asks one for two purposes. `other` must outlive it.
+/// Buffer of another product, for a look-up that binds one product twice. `other` must outlive this object.
 class SameProduct final : public MapProduct {
  public:
   explicit SameProduct(const MapProduct& other) : other_(&other) {}

@@ -1,3 +1,5 @@
+// Assembles `contour` and `packet`: shader constants, pyramids and products from the options.
+
 #include "maps/backprojection/contours/contour_recipe.hpp"
 
 #include "maps/backprojection/contours/contour.comp.spv.hpp"
@@ -16,7 +18,7 @@
 namespace penumbra::maps {
 namespace {
 
-/// Places below a root have 14 bits on the stack of contour.comp.
+/// Indices of cells below a root have 14 bits on the stack of contour.comp.
 constexpr std::uint32_t kMostWalkedCells = 1u << 14;
 
 }  // namespace
@@ -44,7 +46,7 @@ MapRecipe contour_recipe(const render::Device& device, visibility::MethodDescrip
   recipe.packet_height = choices.packet_height;
   recipe.sub_lights = choices.sub_lights;
 
-  // Pyramids hold nearest depths: where a shadow begins behind another surface they say nothing.
+  // Pyramids hold nearest depths: these do not bound a shadow that begins behind another surface.
   const bool pyramids = options[kDepth] == DepthUse::first;
   const Search search = pyramids ? choices.search : Search::none;
   recipe.constants = {device.limits().subgroup_size, choices.levels.levels(), search == Search::none ? 0u : 1u,
@@ -75,7 +77,7 @@ MapRecipe contour_recipe(const render::Device& device, visibility::MethodDescrip
   } else {
     add_pyramid(pyramid_of(walked));
   }
-  // gpu::WorkNumbers
+  // names of gpu::WorkNumbers, in its order
   recipe.products.push_back(std::make_unique<WorkCounts>(
       device, std::vector<std::string>{"nodes", "cells", "edges", "packetsShared", "packetsParted", "packetsDiverged",
                                        "packetsTrivial", "kernelCells"}));

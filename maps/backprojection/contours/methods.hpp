@@ -5,19 +5,21 @@
 
 #include <memory>
 
-/// Factory and description of each method; a description needs no device.
+/// Factory and description of each method. Descriptions are callable without a Vulkan device.
 namespace penumbra::maps {
 
-/// Guennebaud, Barthe and Paulin 2007: contours of what shades, on one map. docs/contour.md.
+/// Makes `contour` (Guennebaud, Barthe and Paulin 2007): contours of the texels that shade, on one map.
+/// docs/contour.md.
 std::unique_ptr<visibility::Method> make_contour(const render::Device& device,
                                                  const visibility::MethodOptions& options);
 visibility::MethodDescription contour_description();
 
-/// Yang, Feng, Guennebaud and Liu 2009: contours for packets of pixels, found in a hierarchy. docs/packet.md.
+/// Makes `packet` (Yang, Feng, Guennebaud and Liu 2009): contours for packets of pixels, found in a hierarchy.
+/// docs/packet.md.
 std::unique_ptr<visibility::Method> make_packet(const render::Device& device, const visibility::MethodOptions& options);
 
-/// What these options make of it; needs no device. A light with a texture takes `sublights` of 2 or more. UsageError
-/// for a `packet` that is not WxH or has more pixels than a workgroup keeps.
+/// Returns the description with `options`. Callable without a Vulkan device. A light with a texture requires
+/// `sublights` of 2 or more. Throws UsageError if `packet` is not WxH or has more pixels than a workgroup holds.
 visibility::MethodDescription packet_description(const visibility::MethodOptions& options = {});
 
 }  // namespace penumbra::maps

@@ -1,27 +1,28 @@
-// Contours of what shades a receiver, and how much of the light they hide. Included by contour.comp, after what it knows of
-// its packet.
+// Contours of the texels that shade a receiver, and the area of the light hidden by them. Included by contour.comp,
+// after the state of its packet.
 //
 // The texels of a map that shade a receiver are parted from the others by marching squares on the dual grid, between
-// texels' centres; a vertex lies midway, at the depth of the texel that shades. Seen from the receiver it falls onto the
-// light, along the ray from the light's centre that leads away from the receiver's own direction. So what the receiver's
-// own direction is in (1 or 0, `inside`) less the signed areas beyond the edges (radial.glsl) is what the contours hide:
+// texels' centres; a vertex lies midway, at the depth of the texel that shades. Seen from the receiver, the vertex
+// projects to the light along the ray from the light's centre that leads away from the receiver's own direction. Hence
+// the contours hide `inside` (1 if the receiver's own direction is inside, else 0) less the signed areas beyond the
+// edges (radial.glsl):
 //   hidden = inside - sum turn * beyond
-// Texels beyond a face are empty, so contours close on every face: where a shape goes on across two faces of a hemicube
-// its parts share the border, up to what two texels' depths differ there.
+// Texels beyond a face are empty, so contours close on every face: where a shape continues across two faces of a
+// hemicube its parts share the border, up to the difference of two texels' depths there.
 //
-// `inside` and `turn` of the edges in the receiver's own cell come from one predicate on one set of numbers: neither
-// texels' answers nor a second formula will do, for the light's whole area depends on them.
+// `inside` and the `turn` of edges in the receiver's own cell come from one predicate on one set of numbers: neither
+// the texels' results nor a second formula is sufficient, because the light's whole area depends on both agreeing.
 
-// A cell's corners, counted x + 2 y, and its sides: bottom, right, top, left. For each set of shading corners two edges
-// from side to side, the shading ones to their left: from | to << 2, and 16 if there is one. Corners that shade across a
-// diagonal are apart.
+// Corners of a cell, numbered x + 2 y, and its sides: bottom, right, top, left. For each set of shading corners two
+// edges from side to side, with the shading corners on their left: from | to << 2, plus 16 if the edge exists. Corners
+// that shade across a diagonal are separate.
 const uint kEdges[16] = uint[16](0x0000, 0x001c, 0x0011, 0x001d, 0x001b, 0x0018, 0x1b11, 0x0019, 0x0016, 0x161c, 0x0012,
                                  0x001e, 0x0017, 0x0014, 0x0013, 0x0000);
 const vec2 kSide[4] = vec2[4](vec2(0.5, 0.0), vec2(1.0, 0.5), vec2(0.5, 1.0), vec2(0.0, 0.5));
 
 bool on_map(ivec2 texel) { return all(greaterThanEqual(texel, ivec2(0))) && all(lessThan(texel, ivec2(level_size()))); }
 
-// The depth of a texel of the level at hand; far where there is nothing.
+// Returns the depth of a texel of the current level; far if the texel is empty.
 float depth_of(ivec2 texel) {
   if (level() > 0) return level_tap(view, face, 0, uvec2(texel)).depth;
   return view.far * maps[(face.map * lookup.size + uint(texel.y)) * lookup.size + uint(texel.x)];
@@ -34,23 +35,24 @@ bool shades(uint pixel, ivec2 texel) {
          above_plane(tap, pixel_e[pixel], pixel_m[pixel], lookup.bias);
 }
 
-// A receiver's own face of a side with so many.
+// Returns the face that contains a receiver's own direction, for a side with `faces` faces.
 uint own_face(uint faces, vec3 e) {
   const vec2 across = abs(e.xy);
   if (faces == 1 || max(across.x, across.y) <= e.z) return 0;
   return across.x >= across.y ? (e.x > 0.0 ? 1 : 2) : (e.y > 0.0 ? 3 : 4);
 }
 
-// A vertex from where a face sees the light's centre, in texels.
+// Returns the offset of a vertex from the point where a face sees the light's centre, in texels.
 vec2 from_own(uint pixel, ivec2 base, uint side) { return vec2(base - pixel_own[pixel]) + kSide[side] - pixel_at[pixel]; }
 
-// Where a receiver sees a vertex on the light.
+// Returns the projection of a vertex to the light, as seen from a receiver.
 vec2 vertex_on_light(uint pixel, bool own_here, ivec2 base, uint side, float depth) {
   const vec3 e = pixel_e[pixel];
   if (face.axis == 2 && own_here) return from_own(pixel, base, side) * face.texel * (depth * e.z / (e.z - depth));
   const vec2 at = face.lower + (vec2(base) + kSide[side] + 0.5) * face.texel;
   const vec3 s = onto_light(e, depth * from_face(face, vec3(at, 1.0)));
-  // Sideways, a texel's far end may be beyond the receiver's height: then it is seen as far away as can be.
+  // Sideways, a texel's far end may be beyond the receiver's height: the vertex is then projected to the largest
+  // distance.
   return s.xy / max(s.z, kSlack * e.z);
 }
 
@@ -59,7 +61,7 @@ void add_edge(uint pixel, ivec2 base, uint edge, float depth_from, float depth_t
   const bool own_here = own_face(view.side[side_number].face_count, pixel_e[pixel]) == face_number;
   const vec2 a = vertex_on_light(pixel, own_here, base, from, depth_from);
   const vec2 b = vertex_on_light(pixel, own_here, base, to, depth_to);
-  // What is seen beside the light hides none of it. Asked here, too, so that nodes may be left out for it
+  // An edge seen beside the light hides none of it. Tested here, too, so that nodes may be skipped for this reason
   // (all_beside_light_sideways) without a change of rounding.
   if (face.axis != 2 && (any(greaterThan(min(a, b), light.upper)) || any(lessThan(max(a, b), light.lower)))) return;
   const float turned = own_here ? cross2(from_own(pixel, base, from), from_own(pixel, base, to)) : face_turn * cross2(a, b);
@@ -68,7 +70,7 @@ void add_edge(uint pixel, ivec2 base, uint edge, float depth_from, float depth_t
   atomicAdd(pixel_edges[pixel], int(turn) * int(area * float(kContourWhole) + 0.5));
 }
 
-// The edges of a cell, for all members from first on.
+// Adds the edges of a cell, for all members from `first` on.
 void look_at_cell(ivec2 cell, uint first, uint members_asked) {
   ++done.cells;
   const ivec2 base = cell - 1;
@@ -96,7 +98,7 @@ void look_at_cell(ivec2 cell, uint first, uint members_asked) {
   }
   for (uint edges = kEdges[corners]; edges != 0; edges >>= 8) {
     ++done.edges;
-    // On each side the corner that shades, and its depth.
+    // For each side of the cell, the corner that shades, and its depth.
     vec2 depth;
     for (int end = 0; end < 2; ++end) {
       const uint side = edges >> (2 * end) & 3;

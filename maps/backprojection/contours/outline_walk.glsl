@@ -1,6 +1,6 @@
-// Looking for the edges of a kernel: cell by cell, or below nodes of a pyramid. Included by contour.comp.
+// Search for the edges of a kernel: cell by cell, or below nodes of a pyramid. Included by contour.comp.
 
-// All members from first on have their kernels in group_cells, of which these are the rows that are looked at now.
+// Returns the rows of group_cells (the kernels of all members from `first` on) processed in this pass.
 ivec4 cells_now() {
   const int last = int(lookup.last_row) + (lookup.last_row + 1 == lookup.size ? 1 : 0);
   return ivec4(group_cells.x, max(group_cells.y, int(lookup.first_row)), group_cells.z, min(group_cells.w, last));
@@ -13,9 +13,9 @@ void look_at_all_cells(ivec4 cells, uint first, uint members_asked) {
   }
 }
 
-// Nodes wait on a stack, from whose top the workgroup takes as many at a time as it has invocations. Of what is pushed
-// at once (four children for each) the next turn takes at least a quarter, and whatever is pushed above it later is a
-// level lower: with 15 levels no more than 14 * 3 + 4 + 1 nodes for each invocation wait.
+// Nodes wait on a stack; each iteration takes as many from its top as the workgroup has invocations. Of the nodes
+// pushed at once (four children for each) the next iteration takes at least a quarter, and nodes pushed above them
+// later are a level lower: with 15 levels no more than 14 * 3 + 4 + 1 nodes for each invocation wait.
 void look_below_nodes(ivec4 cells, uint first, uint members_asked) {
   const uint whole = tree.header.whole, top = tree.header.top;
   uint root_level = top;
@@ -60,14 +60,14 @@ void look_below_nodes(ivec4 cells, uint first, uint members_asked) {
     const vec2 range = view.far * tree.nodes[tree.header.first[level] + (face.map * side + node.y) * side + node.x];
     const ivec2 lower = max(ivec2(at) - 1, ivec2(0)), upper = min(ivec2(at) + (1 << level) - 1, ivec2(lookup.size) - 1);
     const vec2 limits = thresholds(group, face, lower, upper, view.far);
-    // Dmitriev and Uralsky 2007 leave out what shades nothing; contours are not in what is all in shadow, either, and what
-    // is seen beside the light hides none of it.
+    // Dmitriev and Uralsky 2007 skip nodes that shade nothing; nodes completely in shadow contain no contours either,
+    // and nodes seen beside the light hide none of it.
     if (range.x >= limits.y) continue;
     if (own.traversal == kHierarchy &&
         (range.y < limits.x || all_beside_light(group, face, lower, upper, range.x, light.lower, light.upper))) {
       continue;
     }
-    // Pixels that see a hemicube look one by one (choose_members).
+    // Pixels that see a hemicube are processed one by one (choose_members).
     if (own.traversal == kHierarchy && face.axis != 2 &&
         all_beside_light_sideways(pixel_e[members[first]], face, ivec2(at) - 1, ivec2(at) + (1 << level) - 1,
                                   vec2(range.x, min(range.y, limits.y)), light.lower, light.upper)) {
@@ -86,7 +86,7 @@ void look_below_nodes(ivec4 cells, uint first, uint members_asked) {
   if (gl_LocalInvocationIndex == 0) stack_count = 0;
 }
 
-// Edges of the level at hand, of so many members from first on; false if their contours differ.
+// Finds edges of the current level for `members_asked` members from `first` on; returns false if their contours differ.
 bool look_for_edges_of(uint first, uint members_asked) {
   barrier();
   if (gl_LocalInvocationIndex == 0) {
@@ -116,7 +116,7 @@ bool look_for_edges_of(uint first, uint members_asked) {
   return diverged == 0;
 }
 
-// What contours of the level at hand hide of the light counts for so much (levels.glsl).
+// Adds the area hidden by contours of the current level, weighted by coarser_part (levels.glsl).
 void add_level(uint first, uint members_asked, bool coarser) {
   for (uint i = gl_LocalInvocationIndex; i < members_asked; i += gl_WorkGroupSize.x) {
     const uint pixel = members[first + i];
@@ -126,7 +126,8 @@ void add_level(uint first, uint members_asked, bool coarser) {
   }
 }
 
-// Adds the members' edges on the face at hand to their sums: of all at once if they are coherent, else one by one.
+// Adds the members' edges on the current face to their sums: of all at once if the members are coherent, else one by
+// one.
 void look_for_edges() {
   for (uint next = 0; next < member_count;) {
     const bool all = together != 0;

@@ -1,8 +1,9 @@
-// Yang, Feng, Guennebaud and Liu 2009, "Packet-based hierarchal soft shadow mapping": the contours of `contour`, found
-// once for a packet of pixels and below the nodes of a multi-scale pyramid, and the light cut into sub-lights with a
-// map each. Departures: those of contour; a texel parts a packet where it is near some pixel's plane in its own
-// direction, not where its depth is between the pixels' (thresholds.glsl); a packet that is not coherent is done pixel
-// by pixel by the same workgroup, not in a second pass; a textured light is as many plain ones as there are sub-lights.
+// Computes the contours of `contour` once for a packet of pixels and below the nodes of a multi-scale pyramid, with the
+// light cut into sub-lights with a map each: Yang, Feng, Guennebaud and Liu 2009, "Packet-based hierarchal soft shadow
+// mapping". Departures: those of contour; a texel makes a packet incoherent where the texel is near some pixel's plane
+// in its own direction, not where its depth is between the pixels' (thresholds.glsl); an incoherent packet is processed
+// pixel by pixel by the same workgroup, not in a second pass; a textured light is replaced by as many plain lights as
+// there are sub-lights.
 
 #include "maps/backprojection/contours/methods.hpp"
 
@@ -27,7 +28,7 @@ struct Extent {
 };
 constexpr const char* kPacket = "packet";
 
-/// What `methods` lists; any other W x H of as many pixels is a choice, too.
+/// Returns the option as listed by `methods`; any other W x H with no more pixels is also accepted.
 visibility::OptionDescription packet_option() {
   return {.name = kPacket,
           .choices = {"1x1", "2x1", "2x2", "3x2", "3x3", "4x2", "4x4", "5x5", "8x4", "8x8"},
@@ -36,7 +37,7 @@ visibility::OptionDescription packet_option() {
                               gpu::kMostPacketPixels)};
 }
 
-/// "4x3". Throws UsageError for what is not two whole numbers from 1 on, or too many pixels.
+/// Parses "4x3". Throws UsageError unless `text` is two whole numbers of at least 1 with few enough pixels.
 Extent extent_of(const std::string& text) {
   Extent extent;
   const char* const end = text.data() + text.size();
@@ -54,7 +55,7 @@ Extent extent_of(const std::string& text) {
   return extent;
 }
 
-/// As given, or the default.
+/// Returns the given option, or its default.
 std::string packet_text(const visibility::MethodOptions& options) {
   const auto given = options.find(kPacket);
   return given == options.end() ? packet_option().default_value : given->second;
@@ -68,7 +69,7 @@ constexpr visibility::RealOption kDivergence{
     "divergence", 0, 1, 0.8,
     "a packet whose pixels are more likely than this to have different contours is done pixel by pixel"};
 
-// 1 each, which is not tuned (docs/packet.md).
+// Both costs are 1 and not tuned (docs/packet.md).
 constexpr visibility::RealOption kEdgeCost{
     "edgeCost", 0, 1024, 1, "what an edge of a contour costs, beside a node: decides which packets look together"};
 constexpr visibility::RealOption kAreaCost{
@@ -102,7 +103,7 @@ visibility::MethodDescription packet_description(const visibility::MethodOptions
     description.options.push_back(option);
   description.options.push_back(kSubsample.description());
   description.options.push_back(kSubsampleBy.description());
-  // Outlines know of their area alone; a texture weighs the parts of the light.
+  // Outlines give an area only; a texture is applied as weights of the sub-lights.
   description.textures = visibility::parse_options(description, options)[kSubLights] > 1;
   return description;
 }

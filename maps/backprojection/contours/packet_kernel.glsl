@@ -1,13 +1,14 @@
-// Kernels of a packet's pixels, in cells, and which pixels look for contours together. Included by contour.comp.
+// Kernels of a packet's pixels, in cells, and the grouping of pixels that search for contours together. Included by
+// contour.comp.
 
 bool no_cells(ivec4 cells) { return cells.z < cells.x || cells.w < cells.y; }
 
-// The cells that a kernel's texels touch: between any texels of it, and one more before and behind.
+// Returns the cells touched by a kernel's texels: between any texels of the kernel, and one more before and behind.
 ivec4 cells_of(Kernel kernel) {
   return all(lessThanEqual(kernel.first, kernel.last)) ? ivec4(kernel.first, kernel.last + 1) : ivec4(0, 0, -1, -1);
 }
 
-// Whether the light's centre is seen within a contour of the level at hand, and where it is seen.
+// Finds where the light's centre is seen, and whether this point is within a contour of the current level.
 void find_own(uint pixel) {
   const vec3 e = pixel_e[pixel];
   pixel_inside[pixel] = 0;
@@ -30,9 +31,9 @@ void find_own(uint pixel) {
   pixel_inside[pixel] = inside ? 1 : 0;
 }
 
-// The cells of the level at hand that can hold contours. A block of texels has the nearest depth of all of them, and an edge
-// in a cell is between two of its four blocks: what is asked for the nearest depth in a kernel is the nearest of all blocks
-// that it touches and of those beside them.
+// Returns the cells of the current level that can hold contours. A block of texels has the nearest depth of its texels,
+// and an edge in a cell is between two of its four blocks: the nearest depth in a kernel is therefore the nearest of
+// all blocks that the kernel touches and of the blocks beside them.
 ivec4 cells_at_level(uint pixel) {
   if (level() == 0) return pixel_cells[pixel];
   const vec3 e = pixel_e[pixel];
@@ -47,7 +48,7 @@ ivec4 cells_at_level(uint pixel) {
   return is_empty(kernel) ? ivec4(0, 0, -1, -1) : ivec4(kernel.first >> shift, (kernel.last >> shift) + 1);
 }
 
-// Cells of a level in those of the map, for a pixel with contours there.
+// Returns the cells of the map that contain the cells of the level, for a pixel with contours there.
 ivec4 find_kernel_at_level(uint pixel) {
   begin_level(own.level);
   ivec4 cells = cells_at_level(pixel);
@@ -63,8 +64,8 @@ ivec4 find_kernel_at_level(uint pixel) {
   return no_cells(cells) ? cells : fine;
 }
 
-// Guennebaud 2006: what the nearest depth in the kernel cannot hide is out of it, and so on; with nothing before the
-// receiver, or nothing but what shades it, there is no contour.
+// Returns the kernel on the map after Guennebaud 2006: parts that the nearest depth in the kernel cannot hide are
+// removed, repeatedly; if no texel, or every texel, in front of the receiver shades, there is no contour.
 ivec4 find_kernel_on_map(uint pixel) {
   const vec3 e = pixel_e[pixel];
   ivec4 cells = cells_of(kernel_on(face, lookup.size, e, light.lower, light.upper, nearest[side_number], 0));
@@ -89,16 +90,16 @@ ivec4 find_kernel_on_map(uint pixel) {
 void find_kernel(uint pixel) {
   const ivec4 cells = kLevels == kOneLevel ? find_kernel_at_level(pixel) : find_kernel_on_map(pixel);
   pixel_cells[pixel] = cells;
-  // As many as of texels: one less either way.
+  // Same extent as in texels: one less in both directions.
   pixel_wanted[pixel] = kLevels == kFinestLevel || no_cells(cells) ? 0.0 : wanted_level(max((cells.zw - cells.xy) >> own.level, ivec2(1)));
-  if (kLevels != kFinestLevel && !no_cells(cells)) return;  // what it is in is asked of its levels
+  if (kLevels != kFinestLevel && !no_cells(cells)) return;  // `inside` is then decided on its levels
   find_own(pixel);
   if (pixel_inside[pixel] != 0 && lookup.first_row == 0) pixel_sum[pixel] += kContourWhole;
 }
 
-// Yang 2009, equations 4 to 6, for members with kernels that lie in `cells` together: will they have the same contours,
-// and is it cheaper to look for them once? A node costs 1; what an edge and an area cost beside it is not tuned
-// (docs/packet.md).
+// Yang 2009, equations 4 to 6, for members with kernels that lie in `cells` together: the probability that their
+// contours are the same, and the cost of a common search. A node costs 1; the relative costs of an edge and an area are
+// not tuned (docs/packet.md).
 layout(constant_id = 3) const float kEdgeCost = 1.0;
 layout(constant_id = 4) const float kAreaCost = 1.0;
 
@@ -125,7 +126,7 @@ bool is_coherent(ivec4 cells) {
   return apart <= own.divergence && cost <= own_cost;
 }
 
-// Of the pixels on this side those with cells to look at on this face.
+// Selects, of the pixels on this side, those with cells to search on this face.
 void choose_members(uint pixels) {
   member_count = 0;
   ivec4 cells = ivec4(1 << 20, 1 << 20, -1, -1);

@@ -1,8 +1,8 @@
-// The part of the light that lies beyond an edge in its plane as the light's centre sees it: the sector between the rays
-// through the ends of what of the edge is on the light, less the triangle (the coverage integral of Assarsson and
-// Akenine-Moller 2003, as Guennebaud, Barthe and Paulin 2007 use it). An edge beside the light has none. Signed and added
-// up along a closed outline this is what the outline leaves of the light (contour.comp). Before this is included
-// LIGHT is the binding of ContourLightProduct's buffer.
+// Part of the light that lies beyond an edge in its plane as seen from the light's centre: the sector between the rays
+// through the ends of the edge's part on the light, less the triangle (the coverage integral of Assarsson and
+// Akenine-Moller 2003, as used by Guennebaud, Barthe and Paulin 2007). An edge beside the light has none. The signed
+// sum along a closed outline is the part of the light left visible by the outline (contour.comp). Includers define
+// LIGHT first, the binding of ContourLightProduct's buffer.
 #include "maps/backprojection/contours/contour.shared.h"
 
 layout(scalar, binding = LIGHT) readonly buffer Light {
@@ -14,14 +14,14 @@ const float kPi = 3.14159265358979;
 
 float cross2(vec2 a, vec2 b) { return a.x * b.y - a.y * b.x; }
 
-// A point of the light's plane, in the basis, in the coordinates in which the light is simple.
+// Returns a point of the light's plane, given in the basis, in the coordinates in which the light is a unit shape.
 vec2 to_unit(vec2 s) { return light.corners > 0 ? s : vec2(dot(light.to_unit_x, s), dot(light.to_unit_y, s)); }
 
-// The share of the light between some fixed ray from its centre and the ray through x, modulo 1.
+// Returns the fraction of the light between a fixed ray from its centre and the ray through x, modulo 1.
 float swept(vec2 x) {
   if (light.disk != 0) return atan(x.y, x.x) * (0.5 / kPi);
   if (light.corners == 0) {
-    // Quarters around the axes; within one the area grows as the tangent.
+    // Quarters around the axes; within one quarter the area grows as the tangent.
     const vec2 far = max(abs(x), vec2(1e-30));
     if (far.y <= far.x) return (x.x > 0.0 ? 0.0 : 0.5) + 0.125 * (x.y / (x.x > 0.0 ? far.x : -far.x));
     return (x.y > 0.0 ? 0.25 : 0.75) - 0.125 * (x.x / (x.y > 0.0 ? far.y : -far.y));
@@ -35,7 +35,7 @@ float swept(vec2 x) {
   return 0.0;
 }
 
-// What of a + t d, 0 <= t <= 1, is on the light: t; empty where y <= x.
+// Returns the interval of t, 0 <= t <= 1, where a + t d is on the light; empty where y <= x.
 vec2 clip_to_light(vec2 a, vec2 d) {
   vec2 t = vec2(0.0, 1.0);
   if (light.disk != 0) {
@@ -63,25 +63,25 @@ vec2 clip_to_light(vec2 a, vec2 d) {
   return t;
 }
 
-// The share of the light beyond the edge a b, in unit coordinates; `turn`: 1 if it runs counter-clockwise around the
-// centre, else -1. Decided by the caller: near the centre the two differ by the whole light, and the caller's count of
-// what the centre is in must agree.
+// Returns the fraction of the light beyond the edge a b, in unit coordinates. `turn`: 1 if the edge runs
+// counter-clockwise around the centre, else -1. The caller decides: near the centre the two differ by the whole light,
+// and `turn` must agree with the caller's count of contours around the centre.
 float beyond_edge(vec2 a, vec2 b, float turn) {
   const vec2 d = b - a;
   const vec2 t = clip_to_light(a, d);
   if (!(t.x < t.y)) return 0.0;
   const vec2 from = a + t.x * d, to = t.y == 1.0 ? b : a + t.y * d;
   float sector = turn * (swept(to) - swept(from));
-  // A sector is at most 5/9 of the light (of a triangle, by a line through its centroid): what is far from [0, 5/9] has
-  // passed the fixed ray, what is just below 0 is rounding.
+  // A sector is at most 5/9 of the light (of a triangle, by a line through its centroid): values far from [0, 5/9] have
+  // passed the fixed ray, values just below 0 are rounding.
   sector = max(0.0, sector - floor(sector + 0.2));
   const float triangle =
       0.5 * abs(cross2(from, to)) * (light.disk != 0 ? 1.0 / kPi : light.corners == 0 ? 0.25 : light.inverse_area);
   return max(0.0, sector - triangle);
 }
 
-// The share of the light's area that is above the horizon of the receiver e, m its normal away from the light: of points
-// s with m . (e - s) > 0.
+// Returns the fraction of the light's area above the horizon of the receiver e, m its normal away from the light: of
+// points s with m . (e - s) > 0.
 float light_above_horizon(vec3 e, vec3 m) {
   const float h = dot(m, e), mm = dot(m.xy, m.xy);
   const vec2 reach = max(-light.lower, light.upper);

@@ -14,15 +14,17 @@
 #include "maps/backprojection/search.glsl"
 #include "maps/backprojection/patches/sphere.glsl"
 
-// Guennebaud, Barthe and Paulin 2006: V = 1 - the sum of what the patches of the kernel's texels cover of the light.
+// Computes V = 1 - the sum of the parts of the light covered by the patches of the kernel's texels (Guennebaud, Barthe
+// and Paulin 2006).
 
 layout(scalar, binding = 4) readonly buffer Nearest { float nearest[2]; };
 
-// A pipeline has the code of its own options alone: drivers for processors run both sides of a branch.
+// Specialisation constants: a pipeline has the code of its own options alone, because drivers for processors run both
+// sides of a branch.
 layout(constant_id = 0) const uint kFill = kFillEdges;  // kFillNone ...
 layout(constant_id = 1) const uint kForm = kFormPatch;  // kFormPatch or kFormSphere
-layout(constant_id = 2) const bool kSearch = true;      // whether a pyramid says which texels a kernel holds
-layout(constant_id = 3) const uint kLevels = kFinestLevel;  // kFinestLevel ...
+layout(constant_id = 2) const bool kSearch = true;      // true: a pyramid bounds the texels of a kernel
+layout(constant_id = 3) const uint kLevels = kFinestLevel;  // kFinestLevel ...: levels of the map that are used
 
 #define LEVEL_MAPS 7
 #include "maps/backprojection/level_kernels.glsl"
@@ -36,7 +38,7 @@ Kernel kernel_at_level(MapFace face) {
 Kernel kernel_of(MapFace face) {
   float near = nearest[asked.number];
   begin_levels();
-  // What texels hide or leave says nothing about blocks, which are nearer.
+  // Narrowing by single texels is not valid for blocks, which are nearer.
   if (!kSearch || level() > 0) return kernel_within_budget(face, kernel_at_level(face));
   const Kernel kernel =
       kForm == kFormSphere ? sphere_kernel(face, lookup.size, near, true)
@@ -44,7 +46,7 @@ Kernel kernel_of(MapFace face) {
   return kernel_within_budget(face, kernel);
 }
 
-// Patches reach to their left and lower neighbours' depths; spheres, beyond their texels.
+// Patches extend to the depths of their left and lower neighbours; spheres, beyond their texels.
 bool nothing_hides(MapFace face, ivec2 first, ivec2 last) {
   vec2 depths;
   const ivec2 from = (first - 1) << level(), to = ((last + 1) << level()) - 1;
@@ -64,13 +66,14 @@ uint hidden_by_layer(MapFace face, uint layer, uvec2 cell) {
   return light_between(in_light_order(face, one.from), in_light_order(face, one.to));
 }
 
-// Between two levels each hides its part of what its texels do.
+// Between two levels, each level hides its fraction of the area hidden by its texels.
 uint part_at_level(uint hidden) {
   if (kLevels != kLevelsByBudget || coarser_share == 0.0) return hidden;
   return uint(float(hidden) * (coarser ? coarser_share : 1.0 - coarser_share) + 0.5);
 }
 
-// Of several layers the deepest that hides some of the light counts: to add them all would count most bodies twice.
+// Returns, of several layers, the area of the deepest that hides some of the light: adding all layers would count most
+// bodies twice.
 uint hidden_by(MapFace fine, uvec2 cell) {
   const MapFace face = at_level(fine);
   for (uint layer = own.layers; layer-- > 0;) {

@@ -1,7 +1,7 @@
-// Guennebaud, Barthe and Paulin 2006, "Real-time soft shadow mapping by backprojection". Departures: each texel is
-// compared with the receiver's plane in its own direction (taps.glsl); up to five faces hold what one perspective image
-// cannot; parts of the light are added as integers; lights have any planar shape (light_table.hpp); several layers may
-// be asked, as Bavoil et al. 2006 do.
+// Projects texels of one map back onto the light: Guennebaud, Barthe and Paulin 2006, "Real-time soft shadow mapping by
+// backprojection". Departures: each texel is compared with the receiver's plane in its own direction (taps.glsl); up to
+// five faces replace one perspective image; parts of the light are added as integers; lights have any planar shape
+// (light_table.hpp); several layers may be used, as by Bavoil et al. 2006.
 
 #include "maps/backprojection/patches/methods.hpp"
 
@@ -60,7 +60,7 @@ visibility::MethodDescription backproject_description(const visibility::MethodOp
   description.options.push_back(kSubsampleBy.description());
   if (visibility::parse_options(description, options)[kForm] == gpu::kFormSphere) {
     description.lights = visibility::kPlanarLights | visibility::kBodies;
-    description.textures = false;  // a cap of directions is as bright everywhere
+    description.textures = false;  // a cap of directions has uniform brightness
   }
   return description;
 }
@@ -85,7 +85,7 @@ std::unique_ptr<visibility::Method> make_backproject(const render::Device& devic
   recipe.constants = {parsed[kPatchFill], parsed[kForm], search == Search::none ? 0u : 1u, levels.levels()};
   recipe.push_words = sizeof(gpu::BackprojectPush) / sizeof(std::uint32_t);
   recipe.push = [layers = parsed[kDeepestLayers], levels](const visibility::Light& light) {
-    // A sphere's area is that of the disk of its radius.
+    // A sphere has the area of the disk of its radius.
     return push_words(gpu::BackprojectPush{layers, is_body(light.kind) ? 1u : 0u, static_cast<float>(half_width(light)),
                                            levels.level, levels.budget, levels.blend ? 1u : 0u});
   };

@@ -1,4 +1,4 @@
-// One struct, two languages: what backproject.comp has behind LookupPush.
+// Shared by C++ and GLSL: push constants of backproject.comp after LookupPush.
 #ifdef __cplusplus
 #pragma once
 #include "maps/backprojection/patches/fill.shared.h"
@@ -10,12 +10,12 @@ const uint kFormPatch = 0, kFormSphere = 1;
 #endif
 
 struct BackprojectPush {
-  uint layers;   // that are asked
+  uint layers;   // number of layers in use
   uint ball;     // 1: the light is a sphere
-  float radius;  // its, or that of the disk of the light's area
-  uint level;    // of the maps; with a budget the finest
-  uint budget;   // texels that a receiver looks at
-  uint blend;    // with a budget, 1: between two levels V is between theirs
+  float radius;  // radius of the sphere, or of the disk of the light's area
+  uint level;    // level of the maps; with a budget, the finest level
+  uint budget;   // number of texels of a receiver's kernel
+  uint blend;    // with a budget, 1: V between two levels is a blend of both levels' V
 };
 
 #ifdef __cplusplus

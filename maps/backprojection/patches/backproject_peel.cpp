@@ -1,6 +1,6 @@
-// Bavoil, Callahan and Silva 2006, "Robust soft shadow mapping with depth peeling". Departures: as in backproject; the
-// last layer's middle needs the layer behind it, which is peeled, too; a block is as wide as the square root of the
-// ratio of counts, where the paper takes the ratio.
+// Projects several layers of one map back onto the light: Bavoil, Callahan and Silva 2006, "Robust soft shadow mapping
+// with depth peeling". Departures: as in backproject; the midpoint of the last layer needs the layer behind, which is
+// also peeled; a block is as wide as the square root of the ratio of counts, instead of the ratio.
 
 #include "maps/backprojection/patches/methods.hpp"
 

@@ -1,16 +1,17 @@
-// One struct, two languages: what backproject_peel.comp has behind LookupPush.
+// Shared by C++ and GLSL: push constants of backproject_peel.comp after LookupPush.
 #ifdef __cplusplus
 #pragma once
 #include "maps/backprojection/patches/fill.shared.h"
 namespace penumbra::maps::gpu {
 #else
-#include "maps/backprojection/patches/fill.shared.h"  // fill.glsl's
+#include "maps/backprojection/patches/fill.shared.h"  // constants of fill.glsl
 #endif
 
 struct PeelLookPush {
-  uint layers;   // that are asked
-  uint samples;  // texels a receiver at most; 0: all
-  uint deepest;  // 1: of a texel's surfaces the deepest in front of the receiver counts, even if it misses the light
+  uint layers;   // number of layers in use
+  uint samples;  // largest number of texels for each receiver; 0: all
+  uint deepest;  // 1: of a texel's surfaces the deepest in front of the receiver counts, even if this surface misses
+                 // the light
 };
 
 #ifdef __cplusplus

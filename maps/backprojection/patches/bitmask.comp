@@ -15,24 +15,27 @@
 #define PYRAMID_BINDING 7
 #include "maps/backprojection/search.glsl"
 
-// Schwarz and Stamminger 2007, 2008: what texels hide is kept as a bit a light sample, so that occluders that overlap
-// count once. An occluder is a texel's rectangle, a quad between the centres of four texels that all hide light, a
-// triangle of three of them where just three do, or, of a coarse level, the rectangle around what there is in a block.
+// Computes V from one bit for each light sample, so that overlapping occluders count once (Schwarz and Stamminger 2007,
+// 2008). An occluder is a texel's rectangle, a quad between the centres of four texels that all hide light, a triangle
+// of three of them where just three do, or, on a coarse level, the rectangle around a block's non-empty texels.
 
 layout(scalar, binding = 4) readonly buffer Nearest { float nearest[2]; };
-layout(scalar, binding = 9) buffer Work { uint work[2]; };               // occluders asked, the lower word first
+layout(scalar, binding = 9) buffer Work { uint work[2]; };               // number of occluders processed, the lower
+                                                                         // word first
 
-// A pipeline has the code of its own options alone: drivers for processors run both sides of a branch.
+// Specialisation constants: a pipeline has the code of its own options alone, because drivers for processors run both
+// sides of a branch.
 layout(constant_id = 0) const uint kOccluder = kOccluderQuad;  // kOccluderPatch ...
 layout(constant_id = 1) const uint kFill = kFillNone;          // kFillNone ...
-layout(constant_id = 2) const bool kSearch = true;             // whether a pyramid says which texels a kernel holds
-layout(constant_id = 3) const uint kLevels = kFinestLevel;     // kFinestLevel ...
+layout(constant_id = 2) const bool kSearch = true;             // true: a pyramid bounds the texels of a kernel
+layout(constant_id = 3) const uint kLevels = kFinestLevel;     // kFinestLevel ...: levels of the map that are used
 
 #define LEVEL_MAPS 8
 #include "maps/backprojection/level_kernels.glsl"
 
-// Between two levels the coarser decides for so many of the light samples, shared out evenly: those with a place in [0, 1)
-// below its share. Any first n of the samples fill places evenly: multiples of the golden ratio.
+// Returns whether the current one of two blended levels decides light sample j. The coarser level decides for a
+// fraction `coarser_share` of the samples, evenly distributed: those whose position in [0, 1) is below coarser_share.
+// Any first n of the samples fill positions evenly: multiples of the golden ratio.
 bool is_mine(uint j) {
   if (kLevels != kLevelsByBudget || coarser_share == 0.0) return true;
   return (float(j * 2654435769u >> 8) / 16777216.0 < coarser_share) == coarser;
@@ -40,12 +43,13 @@ bool is_mine(uint j) {
 
 Tap texel_at(MapFace face, uint layer, uvec2 cell) { return ask_level(face, layer, cell); }
 
-// Quads and triangles lie between centres, of a texel and its right and upper neighbours; patches reach to the left and
-// lower ones.
+// Returns whether occluders lie between centres: quads and triangles, of a texel and its right and upper neighbours;
+// patches extend to the left and lower neighbours.
 bool between_centres() { return kOccluder == kOccluderQuad || kOccluder == kOccluderTriangle; }
 
-// A rectangle of the light that holds what texels first ... last of a face can hide, none of them nearer to the light than
-// depths.x or farther than depths.y; a texel more on every side, as in all_beside_light.
+// Returns whether texels first ... last of a face, none nearer to the light than depths.x or farther than depths.y, may
+// hide samples: whether a rectangle of the light that bounds their projection, with a margin of one texel on every side
+// as in all_beside_light, contains samples.
 bool may_hide_samples(MapFace face, ivec2 first, ivec2 last, vec2 depths) {
   if (face.axis != 2) {
     vec2 lower, upper;
@@ -72,7 +76,7 @@ Kernel kernel_at_level(MapFace face) { return blocks_on_light(face, nearest[aske
 Kernel kernel_of(MapFace face) {
   tile_shift = padding();
   begin_levels();
-  // What texels hide or leave says nothing about blocks, which are nearer.
+  // Narrowing by single texels is not valid for blocks, which are nearer.
   if (!kSearch || level() > 0) return kernel_within_budget(face, kernel_at_level(face));
   float near = nearest[asked.number];
   return kernel_within_budget(
@@ -85,7 +89,7 @@ void hide_patch(MapFace face, uint layer, uvec2 cell, Tap tap) {
   hide_rectangle(in_light_order(face, one.from), in_light_order(face, one.to));
 }
 
-// The box of a block's texels that hold anything, at the block's nearest depth.
+// Hides the samples behind the box of a block's non-empty texels, at the block's nearest depth.
 void hide_box(MapFace fine, uint layer, uvec2 cell, Tap tap) {
   const uint side = level_size();
   const uint box = levels[level_start + ((fine.map + layer * lookup.faces) * side + cell.y) * side + cell.x].y;
@@ -94,8 +98,8 @@ void hide_box(MapFace fine, uint layer, uvec2 cell, Tap tap) {
   hide_rectangle(in_light_order(fine, one.from), in_light_order(fine, one.to));
 }
 
-// The quad between the centres of this texel and of its right and upper neighbours: two triangles, along the same diagonal
-// everywhere; or one, of the three that hide light.
+// Hides the samples behind the quad between the centres of this texel and of its right and upper neighbours: two
+// triangles, along the same diagonal everywhere; or one, of the three texels that hide light.
 void hide_quad(MapFace face, uint layer, uvec2 cell) {
   if (any(greaterThanEqual(cell + 1, uvec2(level_size())))) return;
   const uvec2 at[4] = uvec2[](cell, cell + uvec2(1, 0), cell + 1, cell + uvec2(0, 1));
@@ -128,7 +132,7 @@ void hide(MapFace fine, uvec2 cell) {
       continue;
     }
     const Tap tap = texel_at(face, layer, cell);
-    if (tap.depth >= tap.far) break;  // behind nothing there is nothing
+    if (tap.depth >= tap.far) break;  // further layers are empty, too
     if (!hides(tap)) continue;
     if (kOccluder == kOccluderRect && level() > 0) {
       hide_box(fine, layer, cell, tap);

@@ -1,7 +1,8 @@
-// Schwarz and Stamminger 2007, "Bitmask soft shadows"; 2008, "Quality scalability of soft shadow mapping" (rect,
-// level). Departures: bits are the light samples of the command line, whatever their number and pattern, and are
-// decided one by one in place of look-up tables; quads are two triangles; the box of a coarse texel is around what
-// there is in its block and not around what is nearer than the receiver, which no table could hold.
+// Keeps the light samples hidden by texels as bits: Schwarz and Stamminger 2007, "Bitmask soft shadows"; 2008, "Quality
+// scalability of soft shadow mapping" (rect, level). Departures: bits are the light samples of the command line, of any
+// number and pattern, and are decided one by one in place of look-up tables; quads are two triangles; the box of a
+// coarse texel is around all non-empty texels of its block, not only around those nearer than the receiver, which no
+// table could hold.
 
 #include "maps/backprojection/patches/methods.hpp"
 

@@ -1,4 +1,4 @@
-// One struct and constants, two languages: what bitmask.comp has behind LookupPush.
+// Shared by C++ and GLSL: constants, and push constants of bitmask.comp after LookupPush.
 #ifdef __cplusplus
 #pragma once
 #include "maps/backprojection/patches/fill.shared.h"
@@ -10,10 +10,10 @@ const uint kOccluderPatch = 0, kOccluderQuad = 1, kOccluderTriangle = 2, kOcclud
 #endif
 
 struct BitmaskPush {
-  uint layers;  // that are asked
-  uint level;   // of the maps; with a budget the finest
-  uint budget;  // texels that a receiver looks at
-  uint blend;   // with a budget, 1: between two levels samples are shared out
+  uint layers;  // number of layers in use
+  uint level;   // level of the maps; with a budget, the finest level
+  uint budget;  // number of texels of a receiver's kernel
+  uint blend;   // with a budget, 1: between two levels, samples are divided among both
 };
 
 #ifdef __cplusplus

@@ -1,8 +1,8 @@
-// Which texels hide light, and gap filling (Guennebaud, Barthe and Paulin 2006; the diagonal: Schwarz and Stamminger
-// 2007). A patch reaches to its left and lower neighbours' patches where those hide light from the same receiver: what
-// their common border shows at the neighbour's depth, if that is farther out (edges, diagonal), or wherever it is (shared,
-// of our own). Included after group_kernel.glsl; the shader defines
-//   Tap texel_at(MapFace face, uint layer, uvec2 cell)    a texel of a face, as the receiver asks it
+// Selection of the texels that hide light, and gap filling (Guennebaud, Barthe and Paulin 2006; the diagonal: Schwarz
+// and Stamminger 2007). A patch extends to its left and lower neighbours' patches where these hide light from the same
+// receiver: to the projection of their common border at the neighbour's depth, if farther out (edges, diagonal), or in
+// any case (shared; not from a paper). Included after group_kernel.glsl; the shader defines
+//   Tap texel_at(MapFace face, uint layer, uvec2 cell)    a texel of a face, as looked up for the receiver
 #include "maps/backprojection/patches/patch.glsl"
 
 Tap texel_at(MapFace face, uint layer, uvec2 cell);

@@ -1,4 +1,4 @@
-// Constants, two languages: fill.glsl's.
+// Shared by C++ and GLSL: constants of fill.glsl.
 #ifdef __cplusplus
 #pragma once
 #include "maps/host/map_view.shared.h"

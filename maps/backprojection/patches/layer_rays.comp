@@ -15,18 +15,19 @@
 #define PYRAMID_BINDING 7
 #include "maps/backprojection/search.glsl"
 
-// Rays from a receiver to each light sample through the layers of the centre's map (Lischinski and Rappoport 1998; Keating
-// and Max 1999; Agrawala et al. 2000). Each texel's surface is a flat piece of the texel's extent at its depth; between
-// neighbouring texels a wall joins two pieces that are no farther apart than `gap` texels; and with `solid` all is full
-// between an odd layer and the next. On a face, texels (a, b) / w of a ray lie on a straight line along which 1 / w is
-// linear: the ray is walked texel by texel, each of which it passes between two depths.
+// Casts rays from a receiver to each light sample through the layers of the centre's map (Lischinski and Rappoport
+// 1998; Keating and Max 1999; Agrawala et al. 2000). Each texel's surface is a flat piece of the texel's extent at its
+// depth; between neighbouring texels a wall joins two pieces that are no farther apart than `gap` texels; and with
+// `solid` the space between an odd layer and the next is full. On a face, texels (a, b) / w of a ray lie on a straight
+// line along which 1 / w is linear: the ray is traversed texel by texel, each of which the ray passes between two
+// depths.
 
 layout(scalar, binding = 4) readonly buffer Nearest { float nearest[2]; };
-layout(scalar, binding = 8) buffer Work { uint work[2]; };  // texels passed, the lower word first
+layout(scalar, binding = 8) buffer Work { uint work[2]; };  // number of texels passed, the lower word first
 
-const float kLength = 16.0;  // texels at a time that the pyramid is asked about
+const float kLength = 16.0;  // number of texels in one query of the pyramid
 
-float near_height;  // nothing in the kernel is nearer to the light's plane
+float near_height;  // smallest height over the light's plane in the kernel
 
 Tap texel_at(MapFace face, uint layer, uvec2 cell) { return ask_texel(face, layer, cell); }
 bool is_mine(uint j) { return true; }
@@ -47,7 +48,7 @@ Kernel kernel_of(MapFace face) {
 #define LOOK_AT_KERNEL
 #include "maps/host/group_mask_main.glsl"
 
-// A texel's surfaces, nearest first, as far as there are any.
+// Writes a texel's surfaces, nearest first, to `depths` and returns their number.
 uint surfaces_of(MapFace face, uvec2 cell, out float depths[kMostLayers]) {
   uint count = 0;
   for (; count < own.layers; ++count) {
@@ -59,7 +60,7 @@ uint surfaces_of(MapFace face, uvec2 cell, out float depths[kMostLayers]) {
 
 bool layer_hides(MapFace face, uint layer, uvec2 cell) { return hides(texel_at(face, layer, cell)); }
 
-// A texel's surfaces just before and just behind a depth; 0 and far where there are none.
+// Depths of a texel's surfaces just before and just behind a depth; 0 and far where there is no surface.
 struct Around {
   float before, behind;
   uint before_layer, behind_layer;
@@ -79,8 +80,9 @@ Around around(float depths[kMostLayers], uint count, float depth) {
   return found;
 }
 
-// Does a wall between two neighbouring texels stand across their border at this depth? It joins the surface just before
-// it in one with the one just behind it in the other, unless either goes on nearer on its own side.
+// Returns whether a wall between two neighbouring texels covers their border at the given depth. A wall joins the
+// surface just before the depth in one texel with the surface just behind in the other, unless either surface continues
+// nearer on its own side.
 bool joined(float before, float behind, float goes_on_before, float goes_on_behind, float texel) {
   const float step = behind - before;
   return before > 0.0 && behind < asked.view.far && step <= own.gap * texel * before &&
@@ -98,7 +100,7 @@ bool wall_hides(MapFace face, uvec2 from, Around a, uvec2 to, Around b) {
   return false;
 }
 
-// Does a ray that passes a texel between these depths meet what there is?
+// Returns whether a ray that passes a texel between the depths `from` and `to` meets a surface, or full space.
 bool texel_stops(MapFace face, uvec2 cell, float depths[kMostLayers], uint count, float from, float to) {
   for (uint k = 0; k < count; ++k) {
     if (depths[k] >= from && depths[k] <= to && layer_hides(face, k, cell)) return true;
@@ -108,7 +110,7 @@ bool texel_stops(MapFace face, uvec2 cell, float depths[kMostLayers], uint count
   return false;
 }
 
-// The part first ... last of a way that is left of it where value + t * change >= 0.
+// Clips `part`, the interval first ... last, to values with value + t * change >= 0.
 void cut(inout vec2 part, float value, float change) {
   if (change == 0.0) {
     if (value < 0.0) part.y = -1.0;
@@ -122,10 +124,11 @@ void cut(inout vec2 part, float value, float change) {
   }
 }
 
-// Is the light sample at s hidden by what rows first_row ... last_row of the face, and the next, hold?
+// Returns whether the light sample at s is hidden by the contents of rows first_row ... last_row of the face, and the
+// next row.
 bool ray_is_stopped(MapFace face, vec2 s) {
   const vec3 start = to_face(face, asked.e), way = to_face(face, vec3(s, 0.0)) - start;
-  // Up to where nothing is any more; beyond the receiver's height there is nothing either.
+  // The ray ends where the map is empty; beyond the receiver's height the map is empty, too.
   vec2 part = vec2(0.0, 1.0 - 0.99999 * near_height / asked.e.z);
   const vec2 upper = face.lower + float(lookup.size) * face.texel;
   const vec2 rows = face.lower.y + vec2(lookup.first_row, min(lookup.last_row + 2, lookup.size)) * face.texel.y;
@@ -144,14 +147,14 @@ bool ray_is_stopped(MapFace face, vec2 s) {
   const vec2 inverse = vec2(1.0 / first.z, 1.0 / last.z);
   const uint lengths = uint(ceil(max(abs(over.x) + abs(over.y), 1.0) / kLength));
 
-  // Length by length, in one loop: of two, one in the other and left at different turns by neighbours, Mesa 22.3 on processors
-  // loses some. A length in which the pyramid says that nothing hides light is left out.
+  // One loop for all lengths: of two nested loops left at different iterations by neighbours, Mesa 22.3 on processors
+  // loses some iterations. A length in which the pyramid shows that nothing hides light is skipped.
   float depths[kMostLayers], last_depths[kMostLayers];
   uint count = 0;
   ivec2 cell = ivec2(0);
   vec2 next = vec2(0.0);
-  float entered = 0.0, ends = 0.0;  // the ray's depth where it comes into the texel; where the length ends
-  int left_to_go = -1;              // texels of this length beyond this one
+  float entered = 0.0, ends = 0.0;  // depth of the ray at the entry into the texel; depth at the end of the length
+  int left_to_go = -1;              // number of texels of this length beyond this one
   for (uint length = 0;;) {
     if (left_to_go < 0) {
       if (length == lengths) break;
@@ -184,7 +187,7 @@ bool ray_is_stopped(MapFace face, vec2 s) {
       cell.y += by.y;
       next.y += each.y;
     }
-    cell = clamp(cell, ivec2(0), most);  // rounding
+    cell = clamp(cell, ivec2(0), most);  // against rounding
     count = surfaces_of(face, uvec2(cell), depths);
     if (own.gap > 0.0 && count > 0 && last_count > 0 &&
         wall_hides(face, uvec2(before), around(last_depths, last_count, left), uvec2(cell), around(depths, count, left))) {
@@ -200,7 +203,7 @@ void look_at_kernel(MapFace face, Kernel kernel) {
   for (uint j = gl_LocalInvocationIndex; j < light_sample_count(); j += gl_WorkGroupSize.x) {
     const vec2 s = light_sample(j);
     if ((hidden_bits[j / 32] >> (j & 31) & 1u) != 0) continue;
-    if (!(dot(asked.m, asked.e - vec3(s, 0.0)) > 0.0)) continue;  // below the horizon: not visible anyway
+    if (!(dot(asked.m, asked.e - vec3(s, 0.0)) > 0.0)) continue;  // below the horizon: not visible in any case
     if (ray_is_stopped(face, s)) hide_sample(j);
   }
   barrier();

@@ -1,9 +1,9 @@
-// Lischinski and Rappoport 1998, "Image-based rendering for non-diffuse synthetic scenes"; Keating and Max 1999,
-// "Shadow penumbrae for complex objects by depth-dependent filtering of multi-layer depth images"; Agrawala et al. 2000
-// (ray tracing of layers): shadow rays through a layered depth image of the light's centre. No method that projects k
-// layers back onto the light knows more than these rays do. Departures: layers are peeled from one view where the
-// papers warp others into it; which texels a receiver's own surface leaves out is decided as in the other methods here
-// (host/taps.glsl); walls between neighbours take the place of the papers' tolerances in depth.
+// Casts shadow rays through a layered depth image of the light's centre: Lischinski and Rappoport 1998, "Image-based
+// rendering for non-diffuse synthetic scenes"; Keating and Max 1999, "Shadow penumbrae for complex objects by
+// depth-dependent filtering of multi-layer depth images"; Agrawala et al. 2000 (ray tracing of layers). These rays use
+// all information of k layers: no method that projects k layers back onto the light has more. Departures: layers are
+// peeled from one view where the papers warp others into one; texels of a receiver's own surface are excluded as in the
+// other methods here (host/taps.glsl); walls between neighbours replace the papers' tolerances in depth.
 
 #include "maps/backprojection/patches/methods.hpp"
 

@@ -1,4 +1,4 @@
-// One struct, two languages: what layer_rays.comp has behind LookupPush.
+// Shared by C++ and GLSL: push constants of layer_rays.comp after LookupPush.
 #ifdef __cplusplus
 #pragma once
 #include "maps/host/map_view.shared.h"
@@ -12,9 +12,9 @@ const uint kMostLayers = 16;
 #endif
 
 struct LayerRaysPush {
-  uint layers;  // that are asked
+  uint layers;  // number of layers in use
   float gap;    // surfaces of neighbouring texels are joined up to this many texels' widths in depth
-  uint solid;   // 1: what is between the first and the second layer, the third and the fourth ... is full
+  uint solid;   // 1: the space between the first and the second layer, the third and the fourth ... is full
 };
 
 #ifdef __cplusplus

@@ -1,3 +1,5 @@
+// Sorts the light samples into bands across the light (bucket sort), for queries by rectangle.
+
 #include "maps/backprojection/patches/light_sample_bands.hpp"
 
 #include "base/assert.hpp"
@@ -20,7 +22,7 @@ std::vector<std::uint32_t> light_sample_bands(const visibility::Light& light, co
   const LightBounds bounds = light_bounds(light, basis);
   head.lower = static_cast<float>(bounds.lower.y);
   head.per_unit = static_cast<float>(head.bands / (bounds.upper.y - bounds.lower.y));
-  // As in sample_bands.glsl: a difference and a product, each rounded to float.
+  // Same operations as in sample_bands.glsl: a difference and a product, each rounded to float.
   const auto band_of = [&](float y) {
     const float from_lower = y - head.lower;
     const float band = std::floor(from_lower * head.per_unit);

@@ -8,11 +8,11 @@
 
 namespace penumbra::maps {
 
-/// The light samples in bands across the light, so that those in a small part of it are found quickly: as many bands as
-/// samples in rows have rows, else √N.
+/// Returns the light samples in bands across the light, so that samples in a small part of the light are found quickly:
+/// as many bands as there are rows if the samples are in rows, else √N.
 std::vector<std::uint32_t> light_sample_bands(const visibility::Light& light, const LightBasis& basis);
 
-/// light_sample_bands on the device, as words; sample_bands.glsl reads it.
+/// Buffer of light_sample_bands on the device, as words; read by sample_bands.glsl.
 class LightSampleBands final : public MapProduct {
  public:
   explicit LightSampleBands(const render::Device& device) : device_(&device) {}

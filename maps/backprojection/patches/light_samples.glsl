@@ -1,4 +1,4 @@
-// The light samples of LightSampleBands' buffer, in their order. Before it is included SAMPLE_BANDS is its binding.
+// Light samples of LightSampleBands' buffer, in their order. Includers define SAMPLE_BANDS first, the buffer's binding.
 #include "maps/backprojection/patches/light_sample_bands.shared.h"
 
 layout(scalar, binding = SAMPLE_BANDS) readonly buffer Bands {

@@ -3,7 +3,7 @@
 #include "maps/backprojection/patches/fill.shared.h"
 #include "visibility/method_options.hpp"
 
-/// Options that methods of this room share.
+/// Options shared by methods of this room.
 namespace penumbra::maps {
 
 constexpr visibility::ChoiceOption<std::uint32_t, 4> fill_option(std::uint32_t otherwise) {

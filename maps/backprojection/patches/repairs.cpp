@@ -1,5 +1,5 @@
-// The three methods are one idea with other options, which is what takes their error apart: patches of k layers whose
-// shares of the light are added (backproject; backproject-peel with all texels), or whose bits are joined (bitmask).
+// Options that separate the causes of error of three methods with one principle: patches of k layers whose fractions of
+// the light are added (backproject; backproject-peel with all texels), or whose bits are joined (bitmask).
 
 #include "maps/backprojection/patches/repairs.hpp"
 
@@ -27,7 +27,7 @@ ErrorRepair& of(ErrorRepairs& repairs, ErrorCause cause) {
   return repairs.alone[static_cast<std::size_t>(cause)];
 }
 
-/// Those of these options that patches have in every method.
+/// Returns the options that patches have in every method.
 MethodOptions patch_options(const MethodOptions& options, const MethodOptions& more) {
   MethodOptions chosen = more;
   for (const char* key : {"size", "bias", "depth", "receiverPlane", "rasteriser"}) chosen.emplace(key, options.at(key));
@@ -53,7 +53,7 @@ ErrorRepair shared_borders(RepairRun run) {
           .words = "patches that end where their neighbours begin (fill=shared)"};
 }
 
-/// All but the view that can be combined for patches: the finest union of all layers.
+/// Returns every repair except the view, combined for patches: the finest union of all layers.
 std::vector<RepairRun> patches_of_one_view(const MethodOptions& options) {
   const RepairRun run =
       joined(options,
@@ -87,7 +87,7 @@ ErrorRepairs peel_repairs(const MethodDescription& method, const MethodOptions& 
   ErrorRepairs repairs = map_repairs(method, given, {.ends_at_points = true, .fusion = left_out, .gaps = left_out});
   of(repairs, ErrorCause::layers) = more_layers(method, given);
   if (options.at("samples") != "0") {
-    // Half as wide texels would be left out twice as often: the limit is that of all texels.
+    // With texels half as wide, the sampling step would be twice as large: the limit is set to all texels.
     ErrorRepair& resolution = of(repairs, ErrorCause::resolution);
     for (RepairRun& run : resolution.runs)
       run.options.insert_or_assign("samples", std::string(1, '0'));  // g++ 12 warns of "0"

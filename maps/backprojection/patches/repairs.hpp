@@ -2,7 +2,7 @@
 
 #include "visibility/method.hpp"
 
-/// What repairs each cause of error of the methods that project patches: MethodDescription::repairs.
+/// Repair of each cause of error of the methods that project patches: MethodDescription::repairs.
 namespace penumbra::maps {
 
 visibility::ErrorRepairs backproject_repairs(const visibility::MethodDescription& method,

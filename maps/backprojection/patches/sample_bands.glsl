@@ -1,5 +1,5 @@
-// Light samples, and those in a rectangle or a triangle of the light's plane. Before it is included SAMPLE_BANDS is the
-// binding of LightSampleBands' buffer; hide_sample(j) is group_mask_main.glsl's.
+// Queries for the light samples in a rectangle or a triangle of the light's plane. Includers define SAMPLE_BANDS first,
+// the binding of LightSampleBands' buffer; hide_sample(j) is group_mask_main.glsl's.
 #include "maps/backprojection/patches/light_samples.glsl"
 
 uint band_of(float y) {
@@ -18,7 +18,7 @@ SortedSample sorted_sample(uint i) {
   return SortedSample(uintBitsToFloat(uvec2(band_words[k], band_words[k + 1])), band_words[k + 2]);
 }
 
-// Samples of a band from the first whose x is not less than `x` on: its number among those sorted.
+// Returns the sorted index of the first sample of a band whose x is not less than `x`.
 uint first_sample(uint first, uint last, float x) {
   while (first < last) {
     const uint middle = (first + last) / 2;
@@ -34,10 +34,10 @@ uint first_sample(uint first, uint last, float x) {
 void hide_sample(uint j);
 bool all_samples_hidden();
 
-// The light's bounding rectangle in 64 x 64 squares, and which of them hold samples that are looked for: most of what texels
-// hide lies between samples. A row is two words.
+// The light's bounding rectangle in 64 x 64 squares, and the squares that contain samples still visible: most areas
+// hidden by texels lie between samples. A row is two words.
 const uint kSquares = 64;
-const uint kMostRows = 8;  // that are asked: what is taller is taken to hold samples
+const uint kMostRows = 8;  // largest number of rows tested: a taller area counts as containing samples
 shared uint square_words[2 * kSquares];
 
 uvec2 square_of(vec2 s) {
@@ -46,7 +46,7 @@ uvec2 square_of(vec2 s) {
   return uvec2(clamp(at, vec2(0.0), vec2(kSquares - 1)));
 }
 
-// Of a row's word the squares first ... last.
+// Returns the bits of squares first ... last in a word of a row.
 uint squares_between(uint first, uint last, uint word) {
   const int from = max(int(first) - 32 * int(word), 0), to = min(int(last) - 32 * int(word), 31);
   return to < from ? 0 : 0xffffffffu >> (31 - (to - from)) << from;
@@ -63,7 +63,7 @@ bool holds_samples(vec2 lower, vec2 upper) {
   return false;
 }
 
-// The whole workgroup marks samples after it has cleared all squares.
+// Clears all squares; after that, the whole workgroup marks samples.
 void clear_squares() {
   for (uint word = gl_LocalInvocationIndex; word < 2 * kSquares; word += gl_WorkGroupSize.x) square_words[word] = 0;
 }
@@ -72,9 +72,9 @@ void mark_sample(uint j) {
   atomicOr(square_words[2 * square.y + square.x / 32], 1u << (square.x & 31));
 }
 
-// Edges a to b, b to c, c to a of a triangle in the light's plane, in homogeneous coordinates with w > 0: cross products of
-// their ends, so that a sample on the side of the first triangle of a common edge is exactly not on that of the other, or
-// on both. Samples on an edge are in.
+// Edges a to b, b to c, c to a of a triangle in the light's plane, in homogeneous coordinates with w > 0: cross
+// products of their ends, so that a sample on the first triangle's side of a common edge is exactly not on the other
+// triangle's side, or is on both. Samples on an edge are inside.
 struct LightTriangle {
   vec3 edges[3];
 };
@@ -89,7 +89,8 @@ float side_of(vec3 edge, vec2 s) {
   return side;
 }
 
-// What stands in the light between two corners, both included; `triangle`: only what is in it, too.
+// Hides the samples between two corners of the light, both included; `in_triangle`: only samples that are also in
+// `triangle`.
 void hide_between(vec2 lower, vec2 upper, bool in_triangle, LightTriangle triangle) {
   const uint last_band = band_of(upper.y);
   for (uint band = band_of(lower.y); band <= last_band; ++band) {
@@ -115,11 +116,12 @@ void hide_rectangle(vec2 a, vec2 b) {
   if (holds_samples(min(a, b), max(a, b))) hide_between(min(a, b), max(a, b), false, none);
 }
 
-// Corners as onto_light gives them, w > 0.
+// Hides the samples in a triangle with corners as returned by onto_light, w > 0.
 void hide_triangle(vec3 a, vec3 b, vec3 c) {
   const vec2 p = a.xy / a.z, q = b.xy / b.z, r = c.xy / c.z;
-  // A sample on the triangle's very corner is decided by its edges. A quotient is off by 2.5 units in its last place, 1.5e-7
-  // of itself, and around 0 no sample is farther off than the light is wide: the margin is more than sixty times that.
+  // A sample at the very corner of the triangle is decided by the edges. A quotient is off by 2.5 units in its last
+  // place, a relative 1.5e-7, and around 0 no sample is farther off than the light's width: the margin is more than
+  // sixty times this error.
   const vec2 margin = 1e-5 * (light.upper - light.lower);
   const vec2 lower = min(min(p, q), r) - margin, upper = max(max(p, q), r) + margin;
   if (!holds_samples(lower, upper)) return;

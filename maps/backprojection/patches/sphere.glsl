@@ -1,11 +1,13 @@
-// The patch as its bounding sphere, the light as a sphere or as the disk of its area that faces the receiver (Bavoil and
-// Silva 2006): the share of the light's cap of directions that the sphere's cap covers. Included after group_kernel.glsl,
-// light_table.glsl; the shader has own.radius, the light's, and own.ball, whether it is a sphere.
+// The patch as its bounding sphere, the light as a sphere or as the disk of its area that faces the receiver (Bavoil
+// and Silva 2006): the fraction of the light's cap of directions covered by the sphere's cap. Included after
+// group_kernel.glsl, light_table.glsl; the shader has own.radius, the light's radius, and own.ball, whether the light
+// is a sphere.
 #include "maps/backprojection/patches/lens.glsl"
 
 const float kHalfDiagonal = 0.70710678118655;
 
-// Half the angle that a sphere is seen under; from within it half of all directions. (Not asin: drivers may be 1e-4 off.)
+// Returns half the angle subtended by a sphere; from within the sphere, half of all directions. (Not asin: drivers may
+// be 1e-4 off.)
 float sphere_angle(float radius, float away) {
   return radius < away ? atan(radius, sqrt((away - radius) * (away + radius))) : 1.57079632679490;
 }
@@ -19,8 +21,8 @@ uint sphere_hides(MapFace face, Tap tap) {
       own.ball != 0 ? sphere_angle(own.radius, distance_to_light) : atan(own.radius, distance_to_light);
   const float between = 2.0 * atan(length(to_light * distance_to_sphere - to_sphere * distance_to_light),
                                    length(to_light * distance_to_sphere + to_sphere * distance_to_light));
-  // Seen from the point opposite the light's middle (stereographically) all caps are disks: of the smaller one's disk
-  // the share that is covered, times its cap.
+  // Projected stereographically from the point opposite the light's middle, all caps are disks: the covered fraction of
+  // the smaller cap's disk, times the area of this cap.
   const float light_radius = tan(0.5 * light_angle);
   const float near_end = tan(0.5 * (between - angle)), far_end = tan(min(0.5 * (between + angle), 1.55));
   const float radius_there = 0.5 * (far_end - near_end), smaller = min(light_radius, radius_there);
@@ -29,8 +31,9 @@ uint sphere_hides(MapFace face, Tap tap) {
   return uint(clamp(covered * cap * cap, 0.0, 1.0) * float(kWholeLight) + 0.5);
 }
 
-// Where the cone of lines from the receiver that meet a sphere of the light's radius around its middle cuts the light's
-// plane: the bounding rectangle; larger than the scene where the receiver is no higher than the sphere.
+// Returns the bounding rectangle of the intersection of the light's plane with the cone of lines from the receiver that
+// meet a sphere of the light's radius around its middle; larger than the scene where the receiver is no higher than the
+// sphere.
 void cone_bounds(out vec2 lower, out vec2 upper) {
   const float r = own.radius * 1.0001, z = asked.e.z;
   const float below = (z - r) * (z + r);
@@ -42,11 +45,11 @@ void cone_bounds(out vec2 lower, out vec2 upper) {
   upper = (middle + half_width) / below;
 }
 
-// Texels whose spheres may meet that cone, no sphere's middle nearer to the light's plane than `near`. A point of a
-// sphere is up to its radius, half a texel's diagonal, beside its middle and nearer to the light; on the map that is half a
-// diagonal times 1 + the tangent that it is seen under.
+// Returns the texels whose spheres may meet the cone of cone_bounds, no sphere's middle nearer to the light's plane
+// than `near`. A point of a sphere is up to the sphere's radius, half a texel's diagonal, beside its middle and nearer
+// to the light; on the map this is half a diagonal times 1 + the tangent of the texel's direction.
 Kernel sphere_kernel(MapFace face, uint size, inout float near, bool search) {
-  // Sideways a texel's lowest row reaches down to the light's plane.
+  // Sideways, a texel's lowest row extends down to the light's plane.
   if (face.axis != 2) return Kernel(ivec2(0), ivec2(int(size) - 1), true);
   vec2 lower, upper;
   cone_bounds(lower, upper);
@@ -57,8 +60,8 @@ Kernel sphere_kernel(MapFace face, uint size, inout float near, bool search) {
   return kernel_on(face, size, asked.e, lower, upper, max(begins, 0.0) * near, padding);
 }
 
-// Of the light the share above the receiver's horizon, by area of the disk that a sphere is seen as: within the circle
-// along which lines from the receiver touch it.
+// Returns the fraction of the light above the receiver's horizon, by area of the disk visible of a sphere: within the
+// circle along which lines from the receiver touch the sphere.
 float sphere_above_horizon() {
   const float away = length(asked.e);
   if (away <= own.radius) return 0.0;

@@ -3,21 +3,23 @@
 #extension GL_GOOGLE_include_directive : require
 #include "maps/backprojection/soft_shadow_map/soft_shadow_map.shared.h"
 
-// Atty et al. 2006 the other way round: each texel of the receivers' map adds up the occluder texels that can hide light
-// from it. What is between it and the light and no nearer to the light's plane than `nearest` is seen from the light's
-// centre within the light times (1/nearest - 1/z) of its own direction.
+// Computes the sums of Atty et al. 2006 by gathering: each texel of the receivers' map adds the occluder texels that
+// can hide light from it. An occluder between the receiver and the light, and no nearer to the light's plane than
+// `nearest`, is seen from the light's centre within the light times (1/nearest - 1/z) of the receiver's direction.
 
 layout(local_size_x = kLookupGroup) in;
 layout(scalar, binding = 0) readonly buffer Occluders { float occluders[]; };
 layout(scalar, binding = 1) readonly buffer ReceiverMap { float receiver_map[]; };
-layout(scalar, binding = 2) buffer Sums { uvec2 sums[]; };  // low word, high word; of 16-bit floats the bits of their sum
-layout(scalar, binding = 3) buffer Counters { uint counters[]; };  // pairs that cover light: low word, high word
+layout(scalar, binding = 2) buffer Sums { uvec2 sums[]; };  // low word, high word; with 16-bit floats, the bits of
+                                                            // their sum
+layout(scalar, binding = 3) buffer Counters { uint counters[]; };  // number of pairs that cover light: low word, high
+                                                                   // word
 layout(scalar, push_constant) uniform Push { SoftMapPush push; };
 #define LIGHT_TABLE 4
 #include "maps/backprojection/light_table.glsl"
 #include "maps/backprojection/soft_shadow_map/soft_patch.glsl"
 
-// To the nearest 16-bit float, ties to even; 0 ... 65504.
+// Rounds x to the nearest 16-bit float, ties to even; 0 ... 65504.
 float to_half(float x) {
   if (x < 1.0 / 16384.0) return roundEven(x * 16777216.0) / 16777216.0;
   uint bits = floatBitsToUint(x);
@@ -43,7 +45,7 @@ void main() {
   uvec2 sum = sums[result];
   float blended = uintBitsToFloat(sum.x);
   uint pairs = 0;
-  // Row by row, in one loop: of two, one in the other, Mesa's driver for processors loses turns (depth_pyramid.glsl).
+  // Row by row, in one loop: of two nested loops, Mesa's driver for processors loses iterations (depth_pyramid.glsl).
   const uvec2 extent = uvec2(max(last - first, ivec2(0)));
   for (uint k = 0; k < extent.x * extent.y; ++k) {
     const uvec2 texel = uvec2(first) + uvec2(k % extent.x, k / extent.x);

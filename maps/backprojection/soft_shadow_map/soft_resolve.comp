@@ -3,7 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "maps/backprojection/soft_shadow_map/soft_shadow_map.shared.h"
 
-// Sums to V.
+// Converts the sums to V.
 
 layout(local_size_x = kLookupGroup) in;
 layout(scalar, binding = 0) readonly buffer Sums { uvec2 sums[]; };

@@ -3,9 +3,10 @@
 #extension GL_GOOGLE_include_directive : require
 #include "maps/backprojection/soft_shadow_map/soft_shadow_map.shared.h"
 
-// Atty et al. 2006 as published: each occluder texel adds itself to all texels of the receivers' map that its penumbra
-// reaches. At depth z_P it shades directions within the light times (1/z_P - 1/z) of its own, which grows with the
-// receiver's depth z: the deepest one bounds it. Sums are integers (soft_patch.glsl), so no order changes them.
+// Computes the sums of Atty et al. 2006 by scattering, as published: each occluder texel adds itself to all texels of
+// the receivers' map reached by its penumbra. At depth z_P an occluder shades directions within the light times (1/z_P
+// - 1/z) of its own direction; this extent grows with the receiver's depth z, so the deepest receiver bounds it. Sums
+// are integers (soft_patch.glsl), so the order of additions does not matter.
 
 layout(local_size_x = kLookupGroup) in;
 layout(scalar, binding = 0) readonly buffer Occluders { float occluders[]; };
@@ -32,7 +33,7 @@ void main() {
   first.y = max(first.y, int(push.first_row));
   last.y = min(last.y, int(push.last_row));
   uint pairs = 0;
-  // In one loop: of two, one in the other, Mesa's driver for processors loses turns (depth_pyramid.glsl).
+  // In one loop: of two nested loops, Mesa's driver for processors loses iterations (depth_pyramid.glsl).
   const uvec2 extent = uvec2(max(last - first, ivec2(0)));
   for (uint k = 0; k < extent.x * extent.y; ++k) {
     const uvec2 at = uvec2(first) + uvec2(k % extent.x, k / extent.x);

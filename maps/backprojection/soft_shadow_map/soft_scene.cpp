@@ -1,3 +1,5 @@
+// Separates occluders from receivers and fits a window to each (Atty et al. 2006).
+
 #include "maps/backprojection/soft_shadow_map/soft_scene.hpp"
 
 #include "visibility/receivers.hpp"
@@ -22,7 +24,7 @@ struct Bounds {
   bool any = false;
 
   void add(const glm::dvec3& corner) {
-    // What is at or beyond the light's plane is seen in the widest direction.
+    // A corner at or beyond the light's plane has the widest direction.
     const double z = std::max(corner.z, 0.0);
     for (int axis = 0; axis < 2; ++axis) {
       const double at =
@@ -46,9 +48,9 @@ SoftScene part_scene(const visibility::SceneFloats& scene, const visibility::Lig
   const auto receives = [&](std::size_t i) {
     return visibility::is_receiver(scene, light, static_cast<std::uint32_t>(i));
   };
-  std::map<std::uint32_t, bool> casting;   // objects that receive: does any of their triangles cast?
-  std::map<std::uint32_t, double> facing;  // their area toward the light
-  // A triangle without area is nowhere to be seen, and must not decide what the others are.
+  std::map<std::uint32_t, bool> casting;   // objects that receive: true if any of their triangles casts
+  std::map<std::uint32_t, double> facing;  // area of the objects toward the light
+  // A triangle without area is not visible, and must not influence the separation.
   for (const std::uint32_t i : visibility::triangles_with_area(scene)) {
     if (!receives(i)) continue;
     casting[scene.object[i]] |= casts(i);
@@ -96,7 +98,7 @@ gpu::LightView fit_window(const visibility::SceneFloats& scene, const LightBasis
       });
       const auto in_front = std::ranges::count_if(local, [](const glm::dvec3& corner) { return corner.z > 0; });
       if (in_front == 0) continue;
-      if (in_front < 3) {  // it reaches the light's plane, and may be seen in any direction
+      if (in_front < 3) {  // the triangle reaches the light's plane, and may be seen in any direction
         for (const double sign : {-1.0, 1.0}) bounds.add({sign, sign, 0});
       } else {
         for (const glm::dvec3& corner : local) bounds.add(corner);

@@ -1,4 +1,4 @@
-// What soft-shadow-map can be asked for, and what it says of itself.
+// Options of soft-shadow-map, and its description.
 
 #include "maps/backprojection/soft_shadow_map/soft_settings.hpp"
 

@@ -15,21 +15,21 @@ enum class SoftFilter : std::uint8_t { linear, nearest };
 enum class SoftPatches : std::uint8_t { top, bottom };
 enum class SoftSelf : std::uint8_t { none, backproject };
 
-/// What soft-shadow-map was asked for, beside what all methods with a map are.
+/// Options of soft-shadow-map beside those of all methods with a map.
 struct SoftSettings {
-  std::uint32_t receiver_size;  ///< texels on a side of the map of receivers
-  std::uint32_t passes;         ///< 2: with the farthest surfaces
-  SoftPatches patches;          ///< bottom: with the farthest surfaces alone
+  std::uint32_t receiver_size;  ///< on a side of the map of receivers
+  std::uint32_t passes;         ///< 2: a second pass with the farthest surfaces
+  SoftPatches patches;          ///< bottom: the farthest surfaces alone
   SoftPrecision precision;
   SoftForm form;
   SoftFilter filter;
   SoftSelf self;
 };
 
-/// The counter of pixels on what casts shadow.
+/// Name of the counter of pixels on objects that cast shadow.
 inline constexpr const char* kPixelsOnOccluders = "pixelsOnOccluders";
 
-/// Throws UsageError for settings that exclude each other.
+/// Throws UsageError if options exclude each other.
 SoftSettings soft_settings(const visibility::ParsedOptions& parsed);
 
 }  // namespace penumbra::maps

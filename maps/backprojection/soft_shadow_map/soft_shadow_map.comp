@@ -5,9 +5,9 @@
 #define OWN_PUSH SoftLookupPush
 #include "maps/host/look_up.glsl"
 
-// The soft shadow map asked at the view samples: V of the receiver's texel, or bilinearly between the four texels whose
-// centres are around it. Pixels on occluders come with a 1 in their result: they have no soft shadow, and see all of the light
-// that is above their horizon. Texels that hold no receiver are lit, as is what is beside the map.
+// Looks up the soft shadow map at the view samples: V of the receiver's texel, or bilinear between the four texels
+// whose centres are around the sample. Pixels on occluders are marked by a 1 in their result: they have no soft shadow,
+// and see all of the light above their horizon. Texels without a receiver are lit, as are samples beside the map.
 
 layout(scalar, binding = 4) readonly buffer Visible { float visible[]; };
 #define LIGHT_TABLE 5

@@ -1,9 +1,10 @@
-// Atty, Holzschuch, Lapierre, Hasenfratz, Hansen and Sillion, "Soft shadow maps: efficient sampling of light source
-// visibility" (Computer Graphics Forum 25 (4), 2006). Departures: extents are computed an axis at a time, so that light
-// and map need not have the same aspect; the second pass draws the farthest surface in place of the farthest back face,
-// which closed meshes do not tell apart and soups can be asked for; sums are integers in place of blended floats
-// (precision=fp16: 16-bit floats, as published); each receiver texel gathers occluders (form=scatter: as published),
-// which are the same sums; what the paper leaves out, shadows on occluders, another method may do (self=backproject).
+// Computes V in a map of the receivers: Atty, Holzschuch, Lapierre, Hasenfratz, Hansen and Sillion, "Soft shadow maps:
+// efficient sampling of light source visibility" (Computer Graphics Forum 25 (4), 2006). Departures: extents are
+// computed for each axis, so that light and map need not have the same aspect; the second pass draws the farthest
+// surface in place of the farthest back face, since closed meshes do not distinguish the two and triangle soups have no
+// back faces; sums are integers in place of blended floats (precision=fp16: 16-bit floats, as published); each receiver
+// texel gathers occluders (form=scatter: as published), with the same sums; shadows on occluders, which the paper
+// leaves out, may come from another method (self=backproject).
 
 #include "maps/backprojection/soft_shadow_map/methods.hpp"
 
@@ -35,13 +36,13 @@
 namespace penumbra::maps {
 namespace {
 
-/// Turns of one invocation's loop: drivers for processors end all loops of a workgroup after 65,535.
+/// Iterations of one invocation's loop: drivers for processors end all loops of a workgroup after 65,535.
 constexpr std::uint32_t kMostTurns = 60000;
 constexpr std::uint32_t kPassesPerSubmission = 96;
 
 class SoftShadowMap final : public visibility::Method {
  public:
-  /// `self`: who says what V is on occluders; none: their horizon.
+  /// `self`: the method for V on occluders; null: their horizon.
   SoftShadowMap(const render::Device& device, const MapOptions& map, const SoftSettings& settings,
                 std::unique_ptr<visibility::Method> self);
 
@@ -68,18 +69,18 @@ class SoftShadowMap final : public visibility::Method {
   [[nodiscard]] std::uint64_t memory_bytes() const override;
 
  private:
-  /// A map of some triangles from the light's centre, on the device and read back.
+  /// Map of some triangles from the light's centre, on the device and read back.
   struct Map {
     gpu::LightView view{};
     std::uint32_t faces = 0;
     std::vector<float> depths;
   };
-  /// What of each texel's surfaces a map holds; nothing: 1, of the farthest 0.
+  /// Surface of each texel stored by a map; empty texels: 1, of the farthest 0.
   enum class Kept : std::uint8_t { nearest, nearest_two, farthest };
   /// Draws the chosen triangles. Of two layers the second is behind the first in the buffer, and is not read back.
   Map draw(CasterMaps& casters, std::span<const std::uint8_t> chosen, std::uint32_t size, Kept kept,
            std::unique_ptr<render::Buffer>& buffer);
-  /// Whether a pass's texels stand for the farthest surfaces (section 3.5; figure 11b: in one pass, too).
+  /// Returns whether a pass's texels represent the farthest surfaces (section 3.5; figure 11b: in one pass, too).
   [[nodiscard]] bool of_farthest(std::uint32_t pass) const {
     return pass > 0 || settings_.patches == SoftPatches::bottom;
   }
@@ -91,7 +92,7 @@ class SoftShadowMap final : public visibility::Method {
   MapOptions map_;
   SoftSettings settings_;
   std::unique_ptr<visibility::Method> self_;
-  std::vector<std::uint32_t> on_occluder_;  ///< of the tile last evaluated, 1 a pixel
+  std::vector<std::uint32_t> on_occluder_;  ///< of the last evaluated tile, 1 for a pixel on an occluder
   CasterMaps occluder_maps_, receiver_maps_;
   render::ComputePass gather_, scatter_, resolve_, look_up_;
   Receivers receivers_;
@@ -103,7 +104,7 @@ class SoftShadowMap final : public visibility::Method {
   LightBasis basis_;
   LightTable light_table_;
   gpu::LightTableHead light_shape_{};
-  bool upright_ = false;  ///< a rectangle along its basis, without texture
+  bool upright_ = false;  ///< the light is a rectangle along its basis, without texture
   SoftScene parts_;
   Map receiver_map_;
   TileVisibility results_;
@@ -192,7 +193,7 @@ void SoftShadowMap::prepare_light(const visibility::Light& light) {
   views_->write<gpu::LightView>(std::span(&receiver_map_.view, 1));
 }
 
-/// Of the depths that are there, in one face of a map: the least and the greatest.
+/// Returns the least and the greatest of the depths of non-empty texels in one face of a map.
 std::pair<float, float> extremes(std::span<const float> depths) {
   std::pair<float, float> found(1, 0);
   for (const float depth : depths) {
@@ -223,7 +224,7 @@ gpu::SoftMapPush SoftShadowMap::push_for(const Map& occluders, int side, std::ui
   push.receiver_first = to.first_face * receiver_size * receiver_size;
   push.half_floats = settings_.precision == SoftPrecision::fp16 ? 1 : 0;
   push.later = pass > 0 ? 1 : 0;
-  // The farthest surfaces have none behind them.
+  // The farthest surfaces have no surface behind them.
   push.depth_use = of_farthest(pass) ? gpu::kDepthFirst : static_cast<std::uint32_t>(map_.depth);
   push.second_first = push.occluder_first + occluders.faces * size * size;
   push.nearest = extremes(std::span(occluders.depths).subspan(push.occluder_first, std::size_t{size} * size)).first *
