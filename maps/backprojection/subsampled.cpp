@@ -1,7 +1,7 @@
-// Guennebaud, Barthe and Paulin 2007, "High-quality adaptive soft shadow mapping", as the course notes of Eisemann et
-// al. (2009, section 5.2.3.5) tell it: V of some pixels, fewer where penumbrae are wide on the screen, and of the
-// others by a pyramid of them. The notes do not say how the width is estimated; here it is done by nodes of the kernel
-// (penumbra_width.comp). Departure: V passes from pixel to pixel of one object alone.
+// Computes V of some pixels, fewer where penumbrae are wide on the screen, and fills in the others by pull-push:
+// Guennebaud, Barthe and Paulin 2007, "High-quality adaptive soft shadow mapping", as described in the course notes of
+// Eisemann et al. (2009, section 5.2.3.5). The notes do not give the estimate of the width; here it comes from nodes of
+// the kernel (penumbra_width.comp). Departure: V passes only between pixels of the same object.
 
 #include "maps/backprojection/subsampled.hpp"
 
@@ -22,7 +22,7 @@ namespace {
 
 using visibility::ViewSamples;
 
-/// A pixel of a level of the pyramid, of one object: V, and the place in the picture that it stands for.
+/// Pixel of a level of the pyramid, of one object: V, and the position in the picture that the pixel represents.
 struct Node {
   double v = 0, x = 0, y = 0;
   bool known = false;
@@ -33,7 +33,7 @@ constexpr std::uint64_t key_of(std::uint32_t object, std::uint32_t x, std::uint3
   return std::uint64_t{object} << 40 | std::uint64_t{y} << 20 | x;
 }
 
-/// What a key says.
+/// Object and pixel encoded in a key.
 struct ObjectPixel {
   std::uint32_t object, x, y;
 };
@@ -49,7 +49,7 @@ Level pulled(const Level& fine) {
     const ObjectPixel at = pixel_of(key);
     coarse.try_emplace(key_of(at.object, at.x / 2, at.y / 2));
   }
-  // Children in a fixed order: the map's own must not decide how sums round.
+  // Children in a fixed order: the order of the map must not affect the rounding of sums.
   for (auto& [key, node] : coarse) {
     const ObjectPixel at = pixel_of(key);
     double count = 0;
@@ -70,8 +70,8 @@ Level pulled(const Level& fine) {
   return coarse;
 }
 
-/// V at a node's place from those of the coarser level around it, `spacing` pixels wide each: tents as wide as that,
-/// which on a regular grid are bilinear.
+/// Returns V at a node's position from the nodes of the coarser level around it, each `spacing` pixels wide, with tent
+/// weights of this width, which are bilinear on a regular grid.
 double between(const Level& coarse, const ObjectPixel& at, const Node& node, double spacing) {
   double sum = 0, weights = 0;
   for (std::int64_t dy = -1; dy <= 1; ++dy) {
@@ -86,15 +86,15 @@ double between(const Level& coarse, const ObjectPixel& at, const Node& node, dou
       weights += weight;
     }
   }
-  return sum / weights;  // its own parent stands for a place in the same square, less than `spacing` away
+  return sum / weights;  // the node's own parent is in the same square, less than `spacing` away
 }
 
 class Subsampled final : public visibility::Method {
  public:
-  /// Without `widths` by a grid.
+  /// With `widths` null, pixels are chosen by a grid.
   Subsampled(std::unique_ptr<visibility::Method> method, std::unique_ptr<visibility::Method> widths, std::uint32_t step)
       : method_(std::move(method)), widths_(std::move(widths)), step_(step), description_(method_->description()) {
-    description_.output = visibility::Output::scalar;  // what is filled in has no bits
+    description_.output = visibility::Output::scalar;  // filled-in pixels have no masks
   }
 
   [[nodiscard]] const visibility::MethodDescription& description() const override { return description_; }
@@ -127,11 +127,11 @@ class Subsampled final : public visibility::Method {
   }
 
  private:
-  /// Each pixel's step; empty: all have step_.
+  /// Returns each pixel's step; an empty list if all have step_.
   [[nodiscard]] std::vector<std::uint32_t> steps();
-  /// Makes the picture that the method answers.
+  /// Makes the list of pixels that the method evaluates.
   void choose_pixels();
-  /// Puts a pixel into it.
+  /// Adds a pixel to this list.
   void choose(std::uint32_t pixel);
 
   std::unique_ptr<visibility::Method> method_, widths_;
@@ -141,7 +141,7 @@ class Subsampled final : public visibility::Method {
   const visibility::Light* light_ = nullptr;
   const ViewSamples* samples_ = nullptr;
   ViewSamples few_;
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> computed_;  ///< pixel, and where it is in few_
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> computed_;  ///< pixel, and its index in few_
   std::vector<float> whole_;                                       ///< V of all pixels
   visibility::Tile tile_{};
 };
@@ -157,7 +157,7 @@ void Subsampled::choose(std::uint32_t pixel) {
   few_.facing.push_back(samples_->facing[pixel]);
 }
 
-/// The method's V of all of its picture.
+/// Returns the method's V of all pixels in `samples`.
 std::vector<float> answers(visibility::Method& method, const ViewSamples& samples) {
   std::vector<float> values(samples.size());
   for (std::uint32_t row = 0; row < samples.height;) {
@@ -173,11 +173,12 @@ std::vector<float> answers(visibility::Method& method, const ViewSamples& sample
 std::vector<std::uint32_t> Subsampled::steps() {
   if (!widths_) return {};
   const std::vector<float> widths = answers(*widths_, *samples_);
-  const double unit = 2 * samples_->camera.tan_half_fov / std::max(samples_->height, 1U);  // of a pixel, 1 away
+  // size of a pixel at distance 1
+  const double unit = 2 * samples_->camera.tan_half_fov / std::max(samples_->height, 1U);
   std::vector<std::uint32_t> steps(widths.size(), 1);
   for (std::size_t i = 0; i < steps.size(); ++i) {
     if (samples_->triangle[i] == ViewSamples::kBackground || std::isinf(widths[i])) continue;
-    // A surface seen at a slant shows less of its penumbrae's width.
+    // On an oblique surface, penumbrae appear narrower.
     const glm::vec3 way = samples_->eye - samples_->p[i];
     const double slant =
         static_cast<double>(std::abs(glm::dot(samples_->n[i], way)) / std::max(glm::length(way), 1e-30F));
@@ -206,7 +207,7 @@ void Subsampled::choose_pixels() {
   few_.camera = samples.camera;
   few_.eye = samples.eye;
   few_.width = steps.empty() ? (samples.width + step_ - 1) / step_ : samples.width;
-  // A grid's pixels stay neighbours; those of objects that fall through it follow, row by row.
+  // Pixels of the grid stay neighbours; pixels of objects missed by the grid follow, row by row.
   std::set<std::uint32_t> shown;
   const auto object_of = [&](std::uint32_t pixel) {
     return scene_->object[static_cast<std::size_t>(samples.triangle[pixel])];
@@ -237,7 +238,7 @@ void Subsampled::choose_pixels() {
 void Subsampled::evaluate(const visibility::Tile& tile) {
   PENUMBRA_ASSERT(samples_ != nullptr, "{}: evaluate before prepare_view", description().name);
   tile_ = tile;
-  // Pixels are filled in from all of the picture: a call that begins a picture anew gets it whole.
+  // Pixels are filled in from the whole picture: only the first tile of a picture evaluates it.
   if (!whole_.empty() && tile.first_row > 0) return;
   if (widths_) choose_pixels();
   const std::vector<float> few = answers(*method_, few_);
@@ -276,14 +277,14 @@ void fill_in(std::span<KnownPixel> pixels, std::uint32_t width) {
                       Node{static_cast<double>(pixel.v), static_cast<double>(x), static_cast<double>(y), pixel.known});
   }
   if (known == 0 || known == levels[0].size()) return;
-  // Up to where each object is one pixel.
+  // Up to the level where each object is one pixel.
   while (levels.back().size() > 1 && levels.size() < 21) levels.push_back(pulled(levels.back()));
   for (std::size_t level = levels.size() - 1; level-- > 0;) {
     const double side = std::ldexp(1.0, static_cast<int>(level));
     for (auto& [key, node] : levels[level]) {
       if (node.known) continue;
       const ObjectPixel at = pixel_of(key);
-      // Where the grid's own pixels are: in a square's first.
+      // The grid's own pixels are the first ones in their squares.
       node.x = side * at.x;
       node.y = side * at.y;
       node.v = between(levels[level + 1], at, node, 2 * side);

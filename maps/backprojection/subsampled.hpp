@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-/// V of few pixels for all: what methods of this room can do that answer pixel by pixel (Guennebaud et al. 2007).
+/// V of few pixels, extended to all: for methods of this room that evaluate pixel by pixel (Guennebaud et al. 2007).
 namespace penumbra::maps {
 
 inline constexpr visibility::IntegerOption kSubsample{
@@ -22,29 +22,31 @@ inline constexpr visibility::ChoiceOption kSubsampleBy{
     SubsampleBy::penumbra,
     "which pixels subsample leaves out: as many as penumbrae are wide on the screen, or the same everywhere"};
 
-/// Pixels across the narrowest penumbra that are computed at least, by SubsampleBy::penumbra.
+/// Smallest number of computed pixels across the narrowest penumbra, with SubsampleBy::penumbra.
 inline constexpr double kPixelsAcross = 4;
 
-/// The method itself where `options` ask for every pixel. Else it answers a picture of the pixels in every step-th row
-/// and column, and of all pixels of objects of which that picture shows none; the others' V is filled in from pixels of
-/// the same object (fill_in). The step is kSubsample's, or each pixel's own: the largest power of two that is not above
-/// it, and leaves kPixelsAcross pixels across the narrowest penumbra there may be (penumbra_width.hpp); 1 where nothing
-/// can hide light, for the method sees that at once. What gives masks gives V alone then.
+/// Returns the method itself if `options` request every pixel. Otherwise the returned method evaluates the pixels in
+/// every step-th row and column, and all pixels of objects missed by this grid; the V of the other pixels is filled in
+/// from pixels of the same object (fill_in). The step is kSubsample's, or each pixel's own: the largest power of two
+/// that is not above kSubsample's and leaves kPixelsAcross pixels across the narrowest possible penumbra there
+/// (penumbra_width.hpp); 1 where nothing can hide light, because the method finds this quickly. A method that returns
+/// masks then returns V alone.
 std::unique_ptr<visibility::Method> subsampled(const render::Device& device, std::unique_ptr<visibility::Method> method,
                                                const visibility::ParsedOptions& parsed,
                                                const visibility::MethodOptions& options);
 
-/// A pixel's V if it was computed; which object it shows.
+/// V of a pixel if computed, and the object visible at the pixel.
 struct KnownPixel {
   static constexpr std::uint32_t kNothing = 0xffffffffu;
-  std::uint32_t object = kNothing;  ///< kNothing: not asked for
+  std::uint32_t object = kNothing;  ///< kNothing: not requested
   bool known = false;
   float v = 1;
 };
 
-/// Pull-push (Gortler et al. 1996, section 3.4) of pictures `width` wide, up to 2²⁰ pixels a side: V of all pixels that
-/// show an object of which some pixel is known. A pixel of a coarser level is the mean of what is known in its four of
-/// that object, at the mean of their places; what is not known lies between pixels of the next coarser level.
+/// Fills in V by pull-push (Gortler et al. 1996, section 3.4) in pictures `width` wide, up to 2²⁰ pixels a side, for
+/// all pixels of an object with at least one known pixel. A pixel of a coarser level is the mean of the known pixels of
+/// its four children of the same object, at the mean of their positions; unknown pixels are interpolated between pixels
+/// of the next coarser level.
 void fill_in(std::span<KnownPixel> pixels, std::uint32_t width);
 
 }  // namespace penumbra::maps

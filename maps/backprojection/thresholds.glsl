@@ -1,20 +1,21 @@
-// What a rectangle of texels can do to the receivers of a group. How near to the light what a map has must be to shade them:
-// nearer than x it shades all of them, at y or farther none; and whether they see it beside the light. Bounds of what blocks_light (taps.glsl) asks of a single texel, with
-// room for its rounding, so that a decision by them and one that asks each texel agree (Yang et al. 2009,
-// equation 3, here with each texel's own depth of the receiver's plane).
+// Bounds over a rectangle of texels and a group of receivers. Depth thresholds x and y: a depth nearer to the light
+// than x shades all receivers of the group, a depth at y or farther shades none; and a test for texels seen beside the
+// light. The bounds are those of blocks_light (taps.glsl) for a single texel, with a margin for rounding, so that a
+// decision by bounds agrees with decisions for each texel (Yang et al. 2009, equation 3, here with each texel's own
+// depth of the receiver's plane).
 
-// The receivers of a group, as a face has them.
+// Bounds of the receivers of a group, in a face's coordinates.
 struct Bounds {
-  vec3 m_low, m_high;            // their normals away from the light, in the face's (a, b, w)
-  float h_low, h_high;           // the distances of their planes from the light's centre
-  float z_low, z_high;           // their own heights
+  vec3 m_low, m_high;            // normals away from the light, in the face's (a, b, w)
+  float h_low, h_high;           // distances of the receivers' planes from the light's centre
+  float z_low, z_high;           // heights of the receivers
   float across_low, across_high; // of the normals, across the face
-  vec2 at_low, at_high;          // where a face parallel to the light sees them
+  vec2 at_low, at_high;          // positions of the receivers on a face parallel to the light
   int above;                     // the centre is above the horizon of all: 1; of none: 0; of some: -1
 };
 
-// Rounding of a sum of three products is below 3 * 2^-24 of their magnitudes; here a few of them follow each other, and
-// divisions may be off by 2.5 units in the last place.
+// Rounding of a sum of three products is below 3 * 2^-24 of their magnitudes; here a few such sums follow each other,
+// and divisions may be off by 2.5 units in the last place.
 const float kSlack = 9.5367431640625e-7;  // 2^-20
 
 Bounds bounds_of(MapFace face, vec3 e, vec3 m) {
@@ -46,20 +47,22 @@ Bounds join(Bounds a, Bounds b) {
   return a;
 }
 
-// m * x over a range of either.
+// Returns the range of m * x over the ranges of m and x.
 vec2 product_range(vec2 m, vec2 x) {
   const vec4 all = vec4(m * x.x, m * x.y);
   return vec2(min(min(all.x, all.y), min(all.z, all.w)), max(max(all.x, all.y), max(all.z, all.w)));
 }
 
-// Over texels lower ... upper of a face; never beyond `far`, where there is nothing: what is empty shades nobody.
+// Returns the thresholds over texels lower ... upper of a face; never beyond `far`, the depth of empty texels, which
+// shade no receiver.
 vec2 thresholds(Bounds group, MapFace face, ivec2 lower, ivec2 upper, float far) {
   const bool planes = lookup.own_depth == 0;
   if (planes && group.above < 0) return vec2(-1e30, far);
   const vec2 from = face.lower + (vec2(lower) + 0.5) * face.texel, to = face.lower + (vec2(upper) + 0.5) * face.texel;
   vec2 limit = vec2(group.z_low, group.z_high);
   if (face.axis != 2) limit = vec2(group.z_low / to.y, group.z_high / max(from.y, 0.25 * face.texel.y));
-  // Shadow that begins at or before another surface begins nowhere before this one; what pyramids know of no other.
+  // Shadow that begins at or before another surface begins no nearer than this surface; pyramids have no information
+  // about the other surface.
   const bool nearest_alone = lookup.depth_use == kDepthFirst;
   const vec2 forgiven = (nearest_alone ? lookup.bias : 0.0) * max(face.texel.x, face.texel.y) * limit;
   vec2 plane = limit, slope = vec2(0.0);
@@ -76,14 +79,14 @@ vec2 thresholds(Bounds group, MapFace face, ivec2 lower, ivec2 upper, float far)
   }
   const vec2 taken = forgiven * (1.0 + slope);
   const float slack = 4.0 * kSlack * (plane.y + taken.y);
-  // Where the centre is below the horizon what is near enough may be below the plane (above_plane).
+  // Where the centre is below the horizon, a depth near enough may be below the plane (above_plane).
   const bool all = nearest_alone && (!planes || group.above > 0);
   return min(vec2(all ? plane.x - taken.y - slack : -1e30, plane.y - taken.x + slack), far);
 }
 
-// Do all of the group see texels lower ... upper, at depths of at least `near`, beside the light's bounding rectangle? As
-// kernel_on (kernel.glsl) has it, on a face parallel to the light; a texel more on every side, for what rounding sees on the
-// light's border.
+// Returns whether all receivers of the group see texels lower ... upper, at depths of at least `near`, beside the
+// light's bounding rectangle. Same criterion as kernel_on (kernel.glsl), on a face parallel to the light; with a margin
+// of one texel on every side, for texels that rounding moves to the light's border.
 bool all_beside_light(Bounds group, MapFace face, ivec2 lower, ivec2 upper, float near, vec2 light_lower, vec2 light_upper) {
   if (face.axis != 2) return false;
   const float reach = max(1.0 / near - 1.0 / group.z_high, 0.0);
@@ -92,10 +95,11 @@ bool all_beside_light(Bounds group, MapFace face, ivec2 lower, ivec2 upper, floa
   return any(lessThan(vec2(upper + 2), from)) || any(greaterThan(vec2(lower - 1), to));
 }
 
-// Does the receiver e see all that a sideways face holds at `depths` between the centres of texels lower ... upper, and half
-// a texel more on every side, beyond one and the same side of the light's bounding rectangle? It sees q at s / w
-// (onto_light in kernel.glsl), w no less than kSlack of its height. s - border * w is linear in each of q's three
-// coordinates on the face: it is least at a corner, for either w. Twice eight roundings of 2^-24 are below the slack.
+// Returns whether, from the receiver e, everything on a sideways face at `depths` between the centres of texels lower
+// ... upper, with a margin of half a texel on every side, projects beyond one and the same side of the light's bounding
+// rectangle. A point q projects to s / w (onto_light in kernel.glsl), w no less than kSlack of e's height. s - border *
+// w is linear in each of q's three coordinates on the face: the minimum is at a corner, for either w. Twice eight
+// roundings of 2^-24 are below the slack.
 bool all_beside_light_sideways(vec3 e, MapFace face, ivec2 lower, ivec2 upper, vec2 depths, vec2 light_lower, vec2 light_upper) {
   const vec2 from = face.lower + vec2(lower) * face.texel, to = face.lower + vec2(upper + 1) * face.texel;
   const vec2 widest = max(-light_lower, light_upper);

@@ -1,6 +1,7 @@
-// Soler and Sillion 1998, "Fast calculation of soft shadow textures using convolution". Departures: the mean over the
-// light's image is taken for each view sample, by summed areas, where the paper convolves a picture for one receiver at
-// a time; blockers are all casters but the ground (ground_of), where the paper is told which they are.
+// Computes the mean of a blocker picture over the light's image: Soler and Sillion 1998, "Fast calculation of soft
+// shadow textures using convolution". Departures: the mean over the light's image is computed for each view sample, by
+// summed areas, instead of convolving a picture for one receiver at a time; blockers are all casters except the ground
+// (ground_of), where the paper takes them as input.
 
 #include "maps/filters/methods.hpp"
 

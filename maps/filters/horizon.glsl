@@ -1,5 +1,5 @@
-// For look-ups that know no light points: the share of the light's `pattern`, so many points spread over it, that is
-// above the receiver's plane.
+// Returns the fraction of the light above the receiver's plane, from the first `samples` points of `pattern`, spread
+// over the light; for look-ups without light points.
 float share_above_horizon(vec3 d, vec3 m, uint samples) {
   uint above = 0;
   for (uint k = 0; k < samples; ++k) above += dot(m, d - vec3(pattern[k], 0.0)) > 0.0 ? 1 : 0;

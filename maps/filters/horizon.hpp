@@ -4,7 +4,7 @@
 
 namespace penumbra::maps {
 
-/// Points of the light that say how much of it is above a receiver's horizon: horizon.glsl's.
+/// Number of points of the light used by horizon.glsl to estimate the fraction above a receiver's horizon.
 inline constexpr std::uint32_t kHorizonSamples = 64;
 
 }  // namespace penumbra::maps

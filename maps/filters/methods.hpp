@@ -5,41 +5,42 @@
 
 #include <memory>
 
-/// Factory and description of each method; a description needs no device.
+/// Factory and description of each method. Descriptions are callable without a Vulkan device.
 namespace penumbra::maps {
 
-/// Williams 1978: the hard shadow from the light's centre. docs/shadow-map.md.
+/// Makes `shadow-map` (Williams 1978): the hard shadow from the light's centre. docs/shadow-map.md.
 std::unique_ptr<visibility::Method> make_shadow_map(const render::Device& device,
                                                     const visibility::MethodOptions& options);
 visibility::MethodDescription shadow_map_description();
 
-/// Sen, Cammarano, Hanrahan 2003: the hard shadow from the light's centre, with the outlines that pass between texels.
-/// docs/silhouette-map.md.
+/// Makes `silhouette-map` (Sen, Cammarano, Hanrahan 2003): the hard shadow from the light's centre, with the outlines
+/// that pass between texels. docs/silhouette-map.md.
 std::unique_ptr<visibility::Method> make_silhouette_map(const render::Device& device,
                                                         const visibility::MethodOptions& options);
 visibility::MethodDescription silhouette_map_description();
 
-/// Reeves, Salesin, Cook 1987: the share of a fixed window of texels that do not shade the receiver, in one map from
-/// the light's centre. docs/pcf.md.
+/// Makes `pcf` (Reeves, Salesin, Cook 1987): the fraction of texels in a fixed window that do not shade the receiver,
+/// in one map from the light's centre. docs/pcf.md.
 std::unique_ptr<visibility::Method> make_pcf(const render::Device& device, const visibility::MethodOptions& options);
 visibility::MethodDescription pcf_description();
 
-/// Fernando 2005: percentage-closer soft shadows on one map from the light's centre. docs/pcss.md.
+/// Makes `pcss` (Fernando 2005): percentage-closer soft shadows on one map from the light's centre. docs/pcss.md.
 std::unique_ptr<visibility::Method> make_pcss(const render::Device& device, const visibility::MethodOptions& options);
 visibility::MethodDescription pcss_description();
 
-/// Variance soft shadow mapping and its kin (Lauritzen 2007, Annen et al. 2008, Yang et al. 2010): pcss whose two
-/// windows are asked for moments of their depths in place of taps. docs/vssm.md.
+/// Makes `vssm`, variance soft shadow mapping and related methods (Lauritzen 2007, Annen et al. 2008, Yang et al.
+/// 2010): pcss with moments of the depths of its two windows in place of taps. docs/vssm.md.
 std::unique_ptr<visibility::Method> make_vssm(const render::Device& device, const visibility::MethodOptions& options);
 visibility::MethodDescription vssm_description();
 
-/// Soler and Sillion 1998: one picture of all blockers, convolved with the light. docs/convolution.md.
+/// Makes `convolution` (Soler and Sillion 1998): one picture of all blockers, convolved with the light.
+/// docs/convolution.md.
 std::unique_ptr<visibility::Method> make_convolution(const render::Device& device,
                                                      const visibility::MethodOptions& options);
 visibility::MethodDescription convolution_description();
 
-/// Eisemann and Décoret 2006: casters in slices parallel to the light, each a picture filtered by the light's box.
-/// docs/occlusion-textures.md.
+/// Makes `occlusion-textures` (Eisemann and Décoret 2006): casters in slices parallel to the light, each a picture
+/// filtered by the light's box. docs/occlusion-textures.md.
 std::unique_ptr<visibility::Method> make_occlusion_textures(const render::Device& device,
                                                             const visibility::MethodOptions& options);
 visibility::MethodDescription occlusion_textures_description();

@@ -11,21 +11,22 @@
 layout(scalar, binding = 4) readonly buffer Nearest { float nearest[2]; };
 layout(scalar, binding = 5) readonly buffer Frame { MapFrame frame; };
 layout(scalar, binding = 6) readonly buffer Planes { SlicePlanes planes; };
-layout(scalar, binding = 12) readonly buffer Pattern { vec2 pattern[]; };  // light points in its basis
+layout(scalar, binding = 12) readonly buffer Pattern { vec2 pattern[]; };  // light points in the light's basis
 #include "maps/filters/horizon.glsl"
 
-// Eisemann and Décoret 2006 (Eisemann et al. 2009, section 5.2.5): each slice hides the share of the light that a box
-// filter finds in it, seen through its plane (Soler and Sillion 1998); what the slices leave is multiplied.
+// Returns V (Eisemann and Décoret 2006; Eisemann et al. 2009, section 5.2.5): each slice hides the fraction of the
+// light that a box filter finds in the slice, with the light seen through the slice's plane (Soler and Sillion 1998);
+// the visible fractions of the slices are multiplied.
 float visibility_of(LightView view, vec3 d, vec3 m) {
   const uint s = d.z < 0.0 ? 1 : 0;
   const float horizon = share_above_horizon(d, m, own.horizon_samples);
   const float height = height_less_bias(view, d, m);
   if (!(nearest[s] < height)) return horizon;
-  const float smallest = view.far / 1048576.0;  // where maps begin: windows have an end
+  const float smallest = view.far / 1048576.0;  // smallest depth of maps: a window must be finite
   float v = 1.0;
   for (uint k = 0; k < planes.count && v > 0.0; ++k) {
     const float plane = planes.plane[s][k];
-    // A slice that ends below the receiver holds what is beside it, above or below: left out.
+    // A slice that ends below the receiver also holds surfaces above or below, beside the receiver: skipped.
     if (!(plane < height)) break;
     const Box box = box_through(view, d, frame.half_box, max(plane, smallest));
     v *= 1.0 - mean_over(k, box, 0.0);

@@ -1,4 +1,4 @@
-// One struct, two languages: what occlusion_textures.comp has behind LookupPush.
+// Shared by C++ and GLSL: push constants of occlusion_textures.comp after LookupPush.
 #include "maps/host/map_view.shared.h"
 #ifdef __cplusplus
 #pragma once
@@ -6,7 +6,7 @@ namespace penumbra::maps::gpu {
 #endif
 
 struct OcclusionPush {
-  uint horizon_samples;  // of the pattern's points
+  uint horizon_samples;  // number of the pattern's points used for the horizon
 };
 
 #ifdef __cplusplus

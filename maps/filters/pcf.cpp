@@ -1,6 +1,7 @@
-// Reeves, Salesin, Cook 1987, "Rendering antialiased shadows with depth maps"; the window and its weights as in
-// Eisemann et al. 2009, section 4.1.2. Departures: each texel is compared with the receiver's plane (receiverPlane=off:
-// with the receiver's depth, as published), and a window in a hemicube goes on on the next face.
+// Computes percentage-closer filtering: Reeves, Salesin, Cook 1987, "Rendering antialiased shadows with depth maps";
+// the window and its weights as in Eisemann et al. 2009, section 4.1.2. Departures: each texel is compared with the
+// receiver's plane (receiverPlane=off: with the receiver's depth, as published), and a window in a hemicube continues
+// on the next face.
 
 #include "maps/filters/methods.hpp"
 
@@ -74,8 +75,8 @@ std::unique_ptr<visibility::Method> make_pcf(const render::Device& device, const
     throw UsageError("method pcf: weights=bilinear counts parts of texels, and taps={} takes whole ones; take taps=0",
                      push.taps);
   }
-  // The window reaches half its texels beside a receiver's direction. How wide a texel is depends on what the window
-  // holds: no window of receivers is wider than ±kWidestTangent.
+  // The window extends half its texels beside a receiver's direction. The width of a texel depends on the extent of the
+  // window of receivers, which is at most ±kWidestTangent.
   const std::uint32_t reach = push.window / 2 + (push.weights == gpu::kBilinear ? 1 : 0);  // in whole texels
   const double beside = 2 * kWidestTangent * reach / parsed[kMapSize];
   recipe.beside = [beside](const visibility::Light& /*light*/, const LightBasis& /*basis*/) {

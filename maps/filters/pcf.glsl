@@ -2,21 +2,21 @@
 #define OWN_PUSH PcfPush
 #include "maps/host/look_up.glsl"
 
-// Percentage-closer filtering (Reeves, Salesin, Cook 1987; Eisemann et al. 2009, equation 4.1): the share, equally weighted
-// or not, of the window x window texels around the receiver whose depth test says lit.
+// Percentage-closer filtering (Reeves, Salesin, Cook 1987; Eisemann et al. 2009, equation 4.1): the fraction, equally
+// weighted or not, of the window x window texels around the receiver whose depth test passes.
 
 #include "maps/host/neighbours.glsl"
 
-// The receiver in texels of its face, and what all of its taps share.
+// Receiver in texels of its face, and the values common to all of its taps.
 struct PcfAsking {
   vec3 m;
   float h;
   Tap own_tap;
   vec2 at, step;
-  uint number;  // FITTED_FACES
+  uint number;  // index of the face, with FITTED_FACES
 };
 
-// Is the texel so many texels beside the receiver's own in its way?
+// Returns whether the texel at `offset` texels from the receiver's own does not shade the receiver.
 bool is_lit(LightView view, PcfAsking asking, vec2 offset) {
   const Tap own_tap = asking.own_tap;
 #ifdef FITTED_FACES
@@ -25,21 +25,21 @@ bool is_lit(LightView view, PcfAsking asking, vec2 offset) {
 #else
   const vec3 direction = neighbour(own_tap, asking.step, offset);
 #endif
-  // A hemicube's window may reach behind the light's plane, where nothing is between light and receiver.
+  // A hemicube's window may extend behind the light's plane, where no occluder can be between light and receiver.
   if (!(direction.z * own_tap.mirrored > 0.0)) return true;
   const Tap tap = fetch(view, 0, lookup.size, direction * own_tap.along);
   return !texel_blocks(tap, asking.m, asking.h, tap.along, max(abs(offset.x), abs(offset.y)));
 }
 
-// The weight of a texel that is `beside` texels from the middle of the window.
+// Returns the weight of a texel at distance `beside`, in texels, from the middle of the window.
 float weight_of(vec2 beside) {
   if (own.weights != kGaussian) return 1.0;
   const float deviation = 0.25 * float(own.window);
   return exp(-0.5 * dot(beside, beside) / (deviation * deviation));
 }
 
-// Uralsky 2005: taps spread over the disk in the window, turned by another angle at every receiver; the outermost first, and
-// with `stages` no more of them if these agree.
+// Returns the result of taps spread over the disk in the window (Uralsky 2005), rotated by another angle at every
+// receiver; the outermost taps first, and with `stages` of 2 no others if these agree.
 float spread_taps(LightView view, PcfAsking asking, vec3 d) {
   uint bits = floatBitsToUint(d.x) * 0x9e3779b1u ^ floatBitsToUint(d.y) * 0x85ebca77u ^ floatBitsToUint(d.z) * 0xc2b2ae3du;
   bits = (bits ^ bits >> 15) * 0x2c1b3c6du;
@@ -78,13 +78,13 @@ float visibility_of(LightView view, vec3 d, vec3 m) {
 
   const float width = float(own.window);
   const vec2 texel = floor(asking.at);
-  // A window has as many texels on either side of the receiver as it can: an odd window is centred on the receiver's texel, an
-  // even one on the texel border nearest to it. Bilinear: the window is centred on the receiver, and texels at its border
-  // count by their part in it; of one texel these are the four of a bilinear test.
+  // A window has as many texels on either side of the receiver as possible: an odd window is centred on the receiver's
+  // texel, an even one on the texel border nearest to the receiver. Bilinear: the window is centred on the receiver,
+  // and texels at its border are weighted by their part inside; with one texel these are the four of a bilinear test.
   const bool bilinear = own.weights == kBilinear;
   const vec2 first = floor(asking.at - 0.5 * width + (bilinear ? 0.0 : 0.5)) - texel;
   const uint count = own.window + (bilinear ? 1 : 0);
-  float lit = 0.0, total = 0.0;  // whole numbers where all weights are equal
+  float lit = 0.0, total = 0.0;  // integers if all weights are equal
   for (uint j = 0; j < count; ++j) {
     for (uint i = 0; i < count; ++i) {
       const vec2 offset = first + vec2(i, j);

@@ -1,7 +1,7 @@
-// Fernando 2005, "Percentage-closer soft shadows". Departures: windows have the light's own shape in place of a
-// square's, the near plane stands at the nearest depth of the map, every tap is compared with the receiver's plane, and
-// a tap whose light point is below the receiver's horizon counts as hidden, as in every other method here; a filter tap
-// weighs what a light's texture has at its light point.
+// Computes percentage-closer soft shadows: Fernando 2005, "Percentage-closer soft shadows". Departures: windows have
+// the light's own shape in place of a square, the near plane is at the nearest depth of the map, every tap is compared
+// with the receiver's plane, and a tap whose light point is below the receiver's horizon counts as hidden, as in every
+// other method here; a filter tap is weighted by the light's texture at its light point.
 
 #include "maps/filters/methods.hpp"
 
@@ -32,8 +32,8 @@ namespace {
 constexpr visibility::IntegerOption kBlockerSamples{"blockerSamples", 1, 1024, 64, "taps of the blocker search"};
 constexpr visibility::IntegerOption kFilterSamples{"filterSamples", 1, 1024, 64, "taps of the filter"};
 
-/// Light points of both kinds of taps, x and y in the light's basis and a weight: 1, or the texture's luminance there
-/// over its largest. Under a constant texture V has the bytes that it has without one.
+/// Light points of both kinds of taps: x and y in the light's basis and a weight: 1, or the texture's luminance there
+/// over its maximum. With a constant texture V has the same bytes as without a texture.
 class PcssTaps final : public MapProduct {
  public:
   PcssTaps(const render::Device& device, std::uint32_t blocker, std::uint32_t filter)
@@ -107,8 +107,8 @@ std::unique_ptr<visibility::Method> make_pcss(const render::Device& device, cons
   const std::uint32_t blocker_samples = parsed[kBlockerSamples], filter_samples = parsed[kFilterSamples];
   recipe.products.push_back(std::make_unique<NearestCaster>(device));
   recipe.products.push_back(std::make_unique<PcssTaps>(device, blocker_samples, filter_samples));
-  // Taps at height z over the light lie 1/z times the light's outline around the receiver, and z is half the light's
-  // width at least (smallest_near).
+  // Taps at height z over the light lie 1/z times the light's outline around the receiver, and z is at least half the
+  // light's width (smallest_near).
   recipe.beside = [](const visibility::Light& light, const LightBasis& basis) {
     return half_extent(light, basis) / half_width(light);
   };

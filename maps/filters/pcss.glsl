@@ -4,13 +4,15 @@
 
 // Percentage-closer soft shadows (Fernando 2005), in the light's basis: centre at 0, scene at z > 0. The ray from a
 // receiver p to the light point s passes height z at p z/p.z + s (1 - z/p.z): on the map (x/z, y/z), the light as seen
-// through height z is an image of the light's own shape, scaled by 1/z - 1/p.z, around the receiver. So both windows have
-// the light's shape, and Fernando's width of the penumbra over the receiver, w (p.z - z)/z, is the same thing.
+// through height z is an image of the light's own shape, scaled by 1/z - 1/p.z, around the receiver. So both windows
+// have the light's shape, and this scale is equivalent to Fernando's width of the penumbra over the receiver, w (p.z -
+// z)/z.
 
 layout(scalar, binding = FIRST_PRODUCT) readonly buffer Nearest { float nearest[2]; };
-layout(scalar, binding = FIRST_PRODUCT + 1) readonly buffer Taps { vec3 taps[]; };  // light points in its basis, and what each weighs
+// light points in the light's basis, and their weights
+layout(scalar, binding = FIRST_PRODUCT + 1) readonly buffer Taps { vec3 taps[]; };
 
-// The map at the light point s seen through height z; see above.
+// Returns the map's tap at the light point s seen through height z; see above.
 Tap tap_at(LightView view, vec3 d, vec2 s, float z) {
   const float height = abs(d.z);
   const vec2 at = d.xy / height + s * (1.0 / z - 1.0 / height);
@@ -20,7 +22,7 @@ Tap tap_at(LightView view, vec3 d, vec2 s, float z) {
 float visibility_of(LightView view, vec3 d, vec3 m) {
   const float height = abs(d.z);
 
-  // 1. Blockers in the light–receiver pyramid where it passes the near plane.
+  // Step 1: blockers in the light–receiver pyramid at the near plane.
   const float near = min(max(nearest[d.z < 0.0 ? 1 : 0], own.smallest_near), height);
   float sum = 0.0;
   uint blockers = 0;
@@ -32,10 +34,10 @@ float visibility_of(LightView view, vec3 d, vec3 m) {
     }
   }
 
-  // 2, 3. As if all blockers were one plane at their mean height: share of the light seen past it. A light point that is
-  // below the receiver's horizon is hidden whatever the map says.
+  // Steps 2 and 3: all blockers are replaced by one plane at their mean height; fraction of the light seen past this
+  // plane. A light point below the receiver's horizon is hidden, independent of the map.
   const float blocker = blockers == 0 ? height : sum / float(blockers);
-  float visible = 0.0, total = 0.0;  // whole numbers without a texture
+  float visible = 0.0, total = 0.0;  // integers without a texture
   for (uint k = 0; k < own.filter_samples; ++k) {
     const vec2 s = taps[own.blocker_samples + k].xy;
     const float weight = taps[own.blocker_samples + k].z;

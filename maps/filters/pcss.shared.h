@@ -1,4 +1,4 @@
-// One struct, two languages: what pcss.comp has behind LookupPush.
+// Shared by C++ and GLSL: push constants of pcss.comp after LookupPush.
 #include "maps/host/map_view.shared.h"
 #ifdef __cplusplus
 #pragma once
@@ -6,9 +6,9 @@ namespace penumbra::maps::gpu {
 #endif
 
 struct PcssPush {
-  uint blocker_samples;  // the first of the pattern's points
-  uint filter_samples;   // those that follow
-  float smallest_near;   // no near plane is put nearer to the light than this
+  uint blocker_samples;  // number of taps of the blocker search, the first of the pattern
+  uint filter_samples;   // number of taps of the filter, the next of the pattern
+  float smallest_near;   // smallest distance of a near plane from the light
 };
 
 #ifdef __cplusplus

@@ -1,3 +1,5 @@
+// Options that separate the causes of error of the methods that filter one map (docs/error-budget.md).
+
 #include "maps/filters/repairs.hpp"
 
 #include "maps/host/error_repairs.hpp"
@@ -29,7 +31,7 @@ ErrorRepairs vssm_repairs(const MethodDescription& method, const MethodOptions& 
 
 ErrorRepairs pcf_repairs(const MethodDescription& method, const MethodOptions& given) {
   MapRepairs repairs = one_surface();
-  // The window is counted in texels: as many again keep it as wide.
+  // The window is given in texels: doubling the number keeps the window's width.
   repairs.doubled = {"size", "window"};
   return map_repairs(method, given, repairs);
 }

@@ -2,17 +2,17 @@
 
 #include "visibility/method.hpp"
 
-/// What repairs each cause of error of the methods that filter one map: MethodDescription::repairs.
+/// Repair of each cause of error of the methods that filter one map: MethodDescription::repairs.
 namespace penumbra::maps {
 
-/// Of shadow-map and pcss.
+/// Repairs of shadow-map and pcss.
 visibility::ErrorRepairs filter_repairs(const visibility::MethodDescription& method,
                                         const visibility::MethodOptions& given);
 visibility::ErrorRepairs vssm_repairs(const visibility::MethodDescription& method,
                                       const visibility::MethodOptions& given);
 visibility::ErrorRepairs pcf_repairs(const visibility::MethodDescription& method,
                                      const visibility::MethodOptions& given);
-/// Of convolution and occlusion-textures.
+/// Repairs of convolution and occlusion-textures.
 visibility::ErrorRepairs slice_repairs(const visibility::MethodDescription& method,
                                        const visibility::MethodOptions& given);
 

@@ -3,7 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "maps/host/look_up.glsl"
 
-// Williams 1978: V is 1 where the light's centre is seen, else 0.
+// Returns V: 1 where the light's centre is seen, else 0 (Williams 1978).
 float visibility_of(LightView view, vec3 d, vec3 m) { return light_point_is_seen(view, 0, d, m) ? 1.0 : 0.0; }
 
 #include "maps/host/scalar_main.glsl"

@@ -1,6 +1,6 @@
-// Williams 1978, "Casting curved shadows on curved surfaces". Departures: the receiver's plane is compared at the
-// texel's centre in place of a constant bias (taps.glsl), and up to five faces hold what one perspective image cannot
-// (map_fit.cpp).
+// Computes the hard shadow of the light's centre: Williams 1978, "Casting curved shadows on curved surfaces".
+// Departures: the receiver's plane is compared at the texel's centre in place of a constant bias (taps.glsl), and up to
+// five faces replace one perspective image (map_fit.cpp).
 
 #include "maps/filters/methods.hpp"
 

@@ -4,7 +4,7 @@
 #define FITTED_FACES
 #include "maps/host/look_up.glsl"
 
-// shadow_map.comp, asking faces that are fitted to what a camera sees.
+// Returns V as shadow_map.comp does, from faces fitted to the view of a camera.
 float visibility_of(LightView view, vec3 d, vec3 m) { return light_point_is_seen(view, 0, d, m) ? 1.0 : 0.0; }
 
 #include "maps/host/scalar_main.glsl"

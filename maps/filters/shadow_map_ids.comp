@@ -7,8 +7,9 @@
 layout(scalar, binding = 4) readonly buffer Ids { uint ids[]; };
 layout(scalar, binding = 5) readonly buffer Planes { uint plane_of[]; };
 
-// Hourcade and Nicolas 1985: lit is what the map has there, whatever its depth. Here it is compared by planes, so that the
-// triangles of one polygon are one; and what casts no shadow is in no map: its depth is compared.
+// Returns V by identities (Hourcade and Nicolas 1985): the surface stored in the map is lit, whatever its depth.
+// Departure: identities are planes, so that the triangles of one polygon are the same surface; a surface that casts no
+// shadow is in no map: its depth is compared.
 float visibility_of(LightView view, vec3 d, vec3 m) {
   if (receiver_plane == kNoId) return light_point_is_seen(view, 0, d, m) ? 1.0 : 0.0;
   if (!(dot(m, d) > 0.0)) return 0.0;

@@ -5,17 +5,19 @@
 
 layout(scalar, binding = 4) readonly buffer Points { vec2 points[]; };
 
-// Sen, Cammarano, Hanrahan 2003: four texels around a receiver say what they see. Where they do not agree an outline passes
-// between them: lines from the cell's point to its neighbours' part the cell in four, each of them one texel's.
+// Returns V (Sen, Cammarano, Hanrahan 2003) from the depth tests of four texels around a receiver. Where these disagree
+// an outline passes between them: lines from the cell's point to its neighbours' points divide the cell in four parts,
+// one for each texel.
 
-// From 0 to 1 across the cell; in the middle where no outline passes.
+// Returns the silhouette point of a cell, from 0 to 1 across the cell; in the middle if no outline passes through the
+// cell.
 vec2 point_of(uint map, ivec2 cell) {
   const int count = int(lookup.size) + 1;
   if (any(lessThan(cell, ivec2(0))) || any(greaterThanEqual(cell, ivec2(count)))) return vec2(0.5);
   return points[(int(map) * count + cell.y) * count + cell.x];
 }
 
-// Does the texel hide the light's centre from the receiver? What is outside of the map hides nothing.
+// Returns whether the texel hides the light's centre from the receiver. Texels outside the map hide nothing.
 bool texel_hides(LightView view, MapFace face, ivec2 texel, vec3 d, vec3 m, float along) {
   if (any(lessThan(texel, ivec2(0))) || any(greaterThanEqual(texel, ivec2(lookup.size)))) return false;
   Tap tap = tap_of(view, lookup.size, face, uvec2(texel));
@@ -23,7 +25,7 @@ bool texel_hides(LightView view, MapFace face, ivec2 texel, vec3 d, vec3 m, floa
   tap.mirrored = d.z < 0.0 ? -1.0 : 1.0;
   tap.direction.z *= tap.mirrored;
   if (lookup.own_depth != 0) return is_before_depth(tap, along, lookup.bias);
-  // The corner may be a texel away, twice as far as where a hard shadow is asked.
+  // The corner may be a texel away, twice the distance of a texel's centre in a hard shadow test.
   return blocks(tap, m, dot(m, d), along * (1.0 + 2.0 * kSteepest * tap.texel), lookup.bias);
 }
 

@@ -1,5 +1,6 @@
-// Sen, Cammarano, Hanrahan 2003, "Shadow silhouette maps"; Sen 2004. Departures: silhouette_points.cpp's, and the
-// receiver's plane is compared at each texel's centre (receiverPlane=off: the receiver's own depth, as published).
+// Computes hard shadows with silhouette points: Sen, Cammarano, Hanrahan 2003, "Shadow silhouette maps"; Sen 2004.
+// Departures: those of silhouette_points.cpp, and the receiver's plane is compared at each texel's centre
+// (receiverPlane=off: the receiver's own depth, as published).
 
 #include "maps/filters/methods.hpp"
 

@@ -1,3 +1,6 @@
+// Assembles `convolution` and `occlusion-textures` (Soler and Sillion 1998; Eisemann and Décoret 2006): options and
+// products common to both.
+
 #include "maps/filters/slice_recipe.hpp"
 
 #include "maps/filters/horizon.hpp"
@@ -31,7 +34,7 @@ MapRecipe slice_recipe(const render::Device& device, visibility::MethodDescripti
   recipe.products.push_back(std::move(prefilter));
   recipe.products.push_back(
       std::make_unique<LightPattern>(device, std::initializer_list<std::uint32_t>{kHorizonSamples}));
-  // Through a plane no nearer to the light than the radius of a disk of its area: as far as pcss looks.
+  // Planes no nearer to the light than the radius of a disk of its area: the extent of pcss's windows.
   recipe.beside = [](const visibility::Light& light, const LightBasis& basis) {
     return half_extent(light, basis) / half_width(light);
   };

@@ -6,14 +6,15 @@
 
 namespace penumbra::maps {
 
-/// The option of both methods that filter slices.
+/// Option of both methods that filter slices.
 inline constexpr visibility::ChoiceOption kSliceFilter{
     "filter",
     {{"sat", PrefilterKind::table}, {"mip", PrefilterKind::pyramid}, {"n-buffer", PrefilterKind::windows}},
     PrefilterKind::table,
     "how means over windows are taken: summed areas in integers, mip levels, overlapping squares"};
 
-/// Light-space slices, each filtered by the light seen through its plane, and their product (occlusion_textures.comp).
+/// Returns the recipe: light-space slices, each filtered by the light seen through its plane, and their product
+/// (occlusion_textures.comp).
 MapRecipe slice_recipe(const render::Device& device, visibility::MethodDescription description,
                        const SliceOptions& slices, PrefilterKind filter);
 

@@ -8,43 +8,47 @@
 #include "maps/products/prefilter.glsl"
 
 layout(constant_id = 2) const uint kModel = kVariance;
-layout(constant_id = 3) const uint kCuts = 0;  // how often a window is cut in four, at most; of bounds alone
+layout(constant_id = 3) const uint kCuts = 0;  // largest number of times a window is cut in four; with bounds only
 layout(constant_id = 4) const uint kSubdivision = kUniform;
-layout(constant_id = 5) const uint kWindowTexels = 0;  // a filter of so many texels a side; 0: the light's size decides
-layout(constant_id = 6) const float kOffset = 1.0;     // csm: by how many lobes the step is shifted
-layout(constant_id = 7) const float kDamping = 0.0;    // csm: how fast its coefficients fall off
-layout(constant_id = 8) const uint kSmoothLeak = 0;    // 1: what is left above `leak` is stretched smoothly
+layout(constant_id = 5) const uint kWindowTexels = 0;  // width of a fixed filter in texels; 0: the light's size
+                                                       // determines the window
+layout(constant_id = 6) const float kOffset = 1.0;     // csm: shift of the step, in lobes
+layout(constant_id = 7) const float kDamping = 0.0;    // csm: rate at which the coefficients fall off
+layout(constant_id = 8) const uint kSmoothLeak = 0;    // 1: values above `leak` are stretched smoothly
 layout(constant_id = 9) const uint kFarthest = 0;      // esm: texel by texel wherever a texel is behind the receiver
 
 layout(scalar, binding = 4) readonly buffer Nearest { float nearest[2]; };
 layout(scalar, binding = 5) readonly buffer Frame { MapFrame frame; };
-layout(scalar, binding = 11) readonly buffer Pattern { vec2 pattern[]; };  // light points in its basis
+layout(scalar, binding = 11) readonly buffer Pattern { vec2 pattern[]; };  // light points in the light's basis
 #include "maps/filters/horizon.glsl"
 
 #define PYRAMID_BINDING 12
 #include "maps/products/depth_pyramid.glsl"
 
-// Soft shadows as pcss finds them (pcss.comp), from statistics of whole windows in place of taps. Heights are t in
-// [0, 1], see prefilter_value.glsl; "lit" is the share of a window's texels that are not nearer than the receiver.
+// Soft shadows with the windows of pcss (pcss.comp), from statistics of whole windows in place of taps. Heights are t
+// in [0, 1], see prefilter_value.glsl; "lit" is the fraction of a window's texels that are not nearer than the
+// receiver.
 //
-// Where the mean of a window is not nearer than the receiver, Chebyshev's bound is 1 and says nothing, though the window may
-// hold blockers: what it sees is not one plane. So windows are cut into parts (Yang et al. 2010, kernel subdivision): those
-// whose mean is nearer are asked for their bound, the others are compared at some of their texels, and all are added.
+// Where the mean of a window is not nearer than the receiver, Chebyshev's bound is 1 and gives no information, though
+// the window may hold blockers: its contents are not one plane. So windows are cut into parts (Yang et al. 2010, kernel
+// subdivision): parts whose mean is nearer use their bound, the others are compared at some of their texels, and the
+// results are added.
 
 const float kLog2E = 1.4426950408889634;
-// Means are right to about 2^-23 (24 binary digits, sums of float32): below this a variance is rounding.
+// Means are right to about 2^-23 (24 binary digits, sums of float32): a smaller variance is rounding.
 const float kLeastVariance = 1.0 / 4194304.0;
 
-// Of esm: a height is off by a few 2^-24 of its range, its exponential by up to 80 times that.
+// Rounding of esm: a height is off by a few 2^-24 of its range, its exponential by up to 80 times this error.
 const float kHeightRounding = 1.0 / 1048576.0, kBeyondRounding = 1.0 / 1024.0;
 
-// Chebyshev's bound (Donnelly and Lauritzen 2006): no more than this share of a distribution lies at x or beyond.
+// Returns Chebyshev's bound (Donnelly and Lauritzen 2006): the largest possible fraction of a distribution at x or
+// beyond.
 float chebyshev(float mean, float variance, float x) {
   return x <= mean ? 1.0 : variance / (variance + (x - mean) * (x - mean));
 }
 
-// Exponentials are read relative to the receiver's own, exp(c (t_q - t)) and exp(-c (t_q - t)): then it is at 1. This is
-// the power of two by which the mean of function i is multiplied.
+// Returns the power of two by which the mean of function i is multiplied. Exponentials are evaluated relative to the
+// receiver's own, exp(c (t_q - t)) and exp(-c (t_q - t)): then the receiver's is 1.
 float log2_scale(uint i, float t) {
   const float up = own.exponent * (1.0 - t) * kLog2E, down = own.exponent * t * kLog2E;
   if (kModel == kExponential) return i == 0 ? up : 0.0;
@@ -52,7 +56,7 @@ float log2_scale(uint i, float t) {
   return (i < 2 ? up : down) * (i % 2 == 0 ? 1.0 : 2.0);
 }
 
-// The height of what a texel holds.
+// Returns the height stored in a texel.
 float height_of_texel(LightView view, uint face, uvec2 at, uint s) {
   const float depth = maps[(face * table.size + at.y) * table.size + at.x];
   const bool sideways = face != view.side[s].first_face;
@@ -60,7 +64,8 @@ float height_of_texel(LightView view, uint face, uvec2 at, uint s) {
   return depth < 1.0 ? normalised_height(depth * view.far * height, nearest[s], frame.deepest[s]) : 1.0;
 }
 
-// The exponential where it is below 1, texel by texel (Annen, Mertens et al. 2008, section 3.4); of a large box, some.
+// Returns the exponential where it is below 1, texel by texel (Annen, Mertens et al. 2008, section 3.4); of a large
+// box, at some texels.
 const uint kFallbackTaps = 16;  // along an axis
 float lit_texel_by_texel(LightView view, Box box, float t, uint s) {
   if (!(box.inside > 0.0)) return 1.0;  // beside the map there is nothing
@@ -77,21 +82,21 @@ float lit_texel_by_texel(LightView view, Box box, float t, uint s) {
   return box.inside * sum / float(count.x * count.y) + (1.0 - box.inside);
 }
 
-// The receiver, for all windows of a pixel.
+// Receiver, for all windows of a pixel.
 struct Asking {
   vec3 d, m;
-  uint s;       // its side
-  float t;      // its height, less what the bias forgives
-  float kept;   // the share of a height that the bias leaves
-  float slack;  // of kExpVariance: how much that is
+  uint s;       // side of the light's plane
+  float t;      // height, less the bias
+  float kept;   // fraction of a height left by the bias
+  float slack;  // of kExpVariance: the height subtracted by the bias
 };
 
 float normalised(Asking asking, float height) {
   return normalised_height(height, nearest[asking.s], frame.deepest[asking.s]);
 }
 
-// The height of the receiver's plane at a place of a face, in texels, less the bias; no deeper than the receiver, as in
-// blocks_light(). receiverPlane=off: the receiver's own.
+// Returns the height of the receiver's plane at a position on a face, in texels, less the bias; no deeper than the
+// receiver, as in blocks_light(). receiverPlane=off: the receiver's own height.
 float plane_height(LightView view, Asking asking, uint face, vec2 place) {
   const float h = dot(asking.m, asking.d);
   if (lookup.own_depth != 0 || !(h > 0.0)) return asking.t;
@@ -103,8 +108,8 @@ float plane_height(LightView view, Asking asking, uint face, vec2 place) {
   return h * across < own_height * facing ? normalised(asking, asking.kept * h / facing * across) : asking.t;
 }
 
-// A part of a window that no bound knows, at some of its texels: the share of them that are not nearer than the receiver's
-// plane, and the sum of the others' heights, as a share.
+// Returns, for a part of a window without a valid bound, from some of its texels: the fraction not nearer than the
+// receiver's plane, and in `blocked` the sum of the other texels' heights, as a fraction.
 const uint kPartTaps = 4;  // along an axis
 float lit_at_texels(LightView view, Asking asking, Box box, out float blocked) {
   blocked = 0.0;
@@ -127,8 +132,8 @@ float lit_at_texels(LightView view, Asking asking, Box box, out float blocked) {
   return lit * share + (1.0 - box.inside);
 }
 
-// The least and the greatest height that a box may hold, from the pyramid; on a sideways face heights are the distance
-// from the plane along its rows.
+// Returns the least and the greatest height possible in a box, from the pyramid; on a sideways face heights are the
+// distance from the plane along its rows.
 vec2 heights_within(LightView view, Box box, uint s) {
   if (!(box.inside > 0.0)) return vec2(1.0);
   const uvec2 first = uvec2(box.lower), last = max(uvec2(ceil(box.upper)), first + 1) - 1;
@@ -139,9 +144,11 @@ vec2 heights_within(LightView view, Box box, uint s) {
               normalised_height(depths.y * rows.y, nearest[s], frame.deepest[s]));
 }
 
-// The share of the window that is lit; if `search`, `blocked` is the sum of the heights of what is not, in t, as a share.
+// Returns the lit fraction of the window; if `search`, `blocked` is the sum of the heights, in t, of the texels that
+// are not lit, as a fraction.
 float lit_share(LightView view, Asking asking, Box box, float t, bool search, out float blocked) {
-  // Lauritzen and McCool 2008: the layer that holds t knows nothing of heights beside it. One layer's mean is that of t.
+  // Lauritzen and McCool 2008: the layer that contains t has no information about heights outside the layer. With one
+  // layer, its mean is the mean of t.
   const float layers = float(own.count);
   const uint layer = kModel == kVariance ? min(uint(t * layers), own.count - 1) : 0;
   const uint of_lit = kModel == kVariance ? 2 : kModel == kExpVariance ? 4 : kModel == kFourier ? 2 * own.count : 1;
@@ -153,18 +160,17 @@ float lit_share(LightView view, Asking asking, Box box, float t, bool search, ou
   for (uint k = 0; k < count; ++k) {
     const uint i = kModel == kFourier && !search ? k / 2 * 4 + k % 2 : k;
     uint function = i;
-    if (kModel == kVariance) function = i < 2 ? 2 * layer + i : 2 * own.count;  // the last is t
+    if (kModel == kVariance) function = i < 2 ? 2 * layer + i : 2 * own.count;  // the last function is t
     const float found = mean_over(function, box, log2_scale(i, t));
     if (kModel != kFourier) {
       mean[i] = found;
     } else if (i == 4 * own.count) {
       blockers += 0.5 * found;
     } else {
-      // Annen et al. 2007 (Eisemann et al. 2009, equation 4.6): lit = 1/2 + 2 sum of sin(c_k (t_q - t)) / c_k, with heights
-      // that span less than half the period, and the sum of (1 - lit) t_q by the same series (Annen et al. 2008). Stored
-      // are sin, cos, t sin and t cos.
-      // The step is shifted by `kOffset` lobes, so that what is level with the receiver is lit, and its coefficients fall
-      // off (Eisemann et al. 2009, figure 4.8).
+      // Annen et al. 2007 (Eisemann et al. 2009, equation 4.6): lit = 1/2 + 2 sum of sin(c_k (t_q - t)) / c_k, with
+      // heights that span less than half the period, and the sum of (1 - lit) t_q by the same series (Annen et al.
+      // 2008). Stored are sin, cos, t sin and t cos. The step is shifted by `kOffset` lobes, so that points level with
+      // the receiver are lit, and its coefficients fall off (Eisemann et al. 2009, figure 4.8).
       const float number = float(i / 4) + 1.0, c = (2.0 * number - 1.0) * 3.14159265358979;
       const float span = fourier_span(own.count, kOffset);
       const float at = c * (span * t - 0.5 * kOffset / float(own.count));
@@ -199,12 +205,12 @@ float lit_share(LightView view, Asking asking, Box box, float t, bool search, ou
     lit = min(lit, 1.0);
     height = mean[1];
   }
-  // Yang et al. 2010: what is lit is taken to be at the receiver's height.
+  // Yang et al. 2010: lit texels are assumed to be at the receiver's height.
   blocked = height - lit * t;
   return lit;
 }
 
-// Part number `index` of those on a level of cuts in four, in Morton order.
+// Returns part `index` of a level of cuts in four, in Morton order.
 Window part_of(Window window, uint level, uint index) {
   if (level == 0) return window;
   uvec2 cell = uvec2(0);
@@ -217,7 +223,7 @@ Window part_of(Window window, uint level, uint index) {
 float visibility_of(LightView view, vec3 d, vec3 m) {
   const uint s = d.z < 0.0 ? 1 : 0;
   const float height = abs(d.z);
-  // A filter of so many texels knows the light's centre alone.
+  // A filter of fixed width uses the light's centre alone.
   const float horizon = kWindowTexels != 0 ? (dot(m, d) > 0.0 ? 1.0 : 0.0) : share_above_horizon(d, m, own.horizon_samples);
   if (horizon == 0.0 || !(nearest[s] < height)) return horizon;
 
@@ -225,25 +231,26 @@ float visibility_of(LightView view, vec3 d, vec3 m) {
   Asking asking = Asking(d, m, s, 0.0, kept, 0.0);
   const float level = normalised(asking, height);
   asking.t = normalised(asking, height * kept);
-  // An exponential is 1 at the receiver's own height: a bias would make light of it. Of esm rounding alone is forgiven; of
-  // evsm deviations as large as the bias, as a least variance, which grows with the exponent as they do (Lauritzen and
-  // McCool 2008).
+  // An exponential is 1 at the receiver's own height: a bias would make the result lit. For esm only rounding is
+  // subtracted; for evsm deviations as large as the bias are tolerated, as a least variance, which grows with the
+  // exponent (Lauritzen and McCool 2008).
   const float exact = kModel == kExponential ? level - kHeightRounding : kModel == kExpVariance ? level : asking.t;
   if (kModel == kExpVariance) asking.slack = level - asking.t;
   const vec2 ends = height_ends(nearest[s], frame.deepest[s]);
 
-  // 1. Blockers in the light-receiver pyramid where it passes the near plane, and their mean height. 2, 3. As if all of
-  // them were one plane there: the share of the light seen past it. One loop over the parts of both windows.
+  // Step 1: blockers in the light-receiver pyramid at the near plane, and their mean height. Steps 2 and 3: all
+  // blockers are replaced by one plane there: the fraction of the light seen past this plane. One loop over the parts
+  // of both windows.
   float z = min(max(nearest[s], frame.smallest_near), height), lit = 0.0, blockers = 0.0;
   bool search = kWindowTexels == 0;
   Window window = search ? window_through(view, d, frame.half_box, z) : window_of_texels(view, d, kWindowTexels);
   const uint parts = 1u << (2 * kCuts);
-  uint at = 0, cut = 0;  // the part that is asked, in Morton order: the number of its first smallest one, and how often it is cut
+  uint at = 0, cut = 0;  // current part, in Morton order: index of its first smallest part, and its number of cuts
   for (;;) {
     const Window part = part_of(window, cut, at >> (2 * (kCuts - cut)));
     const Box box = box_of(part);
     float share = 1.0, blocked = 0.0;
-    // Nothing in it is nearer than the receiver: lit, without a mean.
+    // No texel of the part is nearer than the receiver: lit, without a mean.
     const bool open = kModel <= kExpVariance && heights_within(view, box, s).x >= asking.t;
     const bool may_cut = cut < kCuts && max(part.extent.x, part.extent.y) > 1.0;
     if (!open && may_cut && kSubdivision == kUniform) {
@@ -265,7 +272,7 @@ float visibility_of(LightView view, vec3 d, vec3 m) {
     blockers += share < 1.0 ? weight * blocked : 0.0;
     at += parts >> (2 * cut);
     if (at < parts) {
-      cut = kCuts - uint(findLSB(at)) / 2;  // the largest part that begins here
+      cut = kCuts - uint(findLSB(at)) / 2;  // the largest part that begins at this index
       continue;
     }
     if (!search) break;
@@ -276,7 +283,8 @@ float visibility_of(LightView view, vec3 d, vec3 m) {
     lit = blockers = 0.0;
     at = cut = 0;
   }
-  // Of a filter of so many texels the step's scale is the answer's, as published; of a light it would be its penumbra's.
+  // With a fixed filter width, the step's scale applies to the result, as published; with a light, it would apply to
+  // the penumbra.
   if (kModel == kFourier && kWindowTexels != 0) lit *= own.scale;
   const float v = clamp((lit - own.leak) / (1.0 - own.leak), 0.0, 1.0);
   return min(kSmoothLeak != 0 ? v * v * (3.0 - 2.0 * v) : v, horizon);

@@ -1,7 +1,7 @@
-// Soft shadows from prefiltered moments: windows as in Fernando 2005, their statistics by Donnelly and Lauritzen 2006
-// (vsm), Lauritzen and McCool 2008 (lvsm, evsm), Annen et al. 2007 and 2008 (csm, esm), and the mean blocker by Yang et
-// al. 2010 or, with csm, by Annen et al. 2008. Windows whose mean is behind the receiver are cut (Yang et al. 2010).
-// docs/vssm.md says where this departs from them, and why.
+// Computes soft shadows from prefiltered moments: windows as in Fernando 2005, their statistics by Donnelly and
+// Lauritzen 2006 (vsm), Lauritzen and McCool 2008 (lvsm, evsm), Annen et al. 2007 and 2008 (csm, esm), and the mean
+// blocker by Yang et al. 2010 or, with csm, by Annen et al. 2008. Windows whose mean is behind the receiver are cut
+// (Yang et al. 2010). docs/vssm.md lists the departures and their reasons.
 
 #include "maps/filters/methods.hpp"
 
@@ -125,11 +125,11 @@ visibility::MethodDescription vssm_description() {
 
 namespace {
 
-/// What each texel is made into; vssm.comp knows their order.
+/// Returns the functions of depth stored for each texel, in the order used by vssm.comp.
 std::vector<PrefilterFunction> functions(Moments moments, std::uint32_t count, float exponent, float offset) {
   std::vector<PrefilterFunction> functions;
   const PrefilterFunction height{};
-  // 16 binary digits where an exponential is least, exp(−c): digits in all. (24 are all that a float has.)
+  // 16 binary digits where an exponential is least, exp(−c): total number of digits. (A float has 24.)
   const auto digits = [&](double c) { return static_cast<std::uint32_t>(std::ceil(c * std::numbers::log2e)) + 16; };
   switch (moments) {
     case Moments::vsm:
@@ -156,7 +156,8 @@ std::vector<PrefilterFunction> functions(Moments moments, std::uint32_t count, f
         const auto step = static_cast<float>((2 * k + 1) * std::numbers::pi * gpu::fourier_span(count, offset));
         for (const std::uint32_t power : {gpu::kPlain, gpu::kTimesHeight}) {
           for (const std::uint32_t kind : {gpu::kSine, gpu::kCosine}) {
-            // 12 digits: one table each at 1024 texels a side; the series is cut off at 1 / (2 · 16 · π) anyway.
+            // 12 digits: one table each at 1024 texels a side; the truncation error of the series is 1 / (2 · 16 · π)
+            // in any case.
             functions.push_back({.kind = kind, .power = power, .a = step, .digits = 12});
           }
         }
@@ -193,7 +194,7 @@ std::unique_ptr<visibility::Method> make_vssm(const render::Device& device, cons
     model = gpu::kExpVariance;
     push.exponent /= 2;
   }
-  // A bound that is 1 says nothing; a series and an exponential have none.
+  // A bound of 1 gives no information; a series and an exponential have no bound.
   Subdivision subdivision = parsed[kSubdivision];
   if (subdivision == Subdivision::automatic) {
     const bool cuts_windows = model == gpu::kVariance && parsed[kFixedWindow] == 0;
@@ -211,7 +212,7 @@ std::unique_ptr<visibility::Method> make_vssm(const render::Device& device, cons
                                  std::bit_cast<std::uint32_t>(static_cast<float>(parsed[kDamping])),
                                  parsed[kLeakCut] == LeakCut::smooth ? 1U : 0U,
                                  parsed[kClassifier] == Classifier::farthest ? 1U : 0U}};
-  // An exponential takes nothing off a receiver's height.
+  // An exponential subtracts nothing from a receiver's height.
   recipe.products.push_back(
       std::make_unique<ShadowDepths>(device, parsed[kDepth], moments == Moments::esm ? 0 : parsed[kBias]));
   auto nearest = std::make_unique<NearestCaster>(device);
@@ -228,7 +229,7 @@ std::unique_ptr<visibility::Method> make_vssm(const render::Device& device, cons
   recipe.products.push_back(
       std::make_unique<LightPattern>(device, std::initializer_list<std::uint32_t>{kHorizonSamples}));
   recipe.products.push_back(std::make_unique<DepthPyramid>(device, PyramidKind::hsm));
-  // As far as the search looks: see pcss. A filter of so many texels: see pcf.
+  // Extent of the blocker search: see pcss. With a fixed filter width: see pcf.
   const double beside = 2 * kWidestTangent * (window / 2) / parsed[kMapSize];
   recipe.beside = [window, beside](const visibility::Light& light, const LightBasis& basis) {
     return window != 0 ? glm::dvec2(beside) : half_extent(light, basis) / half_width(light);

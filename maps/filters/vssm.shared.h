@@ -1,12 +1,12 @@
-// One struct, two languages: what vssm.comp has behind LookupPush.
+// Shared by C++ and GLSL: push constants of vssm.comp after LookupPush.
 #include "maps/host/map_view.shared.h"
 #ifdef __cplusplus
 #pragma once
 namespace penumbra::maps::gpu {
-/// csm: how much of half the period of its series heights span. The sum of n sines of a step has its last maximum 1 /
-/// 2n of that before it jumps back: there, and not on the jump, is the farthest texel behind the nearest receiver,
-/// which the step's offset, in lobes of as much, moves nearer to the jump; and the shadow of the nearest caster on the
-/// deepest receiver.
+/// Returns, for csm, the fraction of half the period of its series spanned by heights. The sum of n sines of a step has
+/// its last maximum 1 / 2n of half the period before the jump back: there, and not on the jump, is the farthest texel
+/// behind the nearest receiver. The step's offset, in lobes of the same width, moves this texel nearer to the jump; and
+/// the shadow of the nearest caster on the deepest receiver.
 constexpr float fourier_span(uint terms, float offset) {
   const float span = 1.0F - 0.5F * (1.0F + offset) / static_cast<float>(terms);
   return span > 0.5F ? span : 0.5F;
@@ -17,22 +17,22 @@ float fourier_span(uint terms, float offset) {
 }
 #endif
 
-// What stands for the distribution of heights in a window: specialization constant 1.
-const uint kVariance = 0;     // vsm, lvsm: mean and mean square, of each layer its own
-const uint kExpVariance = 1;  // evsm: of a rising and a falling exponential
+// Model of the distribution of heights in a window: specialization constant 1.
+const uint kVariance = 0;     // vsm, lvsm: mean and mean square, for each layer
+const uint kExpVariance = 1;  // evsm: mean and mean square of a rising and a falling exponential
 const uint kFourier = 2;      // csm
 const uint kExponential = 3;  // esm
 
-// How a window is cut into parts: specialization constant 4.
-const uint kUniform = 0;   // in the smallest, wherever something in it is nearer than the receiver
-const uint kAdaptive = 1;  // in four where the mean is not nearer than the receiver; these again
+// Subdivision of a window into parts: specialization constant 4.
+const uint kUniform = 0;   // into the smallest parts, wherever something in the window is nearer than the receiver
+const uint kAdaptive = 1;  // into four where the mean is not nearer than the receiver, recursively
 
 struct VssmPush {
-  uint count;      // layers of kVariance, terms of kFourier
+  uint count;      // number of layers of kVariance, of terms of kFourier
   float exponent;  // of exponentials
-  float scale;     // csm: the step is made so much steeper
-  float leak;      // V below this is black
-  uint fallback;   // esm: compare texel by texel where the exponential says more than 1
+  float scale;     // csm: factor of the step's slope
+  float leak;      // a smaller V is black
+  uint fallback;   // esm: compare texel by texel where the exponential is above 1
   uint horizon_samples;
 };
 

@@ -1,3 +1,5 @@
+// Measures the aliasing error of fitted maps: Eisemann et al. 2009, equation 3.2; Lloyd et al. 2008.
+
 #include "maps/host/aliasing.hpp"
 
 #include "visibility/receivers.hpp"
@@ -11,7 +13,7 @@
 namespace penumbra::maps {
 namespace {
 
-/// How a view sample moves over its plane as its pixel moves across and down.
+/// Returns the displacements of a view sample on its plane when its pixel moves across and down.
 std::array<glm::dvec3, 2> moves_of(const visibility::ViewSamples& samples, std::size_t pixel) {
   const visibility::PinholeCamera& camera = samples.camera;
   const auto x = static_cast<std::uint32_t>(pixel % samples.width),
@@ -40,7 +42,7 @@ glm::dvec2 aliasing_error(const FittedFace& face, const SeenReceiver& receiver, 
                         glm::dot(moves.at(i), basis.n) * (receiver.side == 0 ? 1 : -1));
     texels.at(i) = face.moves(receiver.e, by) * static_cast<double>(size);
   }
-  // Texels a pixel's step: the columns of the inverse are pixels a texel's.
+  // Texels for a step of one pixel: the columns of the inverse are pixels for a step of one texel.
   const double determinant = texels[0].x * texels[1].y - texels[1].x * texels[0].y;
   const double width = std::hypot(texels[1].y, texels[0].y), height = std::hypot(texels[1].x, texels[0].x);
   return glm::dvec2(width, height) / std::max(std::abs(determinant), 1e-300);

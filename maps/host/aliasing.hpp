@@ -11,23 +11,23 @@
 
 namespace penumbra::maps {
 
-/// How long a texel's two sides are on the screen, in pixels, on the receiver's plane: the aliasing error m of both
-/// axes of a map (Eisemann et al. 2009, equation 3.2, with all its factors; Lloyd et al. 2008). More than 1:
+/// Returns the length of a texel's two sides on the screen, in pixels, on the receiver's plane: the aliasing error m of
+/// both axes of a map (Eisemann et al. 2009, equation 3.2, with all its factors; Lloyd et al. 2008). More than 1:
 /// undersampled.
 glm::dvec2 aliasing_error(const FittedFace& face, const SeenReceiver& receiver, const visibility::ViewSamples& samples,
                           std::size_t pixel, const LightBasis& basis, std::uint32_t size);
 
-/// An error beyond this says that a surface is seen edge-on, from the eye or from the light.
+/// Largest error counted: a larger one means that a surface is seen edge-on, from the eye or from the light.
 inline constexpr double kMostAliasing = 1e6;
 
-/// Does a view sample turn its back to the light's centre? It is dark without a map.
+/// Returns whether a view sample faces away from the light's centre. Such a sample is dark without a map.
 bool faces_away(const visibility::ViewSamples& samples, std::size_t pixel, const LightBasis& basis);
 
-/// The larger m of each pixel, 0 where nothing is asked; and what counters say of them: aliasingPixels of them all,
-/// undersampledPixels with m > 1, aliasingThousandths and aliasingWorstThousandths, sum and largest m in thousandths,
-/// outsidePixels, which no face holds (there are none; they would be lit), and neededTexels, the sum over faces of
-/// size² · (largest m along a) · (largest m along b): as many texels leave no m > 1. The last by the first is the
-/// storage factor of the course notes' figure 3.13.
+/// Larger m of each pixel, 0 where there is no look-up; and its counters: aliasingPixels, the number of pixels;
+/// undersampledPixels with m > 1; aliasingThousandths and aliasingWorstThousandths, sum and largest m in thousandths;
+/// outsidePixels, held by no face (there are none; they would be lit); and neededTexels, the sum over faces of size² ·
+/// (largest m along a) · (largest m along b): with as many texels no m is above 1. neededTexels divided by the map's
+/// texels is the storage factor of the course notes' figure 3.13.
 struct Aliasing {
   std::vector<float> errors;
   std::map<std::string, std::uint64_t> counters;

@@ -11,12 +11,12 @@
 
 namespace penumbra::maps {
 
-/// Axes of the faces of a hemicube, as in taps.glsl; the first is a window's.
+/// Axes of a face of a hemicube, as in taps.glsl; the first face is also a window's.
 struct BaseFace {
   int axis;
   double sign;
 
-  [[nodiscard]] glm::dmat3 matrix() const {  // e to (a, b, w)
+  [[nodiscard]] glm::dmat3 matrix() const {  // maps e to (a, b, w)
     const glm::dvec3 x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
     const glm::dmat3 rows = axis == 2   ? glm::dmat3(x, y, z)
                             : axis == 0 ? glm::dmat3(y, z, sign * x)
@@ -40,9 +40,10 @@ struct PlaceBounds {
   }
 };
 
-/// From (a' k, b' k, k) to the same from 0 to 1 over bounds, and `margin` of it on every side.
+/// Returns the matrix that maps (a' k, b' k, k) to the range 0 to 1 over `bounds`, with `margin` of the face on every
+/// side.
 inline glm::dmat3 to_unit(PlaceBounds bounds, double margin) {
-  // A body seen edge-on leaves no width of its own: then float32's resolution of a tangent decides.
+  // A body seen edge-on has zero width: then float32's resolution of a tangent is used.
   const glm::dvec2 least = 0x1p-20 * (1.0 + glm::max(glm::abs(bounds.lower), glm::abs(bounds.upper)));
   const glm::dvec2 middle = 0.5 * (bounds.lower + bounds.upper);
   const glm::dvec2 half = glm::max(0.5 * (bounds.upper - bounds.lower), least) / (1 - 2 * margin);

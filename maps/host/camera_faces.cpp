@@ -49,7 +49,7 @@ std::uint32_t CameraFaces::make(const render::Device& device, gpu::FaceTable tab
       push.plain = face_push(face, view, basis, size);
     }
   }
-  // Look-ups read the first even where there is none.
+  // Look-ups read the first face even if there is none.
   words.resize(std::max(words.size(), (sizeof(gpu::FaceTable) + sizeof(gpu::FittedFace)) / sizeof(std::uint32_t)));
   render::grow(device, table_, "fitted faces", words.size() * sizeof(std::uint32_t));
   table_->write<std::uint32_t>(words);

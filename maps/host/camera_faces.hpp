@@ -13,7 +13,8 @@
 
 namespace penumbra::maps {
 
-/// Faces that are fitted to a camera (face_fit.hpp), as maps are drawn with them and look-ups find them (fitted.glsl).
+/// Faces fitted to a camera (face_fit.hpp): draws maps with these faces and uploads the faces for look-ups
+/// (fitted.glsl).
 class CameraFaces {
  public:
   struct Source {
@@ -22,18 +23,20 @@ class CameraFaces {
     const LightBasis& basis;
     const visibility::ViewSamples& samples;
   };
-  /// Fits them, and says in the view of the light's centre how many each side has. Returns how many there are.
+  /// Fits the faces, and writes the number of faces of each side to `view`, the view of the light's centre. Returns the
+  /// total number.
   std::uint32_t fit(const render::Device& device, const Source& source, const FaceFitOptions& options,
                     gpu::LightView& view);
 
-  /// A paraboloid's circle for each side of the light's plane that the view has maps for, likewise.
+  /// Makes a paraboloid's circle for each side of the light's plane with maps in `view`, and writes their number to
+  /// `view` in the same form.
   std::uint32_t take_paraboloids(const render::Device& device, const LightBasis& basis, std::uint32_t size,
                                  std::uint32_t spare, gpu::LightView& view);
 
   /// Records all faces, the first at the beginning of `maps`, in submissions that can be timed.
   void record(const CasterMaps& casters, render::Commands& commands, std::int32_t light_index,
               const render::Buffer& maps, visibility::PassTimes& times) const;
-  /// The layer behind the one before, whose faces come just before `first_face`.
+  /// Records the layer behind the previous layer, whose faces are stored immediately before `first_face`.
   void record_behind(const CasterMaps& casters, render::Commands& commands, std::int32_t light_index,
                      const render::Buffer& maps, std::uint64_t first_face, visibility::PassTimes& times) const;
 
@@ -42,7 +45,7 @@ class CameraFaces {
   [[nodiscard]] std::uint64_t memory_bytes() const { return table_ ? table_->bytes() : 0; }
 
  private:
-  /// Makes what draws `faces_`, and their table, which begins with `table`.
+  /// Makes the drawing data of `faces_`, and their table, which begins with `table`.
   std::uint32_t make(const render::Device& device, gpu::FaceTable table, const LightBasis& basis, std::uint32_t size,
                      gpu::LightView& view);
 

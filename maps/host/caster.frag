@@ -6,7 +6,8 @@
 #include "maps/host/map_depth.glsl"
 
 // Depth is linear in the distance along the face's axis: as a float it has the same relative precision (2^-24)
-// everywhere, however small the near distance is. The usual depth 1 - near / w would lose w / near of it.
+// everywhere, however small the near distance is. The usual depth 1 - near / w would lose a factor w / near of
+// precision.
 
 PUSH_CONSTANTS Push { CasterPush face; };
 

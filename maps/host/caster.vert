@@ -4,9 +4,9 @@
 #include "maps/host/map_view.shared.h"
 #include "render/both.glsl"
 
-// One face of a light point's maps (Williams 1978). clip.z = w - near clips at the near plane and nowhere else, before
-// the division by w, so that a triangle which crosses the light's plane keeps its front part; depth itself is the
-// fragment shader's.
+// Draws one face of a light point's maps (Williams 1978). clip.z = w - near clips at the near plane and nowhere else,
+// before the division by w, so that a triangle which crosses the light's plane keeps its front part; the fragment
+// shader computes depth.
 
 PUSH_CONSTANTS Push { CasterPush face; };
 

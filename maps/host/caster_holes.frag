@@ -6,7 +6,7 @@
 #include "maps/host/holes.glsl"
 #include "maps/host/map_depth.glsl"
 
-// caster.frag for surfaces with holes: a texel whose centre sees through one keeps what is behind.
+// Draws as caster.frag does, for surfaces with holes: a texel whose centre is in a hole keeps the surface behind.
 
 PUSH_CONSTANTS HolesBlock { CasterPush push; };
 

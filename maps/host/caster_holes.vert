@@ -5,7 +5,7 @@
 #include "render/both.glsl"
 #include "maps/host/holes_corner.glsl"
 
-// caster.vert for surfaces with holes.
+// Draws as caster.vert does, for surfaces with holes.
 
 PUSH_CONSTANTS Push { CasterPush face; };
 

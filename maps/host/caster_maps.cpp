@@ -1,3 +1,5 @@
+// Renders depth maps of casters (Williams 1978), layers behind others by depth peeling (Everitt 2001).
+
 #include "maps/host/caster_maps.hpp"
 
 #include "base/assert.hpp"
@@ -41,7 +43,7 @@ render::RasterPassOptions behind_options(bool holes) {
   return options;
 }
 
-/// What a texel holds where nothing is.
+/// Returns the depth of empty texels.
 float nothing(MapLayer layer) {
   return layer == MapLayer::farthest ? 0.0F : 1.0F;
 }
@@ -215,7 +217,7 @@ void CasterMaps::record_on_device(render::Commands& commands, MapLayer layer, co
       passes.of(layer).record(commands, push_bytes, buffers, draw);
     }
   }
-  if (clear) {  // nothing casts shadow: the map is empty
+  if (clear) {  // no object casts shadow: the map is empty
     commands.fill(to.maps, std::bit_cast<std::uint32_t>(nothing(layer)), (to.first_face + face) * face_bytes,
                   face_bytes);
   } else {

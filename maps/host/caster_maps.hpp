@@ -19,43 +19,43 @@
 
 namespace penumbra::maps {
 
-/// A face to draw: as it is, or its rows as logarithms.
+/// Face to draw: as given, or with logarithmic rows.
 struct FacePush {
   gpu::CasterPush plain{};
   std::optional<gpu::LogarithmicPush> logarithmic{};
 };
 
-/// Renders depth maps of everything that casts shadow, all but the body of the light itself: on the device, or by
-/// OpenGL beside it, which fills the same buffers. A caster with holes (holes.hpp) is drawn where it has none.
+/// Renders depth maps of all casters except the body of the light itself: on the device, or by OpenGL, which fills the
+/// same buffers. A caster with holes (holes.hpp) is not drawn in its holes.
 class CasterMaps {
  public:
-  /// `size`: texels on a side. Throws ResourceError for more than the rasteriser's images can have, and where there is
-  /// no OpenGL.
+  /// Makes a renderer of maps with `size` texels on a side. Throws ResourceError if the rasteriser's images cannot have
+  /// as many, and if OpenGL is requested but not available.
   CasterMaps(const render::Device& device, std::uint32_t size, Rasteriser rasteriser = Rasteriser::vulkan);
 
-  /// Polygon offset of the nearest surfaces that are drawn from now on (CasterPush).
+  /// Sets the polygon offset of the nearest surfaces for all following draws (CasterPush).
   void set_offset(float factor, float units) {
     offset_factor_ = factor;
     offset_units_ = units;
   }
   void upload(const visibility::SceneFloats& scene);
 
-  /// Records the faces of one light point of light number `light_index` and copies them, one after the other, to
-  /// `maps`, the first at `first_face` · size² floats.
+  /// Records the faces of one light point of the light with index `light_index` and copies them, one after the other,
+  /// to `maps`, the first at `first_face` · size² floats.
   void record(render::Commands& commands, const gpu::LightView& view, const LightBasis& basis, std::int32_t light_index,
               const render::Buffer& maps, std::uint64_t first_face) const;
-  /// The next layer (Everitt 2001, depth peeling): of what is behind the layer whose faces begin at `previous_face`,
-  /// the nearest, likewise. 1 where nothing is. What is within 2⁻²⁰ of the layer before, relative, belongs to it: a
-  /// surface that is there twice, in different triangles, differs by rounding.
+  /// Records the next layer (Everitt 2001, depth peeling): the nearest surface behind the layer whose faces begin at
+  /// `previous_face`; otherwise as record(). Empty texels are 1. Surfaces within a relative 2⁻²⁰ of the previous layer
+  /// belong to the previous layer: a surface present twice, in different triangles, differs by rounding.
   void record_behind(render::Commands& commands, const gpu::LightView& view, const LightBasis& basis,
                      std::int32_t light_index, const render::Buffer& maps, std::uint64_t first_face,
                      std::uint64_t previous_face) const;
-  /// The same of faces of any kind, on the device alone.
+  /// Record faces of any kind in the same form, on the device alone.
   void record(render::Commands& commands, std::span<const FacePush> faces, std::int32_t light_index,
               const render::Buffer& maps, std::uint64_t first_face) const;
   void record_behind(render::Commands& commands, std::span<const FacePush> faces, std::int32_t light_index,
                      const render::Buffer& maps, std::uint64_t first_face, std::uint64_t previous_face) const;
-  /// The farthest surface of each texel, likewise; 0 where nothing is.
+  /// Records the farthest surface of each texel; otherwise as record(). Empty texels are 0.
   void record_farthest(render::Commands& commands, const gpu::LightView& view, const LightBasis& basis,
                        std::int32_t light_index, const render::Buffer& maps, std::uint64_t first_face) const;
 
@@ -66,34 +66,34 @@ class CasterMaps {
  private:
   /// Triangles that fit into one storage buffer of the rasteriser.
   struct Batch {
-    std::optional<render::Buffer> corners;  ///< Vulkan's; OpenGlMaps has its own
-    std::optional<render::Buffer> places;   ///< of casters with holes, likewise
+    std::optional<render::Buffer> corners;  ///< for Vulkan; OpenGlMaps has its own
+    std::optional<render::Buffer> places;   ///< of casters with holes, for Vulkan
     std::uint32_t first, count;
     bool holes;
   };
   struct Range {
     std::uint32_t first, count;
   };
-  /// What Vulkan draws with.
+  /// Raster passes of Vulkan.
   struct Passes {
     Passes(const render::Device& device, bool holes);
     [[nodiscard]] const render::RasterPass& of(MapLayer layer) const;
     [[nodiscard]] const render::RasterPass& logarithmic_faces(const render::Device& device) const;
     render::RasterPass nearest, behind, farthest;
-    mutable std::optional<render::RasterPass> logarithmic;  ///< made when it is first drawn with
+    mutable std::optional<render::RasterPass> logarithmic;  ///< made on first use
   };
-  /// Where faces go.
+  /// Destination of faces.
   struct Destination {
     const render::Buffer& maps;
     std::uint64_t first_face, previous_face;
   };
-  /// Appends casters, all with holes or all without, as batches. `surfaces`: of those with holes, else null.
+  /// Appends casters, all with holes or all without, as batches. `surfaces`: those with holes, else null.
   void add_batches(const visibility::SceneFloats& scene, std::span<const std::uint32_t> casters,
                    const HoleSurfaces* surfaces);
-  /// The casters of a batch without the body of that light.
+  /// Returns the casters of a batch without the body of the light.
   [[nodiscard]] std::vector<Range> ranges(const Batch& batch, std::int32_t light_index) const;
   [[nodiscard]] gpu::CasterPush offset(gpu::CasterPush push) const;
-  /// All faces of a light point.
+  /// Records all faces of a light point.
   void record_faces(render::Commands& commands, MapLayer layer, std::span<const FacePush> faces,
                     std::int32_t light_index, const Destination& to) const;
   void record_on_device(render::Commands& commands, MapLayer layer, const FacePush& push, std::int32_t light_index,
@@ -104,21 +104,21 @@ class CasterMaps {
   const render::Device* device_;
   std::uint32_t size_;
   float offset_factor_ = 0, offset_units_ = 0;
-  std::optional<Passes> solid_, holes_;  // either these
+  std::optional<Passes> solid_, holes_;  // used with Vulkan
   std::optional<render::DepthTarget> target_;
   std::optional<render::Buffer> surfaces_;  // HoleSurfaces::words
-  std::unique_ptr<OpenGlMaps> opengl_;      // or this
+  std::unique_ptr<OpenGlMaps> opengl_;      // used with OpenGL
   std::vector<Batch> batches_;
-  std::vector<std::int32_t> emits_;  // of each caster as uploaded, ascending in a batch: a light's body is one range
+  std::vector<std::int32_t> emits_;  // of each uploaded caster, ascending in a batch: a light's body is one range
 };
 
-/// How many faces of size² floats one storage buffer of this device can hold.
+/// Returns the number of faces of size² floats in one storage buffer of this device.
 std::uint64_t faces_per_buffer(const render::Device& device, std::uint32_t size);
 
-/// Throws ResourceError, saying which size would do, if `faces` do not fit into one storage buffer.
+/// Throws ResourceError, with the largest possible size, if `faces` do not fit into one storage buffer.
 void check_faces_fit(const render::Device& device, std::uint32_t size, std::uint32_t faces);
 
-/// Faces in one recording: each is two passes, and Commands times 256.
+/// Number of faces in one recording: each is two passes, and Commands times 256.
 inline constexpr std::uint32_t kFacesPerSubmission = 96;
 
 }  // namespace penumbra::maps

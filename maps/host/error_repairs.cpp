@@ -1,3 +1,5 @@
+// Options that separate the causes of error of map methods: resolution, view, bias, layers (docs/error-budget.md).
+
 #include "maps/host/error_repairs.hpp"
 
 #include <fmt/format.h>
@@ -19,7 +21,7 @@ using visibility::MethodOptions;
 using visibility::RepairEnd;
 using visibility::RepairRun;
 
-/// The options with some counts multiplied; nothing if one of them cannot be so large.
+/// Returns the options with some counts multiplied; nullopt if one of them would be too large.
 std::optional<MethodOptions> multiplied(const MethodDescription& method, MethodOptions options,
                                         std::span<const std::string> counts, std::uint32_t factor) {
   for (const std::string& name : counts) {
@@ -103,7 +105,7 @@ std::vector<RepairRun> from_finest(const MethodDescription& method, const Repair
 
 ErrorRepairs map_repairs(const MethodDescription& method, const MethodOptions& given, const MapRepairs& repairs) {
   MethodOptions exact = repairs.bias;
-  // What stands in place of a bias moves the beginning of shadows as well.
+  // Options that replace a bias also move the beginning of shadows.
   const auto has = [&](std::string_view name) {
     return std::ranges::find(method.options, name, &visibility::OptionDescription::name) != method.options.end();
   };

@@ -8,51 +8,53 @@
 #include <string>
 #include <vector>
 
-/// What repairs the causes of error that methods of this family share: docs/error-budget.md. In all of this `given` are
-/// the options of the run that is to be explained, and `more` those that a repair needs besides.
+/// Repairs of the causes of error common to methods of this family: docs/error-budget.md. Throughout, `given` are the
+/// options of the run to be explained, and `more` further options needed by a repair.
 namespace penumbra::maps {
 
-/// All of a method's options as given, some in other words.
+/// Returns all of a method's options as given, with `more` replacing some of them.
 visibility::MethodOptions options_with(const visibility::MethodDescription& method,
                                        const visibility::MethodOptions& given, const visibility::MethodOptions& more);
 
-/// Nothing separates this cause; `words` say why.
+/// Returns the repair of a cause that cannot be separated; `words` give the reason.
 visibility::ErrorRepair inseparable(visibility::ErrorCause cause, std::string words);
 
-/// Resolution: texels half and a quarter as wide; `doubled` are the options that say how many there are.
+/// Returns the repair of resolution: texels half and a quarter as wide; `doubled` are the options that determine the
+/// number of texels.
 visibility::ErrorRepair finer_maps(const visibility::MethodDescription& method, const visibility::MethodOptions& given,
                                    std::span<const std::string> doubled);
 
-/// So many light samples stand for all of the light: V of them is off by about 0.0025 in a penumbra.
+/// Number of light samples that approximate the whole light: their V is off by about 0.0025 in a penumbra.
 inline constexpr std::uint32_t kRepairSamples = 1024;
 
-/// View: a map from each of kRepairSamples light samples. As sub-lights shrink, a method whose shadow of a point light
-/// is that of a shadow map goes there, however it makes soft ones.
+/// Returns the repair of view by a map from each of kRepairSamples light samples. Valid for methods whose shadow of a
+/// point light is that of a shadow map: as sub-lights shrink, such a method converges to this repair.
 visibility::ErrorRepair points_of_light(const visibility::MethodOptions& options);
 
-/// View: the light in 2 × 2 and 4 × 4 parts, each with maps from its own centre.
+/// Returns the repair of view by the light in 2 × 2 and 4 × 4 parts, each with maps from its own centre.
 visibility::ErrorRepair parted_light(const visibility::MethodDescription& method,
                                      const visibility::MethodOptions& given);
 
-/// Layers: the option `layers` doubled, up to all that there can be.
+/// Returns the repair of layers: the option `layers` doubled, up to the largest value.
 visibility::ErrorRepair more_layers(const visibility::MethodDescription& method,
                                     const visibility::MethodOptions& given);
 
-/// What the methods of this family differ in when their error is taken apart.
+/// Differences between the methods of this family when their error is separated.
 struct MapRepairs {
   std::vector<std::string> doubled = {"size"};      ///< see finer_maps
   bool ends_at_points = false;                      ///< points_of_light, not parted_light
-  std::string many_views = {};                      ///< why `view` cannot be separated; empty: it can
-  std::string layers = {}, fusion = {}, gaps = {};  ///< why these cannot
-  /// What tells a caster from the receiver's own surface with nothing but rounding forgiven.
+  std::string many_views = {};                      ///< reason why `view` cannot be separated; empty: separable
+  std::string layers = {}, fusion = {}, gaps = {};  ///< reasons why these causes cannot be separated
+  /// Options that distinguish a caster from the receiver's own surface with no tolerance beyond rounding.
   visibility::MethodOptions bias = {{"bias", "0.015625"}};
 };
 
-/// Repairs of resolution, view and bias, and all of these together; the others are inseparable for the reasons given.
+/// Returns the repairs of resolution, view and bias, and of all these together; the other causes are inseparable for
+/// the given reasons.
 visibility::ErrorRepairs map_repairs(const visibility::MethodDescription& method,
                                      const visibility::MethodOptions& given, const MapRepairs& repairs);
 
-/// The same run with texels a quarter as wide, half as wide, and as they are: what is left of all of these.
+/// Returns `run` with texels a quarter as wide, half as wide, and unchanged: the remaining error of each.
 std::vector<visibility::RepairRun> from_finest(const visibility::MethodDescription& method,
                                                const visibility::RepairRun& run, std::span<const std::string> doubled);
 

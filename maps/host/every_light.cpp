@@ -1,3 +1,5 @@
+// Adapts methods of maps to suns (projective space), spheres (disks) and surfaces with holes. Not from a paper.
+
 #include "maps/host/every_light.hpp"
 
 #include "base/assert.hpp"
@@ -45,9 +47,10 @@ class EveryLight final : public visibility::Method {
   static constexpr std::uint8_t kNoDisk = 0xff;
 
   [[nodiscard]] const SceneFloats& drawn() const { return drawn_ ? *drawn_ : *scene_; }
-  /// Gives the method a scene, unless it has that one.
+  /// Gives the method a scene, unless the method already has this scene.
   void show(const SceneFloats& scene);
-  /// Gives the method a disk of the lamp, unless it has that one, and the view samples that it lights.
+  /// Gives the method one disk of the lamp, unless the method already has this disk, and the view samples lit by the
+  /// disk.
   void look_from(std::uint32_t number);
   void show_lit();
 
@@ -55,22 +58,24 @@ class EveryLight final : public visibility::Method {
   Given given_;
   visibility::MethodDescription description_;
   const SceneFloats* scene_ = nullptr;
-  std::optional<SceneFloats> drawn_;               // with holes as casters, if there are any
-  const SceneFloats* shown_ = nullptr;             // that the method has
-  const Light* light_ = nullptr;                   // as the host has it
-  Light own_;                                      // as the method has it, where that is another
-  std::optional<SunSpace> sun_;                    // of the sun last looked from: the next may shine the same way
-  bool in_sun_space_ = false;                      // the light is that sun
-  std::optional<LampDisks> lamp_;                  // of a sphere that the method does not know
-  std::uint32_t disk_ = 0;                         // of a lamp: the one that the method has
-  std::uint32_t looked_ = kNoDisk;                 // likewise, with the view samples that it lights
-  ViewSamples samples_;                            // as the method has them, under these
-  std::vector<std::int32_t> carriers_;             // of a lamp: of all view samples
-  std::vector<std::uint8_t> disks_;                // of a lamp: of each view sample the disk's number, or kNoDisk
-  std::vector<std::uint32_t> masks_;               // of a lamp: of the tile last evaluated
-  std::vector<float> visibility_;                  // likewise
-  std::map<std::string, std::uint64_t> counters_;  // of a lamp: of all disks that were looked from
-  std::map<std::string, std::uint64_t> counted_;   // of these, of the disk that the method has
+  std::optional<SceneFloats> drawn_;               // with holes as casters, if any
+  const SceneFloats* shown_ = nullptr;             // scene that the method has
+  const Light* light_ = nullptr;                   // light given by the host
+  Light own_;                                      // light given to the method, where it differs
+  std::optional<SunSpace> sun_;                    // space of the most recent sun: the next sun may have the same
+                                                   // direction
+  bool in_sun_space_ = false;                      // the light is this sun
+  std::optional<LampDisks> lamp_;                  // disks of a sphere that the method does not support
+  std::uint32_t disk_ = 0;                         // of a lamp: the method's current disk
+  std::uint32_t looked_ = kNoDisk;                 // of a lamp: the current disk for which the method has the lit view
+                                                   // samples
+  ViewSamples samples_;                            // view samples given to the method, transformed for these lights
+  std::vector<std::int32_t> carriers_;             // of a lamp: carriers of all view samples
+  std::vector<std::uint8_t> disks_;                // of a lamp: for each view sample, the index of its disk, or kNoDisk
+  std::vector<std::uint32_t> masks_;               // of a lamp: masks of the most recent tile
+  std::vector<float> visibility_;                  // of a lamp: V of the most recent tile
+  std::map<std::string, std::uint64_t> counters_;  // of a lamp: sums over all evaluated disks
+  std::map<std::string, std::uint64_t> counted_;   // part of counters_ from the method's current disk
   std::uint64_t memory_ = 0;
 };
 
@@ -101,7 +106,7 @@ void EveryLight::prepare_light(const Light& light) {
   in_sun_space_ = light.sun && !knows;
   if (in_sun_space_) {
     if (!sun_ || !sun_->take(light)) {
-      shown_ = nullptr;  // another sun's scene may lie where this one's will
+      shown_ = nullptr;  // a new scene of a sun may have the same address as the previous one
       sun_.emplace(drawn(), light);
     }
     own_ = sun_->light();
@@ -111,7 +116,7 @@ void EveryLight::prepare_light(const Light& light) {
     looked_ = kNoDisk;
     own_ = lamp_->disk(disk_);
   }
-  // The host asks translucent surfaces alone, and the method knows the others.
+  // The host removes dimming by translucent surfaces from the light; the method handles all other casters.
   if (given_.holes) own_.filtered_by.clear();
   own_.dimmed_by.clear();
   show(in_sun_space_ ? sun_->scene() : drawn());
@@ -138,7 +143,7 @@ void EveryLight::prepare_view(const ViewSamples& samples) {
   }
   static_assert(LampDisks::kCount < kNoDisk);
   looked_ = disk_;
-  show_lit();  // so that max_tile_rows() has something to go by
+  show_lit();  // so that max_tile_rows() has a light and view samples
 }
 
 void EveryLight::show_lit() {
@@ -181,7 +186,7 @@ void EveryLight::evaluate(const Tile& tile) {
   std::vector<std::uint32_t> masks(count * words);
   for (std::uint32_t disk = 0; disk < LampDisks::kCount; ++disk) {
     if (std::ranges::find(here, static_cast<std::uint8_t>(disk)) == here.end()) continue;
-    look_from(disk);  // with view samples of other tiles, by which some methods choose where to look from
+    look_from(disk);  // with view samples of other tiles, from which some methods choose their viewpoint
     method_->evaluate(tile);
     method_->read_visibility(visibility);
     if (gives_masks) method_->read_masks(masks);

@@ -1,3 +1,6 @@
+// Fits faces to the view of a camera: bounds of the visible receivers and their casters, warps and quadtree tiles
+// (docs/map-fits.md).
+
 #include "maps/host/face_fit.hpp"
 
 #include "maps/host/aliasing.hpp"
@@ -17,10 +20,10 @@ namespace penumbra::maps {
 namespace {
 
 constexpr double kFarAway = std::numeric_limits<double>::infinity();
-/// Slices overlap by so much of a depth: the device decides in float32 which one a receiver asks.
+/// Overlap of slices as a fraction of a depth: the device selects a receiver's slice in float32.
 constexpr double kOverlap = 0x1p-16;
 
-/// A row of b' alone that keeps its 0 to 1: for logarithms.
+/// Returns to_unit() with b' unchanged: for logarithmic rows, whose b' already is 0 to 1.
 glm::dmat3 to_unit_across(const PlaceBounds& bounds, double margin) {
   glm::dmat3 matrix = to_unit(bounds, margin);
   matrix[1] = {0, 1, 0};
@@ -28,7 +31,7 @@ glm::dmat3 to_unit_across(const PlaceBounds& bounds, double margin) {
   return matrix;
 }
 
-/// Depths along the axis are at most k in all of the face: the near plane cuts k.
+/// Scales the face so that depths along the axis are at most k in all of the face: the near plane clips k.
 void normalise(FittedFace& face) {
   double most = 0;
   for (const double a : {0.0, 1.0}) {
@@ -71,7 +74,7 @@ class FaceFitter {
   }
 
  private:
-  /// Directions e of what is on the side, and of what a look-up taps beside it.
+  /// Directions e of the receivers on the side, and of look-ups' taps beside them.
   struct Seen {
     std::vector<glm::dvec3> points;
     double near = kFarAway, far = 0;
@@ -95,7 +98,7 @@ class FaceFitter {
       beside_ =
           glm::min(beside_, caster_margin(scene_, light_, basis_, side_ == 0 ? 1 : -1, options_.body_reach, deepest));
     }
-    // No tap finds anything beside all casters.
+    // Taps outside the bounds of all casters are always lit.
     casters_ = PlaceBounds();
     for (std::uint32_t i = 0; i < scene_.triangles.size(); ++i) {
       if (scene_.casts_shadow[i] == 0 || scene_.emits[i] == light_.index) continue;
@@ -136,8 +139,8 @@ class FaceFitter {
     for (const glm::dvec3& e : all.points) bounds.add(glm::dvec2(e) / e.z);
     const glm::dvec2 widest = glm::max(-bounds.lower, bounds.upper);
     const bool window = std::max(widest.x, widest.y) <= kWidestTangent;
-    // Faces of a hemicube are whole where taps go on on the next face, and of a frustum's body, whose polygons may pass
-    // through a face without a corner there.
+    // Faces of a hemicube are whole if taps continue on the next face, and if the body is a frustum's, whose polygons
+    // may pass through a face without a corner there.
     const bool whole = beside_ != glm::dvec2(0) || options_.spare > 1 || options_.fit.body == ViewBody::frustum;
     for (const BaseFace& base : std::span(kHemicube).first(window ? 1 : kHemicube.size())) {
       FittedFace face{.side = side_, .axis = base.axis, .along = base.along(), .from = from, .to = to};
@@ -197,11 +200,11 @@ class FaceFitter {
     normalise(face);
   }
 
-  /// A square of the quadtree over a face.
+  /// Square of the quadtree over a face.
   struct Tile {
     std::uint32_t level = 0;
     glm::dvec2 first{0};  ///< in squares of this level
-    /// Receivers in it, and the refinements that m asks of each, from the whole face on.
+    /// Receivers in the square, and the number of refinements that m requires for each, counted from the whole face.
     std::vector<std::pair<glm::dvec2, double>> asked;
 
     [[nodiscard]] double missing() const {
@@ -211,8 +214,8 @@ class FaceFitter {
     }
   };
 
-  /// Squares are cut in four where receivers miss most refinements, while there may be more maps.
-  /// `bases`: so many faces share what maps there may be.
+  /// Splits squares in four where receivers lack the most refinements, while more maps are permitted. `bases`: number
+  /// of faces that share the permitted maps.
   void add_tiles(const FittedFace& whole, std::uint32_t bases, std::vector<FittedFace>& faces) const {
     std::vector<Tile> tiles(1);
     for (std::size_t i = 0; i < samples_.size(); ++i) {

@@ -1,5 +1,5 @@
-// Taps into faces that are fitted to what a camera sees (face_fit.hpp), in place of a window or a hemicube: for look-ups
-// that define FITTED_FACES. Faces are found in their table; a receiver asks those of its own depths.
+// Taps into faces fitted to the view of a camera (face_fit.hpp), in place of a window or a hemicube: for look-ups that
+// define FITTED_FACES. Faces are in a table; a receiver uses the faces of its own depth.
 #include "maps/host/fitted_face.glsl"
 
 layout(scalar, binding = 4) readonly buffer Faces {
@@ -7,12 +7,12 @@ layout(scalar, binding = 4) readonly buffer Faces {
   FittedFace fitted_faces[];
 };
 
-// Neighbouring faces meet: what lies on their common border is in both.
+// Neighbouring faces meet: points on their common border are in both.
 const float kFaceBorder = 1.0 / 65536.0;
 
-float receiver_depth;  // scalar_main.glsl: along the view axis
+float receiver_depth;  // depth along the view axis, set by scalar_main.glsl
 
-// b across a face's rows (FittedFace::place).
+// Returns b across a face's rows (FittedFace::place).
 float face_row(FittedFace face, float b) {
   if (face.ratio == 0.0) return b;
   const float left = 1.0 - b * (1.0 - 1.0 / face.ratio);
@@ -20,7 +20,8 @@ float face_row(FittedFace face, float b) {
   return face.margin - (1.0 - 2.0 * face.margin) * log(left) / log(face.ratio);
 }
 
-// Where a direction e = (x, y, |z|) is seen: the number of its face, or all of them if it is seen nowhere.
+// Finds the position of a direction e = (x, y, |z|) and returns the index of its face, or the number of faces if no
+// face contains e.
 uint find_face(vec3 e, uint side, out vec2 place) {
   for (uint i = 0; i < table_of_faces.count; ++i) {
     const FittedFace face = fitted_faces[i];
@@ -38,7 +39,8 @@ uint find_face(vec3 e, uint side, out vec2 place) {
   return table_of_faces.count;
 }
 
-// d must not lie in the light's plane. A texel's width is what it is there.
+// Returns the tap in direction d, which must not lie in the light's plane. A texel's width is its width at this
+// position.
 Tap fetch(LightView view, uint first_map, uint size, vec3 d) {
   const uint side = d.z < 0.0 ? 1 : 0;
   const vec3 e = vec3(d.xy, abs(d.z));

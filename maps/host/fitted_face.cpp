@@ -1,3 +1,6 @@
+// Projects directions to fitted faces: homographies, logarithmic rows (Lloyd et al. 2007) and paraboloids (Brabec,
+// Annen, Seidel 2002).
+
 #include "maps/host/base_face.hpp"
 #include "maps/host/face_fit.hpp"
 
@@ -10,7 +13,7 @@
 namespace penumbra::maps {
 namespace {
 
-/// b' to rows and back, and how a row changes with b'.
+/// Convert b' to rows and back; row_change is the derivative of a row by b'.
 double row_of(const FittedFace& face, double b) {
   return face.margin - (1 - 2 * face.margin) * std::log(1 - b * (1 - 1 / face.ratio)) / std::log(face.ratio);
 }
@@ -27,7 +30,7 @@ glm::vec3 row(const glm::dmat3& matrix, int i) {
   return {matrix[0][i], matrix[1][i], matrix[2][i]};
 }
 
-/// A row over e as one over x − point in the world.
+/// Returns a row over e as one over x − point in the world.
 glm::dvec3 in_world(const glm::dvec3& of_e, int side, const LightBasis& basis) {
   return of_e.x * basis.u + of_e.y * basis.v + of_e.z * (side == 0 ? 1.0 : -1.0) * basis.n;
 }

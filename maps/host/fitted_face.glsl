@@ -1,14 +1,15 @@
 // Directions in a fitted face.
 #include "maps/host/fitted_face.shared.h"
 
-// Of a row of a face, its b (FittedFace::direction).
+// Returns the b of a row of a face (FittedFace::direction).
 float face_b(FittedFace face, float row) {
   if (face.ratio == 0.0) return row;
   const float power = (row - face.margin) / (1.0 - 2.0 * face.margin);
   return (1.0 - exp(-power * log(face.ratio))) / (1.0 - 1.0 / face.ratio);
 }
 
-// To a place of a face, one long along its axis; 0 if it leads behind the light's plane.
+// Returns the direction of a position on a face, of length one along its axis; 0 if the direction leads behind the
+// light's plane.
 vec3 face_direction(FittedFace face, vec2 place) {
   if (face.ratio == kCircle) {
     const vec2 at = (place - 0.5) / (0.5 - face.margin);

@@ -1,23 +1,23 @@
-// A workgroup of 64 invocations looks at the texels of a receiver's kernel; see look_up.glsl. The shader defines
-//   Kernel kernel_of(MapFace face)                              which texels of a face to look at
-//   bool nothing_hides(MapFace face, ivec2 first, ivec2 last)   is it known that none of these texels hides any light?
-// and what its main asks for: group_scalar_main.glsl, group_mask_main.glsl, which look by group_tiles.glsl. All of them
-// read `asked`.
+// Kernels of a receiver processed by a workgroup of 64 invocations; see look_up.glsl. The shader defines
+//   Kernel kernel_of(MapFace face)                              the texels of a face to process
+//   bool nothing_hides(MapFace face, ivec2 first, ivec2 last)   true if certainly none of these texels hides any light
+// and the functions required by its main: group_scalar_main.glsl, group_mask_main.glsl, which process kernels by
+// group_tiles.glsl. All of them read `asked`.
 #include "maps/host/kernel.glsl"
 
-// The receiver of this workgroup in (x, y, |z|): e from the light's centre, m its normal away from the light.
+// Receiver of this workgroup in (x, y, |z|): e from the light's centre, m its normal away from the light.
 struct Asked {
   LightView view;
-  uint number;  // of the side of the light's plane
+  uint number;  // index of the side of the light's plane
   SideView side;
   vec3 e, m;
 };
 Asked asked;
-int stride = 1;           // kernel_of may take texels so far apart, each for its block
-bool all_hidden = false;  // kernel_of may find that nothing of the light is seen
-int tile_shift = 0;       // kernel_of may have tiles begin so many texels before a multiple of 8
+int stride = 1;           // kernel_of may choose every stride-th texel, each for its block
+bool all_hidden = false;  // set by kernel_of if nothing of the light is seen
+int tile_shift = 0;       // kernel_of may begin tiles this many texels before a multiple of 8
 
-// False if no light reaches the receiver's side of the light's plane.
+// Sets `asked`; returns false if no light reaches the receiver's side of the light's plane.
 bool ask(Receiver receiver) {
   asked.view = views[0];
   const vec3 d = to_basis(lookup.basis, receiver.p - asked.view.point);
@@ -29,7 +29,8 @@ bool ask(Receiver receiver) {
   return on_emitting_side(d);
 }
 
-// A texel of layer `layer`, as this receiver asks it: along the face's axis the tap reaches to the receiver's height.
+// Returns a texel of layer `layer`, prepared for this receiver: along the face's axis the tap extends to the receiver's
+// height.
 Tap ask_texel(MapFace face, uint layer, uvec2 cell) {
   face.map += layer * lookup.faces;
   Tap tap = tap_of(asked.view, lookup.size, face, cell);
@@ -37,9 +38,9 @@ Tap ask_texel(MapFace face, uint layer, uvec2 cell) {
   return tap;
 }
 
-// Drivers for processors end all loops of an invocation after 65,535 turns together. Then the loop below, too, ends at
-// once: the host asks this workgroup again, by fewer rows of the map at a time. (`layers` is at least 1, which the compiler
-// does not know.)
+// Detects loops ended by the driver. Drivers for processors end all loops of an invocation after 65,535 iterations in
+// total. Then the loop below also ends immediately: the host runs this workgroup again, with fewer rows of the map at a
+// time. (`layers` is at least 1, which is unknown to the compiler.)
 void check_that_loops_ended() {
   uint turns = 0;
   while (turns < lookup.layers + 1) ++turns;
@@ -49,7 +50,8 @@ void check_that_loops_ended() {
   results[end] = 1;
 }
 
-// Whether this workgroup is asked: at first all are, then those whose loops were cut off.
+// Return whether this is the first pass, and whether this workgroup must run: in the first pass all do, then those
+// whose loops were ended.
 bool is_first_pass() { return results[results.length() - kCutLoopWords + 1] == 0; }
 bool is_asked() {
   const uint asked_from = results[results.length() - kCutLoopWords + 1];

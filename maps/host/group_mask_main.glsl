@@ -1,14 +1,15 @@
-// A mask of each receiver, a bit a light sample, from maps of the light's centre, whose texels a workgroup looks at; see
-// group_kernel.glsl. The shader defines, too,
-//   void hide(MapFace face, uvec2 cell)                       calls hide_sample(j) for what a texel hides
-//   bool is_mine(uint j)                                      whether the kernel at hand may hide that sample
-//   Kernel next_kernel(MapFace face, uint turn)               a kernel to look at after the first, on turns 1, 2 …; empty: none
+// Computes a mask of each receiver, one bit for each light sample, from maps of the light's centre, whose texels are
+// processed by a workgroup; see group_kernel.glsl. The shader also defines
+//   void hide(MapFace face, uvec2 cell)                       calls hide_sample(j) for each sample hidden by a texel
+//   bool is_mine(uint j)                                      whether the current kernel may hide this sample
+//   Kernel next_kernel(MapFace face, uint turn)               a kernel after the first, on turns 1, 2 …; empty: none
 //   uint light_sample_count(), vec2 light_sample(uint j)      the samples, in the light's basis
-//   void clear_squares(), void mark_sample(uint j)            which of them are looked for: all invocations call these
-//   uint occluders_of_a_texel()                               how many hide() asks
-//   void add_work(uint occluders)                             called once a receiver: how many were asked in all
-// With LOOK_AT_KERNEL it defines, in place of hide, clear_squares and mark_sample and after it includes this,
-//   void look_at_kernel(MapFace face, Kernel kernel)          hides what a kernel hides, by all invocations together
+//   void clear_squares(), void mark_sample(uint j)            mark samples to be tested: called by all invocations
+//   uint occluders_of_a_texel()                               number of occluders tested by hide()
+//   void add_work(uint occluders)                             called once for each receiver with the number tested
+// With LOOK_AT_KERNEL the shader defines, in place of hide, clear_squares and mark_sample and after including this
+// file,
+//   void look_at_kernel(MapFace face, Kernel kernel)          hides the samples hidden by a kernel, in all invocations
 const uint kMaskWords = 128;  // 4096 light samples
 shared uint hidden_bits[kMaskWords];
 shared uint hidden_count;
@@ -20,7 +21,7 @@ void hide_sample(uint j) {
   if ((hidden_bits[j / 32] & bit) == 0 && (atomicOr(hidden_bits[j / 32], bit) & bit) == 0) atomicAdd(hidden_count, 1);
 }
 
-uint looked_at = 0;  // texels, by this invocation
+uint looked_at = 0;  // number of texels processed by this invocation
 
 bool all_samples_hidden() { return hidden_count >= light_sample_count(); }
 
@@ -35,7 +36,7 @@ void before_tiles() {
   }
 }
 
-// Counted whether or not the last sample is hidden meanwhile, which invocations find at times of their own.
+// Counted even if the last sample has meanwhile been hidden, which invocations detect at different times.
 void look_at(MapFace face, uvec2 cell) {
   ++looked_at;
   if (!all_samples_hidden()) hide(face, cell);

@@ -1,8 +1,10 @@
-// V of each receiver, whose texels a workgroup looks at; see group_kernel.glsl. The shader defines, too,
-//   uint hidden_by(MapFace face, uvec2 cell)    how much of the light a texel hides, in parts of kWholeLight
-//   float share_above()                         the share of the light above the receiver's horizon
-//   Kernel next_kernel(MapFace face, uint turn) a kernel to look at after the first, on turns 1, 2 ...; empty: none
-// Parts are added as integers: their order, and how many rows of the map are looked at at a time, change nothing.
+// Computes V of each receiver, whose texels are processed by a workgroup; see group_kernel.glsl. The shader also
+// defines
+//   uint hidden_by(MapFace face, uvec2 cell)    part of the light hidden by a texel, in units of 1 / kWholeLight
+//   float share_above()                         fraction of the light above the receiver's horizon
+//   Kernel next_kernel(MapFace face, uint turn) a kernel after the first, on turns 1, 2 ...; empty: none
+// Parts are added as integers: the result does not depend on their order, nor on the number of rows of the map
+// processed at a time.
 shared uint sum_low, sum_high;  // sum_low + 2^15 sum_high
 uint sum = 0;                   // of this invocation
 
@@ -38,7 +40,8 @@ void main() {
   check_that_loops_ended();
   if (gl_LocalInvocationIndex != 0) return;
 
-  // Until the last rows of the map are looked at the result is what is left of the light, in parts.
+  // Until the last rows of the map are processed, the result is the remaining part of the light, in units of 1 /
+  // kWholeLight.
   const uint result = lookup.first_result + i;
   const uint whole = kWholeLight >> 15;
   const uint high = min(sum_high + (sum_low >> 15), whole);

@@ -1,19 +1,20 @@
-// How a workgroup goes through a kernel (group_kernel.glsl): by tiles, for most of what a kernel holds is lit, or seen beside
-// the light, and a tile of it is left out as a whole. Before it is included the main defines
-//   void before_tiles()                       by all invocations, between barriers, before tiles are asked
+// Traversal of a kernel by a workgroup (group_kernel.glsl) in tiles: most of a kernel is lit, or seen beside the light,
+// and such tiles are skipped as a whole. Before including this file, the main defines
+//   void before_tiles()                       run by all invocations, between barriers, before tiles are tested
 //   void look_at(MapFace face, uvec2 cell)
 
 shared uint waiting_tiles[64];
 shared uint waiting_count;
 
-// Tiles of 8 x 8 texels, or blocks of them, 64 at a time: each invocation asks of some whether anything in them can hide
-// light, and all look at those together in which something can. Rows beyond this part of the map are another dispatch's.
+// Processes tiles of 8 x 8 texels, or of blocks, 64 tiles at a time: each invocation tests whether anything in one of
+// the tiles can hide light, and all together process the tiles where something can. Rows beyond this part of the map
+// belong to another dispatch.
 void look_at_kernel(MapFace face, Kernel kernel) {
   const ivec2 first = ivec2(kernel.first.x, max(kernel.first.y, int(lookup.first_row)));
   const ivec2 last = ivec2(kernel.last.x, min(kernel.last.y, int(lookup.last_row)));
   if (any(lessThan(last, first))) return;
   const int wide = 8 * stride;
-  // Blocks begin where the kernel does; texels, where nodes of a pyramid do.
+  // Blocks begin where the kernel begins; tiles of texels, at nodes of a pyramid.
   const ivec2 begin = stride > 1 ? kernel.first : ((kernel.first + tile_shift) & ~7) - tile_shift;
   const int row = (first.y - begin.y) / wide;
   const uvec2 count = uvec2((last.x - begin.x) / wide + 1, (last.y - begin.y) / wide + 1 - row);

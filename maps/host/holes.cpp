@@ -1,3 +1,6 @@
+// Prepares surfaces with holes (alphaMode MASK) for rasterisers: for each texel of a picture, the least vertex alpha at
+// which the surface is solid.
+
 #include "maps/host/holes.hpp"
 
 #include <algorithm>
@@ -25,7 +28,7 @@ std::uint32_t word_of(PictureUse::Wrap wrap) {
   return gpu::kRepeatTexels;
 }
 
-/// The least vertex alpha in [0, 1] with which `alpha` times it is at least the cutoff; 2 if there is none.
+/// Returns the least vertex alpha in [0, 1] whose product with `alpha` is at least the cutoff; 2 if there is none.
 float least_vertex_alpha(double alpha, double cutoff) {
   if (cutoff <= 0) return 0;
   if (alpha < cutoff) return 2;
@@ -61,7 +64,7 @@ HoleSurfaces::HoleSurfaces(const visibility::SceneFloats& scene)
     objects.push_back(object);
   }
   words_.assign(std::max<std::size_t>(objects.size() * gpu::kSurfaceWords, 1), 0);
-  std::vector<std::uint32_t> begins(alphas.pictures.size(), 0);  // 0: not there yet
+  std::vector<std::uint32_t> begins(alphas.pictures.size(), 0);  // first word of each picture; 0: not yet added
   for (const std::uint32_t object : objects) {
     const visibility::SurfaceAlphas::Surface& surface = alphas.surfaces[object];
     const std::size_t first = std::size_t{number_[object]} * gpu::kSurfaceWords;
@@ -83,7 +86,7 @@ HoleSurfaces::HoleSurfaces(const visibility::SceneFloats& scene)
     for (std::uint32_t texel = 0; texel < 256; ++texel) {
       const double alpha = surface.picture ? surface.alpha.factor * (texel / 255.0) : surface.alpha.factor;
       const double cutoff = surface.alpha.cutoff;
-      // Without vertex alphas nothing is left to a device's division.
+      // Without vertex alphas the decision is made here, without a division on the device.
       const float least = !alphas.vertices.empty() ? least_vertex_alpha(alpha, cutoff) : alpha >= cutoff ? 0 : 2;
       words_[first + 5 + texel] = std::bit_cast<std::uint32_t>(least);
     }

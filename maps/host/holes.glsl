@@ -1,10 +1,9 @@
-// Whether there is something of a surface with holes (alphaMode MASK) at a texel's centre: the nearest texel of the
-// picture's level 0, as the truth of a pair has it. Rasterisers interpolate what is linear over a triangle in scene
-// space; corners carry it times a weight, and the weight, since a scene in projective coordinates has other weights
-// than the face's w.
+// Test whether a surface with holes (alphaMode MASK) is solid at a texel's centre: the nearest texel of the picture's
+// level 0, as in the pair's definition. Rasterisers interpolate linearly over a triangle in scene space; corners carry
+// values times a weight, and the weight, since a scene in projective coordinates has other weights than the face's w.
 #include "maps/host/holes.shared.h"
 
-STORAGE(1) readonly buffer Places { uint places[]; };  // the vertex shader's
+STORAGE(1) readonly buffer Places { uint places[]; };  // written by the vertex shader
 STORAGE(2) readonly buffer Surfaces { uint surface_words[]; };
 layout(location = 1) in vec4 place;
 layout(location = 2) flat in uint surface;

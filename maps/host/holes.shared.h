@@ -1,5 +1,5 @@
-// One layout, two languages: what rasterisers need to know of surfaces with holes (alphaMode MASK). holes.hpp has the
-// picture.
+// Shared by C++ and GLSL: layout of the data of surfaces with holes (alphaMode MASK) for rasterisers. holes.hpp
+// describes the pictures.
 #ifndef PENUMBRA_MAPS_HOLES
 #define PENUMBRA_MAPS_HOLES
 #ifdef __cplusplus
@@ -11,11 +11,11 @@ inline constexpr uint kPlaceWords = 5, kSurfaceWords = 261;
 inline constexpr uint kRepeatTexels = 0, kMirrorTexels = 1, kClampTexels = 2;
 }  // namespace penumbra::maps::gpu
 #else
-// Words of a corner: s, t and the vertex alpha times a weight, the weight itself (floats), and the number of its
+// Words of a corner: s, t and the vertex alpha times a weight, the weight itself (floats), and the index of the
 // surface.
 const uint kPlaceWords = 5;
-// Words of a surface: where the picture's texels begin, in words; its width (0: there is no picture) and height; how s
-// and t wrap; then for each texel the least vertex alpha with which something is there (floats; more than 1: never).
+// Words of a surface: first word of the picture's texels; the picture's width (0: no picture) and height; wrap modes of
+// s and t; then for each texel the least vertex alpha at which the surface is solid (floats; more than 1: never).
 const uint kSurfaceWords = 261;
 const uint kRepeatTexels = 0, kMirrorTexels = 1, kClampTexels = 2;
 #endif

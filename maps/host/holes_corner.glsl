@@ -1,4 +1,4 @@
-// What vertex shaders hand to holes.glsl.
+// Interface of vertex shaders to holes.glsl.
 #include "maps/host/holes.shared.h"
 
 STORAGE(1) readonly buffer Places { uint places[]; };

@@ -1,26 +1,26 @@
-// The texels of a map from the light's centre that can hide some of the light from a receiver: what stands between them
-// lies in the pyramid of the light over the receiver, and where that passes heights of at least `near` over the light's
-// plane the map sees it in a part of each face. On a window, with tangents (a, b) = (x/z, y/z), that is Guennebaud 2006's
+// Texels of a map from the light's centre that can hide some of the light from a receiver: occluders lie in the pyramid
+// of the light over the receiver, and the map sees the part of this pyramid at heights of at least `near` over the
+// light's plane in a part of each face. On a window, with tangents (a, b) = (x/z, y/z), this part is Guennebaud 2006's
 // kernel |alpha - a| <= half the light (1/near - 1/z).
 
-// Texels first.x ... last.x and first.y ... last.y of a face; none where last < first.
+// Texels first.x ... last.x and first.y ... last.y of a face; empty where last < first.
 struct Kernel {
   ivec2 first, last;
-  bool whole;  // no part of it is beside the face
+  bool whole;  // no part of the kernel is beside the face
 };
 
 const Kernel kNoKernel = Kernel(ivec2(0), ivec2(-1), false);
 
 bool is_empty(Kernel kernel) { return any(lessThan(kernel.last, kernel.first)); }
 
-// e: the receiver in (x, y, |z|); lower, upper: the light's bounding rectangle in its plane, around 0; nothing that hides
-// it is nearer to the light's plane than near > 0. `padding`: texels more on every side, for what lies between texels'
-// centres.
+// Returns the kernel of a receiver. e: the receiver in (x, y, |z|); lower, upper: the light's bounding rectangle in its
+// plane, around 0; no occluder is nearer to the light's plane than near > 0. `padding`: margin of texels on every side,
+// for surfaces between texels' centres.
 Kernel kernel_on(MapFace face, uint size, vec3 e, vec2 lower, vec2 upper, float near, int padding) {
   if (!(near < e.z)) return kNoKernel;
-  // The pyramid between p and height near: convex, so that its corners bound it; those that are less than `near` along
-  // the face's axis are cut off there, for the face's directions lead to no height of more than the distance along it.
-  const float share = near / e.z;  // of the way to p from the light
+  // The pyramid between p and height near: convex, so its corners bound it; the part less than `near` along the face's
+  // axis is clipped, because a direction of the face leads to no height above the distance along the axis.
+  const float share = near / e.z;  // fraction of the distance from the light to p
   vec3 corners[5];
   for (int i = 0; i < 4; ++i) {
     const vec2 at = vec2((i & 1) == 0 ? lower.x : upper.x, (i & 2) == 0 ? lower.y : upper.y);
@@ -33,7 +33,7 @@ Kernel kernel_on(MapFace face, uint size, vec3 e, vec2 lower, vec2 upper, float 
       from = min(from, corners[i].xy / corners[i].z);
       to = max(to, corners[i].xy / corners[i].z);
     }
-    if (face.axis == 2) continue;  // a height is the distance along the axis: none is cut off
+    if (face.axis == 2) continue;  // the height is the distance along the axis: nothing is clipped
     for (int j = 0; j < i; ++j) {
       if ((corners[i].z < near) == (corners[j].z < near)) continue;
       const vec2 cut = mix(corners[i].xy, corners[j].xy, (near - corners[i].z) / (corners[j].z - corners[i].z)) / near;
@@ -53,6 +53,6 @@ Kernel kernel_on(MapFace face, uint size, vec3 e, vec2 lower, vec2 upper, float 
   return is_empty(kernel) ? kNoKernel : kernel;
 }
 
-// Where the line from the receiver e through q meets the light's plane, as (x, y, w) with the point at (x, y) / w: w is
-// how much higher than q the receiver stands over that plane.
+// Returns the intersection of the line from the receiver e through q with the light's plane, as (x, y, w) with the
+// point at (x, y) / w: w is the height of the receiver above q over the light's plane.
 vec3 onto_light(vec3 e, vec3 q) { return vec3(q.xy * e.z - e.xy * q.z, e.z - q.z); }

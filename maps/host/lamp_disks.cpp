@@ -1,3 +1,5 @@
+// Replaces a sphere by disks that face pyramids of directions. Not from a paper.
+
 #include "maps/host/lamp_disks.hpp"
 
 #include "visibility/axes_around.hpp"
@@ -16,7 +18,7 @@ namespace {
 
 constexpr double kHalfFace = std::numbers::pi / 4;
 
-/// Axes across and along a cube's face.
+/// Axes across and along a face of a cube.
 struct CubeFace {
   glm::dvec3 a, b, w;
 };
@@ -29,7 +31,7 @@ CubeFace cube_face(std::uint32_t number) {
   return face;
 }
 
-/// The tangent at which cut number `cut` of a face begins; exactly ∓1 at its borders.
+/// Returns the tangent at which cut `cut` of a face begins; exactly ∓1 at its borders.
 double tangent_of(std::uint32_t cut) {
   if (cut == 0) return -1;
   if (cut == LampDisks::kCuts) return 1;

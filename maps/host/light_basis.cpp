@@ -1,3 +1,5 @@
+// Computes the basis, bounds and outline of a light for its maps.
+
 #include "maps/host/light_basis.hpp"
 
 #include <glm/common.hpp>

@@ -11,22 +11,24 @@
 
 namespace penumbra::maps {
 
-/// Axes of a light's maps: orthonormal; of a planar light n is toward its emitting side, u along its first stored axis.
+/// Axes of a light's maps: orthonormal; of a planar light n points toward its emitting side, u along its first stored
+/// axis.
 struct LightBasis {
   glm::dvec3 center{0};  ///< the light's centroid (a polygon's is not Light::center)
   glm::dvec3 u{0}, v{0}, n{0};
 
-  /// Coordinates of x in this basis.
+  /// Returns the coordinates of x in this basis.
   [[nodiscard]] glm::dvec3 local(const glm::dvec3& x) const;
   [[nodiscard]] gpu::LightBasis rounded() const { return {glm::vec3(u), glm::vec3(v), glm::vec3(n)}; }
 };
 
-/// The light must be planar (no sphere).
+/// Returns the basis of a planar light (no sphere).
 LightBasis light_basis(const visibility::Light& light);
-/// A sphere's, too: along the world's axes, n toward the middle of the scene along the one on which that is farthest.
+/// Returns the basis of any light; a sphere's is along the world's axes, with n toward the middle of the scene along
+/// the axis on which the middle is farthest.
 LightBasis light_basis(const visibility::Light& light, const visibility::SceneFloats& scene);
 
-/// The light's bounding rectangle along u and v; of a sphere that of its disk.
+/// Bounding rectangle of the light along u and v; of a sphere, of its disk.
 struct LightBounds {
   glm::dvec2 lower{0}, upper{0};
 };
@@ -38,8 +40,8 @@ struct LightAxes {
 };
 LightAxes light_axes(const visibility::Light& light, const LightBasis& basis);
 
-/// The corners of a rectangle or polygon in the basis; of an ellipse those of a polygon of its area, the image of a
-/// regular one. (What of it lies outside the ellipse: areas/light_region.hpp; 256 sides are 2e-5 of the area off.)
+/// Returns the corners of a rectangle or polygon in the basis; of an ellipse, those of a polygon of the same area, the
+/// image of a regular polygon. (Error outside the ellipse: areas/light_region.hpp; 256 sides are 2e-5 of the area off.)
 std::vector<glm::dvec2> light_outline(const visibility::Light& light, const LightBasis& basis);
 
 }  // namespace penumbra::maps

@@ -4,11 +4,11 @@
 #include "maps/host/map_view.shared.h"
 #include "render/both.glsl"
 
-// Does the ray through a texel's centre meet the triangle, and how far along the face's axis? Of faces of logarithms, and of
-// a paraboloid's circle, whose rows are the face's axes.
+// Intersects the ray through a texel's centre with the triangle and returns the distance along the face's axis. For
+// faces with logarithmic rows, and for a paraboloid's circle, whose rows are the face's axes.
 
 STORAGE(1) readonly buffer Maps { float maps[]; };
-PUSH_CONSTANTS Log { LogarithmicPush push; };  // not Push: blocks of one name are one in both stages
+PUSH_CONSTANTS Log { LogarithmicPush push; };  // not Push: blocks with one name are one block in both stages
 layout(location = 0) flat in uint first_corner;
 
 vec3 way_of(vec2 place) {

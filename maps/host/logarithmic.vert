@@ -4,15 +4,16 @@
 #include "maps/host/map_view.shared.h"
 #include "render/both.glsl"
 
-// Edges are curves in a face of logarithms, which no rasteriser draws: each triangle is drawn as a rectangle that bounds it
-// (six vertices), and logarithmic.frag decides (Lloyd et al. 2007). Rows grow with b, and b is largest at a corner. In a
-// paraboloid's circle edges are arcs; there the cap that holds a triangle's corners holds all of it, and caps are disks.
+// Draws each triangle as a bounding rectangle (six vertices), for faces with logarithmic rows, where edges are curves
+// that no rasteriser draws; logarithmic.frag decides (Lloyd et al. 2007). Rows grow with b, and b is largest at a
+// corner. In a paraboloid's circle edges are arcs; there the cap that contains a triangle's corners contains the
+// triangle, and caps are disks.
 
 PUSH_CONSTANTS Push { LogarithmicPush push; };
 layout(location = 0) flat out uint first_corner;
 
-// The disk of a cap of half angle `around` about the direction c: from the paraboloid's axis an angle is seen at the tangent of
-// its half.
+// Bounds the disk of a cap of half angle `around` about the direction c: an angle from the paraboloid's axis is
+// projected to the tangent of half the angle.
 void bound_circle(out vec2 lower, out vec2 upper) {
   lower = vec2(0.0);
   upper = vec2(1.0);
@@ -43,7 +44,7 @@ void bound_logarithms(out vec2 lower, out vec2 upper) {
   for (uint i = 0; i < 3; ++i) {
     const vec3 d = corner_at(first_corner + i) - push.point;
     const float k = dot(push.row_k, d), b = dot(push.row_b, d) / k, left = 1.0 - b * (1.0 - 1.0 / push.ratio);
-    if (!(k > 0.0 && left > 0.0)) {  // it may be seen anywhere
+    if (!(k > 0.0 && left > 0.0)) {  // the triangle may be seen anywhere
       lower = vec2(0.0);
       upper = vec2(1.0);
       break;
@@ -62,7 +63,7 @@ void main() {
   } else {
     bound_logarithms(lower, upper);
   }
-  // A texel wider on every side: rounding.
+  // One texel wider on every side, for rounding.
   lower -= 1.0 / float(push.size);
   upper += 1.0 / float(push.size);
   const uint corner = VERTEX % 6;

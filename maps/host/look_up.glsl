@@ -1,12 +1,12 @@
-// What every look-up shader begins with: its bindings, and taps into the maps. A shader of its own push constants
-// defines OWN_PUSH, the struct's name, before it includes this. Products are its own bindings, from FIRST_PRODUCT on. It then
-// defines one function and includes the main that calls it:
+// Common head of all look-up shaders: bindings, and taps into the maps. A shader with its own push constants defines
+// OWN_PUSH, the struct's name, before including this file. Products are the shader's own bindings, from FIRST_PRODUCT
+// on. The shader then defines one function and includes the main that calls this function:
 //   scalar_main.glsl   float visibility_of(LightView view, vec3 d, vec3 m)
 //   mask_main.glsl     bool sees(LightView view, uint first_map, vec3 d, vec3 m)
-// d: the receiver from the light point, m: its normal away from the light, both in the light's basis. The receiver is on
-// an emitting side. Where many texels answer for one receiver a workgroup looks at them, which defines GROUP_A_RECEIVER
-// before it includes this: group_scalar_main.glsl and group_mask_main.glsl say what they need. Where it answers a packet of
-// pixels it defines GROUP_A_PACKET, and brings its own main.
+// d: the receiver from the light point, m: its normal away from the light, both in the light's basis. The receiver is
+// on an emitting side. If many texels are processed for one receiver by a workgroup, the shader defines
+// GROUP_A_RECEIVER before including this file: group_scalar_main.glsl and group_mask_main.glsl list their requirements.
+// If a workgroup processes a packet of pixels, the shader defines GROUP_A_PACKET, and has its own main.
 #include "maps/host/map_view.shared.h"
 
 #ifdef GROUP_A_PACKET
