@@ -1,3 +1,5 @@
+// Table of the family's methods, with their support of lights and surfaces with holes.
+
 #include "maps/methods.hpp"
 
 #include "maps/backprojection/contours/methods.hpp"
@@ -16,15 +18,15 @@ namespace penumbra::maps {
 
 namespace {
 
-/// What a method is given with these options. A camera's view (fit=) is not taken into the space of a sun or of a
-/// lamp's disks, and what looks for a map's place there would find another.
+/// Returns the kinds of light that a method is extended to with these options. A camera's view (fit=) is not mapped to
+/// the space of a sun or of a lamp's disks, where the position of a map would be wrong.
 Given given_with(Given given, const visibility::MethodOptions& options) {
   const auto fit = options.find("fit");
   if (fit != options.end() && fit->second != "receivers") given.suns = given.spheres = false;
   return given;
 }
 
-/// A method of this family, for every light that `kGiven` names.
+/// Returns the row of a method of this family, extended to every light in `kGiven`.
 template <auto kDescribe, auto kMake, Given kGiven = Given{}>
 engines::MethodRow row() {
   engines::MethodRow row = engines::on_device<kDescribe, kMake>();
@@ -42,9 +44,9 @@ engines::MethodRow row() {
   return row;
 }
 
-/// Their penumbrae are drawn along the borders of triangles, which are not those of what a surface's holes leave.
+/// For methods with penumbrae drawn along the borders of triangles, which are not the borders of holes.
 constexpr Given kWithoutHoles{.suns = true, .spheres = true, .holes = false};
-/// Its flood on the screen would end where another disk of a lamp begins.
+/// For methods with a flood on the screen, which would end at the border of the next disk of a lamp.
 constexpr Given kWithoutSpheres{.suns = true, .spheres = false, .holes = true};
 
 }  // namespace

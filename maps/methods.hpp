@@ -6,7 +6,7 @@
 
 namespace penumbra::maps {
 
-/// The family's table of methods; the best come first.
+/// Returns the family's table of methods, best methods first.
 std::span<const engines::MethodRow> methods();
 
 }  // namespace penumbra::maps

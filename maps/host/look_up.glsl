@@ -21,7 +21,7 @@ layout(scalar, binding = 1) readonly buffer Views { LightView views[]; };
 layout(scalar, binding = 2) readonly buffer Maps { float maps[]; };
 layout(scalar, binding = 3) buffer Results { uint results[]; };  // masks, or the bits of V
 #ifdef FITTED_FACES
-#define FIRST_PRODUCT 5  // fitted.glsl has the binding before it
+#define FIRST_PRODUCT 5  // fitted.glsl has the previous binding
 #else
 #define FIRST_PRODUCT 4
 #endif
@@ -34,11 +34,11 @@ layout(scalar, push_constant) uniform Push {
 
 #include "maps/host/taps.glsl"
 
-uint receiver_plane, receiver_object;  // scalar_main.glsl: the receiver's, as Receiver has them
+uint receiver_plane, receiver_object;  // of the receiver, set by scalar_main.glsl as in Receiver
 
 uint this_group() { return gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x; }
 
-// The receiver of this invocation, or of this workgroup, counted from the part's first.
+// Returns the index of the receiver of this invocation, or of this workgroup, counted from the part's first.
 uint this_receiver() {
 #ifdef GROUP_A_RECEIVER
   return this_group();
@@ -49,7 +49,7 @@ uint this_receiver() {
 
 bool on_emitting_side(vec3 d) { return d.z > 0.0 || (lookup.two_sided != 0 && d.z < 0.0) || lookup.two_sided == 2; }
 
-// Williams 1978: is the light point seen? Not from below the receiver's own horizon.
+// Returns whether the light point is seen (Williams 1978); false if it is below the receiver's own horizon.
 bool light_point_is_seen(LightView view, uint first_map, vec3 d, vec3 m) {
   return dot(m, d) > 0.0 && !hard_shadow(view, first_map, lookup.size, d, m, lookup.bias);
 }

@@ -1,11 +1,11 @@
-// Where the maps of a light point look. A light emits into a half space, but one perspective image cannot hold 180°.
-// Receivers are finite, and whatever stands between a receiver and the light point is seen in the receiver's direction:
+// Fits the maps of a light point. A light emits into a half space, but one perspective image cannot hold 180°.
+// Receivers are finite, and every occluder between a receiver and the light point is seen in the receiver's direction:
 // a window that holds every receiver's direction misses no shadow. Its bounds, min and max of x/z and of y/z over the
 // receivers' corners, are reached on the convex hulls of the corners seen along y and along x; those hulls are the same
 // for all points of the light, so that thousands of points can be fitted one by one. If a receiver reaches up to the
-// light's plane, or the window becomes wider than kWidestTangent allows, a hemicube takes its place (Cohen and
-// Greenberg 1985): one face along the normal, [−1, 1]², and four sideways, [−1, 1] × [0, 1], upper halves of a cube's
-// faces.
+// light's plane, or the window becomes wider than kWidestTangent allows, the window is replaced by a hemicube (Cohen
+// and Greenberg 1985): one face along the normal, [−1, 1]², and four sideways, [−1, 1] × [0, 1], upper halves of a
+// cube's faces.
 
 #include "maps/host/map_fit.hpp"
 
@@ -31,7 +31,7 @@ double cross(const glm::dvec2& o, const glm::dvec2& a, const glm::dvec2& b) {
 }
 
 /// Andrew's monotone chain. Its decisions may be rounded: a corner that is off the hull by rounding moves a window's
-/// bound by as little, and the window is a texel wider than its contents.
+/// bound by the same amount, and the window is a texel wider than its contents.
 std::vector<glm::dvec2> convex_hull(std::vector<glm::dvec2> points) {
   const auto less = [](const glm::dvec2& a, const glm::dvec2& b) { return std::pair(a.x, a.y) < std::pair(b.x, b.y); };
   std::sort(points.begin(), points.end(), less);
@@ -43,7 +43,7 @@ std::vector<glm::dvec2> convex_hull(std::vector<glm::dvec2> points) {
       while (hull.size() >= start + 2 && cross(hull[hull.size() - 2], hull.back(), *first) <= 0) hull.pop_back();
       hull.push_back(*first);
     }
-    hull.pop_back();  // the other chain begins with it
+    hull.pop_back();  // first point of the other chain
   };
   chain(points.begin(), points.end());
   chain(points.rbegin(), points.rend());
@@ -62,7 +62,7 @@ void widen_to_snap(Window& window, std::uint32_t size) {
   }
 }
 
-/// The receivers, or the casters, on one side of the light's plane, as far as fitting needs them.
+/// Receivers, or casters, on one side of the light's plane, reduced to the data needed for fitting.
 struct SideTriangles {
   bool any = false;
   bool reach_plane = false;                // some triangle crosses or touches the light's plane
@@ -74,7 +74,7 @@ bool receives(const visibility::SceneFloats& scene, const visibility::Light& lig
          scene.plane[triangle] != visibility::SceneFloats::kNoPlane;
 }
 
-/// What of a triangle lies in a beam, whose apex is the basis's centre.
+/// Returns the part of a triangle in a beam, whose apex is the basis's centre.
 std::vector<glm::dvec3> part_in(const visibility::Light::Beam& beam, const LightBasis& basis,
                                 const std::array<glm::dvec3, 3>& corners) {
   const auto turned = [&](const glm::dvec3& x) {
@@ -96,7 +96,7 @@ std::vector<glm::dvec3> part_in(const visibility::Light::Beam& beam, const Light
   return part;
 }
 
-/// The receivers in a beam on the side that it leads to.
+/// Returns the receivers in a beam on the side of the beam's direction.
 SideTriangles receivers_in(const visibility::SceneFloats& scene, const visibility::Light& light,
                            const LightBasis& basis, const std::vector<glm::dvec3>& local) {
   SideTriangles side;
@@ -141,7 +141,7 @@ SideTriangles triangles_on_side(const visibility::SceneFloats& scene, const std:
   return side;
 }
 
-/// The same of what a camera sees: nothing of it reaches the light's plane.
+/// Returns the same data of the receivers seen by a camera: none of them reaches the light's plane.
 SideTriangles body_on_side(std::span<const BodyPoint> body, const LightBasis& basis, double sign) {
   SideTriangles side;
   for (const BodyPoint& point : body) {
@@ -156,12 +156,12 @@ SideTriangles body_on_side(std::span<const BodyPoint> body, const LightBasis& ba
   return side;
 }
 
-/// Bounds of (coordinate − origin) / z; infinite if the light point is not below the whole hull.
+/// Returns the bounds of (coordinate − origin) / z; infinite if the light point is not below the whole hull.
 std::pair<double, double> tangents(const std::vector<glm::dvec2>& hull, double origin, double origin_z) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   double lower = kInfinity, upper = -kInfinity;
   for (const glm::dvec2& corner : hull) {
-    const double z = corner.y - origin_z;  // light points are stored in float32: up to rounding off their plane
+    const double z = corner.y - origin_z;  // light points are stored in float32: on their plane up to rounding
     if (!(z > 0)) return {-kInfinity, kInfinity};
     lower = std::min(lower, (corner.x - origin) / z);
     upper = std::max(upper, (corner.x - origin) / z);
@@ -169,15 +169,16 @@ std::pair<double, double> tangents(const std::vector<glm::dvec2>& hull, double o
   return {lower, upper};
 }
 
-/// What a window has to hold.
+/// Required contents of a window.
 struct Contents {
   const SideTriangles& receivers;
-  const SideTriangles& casters;  ///< where they are not more than `beside` beside the receivers
+  const SideTriangles& casters;  ///< casters to include, up to `beside` beside the receivers
   glm::dvec2 beside;
-  bool or_hemicube;  ///< rather than a window that is too wide because of its casters
+  bool or_hemicube;  ///< a hemicube replaces a window that is too wide because of its casters
 };
 
-/// How far beside any receiver's direction a caster can shade it from a light that reaches so far.
+/// Returns the largest distance beside a receiver's direction at which a caster can shade the receiver, for a light
+/// with extent `reach`.
 glm::dvec2 beside_of(const glm::dvec2& reach, const SideTriangles& receivers, const SideTriangles& casters) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   if (reach == glm::dvec2(0) || !casters.any || receivers.reach_plane) return glm::dvec2(0);
@@ -188,7 +189,8 @@ glm::dvec2 beside_of(const glm::dvec2& reach, const SideTriangles& receivers, co
   return reach * std::max(0.0, 1 / nearest - 1 / deepest);
 }
 
-/// The window of one light point with a texel to spare on every side, or nothing if it would be too wide.
+/// Returns the window of one light point with a margin of one texel on every side; nullopt if the window would be too
+/// wide.
 std::optional<Window> fit_window(const Contents& contents, const glm::dvec3& origin, double sign, std::uint32_t size) {
   const auto& [receivers, casters, beside, or_hemicube] = contents;
   if (receivers.reach_plane) return std::nullopt;
@@ -207,7 +209,7 @@ std::optional<Window> fit_window(const Contents& contents, const glm::dvec3& ori
       upper = std::max(upper, std::min(last, upper + beside[axis]));
       if (or_hemicube && !(std::max(-lower, upper) <= kWidestTangent)) return std::nullopt;
     }
-    // A receiver seen edge-on leaves no width of its own: then float32's resolution of a tangent decides.
+    // A receiver seen edge-on has zero width: then float32's resolution of a tangent is used.
     const double texel = std::max((upper - lower) / (size - 2), kWidestTangent * 0x1p-20);
     window.lower[axis] = lower - texel;
     window.upper[axis] = upper + texel;
@@ -215,7 +217,7 @@ std::optional<Window> fit_window(const Contents& contents, const glm::dvec3& ori
   return window;
 }
 
-/// No corner of the scene is farther from x.
+/// Returns an upper bound of the distance of the scene's corners from x.
 double farthest(const visibility::SceneFloats& scene, const glm::dvec3& x) {
   const glm::dvec3 reach = glm::max(glm::abs(glm::dvec3(scene.lower) - x), glm::abs(glm::dvec3(scene.upper) - x));
   return glm::length(reach);
@@ -237,7 +239,7 @@ FittedViews fit_views(const visibility::SceneFloats& scene, const visibility::Li
   fitted.views.resize(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
     fitted.views[i].point = points[i];
-    // Strictly beyond everything: a depth of 1 means that there is nothing.
+    // Strictly beyond all surfaces: a depth of 1 means an empty texel.
     fitted.views[i].far = static_cast<float>(std::max(farthest(scene, points[i]) * 1.0625, 1e-30));
   }
   const bool both_sides = light.two_sided || is_body(light.kind);
@@ -294,7 +296,7 @@ Face face_of(const gpu::LightView& view, const LightBasis& basis, std::uint32_t 
   const gpu::SideView& side = view.side[s];
   const glm::dvec3 up = s == 0 ? basis.n : -basis.n;
   if (side.face_count == 1) return {basis.u, basis.v, up, side.lower, side.upper};
-  // taps.glsl chooses faces and coordinates in the same way.
+  // taps.glsl selects faces and coordinates in the same order.
   const glm::dvec2 upper(1), whole(-1), half(-1, 0);
   const std::array<Face, kHemicubeFaces> hemicube{{{basis.u, basis.v, up, whole, upper},
                                                    {basis.v, up, basis.u, half, upper},

@@ -1,6 +1,6 @@
-// What all methods of this family do alike. Maps of many light points together would not fit into memory, so evaluate
-// renders them in batches and asks each batch at once. A batch is a power of two of light points, at most 32: no batch
-// lies across two words of a mask.
+// Implements everything common to methods of this family. Maps of many light points together would not fit into memory,
+// so evaluate renders them in batches and looks up each batch at once. A batch is a power of two of light points, at
+// most 32: no batch crosses two words of a mask.
 
 #include "maps/host/map_method.hpp"
 
@@ -27,7 +27,7 @@ namespace penumbra::maps {
 namespace {
 
 constexpr std::uint32_t kBitsPerWord = 32;
-/// No batch of several light points takes more, and no tile's masks.
+/// Memory limits of a batch of several light points, and of a tile's masks.
 constexpr std::uint64_t kBatchBytes = std::uint64_t{128} << 20, kMaskBytes = std::uint64_t{256} << 20;
 
 class MapMethod final : public visibility::Method {
@@ -70,19 +70,20 @@ class MapMethod final : public visibility::Method {
 
  private:
   [[nodiscard]] bool gives_masks() const { return recipe_.description.output == visibility::Output::mask; }
-  /// Words of results that a pixel has: its mask, or V.
+  /// Returns the number of result words of a pixel: its mask, or V.
   [[nodiscard]] std::uint32_t words_per_pixel() const { return gives_masks() ? light_->words_per_mask() : 1; }
-  /// Of so many pixels; with workgroups that loop, two words a pixel more, in which workgroups whose loops were cut off
-  /// say so to this pass and the next, and the words of CutLoops.
+  /// Returns the bytes of results of `pixels` pixels; with workgroups that loop, two words a pixel more, in which
+  /// workgroups whose loops were ended mark this for this pass and the next, and the words of CutLoops.
   [[nodiscard]] std::uint64_t result_bytes(std::uint64_t pixels) const {
     if (!recipe_.group_a_receiver) return pixels * words_per_pixel() * sizeof(std::uint32_t);
     return pixels * (words_per_pixel() + 2) * sizeof(std::uint32_t) + sizeof(gpu::CutLoops);
   }
-  /// Light points whose maps are asked one after the other for the same bits or V.
+  /// Returns the number of light points whose maps are looked up one after the other for the same bits or V.
   [[nodiscard]] std::uint32_t point_count() const {
     return recipe_.points == MapPoints::centre ? 1 : static_cast<std::uint32_t>(fitted_.views.size());
   }
-  /// Of a part of the light: the whole light's axes, which maps and look-ups have, around the part's centroid.
+  /// Returns the basis of a part of the light: the axes of the whole light, used by maps and look-ups, around the
+  /// part's centroid.
   [[nodiscard]] LightBasis basis_of(const visibility::Light& part) const {
     LightBasis basis = basis_;
     basis.center = visibility::center_of(part);
@@ -90,34 +91,35 @@ class MapMethod final : public visibility::Method {
   }
   [[nodiscard]] std::uint32_t total_layers() const { return recipe_.layers.count + (recipe_.layers.farthest ? 1 : 0); }
 
-  /// Specialization constants of the look-up, for a light whose maps have so many faces: most have one.
+  /// Returns the specialization constants of the look-up, for a light whose maps have `faces` faces: most have one.
   [[nodiscard]] std::vector<std::uint32_t> constants_for(std::uint32_t faces) const;
   [[nodiscard]] render::ComputePass make_look_up() const;
 
-  /// Workgroups that answer packets of pixels.
+  /// Returns the number of workgroups for packets of pixels.
   [[nodiscard]] std::uint64_t packets(const Receivers::Part& part) const {
     const std::uint32_t width = std::max(receivers_.width(), 1U), rows = part.count / width;
     return std::uint64_t{(width + recipe_.packet_width - 1) / recipe_.packet_width} *
            ((rows + recipe_.packet_height - 1) / recipe_.packet_height);
   }
 
-  /// Finds where maps look: for all receivers, or for what the camera sees.
+  /// Fits the maps: to all receivers, or to the view of the camera.
   void fit_maps();
   void fit_to_camera(FitOptions fit, const glm::vec3& centre);
-  /// Makes room for the light's maps, and those of its centre.
+  /// Allocates the light's maps, and renders those of its centre.
   void make_maps();
   void find_aliasing();
   /// Records maps of light points first … first + count − 1, in submissions that can be timed.
   void render_maps(render::Commands& commands, std::uint32_t first, std::uint32_t count);
-  /// Records what is behind the nearest surfaces in the maps of the centre of a part of the light.
+  /// Records the layers behind the nearest surfaces in the maps of the centre of a part of the light.
   void render_layers(render::Commands& commands, std::uint32_t part);
-  /// Makes the maps of the centre of a part of the light, and the products.
+  /// Renders the maps of the centre of a part of the light, and makes the products.
   void make_centre_maps(std::uint32_t part);
-  /// V of a tile from the maps of the light's parts, one after the other.
+  /// Computes V of a tile from the maps of the light's parts, one after the other.
   void add_up_parts(const visibility::Tile& tile);
-  /// Asks, and asks those workgroups again whose loops the device cut off, by fewer rows of a map at a time.
+  /// Runs all look-ups, and repeats workgroups whose loops were ended by the device, with fewer rows of a map at a
+  /// time.
   void ask_all(const visibility::Tile& tile);
-  /// Records the look-ups of a tile in the maps of these light points, so many rows of a map at once.
+  /// Records the look-ups of a tile in the maps of `count` light points, `rows_at_once` rows of a map at a time.
   void ask(render::Commands& commands, const visibility::Tile& tile, std::uint32_t first, std::uint32_t count,
            std::uint32_t rows_at_once);
 
@@ -126,7 +128,7 @@ class MapMethod final : public visibility::Method {
   MapOptions options_;
   CasterMaps casters_;
   std::vector<std::uint32_t> constants_;
-  render::ComputePass look_up_;  ///< with these constants
+  render::ComputePass look_up_;  ///< with the current constants
   Receivers receivers_;
   visibility::PassTimes times_;
   std::map<std::string, std::uint64_t> counters_;
@@ -135,17 +137,17 @@ class MapMethod final : public visibility::Method {
   const visibility::ViewSamples* samples_ = nullptr;
   LightBasis basis_;
   std::vector<visibility::LightPart>
-      parts_;  ///< of the light as maps are made for it; one, unless the recipe says otherwise
+      parts_;  ///< parts of the light with a map each; one, unless the recipe has several
   FittedViews fitted_;
-  CameraFaces faces_;  ///< what a camera's maps are, if they are no windows; fitted_ says how many
+  CameraFaces faces_;  ///< maps of a camera, if not windows; fitted_ has their number
   Aliasing aliasing_;
   bool maps_are_old_ = false;  ///< made for another view
   std::vector<std::uint32_t> own_push_;
   std::uint32_t batch_ = 1;        ///< light points at a time
-  visibility::Tile tile_{};        ///< last evaluated
-  std::uint32_t tile_pixels_ = 0;  ///< its pixels
+  visibility::Tile tile_{};        ///< most recent tile
+  std::uint32_t tile_pixels_ = 0;  ///< number of pixels of tile_
   std::unique_ptr<render::Buffer> views_, depths_, results_;
-  std::vector<double> mean_;  ///< V of the tile last evaluated, if the light has several parts
+  std::vector<double> mean_;  ///< V of tile_, if the light has several parts
 };
 
 std::vector<std::uint32_t> MapMethod::constants_for(std::uint32_t faces) const {
@@ -260,7 +262,7 @@ void MapMethod::make_maps() {
     counters_["mapsPerBatch"] = batch_;
     return;
   }
-  // Parts share the memory for maps: of several, each is made when it is asked.
+  // Parts share the memory for maps: with several parts, each map is made before its look-up.
   if (parts_.size() == 1) make_centre_maps(0);
 }
 

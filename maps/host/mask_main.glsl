@@ -1,5 +1,6 @@
-// One bit a light point, each from its own maps; see look_up.glsl. One invocation asks a batch of up to 32 light points
-// for one receiver. Batches come in the order of light samples; the first batch of a word writes it, later ones add.
+// Computes one bit for each light point, each from its own maps; see look_up.glsl. One invocation processes a batch of
+// up to 32 light points for one receiver. Batches come in the order of light samples; the first batch of a word writes
+// the word, later ones add their bits.
 void main() {
   const uint i = this_receiver();
   if (i >= lookup.receiver_count) return;

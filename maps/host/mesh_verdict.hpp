@@ -4,11 +4,13 @@
 
 #include <string_view>
 
-/// What depth maps make of a mesh. They take anything that can be rasterised, from either side: windings, doubled and
-/// opposite faces, non-manifold edges and self-intersections change nothing. What is small against a texel does.
+/// Verdict of depth maps on a mesh. Maps accept every mesh that can be rasterised, from either side: windings, doubled
+/// and opposite faces, non-manifold edges and self-intersections have no effect. Features smaller than a texel have an
+/// effect.
 namespace penumbra::maps {
 
-/// Approximate, because of `sentence` and of what there is in this mesh that maps get wrong.
+/// Returns the verdict "approximate", with `sentence` and the properties of this mesh that maps represent wrongly as
+/// reasons.
 visibility::MeshVerdict judge_for_maps(std::string_view sentence, const mesh::Diagnosis& mesh);
 
 }  // namespace penumbra::maps

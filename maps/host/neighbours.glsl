@@ -1,6 +1,7 @@
-// Texels around the receiver's own, on its face and, in a hemicube, on the next. Included after look_up.glsl.
+// Texels around the receiver's own, on its face and, in a hemicube, on the next face. Included after look_up.glsl.
 
-// The receiver's own texel's neighbour, (a, b) texels along the face's coordinates; one long along the face's axis.
+// Returns the direction of a neighbour of the receiver's own texel, `offset` texels along the face's coordinates; of
+// length one along the face's axis.
 vec3 neighbour(Tap own, vec2 step, vec2 offset) {
   const vec2 by = step * offset;
   if (own.axis == 2) return own.direction + vec3(by, 0.0);

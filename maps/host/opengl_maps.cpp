@@ -1,3 +1,5 @@
+// Draws depth maps by OpenGL, with the same shaders as Vulkan.
+
 #include "maps/host/opengl_maps.hpp"
 
 #include "maps/host/caster.frag.glsl.hpp"
@@ -13,7 +15,7 @@
 
 namespace penumbra::maps {
 
-// A block of OpenGL lays out what follows a struct on the next multiple of 16 bytes.
+// A block of OpenGL aligns the member after a struct to the next multiple of 16 bytes.
 static_assert(sizeof(gpu::CasterPush) % 16 == 0 && offsetof(gpu::PeelPush, previous) == sizeof(gpu::CasterPush));
 
 namespace {

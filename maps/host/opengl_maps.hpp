@@ -12,36 +12,37 @@
 
 namespace penumbra::maps {
 
-/// Who draws the maps: the device itself, or OpenGL beside it (docs/rasterisers.md).
+/// Rasteriser of the maps: the device, or OpenGL (docs/rasterisers.md).
 enum class Rasteriser : std::uint8_t { vulkan, opengl };
 
-/// Which of a texel's surfaces a map holds.
+/// Surface of a texel stored by a map.
 enum class MapLayer : std::uint8_t { nearest, behind, farthest };
 
-/// A face of CasterMaps, drawn by OpenGL with the device's own shaders and read back.
+/// Face of CasterMaps, drawn by OpenGL with the device's own shaders and read back.
 class OpenGlMaps {
  public:
-  /// `size`: texels on a side. Throws ResourceError for more than its images can have.
+  /// Makes maps with `size` texels on a side. Throws ResourceError if OpenGL's images cannot have as many.
   OpenGlMaps(const render::opengl::Context& context, std::uint32_t size);
 
-  /// Corners, three a triangle, of one more batch. `places`: of casters with holes what HoleSurfaces says of each
-  /// corner, else empty.
+  /// Adds a batch of corners, three for each triangle. `places`: for casters with holes, the data of each corner from
+  /// HoleSurfaces, else empty.
   void add(std::span<const glm::vec3> corners, std::span<const std::uint32_t> places = {});
-  /// Takes HoleSurfaces::words for batches with holes.
+  /// Sets HoleSurfaces::words for batches with holes.
   void set_surfaces(std::span<const std::uint32_t> words);
   /// Drops all batches.
   void forget() { batches_.clear(); }
 
-  /// The layer that MapLayer::behind is behind of: size² depths.
+  /// Sets the previous layer for MapLayer::behind: size² depths.
   void set_previous(std::span<const float> depths);
-  /// Triangles first … first + count − 1 of a batch, over what is there or over nothing.
+  /// Triangles first … first + count − 1 of a batch, drawn over the current contents or, with `clear`, over an empty
+  /// map.
   struct Triangles {
     std::size_t batch;
     std::uint32_t first, count;
     bool clear;
   };
   void draw(MapLayer layer, const gpu::CasterPush& face, const Triangles& triangles) const;
-  /// size² depths, as Vulkan's.
+  /// Reads size² depths, in Vulkan's form.
   void read(std::span<float> depths) const { target_.read(depths); }
 
  private:
@@ -55,7 +56,7 @@ class OpenGlMaps {
     std::optional<render::opengl::Buffer> places;
   };
   Passes solid_;
-  std::optional<Passes> holes_;  // of casters with holes
+  std::optional<Passes> holes_;  // for casters with holes
   render::opengl::DepthTarget target_;
   render::opengl::Buffer previous_;
   std::optional<render::opengl::Buffer> surfaces_;

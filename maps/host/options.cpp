@@ -1,3 +1,5 @@
+// Options common to methods of maps, and their parsing.
+
 #include "maps/host/options.hpp"
 
 #include "base/error.hpp"

@@ -11,7 +11,7 @@
 
 namespace penumbra::maps {
 
-/// `otherwise`: what a method's paper takes.
+/// Returns the option `size`, with `otherwise`, the value of a method's paper, as default.
 constexpr visibility::IntegerOption map_size(std::uint32_t otherwise) {
   return {"size", 8, 16384, otherwise, "texels on a side of a map"};
 }
@@ -25,14 +25,14 @@ inline constexpr visibility::ChoiceOption kRasteriser{"rasteriser",
                                                       Rasteriser::vulkan,
                                                       "who draws the maps: the device itself, or OpenGL beside it"};
 
-/// What of a texel's surfaces a receiver must be behind to be in its shadow: taps.glsl, begins_behind.
+/// Surface of a texel behind which a receiver is in shadow: taps.glsl, begins_behind.
 enum class DepthUse : std::uint8_t {
   first = gpu::kDepthFirst,
   second = gpu::kDepthSecond,
   midpoint = gpu::kDepthMidpoint,
   dual = gpu::kDepthDual,
 };
-/// `depth` of a single-map method.
+/// Returns the option `depth` of a single-map method.
 constexpr visibility::ChoiceOption<DepthUse, 4> depth_option(DepthUse otherwise) {
   return {
       "depth",
@@ -46,18 +46,18 @@ constexpr visibility::ChoiceOption<DepthUse, 4> depth_option(DepthUse otherwise)
 }
 inline constexpr auto kDepth = depth_option(DepthUse::first);
 
-/// Of a single-map method that compares texels with a receiver one by one: taps.glsl.
+/// Option of a single-map method that compares texels with a receiver one by one: taps.glsl.
 inline constexpr auto kReceiverPlane = visibility::flag_option(
     "receiverPlane", true, "compare each texel with the receiver's plane; off: with the receiver's own depth");
 
-/// Polygon offset: of methods that ask depths and project none.
+/// Polygon offset: for methods that compare depths without projecting them.
 inline constexpr visibility::RealOption kOffsetFactor{
     "offsetFactor", 0, 64, 0, "polygon offset: stored depths grow by so many times their change across a texel"};
 inline constexpr visibility::RealOption kOffsetUnits{"offsetUnits", 0, 1048576, 0,
                                                      "polygon offset: and by so many steps of a depth of 24 bits"};
 
-/// What all methods here have: texels on a side of a map, the bias in texels, and who draws the maps; `depth` and
-/// `receiverPlane`, if the method has them.
+/// Options of all methods in this family: texels on a side of a map, the bias in texels, and the rasteriser of the
+/// maps; `depth` and `receiverPlane`, if the method has them.
 struct MapOptions {
   std::uint32_t size = kMapSize.otherwise;
   double bias = kBias.otherwise;
@@ -68,15 +68,15 @@ struct MapOptions {
   float offset_factor = 0, offset_units = 0;  ///< as in CasterPush
 };
 
-/// How `methods` describes them.
+/// Returns the descriptions of the common options, as listed by `methods`.
 std::vector<visibility::OptionDescription> map_option_descriptions(const visibility::IntegerOption& size = kMapSize,
                                                                    const visibility::RealOption& bias = kBias);
-/// Those of a method that asks one map, from the light's centre: the same, and `depth`.
+/// Returns the common options and `depth`, for a method with one map from the light's centre.
 std::vector<visibility::OptionDescription> single_map_option_descriptions(DepthUse otherwise = DepthUse::first);
-/// Those of one that compares its texels with a receiver one by one: the same, and `receiverPlane`.
+/// Returns these and `receiverPlane`, for a method that compares the map's texels with a receiver one by one.
 std::vector<visibility::OptionDescription> compared_map_option_descriptions(DepthUse otherwise = DepthUse::first);
 
-/// Throws UsageError for a size that the device cannot draw.
+/// Parses the options. Throws UsageError for a size that the device cannot draw.
 MapOptions map_options(const render::Device& device, const visibility::MethodDescription& method,
                        const visibility::ParsedOptions& options);
 

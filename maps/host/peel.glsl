@@ -1,7 +1,7 @@
-// A deeper layer: what is not behind the layer before leaves no depth (Everitt 2001, depth peeling). Depth as in
-// caster.frag; what is within 2^-20 of the layer before is the same surface. `maps` is the shader's.
+// Depth peeling (Everitt 2001): fragments not behind the previous layer are discarded. Depth as in caster.frag; a
+// surface within 2^-20 of the previous layer is the same surface. `maps` is declared by the shader.
 
-PUSH_CONSTANTS Peel { PeelPush push; };  // not Push: blocks of one name are one in both stages
+PUSH_CONSTANTS Peel { PeelPush push; };  // not Push: blocks with one name are one block in both stages
 
 void peel() {
   const float depth = map_depth(push.face, gl_FragCoord);

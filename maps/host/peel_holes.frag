@@ -6,7 +6,7 @@
 #include "maps/host/holes.glsl"
 #include "maps/host/map_depth.glsl"
 
-// peel.frag for surfaces with holes.
+// Peels as peel.frag does, for surfaces with holes.
 
 STORAGE(3) readonly buffer Maps { float maps[]; };
 #include "maps/host/peel.glsl"

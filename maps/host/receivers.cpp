@@ -1,3 +1,5 @@
+// Uploads view samples to the device in bands of rows.
+
 #include "maps/host/receivers.hpp"
 
 #include "base/assert.hpp"

@@ -1,4 +1,4 @@
-// V of each receiver from the maps of one light point; see look_up.glsl.
+// Computes V of each receiver from the maps of one light point; see look_up.glsl.
 void main() {
   const uint i = this_receiver();
   if (i >= lookup.receiver_count) return;

@@ -1,3 +1,6 @@
+// Maps a scene under a sun to a projective space in which the sun is a disk (sun_space.hpp derives the map). Not from a
+// paper.
+
 #include "maps/host/sun_space.hpp"
 
 #include "base/assert.hpp"
@@ -12,10 +15,10 @@
 namespace penumbra::maps {
 namespace {
 
-/// How many of its own sizes the scene is away from b. Farther away depths would bend less, but what methods allow
-/// relative to a depth (a slice's end, Slices) would be more of the scene, and floats would lose digits.
+/// Distance of b from the scene, in scene sizes. With a larger one depths would be distorted less, but tolerances
+/// relative to a depth (a slice's end, Slices) would be a larger part of the scene, and floats would lose digits.
 constexpr double kScenesBelow = 4;
-/// The tangent of a sun of one direction.
+/// Tangent used for a sun of one direction.
 constexpr double kLeastTangent = 0x1p-20;
 
 }  // namespace
@@ -76,7 +79,7 @@ glm::dvec3 SunSpace::local(const glm::vec3& p) const {
   return {glm::dot(d, u_), glm::dot(d, v_), glm::dot(d, n_)};
 }
 
-/// The plane z = 0 lies at −S: positions keep the digits that they have.
+/// The plane z = 0 lies at −S: positions keep their number of digits.
 glm::vec3 SunSpace::mapped(const glm::vec3& p) const {
   const glm::dvec3 at = local(p);
   const double share = scale_ / (below_ - at.z);
@@ -85,7 +88,7 @@ glm::vec3 SunSpace::mapped(const glm::vec3& p) const {
 
 visibility::ViewSamples SunSpace::mapped(const visibility::ViewSamples& samples) const {
   visibility::ViewSamples all = samples;
-  // Of an eye so far along the sun's light nothing is in this space.
+  // An eye too far along the sun's light has no image in this space.
   if (below_ - local(samples.eye).z > 0) all.eye = mapped(samples.eye);
   for (std::size_t i = 0; i < samples.size(); ++i) {
     if (samples.triangle[i] == visibility::ViewSamples::kBackground) continue;

@@ -1,24 +1,25 @@
-// Taps into the maps of one light point; README.md has the picture.
+// Taps into the maps of one light point; README.md has a picture.
 //
 // A texel holds the depth of the nearest surface in the direction of its *centre*, while the receiver lies somewhere in
-// the texel. Comparing the two depths as they are shades a tilted receiver by itself (acne). So the map is asked where it
-// knows the answer: at the point of the receiver's own plane in the direction of the texel's centre (the receiver-plane
-// depth of Isidoro 2006, here exact: 1/depth of a plane is affine in the map's coordinates). What remains for the bias are
-// neighbouring faces that rise above the receiver's plane within the texel, and rounding. (receiverPlane=off: the
-// receiver's own depth is compared, as papers have it, and acne is there.)
+// the texel. A direct comparison of the two depths shades a tilted receiver by itself (acne). So the comparison is made
+// where the map's value is exact: at the point of the receiver's own plane in the direction of the texel's centre (the
+// receiver-plane depth of Isidoro 2006, here exact: 1/depth of a plane is affine in the map's coordinates). The bias
+// then only covers neighbouring faces that rise above the receiver's plane within the texel, and rounding.
+// (receiverPlane=off: the receiver's own depth is compared, as in the papers, with acne.)
 
-// A receiver's plane is not followed further than this many texels in depth: so steep, half a texel is half the scene.
+// Limit of the receiver plane's slope, in texels of depth for each texel: on a steeper plane, half a texel spans half
+// the scene.
 const float kSteepest = 8.0;
 
-// Where the direction of d, a vector in the light's basis, meets the maps. d must not lie in the light's plane.
+// Position of the direction of d, a vector in the light's basis, on the maps. d must not lie in the light's plane.
 struct FaceHit {
-  uint face;         // of its side
+  uint face;         // index on its side
   int axis;          // the face's axis: 0, 1, 2
   vec3 f;            // d as (a, b, w): across and along the face
   vec2 lower, upper; // of the face, in a/w and b/w
 };
 
-// Faces and coordinates as in face_push (map_fit.cpp).
+// Returns the position; faces and coordinates as in face_push (map_fit.cpp).
 FaceHit face_hit(LightView view, vec3 d) {
   const SideView side = view.side[d.z < 0.0 ? 1 : 0];
   const vec3 e = vec3(d.xy, abs(d.z));
@@ -43,15 +44,15 @@ FaceHit face_hit(LightView view, vec3 d) {
   return hit;
 }
 
-// One face of a light point's maps. Directions are taken on the receiver's side of the light's plane: (x, y, |z|).
+// Face of a light point's maps. Directions are on the receiver's side of the light's plane: (x, y, |z|).
 struct MapFace {
-  vec2 lower, texel;  // where the first texel begins, and a texel's extent, at depth 1
+  vec2 lower, texel;  // border of the first texel, and a texel's extent, at depth 1
   int axis;           // 0, 1, 2
   float sign;         // of a sideways face's axis, else 1
-  uint map;           // among all maps
+  uint map;           // index among all maps
 };
 
-// Face number `face` of a side, as in face_push (map_fit.cpp). `first_map`: where the maps of this light point start.
+// Returns face `face` of a side, as in face_push (map_fit.cpp). `first_map`: first map of this light point.
 MapFace face_of(SideView side, uint first_map, uint size, uint face) {
   MapFace f;
   vec2 lower = side.lower, upper = side.upper;
@@ -71,7 +72,7 @@ MapFace face_of(SideView side, uint first_map, uint size, uint face) {
   return f;
 }
 
-// (a, b, w) of a vector: across and along the face; and back.
+// Convert a vector to (a, b, w), across and along the face, and back.
 vec3 to_face(MapFace f, vec3 e) {
   if (f.axis == 2) return e;
   return f.axis == 0 ? vec3(e.y, e.z, f.sign * e.x) : vec3(e.x, e.z, f.sign * e.y);
@@ -81,21 +82,21 @@ vec3 from_face(MapFace f, vec3 abw) {
   return f.axis == 0 ? vec3(f.sign * abw.z, abw.xy) : vec3(abw.x, f.sign * abw.z, abw.y);
 }
 
-// What the map has in the direction of d, a vector in the light's basis. `direction` points to the texel's centre, one
-// long along the face's axis; the nearest surface is at depth * direction.
+// Value of the map in the direction of d, a vector in the light's basis. `direction` points to the texel's centre, with
+// length one along the face's axis; the nearest surface is at depth * direction.
 struct Tap {
   vec3 direction;
-  float depth;      // far where there is nothing
-  float second;     // of the surface behind it; far where there is none, and where no option `depth` asks for it
+  float depth;      // far for an empty texel
+  float second;     // depth of the surface behind; far where there is none, and where no option `depth` needs it
   float far;
-  float along;      // d along the face's axis
+  float along;      // length of d along the face's axis
   float texel;      // a texel's width at depth 1
   int axis;         // the face's axis: 0, 1, 2
   float mirrored;   // -1 where the direction is on the light's rear side, else 1
-  uint number;      // of the texel, among all maps' texels
+  uint number;      // index of the texel, among all maps' texels
 };
 
-// The texel `cell` of a face, as a tap on the receiver's side of the light's plane. `along` is the caller's.
+// Returns texel `cell` of a face, as a tap on the receiver's side of the light's plane. The caller sets `along`.
 Tap tap_of(LightView view, uint size, MapFace face, uvec2 cell) {
   Tap tap;
   tap.direction = from_face(face, vec3(face.lower + (vec2(cell) + 0.5) * face.texel, 1.0));
@@ -114,7 +115,7 @@ Tap tap_of(LightView view, uint size, MapFace face, uvec2 cell) {
 #ifdef FITTED_FACES
 #include "maps/host/fitted.glsl"
 #else
-// d must not lie in the light's plane.
+// Returns the tap in direction d, which must not lie in the light's plane.
 Tap fetch(LightView view, uint first_map, uint size, vec3 d) {
   const SideView side = view.side[d.z < 0.0 ? 1 : 0];
   const FaceHit hit = face_hit(view, d);
@@ -125,16 +126,16 @@ Tap fetch(LightView view, uint first_map, uint size, vec3 d) {
   tap.along = hit.f.z;
   tap.mirrored = d.z < 0.0 ? -1.0 : 1.0;
   tap.direction.z *= tap.mirrored;
-  // Beside a window there is nothing to find (map_fit.cpp); a hemicube's faces meet, and only rounding leads beside one.
+  // Outside a window no caster matters (map_fit.cpp); a hemicube's faces meet, and only rounding leads outside one.
   if (side.face_count == 0 || (side.face_count == 1 && at != cell)) tap.depth = tap.second = view.far;
   return tap;
 }
 #endif
 
-// Where a receiver begins to be behind what the tap found, in depth: at least `forgiven` beyond the nearest surface, or
-// what the option `depth` puts in its place. Wang and Molnar 1994: the second surface; Woo 1992: the middle between the
-// two; Weiskopf and Ertl 2003: the bias, but no farther than the middle. Where there is no second surface, the middle
-// is as far as the bias.
+// Returns the depth at which receivers begin to be in the tap's shadow: at least `forgiven` beyond the nearest surface,
+// or a depth given by the option `depth`. Wang and Molnar 1994: the second surface; Woo 1992: the middle between the
+// two; Weiskopf and Ertl 2003: the bias, but no farther than the middle. Without a second surface, the middle is at the
+// bias.
 float begins_behind(Tap tap, float forgiven) {
   const float middle = tap.depth + 0.5 * (tap.second - tap.depth);
   const bool single = tap.second >= tap.far;
@@ -149,40 +150,42 @@ float begins_behind(Tap tap, float forgiven) {
   return tap.depth + forgiven;
 }
 
-// Is a receiver at this depth in the shadow of what the tap found?
+// Returns whether a receiver at this depth is in the tap's shadow.
 bool is_before(Tap tap, float receiver, float forgiven) {
   if (lookup.depth_use != kDepthFirst) return begins_behind(tap, forgiven) < receiver;
   return tap.depth < receiver - forgiven;
 }
 
-// Is what the map has nearer to the light than this depth, whatever the slope of what receives?
+// Returns whether the tap's surface is nearer to the light than this depth, independent of the receiver's slope.
 bool is_before_depth(Tap tap, float depth, float bias) { return is_before(tap, depth, bias * tap.texel * tap.along); }
 
-// Is what the map has nearer to the light than the receiver's plane (normal m away from the light, at distance h = m . p
-// > 0 from the light point)? A plane that the direction misses, or meets beyond `limit`, is taken to be at `limit`.
+// Returns whether the tap's surface is nearer to the light than the receiver's plane (normal m away from the light, at
+// distance h = m . p > 0 from the light point). A plane that the direction misses, or meets beyond `limit`, counts as
+// at `limit`.
 bool blocks(Tap tap, vec3 m, float h, float limit, float bias) {
   const float facing = dot(m, tap.direction);
   const float plane = h < limit * facing ? h / facing : limit;
-  // Depth of the plane per unit across, bounded: a texel's worth of it, and of width, is what bias 1 forgives.
+  // Depth of the plane per unit across, bounded: a bias of 1 covers one texel of this slope plus one texel's width.
   const float across = abs(m.x) + abs(m.y) + abs(m.z) - abs(m[tap.axis]);
   const float slope = across < kSteepest * facing ? across / facing : kSteepest;
   const float forgiven = bias * tap.texel * tap.along * (1.0 + slope);
   return is_before(tap, plane, forgiven);
 }
 
-// Does what the tap found stand between the receiver at d and some point of the light? The receiver's plane is asked in
-// the tap's direction; and nothing stands in between that is not nearer to the light's plane than the receiver.
+// Returns whether the tap's surface lies between the receiver at d and some point of the light. The receiver's plane is
+// evaluated in the tap's direction; a surface not nearer to the light's plane than the receiver is not in between.
 bool blocks_light(Tap tap, vec3 d, vec3 m, float bias) {
   const float limit = d.z / tap.direction.z;
   const float h = dot(m, d);
   if (h > 0.0 && lookup.own_depth == 0) return blocks(tap, m, h, limit, bias);
-  // Where the light's centre is below the receiver's horizon its plane says nothing about the centre's map.
+  // Where the light's centre is below the receiver's horizon, the receiver's plane cannot be compared with the centre's
+  // map.
   return is_before_depth(tap, limit, bias);
 }
 
-// Where the light's centre is below the receiver's horizon (blocks_light): is what the tap found above the receiver's
-// plane, by more than the bias forgives? What is below the plane, such as the receiver's own surface seen from behind,
-// hides none of the light above the horizon. A direction leads up through the plane where m . c < 0.
+// Returns, where the light's centre is below the receiver's horizon (blocks_light), whether the tap's surface is above
+// the receiver's plane by more than the bias. A surface below the plane, such as the receiver's own surface seen from
+// behind, hides none of the light above the horizon. A direction leads up through the plane where m . c < 0.
 bool above_plane(Tap tap, vec3 d, vec3 m, float bias) {
   const float h = dot(m, d), rising = -dot(m, tap.direction);
   if (h > 0.0 || lookup.own_depth != 0) return true;
@@ -192,16 +195,18 @@ bool above_plane(Tap tap, vec3 d, vec3 m, float bias) {
   return rising > 0.0 && -h < (tap.depth - room) * rising;
 }
 
-// V of a receiver whose horizon leaves `above` of the light, if shadows leave `left` of all of it. What hides light is above
-// the receiver's plane and is seen above its horizon: the two add up. Compared in its own depth, as published, a texel may
-// hide what is below the horizon, too: then no more is known than the smaller of the two.
+// Returns V of a receiver whose horizon leaves the fraction `above` of the light, if shadows leave the fraction `left`
+// of the whole light. Occluders are above the receiver's plane and are seen above its horizon: the hidden fractions add
+// up. If compared in its own depth, as published, a texel may also hide parts below the horizon: then the smaller of
+// the two is the best estimate.
 float visible_above(float left, float above) {
   return lookup.own_depth != 0 ? min(left, above) : max(left + (above - 1.0), 0.0);
 }
 
 vec3 to_basis(LightBasis basis, vec3 x) { return vec3(dot(basis.u, x), dot(basis.v, x), dot(basis.n, x)); }
 
-// The hard shadow test: receiver at d from the light point, m as above; both in the light's basis.
+// Returns the result of the hard shadow test: receiver at d from the light point, m as above; both in the light's
+// basis.
 bool hard_shadow(LightView view, uint first_map, uint size, vec3 d, vec3 m, float bias) {
   const Tap tap = fetch(view, first_map, size, d);
   if (lookup.own_depth != 0) return is_before_depth(tap, tap.along, bias);

@@ -1,3 +1,5 @@
+// Computes the width of a map's texels at view samples, for comparisons across resolutions.
+
 #include "maps/host/texel_widths.hpp"
 
 #include "maps/host/map_fit.hpp"
@@ -11,7 +13,8 @@
 namespace penumbra::maps {
 namespace {
 
-/// Across the axis of the face that looks there, from `l` on; infinite if none does.
+/// Returns the width across the axis of the face that contains the direction d from the light; infinity if no face
+/// contains d.
 double width_at(const FittedViews& fitted, const LightBasis& basis, const glm::dvec3& d, std::uint32_t size) {
   for (std::uint32_t i = 0; i < fitted.faces; ++i) {
     const Face face = face_of(fitted.views.front(), basis, i);

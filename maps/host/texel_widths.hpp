@@ -9,9 +9,9 @@
 
 namespace penumbra::maps {
 
-/// MethodDescription::texel_widths of methods with the option `size`: of a map from the light's centre that holds all
-/// receivers, which is what all but fitted ones are about. The two sides' geometric mean. Empty for suns, spheres and
-/// other fits.
+/// Returns MethodDescription::texel_widths of methods with the option `size`: for a map from the light's centre that
+/// holds all receivers, which approximates every method without fitted maps. Geometric mean of a texel's two sides.
+/// Empty for suns, spheres and other fits.
 std::vector<float> texel_widths(const visibility::SceneFloats& scene, const visibility::ViewSamples& samples,
                                 const visibility::Light& light, const visibility::MethodOptions& complete);
 

@@ -11,13 +11,13 @@
 
 namespace penumbra::maps {
 
-/// V of the tile last evaluated, a word a pixel, on the device: of methods that are no recipes.
+/// V of the most recent tile, one word for each pixel, on the device: for methods without a recipe.
 class TileVisibility {
  public:
-  /// Makes room for a tile's pixels; false if it has none.
+  /// Allocates a tile's pixels; returns false if the tile has none.
   [[nodiscard]] bool begin(const render::Device& device, const visibility::Tile& tile, const Receivers& receivers);
   [[nodiscard]] std::uint32_t pixels() const { return pixels_; }
-  /// A word a pixel, after begin().
+  /// Returns the buffer, one word for each pixel; valid after begin().
   [[nodiscard]] render::Buffer& buffer() { return *results_; }
   void read(std::span<float> visibility) const;
   [[nodiscard]] std::uint64_t memory_bytes() const { return results_ ? results_->bytes() : 0; }

@@ -1,3 +1,6 @@
+// Computes the body seen by a camera (clipping by Sutherland and Hodgman 1974) and the closed forms of fits: split
+// depths (Zhang et al. 2006), LiSPSM (Wimmer et al. 2004), TSM (Martin and Tan 2004), snapped windows.
+
 #include "maps/host/view_fit.hpp"
 
 #include "visibility/receivers.hpp"
@@ -13,7 +16,7 @@
 namespace penumbra::maps {
 namespace {
 
-/// What is on the inner side: x with dot(normal, x) + offset >= 0.
+/// Plane whose inner side is dot(normal, x) + offset >= 0.
 struct Plane {
   glm::dvec3 normal;
   double offset;
@@ -21,7 +24,7 @@ struct Plane {
   [[nodiscard]] double of(const glm::dvec3& x) const { return glm::dot(normal, x) + offset; }
 };
 
-/// What a picture holds between two depths.
+/// Returns the planes of a picture's frustum between two depths.
 std::vector<Plane> frustum(const visibility::PinholeCamera& camera, double from, double to) {
   const auto through = [&](const glm::dvec3& normal, double offset) {
     return Plane{normal, offset - glm::dot(normal, camera.eye)};
@@ -43,7 +46,7 @@ std::vector<Plane> frustum(const visibility::PinholeCamera& camera, double from,
   return planes;
 }
 
-/// Sutherland and Hodgman 1974: the part of a polygon on a plane's inner side.
+/// Returns the part of a polygon on a plane's inner side (Sutherland and Hodgman 1974).
 std::vector<glm::dvec3> clipped(const std::vector<glm::dvec3>& polygon, const Plane& plane) {
   std::vector<glm::dvec3> inside;
   for (std::size_t i = 0; i < polygon.size(); ++i) {
@@ -59,7 +62,7 @@ std::vector<BodyPoint> points_in_frustum(const visibility::SceneFloats& scene, c
                                          const LightBasis& basis, const visibility::PinholeCamera& camera, double from,
                                          double to) {
   const std::vector<Plane> planes = frustum(camera, from, to);
-  // A polygon that the light's plane cuts is two, each up to this far from the plane.
+  // A polygon cut by the light's plane becomes two, each up to this distance from the plane.
   const double gap = 0x1p-20 * glm::length(glm::dvec3(scene.upper) - glm::dvec3(scene.lower));
   const double height = glm::dot(basis.n, basis.center);
   const Plane before{basis.n, -height - gap}, behind{-basis.n, height - gap};

@@ -13,24 +13,24 @@
 #include <string>
 #include <vector>
 
-/// What fits maps to what a camera sees (Eisemann et al. 2009, section 3.2; docs/map-fits.md): options, the body that
-/// is fitted, and the closed forms of the papers.
+/// Fits of maps to the view of a camera (Eisemann et al. 2009, section 3.2; docs/map-fits.md): options, the fitted
+/// body, and the closed forms of the papers.
 namespace penumbra::maps {
 
-/// What a map's texels are spread over.
+/// Region covered by a map's texels.
 enum class Fit : std::uint8_t {
-  receivers,  ///< all that receives shadow, whatever the camera sees: map_fit.hpp
-  view,       ///< what the camera sees, in one window
+  receivers,  ///< all objects that receive shadow, independent of the camera: map_fit.hpp
+  view,       ///< receivers seen by the camera, in one window
   cascades,   ///< the same in slices of depth, each with a window (Engel 2006, Zhang et al. 2006)
-  tiles,      ///< a quadtree of windows, finer where pixels ask for more (Giegl and Wimmer 2007, Lefohn et al. 2007)
+  tiles,      ///< a quadtree of windows, finer where pixels need it (Giegl and Wimmer 2007, Lefohn et al. 2007)
   lispsm,     ///< a perspective along the view, n = z_n + sqrt(z_n z_f) (Wimmer et al. 2004)
   tsm,        ///< the same, n from a region in focus (Martin and Tan 2004)
   psm,        ///< the camera's own perspective (Stamminger and Drettakis 2002)
   logpsm,     ///< a perspective from the eye and a logarithm along the view (Lloyd et al. 2008)
 };
-/// Where cascades end.
+/// Spacing of the depths between cascades.
 enum class Split : std::uint8_t { logarithmic, practical, pseudo_near, uniform };
-/// What a fit holds: what the camera's frustum holds of the receivers, or what pixels show of these.
+/// Body of a fit: the receivers in the camera's frustum, or the parts of them visible at pixels.
 enum class ViewBody : std::uint8_t { frustum, visible };
 
 inline constexpr visibility::ChoiceOption kFit{"fit",
@@ -45,7 +45,7 @@ inline constexpr visibility::ChoiceOption kFit{"fit",
                                                Fit::receivers,
                                                "what texels are spread over: all receivers; what the camera sees, in "
                                                "one window, in slices of depth or in tiles; or a perspective of it"};
-/// Of a method whose products know windows alone.
+/// Option of methods whose products support windows alone.
 inline constexpr visibility::ChoiceOption kWindowFit{
     "fit",
     {{"receivers", Fit::receivers}, {"view", Fit::view}},
@@ -76,7 +76,7 @@ inline constexpr visibility::IntegerOption kTiles{"tiles", 1, 64, 16, "fit=tiles
 inline constexpr visibility::RealOption kFocus{
     "focus", 0.01, 0.99, 0.25, "fit=tsm: the nearest share of depths, which gets four fifths of the map"};
 
-/// What is told of a map's aliasing error (aliasing.hpp).
+/// Use of a map's aliasing error (aliasing.hpp).
 enum class AliasingUse : std::uint8_t { off, count, show };
 inline constexpr visibility::ChoiceOption kAliasing{
     "aliasing",
@@ -84,10 +84,10 @@ inline constexpr visibility::ChoiceOption kAliasing{
     AliasingUse::off,
     "count: the aliasing error m of the maps in the counters; show: V is 1/m, at most 1, in place of visibility"};
 
-/// What a map is a picture of, as long as it is fitted to receivers.
+/// Projection of a map fitted to receivers.
 enum class Projection : std::uint8_t {
-  window,      ///< a window of directions, or where that would be too wide a hemicube's five faces
-  cube,        ///< five faces of a hemicube, however narrow a window would do
+  window,      ///< a window of directions, or a hemicube's five faces where a window would be too wide
+  cube,        ///< five faces of a hemicube, even if a narrow window is sufficient
   paraboloid,  ///< one face, a half space in a circle (Brabec et al. 2002)
 };
 inline constexpr visibility::ChoiceOption kProjection{
@@ -96,7 +96,7 @@ inline constexpr visibility::ChoiceOption kProjection{
     Projection::window,
     "fit=receivers: a window of directions (five faces where it would be too wide), always the five faces of half a "
     "cube, or a half space in the circle of a paraboloid"};
-/// Of a method whose products know even texels alone.
+/// Option of methods whose products support uniform texels alone.
 inline constexpr visibility::ChoiceOption kEvenProjection{
     "projection",
     {{"window", Projection::window}, {"cube", Projection::cube}},
@@ -104,7 +104,7 @@ inline constexpr visibility::ChoiceOption kEvenProjection{
     "fit=receivers: a window of directions (five faces where it would be too wide), or always the five faces of half a "
     "cube; means over windows need even texels, so there is no paraboloid"};
 
-/// A method's choice of all of these.
+/// Values of all these options.
 struct ViewFit {
   Fit fit = Fit::receivers;
   Projection projection = Projection::window;
@@ -117,13 +117,13 @@ struct ViewFit {
   double focus = kFocus.otherwise;
   AliasingUse aliasing = AliasingUse::off;
 
-  /// Is the camera asked?
+  /// Returns whether the fit depends on the camera.
   [[nodiscard]] bool sees_camera() const { return fit != Fit::receivers; }
-  /// Are there other maps than a window or a hemicube (face_fit.hpp)?
+  /// Returns whether there are faces other than a window or a hemicube (face_fit.hpp).
   [[nodiscard]] bool has_faces() const {
     return (fit != Fit::receivers && fit != Fit::view) || projection == Projection::paraboloid;
   }
-  /// Are there faces that no rasteriser draws, of which each texel asks each triangle?
+  /// Returns whether there are faces that no rasteriser draws, for which each texel tests each triangle.
   [[nodiscard]] bool asks_triangles() const { return fit == Fit::logpsm || projection == Projection::paraboloid; }
   [[nodiscard]] std::uint32_t slices() const {
     if (fit == Fit::tiles) return 1;
@@ -131,42 +131,42 @@ struct ViewFit {
   }
 };
 
-/// Of methods that ask texels one by one; and of those that know windows alone.
+/// Return the options of methods that look up texels one by one, and of methods that support windows alone.
 std::vector<visibility::OptionDescription> view_fit_descriptions();
 std::vector<visibility::OptionDescription> window_fit_descriptions();
-/// "fit=tsm", or "projection=paraboloid".
+/// Returns "fit=tsm", or "projection=paraboloid".
 std::string words_of(const ViewFit& fit);
-/// The choice of a method that has some of them, or none.
+/// Returns the choice of a method that has some of the options, or none.
 ViewFit view_fit(std::span<const visibility::OptionDescription> options, const visibility::ParsedOptions& parsed);
 
-/// A point that a fit must hold.
+/// Point that a fit must contain.
 struct BodyPoint {
   glm::dvec3 p;      ///< in scene floats
   double depth = 0;  ///< along the view axis
 };
 
-/// Points whose convex hull on either side of the light's plane holds all receivers of the light that the camera sees
-/// between these depths. What a frustum holds and the plane cuts has points close to the plane on both of its sides,
-/// whose directions from the light's centre are beyond every window.
+/// Returns points whose convex hull on either side of the light's plane contains all receivers of the light seen by the
+/// camera between these depths. Polygons in a frustum that are cut by the light's plane have points close to the plane
+/// on both of its sides, whose directions from the light's centre are beyond every window.
 std::vector<BodyPoint> body_points(const visibility::SceneFloats& scene, const visibility::Light& light,
                                    const LightBasis& basis, const visibility::ViewSamples& samples, ViewBody body,
                                    double from, double to);
 
-/// Depths from which on slices go, the first near and the last far (Eisemann et al. 2009, section 3.2.3.1): n + 1 of
-/// them. 0 < near ≤ far.
+/// Returns the n + 1 depths that bound the slices, the first near and the last far (Eisemann et al. 2009, section
+/// 3.2.3.1). 0 < near ≤ far.
 std::vector<double> split_depths(const ViewFit& fit, double near, double far, std::uint32_t slices);
 
-/// n_opt of Wimmer et al. 2004: how far before the nearest of what is seen a perspective stands, so that the largest
-/// errors along both axes are equal. 0 < near ≤ far are distances from the eye along the warped axis, and `sine` that
-/// of the angle between the view and the light.
+/// Returns n_opt of Wimmer et al. 2004: the distance of the perspective's centre before the nearest visible point for
+/// which the largest errors along both axes are equal. 0 < near ≤ far are distances from the eye along the warped axis,
+/// and `sine` is that of the angle between the view and the light.
 double lispsm_distance(double near, double far, double sine);
 
-/// The distance that puts what is `focus` of `length` away from the nearest at four fifths of the map (Martin and Tan
-/// 2004, η). Infinite where it is there without a perspective, or nearer.
+/// Returns the distance of the perspective's centre that maps the point at `focus` of `length` from the nearest point
+/// to four fifths of the map (Martin and Tan 2004, η). Infinite if the point is there without a perspective, or nearer.
 double tsm_distance(double length, double focus);
 
-/// A width in texels, made so much wider that it is one of the steps 2^(k/4), and where a window of `size` such texels
-/// begins whose texels lie at multiples of their width.
+/// Window of `size` texels with positions at multiples of their width: the width is increased to one of the steps
+/// 2^(k/4), and `lower` is the start of the window.
 struct SnappedSpan {
   double lower, texel;
 };

@@ -1,9 +1,9 @@
-// The perspectives of Wimmer et al. 2004 (LiSPSM), Martin and Tan 2004 (TSM), Stamminger and Drettakis 2002 (PSM) and
-// Lloyd et al. 2008 (LogPSM), for a point light. A face's coordinates (a/w, b/w) are the light's post-perspective
-// space, where its rays are parallel; there the first, second and last put a perspective along the image of the view
-// axis whose centre is n before the nearest of what is seen. Departure: rays through the light are points of its face,
-// and depths are kept as distances along them, so that PSM needs no light in post-perspective space, and turns no
-// depths over.
+// Computes the perspectives of Wimmer et al. 2004 (LiSPSM), Martin and Tan 2004 (TSM), Stamminger and Drettakis 2002
+// (PSM) and Lloyd et al. 2008 (LogPSM), for a point light. A face's coordinates (a/w, b/w) are the light's
+// post-perspective space, where its rays are parallel; there the first, second and last apply a perspective along the
+// image of the view axis whose centre is n before the nearest visible point. Departure: rays through the light are
+// points of its face, and depths are kept as distances along the rays, so that PSM needs no light in post-perspective
+// space and no inversion of depths.
 
 #include "maps/host/warps.hpp"
 
@@ -21,7 +21,7 @@
 namespace penumbra::maps {
 namespace {
 
-/// A matrix with these rows.
+/// Returns the matrix with the rows a, b and k.
 glm::dmat3 with_rows(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& k) {
   return glm::transpose(glm::dmat3(a, b, k));
 }
@@ -30,8 +30,8 @@ glm::dvec2 seen_at(const glm::dvec3& x) {
   return glm::dvec2(x) / x.z;
 }
 
-/// A perspective along `along`, a unit vector of the face, whose centre is `distance` before `nearest`; b' runs from 0
-/// to 1 over `length`.
+/// Returns a perspective along `along`, a unit vector of the face, whose centre is `distance` before `nearest`; b' runs
+/// from 0 to 1 over `length`.
 glm::dmat3 perspective(const glm::dvec2& along, double nearest, double length, double distance) {
   const double far = distance + length;
   const glm::dvec3 a(-along.y, along.x, 0), g(along, 0);
@@ -39,7 +39,8 @@ glm::dmat3 perspective(const glm::dvec2& along, double nearest, double length, d
   return with_rows(a, b, k);
 }
 
-/// The distance from the perspective's centre to what is nearest; nothing where there should be no perspective.
+/// Returns the distance from the perspective's centre to the nearest visible point; nullopt where a perspective does
+/// not apply.
 std::optional<double> distance_of(Fit fit, const SeenBody& body, double near, double far, double focus_at) {
   if (fit == Fit::tsm) return tsm_distance(far - near, focus_at);
   if (!(near > 0)) return std::nullopt;
@@ -69,22 +70,22 @@ Warp along_the_view(Fit fit, const SeenBody& body, double focus) {
   const double focus_at =
       std::clamp(glm::dot(along, seen_at(in_focus)) - nearest, 0.01 * (farthest - nearest), farthest - nearest);
   const auto distance = distance_of(fit, body, nearest - eye, farthest - eye, focus_at);
-  // Beyond this a perspective is none.
+  // Beyond this distance a perspective is practically affine.
   if (!distance || !(*distance < 1e4 * (farthest - nearest))) return {};
   Warp warp{perspective(along, nearest, farthest - nearest, *distance)};
   if (fit == Fit::logpsm) warp.ratio = (*distance + farthest - nearest) / *distance;
   return warp;
 }
 
-/// The camera's perspective, with everything between two depths from −1 to 1: rows of the image of x − eye, and what z
-/// has besides.
+/// Perspective of the camera, with depths between near and far mapped from −1 to 1: rows of the image of x − eye, and
+/// the constant added to z.
 struct CameraMap {
   glm::dvec3 x, y, z, w;
   double z_more = 0;
 };
 
-/// The image of rays from 0 on a plane across the light's direction in post-perspective space, through the middle of
-/// what is seen there; nothing if some of it is seen on the other side of the line at infinity.
+/// Returns the image of rays from 0 on a plane across the light's direction in post-perspective space, through the
+/// middle of the body there; nullopt if part of the body is on the other side of the line at infinity.
 std::optional<glm::dmat3> post_perspective(const SeenBody& body, double back) {
   const glm::dvec3 eye = body.eye - back * body.forward;
   const double near = body.near + back, far = body.far + back;
@@ -104,7 +105,7 @@ std::optional<glm::dmat3> post_perspective(const SeenBody& body, double back) {
     upper = glm::max(upper, glm::dvec3(at) / at.w);
   }
   const glm::dvec3 middle = 0.5 * (lower + upper);
-  // The middle of the body in the world, and where its ray leads in the image.
+  // The middle of the body in the world, and the image of the middle's ray.
   const double depth = camera.z_more / (middle.z - (far + near) / (far - near));
   const glm::dvec3 c = eye + glm::inverse(with_rows(camera.x, camera.y, camera.w)) *
                                  glm::dvec3(middle.x * depth, middle.y * depth, depth);
@@ -127,7 +128,7 @@ std::optional<glm::dmat3> post_perspective(const SeenBody& body, double back) {
     least = std::min(least, k);
     most = std::max(most, k);
   }
-  // One side of the line at infinity, and not so near it that float32 has nothing left.
+  // On one side of the line at infinity, and far enough from the line for float32.
   constexpr double kStrongest = 1e-4;
   if (least > kStrongest * most && most > 0) return matrix;
   if (most < kStrongest * least && least < 0) return -matrix;
@@ -135,8 +136,8 @@ std::optional<glm::dmat3> post_perspective(const SeenBody& body, double back) {
 }
 
 Warp perspective_shadow_map(const SeenBody& body) {
-  // The eye moves back until all of the body is before it, seen along the light's rays (Stamminger and Drettakis 2002,
-  // section 4.1).
+  // The eye moves back until all of the body is in front of the eye, seen along the light's rays (Stamminger and
+  // Drettakis 2002, section 4.1).
   if (const auto matrix = post_perspective(body, 0)) return {*matrix};
   double back = (body.far - body.near) / 16;
   for (int step = 0; step < 12; ++step, back *= 2) {

@@ -11,24 +11,24 @@
 /// The warps of Eisemann et al. 2009, section 3.2.2, as homographies of a face's plane.
 namespace penumbra::maps {
 
-/// A camera and what it sees, in coordinates (a, b, w) of a face, the light's centre at 0.
+/// Camera and its visible points, in coordinates (a, b, w) of a face, with the light's centre at 0.
 struct SeenBody {
   std::span<const glm::dvec3> points;  ///< w > 0
-  double near = 0, far = 0;            ///< their depths along the view axis, near > 0
+  double near = 0, far = 0;            ///< depths of the points along the view axis, near > 0
   glm::dvec3 eye{0}, forward{0};
   glm::dvec3 across{0}, upward{0};  ///< screen_across, screen_upward
-  bool perspective = true;          ///< an orthographic camera has none to follow
+  bool perspective = true;          ///< false: an orthographic camera, without a perspective
 };
 
-/// A homography from (a, b, w) to (a' k, b' k, k) with k > 0 at all points.
+/// Homography from (a, b, w) to (a' k, b' k, k) with k > 0 at all points.
 struct Warp {
   glm::dmat3 matrix{1};
-  double ratio =
-      0;  ///< logpsm: b' is from 0 to 1, and the farthest is so many times as far from the eye as the nearest
+  double ratio = 0;  ///< logpsm: b' is from 0 to 1, and `ratio` is the distance of the farthest point from the eye over
+                     ///< that of the nearest
 };
 
-/// The identity where a warp would not help: where the eye is above what it sees, seen from the light, or looks along
-/// its rays. `focus`: ViewFit::focus.
+/// Returns the warp; the identity where a warp has no effect: where the eye, seen from the light, is above the visible
+/// points, or the view is along the light's rays. `focus`: ViewFit::focus.
 Warp warp_of(Fit fit, const SeenBody& body, double focus);
 
 }  // namespace penumbra::maps

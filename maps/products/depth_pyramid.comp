@@ -3,8 +3,8 @@
 #extension GL_GOOGLE_include_directive : require
 #include "maps/products/depth_pyramid.shared.h"
 
-// One level of a pyramid of smallest and largest depths: cells from texels, nodes from four of the level below. A node
-// that reaches beyond the last cell has the range of the cells that there are.
+// Computes one level of a pyramid of smallest and largest depths: cells from texels, nodes from four nodes of the level
+// below. A node that extends beyond the last cell has the range of the existing cells.
 
 layout(local_size_x = 64) in;
 layout(scalar, binding = 0) readonly buffer Maps { float maps[]; };
@@ -14,7 +14,7 @@ layout(scalar, binding = 1) buffer Pyramid {
 };
 layout(scalar, push_constant) uniform Push { PyramidPush push; };
 
-const float kEmpty = 1.0;  // what maps have where there is nothing
+const float kEmpty = 1.0;  // depth of empty texels
 
 void main() {
   const uint side = pyramid_nodes(push.cells, push.shift);
@@ -29,7 +29,7 @@ void main() {
     const uvec2 child = uvec2(k & 1, k >> 1);
     if (push.level == 0) {
       const uint size = push.cells - 1;
-      const uvec2 texel = at + child - 1;  // of cell 0, and beyond the last: beyond the map
+      const uvec2 texel = at + child - 1;  // of cell 0, and beyond the last: outside the map
       const bool inside = texel.x < size && texel.y < size;
       const float depth = inside ? maps[(face * size + texel.y) * size + texel.x] : kEmpty;
       range = vec2(min(range.x, depth), max(range.y, depth));

@@ -1,7 +1,7 @@
-// Guennebaud, Barthe and Paulin 2006 (HSM), Schwarz and Stamminger 2007 (MSSM) and 2008 (YSM), Yang et al. 2009 (the
-// dual grid). Departures: all three stand on the dual grid and differ in one number, where the nodes of a level stand;
-// the dual grid has a cell more on either side, between the map's border and the nothing beyond it; maps need not be a
-// power of two wide.
+// Builds pyramids of depth ranges: Guennebaud, Barthe and Paulin 2006 (HSM), Schwarz and Stamminger 2007 (MSSM) and
+// 2008 (YSM), Yang et al. 2009 (the dual grid). Departures: all three are on the dual grid and differ in one number,
+// the spacing of the nodes of a level; the dual grid has one more cell on either side, between the map's border and the
+// empty outside; the map's width need not be a power of two.
 
 #include "maps/products/depth_pyramid.hpp"
 
@@ -14,7 +14,7 @@
 namespace penumbra::maps {
 namespace {
 
-/// The quadtree levels of a YSM: 0, 1 and 2, an MSSM of a sixteenth of the nodes above them. Papers name no number.
+/// Quadtree levels of a YSM: 0, 1 and 2, with an MSSM of a sixteenth of the nodes above. The papers give no number.
 constexpr std::uint32_t kWholeOfHybrid = 2;
 constexpr std::uint32_t kPyramidGroup = 64;
 
@@ -23,7 +23,7 @@ std::uint64_t nodes_of(const gpu::PyramidHeader& header, std::uint32_t level, st
   return side * side * faces;
 }
 
-/// Up to this level the nodes of one kind stand as far apart as they are wide.
+/// Returns the level up to which the nodes of a kind are spaced by their width.
 std::uint32_t whole_of(PyramidKind kind, std::uint32_t size) {
   switch (kind) {
     case PyramidKind::hsm:

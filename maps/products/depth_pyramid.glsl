@@ -1,4 +1,4 @@
-// Asking a DepthPyramid. Before this is included, PYRAMID_BINDING says where its buffer is.
+// Queries of a DepthPyramid. Includers define PYRAMID_BINDING first, the binding of its buffer.
 #include "maps/products/depth_pyramid.shared.h"
 
 layout(scalar, binding = PYRAMID_BINDING) readonly buffer Pyramid {
@@ -6,7 +6,7 @@ layout(scalar, binding = PYRAMID_BINDING) readonly buffer Pyramid {
   vec2 nodes[];
 } pyramid;
 
-// The smallest and the largest depth of a node that stands at this cell: stored depths, 1 where there is nothing.
+// Returns the smallest and the largest depth of the node at this cell: stored depths, 1 for empty texels.
 vec2 pyramid_node(uint level, uint face, uvec2 cell) {
   const uint shift = pyramid_shift(level, pyramid.header.whole);
   const uint side = pyramid_nodes(pyramid.header.cells, shift);
@@ -14,11 +14,12 @@ vec2 pyramid_node(uint level, uint face, uvec2 cell) {
   return pyramid.nodes[pyramid.header.first[level] + (face * side + node.y) * side + node.x];
 }
 
-// At least the range of the cells lower … upper; exactly theirs in an MSSM.
+// Returns a range that contains the range of the cells lower … upper; the exact range in an MSSM.
 vec2 depth_range_of_cells(uint face, uvec2 lower, uvec2 upper) {
   const PyramidQuery query = pyramid_query(lower, upper, pyramid.header.whole, pyramid.header.top);
   const uvec2 count = (query.to - query.from) / query.step + 1;
-  // One loop: of two, one in the other and left at different turns by neighbours, Mesa 22.3 on processors loses some.
+  // One loop: of two nested loops left at different iterations by neighbours, Mesa 22.3 on processors loses some
+  // iterations.
   vec2 range = vec2(1.0, 0.0);
   for (uint k = 0; k < count.x * count.y; ++k) {
     const uvec2 node = min(query.from + uvec2(k % count.x, k / count.x) * query.step, query.to + 1 - query.step);
@@ -28,7 +29,8 @@ vec2 depth_range_of_cells(uint face, uvec2 lower, uvec2 upper) {
   return range;
 }
 
-// At least the range of the texels lower … upper; exactly theirs in an MSSM if they are two or more a side.
+// Returns a range that contains the range of the texels lower … upper; the exact range in an MSSM if there are two or
+// more texels a side.
 vec2 depth_range(uint face, uvec2 lower, uvec2 upper) {
   return depth_range_of_cells(face, lower + 1, max(upper, lower + 1));
 }

@@ -9,19 +9,20 @@
 
 namespace penumbra::maps {
 
-/// Where a pyramid has its nodes; see depth_pyramid.shared.h.
+/// Position of a pyramid's nodes; see depth_pyramid.shared.h.
 enum class PyramidKind : std::uint8_t { hsm, mssm, ysm };
 
-/// A pyramid over `faces` maps of size² texels. An MSSM or a YSM that would not fit into `most_bytes` is a quadtree up
-/// to the first level from which on it does: without upper levels a question about a whole map would take as many nodes
-/// as the coarsest level has. Throws ResourceError, saying which size would do, where not even a quadtree fits.
+/// Returns the header of a pyramid over `faces` maps of size² texels. An MSSM or a YSM that would not fit into
+/// `most_bytes` is a quadtree up to the first level from which on it fits: without upper levels a query of a whole map
+/// would need as many nodes as the coarsest level has. Throws ResourceError, with the largest possible size, if not
+/// even a quadtree fits.
 gpu::PyramidHeader pyramid_header(PyramidKind kind, std::uint32_t size, std::uint32_t faces, std::uint64_t most_bytes);
 
-/// The bytes of its nodes.
+/// Returns the bytes of the pyramid's nodes.
 std::uint64_t pyramid_bytes(const gpu::PyramidHeader& header, std::uint32_t faces);
 
-/// Smallest and largest stored depths over squares of the maps of one light point: a PyramidHeader, and behind it pairs
-/// of floats. Asked in depth_pyramid.glsl.
+/// Smallest and largest stored depths over squares of the maps of one light point: a PyramidHeader, followed by pairs
+/// of floats. Queried in depth_pyramid.glsl.
 class DepthPyramid final : public MapProduct {
  public:
   DepthPyramid(const render::Device& device, PyramidKind kind);
@@ -35,10 +36,10 @@ class DepthPyramid final : public MapProduct {
   std::unique_ptr<render::Buffer> nodes_;
 };
 
-/// How a method bounds the depths in a view sample's kernel.
+/// Structure that bounds the depths in a view sample's kernel.
 enum class Search : std::uint8_t { none, hsm, mssm, ysm };
 
-/// The option `search` of methods that look for a kernel's depths.
+/// Returns the option `search` of methods that need the depths of a kernel.
 constexpr visibility::ChoiceOption<Search, 4> search_option(Search otherwise) {
   return {"search",
           {{"none", Search::none}, {"hsm", Search::hsm}, {"mssm", Search::mssm}, {"ysm", Search::ysm}},
@@ -47,7 +48,7 @@ constexpr visibility::ChoiceOption<Search, 4> search_option(Search otherwise) {
           "min-max pyramid (hsm), a multi-scale one (mssm), or both (ysm)"};
 }
 
-/// `search` must not be none.
+/// Returns the kind of `search`, which must not be none.
 PyramidKind pyramid_of(Search search);
 
 }  // namespace penumbra::maps

@@ -1,15 +1,16 @@
-// One struct, two languages: pyramids of smallest and largest depths over the maps of one light point, and how they are
-// asked and walked. The same few lines of integers run in shaders and in the tests that count nodes.
+// Shared by C++ and GLSL: pyramids of smallest and largest depths over the maps of one light point, their queries and
+// traversal. The same few lines of integers run in shaders and in the tests that count nodes.
 //
 // A map of size² texels has (size + 1)² *cells*: cell (i, j) lies between the texels (i − 1 … i, j − 1 … j), the dual
-// grid on which contours run, and texels beyond the map are empty. A node of level l at cell (x, y) covers the cells x
-// … x + 2^l − 1, y … y + 2^l − 1, as far as there are any: the depths of (2^l + 1)² texels. Nodes of a level stand
-// 2^min(l, whole) cells apart, and `whole` is what tells the three structures from one another:
+// grid of contours, and texels outside the map are empty. A node of level l at cell (x, y) covers the existing cells of
+// x … x + 2^l − 1, y … y + 2^l − 1: the depths of (2^l + 1)² texels. Nodes of a level are 2^min(l, whole) cells apart,
+// and `whole` distinguishes the three structures:
 //   HSM   whole = top: a quadtree (Guennebaud 2006's hierarchical shadow map)
 //   MSSM  whole = 0:   a node at every cell on every level (Schwarz and Stamminger 2007), on the dual grid (Yang 2009)
 //   YSM   between:     a quadtree below, above it a node at each of the quadtree's (Schwarz and Stamminger 2008)
 #include "maps/host/map_view.shared.h"
-#ifndef PENUMBRA_MAPS_DEPTH_PYRAMID  // shaders include this in several ways
+#ifndef PENUMBRA_MAPS_DEPTH_PYRAMID  // included more than once by shaders, hence an include guard in place of #pragma
+                                     // once
 #define PENUMBRA_MAPS_DEPTH_PYRAMID
 #ifdef __cplusplus
 #pragma once
@@ -20,48 +21,49 @@ using glm::uvec2;
 inline constexpr uint kPyramidLevels = 16;
 #else
 #define PENUMBRA_SHARED
-const uint kPyramidLevels = 16;  // 2^15 cells and more: of maps of 16384² texels, too
+const uint kPyramidLevels = 16;  // up to 2^15 cells: also for maps of 16384² texels
 #endif
 
-// What stands at the start of a pyramid's buffer; the nodes, pairs of floats, follow.
+// Head of a pyramid's buffer; the nodes, pairs of floats, follow.
 struct PyramidHeader {
-  uint cells;                  // a side: size + 1
-  uint whole;                  // up to this level nodes stand as far apart as they are wide
+  uint cells;                  // on a side: size + 1
+  uint whole;                  // up to this level, nodes are spaced by their width
   uint top;                    // the coarsest level
-  uint first[kPyramidLevels];  // of each level, in nodes; level 0 of all faces, level 1 of all faces …
+  uint first[kPyramidLevels];  // first node of each level; level 0 of all faces, level 1 of all faces …
 };
 
-// depth_pyramid.comp: one level.
+// Push constants of depth_pyramid.comp: one level.
 struct PyramidPush {
   uint cells, faces, level;
-  uint shift, shift_below;  // how far apart the nodes of this level and of the one below stand, as powers of two
+  uint shift, shift_below;  // spacing of the nodes of this level and of the one below, as powers of two
   uint first, first_below;
 };
 
-// Nodes of the level stand 2^this cells apart.
+// Returns the binary logarithm of the spacing of a level's nodes, in cells.
 PENUMBRA_SHARED uint pyramid_shift(uint level, uint whole) {
   return level < whole ? level : whole;
 }
-// Nodes a side.
+// Returns the number of nodes on a side.
 PENUMBRA_SHARED uint pyramid_nodes(uint cells, uint shift) {
   return ((cells - 1) >> shift) + 1;
 }
-// The exponent of the largest power of two that is not above x > 0.
+// Returns the exponent of the largest power of two that is not above x > 0.
 PENUMBRA_SHARED uint pyramid_log2(uint x) {
   uint exponent = 0;
   for (; x > 1; x >>= 1) ++exponent;
   return exponent;
 }
 
-// The nodes that cover a rectangle of cells: columns from.x, from.x + step … of a level, the last one at to.x + 1 −
-// step; likewise rows; in nodes of that level.
+// Nodes that cover a rectangle of cells: columns from.x, from.x + step … of a level, the last one at to.x + 1 − step;
+// rows in the same form; in nodes of this level.
 struct PyramidQuery {
   uint level, shift, step;
   uvec2 from, to;
 };
 
-// Of the quadtree levels the finest of which 2 × 2 nodes suffice; above, the largest squares that fit into the
-// rectangle, which cover it and nothing else: four if it is about square, more if it is long.
+// Returns the nodes of a query: of the quadtree levels, the finest of which 2 × 2 nodes suffice; above, the largest
+// squares that fit into the rectangle and cover exactly the rectangle: four if the rectangle is about square, more if
+// the rectangle is long.
 PENUMBRA_SHARED PyramidQuery pyramid_query(uvec2 lower, uvec2 upper, uint whole, uint top) {
   PyramidQuery query;
   uint pair = 0;
@@ -79,15 +81,17 @@ PENUMBRA_SHARED PyramidQuery pyramid_query(uvec2 lower, uvec2 upper, uint whole,
   return query;
 }
 
-// A depth-first walk below one node, without a stack: a node's place below the root says which child it is.
+// Depth-first traversal below one node, without a stack: a node's position below the root determines its index among
+// its siblings.
 struct PyramidWalk {
   uvec2 root, at;  // in cells
   uint top, level;
   bool done;
 };
 
-// The finest level with a node that begins with the rectangle (as nodes stand: at its first cell in an MSSM, at the
-// quadtree's node that holds it in an HSM) and covers it; if no level has, the coarsest: roots then stand side by side.
+// Returns the finest level with a node that begins with the rectangle (by the spacing of nodes: at its first cell in an
+// MSSM, at the quadtree's node that holds it in an HSM) and covers the rectangle; if there is no such level, the
+// coarsest: several roots then lie side by side.
 PENUMBRA_SHARED uint pyramid_root_level(uvec2 lower, uvec2 upper, uint whole, uint top) {
   for (uint level = 0; level < top; ++level) {
     const uint shift = pyramid_shift(level, whole), width = 1u << level;
@@ -105,12 +109,12 @@ PENUMBRA_SHARED PyramidWalk pyramid_walk(uvec2 root, uint level) {
   walk.done = false;
   return walk;
 }
-// To the first child.
+// Moves to the first child.
 PENUMBRA_SHARED PyramidWalk pyramid_down(PyramidWalk walk) {
   --walk.level;
   return walk;
 }
-// Past this node: to the next sibling, or the next one of the first ancestor that has one.
+// Moves past this node: to the next sibling, or the next one of the first ancestor that has one.
 PENUMBRA_SHARED PyramidWalk pyramid_past(PyramidWalk walk) {
   for (; walk.level < walk.top; ++walk.level) {
     const uint width = 1u << walk.level;

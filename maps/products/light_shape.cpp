@@ -1,3 +1,6 @@
+// Distributes points over a light (R2 sequence, Roberts 2018) and maps the unit square to a light's shape (Shirley and
+// Chiu 1997).
+
 #include "maps/products/light_shape.hpp"
 
 #include <glm/common.hpp>
@@ -12,21 +15,21 @@
 namespace penumbra::maps {
 namespace {
 
-/// The R2 sequence (Roberts 2018): the two-dimensional golden ratio's multiples, modulo 1.
+/// Returns point i of the R2 sequence (Roberts 2018): multiples of the two-dimensional golden ratio, modulo 1.
 glm::dvec2 r2_point(std::uint32_t i) {
   constexpr double kPlastic = 1.32471795724474602596;  // x³ = x + 1
   const glm::dvec2 step{1 / kPlastic, 1 / (kPlastic * kPlastic)};
   return glm::fract(glm::dvec2(0.5) + static_cast<double>(i) * step);
 }
 
-/// Point i of the R2 sequence, mapped onto the unit disk without changing areas.
+/// Returns point i of the R2 sequence, mapped to the unit disk with equal areas.
 glm::dvec2 disk_point(std::uint32_t i) {
   const glm::dvec2 at = r2_point(i);
   const double radius = std::sqrt(at.x), angle = 2 * std::numbers::pi * at.y;
   return {radius * std::cos(angle), radius * std::sin(angle)};
 }
 
-/// Area-preserving, from the unit square onto a flat convex polygon: a fan around its first corner.
+/// Area-preserving map from the unit square to a flat convex polygon: a fan around its first corner.
 class Fan {
  public:
   explicit Fan(std::vector<glm::dvec2> corners) : corners_(std::move(corners)), area_up_to_(corners_.size() - 1, 0.0) {
@@ -99,7 +102,7 @@ glm::vec3 LightSquare::at(const glm::dvec2& unit) const {
   if (is_parallelogram(light_->kind)) return glm::vec3(frame_.center + a * frame_.u + b * frame_.v);
   const double ring = std::max(std::abs(a), std::abs(b));
   if (ring == 0) return glm::vec3(centroid_);
-  // How far around the ring, from its lower left corner and counter-clockwise: a quarter a side.
+  // Position on the ring, from its lower left corner and counter-clockwise: a quarter for each side.
   double quarters = 0;
   if (b == -ring) {
     quarters = (a / ring + 1) / 2;

@@ -12,30 +12,32 @@
 
 namespace penumbra::maps {
 
-/// `count` points spread evenly over a planar light, in its basis: always the same ones. Any first part of them is
-/// spread evenly too. (Unlike Light::points their number is the caller's.)
+/// Returns `count` points spread evenly over a planar light, in its basis: always the same points. Every prefix of the
+/// list is also spread evenly. (Unlike Light::points, the caller sets their number.)
 std::vector<glm::vec2> light_pattern(const visibility::Light& light, const LightBasis& basis, std::uint32_t count);
 
-/// The unit square laid onto a planar light, areas in proportion, its outline on the light's: squares around its middle
-/// become the light's own shape around the centroid (Shirley and Chiu 1997 for a disk or ellipse; a rectangle as it
-/// is).
+/// Map from the unit square to a planar light, with areas in proportion and its outline on the light's: squares around
+/// the middle become the light's own shape around the centroid (Shirley and Chiu 1997 for a disk or ellipse; a
+/// rectangle is only scaled).
 class LightSquare {
  public:
   explicit LightSquare(const visibility::Light& light);
-  /// In scene floats, as light samples are stored.
+  /// Returns the point in scene floats, the form of stored light samples.
   [[nodiscard]] glm::vec3 at(const glm::dvec2& unit) const;
 
  private:
-  /// The outline, a share of the area swept around the centroid from its start, 0 ... 1.
+  /// Returns the point of the outline at a fraction 0 ... 1 of the area swept around the centroid from the outline's
+  /// start.
   [[nodiscard]] glm::dvec3 outline(double share) const;
 
   const visibility::Light* light_;
   visibility::LightFrame frame_;
   glm::dvec3 centroid_;
-  std::vector<double> area_up_to_;  // of a polygon: swept up to each corner, the last 1
+  std::vector<double> area_up_to_;  // of a polygon: area swept up to each corner, the last 1
 };
 
-/// light_pattern of several counts, one behind the other, on the device: what look-ups that filter need of the light.
+/// Patterns of several counts (light_pattern), one after the other, on the device: points of the light for look-ups
+/// that filter.
 class LightPattern final : public MapProduct {
  public:
   LightPattern(const render::Device& device, std::initializer_list<std::uint32_t> counts);
@@ -47,10 +49,10 @@ class LightPattern final : public MapProduct {
   render::Buffer points_;
 };
 
-/// Half the light's width: the radius of the disk of its area.
+/// Returns half the light's width: the radius of the disk of its area.
 double half_width(const visibility::Light& light);
 
-/// How far the light reaches from its centroid along the basis's u and v, on the farther side.
+/// Returns the extent of the light from its centroid along the basis's u and v, on the farther side.
 glm::dvec2 half_extent(const visibility::Light& light, const LightBasis& basis);
 
 }  // namespace penumbra::maps

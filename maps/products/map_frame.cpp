@@ -1,3 +1,5 @@
+// Computes the depth of receivers and the box with the light's second moments (map_frame.hpp).
+
 #include "maps/products/map_frame.hpp"
 
 #include "maps/products/light_shape.hpp"
@@ -13,8 +15,8 @@
 namespace penumbra::maps {
 namespace {
 
-/// Mean of x² and of y² over a flat convex polygon around its centroid 0: over a triangle with corners a, b, c it is
-/// (a² + b² + c² + (a + b + c)²) / 12, and the polygon is a fan of triangles around its first corner.
+/// Returns the mean of x² and of y² over a flat convex polygon around its centroid 0: over a triangle with corners a,
+/// b, c the mean is (a² + b² + c² + (a + b + c)²) / 12, and the polygon is a fan of triangles around its first corner.
 glm::dvec2 second_moments(const std::vector<glm::dvec2>& corners) {
   glm::dvec2 moments(0);
   double area = 0;
@@ -33,7 +35,7 @@ glm::dvec2 second_moments(const std::vector<glm::dvec2>& corners) {
 glm::dvec2 half_box(const visibility::Light& light, const LightBasis& basis) {
   if (is_circle(light.kind)) return glm::dvec2(std::sqrt(3.0) / 2 * light.radius);
   if (is_round(light.kind)) {
-    const LightBounds bounds = light_bounds(light, basis);  // the mean of x² is a quarter of the farthest
+    const LightBounds bounds = light_bounds(light, basis);  // the mean of x² is a quarter of the largest x²
     return std::sqrt(3.0) / 2 * bounds.upper;
   }
   return glm::sqrt(3.0 * second_moments(light_outline(light, basis)));

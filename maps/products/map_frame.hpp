@@ -5,11 +5,12 @@
 
 namespace penumbra::maps {
 
-/// The box, parallel to the basis, that stands for a light where windows must be boxes: it has the light's own second
-/// moments, so its half sides are √3 times their roots. A rectangle's is itself, a disk's has half sides √3/2 radius.
+/// Returns half the sides of the box, parallel to the basis, that replaces a light where windows must be boxes: the box
+/// has the light's own second moments, so its half sides are √3 times their roots. A rectangle is its own box, a disk's
+/// has half sides √3/2 radius.
 glm::dvec2 half_box(const visibility::Light& light, const LightBasis& basis);
 
-/// A gpu::MapFrame on the device: how deep receivers reach, and the light's box. Depends on mesh and light only.
+/// gpu::MapFrame on the device: the depth of receivers, and the light's box. Depends on mesh and light only.
 class MapFrame final : public MapProduct {
  public:
   explicit MapFrame(const render::Device& device);

@@ -1,4 +1,4 @@
-// One struct, two languages: what look-ups of whole windows need of a light and its receivers.
+// Shared by C++ and GLSL: data of a light and its receivers for look-ups of whole windows.
 #ifndef PENUMBRA_MAPS_MAP_FRAME
 #define PENUMBRA_MAPS_MAP_FRAME
 #include "maps/host/map_view.shared.h"
@@ -10,8 +10,8 @@ namespace penumbra::maps::gpu {
 // Heights are distances from the light's plane.
 struct MapFrame {
   float deepest[2];     // height of the deepest receiver where the light's normal points, and behind; 0: there is none
-  vec2 half_box;        // half the sides of the box that stands for the light, along the basis's u and v
-  float smallest_near;  // no near plane is put nearer to the light than this
+  vec2 half_box;        // half the sides of the box that replaces the light, along the basis's u and v
+  float smallest_near;  // smallest distance of a near plane from the light
 };
 
 #ifdef __cplusplus

@@ -3,13 +3,14 @@
 #extension GL_GOOGLE_include_directive : require
 #include "maps/products/nearest_caster.shared.h"
 
-// The smallest distance from the light's plane, on either side, of what the maps of one light point hold. One workgroup
-// a row of a face.
+// Computes the smallest distance from the light's plane, on either side, of all surfaces in the maps of one light
+// point. One workgroup for each row of a face.
 
 layout(local_size_x = 64) in;
 layout(scalar, binding = 0) readonly buffer Views { LightView views[]; };
 layout(scalar, binding = 1) readonly buffer Maps { float maps[]; };
-layout(scalar, binding = 2) buffer Nearest { uint nearest[2]; };  // bits of floats >= 0, which order like integers
+layout(scalar, binding = 2) buffer Nearest { uint nearest[2]; };  // bits of floats >= 0, which have the order of
+                                                                  // integers
 layout(scalar, push_constant) uniform Push { NearestPush push; };
 
 shared uint smallest;
@@ -20,7 +21,7 @@ void main() {
   const uint map = row / push.size;
   const LightView view = views[0];
   const uint s = map >= view.side[0].first_face + view.side[0].face_count ? 1 : 0;
-  // A sideways face of a hemicube has the distance from the plane along its rows: b / w runs from 0 to 1.
+  // On a sideways face of a hemicube, the distance from the plane varies along its rows: b / w runs from 0 to 1.
   const bool sideways = map != view.side[s].first_face;
   const float height = sideways ? (float(row % push.size) + 0.5) / float(push.size) : 1.0;
 

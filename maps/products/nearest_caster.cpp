@@ -1,3 +1,5 @@
+// Records the minimum of depths of the centre's maps (nearest_caster.comp).
+
 #include "maps/products/nearest_caster.hpp"
 
 #include "maps/products/nearest_caster.comp.spv.hpp"

@@ -7,7 +7,7 @@
 
 namespace penumbra::maps {
 
-/// The smallest distance from the light's plane of what the maps of the light's centre hold: two floats, for the side
+/// Smallest distance from the light's plane of all surfaces in the maps of the light's centre: two floats, for the side
 /// where its normal points and for the other; infinite where the maps of a side are empty.
 class NearestCaster final : public MapProduct {
  public:
@@ -18,7 +18,7 @@ class NearestCaster final : public MapProduct {
  private:
   const render::Device* device_;
   render::ComputePass pass_;
-  std::optional<render::ComputePass> fitted_;  ///< of MapSet::face_table
+  std::optional<render::ComputePass> fitted_;  ///< for MapSet::face_table
   render::Buffer nearest_;
 };
 

@@ -1,4 +1,4 @@
-// One struct, two languages: nearest_caster.comp's.
+// Shared by C++ and GLSL: push constants of nearest_caster.comp.
 #include "maps/host/map_view.shared.h"
 #ifdef __cplusplus
 #pragma once

@@ -4,12 +4,13 @@
 #include "maps/products/nearest_caster.shared.h"
 #include "maps/host/fitted_face.glsl"
 
-// nearest_caster.comp, of faces that are fitted to what a camera sees.
+// Computes the same as nearest_caster.comp, for faces fitted to the view of a camera.
 
 layout(local_size_x = 64) in;
 layout(scalar, binding = 0) readonly buffer Views { LightView views[]; };
 layout(scalar, binding = 1) readonly buffer Maps { float maps[]; };
-layout(scalar, binding = 2) buffer Nearest { uint nearest[2]; };  // bits of floats >= 0, which order like integers
+layout(scalar, binding = 2) buffer Nearest { uint nearest[2]; };  // bits of floats >= 0, which have the order of
+                                                                  // integers
 layout(scalar, binding = 3) readonly buffer Faces {
   FaceTable table_of_faces;
   FittedFace fitted_faces[];

@@ -1,5 +1,5 @@
-// Hourcade and Nicolas 1985, "Algorithms for antialiased cast shadows": a map that says who is nearest, and not only
-// how near. Departure: numbers are triangles' ranks, which do not depend on the order of triangles.
+// Draws a map of identities of the nearest surfaces: Hourcade and Nicolas 1985, "Algorithms for antialiased cast
+// shadows". Departure: identities are ranks of triangles, which do not depend on the order of triangles.
 
 #include "maps/products/nearest_ids.hpp"
 
@@ -20,7 +20,7 @@
 
 namespace penumbra::maps {
 
-// A block of OpenGL lays out what follows a struct on the next multiple of 16 bytes.
+// A block of OpenGL aligns the member after a struct to the next multiple of 16 bytes.
 static_assert(offsetof(gpu::IdsPush, size) == sizeof(gpu::CasterPush));
 
 NearestIds::NearestIds(const render::Device& device, Rasteriser rasteriser, IdsOf compared)

@@ -4,7 +4,7 @@
 #include "maps/products/nearest_ids.shared.h"
 #include "render/both.glsl"
 
-STORAGE(1) readonly buffer Ids { uint id_of[]; };  // the vertex shader's
+STORAGE(1) readonly buffer Ids { uint id_of[]; };  // written by the vertex shader
 STORAGE(2) readonly buffer Maps { float maps[]; };
 STORAGE(3) buffer Nearest { uint nearest[]; };
 #include "maps/products/nearest_ids.glsl"

@@ -1,9 +1,8 @@
-// The triangles whose depth a map has at a texel (Hourcade and Nicolas 1985): of several at one place the smallest id, in
-// whatever order they are drawn. Depth as in caster.frag; as in peel.frag what is within 2^-20 of the nearest is the same
-// surface. `maps` and `nearest` are the
-// shader's.
+// Stores the triangle at the map's depth in a texel (Hourcade and Nicolas 1985): of several at one depth the smallest
+// id, independent of the order of drawing. Depth as in caster.frag; as in peel.frag, surfaces within 2^-20 of the
+// nearest are the same surface. `maps` and `nearest` are declared by the shader.
 
-PUSH_CONSTANTS IdsBlock { IdsPush push; };  // not Push: blocks of one name are one in both stages
+PUSH_CONSTANTS IdsBlock { IdsPush push; };  // not Push: blocks with one name are one block in both stages
 layout(location = 0) flat in uint id;
 
 void mark_nearest() {

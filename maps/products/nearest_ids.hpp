@@ -13,12 +13,12 @@
 
 namespace penumbra::maps {
 
-/// What of a triangle a look-up compares with the receiver's.
+/// Property of a triangle compared with the receiver's by a look-up.
 enum class IdsOf : std::uint8_t { planes, objects };
 
-/// Which caster a texel of the maps of a light's centre has: for each texel of the nearest layer the triangle's rank
-/// (visibility::ranks), gpu::kNoId where nothing is. Of surfaces at one place (within 2⁻²⁰, as layers have it) the
-/// smallest rank. Behind it, what a look-up compares: of each rank the number of its plane, or of its object.
+/// Caster stored in a texel of the maps of a light's centre: for each texel of the nearest layer the triangle's rank
+/// (visibility::ranks), gpu::kNoId for an empty texel. Of surfaces at one depth (within 2⁻²⁰, as for layers) the
+/// smallest rank. Followed by the values compared by a look-up: for each rank the index of its plane, or of its object.
 class NearestIds final : public MapProduct {
  public:
   explicit NearestIds(const render::Device& device, Rasteriser rasteriser = Rasteriser::vulkan,
@@ -53,8 +53,8 @@ class NearestIds final : public MapProduct {
   };
   const render::Device* device_;
   IdsOf compared_;
-  std::optional<Passes> passes_;               // either these
-  std::optional<OpenGlPasses> opengl_passes_;  // or those
+  std::optional<Passes> passes_;               // used with Vulkan
+  std::optional<OpenGlPasses> opengl_passes_;  // used with OpenGL
   std::optional<render::Buffer> surfaces_;     // HoleSurfaces::words
   std::vector<Uploaded> uploaded_;
   std::unique_ptr<render::Buffer> ids_, compared_numbers_;

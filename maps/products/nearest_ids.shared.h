@@ -1,4 +1,4 @@
-// One struct, two languages: which triangle a texel's nearest surface is of. nearest_ids.hpp has the picture.
+// Shared by C++ and GLSL: identity of a texel's nearest surface. nearest_ids.hpp describes it.
 #ifndef PENUMBRA_MAPS_NEAREST_IDS
 #define PENUMBRA_MAPS_NEAREST_IDS
 #include "maps/host/map_view.shared.h"
@@ -7,14 +7,14 @@
 namespace penumbra::maps::gpu {
 inline constexpr uint kNoId = 0xffffffffu;
 #else
-const uint kNoId = 0xffffffffu;  // of a texel that holds nothing, and of receivers that no map holds
+const uint kNoId = 0xffffffffu;  // of an empty texel, and of receivers contained in no map
 #endif
 
-// nearest_ids.vert, which reads the first part, and nearest_ids.frag.
+// Push constants of nearest_ids.vert, which reads the first part, and nearest_ids.frag.
 struct IdsPush {
   CasterPush face;
   uint size;   // of a face
-  uint first;  // texel of the face
+  uint first;  // first texel of the face
 };
 
 #ifdef __cplusplus

@@ -4,7 +4,7 @@
 #include "maps/host/map_view.shared.h"
 #include "render/both.glsl"
 
-// caster.vert, and which triangle it is.
+// Transforms as caster.vert does, and passes the triangle's id.
 
 STORAGE(1) readonly buffer Ids { uint id_of[]; };
 PUSH_CONSTANTS Push { CasterPush face; };

@@ -5,9 +5,9 @@
 #include "render/both.glsl"
 #include "maps/host/holes.glsl"
 
-// nearest_ids.frag for surfaces with holes.
+// Draws as nearest_ids.frag does, for surfaces with holes.
 
-STORAGE(3) readonly buffer Ids { uint id_of[]; };  // the vertex shader's
+STORAGE(3) readonly buffer Ids { uint id_of[]; };  // written by the vertex shader
 STORAGE(4) readonly buffer Maps { float maps[]; };
 STORAGE(5) buffer Nearest { uint nearest[]; };
 #include "maps/products/nearest_ids.glsl"

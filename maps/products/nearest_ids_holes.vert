@@ -5,9 +5,9 @@
 #include "render/both.glsl"
 #include "maps/host/holes_corner.glsl"
 
-// nearest_ids.vert for surfaces with holes.
+// Transforms as nearest_ids.vert does, for surfaces with holes.
 
-STORAGE(2) readonly buffer Surfaces { uint surface_words[]; };  // the fragment shader's
+STORAGE(2) readonly buffer Surfaces { uint surface_words[]; };  // read by the fragment shader
 STORAGE(3) readonly buffer Ids { uint id_of[]; };
 PUSH_CONSTANTS Push { CasterPush face; };
 layout(location = 0) flat out uint id;

@@ -1,3 +1,6 @@
+// Prefilters functions of depth for means over windows: summed areas in integers (Crow 1984), mip levels (Williams
+// 1983), N-buffers (Décoret 2005).
+
 #include "maps/products/prefilter.hpp"
 
 #include "base/error.hpp"
@@ -15,7 +18,7 @@ std::uint64_t groups_of(std::uint64_t invocations) {
   return (invocations + 63) / 64;
 }
 
-/// Texels on a side of a level.
+/// Returns the texels on a side of a level.
 std::uint32_t level_size(PrefilterKind kind, std::uint32_t size, std::uint32_t level) {
   return kind == PrefilterKind::pyramid ? (size + (1U << level) - 1) >> level : size;
 }
@@ -26,7 +29,7 @@ std::uint32_t level_count(PrefilterKind kind, std::uint32_t size) {
   return floor + (kind == PrefilterKind::pyramid && !std::has_single_bit(size) ? 2 : 1);
 }
 
-/// The most bits a texel of size² texels whose sum is below 2³².
+/// Returns the largest number of bits of a texel for which the sum of size² texels is below 2³².
 std::uint32_t bits_of_limb(std::uint32_t size) {
   std::uint32_t bits = 0;
   while (std::uint64_t{size} * size << (bits + 1) <= std::uint64_t{1} << 32) ++bits;
@@ -100,7 +103,7 @@ void Prefilter::record(render::Commands& commands, const MapSet& maps) {
   }
   const gpu::PrefilterValuesPush push{faces * maps.size * maps.size, options_.of_bits ? 1U : 0U,
                                       options_.slope ? 1U : 0U};
-  if (maps.faces == 0) return;  // no receiver will ask
+  if (maps.faces == 0) return;  // there is no receiver
   values_.record(
       commands, push,
       {*table_, options_.of_bits ? sources_.bits->buffer() : maps.depths, maps.views, sources_.nearest->buffer(),

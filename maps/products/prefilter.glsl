@@ -1,9 +1,10 @@
-// Means of prefiltered functions over boxes of a face. Bindings PREFILTER_FIRST … PREFILTER_FIRST + 4 are the product's,
-// specialization constants 0 and 1 are its scheme and how many buffers it fills. A look-up calls mean_over in one place, in a loop: compilers copy it to each.
+// Means of prefiltered functions over boxes of a face. Bindings PREFILTER_FIRST … PREFILTER_FIRST + 4 are the
+// product's, specialization constants 0 and 1 are its scheme and its number of buffers. A look-up calls mean_over in
+// one place, in a loop: compilers inline it at each call.
 #include "maps/products/prefilter_value.glsl"
 
-layout(constant_id = 0) const uint kScheme = kTable;  // a pipeline knows one way to take means alone
-// Few devices jump over what a switch does not choose for all of a group's invocations: some fetch from each buffer.
+layout(constant_id = 0) const uint kScheme = kTable;  // a pipeline has the code of one scheme alone
+// Few devices skip code not selected by a switch for all of a group's invocations: some fetch from each buffer.
 layout(constant_id = 1) const uint kBuffers = kPrefilterBuffers;
 
 layout(scalar, binding = PREFILTER_FIRST) readonly buffer Table { PrefilterTable table; PrefilterValue values[]; };
@@ -12,15 +13,15 @@ layout(scalar, binding = PREFILTER_FIRST + 2) readonly buffer Images1 { uint ima
 layout(scalar, binding = PREFILTER_FIRST + 3) readonly buffer Images2 { uint images2[]; };
 layout(scalar, binding = PREFILTER_FIRST + 4) readonly buffer Images3 { uint images3[]; };
 
-#ifndef PREFILTER_FETCHES  // what a test counts
+#ifndef PREFILTER_FETCHES  // counted by a test
 #define PREFILTER_FETCHES
 #endif
 
-// A box of texels of one face, lower < upper unless it is empty, within [0, size].
+// Box of texels of one face, lower < upper unless it is empty, within [0, size].
 struct Box {
   uint face;     // of the light point
   vec2 lower, upper;
-  float inside;  // the share of the window that is in the map; beside it there is nothing
+  float inside;  // fraction of the window in the map; beside the map there is no caster
 };
 
 uint word_at(uint block, uint place) {
@@ -46,7 +47,7 @@ uint sum_below(uint block, uint face, uint x, uint y) {
   return x == 0 || y == 0 ? 0 : word_at(block, (face * table.size + y - 1) * table.size + x - 1);
 }
 
-// The first column, those that the box holds whole, and the last.
+// Returns the first column, the range of columns completely in the box, and the last column.
 uvec4 borders(float lower, float upper) {
   const uint first = uint(floor(lower)), last = uint(ceil(upper));
   return uvec4(first, first + 1, max(first + 1, last - 1), max(last, first + 1));
@@ -67,7 +68,7 @@ float mean_of_table(PrefilterValue value, Box box, float log2_scale) {
       uvec4 row;
       for (uint i = 0; i < 4; ++i) row[i] = sum_below(value.first_block + limb, box.face, x[i], y[j]);
       if (j > 0) {
-        const uvec4 band = row - below;  // modulo 2^32, as the sums are
+        const uvec4 band = row - below;  // modulo 2^32, as the sums
         sum += share_y[j - 1] * dot(share_x, vec3(band.yzw - band.xyz));
       }
       below = row;
@@ -85,7 +86,7 @@ float texel_of(uint block, uint offset, uint side, uint face, ivec2 at) {
   return uintBitsToFloat(word_at(block, offset + (face * side + texel.y) * side + texel.x));
 }
 
-// Between the four texels around `at`, whose whole numbers are texels.
+// Interpolates between the four texels around `at`, in texels.
 float between_texels(uint block, uint offset, uint side, uint face, vec2 at) {
   const vec2 first = floor(at), part = at - first;
   const ivec2 i = ivec2(first);
@@ -98,7 +99,7 @@ float between_texels(uint block, uint offset, uint side, uint face, vec2 at) {
 
 float mean_of_pyramid(PrefilterValue value, Box box) {
   const vec2 extent = max(box.upper - box.lower, vec2(1.0)), center = 0.5 * (box.lower + box.upper);
-  // The level whose texels are as large as the box.
+  // Level whose texels have the size of the box.
   const float level = clamp(0.5 * log2(extent.x * extent.y), 0.0, float(table.levels - 1));
   float means[2];
   uint offset = 0;
@@ -114,7 +115,7 @@ float mean_of_pyramid(PrefilterValue value, Box box) {
   return part == 0.0 ? means[0] : mix(means[0], means[1], part);
 }
 
-// No more squares than these along an axis, however long and thin the box is.
+// Largest number of squares along an axis, for any proportion of the box.
 const uint kMostSquares = 8;
 
 float mean_of_windows(PrefilterValue value, Box box) {
@@ -129,14 +130,14 @@ float mean_of_windows(PrefilterValue value, Box box) {
   for (uint j = 0; j < count.y; ++j) {
     for (uint i = 0; i < count.x; ++i) {
       const vec2 at = clamp(box.lower + vec2(i, j) * step, vec2(0.0), last);
-      // At a whole place, the last among them, there is nothing between: its neighbours have no weight.
+      // At an integer position, including the last, there is no interpolation: the neighbours have weight 0.
       sum += between_texels(value.first_block, offset, table.size, box.face, at);
     }
   }
   return sum / float(count.x * count.y);
 }
 
-// The mean of function `index` over the window, times 2^log2_scale.
+// Returns the mean of function `index` over the window, times 2^log2_scale.
 float mean_over(uint index, Box box, float log2_scale) {
   const PrefilterValue value = values[index];
   float mean = 0.0;
@@ -154,38 +155,39 @@ float mean_over(uint index, Box box, float log2_scale) {
 
 // ---- windows
 
-// A window of texels of one face, as a look-up wants it: it may reach beside the map.
+// Window of texels of one face, as requested by a look-up: it may extend beside the map.
 struct Window {
   uint face;   // of the light point
-  bool alone;  // the face is all of its side: beside it there is nothing
+  bool alone;  // the face is the whole side of the light's plane: beside the face there is no caster
   vec2 lower, upper, extent;
 };
 
-// The part of a window that is in the map.
+// Returns the part of a window that is in the map.
 Box box_of(Window window) {
   Box box;
   box.face = window.face;
   box.lower = clamp(window.lower, vec2(0.0), vec2(table.size));
   box.upper = clamp(window.upper, vec2(0.0), vec2(table.size));
   const vec2 inside = box.upper - box.lower;
-  // To the bit: what is beside, an exponential of the whole depth, makes light of the last digit of a share.
+  // Exact comparison: for the part beside the map, an exponential of the whole depth would amplify the last digit of a
+  // fraction.
   const bool whole = box.lower == window.lower && box.upper == window.upper;
-  // Beside the window of a map there is nothing; beside a face of a hemicube there are the others, of which the part on
-  // this face is taken to be a fair sample.
+  // Beside the window of a map there is no caster; beside a face of a hemicube there are other faces, and the part on
+  // this face is assumed to be representative of them.
   box.inside = inside.x > 0.0 && inside.y > 0.0 ? (window.alone && !whole ? inside.x * inside.y / (window.extent.x * window.extent.y) : 1.0)
                                                 : 0.0;
   return box;
 }
 
-// The light's box as the receiver d sees it through height z (> 0): around the receiver's own direction, half as wide as
-// half_box (1/z - 1/|d.z|) in x/z and y/z, but no narrower than a texel: then the receiver's own.
+// Returns the light's box as seen from the receiver d through height z (> 0): around the receiver's own direction, half
+// as wide as half_box (1/z - 1/|d.z|) in x/z and y/z, but no narrower than a texel: then the receiver's own texel.
 Window window_through(LightView view, vec3 d, vec2 half_box, float z) {
   const float height = abs(d.z);
   const FaceHit hit = face_hit(view, d);
   const vec2 texel = (hit.upper - hit.lower) / float(table.size);
   const vec2 at = hit.f.xy / hit.f.z;
   vec2 reach = half_box * max(1.0 / z - 1.0 / height, 0.0);
-  // On a sideways face, a = other / side and b = height / side: the box that holds the window, to first order.
+  // On a sideways face, a = other / side and b = height / side: the box that contains the window, to first order.
   if (hit.axis == 0) reach = at.y * vec2(reach.y + abs(at.x) * reach.x, at.y * reach.x);
   if (hit.axis == 1) reach = at.y * vec2(reach.x + abs(at.x) * reach.y, at.y * reach.y);
   const vec2 center = (at - hit.lower) / texel, width = 2.0 * reach / texel;
@@ -197,8 +199,8 @@ Window window_through(LightView view, vec3 d, vec2 half_box, float z) {
 
 Box box_through(LightView view, vec3 d, vec2 half_box, float z) { return box_of(window_through(view, d, half_box, z)); }
 
-// So many texels a side around the receiver: an odd window is centred on its texel, an even one on the texel border
-// nearest to it.
+// Returns a window of `texels` texels a side around the receiver: an odd window is centred on the receiver's texel, an
+// even one on the texel border nearest to the receiver.
 Window window_of_texels(LightView view, vec3 d, uint texels) {
   const FaceHit hit = face_hit(view, d);
   const vec2 at = (hit.f.xy / hit.f.z - hit.lower) * float(table.size) / (hit.upper - hit.lower);
@@ -207,7 +209,7 @@ Window window_of_texels(LightView view, vec3 d, uint texels) {
   return Window(side.first_face + hit.face, side.face_count == 1, first, first + float(texels), vec2(float(texels)));
 }
 
-// The receiver's height less what the bias forgives: as in blocks(), bias texels in depth, more on a slope.
+// Returns the receiver's height less the bias: as in blocks(), bias texels in depth, more on a slope.
 float height_less_bias(LightView view, vec3 d, vec3 m) {
   const FaceHit hit = face_hit(view, d);
   const vec2 texels = (hit.upper - hit.lower) / float(lookup.size);

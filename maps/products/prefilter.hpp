@@ -13,49 +13,49 @@
 
 namespace penumbra::maps {
 
-/// How means over windows are taken from what is stored.
+/// Scheme of means over windows.
 enum class PrefilterKind : std::uint32_t {
-  table = gpu::kTable,      ///< summed areas in integers: any box, its border texels by their share
-  pyramid = gpu::kPyramid,  ///< mip levels, looked up between texels and between levels
+  table = gpu::kTable,      ///< summed areas in integers: any box, its border texels weighted by their fraction
+  pyramid = gpu::kPyramid,  ///< mip levels, interpolated between texels and between levels
   windows = gpu::kWindows,  ///< N-buffer: overlapping squares of the largest power of two that fits into the box
 };
 
-/// One function of a texel, see prefilter.shared.h.
+/// Function of a texel, see prefilter.shared.h.
 struct PrefilterFunction {
   std::uint32_t kind = gpu::kLayer, power = gpu::kPlain;
   float a = 1, b = 0;
-  std::uint32_t digits = 24;  ///< binary digits that a table keeps of it; 0: it is 0 or 1
+  std::uint32_t digits = 24;  ///< number of binary digits stored in a table; 0: the value is 0 or 1
 };
 
 struct PrefilterOptions {
   PrefilterKind kind = PrefilterKind::table;
   std::vector<PrefilterFunction> functions{};
   bool of_bits = false;            ///< texels are words of bits; else the maps' depths
-  bool slope = false;              ///< squares of layers have what the surface's slope adds to them within a texel
-  std::uint64_t buffer_bytes = 0;  ///< no buffer is larger; 0: than the device allows
+  bool slope = false;              ///< squares of layers include the effect of the surface's slope within a texel
+  std::uint64_t buffer_bytes = 0;  ///< size limit of a buffer; 0: the device's limit
 };
 
-/// Functions of the texels of one light point's maps, prefiltered: a look-up gets their means over windows of any size
-/// by a number of fetches that does not depend on the window (maps/products/prefilter.glsl).
+/// Functions of the texels of one light point's maps, prefiltered: a look-up computes their means over windows of any
+/// size by a number of fetches independent of the window (maps/products/prefilter.glsl).
 ///
 /// Tables sum unsigned integers modulo 2³². With b = ⌊32 − 2 log₂ size⌋ bits a texel no box overflows, so a value of
-/// more binary digits is cut into limbs of b bits, each with a table of its own: sums of 24 digits, or of the 150 that
-/// an exponential needs, are exact at any size.
+/// more binary digits is cut into limbs of b bits, each with a table of its own: sums of 24 digits, or of the 150
+/// needed by an exponential, are exact at any size.
 class Prefilter final : public MapProduct {
  public:
-  /// What texels are read from. All are recorded before this.
+  /// Sources of texels. All are recorded before this product.
   struct Sources {
     const MapProduct* nearest = nullptr;  ///< NearestCaster
     const MapProduct* frame = nullptr;    ///< MapFrame
-    const MapProduct* bits = nullptr;     ///< a word a texel of each face; with of_bits
+    const MapProduct* bits = nullptr;     ///< one word for each texel of each face; with of_bits
   };
   Prefilter(const render::Device& device, PrefilterOptions options, const Sources& sources);
 
-  /// Throws ResourceError, saying which size would do, if the device's buffers do not hold it.
+  /// Throws ResourceError, with the largest possible size, if the device's buffers are too small.
   void record(render::Commands& commands, const MapSet& maps) override;
   [[nodiscard]] const render::Buffer& buffer() const override { return *table_; }
   [[nodiscard]] std::vector<render::BufferReference> buffers() const override;
-  /// The scheme, and how many of its buffers it fills.
+  /// Returns the scheme and the number of its buffers.
   [[nodiscard]] std::vector<std::uint32_t> constants(std::uint32_t size, std::uint32_t faces) const override;
   [[nodiscard]] std::uint64_t memory_bytes() const override;
 
@@ -70,11 +70,11 @@ class Prefilter final : public MapProduct {
   SummedAreas sums_;
   std::unique_ptr<render::Buffer> table_;
   std::array<std::unique_ptr<render::Buffer>, gpu::kPrefilterBuffers> images_;
-  std::array<std::uint32_t, gpu::kPrefilterBuffers> blocks_{};  ///< in each
+  std::array<std::uint32_t, gpu::kPrefilterBuffers> blocks_{};  ///< in each buffer
 };
 
-/// How what a look-up needs is laid out, for maps of this size. Empty if that is more than `kPrefilterBuffers` buffers
-/// of `buffer_bytes` hold.
+/// Layout of a look-up's data, for maps of this size. Empty if more is needed than `kPrefilterBuffers` buffers of
+/// `buffer_bytes` hold.
 struct PrefilterLayout {
   gpu::PrefilterTable table;
   std::vector<gpu::PrefilterValue> values;

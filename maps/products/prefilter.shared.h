@@ -1,5 +1,5 @@
-// One struct, two languages: what texels are made into so that means over windows of them take a fixed number of
-// fetches. prefilter.hpp has the picture.
+// Shared by C++ and GLSL: functions of texels, stored so that means over windows take a fixed number of fetches.
+// prefilter.hpp describes them.
 #ifndef PENUMBRA_MAPS_PREFILTER
 #define PENUMBRA_MAPS_PREFILTER
 #include "maps/host/map_view.shared.h"
@@ -18,13 +18,14 @@ const uint kBit = 5;      // bit a of the texel's word
 
 const uint kPlain = 0;
 const uint kSquared = 1;
-const uint kTimesHeight = 2;  // of kSine and kCosine: 1/2 + t sin(a t) / 2
+const uint kTimesHeight = 2;  // with kSine and kCosine: 1/2 + t sin(a t) / 2
 
 struct PrefilterValue {
   uint kind, power;
   float a, b;
-  uint first_block;  // where its blocks are
-  uint limbs, bits;  // of a table: digits of so many bits each, the highest first; 0 bits: the value is 0 or 1
+  uint first_block;  // first of its blocks
+  uint limbs, bits;  // of a table: number of digits and their bits, the highest digit first; 0 bits: the value is 0 or
+                     // 1
 };
 
 const uint kTable = 0;    // summed areas of digits
@@ -42,16 +43,16 @@ struct PrefilterTable {
 
 struct PrefilterLevelPush {
   uint scheme, size, faces;
-  uint level;  // that is made
-  uint from;   // where in a block the level before begins
-  uint to;     // where this one begins
+  uint level;  // level to be computed
+  uint from;   // begin of the previous level in a block
+  uint to;     // begin of this level
   uint block, blocks;
 };
 
 struct PrefilterValuesPush {
-  uint texels;   // of all faces
+  uint texels;   // number of texels of all faces
   uint of_bits;  // texels are words of bits; else depths
-  uint slope;    // 1: squares of layers have a slope's share
+  uint slope;    // 1: squares of layers include the slope's part
 };
 
 #ifdef __cplusplus

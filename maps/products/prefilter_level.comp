@@ -3,8 +3,9 @@
 #extension GL_GOOGLE_include_directive : require
 #include "maps/products/prefilter.shared.h"
 
-// One level of a mip pyramid (Williams 1983) or of an N-buffer of means (Décoret 2005; Eisemann and Décoret 2006) from
-// the level before: each the mean of four, in a fixed order. One invocation a texel of one block.
+// Computes one level of a mip pyramid (Williams 1983) or of an N-buffer of means (Décoret 2005; Eisemann and Décoret
+// 2006) from the previous level: each texel is the mean of four, in a fixed order. One invocation for each texel of one
+// block.
 
 layout(local_size_x = 64) in;
 layout(scalar, binding = 0) buffer Images { float images[]; };
@@ -14,7 +15,7 @@ void main() {
   const uint i = (gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x) * gl_WorkGroupSize.x +
                  gl_LocalInvocationID.x;
   const bool pyramid = push.scheme == kPyramid;
-  // A pyramid's sizes are halved and rounded up, so that each size can be found from the first.
+  // A pyramid's sizes are halved and rounded up, so that each size can be computed from the first.
   const uint before = pyramid ? (push.size + (1u << (push.level - 1)) - 1) >> (push.level - 1) : push.size;
   const uint size = pyramid ? (before + 1) / 2 : push.size;
   const uint texels = push.faces * size * size;
@@ -22,8 +23,8 @@ void main() {
   const uint block = i / texels * push.block, texel = i % texels;
   const uint x = texel % size, y = texel / size % size, face = texel / (size * size);
   const uint source = block + push.from + face * before * before;
-  // Beside the border a pyramid has no more texels, and its mean is of those that there are. An N-buffer's windows that
-  // reach beyond it are never asked for.
+  // Beside the border a pyramid has no further texels, and its mean is of the existing ones. Windows of an N-buffer
+  // that extend beyond the border are never used.
   const uint step = pyramid ? 1 : 1u << (push.level - 1);
   const uint x0 = pyramid ? 2 * x : x, y0 = pyramid ? 2 * y : y;
   const uint x1 = min(x0 + step, before - 1), y1 = min(y0 + step, before - 1);

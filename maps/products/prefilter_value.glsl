@@ -1,4 +1,4 @@
-// The functions of prefilter.shared.h. `t`: the texel's height in [0, 1], or of kBit the bit itself.
+// Functions of prefilter.shared.h. `t`: the texel's height in [0, 1], or for kBit the bit itself.
 #include "maps/products/map_frame.shared.h"
 #include "maps/products/prefilter.shared.h"
 
@@ -21,14 +21,14 @@ float prefilter_value(PrefilterValue value, float t) {
   }
 }
 
-// The heights that are 0 and 1: of the nearest caster, a little less, so that a single plane has a range, too; and of the
-// deepest receiver to the bit: what stands for a texel without a caster is no farther than that receiver. Were it, an
-// exponential would count it as more than lit.
+// Returns the heights mapped to 0 and 1: slightly less than that of the nearest caster, so that a single plane has a
+// range, too; and exactly that of the deepest receiver: the value of a texel without a caster is no farther than this
+// receiver. With a larger value, an exponential would count the texel as more than lit.
 vec2 height_ends(float nearest, float deepest) {
   return vec2(nearest * (1.0 - 1.0 / 1024.0), max(deepest, nearest));
 }
 
-// Height in [0, 1] between them.
+// Returns the height in [0, 1] between these.
 float normalised_height(float height, float nearest, float deepest) {
   const vec2 ends = height_ends(nearest, deepest);
   return clamp((height - ends.x) / (ends.y - ends.x), 0.0, 1.0);

@@ -3,7 +3,8 @@
 #extension GL_GOOGLE_include_directive : require
 #include "maps/products/prefilter_value.glsl"
 
-// Writes the values of each texel: as digits to be summed, or as the finest level of means. One invocation a texel.
+// Writes the values of each texel: as digits to be summed, or as the finest level of means. One invocation for each
+// texel.
 
 layout(local_size_x = 64) in;
 layout(scalar, binding = 0) readonly buffer Table { PrefilterTable table; PrefilterValue values[]; };
@@ -31,14 +32,14 @@ float height_of(uint texel, float depth) {
   const uint row = texel / table.size, map = row / table.size;
   const LightView view = views[0];
   const uint s = map >= view.side[0].first_face + view.side[0].face_count ? 1 : 0;
-  if (!(depth < 1.0)) return 1.0;  // nothing there: as far as what is not nearer than any receiver
-  // A sideways face of a hemicube has the distance from the plane along its rows.
+  if (!(depth < 1.0)) return 1.0;  // empty: as far as the deepest receiver
+  // On a sideways face of a hemicube, the distance from the plane varies along its rows.
   const bool sideways = map != view.side[s].first_face;
   const float height = sideways ? (float(row % table.size) + 0.5) / float(table.size) : 1.0;
   return normalised_height(depth * view.far * height, nearest[s], frame.deepest[s]);
 }
 
-// How much the height changes from texel to texel across a row and up a column: the smaller of the differences to the
+// Returns the change of height from texel to texel across a row and up a column: the smaller of the differences to the
 // neighbours on either side, so that an outline is no slope.
 vec2 slope_of(uint texel, float t) {
   const ivec2 at = ivec2(texel % table.size, texel / table.size % table.size);
@@ -63,7 +64,7 @@ void main() {
   for (uint i = 0; i < table.value_count; ++i) {
     const PrefilterValue value = values[i];
     float x = prefilter_value(value, push.of_bits != 0 ? float(word >> uint(value.a) & 1) : t);
-    const float layer = value.a * t - value.b;  // beside a layer heights are its border's
+    const float layer = value.a * t - value.b;  // outside a layer, heights are those of its border
     if (push.slope != 0 && value.kind == kLayer && value.power == kSquared && layer > 0.0 && layer < 1.0) {
       // Lauritzen 2007 (Eisemann et al. 2009, box "Depth bias"): a quarter of the squared derivatives.
       const vec2 slope = value.a * slope_of(texel, t);

@@ -4,7 +4,7 @@
 #include "maps/products/shadow_depths.shared.h"
 #include "maps/products/shadow_depths.glsl"
 
-// Each texel's nearest depth becomes that at which its shadow begins. One invocation a texel.
+// Replaces each texel's nearest depth by the depth at which its shadow begins. One invocation for each texel.
 
 layout(local_size_x = 64) in;
 layout(scalar, binding = 0) buffer Maps { float maps[]; };

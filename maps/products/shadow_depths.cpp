@@ -1,4 +1,5 @@
-// Wang and Molnar 1994, Woo 1992, Weiskopf and Ertl 2003, for methods that take means of depths.
+// Computes the depth at which shadows begin (Wang and Molnar 1994, Woo 1992, Weiskopf and Ertl 2003), for methods that
+// use means of depths.
 
 #include "maps/products/shadow_depths.hpp"
 

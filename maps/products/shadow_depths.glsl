@@ -1,7 +1,7 @@
-// Where the shadow of a texel's surfaces begins, as a depth that stands in the nearest one's place. Both are shares of far,
-// 1 where nothing is. What forgives a receiver takes a share `forgiven` off its own height, whatever texel it meets; of what
-// needs no bias, a second surface or a middle, as much is taken off: to level receivers the shadow begins where it should,
-// to others as much later as the slope adds. README.md has the table.
+// Returns the depth at which the shadow of a texel's surfaces begins, in place of the nearest depth. Both are fractions
+// of far, 1 for empty texels. A look-up's bias reduces a receiver's own height by the fraction `forgiven`, whatever
+// texel is compared; depths that need no bias, a second surface or a middle, are reduced by the same fraction: for
+// level receivers the shadow begins at the right depth, for others later by the slope's part. README.md has the table.
 float shadow_begins(uint depth_use, float nearest, float second, float forgiven) {
   const bool single = second >= 1.0;
   if (depth_use == kDepthSecond) return single ? 1.0 : second * (1.0 - forgiven);

@@ -5,12 +5,12 @@
 
 namespace penumbra::maps {
 
-/// The option `depth` where texels are filtered before they are asked: the first layer of the maps becomes the depth at
-/// which each texel's shadow begins (shadow_depths.glsl). The first product of its recipe; a look-up binds nothing of
-/// it.
+/// Option `depth` for methods that filter texels before the comparison: the first layer of the maps is replaced by the
+/// depth at which each texel's shadow begins (shadow_depths.glsl). The first product of its recipe; a look-up binds
+/// none of its buffers.
 class ShadowDepths final : public MapProduct {
  public:
-  /// `bias`: in texels, that the look-up takes off receivers' heights; 0 if it takes none.
+  /// `bias`: number of texels by which the look-up reduces receivers' heights; 0 if it does not.
   ShadowDepths(const render::Device& device, DepthUse depth, double bias);
   void record(render::Commands& commands, const MapSet& maps) override;
   [[nodiscard]] const render::Buffer& buffer() const override;
@@ -21,7 +21,7 @@ class ShadowDepths final : public MapProduct {
   render::ComputePass pass_;
   DepthUse depth_;
   float bias_;
-  const render::Buffer* maps_ = nullptr;  ///< that were changed last
+  const render::Buffer* maps_ = nullptr;  ///< most recently changed maps
 };
 
 }  // namespace penumbra::maps

@@ -1,4 +1,4 @@
-// One struct, two languages: what a texel of two layers is made into, where a method filters depths or sorts them.
+// Shared by C++ and GLSL: value of a texel of two layers, for methods that filter or sort depths.
 #ifndef PENUMBRA_MAPS_SHADOW_DEPTHS
 #define PENUMBRA_MAPS_SHADOW_DEPTHS
 #include "maps/host/map_view.shared.h"
@@ -11,7 +11,7 @@ struct ShadowDepthsPush {
   uint size;
   uint faces;
   uint depth_use;  // kDepthSecond ...
-  float bias;      // in texels, that receivers will be given
+  float bias;      // in texels, as applied to receivers
 };
 
 #ifdef __cplusplus

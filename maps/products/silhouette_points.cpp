@@ -1,6 +1,7 @@
-// P. Sen, M. Cammarano, P. Hanrahan, Shadow silhouette maps, SIGGRAPH 2003, section 4.1. Departures: edges are walked
-// on the host, not drawn as quads; of several edges in a cell the nearest counts, where the paper keeps the last that
-// is not hidden, so that no order of triangles changes anything; points are floats, not bytes.
+// Computes silhouette points in cells of a map: P. Sen, M. Cammarano, P. Hanrahan, Shadow silhouette maps, SIGGRAPH
+// 2003, section 4.1. Departures: edges are traversed on the host, not drawn as quads; of several edges in a cell the
+// nearest counts, where the paper keeps the last that is not hidden, so that the result does not depend on the order of
+// triangles; points are floats, not bytes.
 
 #include "maps/products/silhouette_points.hpp"
 
@@ -21,9 +22,10 @@
 namespace penumbra::maps {
 namespace {
 
-/// From the part [from, to] of the way from a to b, in a cell: the share of the way whose point the cell keeps.
+/// Part [from, to] of the segment from a to b in a cell; determines the fraction of the segment whose point the cell
+/// keeps.
 struct Passage {
-  glm::dvec2 a, b;  ///< the edge's ends, from the cell's lower corner
+  glm::dvec2 a, b;  ///< the edge's ends, relative to the cell's lower corner
   double from, to;
 
   [[nodiscard]] glm::dvec2 at(double share) const { return glm::mix(a, b, share); }
@@ -44,7 +46,7 @@ std::optional<double> kept(const Passage& passage) {
   return count == 0 ? std::nullopt : std::optional(sum / count);
 }
 
-/// The part of the way from a to b that lies in [0, count]²; nothing if none does.
+/// Returns the part of the segment from a to b in [0, count]²; nullopt if it is empty.
 std::optional<std::pair<double, double>> clipped(const glm::dvec2& a, const glm::dvec2& b, double count) {
   double from = 0, to = 1;
   for (int axis = 0; axis < 2; ++axis) {
@@ -60,7 +62,7 @@ std::optional<std::pair<double, double>> clipped(const glm::dvec2& a, const glm:
   return from < to ? std::optional(std::pair(from, to)) : std::nullopt;
 }
 
-/// The part of an edge in front of `near`, as the face sees it.
+/// Returns the part of an edge in front of `near`, in the face's coordinates.
 std::optional<std::pair<glm::dvec3, glm::dvec3>> in_front(glm::dvec3 a, glm::dvec3 b, double near) {
   if (a.z < near && b.z < near) return std::nullopt;
   const glm::dvec3 cut = a + (b - a) * ((near - a.z) / (b.z - a.z));
@@ -73,13 +75,13 @@ std::optional<std::pair<glm::dvec3, glm::dvec3>> in_front(glm::dvec3 a, glm::dve
 
 void add_silhouette(const SilhouetteEnd& one, const SilhouetteEnd& other, std::uint32_t count,
                     std::vector<SilhouettePoint>& cells) {
-  // Rounding knows a first end and a last one: always the same.
+  // Rounding depends on the order of the ends: a fixed order makes the result independent of the caller's.
   const auto place = [](const SilhouetteEnd& end) { return std::tuple(end.at.x, end.at.y, end.depth); };
   const bool turned = place(other) < place(one);
   const SilhouetteEnd &a = turned ? other : one, &b = turned ? one : other;
   const auto part = clipped(a.at, b.at, count);
   if (!part) return;
-  // All shares of the way at which it passes from a cell to the next.
+  // All fractions of the segment at which it passes from a cell to the next.
   std::vector<double> borders{part->first, part->second};
   for (int axis = 0; axis < 2; ++axis) {
     const double way = b.at[axis] - a.at[axis];

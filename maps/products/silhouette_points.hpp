@@ -12,25 +12,26 @@
 
 namespace penumbra::maps {
 
-/// Where outlines pass between the texels of a map (Sen, Cammarano, Hanrahan 2003). A cell has the centres of four
-/// texels as its corners; there is one more than texels on either side, and the outermost corners are none. Of an edge
-/// that parts a cell's corners a point is kept, from 0 to 1 across the cell: its end, if that is inside, else where it
-/// crosses the diagonals, or midway between where it crosses both. Of several edges the nearest to the light counts.
+/// Silhouette point of a cell between the texels of a map (Sen, Cammarano, Hanrahan 2003). A cell has the centres of
+/// four texels as its corners; there is one more cell than texels on either side, and the outermost corners do not
+/// exist. Of an edge that separates a cell's corners one point is kept, from 0 to 1 across the cell: the edge's end, if
+/// inside, else its intersection with the diagonals, or the middle of both intersections. Of several edges the nearest
+/// to the light counts.
 struct SilhouettePoint {
   glm::dvec2 at{0.5};
   double depth = 0;  ///< along the face's axis; 0: no outline
 };
-/// An end of an edge, in cells and its depth along the axis.
+/// End of an edge, in cells, and its depth along the axis.
 struct SilhouetteEnd {
   glm::dvec2 at{0};
   double depth = 0;
 };
-/// Adds the points of an edge to `count` × `count` cells, row by row. Which end is the first changes no bit.
+/// Adds the points of an edge to `count` × `count` cells, row by row. Exchanging the ends changes no bit.
 void add_silhouette(const SilhouetteEnd& one, const SilhouetteEnd& other, std::uint32_t count,
                     std::vector<SilhouettePoint>& cells);
 
-/// These of the silhouettes of all casters but the light's own body, as the light's centre sees them
-/// (mesh::silhouette_edges: any soup), on the device: two floats a cell.
+/// Silhouette points of all casters but the light's own body, as seen from the light's centre (mesh::silhouette_edges:
+/// any soup), on the device: two floats for each cell.
 class SilhouettePoints final : public MapProduct {
  public:
   explicit SilhouettePoints(const render::Device& device) : device_(&device) {}

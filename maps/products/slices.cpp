@@ -1,3 +1,6 @@
+// Sorts casters into light-space slices: equally thick (Eisemann and Décoret 2006), or one plane (Soler and Sillion
+// 1998).
+
 #include "maps/products/slices.hpp"
 
 #include "maps/host/caster.vert.glsl.hpp"
@@ -22,8 +25,8 @@
 namespace penumbra::maps {
 namespace {
 
-/// How much deeper than its plane a slice ends, relative to its height: a surface that lies in the plane is in the
-/// slice, whatever the rasteriser's interpolation of its depth makes of it.
+/// Relative margin of the end of a slice beyond its plane: a surface in the plane is in the slice, whatever the
+/// rasteriser's interpolation of its depth.
 constexpr double kBeyondPlane = 0x1p-14;
 
 bool casts(const MapSet& maps, std::uint32_t triangle) {
@@ -43,7 +46,7 @@ Facing facing(const visibility::SceneFloats& scene, const LightBasis& basis, std
 struct Range {
   double nearest = std::numeric_limits<double>::infinity(), deepest = 0;
 };
-/// Heights of what `counts`, on one side of the light's plane.
+/// Returns the range of heights of the triangles accepted by `counts`, on one side of the light's plane.
 template <typename Counts>
 Range heights(const MapSet& maps, double sign, const Counts& counts) {
   Range range;
@@ -95,7 +98,7 @@ gpu::SlicePlanes slice_planes(const MapSet& maps, SliceRule rule, std::uint32_t 
         corners += 1;
         sum += sign * seen.height / 3;
       }
-      // Of casters that are all seen edge-on, the mean of the triangles' heights.
+      // For casters that are all seen edge-on, the mean of the triangles' heights.
       const double mean = area > 0 ? moment / area : corners > 0 ? sum / corners : 1.0;
       set(0, mean, std::numeric_limits<float>::max());
       continue;

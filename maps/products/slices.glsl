@@ -1,5 +1,5 @@
-// Marks the slice that a surface is in at a texel's centre (Eisemann and Décoret 2006). Any number of surfaces: bits are
-// added in any order. `planes` and `bits` are the shader's.
+// Marks the slice that contains a surface at a texel's centre (Eisemann and Décoret 2006). Any number of surfaces: bits
+// are added in any order. `planes` and `bits` are declared by the shader.
 
 PUSH_CONSTANTS SlicePush { SlicesPush push; };
 

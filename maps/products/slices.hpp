@@ -16,41 +16,40 @@
 namespace penumbra::maps {
 
 enum class SliceRule : std::uint8_t {
-  /// From the nearest caster to the deepest, or to the deepest receiver if that is nearer; equally thick. What is in a
-  /// slice is taken to be in its far plane (Eisemann and Décoret 2006).
+  /// From the nearest caster to the deepest, or to the deepest receiver if that is nearer; equally thick. Surfaces in a
+  /// slice are moved to its far plane (Eisemann and Décoret 2006).
   equal,
-  /// One slice, with all casters that are no ground (ground_of), taken to be at their mean height (Soler and Sillion
-  /// 1998).
+  /// One slice, with all casters except the ground (ground_of), at their mean height (Soler and Sillion 1998).
   one_plane,
 };
 
-/// The object that receives but does not shade where a method wants the two apart: none if some receiver casts no
-/// shadow; else the one whose receiving triangles, seen from the light's plane, are largest. kNoObject if there is
+/// Returns the object that receives but does not shade where a method separates the two: none if some receiver casts no
+/// shadow; else the object whose receiving triangles, seen from the light's plane, are largest. kNoObject if there is
 /// none.
 inline constexpr std::uint32_t kNoObject = 0xffffffffU;
 std::uint32_t ground_of(const visibility::SceneFloats& scene, const visibility::Light& light, const LightBasis& basis);
 
-/// The planes of `count` slices (1 … 32; one_plane: 1).
+/// Returns the planes of `count` slices (1 … 32; one_plane: 1).
 gpu::SlicePlanes slice_planes(const MapSet& maps, SliceRule rule, std::uint32_t count);
 
 struct SliceOptions {
   SliceRule rule = SliceRule::equal;
   std::uint32_t count = 1;
   Rasteriser rasteriser = Rasteriser::vulkan;
-  /// The nearest of a texel's surfaces is sorted by where its shadow begins (shadow_depths.glsl); those behind it stay.
-  /// The maps have two layers then.
+  /// Depth by which the nearest of a texel's surfaces is sorted: the begin of its shadow (shadow_depths.glsl); surfaces
+  /// behind it are unchanged. The maps then have two layers.
   DepthUse depth = DepthUse::first;
-  double bias = 0;  ///< in texels, that the look-up takes off receivers' heights
+  double bias = 0;  ///< number of texels by which the look-up reduces receivers' heights
 };
 
-/// What casts shadow, sorted into slices parallel to the light: for each texel of the maps of a light's centre a word
-/// whose bit k says that a surface in slice k lies in its direction. Surfaces that one hides from the other count both.
+/// Casters sorted into slices parallel to the light: for each texel of the maps of a light's centre a word whose bit k
+/// is set if a surface in slice k lies in its direction. Surfaces hidden from the light's centre count, too.
 class Slices final : public MapProduct {
  public:
   Slices(const render::Device& device, const SliceOptions& options);
   void record(render::Commands& commands, const MapSet& maps) override;
   [[nodiscard]] const render::Buffer& buffer() const override { return *bits_; }  ///< the words
-  /// A look-up reads the planes alone.
+  /// Returns the buffers of a look-up: the planes alone.
   [[nodiscard]] std::vector<render::BufferReference> buffers() const override { return {planes_}; }
   [[nodiscard]] std::uint64_t memory_bytes() const override;
 
@@ -70,20 +69,20 @@ class Slices final : public MapProduct {
   using Passes = PassPair<render::RasterPass>;
   using OpenGlPasses = PassPair<render::opengl::RasterPass>;
   void upload(const MapSet& maps);
-  /// Uploads the casters, all but the ground, that have holes or have none.
+  /// Uploads the casters, except the ground, with or without holes.
   void upload_casters(const MapSet& maps, std::uint32_t ground, const HoleSurfaces* surfaces);
-  /// All faces, as push constants of slices.frag, whose texels begin at `first` of the words.
+  /// Returns all faces, as push constants of slices.frag, with texels from `first` of the words on.
   [[nodiscard]] std::vector<gpu::SlicesPush> faces_of(const MapSet& maps) const;
   void draw_by_opengl(const MapSet& maps, const gpu::SlicePlanes& planes) const;
-  /// Takes the nearest surfaces to the slices where their shadows begin.
+  /// Moves the nearest surfaces to the slices where their shadows begin.
   void move_nearest(render::Commands& commands, const MapSet& maps);
 
   const render::Device* device_;
   SliceOptions options_;
-  std::optional<Passes> passes_;               // either these
-  std::optional<OpenGlPasses> opengl_passes_;  // or those
+  std::optional<Passes> passes_;               // used with Vulkan
+  std::optional<OpenGlPasses> opengl_passes_;  // used with OpenGL
   std::optional<render::ComputePass> moved_;
-  std::optional<CasterMaps> blocker_maps_;          ///< of what is no ground,
+  std::optional<CasterMaps> blocker_maps_;          ///< maps of all casters except the ground,
   std::unique_ptr<render::Buffer> blocker_depths_;  ///< in two layers
   render::Buffer planes_;
   std::vector<Casters> casters_;

@@ -5,7 +5,7 @@
 #include "render/both.glsl"
 #include "maps/host/holes.glsl"
 
-// slices.frag for surfaces with holes.
+// Draws as slices.frag does, for surfaces with holes.
 
 STORAGE(3) readonly buffer Planes { SlicePlanes planes; };
 STORAGE(4) buffer Bits { uint bits[]; };

@@ -4,7 +4,8 @@
 #include "maps/products/slices.shared.h"
 #include "maps/products/shadow_depths.glsl"
 
-// The nearest surface of each texel goes to the slice where its shadow begins; those behind it stay. One invocation a texel.
+// Moves the nearest surface of each texel to the slice where its shadow begins; surfaces behind are unchanged. One
+// invocation for each texel.
 
 layout(local_size_x = 64) in;
 layout(scalar, binding = 0) readonly buffer Layers { float layers[]; };  // the first, then the second
@@ -13,7 +14,7 @@ layout(scalar, binding = 2) readonly buffer Planes { SlicePlanes planes; };
 layout(scalar, binding = 3) buffer Bits { uint bits[]; };
 layout(scalar, push_constant) uniform Push { MovedPush push; };
 
-// As slices.frag finds it; beyond all slices none.
+// Returns the slice of a height, as slices.frag does; 0 beyond all slices.
 uint slice_of(uint s, float height) {
   for (uint k = 0; k < planes.count; ++k) {
     if (height <= planes.limit[s][k]) return 1u << k;
@@ -38,7 +39,8 @@ void main() {
   const float nearest = layers[texel], second = layers[layer + texel];
   const float begins = shadow_begins(push.depth_use, nearest, second, forgiven);
   uint word = bits[texel];
-  // Surfaces behind the second are in its slice or in later ones: where that is another slice, the nearest is alone in its own.
+  // Surfaces behind the second are in the second's slice or in later ones: if the second is in another slice, the
+  // nearest is alone in its own.
   const uint own = slice_of(s, nearest * height);
   if (second >= 1.0 || slice_of(s, second * height) != own) word &= ~own;
   if (push.depth_use != kDepthSecond) word |= slice_of(s, begins * height);

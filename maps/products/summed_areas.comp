@@ -3,8 +3,8 @@
 #extension GL_GOOGLE_include_directive : require
 #include "maps/products/summed_areas.shared.h"
 
-// Crow 1984: running sums along rows, then along columns, in place. Unsigned integers: sums are exact modulo 2^32, in
-// any order. One invocation a line.
+// Computes summed-area tables (Crow 1984): running sums along rows, then along columns, in place. Unsigned integers:
+// sums are exact modulo 2^32, in any order. One invocation for each line.
 
 layout(local_size_x = 64) in;
 layout(scalar, binding = 0) buffer Images { uint images[]; };

@@ -6,8 +6,8 @@
 
 namespace penumbra::maps {
 
-/// Summed-area tables (Crow 1984) of images of unsigned integers: texel (x, y) becomes the sum of all texels (i, j),
-/// i ≤ x, j ≤ y, modulo 2³². A box's sum is four of them added and subtracted, exact if it is less than 2³².
+/// Summed-area tables (Crow 1984) of images of unsigned integers: texel (x, y) becomes the sum of all texels (i, j), i
+/// ≤ x, j ≤ y, modulo 2³². A box's sum is the signed sum of four texels, exact if it is less than 2³².
 class SummedAreas {
  public:
   explicit SummedAreas(const render::Device& device);

@@ -1,4 +1,4 @@
-// One struct, two languages: summed_areas.comp's.
+// Shared by C++ and GLSL: push constants of summed_areas.comp.
 #include "maps/host/map_view.shared.h"
 #ifdef __cplusplus
 #pragma once

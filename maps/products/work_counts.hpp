@@ -8,8 +8,8 @@
 
 namespace penumbra::maps {
 
-/// What a look-up counts of its work while it answers, whatever was asked before: a number of 64 bits for each name, in
-/// two words, the lower one first.
+/// Counters of a look-up's work over all its calls: a number of 64 bits for each name, in two words, the lower one
+/// first.
 class WorkCounts final : public MapProduct {
  public:
   WorkCounts(const render::Device& device, std::vector<std::string> names);

@@ -1,3 +1,6 @@
+// Builds layered depth images: warps the maps of light samples to the light's centre and merges them (Agrawala et al.
+// 2000).
+
 #include "maps/products/lists/layered_depth.hpp"
 
 #include "base/error.hpp"
@@ -78,7 +81,7 @@ void LayeredDepth::make_others(const MapSource& source) {
   others.casts_shadow = std::move(drawn_alone);
   CasterMaps drawn(*device_, source.size, rasteriser_);
   drawn.upload(others);
-  std::map<std::string, std::uint64_t> counted;  // counters are of the casters' maps
+  std::map<std::string, std::uint64_t> counted;  // counters of the casters' maps
   others_.emplace(*device_).make({source.scene, source.light, source.basis, drawn, source.centre, source.faces,
                                   source.size, source.bias, source.times, counted});
 }

@@ -3,24 +3,25 @@
 #extension GL_GOOGLE_include_directive : require
 #include "maps/products/lists/layered_depth.shared.h"
 
-// Agrawala et al. 2000: what one light sample's map brought to a texel, merged into its layers, the nearest first. A depth
-// within epsilon of a layer, and what the surface's slope changes within the texel, is that layer, and counts once a
-// sample; another one begins a layer of its own. Of two nodes at one depth the larger reach counts, whatever their order.
+// Merges the nodes of one light sample's map into a texel's layers, nearest first (Agrawala et al. 2000). A depth
+// within epsilon of a layer, plus the change of the surface's depth within the texel, belongs to this layer, and counts
+// once for each sample; any other depth begins a new layer. Of two nodes at one depth the larger reach counts,
+// independent of their order.
 
 layout(local_size_x = kLookupGroup) in;
 layout(scalar, binding = 0) readonly buffer Heads { uint heads[]; };
 layout(scalar, binding = 1) readonly buffer Nodes { LayerNode nodes[]; };
 layout(scalar, binding = 2) readonly buffer Weights { uint weights[]; };
 layout(scalar, binding = 3) buffer Counts { uint counts[]; };
-layout(scalar, binding = 4) buffer Entries { LayerEntry entries[]; };  // a texel's side by side
-layout(scalar, binding = 5) buffer Most { uint most; };                // layers that some texel wants
+layout(scalar, binding = 4) buffer Entries { LayerEntry entries[]; };  // a texel's entries are contiguous
+layout(scalar, binding = 5) buffer Most { uint most; };                // largest number of layers needed by a texel
 layout(scalar, push_constant) uniform Push { MergePush push; };
 
 void main() {
   const uint texel = (gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x) * gl_WorkGroupSize.x + gl_LocalInvocationID.x;
   if (texel >= push.texels || heads[texel] == 0) return;
   const uint first = texel * push.layers;
-  uint count = counts[texel], done = 0;  // bits of the depth merged last; depths are positive
+  uint count = counts[texel], done = 0;  // bits of the most recently merged depth; depths are positive
   for (;;) {
     uint next = 0xffffffffu;  // the smallest depth beyond
     float reach = 0.0;

@@ -3,24 +3,26 @@
 #extension GL_GOOGLE_include_directive : require
 #include "maps/products/lists/layered_depth.shared.h"
 
-// Agrawala et al. 2000: every texel of one light sample's maps warped into the maps of the light's centre. A texel covers
-// the centre's texels whose centres lie in its image; neighbours on one surface (depths within epsilon and what the slope on
-// the other side lets expect) share the image of their border, so that a surface is covered without gaps. The depth is that
-// of the plane through the borders' middles where the centre's texel sees it, not that of the sample's own centre: else
-// what different samples see of one steep surface is as many surfaces. What arrives at a texel is a list;
-// layered_merge.comp reads it in the order of depth, so the order in which it is written changes nothing.
+// Warps every texel of one light sample's maps into the maps of the light's centre (Agrawala et al. 2000). A texel
+// covers the centre's texels whose centres lie in its image; neighbours on one surface (depths within epsilon plus the
+// change expected from the slope on the other side) share the image of their border, so that a surface is covered
+// without gaps. The depth is that of the plane through the borders' middles at the centre's texel, not that of the
+// sample's own centre: otherwise different samples' views of one steep surface would be as many surfaces. Contributions
+// to a texel form a list; layered_merge.comp reads the list in the order of depth, so the order of writing does not
+// matter.
 
 layout(local_size_x = kLookupGroup) in;
 layout(scalar, binding = 0) readonly buffer Centre { LightView centre; };
 layout(scalar, binding = 1) readonly buffer Views { LightView views[]; };
 layout(scalar, binding = 2) readonly buffer Maps { float maps[]; };
-layout(scalar, binding = 3) buffer Heads { uint heads[]; };   // the last node of each texel of the centre, counted from 1
+layout(scalar, binding = 3) buffer Heads { uint heads[]; };   // the last node of each texel of the centre, counted from
+                                                              // 1
 layout(scalar, binding = 4) buffer Nodes { LayerNode nodes[]; };
 layout(scalar, binding = 5) buffer NodeCount { uint node_count; };
-layout(scalar, binding = 6) readonly buffer Casters { float casters[]; };  // what they hide of Maps is left out
+layout(scalar, binding = 6) readonly buffer Casters { float casters[]; };  // texels of Maps hidden by these are skipped
 layout(scalar, push_constant) uniform Push { WarpPush push; };
 
-// Coordinates on face k of a side, and back (face_of in map_fit.cpp).
+// Convert to coordinates on face k of a side, and back (face_of in map_fit.cpp).
 vec3 on_face(vec3 e, uint k) {
   if (k == 0) return e;
   if (k == 1) return vec3(e.y, e.z, e.x);
@@ -36,24 +38,24 @@ vec3 off_face(vec3 f, uint k) {
   return vec3(f.x, -f.z, f.y);
 }
 
-// A slope is not followed further than this many texels in depth: as for receivers, taps.glsl.
+// Limit of a slope, in texels of depth for each texel: as for receivers, taps.glsl.
 const float kSteepest = 8.0;
 
-// Where a face sees a plane: 1/depth is affine there. `at`: 1/depth in the middle; `change`: a texel across and up.
+// Plane as seen on a face: 1/depth is affine there. `at`: 1/depth in the middle; `change`: for one texel across and up.
 struct Sheet {
   vec2 middle;
   float at;
   vec2 change;
 };
 
-// Through the images of a texel's middle and of the middles of its borders (x, y in texels, and depth): left, right, lower,
-// upper, middle.
+// Returns the plane through the images of a texel's middle and of the middles of its borders (x, y in texels, and
+// depth): left, right, lower, upper, middle.
 Sheet sheet_through(vec3 image[5]) {
   const vec2 first = image[1].xy - image[0].xy, second = image[3].xy - image[2].xy;
   const float rise = 1.0 / image[1].z - 1.0 / image[0].z, climb = 1.0 / image[3].z - 1.0 / image[2].z;
   const float area = first.x * second.y - first.y * second.x;
   Sheet sheet = Sheet(image[4].xy, 1.0 / image[4].z, vec2(0.0));
-  // Seen from the side it has no area, and no slope that could be told.
+  // Seen from the side, the plane has no area, and its slope cannot be determined.
   if (abs(area) > 1.0 / 256.0 * length(first) * length(second)) {
     sheet.change = vec2(rise * second.y - climb * first.y, climb * first.x - rise * second.x) / area;
   }
@@ -77,11 +79,11 @@ void main() {
   const vec3 offset = view.point - centre.point;
   const vec3 o = vec3(dot(push.basis.u, offset), dot(push.basis.v, offset), (s == 0 ? 1.0 : -1.0) * dot(push.basis.n, offset));
 
-  // The texel's centre, and the middles of its four borders at the depths that it shares with its neighbours.
+  // The texel's centre, and the middles of its four borders at the depths shared with its neighbours.
   const vec2 middle = lower + (vec2(at) + 0.5) * width, begin = lower + vec2(at) * width, end = lower + vec2(at + 1) * width;
   vec3 places[5];
   places[4] = o + off_face(vec3(middle * w, w), own);
-  float beside[4];  // depths of the neighbours; 0: there is none
+  float beside[4];  // depths of the neighbours; 0: no neighbour
   for (uint k = 0; k < 4; ++k) {
     const ivec2 next = at + ivec2(k == 0 ? -1 : (k == 1 ? 1 : 0), k == 2 ? -1 : (k == 3 ? 1 : 0));
     beside[k] = 0.0;
@@ -119,7 +121,7 @@ void main() {
     }
     if (!in_front) continue;
     const Sheet sheet = sheet_through(image);
-    // Centres at c + 1/2 in [from, until).
+    // Texels whose centres c + 1/2 are in [from, until).
     const ivec2 first_texel = ivec2(ceil(clamp(from - 0.5, vec2(0.0), vec2(push.size))));
     const ivec2 end_texel = ivec2(ceil(clamp(until - 0.5, vec2(0.0), vec2(push.size))));
     for (int y = first_texel.y; y < end_texel.y; ++y) {
@@ -127,10 +129,10 @@ void main() {
         const uint node = atomicAdd(node_count, 1);
         if (node >= push.node_capacity) continue;
         const uint place = ((to.first_face + k) * push.size + uint(y)) * push.size + uint(x);
-        // Within the depths that the texel has: what it sees, not what lies beside it.
+        // Clamped to the depths of the texel: surfaces beside the texel are not included.
         const float inverse = sheet.at + dot(sheet.change, vec2(x, y) + 0.5 - sheet.middle);
         const float t = clamp(1.0 / max(inverse, 1.0 / deepest), nearest, deepest);
-        // Half a texel across and up is how far what a texel stands for can be from its centre.
+        // Half a texel across and up is the largest distance of a represented point from the texel's centre.
         const float reach = min(0.5 * t * t * (abs(sheet.change.x) + abs(sheet.change.y)), kSteepest * max(texel.x, texel.y) * t);
         nodes[node] = LayerNode(floatBitsToUint(t), atomicExchange(heads[place], node + 1), reach);
       }

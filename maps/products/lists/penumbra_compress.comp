@@ -3,20 +3,20 @@
 #extension GL_GOOGLE_include_directive : require
 #include "maps/products/lists/penumbra_events.shared.h"
 
-// Events of each texel, sorted and summed to V as a function of depth, and that with as few steps as the bound allows
-// (Lokovic and Veach 2000 with constant pieces in place of lines: V jumps at every event, and a line would not stay within
-// the bound). A piece goes on while one value is within the bound of everything in it. V = 1 and V = 0 are kept as they
-// are. In place: steps (bits of t where they begin, bits of V from there) take the places of events already read.
+// Sorts the events of each texel, sums them to V as a function of depth, and reduces V to as few steps as the bound
+// allows (Lokovic and Veach 2000 with constant pieces in place of lines: V jumps at every event, and a line would not
+// stay within the bound). A piece continues while one value is within the bound of everything in the piece. V = 1 and V
+// = 0 are kept exactly. In place: steps (bits of t at their begin, bits of V from there) overwrite events already read.
 
 layout(local_size_x = kLookupGroup) in;
 layout(scalar, binding = 0) buffer Events { uvec2 events[]; };
-layout(scalar, binding = 1) buffer Counts { uint counts[]; };  // events of each texel, then its steps
-layout(scalar, binding = 2) buffer Ended { uint ended; };      // 1: a driver ended a loop before its end
+layout(scalar, binding = 1) buffer Counts { uint counts[]; };  // number of events of each texel, then of its steps
+layout(scalar, binding = 2) buffer Ended { uint ended; };      // 1: a driver ended a loop early
 layout(scalar, push_constant) uniform Push { CompressPush push; };
 
 uint first;
 
-// Heap sort by t, whose bits order like integers: t > 0.
+// Heap sort by t, whose bits have the order of integers: t > 0.
 void sift_down(uint root, uint count) {
   const uvec2 moved = events[first + root];
   for (;;) {
@@ -40,7 +40,8 @@ void sort(uint count) {
   }
 }
 
-// Is one value within the bound of all from `low` to `high`? Twice its weight in `value`.
+// Returns whether one value is within the bound of all values from `low` to `high`; `value` is twice the weight of this
+// value.
 bool one_value(uint low, uint high, out uint value) {
   if (high == push.total) {
     value = 2 * push.total;
@@ -62,8 +63,8 @@ void main() {
   sort(count);
 
   uint visible = push.total, steps = 0;
-  uint low = visible, high = visible, value = 2 * visible, begin = 0;  // of the piece so far
-  bool is_first = true;                                                // V = 1 from the light on goes without a step
+  uint low = visible, high = visible, value = 2 * visible, begin = 0;  // of the current piece
+  bool is_first = true;                                                // V = 1 from the light on needs no step
   uint i = 0;
   for (; i < count;) {
     const uint t = events[first + i].x;

@@ -1,3 +1,6 @@
+// Builds penumbra deep shadow maps: V as a function of depth in each texel (St-Amour, Paquette and Poulin 2005), in
+// bands of texels.
+
 #include "maps/products/lists/penumbra_events.hpp"
 
 #include "base/error.hpp"
@@ -16,10 +19,11 @@
 namespace penumbra::maps {
 namespace {
 
-/// All events of a band together.
+/// Memory of all events of a band.
 constexpr std::uint64_t kBandBytes = std::uint64_t{64} << 20;
 
-/// The nearest corner of a caster to the light's plane, on either side of it; at least what maps can hold.
+/// Returns the height over the light's plane of the nearest corner of a caster, on either side; at least the smallest
+/// depth of maps.
 glm::vec2 nearest_casters(const MapSource& source) {
   const float least = source.centre.far * 0x1p-20F;
   glm::vec2 nearest(source.centre.far);
@@ -30,7 +34,8 @@ glm::vec2 nearest_casters(const MapSource& source) {
       const auto height = static_cast<float>(source.basis.local(corner).z);
       lowest = glm::min(lowest, glm::vec2(height, -height));
     }
-    // A triangle that crosses the plane comes as near as can be; one behind it has nothing on this side.
+    // A triangle that crosses the plane counts with the smallest depth; a triangle behind the plane has no part on this
+    // side.
     for (int s = 0; s < 2; ++s) {
       if (lowest[1 - s] < -least || lowest[s] > least) nearest[s] = std::min(nearest[s], std::max(lowest[s], least));
     }
@@ -82,7 +87,8 @@ void PenumbraEvents::make(const MapSource& source) {
     render::grow(*device_, counts_, "event counts", band * sizeof(std::uint32_t));
     render::Commands commands(*device_);
     commands.fill(*most_, 0);
-    // Drivers for processors end all loops of a workgroup after 65,535 turns: no more samples at once than end before.
+    // Drivers for processors end all loops of a workgroup after 65,535 iterations: the number of samples at once is
+    // limited accordingly.
     const std::uint32_t at_once = std::max(60000 / (std::max(samples_.faces(), 1u) * (2 * source.size + 2)), 1u);
     std::uint32_t recorded = 0;
     for (const SampleMaps::Part& part : samples_.parts(at_once)) {
@@ -105,7 +111,7 @@ void PenumbraEvents::make(const MapSource& source) {
     source.times.add(commands.submit());
     std::uint32_t most = 0;
     most_->read<std::uint32_t>(std::span(&most, 1));
-    if (most > capacity) {  // the band again, with room for all
+    if (most > capacity) {  // repeats the band with sufficient capacity
       capacity = most;
       continue;
     }
@@ -118,7 +124,7 @@ void PenumbraEvents::make(const MapSource& source) {
     const std::uint64_t bytes = begins.size() * sizeof(std::uint32_t) + steps.size() * sizeof(glm::uvec2);
     if (bytes > device_->limits().max_storage_buffer_range) {
       const double share = static_cast<double>(first) / texels;
-      const double fits = std::sqrt(share) * source.size;  // lists are as long elsewhere
+      const double fits = std::sqrt(share) * source.size;  // assumes lists of the same length elsewhere
       throw ResourceError(
           "deep-penumbra: its steps of depth do not fit into one buffer of {}; take size={} or less, a larger bound or "
           "fewer --light-samples",

@@ -7,13 +7,13 @@
 namespace penumbra::maps {
 
 /// V as a function of depth for each texel of the light's centre's maps (St-Amour, Paquette and Poulin 2005): lists of
-/// steps. The ray through a texel's centre is at t · direction, `direction` one long along the face's axis.
+/// steps. The ray through a texel's centre is at t · direction, with `direction` of length one along the face's axis.
 ///
-/// The buffer holds T + 1 words, where the list of each of the T texels begins, and then the steps: the bits of t, and
+/// The buffer holds T + 1 words, the begin of the list of each of the T texels, and then the steps: the bits of t, and
 /// the bits of V from there to the next step. Before the first step V is 1.
 class PenumbraEvents final : public MapProduct {
  public:
-  /// `bound`: how far V may be off, 0 … 0.5.
+  /// `bound`: largest permitted error of V, 0 … 0.5.
   PenumbraEvents(const render::Device& device, double bound);
   void make(const MapSource& source) override;
   void record(render::Commands& /*commands*/, const MapSet& /*maps*/) override {}
@@ -21,9 +21,9 @@ class PenumbraEvents final : public MapProduct {
   [[nodiscard]] std::uint64_t memory_bytes() const override;
 
  private:
-  /// Sorts, sums and compresses a band's events: how many steps each texel has.
+  /// Sorts, sums and compresses a band's events; returns the number of steps of each texel.
   std::vector<std::uint32_t> compress(const MapSource& source, std::uint32_t texels, std::uint32_t capacity);
-  /// A band's steps, texel by texel.
+  /// Returns a band's steps, texel by texel.
   std::vector<glm::uvec2> gather(const MapSource& source, std::span<const std::uint32_t> counts,
                                  std::uint32_t capacity);
 

@@ -1,4 +1,4 @@
-// Structs, two languages: of the shaders of penumbra_events.cpp, and what a look-up reads of them.
+// Shared by C++ and GLSL: push constants of the shaders of penumbra_events.cpp, and the part read by a look-up.
 #include "maps/host/map_view.shared.h"
 #ifdef __cplusplus
 #pragma once
@@ -11,12 +11,12 @@ struct EventsPush {
   uint faces;        // of the centre's view
   uint first_texel;  // of the band
   uint texel_count;
-  uint capacity;     // events a texel can have
-  uint first_point;  // of the samples whose maps are walked
-  uint first_map;    // of the first of them, in the buffer of maps, in faces
+  uint capacity;     // largest number of events of a texel
+  uint first_point;  // first of the samples whose maps are traversed
+  uint first_map;    // first map of this sample, in the buffer of maps, in faces
   uint point_count;
   uint sample_faces;  // of one sample
-  vec2 nearest;       // no caster is nearer to the light's plane than this, on either side
+  vec2 nearest;       // depth of the nearest caster to the light's plane, on either side
 };
 
 struct CompressPush {

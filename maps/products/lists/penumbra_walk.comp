@@ -3,21 +3,23 @@
 #extension GL_GOOGLE_include_directive : require
 #include "maps/products/lists/penumbra_events.shared.h"
 
-// St-Amour, Paquette and Poulin 2005: the ray from the light's centre through the centre of each of its texels, walked through
-// the maps of light samples. Where it passes behind, or out from behind, what a sample's map holds is an event. One
-// invocation a texel, samples in their order.
+// Traverses the maps of light samples along the ray from the light's centre through the centre of each of its texels
+// (St-Amour, Paquette and Poulin 2005). An event is recorded where the ray passes behind, or out from behind, the
+// surface of a sample's map. One invocation for each texel, samples in their order.
 //
-// On a face of a sample's map with axes a, b across and w along, the ray's point at t is O + t D, and the texel's border at
-// coordinate c is crossed where (O.a - c O.w) + t (D.a - c D.w) = 0. Along the ray a/w changes in one direction alone,
-// that of D.a O.w - O.a D.w: so every texel is left by one of two sides.
+// On a face of a sample's map with axes a, b across and w along, the ray's point at t is O + t D, and the ray crosses
+// the texel's border at coordinate c where (O.a - c O.w) + t (D.a - c D.w) = 0. Along the ray a/w changes in one
+// direction alone, the sign of D.a O.w - O.a D.w: so every texel is left by one of two sides.
 
 layout(local_size_x = kLookupGroup) in;
 layout(scalar, binding = 0) readonly buffer Centre { LightView centre; };
 layout(scalar, binding = 1) readonly buffer Views { LightView views[]; };
 layout(scalar, binding = 2) readonly buffer Maps { float maps[]; };
 layout(scalar, binding = 3) readonly buffer Weights { uint weights[]; };
-layout(scalar, binding = 4) buffer Events { uvec2 events[]; };  // bits of t, weight and in the highest bit whether into shadow
-layout(scalar, binding = 5) buffer Counts { uint counts[]; };   // of each texel; more than the capacity are not kept
+layout(scalar, binding = 4) buffer Events { uvec2 events[]; };  // bits of t; weight, and in the highest bit 1 for an
+                                                                // event into shadow
+layout(scalar, binding = 5) buffer Counts { uint counts[]; };   // of each texel; events beyond the capacity are not
+                                                                // stored
 layout(scalar, binding = 6) buffer Most { uint most; };
 layout(scalar, push_constant) uniform Push { EventsPush push; };
 
@@ -30,7 +32,7 @@ void add_event(float t, bool into_shadow, uint weight) {
   ++count;
 }
 
-// Coordinates on face k of a side: across, across, along (face_of in map_fit.cpp).
+// Converts to coordinates on face k of a side: across, across, along (face_of in map_fit.cpp).
 vec3 on_face(vec3 e, uint k) {
   if (k == 0) return e;
   if (k == 1) return vec3(e.y, e.z, e.x);
@@ -39,23 +41,23 @@ vec3 on_face(vec3 e, uint k) {
   return vec3(e.x, e.z, -e.y);
 }
 
-// Where x0 + t x1 >= 0, of first ... last.
+// Clips first ... last to the values of t with x0 + t x1 >= 0.
 void clip(float x0, float x1, inout float first, inout float last) {
   if (x1 > 0.0) first = max(first, -x0 / x1);
   else if (x1 < 0.0) last = min(last, -x0 / x1);
   else if (x0 < 0.0) last = first;
 }
 
-// Where the ray leaves the column (or row) of texels: t of its border at c, from `from` on; `last`, where the face ends, if
-// it is still on this side of the border there. Asked of the end, since t itself does not say: on a sideways face the ray
-// may come from behind the sample, and borders that it never reaches lie at any t before that.
+// Returns the t at which the ray leaves the column (or row) of texels at its border c, from `from` on; `last`, the end
+// of the face, if the ray is still on this side of the border there. The sign at the end decides, because t itself is
+// ambiguous: on a sideways face the ray may come from behind the sample, and borders never reached lie at any t before.
 float crossing(float o, float d, float ow, float dw, float c, float from, float last, bool grows) {
   const float here = o - c * ow, slope = d - c * dw, end = here + last * slope;
   if (grows ? !(end > 0.0) : !(end < 0.0)) return last;
   return clamp(-here / slope, from, last);
 }
 
-// One face. O, D: the ray on it.
+// Traverses one face. o, d: the ray on the face.
 void walk(vec3 o, vec3 d, vec2 lower, vec2 upper, uint map, float far, float nearest, float farthest, uint weight) {
   float t = nearest, last = farthest;
   clip(o.z, d.z, t, last);
@@ -67,8 +69,8 @@ void walk(vec3 o, vec3 d, vec2 lower, vec2 upper, uint map, float far, float nea
 
   const vec2 width = (upper - lower) / float(push.size);
   const vec2 turn = vec2(d.x * o.z - o.x * d.z, d.y * o.z - o.y * d.z);
-  // The first texel: of a place a little behind the entry, since the entry itself lies on a border.
-  // A texel of which less than 1e-4 of t is crossed may be left out there.
+  // First texel: that of a position slightly behind the entry, since the entry itself lies on a border. A texel of
+  // which less than 1e-4 of t is crossed may be skipped.
   const float within = t + min(1e-4 * t, 0.5 * (last - t));
   const vec3 entry = o + within * d;
   ivec2 at = clamp(ivec2(floor((entry.xy / entry.z - lower) / width)), ivec2(0), ivec2(push.size - 1));
@@ -79,7 +81,7 @@ void walk(vec3 o, vec3 d, vec2 lower, vec2 upper, uint map, float far, float nea
     const float ty = turn.y == 0.0 ? last : crossing(o.y, d.y, o.z, d.z, next.y, t, last, turn.y > 0.0);
     const float leave = min(min(tx, ty), last);
     const float depth = far * maps[(map * push.size + uint(at.y)) * push.size + uint(at.x)];
-    // Behind what the map holds?
+    // Tests whether the ray is behind the map's surface.
     const bool enters_behind = o.z + t * d.z > depth, leaves_behind = o.z + leave * d.z > depth;
     if (enters_behind != shadow) add_event(t, enters_behind, weight);
     if (leaves_behind != enters_behind) add_event(clamp((depth - o.z) / d.z, t, leave), leaves_behind, weight);
@@ -90,7 +92,8 @@ void walk(vec3 o, vec3 d, vec2 lower, vec2 upper, uint map, float far, float nea
     else at.y += turn.y > 0.0 ? 1 : -1;
     if (any(lessThan(at, ivec2(0))) || any(greaterThanEqual(at, ivec2(push.size)))) break;
   }
-  if (shadow && t < farthest) add_event(t, false, weight);  // the sample's other faces go on, or nobody asks
+  // the ray continues on the sample's other faces, or beyond the last receiver
+  if (shadow && t < farthest) add_event(t, false, weight);
 }
 
 void main() {
@@ -103,7 +106,7 @@ void main() {
   const uint k = face - side.first_face;
   const vec2 lower = window ? side.lower : vec2(-1.0, k == 0 ? -1.0 : 0.0), upper = window ? side.upper : vec2(1.0);
   const vec2 at = lower + (vec2(index % push.size, row % push.size) + 0.5) * ((upper - lower) / float(push.size));
-  // The ray's direction with z to its side of the light's plane, one long along the face.
+  // Direction of the ray with z on its side of the light's plane, of length one along the face.
   vec3 e = vec3(at, 1.0);
   if (k == 1 || k == 2) e = vec3(k == 1 ? 1.0 : -1.0, at);
   if (k == 3 || k == 4) e = vec3(at.x, k == 3 ? 1.0 : -1.0, at.y);

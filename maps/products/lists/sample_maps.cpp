@@ -1,3 +1,5 @@
+// Renders and keeps the maps of all light samples on the device, with integer weights of the samples.
+
 #include "maps/products/lists/sample_maps.hpp"
 
 #include <algorithm>
@@ -8,7 +10,7 @@ namespace penumbra::maps {
 
 std::vector<std::uint32_t> integer_weights(const visibility::Light& light) {
   std::vector<std::uint32_t> weights(light.sample_count(), 1);
-  // 2^24 in all: each is off by 2^-25 of the light at most, which of 4096 samples is 0.00012 together.
+  // Sum 2^24: each is off by at most 2^-25 of the light, in total 0.00012 for 4096 samples.
   std::ranges::transform(light.weights, weights.begin(),
                          [](double weight) { return static_cast<std::uint32_t>(std::lround(std::ldexp(weight, 24))); });
   return weights;

@@ -9,8 +9,8 @@
 
 namespace penumbra::maps {
 
-/// The maps of all light samples, kept on the device, and what the samples weigh: what products need that join the maps
-/// of many points in one map from the light's centre.
+/// Maps of all light samples, kept on the device, and the weights of the samples: for products that join the maps of
+/// many points in one map from the light's centre.
 class SampleMaps {
  public:
   explicit SampleMaps(const render::Device& device) : device_(&device) {}
@@ -22,16 +22,16 @@ class SampleMaps {
   struct Part {
     const render::Buffer* maps;
     std::uint32_t first, count;
-    std::uint32_t first_map;  ///< of sample `first`, in faces
+    std::uint32_t first_map;  ///< first face of sample `first`
   };
-  /// `most`: no more samples than this in a part.
+  /// Returns the maps in parts of at most `most` samples.
   [[nodiscard]] std::vector<Part> parts(std::uint32_t most = UINT32_MAX) const;
   [[nodiscard]] std::uint32_t count() const { return count_; }
-  /// Of one sample. 0: there is no receiver.
+  /// Returns the number of faces of one sample. 0: there is no receiver.
   [[nodiscard]] std::uint32_t faces() const { return faces_; }
-  /// A LightView for each sample.
+  /// Returns a LightView for each sample.
   [[nodiscard]] const render::Buffer& views() const { return *views_; }
-  /// The weight of each sample, an integer: 1, or with a texture its share of total().
+  /// Returns the weight of each sample, an integer: 1, or with a texture its part of total().
   [[nodiscard]] const render::Buffer& weights() const { return *weights_; }
   [[nodiscard]] std::uint32_t total() const { return total_; }
   [[nodiscard]] std::uint64_t memory_bytes() const;
@@ -43,8 +43,8 @@ class SampleMaps {
   std::vector<std::unique_ptr<render::Buffer>> maps_;
 };
 
-/// The light samples as look-ups that clip the light by a receiver's plane take them (share_above.glsl): x and y in the
-/// light's basis, and the integer weight as a float.
+/// Light samples for look-ups that clip the light by a receiver's plane (share_above.glsl): x and y in the light's
+/// basis, and the integer weight as a float.
 class SamplePoints final : public MapProduct {
  public:
   explicit SamplePoints(const render::Device& device) : device_(&device) {}
@@ -57,7 +57,7 @@ class SamplePoints final : public MapProduct {
   std::unique_ptr<render::Buffer> points_;
 };
 
-/// Weights of a light's samples as integers; see SampleMaps::weights.
+/// Returns the weights of a light's samples as integers; see SampleMaps::weights.
 std::vector<std::uint32_t> integer_weights(const visibility::Light& light);
 
 }  // namespace penumbra::maps
