@@ -1,6 +1,7 @@
-// Heckbert and Herf 1997, "Simulating soft shadows with graphics hardware": V is the mean of hard shadows from points
-// of the light. Departures: they draw the blended shadow into a texture a receiver polygon; here each light sample has
-// a shadow map (Williams 1978), looked up at the view samples, and its answer is kept as a bit of its own.
+// Computes V as the mean of hard shadows from points of the light: Heckbert and Herf 1997, "Simulating soft shadows
+// with graphics hardware". Departures: the paper draws the blended shadow into a texture for each receiver polygon;
+// here each light sample has a shadow map (Williams 1978), looked up at the view samples, and the result is kept as a
+// bit of its own.
 
 #include "maps/sampling/methods.hpp"
 

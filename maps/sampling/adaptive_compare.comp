@@ -6,15 +6,15 @@
 #include "maps/host/look_up.glsl"
 #include "maps/sampling/texel.glsl"
 
-// Schwaerzler, equations 3 and 7: how many receivers are there in whose direction two light points' maps hold something at
-// another height? Heights are over the light's plane, the same for all of its points: so two maps that hold the same
-// surface agree about it. What is below the horizon of both has no shadow that could differ.
+// Counts the receivers in whose direction two light points' maps hold surfaces at different heights (Schwaerzler,
+// equations 3 and 7). Heights are over the light's plane, the same for all of its points: so two maps of the same
+// surface agree. Receivers below the horizon of both points are skipped: their shadow cannot differ.
 
 layout(scalar, binding = 4) readonly buffer MapsB { float maps_b[]; };
 
 shared uint differing;
 
-// Height of what a map holds; 0 where it holds nothing.
+// Returns the height of the map's surface; 0 for an empty texel.
 float height_of(Texel texel, float depth, float far) { return depth < 1.0 ? depth * far * abs(texel.direction.z) : 0.0; }
 
 bool differs(Receiver receiver) {

@@ -6,13 +6,14 @@
 #include "maps/host/look_up.glsl"
 #include "maps/sampling/texel.glsl"
 
-// Schwaerzler, section 3.4: the weighted mean of hard shadows from all light points, buffer of maps by buffer of maps.
-// Weights are added in the order of points, as the host adds them: what every point sees has exactly V = 1.
+// Computes the weighted mean of hard shadows from all light points, buffer of maps by buffer of maps (Schwaerzler,
+// section 3.4). Weights are added in the order of points, as on the host: a receiver seen from every point has exactly
+// V = 1.
 
 layout(scalar, binding = 4) readonly buffer Weights { float weights[]; };  // of all light points
 
-// Percentage-closer filter (Reeves, Salesin and Cook 1987) of the four texels whose centres surround the receiver, weighted
-// bilinearly, each compared with the receiver's plane: the lit share.
+// Returns the lit fraction from a percentage-closer filter (Reeves, Salesin and Cook 1987) of the four texels whose
+// centres surround the receiver, weighted bilinearly, each compared with the receiver's plane.
 float filtered(LightView view, uint first_map, vec3 d, vec3 m) {
   const Texel texel = locate(view, first_map, lookup.size, d);
   const float h = dot(m, d);
@@ -30,9 +31,9 @@ float filtered(LightView view, uint first_map, vec3 d, vec3 m) {
   return first_row + part.y * (second_row - first_row);
 }
 
-// The same for a wider filter: a square `taps` - 1 texels wide around the receiver, of which each texel counts as much as
-// it overlaps (of a square one texel wide that is the bilinear weight). Texels farther away than the receiver's own may lie
-// farther along its plane.
+// Returns the lit fraction from a wider filter: a square `taps` - 1 texels wide around the receiver, with each texel
+// weighted by its overlap (for a square one texel wide, the bilinear weight). Texels farther away than the receiver's
+// own may lie farther along its plane.
 float widely_filtered(LightView view, uint first_map, vec3 d, vec3 m) {
   const Texel texel = locate(view, first_map, lookup.size, d);
   const float h = dot(m, d), half_width = 0.5 * float(own.taps - 1);
@@ -46,7 +47,7 @@ float widely_filtered(LightView view, uint first_map, vec3 d, vec3 m) {
       if (overlap.x * overlap.y == 0.0) continue;
       const vec3 direction = texel.direction + float(i) * texel.across[0] + float(j) * texel.across[1];
       bool blocked = false;
-      if (direction.z * side > 0.0) {  // behind the light's plane nothing is between
+      if (direction.z * side > 0.0) {  // behind the light's plane there is no occluder
         const Tap tap = fetch(view, first_map, lookup.size, texel.along * direction);
         const float away = float(max(max(abs(i), abs(j)), 1));
         blocked = blocks(tap, m, h, tap.along * (1.0 + kSteepest * tap.texel * away), lookup.bias);

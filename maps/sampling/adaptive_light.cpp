@@ -1,8 +1,9 @@
-// Schwärzler, "Real-time soft shadows with adaptive light source sampling": shadow maps from the corners of the light;
-// two maps of opposite corners are compared at the view samples, and where too many differ the cell is split. V is the
-// weighted mean of the maps' hard shadows. Departures: pixels that are below the horizon of both points do not count,
-// every tap is compared with the receiver's plane (taps.glsl), and how many pixels may differ is a share of the pixels
-// (option shareOf: of a map's texels, as published, with which small pictures would have four maps).
+// Computes V as the weighted mean of hard shadows from an adaptive set of light points: Schwärzler, "Real-time soft
+// shadows with adaptive light source sampling": shadow maps from the corners of the light; two maps of opposite corners
+// are compared at the view samples, and where too many differ the cell is split. Departures: pixels that are below the
+// horizon of both points do not count, every tap is compared with the receiver's plane (taps.glsl), and the number of
+// pixels that may differ is a fraction of the pixels (option shareOf: of a map's texels, as published, with which small
+// pictures would have four maps).
 
 #include "maps/sampling/methods.hpp"
 
@@ -27,8 +28,8 @@ namespace {
 enum class CompareIn : std::uint8_t { camera, light };
 
 constexpr visibility::IntegerOption kLevels{"levels", 0, 6, 3, "how often a cell of the light can be halved"};
-// Of all pixels: what a picture of any size refines alike. 0.02 is where 14 of 81 maps are left of the paper's figure
-// 1, and where V is within 1.3 times the error of 128 fixed maps (docs/adaptive-light.md).
+// Fraction of all pixels, so that pictures of any size are refined alike. With 0.02, 14 of 81 maps are left of the
+// paper's figure 1, and V is within 1.3 times the error of 128 fixed maps (docs/adaptive-light.md).
 constexpr visibility::RealOption kDifferingShare{
     "epsilon", 0, 1, 0.02, "a cell is split unless fewer pixels differ than this share of what shareOf says"};
 constexpr visibility::RealOption kGamma{
@@ -139,13 +140,13 @@ class AdaptiveLight final : public visibility::Method {
   const render::Device* device_;
   visibility::MethodDescription description_;
   CompareIn compare_;
-  std::uint32_t taps_;  ///< texels on a side
+  std::uint32_t taps_;  ///< on a side, in texels
   AdaptiveMaps maps_;
   render::ComputePass look_up_;
   Receivers receivers_;
   const visibility::SceneFloats* scene_ = nullptr;
   const visibility::Light* light_ = nullptr;
-  std::uint64_t receiving_ = 0;  ///< pixels of the view that receive shadow
+  std::uint64_t receiving_ = 0;  ///< number of pixels of the view that receive shadow
   TileVisibility results_;
 };
 

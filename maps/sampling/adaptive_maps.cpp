@@ -1,3 +1,5 @@
+// Refines the set of light points with maps (Schwärzler, sections 3.3.1 to 3.3.3) and renders their maps.
+
 #include "maps/sampling/adaptive_maps.hpp"
 
 #include "maps/host/map_method.hpp"
@@ -14,12 +16,12 @@
 namespace penumbra::maps {
 namespace {
 
-/// Maps in one buffer at most: what is not used of the last one is lost memory.
+/// Largest number of maps in one buffer: the unused part of the last buffer is wasted.
 constexpr std::uint32_t kMapsPerBuffer = 16;
-/// Passes that one submission holds.
+/// Number of passes in one submission.
 constexpr std::size_t kPassesPerSubmission = 96;
 
-/// A texture's mean luminance over a rectangle of the unit square, times its area; 1 a unit of area without a texture.
+/// Returns a texture's mean luminance over a rectangle of the unit square, times its area; without a texture, the area.
 double light_in(const visibility::Light& light, const glm::dvec2& lower, const glm::dvec2& upper) {
   const glm::dvec2 extent = upper - lower;
   if (!light.texture) return extent.x * extent.y;
@@ -94,8 +96,8 @@ void AdaptiveMaps::restart() {
   refined_ = false;
 }
 
-/// How wide a texel is depends on what the window holds: no window of receivers is wider than ±kWidestTangent, and the
-/// texel that it has on every side is all that 2 × 2 of them need.
+/// The width of a texel depends on the window's contents: no window of receivers is wider than ±kWidestTangent, and the
+/// margin of one texel on every side is sufficient for 2 × 2 taps.
 FitOptions AdaptiveMaps::fit_options() const {
   const double beside = choices_.taps > 2 ? 2 * kWidestTangent * (choices_.taps / 2) / map_.size : 0;
   return {.size = map_.size, .beside = glm::dvec2(beside)};
@@ -130,7 +132,7 @@ ComparedReceivers AdaptiveMaps::centre_texels() {
         const glm::dvec3 direction = axes.direction(x, y, map_.size);
         found.push_back(
             {glm::vec3(glm::dvec3(view.point) + static_cast<double>(depth) * static_cast<double>(view.far) * direction),
-             glm::vec3(-glm::normalize(direction)),  // as if it faced the light
+             glm::vec3(-glm::normalize(direction)),  // facing the light
              visibility::SceneFloats::kNoPlane, visibility::SceneFloats::kNoPlane});
       }
     }

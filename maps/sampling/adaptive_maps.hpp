@@ -20,18 +20,18 @@
 
 namespace penumbra::maps {
 
-/// Which points of a light adaptive-light takes maps from, and how they count.
+/// Selection of the light points with maps in adaptive-light, and their weights.
 struct AdaptiveChoices {
   std::uint32_t levels, most_maps;
   double epsilon, gamma;
-  bool gamma_of_range;  ///< gamma is a share of all depths of a map; else of the heights compared
-  std::uint32_t taps;   ///< a look-up's texels on a side: windows hold what is that far beside the receivers
+  bool gamma_of_range;  ///< gamma is a fraction of the depth range of a map; else of the compared heights
+  std::uint32_t taps;   ///< a look-up's texels on a side: windows hold casters up to this distance beside the receivers
   LightTree::Shape form;
   PointWeights weights;
-  bool share_of_map;  ///< epsilon is a share of a map's texels; else of all that is compared
+  bool share_of_map;  ///< epsilon is a fraction of a map's texels; else of all compared receivers
 };
 
-/// Where maps are compared: receivers on the device, and how many of them there are in all.
+/// Positions of the comparison: receivers on the device, and their total number.
 struct ComparedReceivers {
   struct Part {
     const render::Buffer* receivers;
@@ -41,32 +41,32 @@ struct ComparedReceivers {
   std::uint64_t count = 0;
 };
 
-/// Maps of a light's points, more where two of them differ (Schwärzler, sections 3.3.1 to 3.3.3), and their weights.
-/// They are whole, and views(), weights() and the maps may be asked, after refine().
+/// Maps of a light's points, refined where two maps differ (Schwärzler, sections 3.3.1 to 3.3.3), and their weights.
+/// views(), weights() and the maps are complete after refine().
 class AdaptiveMaps {
  public:
   AdaptiveMaps(const render::Device& device, const MapOptions& map, const AdaptiveChoices& choices);
 
   void set_scene(const visibility::SceneFloats& scene);
-  /// No point of this light has a map yet. Borrows it.
+  /// Sets the light, without maps so far. Borrows `light`.
   void set_light(const visibility::Light& light);
-  /// Begins again, for other receivers.
+  /// Restarts the refinement, for other receivers.
   void restart();
-  /// Adds light points until no cell's maps differ by too much.
+  /// Adds light points until no cell's maps differ by more than permitted.
   void refine(const ComparedReceivers& places);
   [[nodiscard]] bool refined() const { return refined_; }
-  /// What the map of the light's centre holds, as receivers; until refine() is done.
+  /// Returns the surfaces of the map of the light's centre, as receivers; valid until refine() returns.
   [[nodiscard]] ComparedReceivers centre_texels();
 
   [[nodiscard]] std::uint32_t point_count() const { return static_cast<std::uint32_t>(views_used_.size()); }
-  /// Points whose maps are in one buffer.
+  /// Returns the number of points whose maps are in one buffer.
   [[nodiscard]] std::uint32_t maps_per_buffer() const { return maps_per_buffer_; }
   [[nodiscard]] const render::Buffer& views() const { return *views_; }
-  /// With the map of this point.
+  /// Returns the buffer with the map of this point.
   [[nodiscard]] const render::Buffer& maps_of(std::uint32_t point) const { return *maps_[point / maps_per_buffer_]; }
   [[nodiscard]] const render::Buffer& weights() const { return *weights_; }
   [[nodiscard]] float total_weight() const { return total_; }
-  /// What is the same in all look-ups of this light.
+  /// Returns the push constants common to all look-ups of this light.
   [[nodiscard]] gpu::LookupPush push() const;
 
   std::vector<visibility::PassTime> take_pass_times() { return times_.take(); }
@@ -77,9 +77,9 @@ class AdaptiveMaps {
  private:
   [[nodiscard]] std::size_t view_of(const glm::uvec2& point) const;
   [[nodiscard]] FitOptions fit_options() const;
-  /// Renders the maps of points that have none yet.
+  /// Renders the maps of points without a map.
   void add_maps();
-  /// At how many places the maps of each pair differ.
+  /// Returns, for each pair, the number of positions at which its maps differ.
   std::vector<std::uint32_t> compare(std::span<const LightTree::Pair> pairs, const ComparedReceivers& places);
   void weigh();
 
@@ -95,10 +95,10 @@ class AdaptiveMaps {
   LightBasis basis_;
   std::optional<LightTree> tree_;
   bool refined_ = false;
-  FittedViews grid_;                        ///< of all points that the tree can have
-  std::vector<gpu::LightView> views_used_;  ///< of those that it has, in its order
+  FittedViews grid_;                        ///< views of all points that the tree can have
+  std::vector<gpu::LightView> views_used_;  ///< views of the points that the tree has, in the tree's order
   std::uint32_t maps_per_buffer_ = 1;
-  float total_ = 0;  ///< of the weights
+  float total_ = 0;  ///< sum of the weights
   std::vector<std::unique_ptr<render::Buffer>> maps_;
   std::vector<render::Buffer> texels_;
   std::unique_ptr<render::Buffer> views_, weights_, counts_;

@@ -6,10 +6,10 @@
 #include "maps/host/look_up.glsl"
 #include "maps/sampling/texel.glsl"
 
-// St-Amour, Paquette and Poulin 2005: V is read from the receiver's texel, as a function of depth, where the receiver's
-// plane meets the ray through the texel's centre, less the bias. Nothing is interpolated.
+// Returns V from the receiver's texel (St-Amour, Paquette and Poulin 2005), as a function of depth, at the intersection
+// of the receiver's plane with the ray through the texel's centre, less the bias. Nothing is interpolated.
 
-layout(scalar, binding = 4) readonly buffer Lists { uint lists[]; };  // PenumbraEvents
+layout(scalar, binding = 4) readonly buffer Lists { uint lists[]; };  // written by PenumbraEvents
 layout(scalar, binding = 5) readonly buffer Samples { vec3 samples[]; };
 #include "maps/host/share_above.glsl"
 
@@ -21,7 +21,7 @@ float visibility_of(LightView view, vec3 d, vec3 m) {
   const float plane = plane_depth(texel, m, dot(m, d), lookup.bias, forgiven), depth = plane - forgiven;
   // The last step that begins before `depth`.
   const uint texels = lookup.faces * lookup.size * lookup.size;
-  uint first = lists[texel.index], last = lists[texel.index + 1];  // it is among those before `last`
+  uint first = lists[texel.index], last = lists[texel.index + 1];  // the step is among those before `last`
   const uint begin = first;
   while (first < last) {
     const uint middle = (first + last) / 2;

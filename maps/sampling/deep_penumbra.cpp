@@ -1,7 +1,8 @@
-// St-Amour, Paquette and Poulin, "Soft shadows from extended light sources with penumbra deep shadow maps" (Graphics
-// Interface 2005), as the course notes of Eisemann et al. (2009, section 5.2.4) tell it. Departures: V(depth) is kept
-// as constant pieces (it jumps at every event, so that lines would break the bound), V = 1 and V = 0 are kept as they
-// are, the receiver's plane is compared at the texel's centre (taps.glsl), and what is below the horizon is dark.
+// Looks up penumbra deep shadow maps: St-Amour, Paquette and Poulin, "Soft shadows from extended light sources with
+// penumbra deep shadow maps" (Graphics Interface 2005), as described in the course notes of Eisemann et al. (2009,
+// section 5.2.4). Departures: V(depth) is kept as constant pieces (V jumps at every event, so that lines would violate
+// the bound), V = 1 and V = 0 are kept exactly, the receiver's plane is compared at the texel's centre (taps.glsl), and
+// receivers below the horizon are dark.
 
 #include "maps/sampling/methods.hpp"
 

@@ -1,4 +1,4 @@
-// One struct, two languages: what deep_penumbra.comp has behind LookupPush.
+// Shared by C++ and GLSL: push constants of deep_penumbra.comp after LookupPush.
 #include "maps/host/map_view.shared.h"
 #ifdef __cplusplus
 #pragma once

@@ -7,15 +7,15 @@
 #include "maps/host/look_up.glsl"
 #include "maps/sampling/texel.glsl"
 
-// Agrawala, Ramamoorthi, Heirich and Moll 2000: the receiver is looked for among its texel's surfaces; V is the share of
-// light samples that see it, 0 if no sample does.
+// Searches for the receiver among its texel's surfaces (Agrawala, Ramamoorthi, Heirich and Moll 2000); V is the
+// fraction of light samples that see the receiver, 0 if no sample does.
 
 layout(scalar, binding = 4) readonly buffer Entries { LayerEntry entries[]; };
 layout(scalar, binding = 5) readonly buffer Samples { vec3 samples[]; };
 #include "maps/host/share_above.glsl"
 
-// The weight of the surface that the receiver's plane lies on in this texel; 0 for none. The plane may be off by epsilon, by
-// what the bias forgives, and by what the surface's own depth changes within the texel.
+// Returns the weight of the surface in this texel that contains the receiver's plane; 0 if there is none. The tolerance
+// is epsilon, plus the bias, plus the change of the surface's own depth within the texel.
 uint weight_in(Texel texel, vec3 m, float h) {
   if (texel.index == kNoTexel) return 0;
   float forgiven;

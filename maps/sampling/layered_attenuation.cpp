@@ -1,8 +1,8 @@
-// Agrawala, Ramamoorthi, Heirich and Moll, "Efficient image-based methods for rendering soft shadows" (SIGGRAPH 2000),
-// the layered attenuation maps, as the course notes of Eisemann et al. (2009, section 5.2.4) tell them. Departures: a
-// texel is warped with its extent (layered_warp.comp), a receiver that its own texel knows nothing of is looked for in
-// the eight around (option neighbours), its plane is compared at the texel's centre (taps.glsl), and what is below the
-// horizon is dark.
+// Looks up layered attenuation maps: Agrawala, Ramamoorthi, Heirich and Moll, "Efficient image-based methods for
+// rendering soft shadows" (SIGGRAPH 2000), as described in the course notes of Eisemann et al. (2009, section 5.2.4).
+// Departures: a texel is warped with its extent (layered_warp.comp), a receiver not found in its own texel is searched
+// for in the eight texels around (option neighbours), its plane is compared at the texel's centre (taps.glsl), and
+// receivers below the horizon are dark.
 
 #include "maps/sampling/methods.hpp"
 
@@ -25,8 +25,7 @@ constexpr visibility::ChoiceOption kNeighbours = visibility::flag_option(
     "neighbours", true, "looks for a receiver that its own texel knows nothing of in the eight around");
 constexpr visibility::IntegerOption kLayeredSize = map_size(256);
 
-/// Depths in maps, and of planes, are off by no more than sixteen roundings to 24 binary digits: what is as near is as
-/// near as can be said.
+/// Smallest useful epsilon: depths in maps, and of planes, are off by at most sixteen roundings to 24 binary digits.
 constexpr double kDepthRounding = 0x1p-20;
 
 visibility::MeshVerdict layered_attenuation_verdict(const mesh::Diagnosis& mesh) {

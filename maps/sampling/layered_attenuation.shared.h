@@ -1,4 +1,4 @@
-// One struct, two languages: what layered_attenuation.comp has behind LookupPush.
+// Shared by C++ and GLSL: push constants of layered_attenuation.comp after LookupPush.
 #include "maps/host/map_view.shared.h"
 #ifdef __cplusplus
 #pragma once
@@ -7,7 +7,7 @@ namespace penumbra::maps::gpu {
 
 struct AttenuationPush {
   uint sample_count;
-  uint neighbours;  // 1: asks the texels around when the receiver's own knows nothing of it
+  uint neighbours;  // 1: also searches the texels around if the receiver is not found in its own
   float epsilon;
   float total;  // weight of all samples
   uint layers;

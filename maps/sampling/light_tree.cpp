@@ -1,3 +1,6 @@
+// Splits cells of a light whose corners' maps differ, and weights the points (Schwärzler, sections 3.3.1, 3.3.4 and
+// 3.3.5).
+
 #include "maps/sampling/light_tree.hpp"
 
 #include "base/assert.hpp"
@@ -112,7 +115,7 @@ std::vector<double> LightTree::weights(PointWeights kind, const Light& light) co
     const double area = (upper.x - lower.x) * (upper.y - lower.y), given = light(lower, upper);
     for (const glm::uvec2& corner : corners(leaf)) {
       Around& point = around[index_.at(key(corner))];
-      point.depth = leaf.depth;  // of what came before none is deeper
+      point.depth = leaf.depth;  // leaves are in the order of depth: no earlier one is deeper
       point.area += area;
       point.light += given;
     }

@@ -4,7 +4,7 @@
 
 namespace penumbra::maps {
 
-/// What repairs each cause of error of the methods that have maps from many points of the light:
+/// Returns the repair of each cause of error of the methods with maps from many points of the light:
 /// MethodDescription::repairs.
 visibility::ErrorRepairs sampling_repairs(const visibility::MethodDescription& method,
                                           const visibility::MethodOptions& given);

@@ -1,17 +1,19 @@
-// The texel in a direction, for look-ups that ask lists of texels in place of depths, or several buffers of maps. Included
-// after taps.glsl.
+// Texel in a direction, for look-ups of lists in place of depths, or of several buffers of maps. Included after
+// taps.glsl.
 struct Texel {
-  uint index;      // in the buffer of maps; kNoTexel beside them all
-  vec3 direction;  // to its centre, one long along the face's axis
-  float along;     // d along the face's axis
+  uint index;      // in the buffer of maps; kNoTexel beside all maps
+  vec3 direction;  // to the texel's centre, of length one along the face's axis
+  float along;     // length of d along the face's axis
   int axis;        // the face's axis: 0, 1, 2
-  vec3 across[2];  // from its centre to its neighbours', where the face's first and second coordinate grow
-  vec2 widths;     // the lengths of those
-  vec2 off;        // d from the texel's centre, in texels: -1/2 ... 1/2
+  vec3 across[2];  // from the texel's centre to its neighbours', in the direction of the face's first and second
+                   // coordinate
+  vec2 widths;     // lengths of `across`
+  vec2 off;        // d relative to the texel's centre, in texels: -1/2 ... 1/2
 };
 const uint kNoTexel = 0xffffffffu;
 
-// `first_map`: where the maps of this light point start, in faces. d must not lie in the light's plane.
+// Returns the texel in direction d, which must not lie in the light's plane. `first_map`: first map of this light
+// point, in faces.
 Texel locate(LightView view, uint first_map, uint size, vec3 d) {
   const float mirrored = d.z < 0.0 ? -1.0 : 1.0;
   const SideView side = view.side[d.z < 0.0 ? 1 : 0];
@@ -52,16 +54,16 @@ Texel locate(LightView view, uint first_map, uint size, vec3 d) {
   texel.across[0] = texel.widths.x * first;
   texel.across[1] = texel.widths.y * second;
   texel.off = (f.xy / f.z - centre) / texel.widths;
-  // Beside a window there is nothing to find (map_fit.cpp); a hemicube's faces meet, and only rounding leads beside one.
+  // Outside a window no caster matters (map_fit.cpp); a hemicube's faces meet, and only rounding leads outside one.
   const bool beside = side.face_count == 1 && at != cell;
   const uint map = first_map + side.first_face + face;
   texel.index = side.face_count == 0 || beside ? kNoTexel : (map * size + uint(at.y)) * size + uint(at.x);
   return texel;
 }
 
-// The depth of the receiver's plane (normal m away from the light, at distance h = m . p from the light point) in the
-// texel's direction, as in blocks() of taps.glsl, and what the bias forgives there. Where the light point is below the
-// receiver's horizon its plane says nothing, and the receiver's own depth is taken.
+// Returns the depth of the receiver's plane (normal m away from the light, at distance h = m . p from the light point)
+// in the texel's direction, as in blocks() of taps.glsl, and in `forgiven` the bias there. Where the light point is
+// below the receiver's horizon its plane cannot be compared, and the receiver's own depth is returned.
 float plane_depth(Texel texel, vec3 m, float h, float bias, out float forgiven) {
   const float width = max(texel.widths.x, texel.widths.y), limit = texel.along * (1.0 + kSteepest * width);
   const float facing = dot(m, texel.direction);

@@ -1,7 +1,7 @@
-// Arvo, Hirvikorpi and Tyystjärvi 2004, "Approximate soft shadows with an image-space flood-fill algorithm", as the
-// course notes of Eisemann et al. (2009, section 5.2.1) tell it. Departures: a border is where neighbouring pixels
-// differ, in place of a Sobel filter's answer; distances are those that the light's centre sees; the flood runs on the
-// processor.
+// Floods penumbrae from the borders of a hard shadow over the picture: Arvo, Hirvikorpi and Tyystjärvi 2004,
+// "Approximate soft shadows with an image-space flood-fill algorithm", as described in the course notes of Eisemann et
+// al. (2009, section 5.2.1). Departures: a border is between differing neighbouring pixels, in place of the result of a
+// Sobel filter; distances are as seen from the light's centre; the flood runs on the processor.
 
 #include "maps/single_shadow/methods.hpp"
 
@@ -40,7 +40,8 @@ double light_at(std::uint32_t falloff, double t) {
   }
 }
 
-/// Floods what a map method (arvo_probe.comp) says of each pixel. All of a picture at once: its first tile computes it.
+/// Floods the results of a map method (arvo_probe.comp) at each pixel. Processes a whole picture at once, with its
+/// first tile.
 class FloodedShadow final : public visibility::Method {
  public:
   FloodedShadow(std::unique_ptr<visibility::Method> probe, std::uint32_t falloff)
@@ -103,13 +104,14 @@ std::vector<float> FloodedShadow::probed() {
 void FloodedShadow::evaluate(const visibility::Tile& tile) {
   PENUMBRA_ASSERT(samples_ != nullptr && light_ != nullptr, "{}: evaluate before prepare_view", description().name);
   tile_ = tile;
-  // A call that begins a picture anew gets it whole.
+  // The first tile of a picture computes the whole picture.
   if (!whole_.empty() && tile.first_row > 0) return;
   whole_ = probed();
   const LightBasis basis = light_basis(*light_);
   std::vector<FloodPixel> pixels(whole_.size());
   for (std::size_t i = 0; i < pixels.size(); ++i) {
-    // What lies in the light's plane or receives nothing takes no part; nor what does not see the light's front.
+    // Excluded are samples in the light's plane, samples that receive nothing, and samples that do not see the light's
+    // front.
     if (!visibility::is_receiver(*scene_, *light_, *samples_, i) || whole_[i] == 0) continue;
     const glm::dvec3 d = basis.local(samples_->p[i]);
     if (d.z == 0) continue;

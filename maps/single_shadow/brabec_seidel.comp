@@ -7,8 +7,9 @@
 #include "maps/host/look_up.glsl"
 #include "maps/single_shadow/search.glsl"
 
-// Brabec and Seidel 2002: a lit receiver looks for the nearest texel that would shade it, a shaded one for the nearest that
-// would not. V is a half on the border between them, and rises or falls from there over the half penumbra of the occluder.
+// Returns V (Brabec and Seidel 2002): a lit receiver searches for the nearest texel that would shade it, a shaded one
+// for the nearest that would not. V is 1/2 on the border between these, and rises or falls from there over the half
+// penumbra of the occluder.
 
 layout(scalar, binding = 8) readonly buffer Ids { uint ids[]; };
 layout(scalar, binding = 9) readonly buffer Objects { uint object_of[]; };
@@ -25,7 +26,7 @@ float visibility_of(LightView view, vec3 d, vec3 m) {
   const Search search = begin_search(view, d, m);
   const bool shaded = shades(search, search.tap, ivec2(0));
   if (!shaded && search.free) return 1.0;
-  // Of a shaded receiver the occluder is known, and so how far its penumbra reaches inward.
+  // The occluder of a shaded receiver is known, and thus the inner extent of its penumbra.
   const float inner = half_penumbra(search, search.tap.depth * abs(search.tap.direction.z));
   const float most = shaded ? inner : half_penumbra(search, search.near);
   float best = 1e30, width = inner;

@@ -1,3 +1,5 @@
+// Descriptions and repairs common to the methods of this room.
+
 #include "maps/single_shadow/descriptions.hpp"
 
 #include "maps/host/error_repairs.hpp"
@@ -48,7 +50,7 @@ visibility::ErrorRepairs single_shadow_repairs(const visibility::MethodDescripti
 visibility::ErrorRepairs searched_shadow_repairs(const visibility::MethodDescription& method,
                                                  const visibility::MethodOptions& given) {
   MapRepairs repairs = one_edge();
-  // The search is counted in texels: as many again go as far.
+  // The search radius is given in texels: doubling it keeps the search's extent.
   repairs.doubled = {"size", "radius"};
   return map_repairs(method, given, repairs);
 }

@@ -1,6 +1,6 @@
-// How much light there is a share t of the way through a penumbra, from where it is dark to where it is lit. Parker et al.
-// 1998: what a straight edge leaves of a round light is (1 + sin(pi t - pi/2)) / 2, or nearly 3 t^2 - 2 t^3; of a rectangle
-// along whose side the edge lies it is t.
+// Fraction of light at the fraction t of a penumbra's width, from dark to lit. Parker et al. 1998: for a round light
+// behind a straight edge (1 + sin(pi t - pi/2)) / 2, or nearly 3 t^2 - 2 t^3; for a rectangle with a side parallel to
+// the edge t.
 #include "maps/single_shadow/falloff.shared.h"
 
 float light_at(uint falloff, float t) {

@@ -1,4 +1,4 @@
-// Constants, two languages: falloff.glsl.
+// Shared by C++ and GLSL: constants of falloff.glsl.
 #ifndef PENUMBRA_MAPS_FALLOFF
 #define PENUMBRA_MAPS_FALLOFF
 #ifdef __cplusplus

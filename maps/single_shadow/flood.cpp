@@ -1,3 +1,5 @@
+// Floods borders of hard shadows over a picture (Arvo et al. 2004, see arvo.cpp).
+
 #include "maps/single_shadow/flood.hpp"
 
 #include <glm/geometric.hpp>
@@ -10,13 +12,13 @@
 namespace penumbra::maps {
 namespace {
 
-/// A point of a hard shadow's border, as the light's centre sees it, and the height of what casts it.
+/// Point of a hard shadow's border, as seen from the light's centre, and the height of its caster.
 struct Border {
   glm::dvec2 at{0};
   double blocker = 0;
 };
 
-/// Half a penumbra's width at a pixel, as the light's centre sees it.
+/// Returns half a penumbra's width at a pixel, as seen from the light's centre.
 double reach(const FloodPixel& pixel, const Border& border, double light) {
   return light * (1 / border.blocker - 1 / pixel.height);
 }
@@ -43,7 +45,8 @@ class Flood {
   }
 
  private:
-  /// The neighbours of a pixel, the first `count` of kAround, that are in the picture and no background.
+  /// Calls `see` for the neighbours of a pixel, the first `count` of kAround, that are in the picture and not
+  /// background.
   template <typename See>
   void each_neighbour(std::size_t i, std::size_t count, const See& see) const {
     const int x = static_cast<int>(i) % width_, y = static_cast<int>(i) / width_;
@@ -57,15 +60,15 @@ class Flood {
     }
   }
 
-  /// Takes a border if it is within reach and nearer than `kept`'s.
+  /// Keeps a border if it is within reach and nearer than the border in `kept`.
   void offer(std::size_t i, const Border& border, std::optional<Border>& kept) const {
     const double away = glm::distance(pixels_[i].seen, border.at);
     if (!(away < reach(pixels_[i], border, light_))) return;
     if (!kept || away < glm::distance(pixels_[i].seen, kept->at)) kept = border;
   }
 
-  /// Pixels beside a hard border. A border lies between two pixels that the light's centre sees side by side: no
-  /// farther apart than a penumbra reaches; else they are two surfaces.
+  /// Returns the pixels at a hard border. A border lies between two pixels that are neighbours as seen from the light's
+  /// centre: no farther apart than a penumbra's width; else they are two surfaces.
   std::vector<std::size_t> begin() {
     std::vector<std::size_t> front;
     for (std::size_t i = 0; i < pixels_.size(); ++i) {
@@ -84,7 +87,7 @@ class Flood {
     return front;
   }
 
-  /// Those that the front reaches, a pixel on.
+  /// Returns the pixels reached by the front in the next step of one pixel.
   std::vector<std::size_t> grow(const std::vector<std::size_t>& front) {
     std::vector<std::size_t> candidates;
     for (const std::size_t i : front) {

@@ -8,23 +8,23 @@
 
 namespace penumbra::maps {
 
-/// A pixel as a flood on the screen knows it.
+/// Pixel of a flood on the screen.
 struct FloodPixel {
   enum class State : std::uint8_t { nothing, lit, shaded };
   State state = State::nothing;
-  glm::dvec2 seen{0};  ///< where the light's centre sees it, in (x/z, y/z)
+  glm::dvec2 seen{0};  ///< position as seen from the light's centre, in (x/z, y/z)
   double height = 0;   ///< of the view sample over the light's plane
-  double blocker = 0;  ///< of a shaded one, that of what shades it
+  double blocker = 0;  ///< of a shaded pixel, height of its caster
 };
 
 struct FloodResult {
-  std::vector<double> share;  ///< for each pixel, 0 … 1: how far through a penumbra it is; 0.5 on the hard border
-  std::uint32_t passes = 0;   ///< a pixel each
+  std::vector<double> share;  ///< for each pixel, position in a penumbra, 0 … 1; 0.5 on the hard border
+  std::uint32_t passes = 0;   ///< number of passes, each of one pixel
 };
 
-/// Arvo et al. 2004: borders of the hard shadow between neighbouring pixels, grown a pixel at a time inward and outward
-/// as far as penumbrae reach, each pixel with the border point that came to it, the nearest of its neighbours'.
-/// `light`: the light's radius.
+/// Grows borders of the hard shadow between neighbouring pixels, a pixel at a time, inward and outward to the extent of
+/// penumbrae (Arvo et al. 2004); each pixel keeps the nearest border point of its neighbours'. `light`: the light's
+/// radius.
 FloodResult flood(std::span<const FloodPixel> pixels, std::uint32_t width, double light);
 
 }  // namespace penumbra::maps

@@ -6,15 +6,15 @@
 #include "maps/host/look_up.glsl"
 #include "maps/single_shadow/falloff.glsl"
 
-// Kirsch and Doellner 2003: all light outside of the hard shadow; in it less the farther its border is in the shadow width
-// map, and none from where a light of this radius behind the occluder is hidden.
+// Returns V (Kirsch and Doellner 2003): 1 outside of the hard shadow; inside, less the farther its border is in the
+// shadow width map, and 0 where a light of this radius behind the occluder is hidden.
 
 layout(scalar, binding = 4) readonly buffer Widths { float widths[]; };
 
 const float kFarInside = 1e20;  // WidthMap has no distance there
 
-// How far the receiver is inside, between the four nearest texels: a texel's centre is half a texel farther from white than
-// its border.
+// Returns the distance of the receiver from the border, interpolated between the four nearest texels: a texel's centre
+// is half a texel farther from white than its border.
 float width_at(MapFace face, vec2 at) {
   const vec2 most = vec2(float(lookup.size - 1)), first = floor(at - 0.5), share = at - 0.5 - first;
   float width = 0.0;
@@ -32,7 +32,7 @@ float visibility_of(LightView view, vec3 d, vec3 m) {
   if (!(dot(m, d) > 0.0)) return 0.0;  // the light's centre is below the receiver's horizon
   if (!hard_shadow(view, 0, lookup.size, d, m, lookup.bias)) return 1.0;
   const Tap tap = fetch(view, 0, lookup.size, d);
-  // What no occluder is drawn over is in the ground's own shadow, or in none that the width map knows.
+  // A texel without an occluder is in the ground's own shadow, or in a shadow missing in the width map.
   if (widths[tap.number] == 0.0) return 0.0;
   const FaceHit hit = face_hit(view, d);
   const MapFace face = face_of(view.side[d.z < 0.0 ? 1 : 0], 0, lookup.size, hit.face);

@@ -1,4 +1,4 @@
-// One struct, two languages: what kirsch_doellner.comp has behind LookupPush.
+// Shared by C++ and GLSL: push constants of kirsch_doellner.comp after LookupPush.
 #include "maps/single_shadow/falloff.shared.h"
 #ifdef __cplusplus
 #pragma once

@@ -7,7 +7,7 @@
 
 namespace penumbra::maps {
 
-/// How V rises through a penumbra.
+/// Returns the option `falloff`, the profile of V through a penumbra.
 constexpr visibility::ChoiceOption<std::uint32_t, 3> falloff_option(std::uint32_t otherwise) {
   return {"falloff",
           {{"linear", gpu::kFalloffLinear}, {"cubic", gpu::kFalloffCubic}, {"sine", gpu::kFalloffSine}},
@@ -15,8 +15,8 @@ constexpr visibility::ChoiceOption<std::uint32_t, 3> falloff_option(std::uint32_
           "how V rises through a penumbra: as of a rectangle along its side, as Parker's polynomial, or as his sine"};
 }
 
-/// How far a look-up searches the map: some drivers for processors end loops after 65,535 turns, and a circle of 140
-/// texels has 61,529.
+/// Search radius on the map: some drivers for processors end loops after 65,535 iterations, and a circle of 140 texels
+/// has 61,529.
 inline constexpr visibility::IntegerOption kSearchRadius{
     "radius", 1, 140, 64, "texels around a view sample's own that are searched, at most"};
 

@@ -1,6 +1,6 @@
-// Silhouettes as the light's centre sees them, and on which side of each its shadow ends. Wyman and Hansen 2003 and
-// Chan and Durand 2003 draw whole cones and corners at a silhouette's vertices; here each end has the part that is
-// outside of its own edge: the inner part would shade the caster's own lit side.
+// Computes silhouettes as seen from the light's centre, and the side of each on which its shadow ends. Wyman and Hansen
+// 2003 and Chan and Durand 2003 draw whole cones and corners at a silhouette's vertices; here each end has only the
+// part outside of its own edge: the inner part would shade the caster's own lit side.
 
 #include "maps/single_shadow/outer_edges.hpp"
 
@@ -24,7 +24,7 @@ glm::dvec2 seen(const glm::dvec3& p) {
   return glm::dvec2(p) / p.z;
 }
 
-/// The part of an edge that is at least `near` in front of the plane z = 0.
+/// Clips an edge to the part at least `near` in front of the plane z = 0; returns false if nothing is left.
 bool keep_in_front(glm::dvec3& a, glm::dvec3& b, double near) {
   if (a.z < near && b.z < near) return false;
   const auto cut = [&](glm::dvec3& end, const glm::dvec3& other) {
@@ -37,7 +37,8 @@ bool keep_in_front(glm::dvec3& a, glm::dvec3& b, double near) {
   return true;
 }
 
-/// `left`: the outer side is to the left of the way from a to b, x to the right and y up.
+/// Returns the edge of the outer part; nullopt if the edge is seen as a point. `left`: the outer side is to the left of
+/// the direction from a to b, x to the right and y up.
 std::optional<gpu::OuterEdge> outer_edge(const glm::dvec3& a, const glm::dvec3& b, bool left, OuterForm form,
                                          double radius) {
   const glm::dvec2 way = seen(b) - seen(a);
@@ -47,7 +48,7 @@ std::optional<gpu::OuterEdge> outer_edge(const glm::dvec3& a, const glm::dvec3& 
   const glm::dvec2 beside = left ? glm::dvec2(-along.y, along.x) : glm::dvec2(along.y, -along.x);
   glm::dvec2 outward = beside;
   if (form == OuterForm::cones) {
-    // The line that touches both circles: their radii differ by as much wherever both cones are cut.
+    // The line that touches both circles: their radii differ by the same amount wherever both cones are cut.
     const double lean = std::clamp(radius * (1 / a.z - 1 / b.z) / length, -1.0, 1.0);
     outward = lean * along + std::sqrt(1 - lean * lean) * beside;
   }
@@ -81,8 +82,9 @@ OuterEdges outer_edges(const visibility::SceneFloats& scene, const visibility::L
         b.z = -b.z;
       }
       if (!keep_in_front(a, b, near)) continue;
-      // Triangles that run from a to b counter-clockwise as the centre sees them are to the left there. That is the
-      // right here, where x × y points away from the centre; behind the light, where z is mirrored, it is the left.
+      // Triangles that run from a to b counter-clockwise as seen from the centre are to the left of the edge there.
+      // This is the right side here, where x × y points away from the centre; behind the light, where z is mirrored, it
+      // is the left side.
       const bool left = (silhouette.multiplicity > 0) == (side == 0);
       const auto outer = outer_edge(a, b, left, form, radius);
       if (!outer) continue;

@@ -6,11 +6,12 @@
 #include "maps/host/look_up.glsl"
 #include "maps/single_shadow/falloff.glsl"
 
-// Wyman and Hansen 2003, Chan and Durand 2003: nothing where the shadow map says shadow; else what the second map holds.
+// Returns V (Wyman and Hansen 2003, Chan and Durand 2003): 0 where the shadow map gives shadow; else the value of the
+// second map.
 
 layout(scalar, binding = 4) readonly buffer Outer { uvec2 outer[]; };
 
-// V by one texel of the face that the receiver is seen on.
+// Returns V from one texel of the face that contains the receiver's direction.
 float light_of(LightView view, MapFace face, uvec2 cell, vec3 d, vec3 m, float along) {
   Tap tap = tap_of(view, lookup.size, face, cell);
   tap.along = along;

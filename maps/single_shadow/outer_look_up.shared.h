@@ -1,4 +1,4 @@
-// One struct, two languages: what outer_look_up.comp has behind LookupPush.
+// Shared by C++ and GLSL: push constants of outer_look_up.comp after LookupPush.
 #include "maps/single_shadow/falloff.shared.h"
 #ifdef __cplusplus
 #pragma once
@@ -8,7 +8,7 @@ namespace penumbra::maps::gpu {
 struct OuterLookUpPush {
   uint falloff;    // kFalloffLinear ...
   uint linear;     // 1: between the four nearest texels
-  uint smoothies;  // 1: penumbra begins behind what is drawn in the second map
+  uint smoothies;  // 1: penumbra begins behind the surfaces drawn in the second map
 };
 
 #ifdef __cplusplus

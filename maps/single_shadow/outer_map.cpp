@@ -1,3 +1,5 @@
+// Draws a second map of penumbrae beside silhouettes (Wyman and Hansen 2003, Chan and Durand 2003).
+
 #include "maps/single_shadow/outer_map.hpp"
 
 #include "base/error.hpp"
@@ -20,9 +22,9 @@ namespace {
 
 constexpr std::array<std::uint32_t, 2> kNothing{0x3f800000U, 0x7f800000U};  // 1, and infinity
 
-/// A face of one side of a view, in the light's basis with z from its plane.
+/// Returns the push constants of a face of one side of a view, in the light's basis with z from its plane.
 gpu::OuterPush outer_push(const gpu::LightView& view, std::uint32_t side, std::uint32_t face, std::uint32_t size) {
-  // face_of gives axes in the world; with the world's own axes as basis they are in the light's.
+  // face_of returns axes in the world; with the world's own axes as basis they are in the light's.
   gpu::LightView turned = view;
   turned.point = glm::vec3(0);
   LightBasis axes;
@@ -95,7 +97,7 @@ void OuterMap::record(render::Commands& commands, const MapSet& maps) {
   if (maps.faces == 0) return;
   record_surfaces(commands, maps, view);
 
-  // Nothing nearer to the light's plane is drawn in its maps either (map_fit.cpp).
+  // Surfaces nearer to the light's plane are not drawn in its maps either (map_fit.cpp).
   edges_ =
       outer_edges(maps.scene, maps.light, maps.basis, options_.form, std::ldexp(static_cast<double>(view.far), -20));
   double width = half_width(maps.light);

@@ -4,17 +4,18 @@
 #include "maps/single_shadow/outer_map.shared.h"
 #include "render/both.glsl"
 
-// Where a texel is in the penumbra beside an edge, from the texel's centre alone: the rasteriser says which texels are asked.
-// From the silhouette lines lead outward, one from each of its points; in (x/z, y/z) all along `outward`, or around an
-// end in all directions.
+// Computes the position of a texel's centre in the penumbra beside an edge; the rasteriser only selects the texels.
+// From each point of the silhouette a line leads outward: in (x/z, y/z) always along `outward`, or around an end in all
+// directions.
 //
-// Wyman and Hansen 2003: at depth Z a cone's line is r (1/Z_v - 1/Z) beside its vertex at depth Z_v. With Z_F the depth of the
-// cone at the texel and Z_P that of what the light sees there, light is 3 c^2 - 2 c^3 of c = (Z_F - Z_v) / (Z_P - Z_v); what is
-// kept is c, and the look-up does the rest. Chan and Durand 2003: alpha = (distance) / width, kept is alpha / (1 - Z_v/Z_P).
+// Wyman and Hansen 2003: at depth Z a cone's line is r (1/Z_v - 1/Z) beside its vertex at depth Z_v. With Z_F the depth
+// of the cone at the texel and Z_P that of the surface seen from the light there, light is 3 c^2 - 2 c^3 of c = (Z_F -
+// Z_v) / (Z_P - Z_v); the map stores c, and the look-up computes the rest. Chan and Durand 2003: alpha = (distance) /
+// width; the map stores alpha / (1 - Z_v/Z_P).
 
 STORAGE(1) readonly buffer Surfaces { float surfaces[]; };
-STORAGE(2) buffer Outer { uint outer[]; };  // for each texel: what is kept, the least, and how near the nearest edge is
-PUSH_CONSTANTS OuterBlock { OuterPush push; };  // not Push: blocks of one name are one in both stages
+STORAGE(2) buffer Outer { uint outer[]; };  // for each texel: the least stored value, and the depth of the nearest edge
+PUSH_CONSTANTS OuterBlock { OuterPush push; };  // not Push: blocks with one name are one block in both stages
 layout(location = 0) flat in uint edge_drawn;
 layout(location = 1) flat in uint part_drawn;
 
@@ -27,13 +28,13 @@ void main() {
   const uvec2 cell = uvec2(gl_FragCoord.xy);
   const vec2 abw = push.lower + (vec2(cell) + 0.5) * push.texel;
   vec2 seen = abw;     // the texel as (x/z, y/z)
-  float height = 1.0;  // z of its direction, one long along the face's axis
+  float height = 1.0;  // z of the texel's direction, of length one along the face's axis
   if (push.axis != 2) {
     height = abw.y;
     seen = (push.axis == 0 ? vec2(push.sign, abw.x) : vec2(abw.x, push.sign)) / height;
   }
   const vec2 first = a.xy / a.z, second = b.xy / b.z;
-  float beside, inverse;  // how far the texel is beside the silhouette, and 1 / Z_v there
+  float beside, inverse;  // distance of the texel beside the silhouette, and 1 / Z_v there
   if (part_drawn == kSheet) {
     const vec2 outward = pair_at(at + 6), way = second - first, to = seen - first;
     const float across = way.x * outward.y - way.y * outward.x;
@@ -46,7 +47,7 @@ void main() {
     inverse = 1.0 / (part_drawn == kFirstEnd ? a.z : b.z);
   }
   const uint texel = push.first + cell.y * push.size + cell.x;
-  if (surfaces[texel] >= 1.0) discard;  // nothing is there to be lit
+  if (surfaces[texel] >= 1.0) discard;  // there is no surface to be lit
   const float surface = surfaces[texel] * push.far * height;
   float kept;
   if (push.smoothies != 0) {
@@ -58,7 +59,7 @@ void main() {
     if (!(cone * surface > 1.0)) discard;
     kept = (1.0 / cone - 1.0 / inverse) / (surface - 1.0 / inverse);
   }
-  // Most of what is drawn is not the least: that much is known without waiting for one's turn.
+  // Most values are not the least: a comparison without an atomic operation is sufficient for these.
   const uint least = floatBitsToUint(clamp(kept, 0.0, 1.0)), near = floatBitsToUint(1.0 / inverse);
   if (least < outer[2 * texel]) atomicMin(outer[2 * texel], least);
   if (near < outer[2 * texel + 1]) atomicMin(outer[2 * texel + 1], near);

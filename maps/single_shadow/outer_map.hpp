@@ -13,15 +13,16 @@
 
 namespace penumbra::maps {
 
-/// A second map beside the one of the light's centre: for each texel how far out in the penumbra of the nearest
-/// silhouette it is, 0 at the silhouette and 1 where all light is seen, for the surface that the light's centre sees
-/// there, caster or not; and the least height of what is drawn there, infinite where nothing is. Drawn by triangles
-/// beside every silhouette edge, as the light's centre sees it.
+/// Second map beside the one of the light's centre: for each texel, for the surface seen from the light's centre there,
+/// caster or not, its position in the penumbra of the nearest silhouette, 0 at the silhouette and 1 where all light is
+/// seen; and the least height of the edges drawn there, infinite where there are none. Drawn by triangles beside every
+/// silhouette edge, as seen from the light's centre.
 class OuterMap final : public MapProduct {
  public:
   struct Options {
     OuterForm form = OuterForm::cones;
-    /// Of smoothies, 1 from the light's centre; 0: the light's radius over the mean height of the silhouettes.
+    /// Width of smoothies, at distance 1 from the light's centre; 0: the light's radius over the mean height of the
+    /// silhouettes.
     double width = 0;
     Rasteriser rasteriser = Rasteriser::vulkan;
   };
@@ -39,11 +40,11 @@ class OuterMap final : public MapProduct {
 
   const render::Device* device_;
   Options options_;
-  std::optional<render::RasterPass> pass_;                 // either this
-  std::optional<render::opengl::RasterPass> opengl_pass_;  // or that
-  std::optional<CasterMaps> surface_maps_;                 ///< of all that casts or receives
+  std::optional<render::RasterPass> pass_;                 // used with Vulkan
+  std::optional<render::opengl::RasterPass> opengl_pass_;  // used with OpenGL
+  std::optional<CasterMaps> surface_maps_;                 ///< of all objects that cast or receive
   OuterEdges edges_;
-  std::vector<render::Buffer> uploaded_;  ///< edges, a buffer a side
+  std::vector<render::Buffer> uploaded_;  ///< edges, one buffer for each side
   std::unique_ptr<render::Buffer> surfaces_, outer_;
 };
 

@@ -4,8 +4,8 @@
 #include "maps/single_shadow/outer_map.shared.h"
 #include "render/both.glsl"
 
-// What stands beside a silhouette edge, in the light's basis: a sheet along it, and a fan around either end. outer_map.frag
-// decides what of it is penumbra: here it has to be covered.
+// Draws the shapes beside a silhouette edge, in the light's basis: a sheet along the edge, and a fan around either end.
+// The triangles only have to cover the penumbra; outer_map.frag decides.
 
 PUSH_CONSTANTS Push { OuterPush drawn; };
 layout(location = 0) flat out uint edge_drawn;
@@ -14,14 +14,15 @@ layout(location = 1) flat out uint part_drawn;
 vec2 pair_at(uint i) { return vec2(corner_at(i / 3)[i % 3], corner_at((i + 1) / 3)[(i + 1) % 3]); }
 vec3 triple_at(uint i) { return vec3(pair_at(i), corner_at((i + 2) / 3)[(i + 2) % 3]); }
 
-// From a point of the edge along a direction, as far as the penumbra can reach: cones, as far as the maps do.
+// Returns a point on the line from a point of the edge along `direction`, at the largest extent of the penumbra: for
+// cones, the extent of the maps.
 vec3 outer_end(vec3 p, vec2 direction, float more) {
   const float reach = drawn.smoothies != 0 ? drawn.width * p.z : drawn.width * (max(drawn.far / p.z, 1.0) - 1.0);
   const float grown = drawn.smoothies != 0 ? 1.0 : max(drawn.far / p.z, 1.0);
   return vec3(p.xy * grown + direction * (reach * more), p.z * grown);
 }
 
-// `direction` turned toward `end`, by so much of the angle between them.
+// Returns `direction` turned toward `end` by the fraction `share` of the angle between them.
 vec2 turned(vec2 direction, vec2 end, float share) {
   const float angle = acos(clamp(dot(direction, end), -1.0, 1.0)) * share;
   const float turn = direction.x * end.y - direction.y * end.x < 0.0 ? -angle : angle;
@@ -44,7 +45,8 @@ void main() {
     const bool second = vertex - 6 >= 3 * kOuterFan;
     part_drawn = second ? kSecondEnd : kFirstEnd;
     const vec3 p = second ? b : a;
-    // Triangles around the circle, not in it: a sixteenth of a half turn is where they touch it.
+    // Triangles around the circle, not in it: each touches the circle at its middle, a sixteenth of a half turn from
+    // its ends.
     const vec2 direction = turned(outward, second ? along : -along, float(k) / float(kOuterFan));
     d = corner == 0 ? p : outer_end(p, direction, 1.0 / cos(3.1415927 / (2.0 * float(kOuterFan))));
   }

@@ -5,7 +5,7 @@
 
 namespace penumbra::maps {
 
-/// Options of methods that look a second map up (OuterMap), and their recipe.
+/// Options of methods that look up a second map (OuterMap), and their recipe.
 std::vector<visibility::OptionDescription> outer_options(std::uint32_t falloff);
 MapRecipe outer_recipe(const render::Device& device, visibility::MethodDescription description,
                        const visibility::ParsedOptions& parsed, const OuterMap::Options& options);

@@ -6,8 +6,8 @@
 #include "maps/host/look_up.glsl"
 #include "maps/single_shadow/search.glsl"
 
-// Parker et al. 1998: objects with soft edges. No light in the hard shadow; else s(x / b), x the distance from the ray to the
-// light's centre to the object, b that of the soft edge, a D / A: the least over all that is there.
+// Returns V for objects with soft edges (Parker et al. 1998). 0 in the hard shadow; else s(x / b), x the distance of
+// the object from the ray to the light's centre, b that of the soft edge, a D / A: the least over all texels.
 
 float visibility_of(LightView view, vec3 d, vec3 m) {
   if (!(dot(m, d) > 0.0)) return 0.0;  // the light's centre is below the receiver's horizon

@@ -1,5 +1,6 @@
-// Parker, Shirley and Smits 1998, "Single sample soft shadows". Departure: the paper asks a ray how closely it passes
-// each object; here texels of the light's map are asked, which are what can be seen of the objects.
+// Computes soft edges around a hard shadow: Parker, Shirley and Smits 1998, "Single sample soft shadows". Departure: in
+// the paper a ray gives the distance at which it passes each object; here these distances come from texels of the
+// light's map, which are the visible parts of the objects.
 
 #include "maps/single_shadow/methods.hpp"
 

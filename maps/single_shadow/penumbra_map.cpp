@@ -1,6 +1,7 @@
-// Wyman and Hansen 2003, "Penumbra maps: approximate soft shadows in real-time". Departures: the light's radius is that
-// of the disk of its area; an edge's ends have the outer part of their cones (outer_edges.cpp); sheets and cones are
-// met at texels' centres exactly, whatever triangles cover them.
+// Draws cones and sheets at silhouettes in a second map: Wyman and Hansen 2003, "Penumbra maps: approximate soft
+// shadows in real-time". Departures: the light's radius is that of the disk of its area; an edge's ends have the outer
+// part of their cones (outer_edges.cpp); sheets and cones are intersected at texels' centres exactly, whatever
+// triangles cover them.
 
 #include "maps/single_shadow/methods.hpp"
 

@@ -1,4 +1,4 @@
-// A search of the map around a receiver's own texel, nearest texels first. Included after look_up.glsl, with OWN_PUSH
+// Search of the map around a receiver's own texel, nearest texels first. Included after look_up.glsl, with OWN_PUSH
 // SearchPush.
 #include "maps/host/neighbours.glsl"
 #include "maps/single_shadow/falloff.glsl"
@@ -6,8 +6,8 @@
 #include "maps/products/depth_pyramid.glsl"
 
 layout(scalar, binding = 4) readonly buffer Nearest { float nearest[2]; };
-layout(scalar, binding = 5) readonly buffer Offsets { ivec2 offsets[]; };  // by length
-layout(scalar, binding = 7) buffer Counts { uint cut_searches[2]; };       // 64 bits, of which the lower are enough
+layout(scalar, binding = 5) readonly buffer Offsets { ivec2 offsets[]; };  // sorted by length
+layout(scalar, binding = 7) buffer Counts { uint cut_searches[2]; };       // 64 bits, of which the lower are sufficient
 
 struct Search {
   LightView view;
@@ -18,8 +18,8 @@ struct Search {
   vec3 m;
   float h, height;
   float smallest_step;
-  float near;          // nothing that can shade the receiver is nearer to the light's plane
-  bool free;           // and nothing within the search's radius does
+  float near;          // smallest distance from the light's plane of a surface that can shade the receiver
+  bool free;           // no surface within the search's radius can shade the receiver
 };
 
 Search begin_search(LightView view, vec3 d, vec3 m) {
@@ -37,20 +37,20 @@ Search begin_search(LightView view, vec3 d, vec3 m) {
   const uint side = d.z < 0.0 ? 1 : 0;
   search.near = nearest[side];
   search.free = search.near >= search.height;
-  // Within one face the pyramid knows more.
+  // Within one face the pyramid gives tighter bounds.
   const ivec2 cell = ivec2(floor(search.at)), first = cell - int(own.radius), last = cell + int(own.radius);
   const bool window = view.side[side].face_count == 1;
   if (!window || search.free) return search;
   const ivec2 most = ivec2(int(lookup.size) - 1);
   const vec2 range = depth_range(view.side[side].first_face, uvec2(clamp(first, ivec2(0), most)), uvec2(clamp(last, ivec2(0), most)));
-  // How deep the receiver's plane can be that far away: texel_blocks (neighbours.glsl).
+  // Largest depth of the receiver's plane at this distance: texel_blocks (neighbours.glsl).
   const float deepest = search.tap.along * (1.0 + kSteepest * search.tap.texel * float(own.radius + 1));
   search.near = max(search.near, range.x * view.far);
   search.free = search.free || search.near >= deepest;
   return search;
 }
 
-// The texel of an offset; false where none is, which shades nothing.
+// Returns the texel of an offset in `tap`; false if there is none, which counts as not shading.
 bool search_texel(Search search, ivec2 offset, out Tap tap) {
   const vec3 direction = neighbour(search.tap, search.step, vec2(offset));
   tap = search.tap;
@@ -64,24 +64,26 @@ bool search_blocks(Search search, Tap tap, ivec2 offset) {
   return texel_blocks(tap, search.m, search.h, tap.along, away);
 }
 
-// How far from the receiver the light's centre sees a texel, in (x/z, y/z): its border, half a texel before its centre.
+// Returns the distance of a texel from the receiver, as seen from the light's centre, in (x/z, y/z): to the texel's
+// border, half a texel before its centre.
 float distance_to(Search search, Tap tap) {
   const float half_texel = search.tap.axis == 2 && tap.axis == 2 ? 0.5 * max(search.step.x, search.step.y) : 0.0;
   return max(distance(search.seen, tap.direction.xy / abs(tap.direction.z)) - half_texel, 0.0);
 }
 
-// Is all that lies behind this offset farther away than `most`? (Sideways, distances are not those on the face.)
+// Returns whether all texels from this offset on are farther away than `most`. (Sideways, distances are not those on
+// the face.)
 bool is_beyond(Search search, ivec2 offset, float most) {
   return search.tap.axis == 2 && (length(vec2(offset)) - 2.0) * search.smallest_step > most;
 }
 
-// Counts a search that went through all offsets, and may have found more farther away, up to `most`. Only on the face along
-// the light's axis are distances known.
+// Counts a search that went through all offsets and may have found more up to the distance `most`. Distances are known
+// only on the face along the light's axis.
 void count_cut(Search search, uint asked, float most) {
   const bool ended = search.tap.axis != 2 || (float(own.radius) - 1.0) * search.smallest_step > most;
   if (asked == own.offsets && !ended) atomicAdd(cut_searches[0], 1);
 }
 
-// How wide the half of a penumbra is, outer or inner, that something at height `z` casts on the receiver: what Parker et al.
-// have as a D / A, as the light's centre sees it.
+// Returns the width of the outer or inner half of a penumbra that an occluder at height `z` casts on the receiver: a D
+// / A of Parker et al., as seen from the light's centre.
 float half_penumbra(Search search, float z) { return own.light * (1.0 / z - 1.0 / search.height); }

@@ -1,4 +1,4 @@
-// One struct, two languages: what brabec_seidel.comp and parker.comp have behind LookupPush.
+// Shared by C++ and GLSL: push constants of brabec_seidel.comp and parker.comp after LookupPush.
 #include "maps/single_shadow/falloff.shared.h"
 #ifdef __cplusplus
 #pragma once
@@ -7,10 +7,10 @@ namespace penumbra::maps::gpu {
 
 struct SearchPush {
   uint falloff;  // kFalloffLinear ...
-  uint offsets;  // how many there are
-  uint radius;   // none is longer, in texels
+  uint offsets;  // number of offsets
+  uint radius;   // length of the longest offset, in texels
   float light;   // the light's radius
-  uint ids;      // 1: what is of the receiver's own object shades nothing of it
+  uint ids;      // 1: surfaces of the receiver's own object do not shade the receiver
 };
 
 #ifdef __cplusplus

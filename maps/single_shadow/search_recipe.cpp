@@ -1,3 +1,5 @@
+// Assembles `brabec-seidel` and `parker`: offsets of the search and products.
+
 #include "maps/single_shadow/search_recipe.hpp"
 
 #include "maps/products/depth_pyramid.hpp"
@@ -15,7 +17,7 @@
 namespace penumbra::maps {
 namespace {
 
-/// search_offsets on the device.
+/// Buffer of search_offsets on the device.
 class SearchOffsets final : public MapProduct {
  public:
   SearchOffsets(const render::Device& device, std::span<const glm::ivec2> offsets)
@@ -52,7 +54,7 @@ MapRecipe search_recipe(const render::Device& device, SearchMethod method, const
   recipe.products.push_back(std::make_unique<SearchOffsets>(device, offsets));
   recipe.products.push_back(std::make_unique<DepthPyramid>(device, PyramidKind::ysm));
   recipe.products.push_back(std::make_unique<WorkCounts>(device, std::vector<std::string>{"cutSearches"}));
-  // Casters that receive nothing are searched, too, as far beside a receiver as a penumbra can begin.
+  // Casters that receive nothing are searched, too, up to the distance beside a receiver at which a penumbra can begin.
   recipe.beside = [](const visibility::Light& light, const LightBasis& basis) {
     return half_extent(light, basis) / half_width(light);
   };

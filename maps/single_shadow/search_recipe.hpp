@@ -11,17 +11,18 @@
 
 namespace penumbra::maps {
 
-/// Offsets of at most `radius` texels, the shortest first; of equally long ones in a fixed order.
+/// Returns the offsets of at most `radius` texels, the shortest first; equally long ones in a fixed order.
 std::vector<glm::ivec2> search_offsets(std::uint32_t radius);
 
-/// How one of the methods that search a map is made: description, falloff of its own, and its look-up.
+/// Method that searches a map: description, default falloff, and its look-up.
 struct SearchMethod {
   visibility::MethodDescription description;
   std::uint32_t falloff;
   std::string look_up_name;
   std::span<const std::uint32_t> look_up;
 };
-/// `ids`: what is of the receiver's own object shades nothing of it; the recipe's last product are then triangles' ids.
+/// Returns the recipe. `ids`: surfaces of the receiver's own object do not shade the receiver; the recipe's last
+/// product then is triangles' ids.
 MapRecipe search_recipe(const render::Device& device, SearchMethod method, const visibility::ParsedOptions& parsed,
                         bool ids);
 

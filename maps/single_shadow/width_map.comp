@@ -3,17 +3,18 @@
 #extension GL_GOOGLE_include_directive : require
 #include "maps/single_shadow/width_map.shared.h"
 
-// Kirsch and Doellner 2003: how far each black texel (an occluder's) is from the nearest white one. The paper filters a
-// picture again and again, a texel farther each time; here distances along rows are made, and of those the least root of a
-// sum of squares down columns, which is the Euclidean distance exactly. What is beside a face is not white.
+// Computes the distance of each black texel (an occluder's) from the nearest white one (Kirsch and Doellner 2003). The
+// paper filters a picture repeatedly, one texel farther each time; here distances along rows are computed, and of these
+// the least root of a sum of squares down columns, which is the exact Euclidean distance. The outside of a face is not
+// white.
 
 layout(local_size_x = 64) in;
-layout(scalar, binding = 0) readonly buffer Occluders { float occluders[]; };  // depths; 1 where none is
+layout(scalar, binding = 0) readonly buffer Occluders { float occluders[]; };  // depths; 1 for empty texels
 layout(scalar, binding = 1) buffer Rows { float rows[]; };                     // distance to white along the row
 layout(scalar, binding = 2) buffer Widths { float widths[]; };
 layout(scalar, push_constant) uniform Push { WidthMapPush push; };
 
-const float kNone = 1e30;  // no white within the radius
+const float kNone = 1e30;  // no white texel within the radius
 
 void main() {
   const uint i = (gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x) * gl_WorkGroupSize.x + gl_LocalInvocationID.x;

@@ -12,16 +12,17 @@
 
 namespace penumbra::maps {
 
-/// The shadow width map of Kirsch and Döllner 2003: for each texel of the maps of a light's centre that holds an
-/// occluder (a caster that is not the ground, see ground_of) the distance to the nearest texel that holds none, in
-/// coordinates of the face; 0 where there is none, 1e30 where that is farther than `radius` texels.
+/// Shadow width map of Kirsch and Döllner 2003: for each texel of the maps of a light's centre that holds an occluder
+/// (a caster that is not the ground, see ground_of) the distance to the nearest texel without one, in coordinates of
+/// the face; 0 for a texel without an occluder, 1e30 if the distance is above `radius` texels.
 class WidthMap final : public MapProduct {
  public:
   WidthMap(const render::Device& device, std::uint32_t radius, Rasteriser rasteriser);
   void record(render::Commands& commands, const MapSet& maps) override;
   [[nodiscard]] const render::Buffer& buffer() const override { return *widths_; }
   [[nodiscard]] std::uint64_t memory_bytes() const override;
-  /// groundObjects, 0 or 1, and occludingTriangles, all that cast and are not the ground's.
+  /// Adds groundObjects, 0 or 1, and occludingTriangles, the number of casting triangles that do not belong to the
+  /// ground.
   void add_counters(std::map<std::string, std::uint64_t>& counters) const override;
 
  private:

@@ -1,4 +1,4 @@
-// One struct, two languages: width_map.comp's.
+// Shared by C++ and GLSL: push constants of width_map.comp.
 #include "maps/host/map_view.shared.h"
 #ifdef __cplusplus
 #pragma once
@@ -8,9 +8,9 @@ namespace penumbra::maps::gpu {
 struct WidthMapPush {
   vec2 texel;  // of the face
   uint size;
-  uint first;   // texel of the face
-  uint radius;  // texels, how far is looked
-  uint down;    // 0: along rows, from black and white; 1: down columns, from that
+  uint first;   // first texel of the face
+  uint radius;  // search radius in texels
+  uint down;    // 0: along rows, from black and white; 1: down columns, from the result of rows
 };
 
 #ifdef __cplusplus
