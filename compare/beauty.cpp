@@ -1,5 +1,5 @@
-// Direct light on diffuse surfaces, equations 1.3 and 1.4 of Eisemann, Schwarz, Assarsson, Wimmer: Real-Time Shadows
-// (2011), with the integrals in closed form where they have one (visibility/lights/form_factor.hpp).
+// Computes direct light on diffuse surfaces, equations 1.3 and 1.4 of Eisemann, Schwarz, Assarsson, Wimmer: Real-Time
+// Shadows (2011), with the integrals in closed form where available (visibility/lights/form_factor.hpp).
 #include "compare/beauty.hpp"
 
 #include "base/assert.hpp"
@@ -17,18 +17,18 @@
 namespace penumbra::compare {
 namespace {
 
-/// What the light's body shows at p: radiance times the texel that is there, or nearest to p.
+/// Returns the radiance of the light's body at p: the light's radiance times the texel there, or nearest to p.
 glm::dvec3 radiance_at(const visibility::Light& light, const glm::vec3& p) {
   if (!light.texture) return light.radiance;
   const auto [c, u, v] = visibility::light_frame(light);
   const glm::dvec3 q = glm::dvec3(p) - c, n = glm::cross(u, v);
-  // q = s u + t v + h n: s (u × v) · n = (q × v) · n, and likewise t.
+  // q = s u + t v + h n: s (u × v) · n = (q × v) · n; t in the same form.
   const double under = glm::dot(n, n);
   const glm::dvec2 st(glm::dot(glm::cross(q, v), n) / under, glm::dot(glm::cross(u, q), n) / under);
   return light.radiance * glm::dvec3(light.texture->colors[light.texture->texel_at(st)]);
 }
 
-/// The form factor of what a shadowed pixel sees of the light, by its mask or V.
+/// Returns the form factor of the visible part of the light at a shadowed pixel, by its mask or V.
 glm::dvec3 form_factor_of(const LitPoint& at, const VisibleLight& light, const LightVisibility& seen, std::size_t pixel,
                           std::size_t words) {
   if (!seen.masks.empty()) {
@@ -40,9 +40,10 @@ glm::dvec3 form_factor_of(const LitPoint& at, const VisibleLight& light, const L
   return double{seen.visibility[pixel]} * light.unshadowed(at);
 }
 
-/// By what a pixel's whole form factor is multiplied that has V and perhaps the form factor of its facet: with that the
-/// visible share of what the facet would receive, in which each part of the light counts by its distance and cosines,
-/// and not by its area alone. Where some of the light is below the facet's plane, which V counts as hidden, V.
+/// Returns the factor of the whole form factor at a pixel with V and possibly the form factor of its facet: with the
+/// latter, the visible fraction of the light received by the facet, in which each part of the light counts by its
+/// distance and cosines, not by its area alone; V where some of the light is below the facet's plane, which V counts as
+/// hidden.
 double share_of(const visibility::Light& light, const BeautyScene& in, std::size_t i, const LightVisibility& seen,
                 std::size_t asked) {
   const double v = seen.visibility[asked];
@@ -52,12 +53,13 @@ double share_of(const visibility::Light& light, const BeautyScene& in, std::size
   return whole > 0 ? std::clamp(seen.form_factors[asked].x / whole, 0.0, 1.0) : v;
 }
 
-/// Has it one radiance everywhere, so that its form factor has a closed form?
+/// Returns whether the light has uniform radiance, so that its form factor has a closed form.
 bool is_plain(const visibility::Light& light) {
   return !light.texture && (!light.dome || light.dome->even);
 }
 
-/// Is all of a plain light seen from the pixel, or is V to be multiplied with what is? Then vectors do it.
+/// Returns whether the pixel needs only the form factor of the whole light (all of a plain light is visible, or V
+/// multiplies it), which is computed with vector instructions.
 bool takes_whole(const VisibleLight& light, const LightVisibility& seen, std::size_t pixel, std::size_t words) {
   if (!is_plain(light.light())) return false;
   if (seen.masks.empty()) return true;
@@ -69,7 +71,7 @@ bool is_unwanted(std::span<const float> wanted, std::size_t asked) {
   return !wanted.empty() && std::isnan(wanted[asked]);
 }
 
-/// Adds one light to the pixels [begin, end), which are among those that are asked about.
+/// Adds one light to the pixels [begin, end), which are within the range of `beauty`.
 void add_light(const BeautyScene& in, const VisibleLight& visible, const LightVisibility& seen,
                std::span<const float> wanted, std::size_t begin, std::size_t end, std::span<glm::dvec3> beauty) {
   const visibility::Light& light = visible.light();
@@ -80,13 +82,14 @@ void add_light(const BeautyScene& in, const VisibleLight& visible, const LightVi
     const glm::vec3& normal = in.normals.empty() ? in.samples.n[i] : in.normals[i];
     beauty[i - begin] += color * light.radiance * spot_share(light, in.samples.p[i], normal) * form_factor;
   };
-  std::vector<std::uint32_t> wholes;  // pixels, and what their form factors are multiplied with
+  std::vector<std::uint32_t> wholes;  // pixels, and the factors of their form factors
   std::vector<double> shares;
   for (std::size_t i = begin; i < end; ++i) {
     const std::size_t asked = i - in.first_pixel;
     if (in.samples.triangle[i] < 0 || is_unwanted(wanted, asked)) continue;
     const auto triangle = static_cast<std::size_t>(in.samples.triangle[i]);
-    if (in.scene.emits[triangle] == light.index) continue;  // V and masks are those of the rule
+    // the light's own body: V and masks are set by a rule, not computed
+    if (in.scene.emits[triangle] == light.index) continue;
     if (!is_lit_by(in.scene, light, static_cast<std::uint32_t>(triangle))) continue;
     const bool bent = !in.normals.empty() && in.normals[i] != in.samples.n[i];
     const bool shadowed = in.scene.receives_shadow[triangle] != 0;
@@ -138,7 +141,7 @@ void add_beauty(const BeautyScene& scene, std::span<const LightVisibility> visib
   }
 
   const std::vector<VisibleLight> lights(scene.lights.begin(), scene.lights.end());
-  constexpr std::size_t kGrain = 256;  // pixels: enough to drown the cost of a task
+  constexpr std::size_t kGrain = 256;  // pixels: enough to make the cost of a task negligible
   const std::size_t first = scene.first_pixel;
   tbb::parallel_for(tbb::blocked_range<std::size_t>(first, first + pixel_count, kGrain), [&](const auto& range) {
     std::vector<glm::dvec3> sum(range.size(), glm::dvec3(0));
@@ -149,7 +152,7 @@ void add_beauty(const BeautyScene& scene, std::span<const LightVisibility> visib
       const std::int32_t triangle = scene.samples.triangle[i];
       const std::int32_t emits = triangle < 0 ? -1 : scene.scene.emits[static_cast<std::size_t>(triangle)];
       if (emits >= 0) {
-        // By the light's number in the scene: `lights` may hold only those that were asked for.
+        // Compared by the light's index in the scene: `lights` may hold only the requested lights.
         for (const visibility::Light& light : scene.lights) {
           if (light.index == emits && light.piece == 0)
             sum[i - range.begin()] += radiance_at(light, scene.samples.p[i]);

@@ -1,3 +1,6 @@
+// Computes error budgets: the change of RMSE by the repair of one cause of error (docs/error-budget.md), with limits of
+// sequences by Aitken's Δ².
+
 #include "compare/error_budget.hpp"
 
 #include <algorithm>

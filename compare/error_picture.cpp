@@ -1,3 +1,5 @@
+// Paints errors and V of each pixel by colour scales, and computes the exposure of pictures.
+
 #include "compare/error_picture.hpp"
 
 #include "base/assert.hpp"
@@ -13,8 +15,8 @@
 namespace penumbra::compare {
 namespace {
 
-// From right to wrong, evenly spaced: two arms of a diverging scale (after ColorBrewer's RdBu) that stay apart for
-// eyes that see no red or no green.
+// Colours from zero to the largest error, evenly spaced: two arms of a diverging scale (after ColorBrewer's RdBu),
+// distinguishable without red or green vision.
 constexpr std::array<Color8, 5> kTooBright{
     {{255, 255, 255}, {188, 218, 236}, {90, 163, 206}, {33, 102, 172}, {5, 40, 90}}};
 constexpr std::array<Color8, 5> kTooDark{
@@ -26,8 +28,8 @@ void check_sizes(const visibility::ViewSamples& samples, std::span<const float> 
                   samples.height);
 }
 
-/// One picture, pixel by pixel, of `value_of(i)` in `color_of(value)` where there is no background. NaN, which is not a
-/// number but the mark of a pixel that nobody evaluated, looks like background.
+/// Returns a picture of `value_of(i)` in `color_of(value)` for each pixel except background. NaN, the mark of a pixel
+/// that was not evaluated, is painted as background.
 template <typename ValueOf, typename ColorOf>
 Image8 paint(const visibility::ViewSamples& samples, ValueOf value_of, ColorOf color_of) {
   Image8 image{samples.width, samples.height, std::vector<Color8>(samples.size(), kBackgroundColor)};
@@ -78,14 +80,14 @@ Image8 visibility_picture(const visibility::ViewSamples& samples, std::span<cons
   return paint(
       samples, [&](std::size_t i) { return static_cast<double>(visibility[i]); },
       [](double value) {
-        // sRGB bytes are already spaced for the eye: V = 0.5 shall look half way.
+        // sRGB bytes are already perceptually spaced: V = 0.5 is shown as middle grey.
         const auto grey = static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0, 1.0) * 255.0));
         return Color8{grey, grey, grey};
       });
 }
 
 float auto_exposure(std::span<const glm::vec3> linear, std::span<const std::uint8_t> left_out) {
-  // Floats above 0 are in the order of their bits: first those bits' upper half is found, then the lower.
+  // Floats above 0 have the order of their bits: finds first the upper half of the percentile's bits, then the lower.
   constexpr std::uint32_t kHalf = 16;
   const auto counts_of_halves = [&](std::uint32_t shift, std::uint32_t above) {
     std::vector<std::size_t> counts(std::size_t{1} << kHalf);

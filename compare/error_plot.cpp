@@ -1,3 +1,5 @@
+// Draws a double-logarithmic plot as SVG, with labels placed without overlaps (greedy).
+
 #include "compare/error_plot.hpp"
 
 #include "compare/report_parts.hpp"
@@ -12,14 +14,14 @@
 namespace penumbra::compare {
 namespace {
 
-/// A mark where it is drawn.
+/// Mark in drawing coordinates.
 struct Dot {
   std::string name;
   std::string_view family;
   double x = 0, y = 0;
 };
 
-/// Whole powers of ten around all values that are not none.
+/// Whole powers of ten around all values except 0.
 struct Decades {
   int first = 0, last = 1;
   explicit Decades(std::span<const double> values) {
@@ -38,7 +40,7 @@ struct Decades {
 
 constexpr double kLeft = 64, kRight = 660, kTop = 16, kBottom = 372, kZeroGap = 34, kWidth = 860;
 
-/// By family in colour and in shape.
+/// Returns the mark's shape, by colour and form of the family.
 std::string mark(const Dot& dot) {
   if (dot.family == "geometry")
     return fmt::format(R"(<circle class="geometry" cx="{:.1f}" cy="{:.1f}" r="5.5"/>)", dot.x, dot.y);
@@ -47,13 +49,13 @@ std::string mark(const Dot& dot) {
   return fmt::format(R"(<path class="reference" d="M{:.1f} {:.1f}l6 6-6 6-6-6z"/>)", dot.x, dot.y - 6);
 }
 
-/// A line of text, y at half of its height.
+/// Line of text, y at half of its height.
 struct Box {
   double x, end, y;
 };
 
-/// Each name to the right of its dot, or to the left where it would not fit, and further up or down where something
-/// else is already; `taken`: other texts.
+/// Returns the names, each to the right of its dot, or to the left where there is no room, and moved up or down where
+/// another text is already; `taken`: other texts.
 std::string names(std::vector<Dot> dots, std::vector<Box> taken) {
   constexpr double kLine = 15;
   std::ranges::sort(dots, [](const Dot& a, const Dot& b) { return std::pair(a.y, a.x) < std::pair(b.y, b.x); });
@@ -89,7 +91,7 @@ std::string power_of_ten(int exponent) {
   return fmt::format("{:.{}f}", std::pow(10, exponent), std::max(0, -exponent));
 }
 
-/// Where numbers are on the drawing.
+/// Positions of numbers on the drawing.
 struct Axes {
   Decades across, along;
   bool has_zero;

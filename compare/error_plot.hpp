@@ -7,16 +7,16 @@
 
 namespace penumbra::compare {
 
-/// RMSE of V against seconds for the shadow, both axes logarithmic; what has no error at all stands on a line of its
-/// own.
+/// Plot of RMSE of V against seconds for the shadow, both axes logarithmic; marks without any error are on a line of
+/// their own.
 struct ErrorPlot {
   struct Mark {
-    std::string name;    ///< written beside the mark; empty: nothing is
-    std::string title;   ///< what is said of it when it is pointed at
-    std::string family;  ///< geometry, image or reference: its shape and colour
+    std::string name;    ///< written beside the mark; empty: no text
+    std::string title;   ///< tooltip of the mark
+    std::string family;  ///< geometry, image or reference: determines shape and colour
     double seconds = 0, rmse = 0;
   };
-  /// An error that no method of some kind can go below, with what is written there.
+  /// Error that no method of some kind can be below, with its label.
   struct Level {
     double rmse = 0;
     std::string text;
@@ -24,13 +24,14 @@ struct ErrorPlot {
   std::vector<Mark> marks;                           ///< with seconds > 0
   std::vector<std::vector<std::size_t>> lines = {};  ///< through marks (indices), in order
   std::optional<Level> level = {};
-  std::string across = "seconds for the shadow";  ///< below the axis
+  std::string across = "seconds for the shadow";  ///< label of the axis
 };
 
-/// An error of V, which is a float, of less than half of its last digit is drawn as none.
+/// Errors of V, a float, of less than half of its last digit are drawn as 0.
 inline constexpr double kNoError = 0x1p-25;
 
-/// An element `svg` of class `plot`, whose parts have the classes of page/viewer.css. `attributes`: further ones.
+/// Returns an element `svg` of class `plot`, whose parts have the classes of page/viewer.css. `attributes`: further
+/// attributes.
 std::string error_plot_svg(const ErrorPlot& plot, const std::string& attributes);
 
 }  // namespace penumbra::compare

@@ -1,3 +1,6 @@
+// Computes visible errors of V: differences of more than one step of 255, and banding between neighbouring pixels
+// (eye.hpp).
+
 #include "compare/eye.hpp"
 
 #include <algorithm>

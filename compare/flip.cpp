@@ -1,7 +1,7 @@
-// Andersson et al. 2020 (eye.hpp names it). Section and equation numbers are the paper's. Both pictures are filtered by
-// how sensitive eyes are to contrast, and colours are told apart by HyAB in Hunt-adjusted L*a*b* (the colour pipeline);
-// edges and points of their unfiltered luminance are found by derivatives of a Gaussian (the feature pipeline); the
-// second sharpens the first. Beyond a border the nearest pixel goes on.
+// Computes FLIP (Andersson et al. 2020, cited in eye.hpp); section and equation numbers are the paper's. Both pictures
+// are filtered by contrast sensitivity functions, and colours are compared by HyAB in Hunt-adjusted L*a*b* (the colour
+// pipeline); edges and points of their unfiltered luminance are detected by derivatives of a Gaussian (the feature
+// pipeline); the second amplifies the first. Beyond a border the nearest pixel is repeated.
 
 #include "base/assert.hpp"
 #include "compare/eye.hpp"
@@ -30,7 +30,7 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-/// sRGB's primaries to XYZ, by rows; white is D65, the sum of the columns.
+/// Matrix from sRGB's primaries to XYZ, by rows; white is D65, the sum of the columns.
 const glm::dmat3 kXyzOfRgb =
     glm::transpose(glm::dmat3{10135552.0 / 24577794, 8788810.0 / 24577794, 4435075.0 / 24577794,  //
                               2613072.0 / 12288897, 8788810.0 / 12288897, 887015.0 / 12288897,    //
@@ -38,7 +38,7 @@ const glm::dmat3 kXyzOfRgb =
 const glm::dmat3 kRgbOfXyz = glm::inverse(kXyzOfRgb);
 const glm::dvec3 kWhite = kXyzOfRgb * glm::dvec3(1);
 
-/// Opponent colours, in which a filter of one channel leaves the others alone (section 4.1.1).
+/// Converts to opponent colours, in which a filter of one channel does not affect the others (section 4.1.1).
 glm::dvec3 opponent_of_rgb(const glm::dvec3& rgb) {
   const glm::dvec3 xyz = kXyzOfRgb * rgb / kWhite;
   return {116 * xyz.y - 16, 500 * (xyz.x - xyz.y), 200 * (xyz.y - xyz.z)};
@@ -49,7 +49,8 @@ glm::dvec3 rgb_of_opponent(const glm::dvec3& c) {
   return kRgbOfXyz * (kWhite * glm::dvec3(y + c.y / 500, y, y - c.z / 200));
 }
 
-/// CIE L*a*b* of linear sRGB, with a and b scaled by .01 L (Hunt's effect: dark colours look less colourful).
+/// Converts linear sRGB to CIE L*a*b* with a and b scaled by 0.01 L (Hunt's effect: dark colours appear less
+/// colourful).
 glm::dvec3 hunt_lab(const glm::dvec3& rgb) {
   const glm::dvec3 t = kXyzOfRgb * rgb / kWhite;
   const auto f = [](double x) {
@@ -60,13 +61,13 @@ glm::dvec3 hunt_lab(const glm::dvec3& rgb) {
   return {lightness, 0.01 * lightness * 500 * (f(t.x) - f(t.y)), 0.01 * lightness * 200 * (f(t.y) - f(t.z))};
 }
 
-/// |ΔL| + the distance of (a, b): of large differences truer than ΔE (section 4.1.3).
+/// Returns |ΔL| + the distance of (a, b): for large differences more accurate than ΔE (section 4.1.3).
 double hyab(const glm::dvec3& a, const glm::dvec3& b) {
   return std::abs(a.x - b.x) + glm::length(glm::dvec2(a.y - b.y, a.z - b.z));
 }
 
-/// The colour difference in [0, 1]: HyAB ^ .7, of which up to .4 of the largest (green against blue) gets .95 of the
-/// range.
+/// Returns the colour difference in [0, 1]: HyAB ^ 0.7, with values up to 0.4 of the largest (green against blue)
+/// mapped to 0.95 of the range.
 double redistributed(double difference) {
   static const double largest = std::pow(hyab(hunt_lab({0, 1, 0}), hunt_lab({0, 0, 1})), 0.7);
   constexpr double kShareOfLargest = 0.4, kShareOfRange = 0.95;
@@ -75,7 +76,7 @@ double redistributed(double difference) {
   return kShareOfRange + (power - knee) / (largest - knee) * (1 - kShareOfRange);
 }
 
-/// A channel of a picture.
+/// Channel of a picture.
 struct Plane {
   std::size_t width, height;
   std::vector<double> values;
@@ -99,14 +100,14 @@ Weights weights(std::ptrdiff_t radius, const std::function<double(double)>& of_p
   return result;
 }
 
-/// Of all of them, or of those of this sign.
+/// Returns the sum of all weights, or of those with this sign.
 double sum_of(const Weights& all, double sign = 0) {
   double sum = 0;
   for (const double w : all) sum += sign == 0 || w * sign > 0 ? w : 0;
   return sum;
 }
 
-/// Correlated with `across` along x, then with `down` along y.
+/// Returns the channel correlated with `across` along x, then with `down` along y.
 Plane filtered(const Plane& in, const Weights& across, const Weights& down) {
   const std::size_t radius = across.size() / 2;
   const auto add = [](std::span<double> to, double weight, std::span<const double> from) {
@@ -130,7 +131,7 @@ Plane filtered(const Plane& in, const Weights& across, const Weights& down) {
   return out;
 }
 
-/// A contrast sensitivity function (equation 2, table 1) is a sum of Gaussians a √(π/b) exp(−π² d² / b), d in degrees.
+/// Contrast sensitivity function (equation 2, table 1): a sum of Gaussians a √(π/b) exp(−π² d² / b), d in degrees.
 struct Sensitivity {
   double a1, b1, a2, b2;
 };
@@ -138,7 +139,7 @@ constexpr std::array<Sensitivity, 3> kSensitivities{
     {{1, 0.0047, 0, 1e-5}, {1, 0.0053, 0, 1e-5}, {34.1, 0.04, 13.5, 0.025}}};
 
 Plane as_seen(const Plane& in, const Sensitivity& eye, double pixels_per_degree) {
-  constexpr double kWidest = 0.04;  // b of all: all filters are equally large
+  constexpr double kWidest = 0.04;  // largest b: all filters have the same size
   const auto radius =
       static_cast<std::ptrdiff_t>(std::ceil(3 * std::sqrt(kWidest / (2 * kPi * kPi)) * pixels_per_degree));
   const auto gaussian = [&](double b) {
@@ -156,14 +157,14 @@ Plane as_seen(const Plane& in, const Sensitivity& eye, double pixels_per_degree)
   return out;
 }
 
-/// How strong an edge is at each pixel, and a point: lengths of gradients by a Gaussian's first and second derivative
+/// Strength of an edge and of a point at each pixel: lengths of gradients by a Gaussian's first and second derivative
 /// (section 4.2), whose positive weights add up to 1 and the negative ones to −1.
 struct Features {
   std::vector<double> edges, points;
 };
 
 Features features_of(const Plane& luminance, double pixels_per_degree) {
-  constexpr double kSeenWidth = 0.082;  // of what is seen as an edge, in degrees
+  constexpr double kSeenWidth = 0.082;  // width of a perceived edge, in degrees
   const double deviation = 0.5 * kSeenWidth * pixels_per_degree;
   const auto radius = static_cast<std::ptrdiff_t>(std::ceil(3 * deviation));
   const auto gauss = [&](double x) { return std::exp(-x * x / (2 * deviation * deviation)); };
@@ -181,7 +182,7 @@ Features features_of(const Plane& luminance, double pixels_per_degree) {
   return {length(first), length(second)};
 }
 
-/// What is made of one picture.
+/// Intermediate results of one picture.
 struct Seen {
   std::vector<glm::dvec3> lab;
   Features features;

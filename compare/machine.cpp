@@ -1,3 +1,5 @@
+// Reads processor, memory and operating system from /proc and /etc.
+
 #include "compare/machine.hpp"
 
 #include <fstream>
@@ -10,7 +12,7 @@
 namespace penumbra::compare {
 namespace {
 
-/// The value of the first line "key<separator>value", without blanks and quotes around it.
+/// Returns the value of the first line "key<separator>value", without blanks and quotes around it.
 std::string value_in_file(const char* path, std::string_view key, char separator) {
   std::ifstream file(path);
   for (std::string line; std::getline(file, line);) {

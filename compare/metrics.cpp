@@ -1,3 +1,5 @@
+// Computes error metrics of V, pairs and beauty over sets of pixels.
+
 #include "compare/metrics.hpp"
 
 #include "base/assert.hpp"
@@ -13,7 +15,7 @@
 namespace penumbra::compare {
 namespace {
 
-/// The words of one pixel's masks, with what lies beyond the last sample cut off.
+/// Words of one pixel's masks, with bits beyond the last sample cleared.
 struct PixelMasks {
   const std::uint32_t* method;
   const std::uint32_t* reference;
@@ -95,7 +97,7 @@ std::optional<VisibilityError> visibility_error(std::span<const JudgedVisibility
       PENUMBRA_ASSERT(pixel < light.visibility.size() && pixel < light.reference.size(), "pixel {} of {} and {}", pixel,
                       light.visibility.size(), light.reference.size());
       const double e = static_cast<double>(light.visibility[pixel]) - static_cast<double>(light.reference[pixel]);
-      // A NaN would slip through every comparison below and call a broken method perfect.
+      // NaN makes every comparison below false, and a broken method would be reported as perfect.
       PENUMBRA_ASSERT(std::isfinite(e), "V is {} and {} at pixel {}", light.visibility[pixel], light.reference[pixel],
                       pixel);
       const double magnitude = std::abs(e);
@@ -112,7 +114,7 @@ std::optional<VisibilityError> visibility_error(std::span<const JudgedVisibility
   error.bias /= count;
   error.over05 /= count;
   error.rmse = std::sqrt(squares / count);
-  // Nearest rank ⌈0.999 n⌉, in integers: 0.999 is no double.
+  // Nearest rank ⌈0.999 n⌉, in integers: 0.999 is not representable as a double.
   const std::size_t rank = (999 * magnitudes.size() + 999) / 1000;
   const auto place = magnitudes.begin() + static_cast<std::ptrdiff_t>(rank - 1);
   std::nth_element(magnitudes.begin(), place, magnitudes.end());

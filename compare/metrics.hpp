@@ -12,41 +12,41 @@
 
 namespace penumbra::compare {
 
-/// The pixels of one class, in order.
+/// Returns the pixels of one class, in order.
 std::vector<std::uint32_t> pixels_of_class(std::span<const visibility::PixelClass> classes,
                                            visibility::PixelClass wanted);
 
-/// The pixels that are no background (A = 1), in order.
+/// Returns the pixels that are not background (A = 1), in order.
 std::vector<std::uint32_t> pixels_with_alpha(const visibility::ViewSamples& samples);
 
-/// How far V is off over a set of pixels. With e = V − V of the reference:
+/// Errors of V over a set of pixels, with e = V − V of the reference:
 struct VisibilityError {
   double mean = 0;    ///< of |e|
   double rmse = 0;    ///< √ of the mean of e²
   double p999 = 0;    ///< the smallest |e| that at least 99.9 % of the pixels do not exceed
   double max = 0;     ///< of |e|
-  double over05 = 0;  ///< the share of pixels with |e| > 0.05
+  double over05 = 0;  ///< fraction of pixels with |e| > 0.05
   double bias = 0;    ///< mean of e; positive: too bright
 
   bool operator==(const VisibilityError&) const = default;
 };
 
-/// Over the given pixels (indices into both spans); nothing if there are none. Which pixels is the caller's choice:
-/// for `error` in metrics.json those of PixelClass::judged (among the sampled ones), for the horizon's row
+/// Returns the errors over the given pixels (indices into both spans); nullopt if there are none. The caller selects
+/// the pixels: for `error` in metrics.json those of PixelClass::judged (among the sampled ones), for the horizon's row
 /// PixelClass::horizon.
 std::optional<VisibilityError> visibility_error(std::span<const float> visibility, std::span<const float> reference,
                                                 std::span<const std::uint32_t> pixels);
 
-/// Judged pixels by what happens there: all of the light is seen, some, or none; and where some is hidden, by whom. A
-/// pixel is in one of the first three, and of the shadowed ones in one or both of the others (or in none, where no ray
-/// met what hides it).
+/// Judged pixels by visibility: all of the light is seen, some, or none; and where some is hidden, by the hiding
+/// object. A pixel is in one of the first three, and a shadowed pixel in one or both of the others (or in none, where
+/// no ray hit the hiding object).
 struct PixelClasses {
   std::vector<std::uint32_t> lit, penumbra, umbra;
   std::vector<std::uint32_t> cast;  ///< another object hides some of the light
-  std::vector<std::uint32_t> self;  ///< the object that the pixel shows hides some of it
+  std::vector<std::uint32_t> self;  ///< the object visible at the pixel hides some of the light
 };
 
-/// Errors over the pixels of one class; nullopt over no pixels.
+/// Errors over the pixels of one class; nullopt if there are no pixels.
 struct ClassError {
   const char* name = "";
   std::uint64_t pixels = 0;
@@ -57,26 +57,28 @@ std::vector<ClassError> class_errors(std::span<const float> visibility, std::spa
 
 /// Errors over the pixels where a size lies from `from` to less than `to`.
 struct RangeError {
-  double from = 0, to = 0;  ///< the last one's `to` is infinite
+  double from = 0, to = 0;  ///< the last range's `to` is infinite
   std::uint64_t pixels = 0;
   std::optional<VisibilityError> error;
 };
-/// The borders between ranges, of widths of penumbrae (in pixels, in texels) and of distances to contact (in pixels).
+/// Borders between ranges, of widths of penumbrae (in pixels, in texels) and of distances to contact (in pixels).
 inline constexpr double kSizeBorders[] = {4, 16, 64};
-/// `sizes`: of each pixel; where it is no number the pixel is in no range. From 0 to the first border, and so on.
+/// Returns the errors by range: from 0 to the first border, and so on. `sizes`: of each pixel; a pixel with NaN is in
+/// no range.
 std::vector<RangeError> range_errors(std::span<const float> visibility, std::span<const float> reference,
                                      std::span<const std::uint32_t> pixels, std::span<const float> sizes);
 
-/// V by a method and by its reference under one light, and the pixels that count (indices into both).
+/// V by a method and by its reference under one light, and the pixels to be counted (indices into both).
 struct JudgedVisibility {
   std::span<const float> visibility, reference;
   std::span<const std::uint32_t> pixels;
 };
 
-/// Over the pixels of all lights together: a pixel counts once for each light that it is judged under.
+/// Returns the errors over the pixels of all lights together: a pixel counts once for each light under which it is
+/// judged.
 std::optional<VisibilityError> visibility_error(std::span<const JudgedVisibility> lights);
 
-/// How far the beauty is off over a set of pixels: with e the difference of luminances (Rec. 709), both over the mean
+/// Errors of the beauty over a set of pixels: with e the difference of luminances (Rec. 709), both over the mean
 /// luminance of the reference.
 struct BeautyError {
   double relative_rmse = 0;  ///< √ of the mean of e²
@@ -85,11 +87,11 @@ struct BeautyError {
   bool operator==(const BeautyError&) const = default;
 };
 
-/// Over the given pixels; nothing if there are none, or if the reference is black on all of them.
+/// Returns the errors over the given pixels; nullopt if there are none, or if the reference is black on all of them.
 std::optional<BeautyError> beauty_error(std::span<const glm::vec3> beauty, std::span<const glm::vec3> reference,
                                         std::span<const std::uint32_t> pixels);
 
-/// What a beauty made of V alone loses by V · ∫G in place of ∫G V, beside what it loses by V.
+/// Error of a beauty computed from V alone by V · ∫G in place of ∫G V, beside the error due to V.
 struct Separation {
   BeautyError alone;  ///< of V of the reference · ∫G
   BeautyError of_v;   ///< of (V − V of the reference) · ∫G: without the separation
@@ -97,7 +99,7 @@ struct Separation {
   bool operator==(const Separation&) const = default;
 };
 
-/// Beauty by a method, as V of the reference alone would make it, and by the reference.
+/// Beauty by a method, by V of the reference alone, and by the reference.
 struct SeparatedBeauty {
   std::span<const glm::vec3> method, separated, reference;
 };
@@ -127,7 +129,7 @@ PairCounts count_pairs(const MaskPair& masks, std::span<const std::uint32_t> pix
 void for_each_differing_pair(const MaskPair& masks, std::span<const std::uint32_t> pixels,
                              const std::function<void(std::uint32_t, std::uint32_t, bool)>& visit);
 
-/// Who was right on differing pairs: on all of them, or on a sample. Each pair makes exactly one of the two right.
+/// Correct side on differing pairs: on all of them, or on a sample. For each pair exactly one of the two is right.
 struct PairVerdicts {
   std::uint64_t decided = 0;  ///< `pairsDecided`; the other counts are of these
   std::uint64_t method_right = 0;
@@ -142,7 +144,7 @@ struct PairVerdicts {
   }
 };
 
-/// The part of the differing pairs that was decided; 1 where none differ.
+/// Returns the fraction of the differing pairs that was decided; 1 where none differ.
 double decided_share(const PairCounts& counts, const PairVerdicts& verdicts);
 
 }  // namespace penumbra::compare

@@ -6,8 +6,8 @@
 
 namespace penumbra::compare {
 
-/// metrics.csv: the numbers of metrics.json that a spreadsheet takes, a row for each method, errors and pairs of
-/// the first light, with the names of the JSON as names of columns. What does not apply is an empty field.
+/// Returns metrics.csv: the scalar numbers of metrics.json, one row for each method, errors and pairs of the first
+/// light, with the names of the JSON as names of columns. Values that do not apply are empty fields.
 std::string metrics_csv(const Metrics& metrics);
 
 }  // namespace penumbra::compare

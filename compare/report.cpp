@@ -1,3 +1,5 @@
+// Assembles the report: one self-contained HTML page.
+
 #include "compare/report.hpp"
 
 #include "base/assert.hpp"
@@ -17,7 +19,7 @@
 namespace penumbra::compare {
 namespace {
 
-/// `same`: what to add if they are the methods' own.
+/// Returns the light samples of the reference in words. `same`: suffix if the samples are those of the methods.
 std::string samples_of_reference(const ReportInput& in, const char* same) {
   const bool mask = in.reference.description.output == visibility::Output::mask;
   return question_of({in.reference.description, in.metrics.reference}) + (mask && in.same_samples ? same : "");
@@ -38,7 +40,7 @@ std::string facts_html(const std::vector<ReportFact>& facts) {
   return html + "</tbody></table></div>\n";
 }
 
-/// Who answers every pair as rays do, or else who comes closest to that.
+/// Returns the card of the method that agrees with rays on every pair, or else of the closest.
 template <typename Card>
 std::string exactness_card(const ReportInput& in, const Card& card) {
   struct Sum {
@@ -110,7 +112,7 @@ std::string glance_html(const ReportInput& in) {
 }
 
 std::string question_html(const ReportInput& in) {
-  std::uint32_t samples = 0;  // stays 0 if all give areas
+  std::uint32_t samples = 0;  // stays 0 if all methods compute areas
   for (const MethodResult& method : in.metrics.methods) samples = std::max(samples, method.stats.light_samples);
   std::string html = R"(<section id="question"><h2>What is asked</h2><div class="two"><div>
 <p>A lamp with a size casts soft shadows: a point behind an object sees none of the lamp, a point beside it sees all,
@@ -211,7 +213,7 @@ std::string warnings_html(const ReportInput& in) {
   };
   add(in.metrics.reference);
   for (const MethodResult& result : in.metrics.methods) add(result.stats);
-  // The same remark on the scene comes with every method: say it once, in the order of first mention.
+  // Removes duplicates, in the order of first occurrence: the same remark on the scene comes with every method.
   std::vector<std::string> once;
   for (const std::string& warning : warnings) {
     if (std::find(once.begin(), once.end(), warning) == once.end()) once.push_back(warning);
@@ -233,7 +235,8 @@ std::string report_html(const ReportInput& in) {
   std::string html =
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
-      // Nothing from anywhere else, whatever the page says: no network, and no text is ever run as a program.
+      // The policy forbids any external resource, whatever the page contains: no network, and no text is ever run as a
+      // program.
       "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; img-src data:; style-src "
       "'unsafe-inline'; script-src 'unsafe-inline'; base-uri 'none'; form-action 'none'\">\n";
   html += fmt::format("<title>Soft shadows of {}: {} method{} compared</title>\n<style>", scene, count,

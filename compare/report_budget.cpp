@@ -1,3 +1,5 @@
+// Writes the report's section on error budgets: bars, tables and pictures of repairs.
+
 #include "compare/report_budget.hpp"
 
 #include "compare/report_parts.hpp"
@@ -12,10 +14,10 @@ namespace {
 
 using visibility::name_of;
 
-/// Half of a bar's drawing: the largest change of all is so long.
+/// Half of a bar's drawing: the length of the largest change of all.
 constexpr double kHalfBar = 38;
 
-/// To the left of the middle the error shrinks.
+/// Returns a bar; to the left of the middle the error decreases.
 std::string bar_of_change(double change, double largest) {
   const double length = largest > 0 ? kHalfBar * std::abs(change) / largest : 0;
   return fmt::format(
@@ -24,7 +26,7 @@ std::string bar_of_change(double change, double largest) {
       change < 0 ? "better" : "worse", change < 0 ? 40 - length : 40.0, length);
 }
 
-/// From nothing on the left; 80 wide is the largest of all.
+/// Returns a bar from 0 on the left; a length of 80 is the largest error of all.
 std::string bar_of_error(double rmse, double largest) {
   return fmt::format(
       "<svg class=\"plot bar-of-budget\" viewBox=\"0 0 80 10\" aria-hidden=\"true\"><path class=\"frame\" d=\"M1 "
@@ -32,13 +34,13 @@ std::string bar_of_error(double rmse, double largest) {
       largest > 0 ? 78 * rmse / largest : 0);
 }
 
-/// A method's budget under a light; null if it has none.
+/// Returns a method's budget under a light; nullptr if there is none.
 const ErrorBudget* budget_of(const MethodResult& result, std::size_t light) {
   if (light >= result.lights.size() || !result.lights[light].error_budget) return nullptr;
   return &*result.lights[light].error_budget;
 }
 
-/// What bars of this length stand for; of all lights, so that tables can be compared.
+/// Values of bars of full length; over all lights, so that tables can be compared.
 struct Largest {
   double change = 0, error = 0;
 };
@@ -142,8 +144,8 @@ std::string pictures_html(const ReportLightView& view, const std::string& entry,
   return html;
 }
 
-/// Of one light: the table with its bars, then method by method the pictures and the runs. Empty if no method has a
-/// budget there.
+/// Returns the section of one light: the table with its bars, then for each method the pictures and the runs. Empty if
+/// no method has a budget there.
 std::string budget_of_light_html(const ReportInput& in, std::size_t light) {
   std::string html;
   for (std::size_t i = 0; i < in.methods.size(); ++i) {

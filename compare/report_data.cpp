@@ -1,3 +1,5 @@
+// Packs the report's numbers for its script: planes of bytes, deflated, as base64.
+
 #include "compare/report_data.hpp"
 
 #include "base/packed.hpp"
@@ -33,12 +35,12 @@ std::string pack_planes(std::span<const Number> numbers) {
 
 std::uint16_t radiance_code(float linear) {
   if (!(linear > 0)) return 0;
-  // Floats, denormal ones too, lie between 2^−149 and 2^128.
+  // Floats, including denormal ones, lie between 2^−149 and 2^128.
   const double code = 1 + 256 * (std::log2(static_cast<double>(linear)) + 64);
   return static_cast<std::uint16_t>(std::lround(std::clamp(code, 1.0, 32767.0)));
 }
 
-/// The packed numbers, each in an element that no browser runs; the JSON names them.
+/// Packed numbers, each in an element that no browser runs; the JSON refers to them by name.
 class Blobs {
  public:
   Json add(const std::string& packed) {
@@ -67,7 +69,8 @@ Json points(std::span<const glm::dvec2> samples) {
   return json;
 }
 
-/// `samples`: which of a light's two sets its masks are over. Are they rays that others on that set are held against?
+/// Role of an entry. `samples`: the light's sample set of its masks; `judges_pairs`: the entry is the rays to which
+/// others on this set are compared.
 struct EntryRole {
   std::string label;
   const char* samples;
@@ -163,7 +166,7 @@ std::string report_data_html(const ReportInput& in) {
                     "behind the light", "not lit by this light", "another light’s body"}},
                   {"lights", lights},
                   {"entries", entries}};
-  // A name may hold "</script": the only thing that could end the element.
+  // A name may contain "</script": the only text that could end the element.
   std::string text = data.dump(-1, ' ', false, Json::error_handler_t::replace), safe;
   for (const char c : text) safe += c == '<' ? std::string("\\u003c") : std::string(1, c);
   return "<script type=\"application/json\" id=\"report-data\">" + safe + "</script>\n" + blobs.html();

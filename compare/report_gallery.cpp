@@ -1,3 +1,5 @@
+// Writes the report's pictures.
+
 #include "compare/report_gallery.hpp"
 
 #include "compare/report_data.hpp"
@@ -11,12 +13,12 @@
 namespace penumbra::compare {
 namespace {
 
-/// An entry of the gallery: the reference, rays on the methods' light samples, or a method.
+/// Entry of the gallery: the reference, rays on the methods' light samples, or a method.
 struct Shown {
   const ReportEntry& entry;
   std::string label, note;                 ///< plain text
-  const std::vector<LightResult>* lights;  ///< none for the reference
-  std::optional<std::size_t> place;        ///< in the script's data
+  const std::vector<LightResult>* lights;  ///< nullptr for the reference
+  std::optional<std::size_t> place;        ///< index in the script's data
 };
 
 std::vector<Shown> shown_entries(const ReportInput& in) {

@@ -4,7 +4,7 @@
 
 #include <string>
 
-/// The report's pictures, of every light. Internal to this room.
+/// Pictures of the report, of every light. Internal to this room.
 namespace penumbra::compare {
 
 std::string gallery_html(const ReportInput& in);

@@ -1,3 +1,5 @@
+// Writes the report's tables of errors by class of pixel and of perceived errors.
+
 #include "compare/report_looks.hpp"
 
 #include "compare/report_parts.hpp"
@@ -12,7 +14,7 @@
 namespace penumbra::compare {
 namespace {
 
-/// An error over so many pixels, under this name.
+/// Error over `pixels` pixels, under this name.
 struct Part {
   std::string name;
   std::uint64_t pixels;
@@ -35,7 +37,8 @@ std::vector<Part> parts_of(const std::vector<RangeError>& ranges) {
   return parts;
 }
 
-/// A row a method that has parts. Where all methods have the same pixels, headers say how many.
+/// Returns a table with one row for each method that has parts. Where all methods have the same pixels, the headers
+/// have their number.
 template <typename PartsOf>
 std::string parts_html(const ReportInput& in, std::size_t light, std::string caption, bool same_pixels,
                        const PartsOf& all_of) {

@@ -5,13 +5,14 @@
 #include <cstddef>
 #include <string>
 
-/// Tables of where errors are and how they look. Internal to this room.
+/// Tables of the location and the perception of errors. Internal to this room.
 namespace penumbra::compare {
 
-/// RMSE by class of pixel, by how wide the penumbra is and how far what hides the light. `under`: " under light …", or
-/// nothing.
+/// Returns RMSE by class of pixel, by width of the penumbra and by distance of the hiding object. `under`: " under
+/// light …", or empty.
 std::string classes_html(const ReportInput& in, std::size_t light, const std::string& under);
-/// Shown errors, banding, FLIP; and what V · ∫G in place of ∫G V costs scalar methods. Empty if nothing is known.
+/// Returns perceived errors, banding, FLIP; and the error of scalar methods due to V · ∫G in place of ∫G V. Empty if
+/// none is known.
 std::string looks_html(const ReportInput& in);
 
 }  // namespace penumbra::compare

@@ -1,3 +1,5 @@
+// Formats numbers and HTML fragments of the report.
+
 #include "compare/report_parts.hpp"
 
 #include "base/png.hpp"
@@ -63,7 +65,7 @@ std::string error_text(double error) {
 
 std::string signed_text(double error) {
   if (error == 0) return "0";
-  // A real minus sign: as wide as the plus.
+  // A real minus sign: of the same width as the plus.
   return (error > 0 ? "+" : "−") + error_text(std::abs(error));
 }
 
@@ -75,7 +77,7 @@ std::string seconds_text(const std::optional<double>& s) {
   if (!s) return kNotThere;
   if (*s == 0) return "0";
   if (*s < 1e-3) return fmt::format("{:.3g} µs", *s * 1e6);
-  // Below what would round up to 1000 ms.
+  // Below values that would be rounded up to 1000 ms.
   if (*s < 0.9995) return fmt::format("{:.3g} ms", *s * 1e3);
   return *s < 99.95 ? fmt::format("{:.3g} s", *s) : fmt::format("{:.0f} s", *s);
 }
@@ -134,8 +136,8 @@ std::string figure_html(const Image8& image, std::string_view alt_text, std::str
 }
 
 std::string error_legend_html(double limit) {
-  // A tick's place is √ of its share of the limit: the same curve as error_color's. Quarters of the limit stand half
-  // way, sixteenths at a quarter of the way.
+  // A tick's position is √ of its fraction of the limit: the same curve as error_color's. Quarters of the limit are at
+  // half of the axis, sixteenths at a quarter.
   std::string stops, ticks;
   constexpr int kStops = 32;
   for (int i = -kStops; i <= kStops; ++i) {

@@ -11,11 +11,10 @@
 #include <utility>
 #include <vector>
 
-/// The pieces that the report is put together from. Whatever says "text" is escaped by the function that takes it;
-/// whatever says "html" is finished.
+/// Parts of the report. Parameters named "text" are escaped by the function; parameters named "html" are finished HTML.
 namespace penumbra::compare {
 
-/// Safe as an element's content and inside a quoted attribute.
+/// Returns text safe as an element's content and inside a quoted attribute.
 std::string escape_html(std::string_view text);
 
 std::string count_text(std::uint64_t count);               ///< 1 234 567, with narrow no-break spaces
@@ -24,31 +23,31 @@ std::string signed_text(double error);                     ///< an error with it
 std::string percent_text(double share);                    ///< 1.23 %
 std::string seconds_text(const std::optional<double>& s);  ///< 12.3 ms, 1.23 s, – if not measured
 std::string bytes_text(std::uint64_t bytes);               ///< 12.3 MiB
-/// "2.1× faster" or "1.4× slower" than the reference, "–" if either was not measured.
+/// Returns "2.1× faster" or "1.4× slower" than the reference, "–" if either was not measured.
 std::string speed_text(const std::optional<double>& seconds, const std::optional<double>& reference);
-/// The arguments as a shell would want them.
+/// Returns the arguments quoted for a shell.
 std::string shell_text(std::span<const std::string> arguments);
 
-/// Which of the viewer's pictures a figure opens.
+/// Picture of the viewer opened by a figure.
 struct ViewerPlace {
   std::string_view layer;            ///< beauty, v or error
-  std::optional<std::size_t> entry;  ///< in the script's data; none: the viewer does not have it
+  std::optional<std::size_t> entry;  ///< index in the script's data; empty: not in the viewer
   std::size_t light = 0;
 };
 
-/// A picture that grows to the window when clicked (a check box and CSS: no script), or opens the viewer there.
-/// `caption_html` is finished.
+/// Returns a picture that grows to the window when clicked (a check box and CSS: no script), or opens the viewer there.
+/// `caption_html` is finished HTML.
 std::string figure_html(const Image8& image, std::string_view alt_text, std::string_view caption_html,
                         const ViewerPlace& place = {});
 
-/// The scale of the error pictures, with numbers.
+/// Returns the scale of the error pictures, with numbers.
 std::string error_legend_html(double limit);
-/// The scale of the pictures of V.
+/// Returns the scale of the pictures of V.
 std::string visibility_legend_html();
-/// A drawing of a light, an object, a floor and the shadow's parts.
+/// Returns a drawing of a light, an object, a floor and the shadow's parts.
 std::string shadow_drawing_html();
 
-/// A cell: finished HTML, and the number that the column sorts by (none: as the text says, a dash last).
+/// Cell: finished HTML, and the number by which the column is sorted (empty: by text, a dash last).
 struct ReportCell {
   std::string html;
   std::optional<double> value = {};
@@ -57,7 +56,7 @@ struct ReportCell {
   ReportCell(const char* text_html) : html(text_html) {}
 };
 
-/// A table of numbers: a caption, a row of headers, rows whose first cell is their header.
+/// Table of numbers: a caption, a row of headers, rows whose first cell is their header.
 struct ReportTable {
   std::string caption;
   std::vector<std::string> headers;
@@ -65,9 +64,9 @@ struct ReportTable {
 };
 std::string table_html(const ReportTable& table);
 
-/// The glossary: report_words.cpp.
+/// Glossary: report_words.cpp.
 extern const std::string_view kReportGlossary;
-/// The files of compare/page/: the style sheet, the script, and the viewer's elements.
+/// Files of compare/page/: the style sheet, the script, and the viewer's elements.
 extern const std::string_view kReportStyle;
 extern const std::string_view kReportScript;
 extern const std::string_view kReportMarkup;

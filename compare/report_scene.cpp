@@ -1,4 +1,4 @@
-// The scene in words.
+// Describes the scene in words.
 #include "compare/report.hpp"
 #include "compare/report_parts.hpp"
 #include "compare/scene_words.hpp"
@@ -81,7 +81,7 @@ std::string words_of(const scenes::Camera& camera) {
 }
 
 std::vector<ReportFact> describe_scene(const scenes::Scene& scene, std::size_t camera) {
-  constexpr std::size_t kNamed = 8;  // objects named before the rest is only counted
+  constexpr std::size_t kNamed = 8;  // number of objects listed by name
   std::string objects;
   for (std::size_t i = 0; i < scene.objects.size() && i < kNamed; ++i)
     objects += (i == 0 ? "" : ", ") + scene.objects[i].name;

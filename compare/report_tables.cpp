@@ -1,3 +1,5 @@
+// Writes the report's tables of numbers.
+
 #include "compare/report_tables.hpp"
 
 #include "compare/question.hpp"
@@ -29,13 +31,13 @@ void add_error_cells(std::vector<ReportCell>& row, const std::optional<Visibilit
                          {signed_text(error->bias), error->bias}});
 }
 
-/// What a table of errors is of: of one light, or of all together.
+/// Content of a table of errors: of one light, or of all together.
 struct ErrorRows {
   std::string caption;
   std::optional<VisibilityError> (*error_of)(const MethodResult& result, std::size_t light);
   std::size_t light = 0;
   bool with_beauty = false;
-  std::optional<VisibilityError> rays = {};  ///< what the methods' light samples cost
+  std::optional<VisibilityError> rays = {};  ///< error due to the methods' light samples
 };
 
 std::string errors_table_html(const ReportInput& in, const ErrorRows& rows) {
@@ -75,7 +77,7 @@ std::optional<VisibilityError> horizon_error_under(const MethodResult& result, s
   return light < result.lights.size() ? result.lights[light].horizon_error : std::nullopt;
 }
 
-/// How many pixels are judged, or at the horizon, under a light: the same for all methods.
+/// Returns a result with the numbers of judged and horizon pixels under a light: the same for all methods.
 const LightResult* pixels_under(const ReportInput& in, std::size_t light) {
   for (const MethodResult& result : in.metrics.methods) {
     if (light < result.lights.size()) return &result.lights[light];
@@ -116,7 +118,7 @@ std::string errors_html(const ReportInput& in) {
   return html;
 }
 
-/// Exactness: what each answers pair by pair, against rays on the very same light samples.
+/// Exactness: comparison pair by pair with rays on the same light samples.
 std::string pairs_html(const ReportInput& in) {
   const auto share = [](std::uint64_t part, std::uint64_t whole) -> ReportCell {
     if (whole == 0) return "–";
@@ -163,7 +165,7 @@ std::string pairs_html(const ReportInput& in) {
          "says how to read it. Where too many pairs differ, an evenly spaced sample of them is decided.</p>\n";
 }
 
-/// Nothing if every method answered.
+/// Returns an empty text if every method succeeded.
 std::string failures_html(const ReportInput& in) {
   ReportTable table{"Methods that gave no answer, and why. Nothing else on this page is about them.",
                     {"Method", "What went wrong"},
@@ -219,7 +221,7 @@ std::string seconds_html(const ReportInput& in) {
     if (result.failure) continue;
     const std::string speed =
         same_question(in, in.methods[i], result) ? speed_text(shadow_of(result), reference.seconds.shadow()) : "–";
-    // Most run on one device, which the machine's facts name.
+    // Most methods run on one device, which is named in the machine's facts.
     const bool elsewhere = result.stats.device != in.metrics.methods.front().stats.device;
     row(label_html(result.entry, question_of({in.methods[i].description, result.stats}) +
                                      (elsewhere ? ", " + result.stats.device : std::string())),

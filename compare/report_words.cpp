@@ -1,4 +1,4 @@
-// The words that the report explains, whatever the numbers are.
+// Glossary of the report, independent of the numbers.
 #include "compare/report_parts.hpp"
 
 namespace penumbra::compare {

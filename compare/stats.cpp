@@ -1,3 +1,5 @@
+// Writes stats.json and metrics.json.
+
 #include "compare/stats.hpp"
 
 #include <cmath>
@@ -27,17 +29,17 @@ Json to_json(const std::optional<VisibilityError>& error) {
 }
 
 Json options_json(const visibility::MethodOptions& options) {
-  Json json = Json::object();  // an empty map would become null
+  Json json = Json::object();  // a null map would be written as null
   for (const auto& [key, value] : options) json[key] = value;
   return json;
 }
 
-/// A pattern's name; null: there are no light samples.
+/// Returns a pattern's name; null: there are no light samples.
 Json pattern_json(const std::string& pattern) {
   return pattern.empty() ? Json() : Json(pattern);
 }
 
-/// The keys of pairs and of who was right; null where there are none.
+/// Adds the keys of pairs and verdicts; null where there are none.
 void add_pairs(Json& json, const std::optional<PairCounts>& pairs, const std::optional<PairVerdicts>& verdicts) {
   json["pairs"] = pairs ? Json(pairs->penumbra) : Json();
   json["pairsAll"] = pairs ? Json(pairs->all) : Json();
@@ -55,7 +57,7 @@ void add_budget(Json& json, const LightResult* light) {
   json["errorBudgetRuns"] = budget != nullptr ? runs_json(*budget) : Json();
 }
 
-/// An object with a key a class; null where there are none.
+/// Returns an object with one key for each class; null if there are none.
 Json classes_json(const std::vector<ClassError>& classes) {
   Json json;
   for (const ClassError& one : classes) {
@@ -67,7 +69,7 @@ Json classes_json(const std::vector<ClassError>& classes) {
   return json;
 }
 
-/// An array of ranges; `to` of the last is null. Null where there are none.
+/// Returns an array of ranges; `to` of the last is null. Returns null if there are no ranges.
 Json ranges_json(const std::vector<RangeError>& ranges) {
   Json json;
   for (const RangeError& one : ranges) {
@@ -102,7 +104,7 @@ Json separation_json(const MethodResult& result) {
           {"change", of_v.relative_rmse - result.beauty_error->relative_rmse}};
 }
 
-/// Each light as it was asked, if that is known, and what became of it.
+/// Returns each light's statistics, if known, and results.
 Json lights_json(const std::vector<LightStats>& asked, const std::vector<LightResult>& lights) {
   Json json = Json::array();
   for (const LightResult& light : lights) {

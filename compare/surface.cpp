@@ -1,4 +1,5 @@
-// Textures as glTF 2.0, 3.8.4 has them: (0, 0) is the picture's top left corner, texel centres at half integers.
+// Looks up textures as defined by glTF 2.0, 3.8.4: (0, 0) is the picture's top left corner, texel centres at half
+// integers.
 #include "compare/surface.hpp"
 
 #include "base/image.hpp"
@@ -44,7 +45,8 @@ glm::dvec3 picture_at(const Picture& picture, const PictureUse& use, const glm::
       share.y);
 }
 
-/// Of p in the triangle, or of the point of it nearest in these coordinates: p was rounded.
+/// Returns the barycentric coordinates of p in the triangle, or of the point nearest to p in these coordinates: p was
+/// rounded.
 glm::dvec3 barycentric(const std::array<glm::vec3, 3>& corners, const glm::vec3& p) {
   const glm::dvec3 a = corners[0], b = corners[1], c = corners[2], at = p;
   const glm::dvec3 normal = glm::cross(b - a, c - a);
@@ -70,9 +72,9 @@ glm::vec3 shading_normal(const scenes::VertexLooks& looks, const visibility::Tri
   const double length = glm::length(normal);
   if (!(length > 0)) return geometric;
   const glm::dvec3 unit = normal / length;
-  // Exporters write the normals of facets, too, turned in single precision, and the facet's own comes from corners that
-  // were rounded: a tenth of a milliradian is far above what either is off by in a triangle that anyone can see, and
-  // changes a cosine by less than a ten-thousandth. There the facet's own is exact.
+  // Exporters also write the normals of facets, rotated in single precision, and the facet's own normal is computed
+  // from rounded corners: a tenth of a milliradian is far above the error of either in any visible triangle, and
+  // changes a cosine by less than a ten-thousandth. Within this tolerance, the facet's own normal is exact.
   constexpr double kSame = 1e-4;
   if (glm::length(glm::cross(unit, glm::dvec3(geometric))) <= kSame) return geometric;
   return glm::vec3(glm::dot(unit, glm::dvec3(geometric)) < 0 ? -unit : unit);

@@ -10,18 +10,18 @@
 
 namespace penumbra::compare {
 
-/// How the surface looks where each pixel sees it.
+/// Appearance of the surface at each pixel.
 struct SurfaceLooks {
   /// Linear base colour: the object's × its picture's × its vertices'; background 0. Empty: only objects have colours.
   std::vector<glm::dvec3> colors;
   std::vector<glm::vec3>
-      normals;  ///< unit, on the viewer's side of the geometric one; empty: nobody asked, or there are none
+      normals;  ///< unit, on the viewer's side of the geometric normal; empty: not requested, or there are none
 };
 
-/// `scene` is what `floats` were made from. Barycentric coordinates of p in the carrier's plane, in double; pictures
-/// at level 0, the nearest texel or bilinear between texel centres in linear light; vertices' colours and normals
-/// linear over the triangle. A vertex without a normal leaves its triangles flat; so do normals that are the triangle's
-/// own but for rounding.
+/// Returns the surface at each view sample. `floats` must be made from `scene`. Barycentric coordinates of p in the
+/// carrier's plane, in double; pictures at level 0, the nearest texel or bilinear between texel centres in linear
+/// light; vertices' colours and normals linear over the triangle. A vertex without a normal leaves its triangles flat;
+/// so do normals that equal the triangle's own up to rounding.
 SurfaceLooks look_at(const scenes::Scene& scene, const visibility::SceneFloats& floats,
                      const visibility::ViewSamples& samples, bool shading_normals);
 

@@ -1,7 +1,7 @@
-// Equation 1.3 of Eisemann, Schwarz, Assarsson, Wimmer: Real-Time Shadows (2011), direct light on diffuse surfaces,
-// from masks. The book adds point samples; here a visible cell counts with its form factor, and sums of samples are
-// scaled by what the whole light is known to give. Loops over 32 samples are for compilers to make vector
-// instructions of.
+// Computes equation 1.3 of Eisemann, Schwarz, Assarsson, Wimmer: Real-Time Shadows (2011), direct light on diffuse
+// surfaces, from masks. Departures: instead of point samples, a visible cell counts with its form factor, and sums of
+// samples are scaled by the known result of the whole light. Loops over 32 samples are written for automatic
+// vectorisation.
 #include "compare/visible_light.hpp"
 
 #include "base/assert.hpp"
@@ -23,9 +23,9 @@ using visibility::UnshadowedLight;
 using Mask = std::span<const std::uint32_t>;
 
 constexpr std::size_t kBlock = 32;  // samples in one word of a mask
-constexpr std::size_t kLanes = 4;   // partial sums, so that additions need not wait for one another
+constexpr std::size_t kLanes = 4;   // partial sums, so that additions are independent of one another
 
-/// The bits of four neighbouring samples as factors.
+/// Factors 0 or 1 from the bits of four neighbouring samples.
 constexpr auto kFactors = [] {
   std::array<std::array<double, kLanes>, 16> factors{};
   for (unsigned bits = 0; bits < 16; ++bits) {
@@ -34,12 +34,12 @@ constexpr auto kFactors = [] {
   return factors;
 }();
 
-/// A block's light points.
+/// Light points of a block.
 struct Block {
   const double *x, *y, *z;
 };
 
-/// max(0, n · d) / d⁴ of the block's samples: cos θp · cos θl / d² up to a factor that all share.
+/// Returns max(0, n · d) / d⁴ of the block's samples: cos θp · cos θl / d² up to a factor common to all.
 std::array<double, kBlock> weigh(const glm::dvec3& p, const glm::dvec3& n, const Block& block) {
   const double *x = block.x, *y = block.y, *z = block.z;
   std::array<double, kBlock> weight;
@@ -52,7 +52,7 @@ std::array<double, kBlock> weigh(const glm::dvec3& p, const glm::dvec3& n, const
   return weight;
 }
 
-/// Bit j: n · d > 0.
+/// Returns a word whose bit j is set if n · d > 0.
 std::uint32_t above_horizon(const glm::dvec3& p, const glm::dvec3& n, const Block& block) {
   std::array<double, kBlock> height;
   for (std::size_t j = 0; j < kBlock; ++j)
@@ -80,7 +80,7 @@ glm::dvec3 sum_of(const std::array<double, kBlock>& weight, std::uint32_t bits, 
   return sum;
 }
 
-/// The first sample from `from` on, before `end`, whose bit is `wanted`; else `end`.
+/// Returns the first sample from `from` on, before `end`, whose bit is `wanted`; otherwise `end`.
 std::uint32_t find_bit(Mask mask, std::uint32_t from, std::uint32_t end, bool wanted) {
   while (from < end) {
     const std::uint32_t word = wanted ? mask[from / 32] : ~mask[from / 32];
@@ -92,7 +92,7 @@ std::uint32_t find_bit(Mask mask, std::uint32_t from, std::uint32_t end, bool wa
   return end;
 }
 
-/// That of all light samples in the mask, if it is one.
+/// Returns the transmittance of all light samples in the mask, if they have the same; otherwise nullopt.
 std::optional<float> shared_transmittance(Mask mask, std::span<const float> transmittances) {
   std::optional<float> shared;
   for (std::size_t j = 0; j < transmittances.size(); ++j) {
@@ -100,7 +100,7 @@ std::optional<float> shared_transmittance(Mask mask, std::span<const float> tran
     if (shared && *shared != transmittances[j]) return std::nullopt;
     shared = transmittances[j];
   }
-  return shared ? shared : std::optional(1.0F);  // of none: there is nothing to dim
+  return shared ? shared : std::optional(1.0F);  // empty mask: nothing is dimmed
 }
 
 std::vector<std::uint32_t> full_mask(std::uint32_t sample_count) {
@@ -134,7 +134,7 @@ glm::dvec3 VisibleLight::of_dome(const LitPoint& at, Mask mask, std::span<const 
     const double left = transmittances.empty() ? cosine : cosine * double{transmittances[j]};
     some += light_->dome->even ? glm::dvec3(left) : left * glm::dvec3(light_->sample_colors[j]);
   }
-  // A picture's light samples are all that is known of it; of one radiance the whole is.
+  // For a picture, only its light samples are known; for uniform radiance, the whole is.
   if (!light_->dome->even) return light_->dome->power / static_cast<double>(light_->sample_count()) * some;
   return all > 0 ? at.seen.whole() * (some / all) : glm::dvec3(0);
 }
@@ -189,7 +189,7 @@ double VisibleLight::of_cells(const UnshadowedLight& seen, Mask mask) const {
   const auto add_box = [&](const glm::dvec2& low, const glm::dvec2& high) {
     boxes.add({low, {high.x, low.y}, high, {low.x, high.y}});
   };
-  std::uint32_t full = 0;  // rows just before this one in which all is visible: one rectangle
+  std::uint32_t full = 0;  // number of completely visible rows just before this one: they form one rectangle
   const auto add_full = [&](std::uint32_t end) {
     if (full != 0) add_box({-1, t(end - full)}, {1, t(end)});
     full = 0;
@@ -212,7 +212,7 @@ double VisibleLight::of_cells(const UnshadowedLight& seen, Mask mask) const {
 
 glm::dvec3 VisibleLight::of_runs(const LitPoint& at, double whole, Mask mask) const {
   if (at.seen.above_horizon()) return glm::dvec3(of_cells(at.seen, mask));
-  // No sample below the horizon is visible: its cell does not count, though part of it may be above.
+  // A sample below the horizon is never visible: its cell does not count, though part of the cell may be above.
   std::vector<std::uint32_t> above(mask.begin(), mask.end());
   for (std::size_t word = 0; word < all_.size(); ++word) {
     const std::size_t i = word * kBlock;
@@ -225,12 +225,12 @@ glm::dvec3 VisibleLight::of_runs(const LitPoint& at, double whole, Mask mask) co
 
 glm::dvec3 VisibleLight::of_samples(const LitPoint& at, double whole, Mask mask,
                                     std::span<const float> transmittances) const {
-  std::vector<glm::vec3> facing;  // a sphere's points
+  std::vector<glm::vec3> facing;  // points of a sphere
   if (is_body(light_->kind)) {
     facing.resize(light_->sample_count());
     visibility::light_points_for(*light_, at.p, facing.data());
   }
-  const glm::dvec3 from = light_->sun ? glm::dvec3(0) : glm::dvec3(at.p);  // directions are ways already
+  const glm::dvec3 from = light_->sun ? glm::dvec3(0) : glm::dvec3(at.p);  // points are directions
   const Points own(facing);
   const Points& points = facing.empty() ? points_ : own;
   double all = 0, some = 0;

@@ -11,50 +11,52 @@
 
 namespace penumbra::compare {
 
-/// A view sample and how it sees the light when nothing is in between.
+/// View sample and its view of the light without occluders.
 struct LitPoint {
   const visibility::UnshadowedLight& seen;
   glm::vec3 p{0};
 };
 
-/// From masks of one light to form factors (visibility/lights/form_factor.hpp) of what is visible of it, with a texture
-/// each colour's own: Σ over texels of texel · form factor.
+/// Computes form factors (visibility/lights/form_factor.hpp) of the visible part of one light from its masks, with a
+/// texture separately for each colour: Σ over texels of texel · form factor.
 ///
-/// All of the light: its form factor in closed form, so that methods agree wherever nothing is in between.
+/// All of the light: its form factor in closed form, so that methods agree wherever there is no occluder.
 ///
-/// Cells. A rectangle with light samples in rows (patterns rows and grid) falls in cells: row r of L is the band of t
-/// between 2r/L − 1 and 2(r + 1)/L − 1, and in it belongs to each sample what is nearer to it than to the row's other
-/// samples. Borders are half way between samples; the first cell begins, the last ends, where the light does, so the
-/// light is covered once: where a row is shifted by σ cells the first is 1 + σ cells wide, the last 1 − σ. A run of
-/// visible samples is one rectangle. At view samples whose horizon cuts the light the sum over the visible cells is
-/// scaled by that over the cells whose samples are above it.
+/// Cells. A rectangle with light samples in rows (patterns rows and grid) is divided into cells: row r of L is the band
+/// of t between 2r/L − 1 and 2(r + 1)/L − 1, and in it each sample has the points nearer to this sample than to the
+/// row's other samples. Borders are half way between samples; the first cell begins and the last ends at the light's
+/// border, so the light is covered once: where a row is shifted by σ cells the first is 1 + σ cells wide, the last 1 −
+/// σ. A run of visible samples is one rectangle. At view samples whose horizon cuts the light, the sum over the visible
+/// cells is scaled so that all cells whose samples are above the horizon give the form factor of the whole light.
 ///
 /// Samples. Every other light (disk, polygon, sphere, texture, patterns sobol and jittered) is summed sample by sample,
 /// and the sum scaled so that all samples together give the form factor of the whole light:
 ///
 ///   whole · Σ_j visible_j texel_j w_j / Σ_j w_j,    w_j = max(0, cos θp) cos θl / d² of sample j
 ///
-/// A dome of one radiance likewise, with w_j the cosine at p; one with a picture is the sum of its light samples, which
-/// have equal shares of its light: 1/π ∫ luminance dω / N · Σ_j visible_j (texel / luminance)_j cos θp.
+/// A dome of uniform radiance uses the same formula, with w_j the cosine at p; a dome with a picture is the sum of its
+/// light samples, which have equal fractions of its light: 1/π ∫ luminance dω / N · Σ_j visible_j (texel / luminance)_j
+/// cos θp.
 ///
 /// cos θl = h / d with the same h for all samples of a plane, so that h cancels.
 class VisibleLight {
  public:
-  /// `light` must outlive it.
+  /// `light` must outlive this object.
   explicit VisibleLight(const visibility::Light& light);
 
   [[nodiscard]] const visibility::Light& light() const { return *light_; }
   [[nodiscard]] glm::dvec3 unshadowed(const LitPoint& at) const;
-  /// `mask`: words_per_mask() words; bits beyond the last sample are ignored. `transmittances`: of each light sample,
-  /// by which its light is multiplied (as `texel` above; cells that share one keep their closed form); empty: 1.
+  /// Returns the form factor of the visible part. `mask`: words_per_mask() words; bits beyond the last sample are
+  /// ignored. `transmittances`: factor of each light sample (applied as `texel` above; cells with a common factor keep
+  /// their closed form); empty: 1.
   [[nodiscard]] glm::dvec3 visible(const LitPoint& at, std::span<const std::uint32_t> mask,
                                    std::span<const float> transmittances = {}) const;
-  /// Is every light sample visible, or any?
+  /// Return whether every light sample is visible, and whether any is.
   [[nodiscard]] bool sees_all(std::span<const std::uint32_t> mask) const;
   [[nodiscard]] bool sees_any(std::span<const std::uint32_t> mask) const;
 
  private:
-  /// Light points one coordinate after the other, filled up to whole blocks of 32.
+  /// Light points, one coordinate after another, padded to whole blocks of 32.
   struct Points {
     std::vector<double> x, y, z;
     explicit Points(std::span<const glm::vec3> points);
@@ -70,8 +72,8 @@ class VisibleLight {
                                    std::span<const float> transmittances = {}) const;
 
   const visibility::Light* light_;
-  Points points_;                   ///< not of a sphere
-  std::vector<std::uint32_t> all_;  ///< the mask in which every sample is visible
+  Points points_;                   ///< unused for a sphere
+  std::vector<std::uint32_t> all_;  ///< mask of all samples
 };
 
 }  // namespace penumbra::compare
