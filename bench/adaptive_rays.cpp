@@ -1,3 +1,5 @@
+// Casts a few rays everywhere and all rays where the few disagree.
+
 #include "bench/adaptive_rays.hpp"
 
 #include "app/process/stopwatch.hpp"

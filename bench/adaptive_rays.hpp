@@ -11,27 +11,27 @@
 
 namespace penumbra::bench {
 
-/// What a renderer does that knows that most of a picture is lit or dark: a few light samples everywhere, then all of
-/// them where those did not agree.
+/// Ray caster of a renderer that exploits that most of a picture is lit or dark: a few light samples everywhere, then
+/// all of them where the few disagree.
 class AdaptiveRays {
  public:
   static constexpr std::uint32_t kFew = 64;  ///< light samples of the first step
 
-  /// `few`: the light with those.
+  /// `few`: the light with kFew light samples.
   explicit AdaptiveRays(visibility::Light few) : few_(std::move(few)) {}
 
   struct Seconds {
     double light = 0, evaluate = 0;
   };
-  /// V of each pixel. `samples` are as they were when it returns.
+  /// Computes V of each pixel. `samples` are unchanged on return.
   Seconds run(reference::PlainRays& rays, visibility::ViewSamples& samples, const visibility::Light& light,
               std::span<float> visibility);
-  /// View samples that got all light samples in the last run.
+  /// Returns the number of view samples that got all light samples in the last run.
   [[nodiscard]] std::uint64_t asked() const { return asked_; }
 
  private:
   visibility::Light few_;
-  std::vector<std::int32_t> undecided_;  // the samples' triangles; of all others background
+  std::vector<std::int32_t> undecided_;  // the samples' triangles; background for all decided samples
   std::vector<float> all_samples_;
   std::uint64_t asked_ = 0;
 };

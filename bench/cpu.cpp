@@ -1,3 +1,5 @@
+// Times the parts that run on the processor once for each mesh: edge graph, edge records, hierarchy, wedges.
+
 #include "bench/cpu.hpp"
 
 #include "app/session.hpp"
@@ -21,7 +23,7 @@ namespace {
 
 constexpr std::array kParts = {"edge-graph", "edge-records", "edge-hierarchy"};
 
-/// Seconds of the timed runs of `work`, after one that is discarded.
+/// Returns the seconds of the timed runs of `work`, after one discarded run.
 template <typename Work>
 std::vector<double> time_runs(std::uint32_t runs, const Work& work) {
   work();
@@ -34,7 +36,7 @@ std::vector<double> time_runs(std::uint32_t runs, const Work& work) {
   return seconds;
 }
 
-/// The three parts on one knot, in the order of kParts.
+/// Measures the three parts on one knot, in the order of kParts.
 std::vector<CpuEntry> measure_edges(std::uint64_t triangles, std::uint32_t runs) {
   const visibility::SceneFloats floats = visibility::make_scene_floats(knot_scene(triangles));
   const auto positions = mesh::widened(floats.positions);
@@ -63,7 +65,7 @@ std::vector<CpuEntry> measure_edges(std::uint64_t triangles, std::uint32_t runs)
   return entries;
 }
 
-/// A knot with at least this many edges; a knot has 3 · segments · sides of them.
+/// Returns a knot with at least `edges` edges; a knot has 3 · segments · sides of them.
 mesh::TriangleSoup knot_with_edges(std::uint64_t edges) {
   const double sides = std::max(3.0, std::floor(std::sqrt(static_cast<double>(edges) / 12)));
   mesh::KnotShape knot;
@@ -74,7 +76,7 @@ mesh::TriangleSoup knot_with_edges(std::uint64_t edges) {
   return mesh::make_knot(knot);
 }
 
-/// The square light of the knot's scene.
+/// Returns the square light of the knot's scene.
 volumes::LightHull square_light() {
   volumes::LightHull light;
   light.center = {0.5, 5, 0.5};

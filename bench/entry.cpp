@@ -1,3 +1,5 @@
+// Runs all contestants on one subject in turns and compares their results with the oracle.
+
 #include "bench/entry.hpp"
 
 #include "app/methods.hpp"
@@ -23,7 +25,7 @@ app::MethodEntry oracle_entry() {
   return entry;
 }
 
-/// A contestant, and which light samples it is asked about.
+/// Contestant and the kind of light samples given to it.
 struct Rival {
   std::unique_ptr<Runner> runner;
   std::string name;
@@ -32,7 +34,7 @@ struct Rival {
   bool left_out = false;  ///< for the present question
 };
 
-/// All contestants that are asked about one subject.
+/// All contestants of one subject.
 class Field {
  public:
   Field(const Ground& ground, const Options& options)
@@ -111,7 +113,7 @@ std::vector<Contestant> Field::answer(std::uint32_t samples, const ReferenceVisi
   };
   std::vector<Rival*> running;
   for (Rival& rival : rivals_) {
-    rival.left_out = rival.adaptive && samples <= AdaptiveRays::kFew;  // its first step would already be all of them
+    rival.left_out = rival.adaptive && samples <= AdaptiveRays::kFew;  // its first step would already use all samples
     attempt_on(rival, [&] {
       rival.runner->ask(rival.jittered ? jittered : question);
       rival.runner->run(false);

@@ -1,5 +1,5 @@
-// exr_digest FILE…: one line a file, a digest of its size and of all its channels. Header attributes are left out, so
-// that two builds that name themselves differently but make the same picture agree. bench/digests.sh uses it.
+// exr_digest FILE…: prints one line for each file, a digest of its size and of all its channels. Header attributes are
+// left out, so that two builds with different names and the same picture agree. Used by bench/digests.sh.
 #include "base/error.hpp"
 #include "base/exr.hpp"
 
@@ -13,7 +13,7 @@
 
 namespace {
 
-/// FNV-1a, 64 bits: enough to notice a difference, not to resist someone who wants to hide one.
+/// FNV-1a, 64 bits: sufficient to detect accidental differences, not deliberate ones.
 class Digest {
  public:
   void add(std::span<const std::byte> bytes) {

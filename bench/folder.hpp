@@ -8,7 +8,7 @@
 
 namespace penumbra::bench {
 
-/// A folder for the pictures, which goes with it.
+/// Temporary folder for pictures, removed by the destructor.
 class Folder {
  public:
   Folder()

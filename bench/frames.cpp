@@ -1,3 +1,5 @@
+// Times the work of a frame with a moved light: facings, silhouettes, wedges and lists, on host and device.
+
 #include "bench/frames.hpp"
 
 #include "app/process/stopwatch.hpp"
@@ -21,7 +23,7 @@ using volumes::WedgesOn;
 
 constexpr std::uint32_t kFrames = 8;  // in one run
 
-/// The knot's light at places on a circle around its original place.
+/// Returns the knot's light at positions on a circle around its original position.
 std::vector<visibility::Light> lights_on_the_way(const scenes::Scene& still, const glm::dvec3& origin) {
   scenes::Scene scene = still;
   std::vector<visibility::Light> lights;
@@ -35,14 +37,14 @@ std::vector<visibility::Light> lights_on_the_way(const scenes::Scene& still, con
   return lights;
 }
 
-/// One of the two that take turns: the host and the device.
+/// Host or device, which run in turns.
 struct Contender {
   Contender(const char* called, WedgesOn on, const render::Device& device, const visibility::SceneFloats& floats)
       : name(called), builder(device, {.on = on}) {
     builder.prepare_mesh(floats);
   }
 
-  /// Seconds a frame; sums over the frames go to the members below.
+  /// Returns the seconds of a frame; adds counts over the frames to the members below.
   double run(const std::vector<visibility::Light>& lights) {
     edges = edges_on_host = facings_on_host = 0;
     const app::Stopwatch watch;

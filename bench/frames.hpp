@@ -8,10 +8,10 @@
 
 namespace penumbra::bench {
 
-/// --wedges-per-frame: what has to be built again in each frame for a light that moves
-/// (volumes/raster/wedge_builder.hpp: facings, silhouettes, wedges, and the lists that volumes are counted by). The
-/// device and its twin on the processor build it in turns, for the same places of the light, on knots of growing size.
-/// Seconds are those of one frame. Throws std::logic_error if the two find different silhouettes.
+/// Times --wedges-per-frame: the structures rebuilt in each frame for a light that moves
+/// (volumes/raster/wedge_builder.hpp: facings, silhouettes, wedges, and the lists from which volumes are counted). The
+/// device and its twin on the processor build these in turns, for the same positions of the light, on knots of growing
+/// size. Seconds are those of one frame. Throws std::logic_error if the two find different silhouettes.
 void measure_frames(const Options& options, const render::Device& device,
                     const std::function<void(const CpuEntry&)>& sink);
 

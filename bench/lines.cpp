@@ -1,3 +1,5 @@
+// Formats results as tables and JSON lines.
+
 #include "bench/lines.hpp"
 
 #include "compare/machine.hpp"
@@ -20,7 +22,7 @@ Json to_json(const compare::VisibilityError& error) {
           {"mean", error.mean}, {"p999", error.p999}, {"over05", error.over05}};
 }
 
-/// Seconds of the contestant ÷ those of a peer; nothing if that peer did not run.
+/// Returns seconds of the contestant ÷ those of a peer; nullopt if the peer did not run.
 std::optional<double> ratio_to(const Entry& entry, const std::string& peer, const Contestant& contestant) {
   const Contestant* other = find_contestant(entry, peer);
   if (other == nullptr) return std::nullopt;

@@ -24,8 +24,8 @@ namespace {
 
 using namespace penumbra;
 
-/// The table on stdout and, if wanted, the lines in a file. Both are written as soon as there is a result, since a long
-/// run is watched and may be stopped.
+/// The table on stdout and, if requested, the lines in a file. Both are written as soon as there is a result, because a
+/// long run may be watched or stopped.
 class Output {
  public:
   explicit Output(const bench::Options& options) : path_(options.json) {
@@ -129,7 +129,7 @@ int run(const std::vector<std::string>& arguments) {
 
 int main(int argc, char** argv) {
   try {
-    keep_freed_memory();  // as the program does
+    keep_freed_memory();  // as in the program
     return run({argv + 1, argv + argc});
   } catch (const Error& error) {
     fmt::print(stderr, "penumbra-bench: error: {}\n", error.what());

@@ -1,3 +1,5 @@
+// Runs and times one method of the program.
+
 #include "app/methods.hpp"
 #include "app/process/stopwatch.hpp"
 #include "bench/runner.hpp"
@@ -14,8 +16,8 @@ namespace {
 
 using visibility::PixelClass;
 
-/// Pairs over a tile's pixels with A = 1. Emitters and surfaces that receive no shadow are visible by the host's rule,
-/// whatever a method computes for them: their pairs are counted, and none of them differs.
+/// Counts pairs over a tile's pixels with A = 1. Emitters and surfaces that receive no shadow are visible by the host's
+/// rule, whatever a method computes for them: their pairs are counted as equal.
 compare::PairCounts count_pairs(const Question& question, const visibility::Tile& tile,
                                 std::span<const std::uint32_t> masks) {
   const std::size_t width = question.ground.samples.width, first = tile.first_row * width;
@@ -94,7 +96,7 @@ Runner::Seconds MethodRunner::run_once(const Question& question, std::vector<flo
   app::Stopwatch watch;
   method_->prepare_light(question.light);
   seconds.light = watch.seconds();
-  method_->prepare_view(question.ground.samples);  // shared by all methods, so in no method's time
+  method_->prepare_view(question.ground.samples);  // shared by all methods, therefore not part of any method's time
   method_->take_pass_times();
   const std::uint32_t step = method_->max_tile_rows(), height = question.ground.samples.height;
   const std::size_t width = question.ground.samples.width;

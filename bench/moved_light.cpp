@@ -1,3 +1,5 @@
+// Moves a light by a twelfth of its width.
+
 #include "bench/moved_light.hpp"
 
 #include <glm/geometric.hpp>
@@ -9,9 +11,9 @@
 namespace penumbra::bench {
 namespace {
 
-constexpr double kShare = 1.0 / 12;  // of its width
+constexpr double kShare = 1.0 / 12;  // of the light's width
 
-/// Of unit length.
+/// Returns a perpendicular vector of unit length.
 glm::dvec3 perpendicular_to(const glm::dvec3& direction) {
   const glm::dvec3 other =
       std::abs(direction.x) < 0.5 * glm::length(direction) ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);

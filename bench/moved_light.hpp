@@ -4,9 +4,9 @@
 
 namespace penumbra::bench {
 
-/// A light in the frame after this one, which crosses its own width in a dozen frames: moved within its plane, a sphere
-/// along x, a sun by as large a part of its angle (of half a degree, where it has none). Not of one in pieces
-/// (std::logic_error).
+/// Returns the light in the next frame, moved so that the light crosses its own width in twelve frames: within its
+/// plane, a sphere along x, a sun by the same fraction of its angle (of half a degree, if it has none). Throws
+/// std::logic_error for a light in pieces.
 scenes::LightShape moved_light(const scenes::LightShape& shape);
 
 }  // namespace penumbra::bench

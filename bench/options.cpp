@@ -1,3 +1,5 @@
+// Parses the command line.
+
 #include "bench/options.hpp"
 
 #include "app/methods.hpp"
@@ -92,7 +94,7 @@ Peer parse_peer(const std::string& text) {
                    kJittered);
 }
 
-/// "name:key=value:key=value", the keys in their order.
+/// Returns "name:key=value:key=value", the keys in their order.
 std::string contestant_name(const app::MethodEntry& entry) {
   std::string name = entry.name;
   for (const auto& [key, value] : entry.options) name += fmt::format(":{}={}", key, value);
@@ -101,13 +103,13 @@ std::string contestant_name(const app::MethodEntry& entry) {
 
 void add_methods(std::vector<app::MethodEntry>& methods, const std::string& text) {
   for (app::MethodEntry& entry : app::parse_methods(text)) {
-    if (entry.from_group && entry.name == app::ray_judge().name) continue;  // runs anyway
+    if (entry.from_group && entry.name == app::ray_judge().name) continue;  // runs in any case
     entry.label = contestant_name(entry);
     methods.push_back(std::move(entry));
   }
 }
 
-/// The command line while it is read; set_defaults fills in what was not given.
+/// Command line in the course of parsing; set_defaults fills in missing options.
 struct Reading {
   Options options;
   SubjectRequest subjects;
@@ -190,7 +192,8 @@ void set_defaults(Reading& reading) {
   if (methods) options.subjects = make_subjects(reading.subjects);
   if (!options.picture.empty() && (!methods || options.whole_frames || options.sequence || options.reference.empty()))
     throw UsageError("--picture needs --reference: against their own light samples, right methods have no error");
-  std::vector<std::string> rivals = {name_of(RayWork::all), app::ray_judge().name}, subjects, samples;  // always run
+  // contestants that always run
+  std::vector<std::string> rivals = {name_of(RayWork::all), app::ray_judge().name}, subjects, samples;
   for (const app::MethodEntry& method : options.methods) rivals.push_back(method.label);
   for (const Peer& peer : options.peers) rivals.push_back(peer.name);
   for (const Subject& subject : options.subjects) subjects.push_back(subject.name);

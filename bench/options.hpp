@@ -10,11 +10,11 @@
 
 namespace penumbra::bench {
 
-/// What a ray caster is asked to do (bench/README.md, "What is measured").
+/// Task of a ray caster (bench/README.md, "What is measured").
 enum class RayWork {
   all,         ///< "plain-rays": every view sample
-  nontrivial,  ///< "nontrivial-rays": those of blocks in which V is neither 0 nor 1 throughout
-  adaptive,    ///< "adaptive-rays": 64 light samples, and all N where those do not agree
+  nontrivial,  ///< "nontrivial-rays": view samples of blocks in which V is neither 0 nor 1 throughout
+  adaptive,    ///< "adaptive-rays": 64 light samples, and all N where the 64 disagree
 };
 const char* name_of(RayWork work);
 
@@ -26,29 +26,30 @@ struct Peer {
 
 struct Options {
   std::vector<Subject> subjects;
-  std::vector<app::MethodEntry> methods;     ///< their labels are contestants' names, with options as given
-  std::vector<Peer> peers;                   ///< beside plain-rays, which always runs
-  std::vector<std::uint32_t> light_samples;  ///< 256 if none were asked for
-  bool samples_in_name = false;              ///< the user asked for them
+  std::vector<app::MethodEntry> methods;     ///< the labels are contestants' names, with options as given
+  std::vector<Peer> peers;                   ///< in addition to plain-rays, which always runs
+  std::vector<std::uint32_t> light_samples;  ///< 256 if none were given
+  bool samples_in_name = false;              ///< light samples were given on the command line
   std::string reference;                     ///< a method of the family `reference`; empty: none
   std::uint32_t reference_samples = 16384;
-  std::string sample_pixels = "2000";  ///< of a reference that gives areas
-  std::uint32_t runs = 5;              ///< timed runs, after one that is discarded
-  double budget = 0;   ///< seconds; a contestant whose timed runs have used as much gets no further run; 0: no limit
-  std::string device;  ///< as `penumbra --device` takes it
+  std::string sample_pixels = "2000";  ///< for a reference that computes areas
+  std::uint32_t runs = 5;              ///< timed runs, after one discarded run
+  double budget = 0;   ///< seconds; a contestant whose timed runs have used this budget gets no further run; 0: no
+                       ///< limit
+  std::string device;  ///< in the form of `penumbra --device`
   std::filesystem::path json, picture;
   std::string commit;
   bool cpu = false;                      ///< time the parts that run on the processor, not methods
-  bool whole_frames = false;             ///< time whole pictures beside a plain program on Embree
+  bool whole_frames = false;             ///< time whole pictures in comparison with a plain program on Embree
   bool sequence = false;                 ///< time the program on a sequence of pictures
-  std::uint32_t sequence_frames = 100;   ///< --sequence: how many
+  std::uint32_t sequence_frames = 100;   ///< --sequence: number of frames
   bool frames = false;                   ///< time silhouettes and wedges of a moving light, on device and processor
-  std::vector<std::uint64_t> triangles;  ///< --cpu, --wedges-per-frame: of the knots
-  std::uint64_t edges = 1'000'000;       ///< --cpu: how many edges get wedges
+  std::vector<std::uint64_t> triangles;  ///< --cpu, --wedges-per-frame: numbers of triangles of the knots
+  std::uint64_t edges = 1'000'000;       ///< --cpu: number of edges with wedges
   bool help = false;
 };
 
-/// Throws UsageError.
+/// Parses the command line. Throws UsageError if it is invalid.
 Options parse_options(const std::vector<std::string>& arguments);
 extern const char* const kHelp;
 

@@ -1,3 +1,5 @@
+// Draws errors against seconds as SVG.
+
 #include "bench/picture.hpp"
 
 #include <fmt/format.h>
@@ -16,7 +18,7 @@ constexpr double kLeft = 62, kRight = 14, kTop = 30, kBottom = 46;  // a panel's
 constexpr std::size_t kAcross = 3;                                  // panels side by side
 constexpr double kLegendLine = 18, kTitle = 58;                     // heights
 constexpr std::array kColours = {"#0072b2", "#d55e00", "#009e73", "#cc79a7",
-                                 "#e69f00", "#56b4e9", "#000000", "#7f7f7f"};  // Okabe and Ito's, and grey
+                                 "#e69f00", "#56b4e9", "#000000", "#7f7f7f"};  // Okabe and Ito's colours, and grey
 
 struct Point {
   double seconds = 0, rmse = 0;
@@ -25,7 +27,7 @@ struct Point {
 
 struct Curve {
   std::size_t contestant = 0;  ///< index into Picture::contestants
-  std::vector<Point> points;   ///< as light samples grow
+  std::vector<Point> points;   ///< in order of light samples
 };
 
 struct Panel {
@@ -33,7 +35,7 @@ struct Panel {
   std::vector<Curve> curves;
 };
 
-/// An axis over whole decades.
+/// Axis over whole decades.
 struct Axis {
   int low = std::numeric_limits<int>::max(), high = std::numeric_limits<int>::min();
 
@@ -96,7 +98,7 @@ Picture gather(const std::vector<Entry>& entries) {
     Panel& panel = panel_of(picture, entry.subject);
     if (!entry.reference.empty()) picture.reference = entry.reference;
     for (const Contestant& contestant : entry.contestants) {
-      if (!contestant.error_to_reference) continue;  // no pixel to judge
+      if (!contestant.error_to_reference) continue;  // no judged pixel
       const Point point{timing_of(contestant.times.shadow()).median, contestant.error_to_reference->rmse,
                         entry.samples};
       Curve& curve = curve_of(panel, place_of(picture.contestants, contestant.name));
@@ -110,7 +112,7 @@ Picture gather(const std::vector<Entry>& entries) {
     }
     for (Curve& curve : panel.curves) std::ranges::sort(curve.points, {}, &Point::samples);
   }
-  if (picture.seconds.low > picture.seconds.high) {  // nothing to show
+  if (picture.seconds.low > picture.seconds.high) {  // there is nothing to show
     picture.seconds.include(1);
     picture.rmse.include(1);
   }
@@ -126,7 +128,7 @@ std::string text(double x, double y, const std::string& words, std::string_view 
   return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\"{}>{}</text>\n", x, y, more, escaped(words));
 }
 
-/// Where a value is drawn in a panel.
+/// Transformation from values to positions in a panel.
 struct Frame {
   const Picture& picture;
 
@@ -167,7 +169,7 @@ std::string draw_curve(const Frame& frame, const Curve& curve, const std::string
                          kColours[curve.contestant % kColours.size()],
                          escaped(fmt::format("{}, {} light samples: {:.4g} s, RMSE {:.3g}", name, point.samples,
                                              point.seconds, point.rmse)));
-    if (curve.contestant == 0 || name == "plain-rays")  // labels of all contestants would cover one another
+    if (curve.contestant == 0 || name == "plain-rays")  // labels of all contestants would overlap
       marks += text(x + 5, y - 4, std::to_string(point.samples), " class=\"small\"");
   }
   if (line.empty()) return "";

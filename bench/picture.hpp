@@ -7,9 +7,9 @@
 
 namespace penumbra::bench {
 
-/// Error (RMSE to the reference) against seconds of `shadow`, log-log, as SVG: one panel for each subject, and in it
-/// one curve for each contestant through its numbers of light samples. All panels have the same axes. An error of 0 has
-/// no place on such an axis: the picture says how many points it leaves out.
+/// Returns an SVG of error (RMSE to the reference) against seconds of `shadow`, log-log: one panel for each subject,
+/// with one curve for each contestant through its numbers of light samples. All panels have the same axes. An error of
+/// 0 cannot be shown on such an axis: the picture states the number of omitted points.
 std::string svg_picture(const std::vector<Entry>& entries);
 
 }  // namespace penumbra::bench

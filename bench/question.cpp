@@ -1,3 +1,5 @@
+// Prepares subjects, reference visibility and pixel sets for the contestants.
+
 #include "bench/question.hpp"
 
 #include "app/methods.hpp"
@@ -17,9 +19,9 @@ namespace {
 using visibility::PixelClass;
 
 constexpr std::uint32_t kBlock = 8;
-constexpr std::uint32_t kMostAtOnce = 4096;  // light samples of one light
+constexpr std::uint32_t kMostAtOnce = 4096;  // number of light samples of one light
 
-/// V of every pixel by a method that is used once.
+/// Returns V of every pixel by a method that is used once.
 std::vector<float> evaluate_once(visibility::Method& method, const Ground& ground, const visibility::Light& light) {
   method.prepare_light(light);
   method.prepare_view(ground.samples);
@@ -61,7 +63,7 @@ bool asks(PixelClass c) {
   return c == PixelClass::judged || c == PixelClass::horizon || c == PixelClass::behind;
 }
 
-/// Do all view samples of a block that are evaluated (asks) have one V, which is 0 or 1?
+/// Returns whether all evaluated view samples of a block (asks) have the same V, 0 or 1.
 bool is_trivial(const Question& question, std::uint32_t left, std::uint32_t top) {
   const visibility::ViewSamples& samples = question.ground.samples;
   bool lit = false, dark = false;

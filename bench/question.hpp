@@ -13,22 +13,22 @@
 
 namespace penumbra::bench {
 
-/// What a subject's runs have in common, whatever the light samples.
+/// Data of a subject, independent of the number of light samples.
 struct Ground {
   scenes::Scene scene;
   visibility::SceneFloats floats;
   visibility::ViewSamples samples;
   std::vector<visibility::PixelClass> classes;                          ///< for the first light
-  std::vector<std::uint32_t> judged;                                    ///< pixels of that class, in order
+  std::vector<std::uint32_t> judged;                                    ///< judged pixels, in order
   visibility::SamplePattern pattern = visibility::SamplePattern::rows;  ///< of light samples
 };
 Ground make_ground(const Subject& subject, const render::Machine& machine);
 
-/// The first light with light samples: those that methods get, or others.
+/// Returns the first light with light samples: those given to methods, or others.
 visibility::Light light_of(const Ground& ground, std::uint32_t samples,
                            std::optional<visibility::SamplePattern> pattern = {}, std::uint32_t seed = 0);
 
-/// What all contestants are asked, and what the oracle (rays on the same light samples) answers.
+/// Task of all contestants, and the oracle's result (rays on the same light samples).
 struct Question {
   const Ground& ground;
   const visibility::Light& light;
@@ -36,22 +36,22 @@ struct Question {
   std::vector<std::uint32_t> masks;  ///< the oracle's masks; empty if no pairs are compared
 };
 
-/// V that does not depend on the light samples of a question.
+/// V independent of the light samples of a question.
 struct ReferenceVisibility {
-  std::string name;                   ///< the method's, and how many light samples if it takes them
+  std::string name;                   ///< the method's name, and the number of its light samples if any
   std::vector<float> visibility;      ///< one for each pixel
-  std::vector<std::uint32_t> pixels;  ///< those that are compared
+  std::vector<std::uint32_t> pixels;  ///< compared pixels
 };
-/// By rays: Owen-scrambled Sobol samples in passes of up to 4096, each with a seed of its own, over judged pixels.
-/// By areas: over the pixels chosen among those that are judged and in penumbra by 64 light samples.
+/// Returns the reference. By rays: Owen-scrambled Sobol samples in passes of up to 4096, each with a seed of its own,
+/// over judged pixels. By areas: over pixels chosen among the judged pixels that are in penumbra by 64 light samples.
 ReferenceVisibility make_reference(const Ground& ground, const Options& options, const render::Machine& machine);
-/// Is there a reference, and by areas?
+/// Returns whether the reference computes areas.
 bool takes_area(const Options& options);
 
-/// The pixels that the fair peer must still trace: those of the 8 × 8 blocks in which V is between 0 and 1 somewhere,
-/// or is not the same everywhere, among the view samples that are evaluated at all (no background, emitter or receiver
-/// without shadow). All other blocks are lit or dark throughout, as far as the light samples can tell. One entry for
-/// each pixel, 1 where it must be traced.
+/// Returns the pixels to be traced by the fair peer: those of the 8 × 8 blocks in which V is strictly between 0 and 1
+/// somewhere, or not uniform, among the evaluated view samples (no background, emitter or receiver without shadow). All
+/// other blocks are lit or dark throughout, up to the resolution of the light samples. One entry for each pixel, 1
+/// where a trace is needed.
 std::vector<std::uint8_t> nontrivial_pixels(const Question& question);
 
 }  // namespace penumbra::bench

@@ -1,3 +1,5 @@
+// Times ray casters on Embree.
+
 #include "app/process/stopwatch.hpp"
 #include "bench/runner.hpp"
 #include "compare/machine.hpp"
@@ -67,7 +69,7 @@ Runner::Seconds RayRunner::run_once(const Question& question, std::vector<float>
   watch.restart();
   rays_.rays().evaluate(chosen_, visibility);
   seconds.evaluate = watch.seconds();
-  if (peer_.work == RayWork::nontrivial) {  // it was told the rest, which costs it no time
+  if (peer_.work == RayWork::nontrivial) {  // the other V are given as input, at no cost in time
     for (std::size_t i = 0; i < visibility.size(); ++i) {
       if (chosen_.triangle[i] == ViewSamples::kBackground) visibility[i] = question.truth[i];
     }

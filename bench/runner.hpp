@@ -16,20 +16,20 @@
 
 namespace penumbra::bench {
 
-/// A contestant: it answers questions and is timed. `question` must outlive its runs.
+/// Contestant: runs on questions and is timed. `question` must outlive its runs.
 class Runner {
  public:
   virtual ~Runner() = default;
 
-  /// A new question; earlier times are forgotten.
+  /// Sets a new question; discards earlier times.
   void ask(const Question& question);
-  /// One run; its times count unless it is the discarded one, in which pairs are counted.
+  /// Runs once. `timed` is false for the discarded run, in which pairs are counted.
   void run(bool timed);
-  /// V of each pixel, of the last run.
+  /// Returns V of each pixel, of the last run.
   [[nodiscard]] std::span<const float> visibility() const { return visibility_; }
-  /// `light` + `evaluate` of all timed runs.
+  /// Returns the sum of `light` + `evaluate` of all timed runs.
   [[nodiscard]] double spent() const;
-  /// Everything but the errors.
+  /// Returns the result without errors.
   [[nodiscard]] virtual Contestant result() const = 0;
 
  protected:
@@ -46,14 +46,14 @@ class Runner {
   std::vector<float> visibility_;
 };
 
-/// A method of the program, on a Vulkan device of its own (if it needs one), because a device knows how much memory it
-/// gave, but not to whom.
+/// Method of the program, on a Vulkan device of its own (if needed), because a device counts its allocated memory in
+/// total, not for each method.
 class MethodRunner final : public Runner {
  public:
   MethodRunner(const app::MethodEntry& entry, const Ground& ground, const std::string& device);
 
   [[nodiscard]] Contestant result() const override;
-  /// For the oracle: in the discarded run its masks are stored there, and no pairs are counted.
+  /// Stores the masks of the discarded run in `masks` and counts no pairs; for the oracle.
   void keep_masks(std::vector<std::uint32_t>& masks) { kept_ = &masks; }
 
  private:
@@ -71,7 +71,7 @@ class MethodRunner final : public Runner {
   std::optional<compare::PairCounts> pairs_;
 };
 
-/// Embree, with the packets that are fastest on this subject and processor. All ray casters share one.
+/// Embree, with the packet size that is fastest on this subject and processor. Shared by all ray casters.
 class FastestRays {
  public:
   explicit FastestRays(const Ground& ground);
@@ -85,7 +85,7 @@ class FastestRays {
   double mesh_ = 0;
 };
 
-/// A ray caster that methods are compared with.
+/// Ray caster with which methods are compared.
 class RayRunner final : public Runner {
  public:
   RayRunner(Peer peer, const Ground& ground, FastestRays& rays);
@@ -99,7 +99,7 @@ class RayRunner final : public Runner {
 
   Peer peer_;
   FastestRays& rays_;
-  visibility::ViewSamples chosen_;  ///< the view samples to ask about; the others are set to background
+  visibility::ViewSamples chosen_;  ///< view samples to be traced; the others are set to background
   AdaptiveRays adaptive_;
   std::uint64_t asked_ = 0;  ///< view samples that got all light samples
 };

@@ -1,3 +1,5 @@
+// Times `penumbra render` on a generated sequence of frames.
+
 #include "bench/sequence.hpp"
 
 #include "app/process/child_program.hpp"
@@ -75,7 +77,7 @@ struct Glb {
   }
 };
 
-/// Every node for which `moves` holds gets a parent that goes round once in all frames, `reach` wide.
+/// Gives every node accepted by `moves` a parent that moves on a circle once in all frames, `reach` wide.
 template <typename Moves>
 void move_nodes(Glb& glb, std::uint32_t frames, float reach, Moves&& moves) {
   constexpr int kKeys = 33;
@@ -105,7 +107,7 @@ void write_moving_scene(const std::filesystem::path& path, const scenes::Scene& 
   Glb glb(read_file(path));
   const auto is_camera = [](const json& node) { return node.contains("camera"); };
   move_nodes(glb, frames, 0.2F, is_camera);
-  move_nodes(glb, frames, 0.5F, [&](const json& node) {  // a lamp, or a mesh that only says where a light is
+  move_nodes(glb, frames, 0.5F, [&](const json& node) {  // a lamp, or a mesh that only marks the position of a light
     return (node.contains("extensions") && !is_camera(node)) ||
            (node.contains("mesh") && !glb.document["meshes"][node["mesh"].get<std::size_t>()]
                                           .value("extras", json::object())
@@ -114,7 +116,7 @@ void write_moving_scene(const std::filesystem::path& path, const scenes::Scene& 
   std::ofstream(path, std::ios::binary) << glb.file();
 }
 
-/// Adds up what finished frames say, and removes their pictures.
+/// Adds the seconds of finished frames, and removes their pictures.
 void take_frames(const Folder& folder, SequenceEntry& entry, std::uint32_t& next) {
   while (next <= entry.frames) {
     const std::filesystem::path stats = folder / fmt::format("out.{:04}.json", next).c_str();

@@ -9,21 +9,22 @@
 
 namespace penumbra::bench {
 
-/// What a sequence of pictures took, and what its frames say that they took.
+/// Duration of a sequence of pictures, and the sums of its frames' own times.
 struct SequenceEntry {
   std::string name;  ///< stable: "sequence/knot-70000/size=1080/frames=100"
   std::uint64_t triangles = 0;
   std::uint32_t width = 0, height = 0, frames = 0;
   double load_before = 0;
-  double elapsed = 0;                    ///< of the program, from its start to its end
-  std::map<std::string, double> phases;  ///< seconds of stats.json, all frames' together
+  double elapsed = 0;                    ///< of the program, from start to end
+  std::map<std::string, double> phases;  ///< seconds of stats.json, sums over all frames
 
-  /// view + light + evaluate + beauty + write.
+  /// Returns view + light + evaluate + beauty + write.
   [[nodiscard]] double work() const;
 };
 
-/// --sequence: `penumbra render` of a glTF file whose first light and camera move in every frame, with exact areas, by
-/// the program beside this one. Pictures are removed once they are there. Throws ResourceError if the program fails.
+/// Times --sequence: `penumbra render` of a glTF file whose first light and camera move in every frame, with exact
+/// areas, by the program in the folder of this one. Pictures are removed once complete. Throws ResourceError if the
+/// program fails.
 void measure_sequences(const Options& options, const std::function<void(const SequenceEntry&)>& sink);
 
 std::string sequence_table_head();

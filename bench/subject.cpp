@@ -1,3 +1,5 @@
+// Makes subjects: shipped scenes, torus knots, spheres, with variations of light and size.
+
 #include "bench/subject.hpp"
 
 #include "app/parse.hpp"
@@ -90,7 +92,7 @@ visibility::SamplePattern parse_pattern(const std::string& text) {
   throw UsageError("--sample-pattern {}: expected rows, grid, sobol, jittered or rgss", text);
 }
 
-/// Of each subject as many as there are values; as it is if there are none. `set` gives a subject one of them.
+/// Replaces each subject by one for each value, set by `set`; keeps the subjects if there are no values.
 template <typename Value, typename Set>
 void multiply(std::vector<Subject>& subjects, const std::vector<Value>& values, const std::string& name, Set set) {
   if (values.empty()) return;
@@ -117,9 +119,9 @@ void resize_first_light(scenes::Scene& scene, double half) {
   rectangle.half_v = glm::normalize(rectangle.half_v) * half;
 }
 
-/// A disk, an ellipse along the rectangle's sides, one axis twice the other, or a hexagon, affinely regular; with the
-/// rectangle's area; a sphere as wide as that disk; a sun that shines from there to the middle of the meshes, and looks
-/// as wide from there as that disk would, faced.
+/// Reshapes a rectangle light with the same area: a disk, an ellipse along the rectangle's sides, one axis twice the
+/// other, or an affinely regular hexagon; a sphere as wide as the disk; or a sun that shines from the light to the
+/// middle of the meshes, with the apparent size of the disk seen from there.
 void reshape_first_light(scenes::Scene& scene, visibility::LightKind kind) {
   const scenes::Rectangle from = first_rectangle(scene, "--light");
   const glm::dvec3 normal = glm::cross(from.half_u, from.half_v);
@@ -148,7 +150,7 @@ void reshape_first_light(scenes::Scene& scene, visibility::LightKind kind) {
     return;
   }
   scenes::Polygon hexagon;
-  const double radius = std::sqrt(8 / (3 * std::sqrt(3.0)));  // of a regular one with an area of 4
+  const double radius = std::sqrt(8 / (3 * std::sqrt(3.0)));  // of a regular hexagon with area 4
   for (int i = 0; i < 6; ++i) {
     const double angle = i * std::numbers::pi / 3;
     hexagon.vertices.push_back(from.center + radius * (std::cos(angle) * from.half_u + std::sin(angle) * from.half_v));
@@ -180,7 +182,7 @@ std::vector<Subject> make_subjects(const SubjectRequest& request) {
   for (const std::string& name : names) {
     const Subject scene = find_subject(name);
     std::vector<Subject> its{scene};
-    const bool more = shipped && request.halves.empty() && name == "bunny";  // and its own half size
+    const bool more = shipped && request.halves.empty() && name == "bunny";  // the bunny's own half size, and two more
     multiply(its, more ? std::vector<std::string>{"0.3", "2"} : request.halves, "half",
              [](Subject& subject, const std::string& half) { subject.light_half = parse_half(half); });
     if (more) its.insert(its.begin(), scene);
@@ -205,8 +207,8 @@ scenes::Scene read_subject(const Subject& subject) {
 
 namespace {
 
-/// Of the ways to divide half of the triangles in two factors, the one whose second is nearest to `ratio` times the
-/// first; neither below three. Nothing if there is none.
+/// Returns the division of half of the triangles in two factors whose second is nearest to `ratio` times the first;
+/// neither below three. Returns nullopt if there is none.
 std::optional<std::pair<std::uint32_t, std::uint32_t>> divided(std::uint64_t triangles, double ratio) {
   constexpr std::uint64_t kFewest = 3;
   const double wanted = std::sqrt(static_cast<double>(triangles) / 2 / ratio);
@@ -223,7 +225,8 @@ std::optional<std::pair<std::uint32_t, std::uint32_t>> divided(std::uint64_t tri
   return std::pair(static_cast<std::uint32_t>(best), static_cast<std::uint32_t>(half / best));
 }
 
-/// On a floor, or above it, under a square light, seen by a camera like that of the default scene.
+/// Returns a scene with `shape` on a floor, or above, under a square light, seen by a camera like that of the default
+/// scene.
 scenes::Scene scene_around(const std::string& name, const mesh::TriangleSoup& shape, std::uint64_t triangles) {
   scenes::Scene scene;
   scene.name = fmt::format("{}-{}", name, triangles);

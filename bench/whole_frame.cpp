@@ -1,3 +1,5 @@
+// Times whole pictures by methods and by a plain program on Embree.
+
 #include "bench/whole_frame.hpp"
 
 #include "app/pictures/frame_render.hpp"
@@ -28,7 +30,7 @@ namespace {
 
 using Seconds = std::map<std::string, double>;
 
-/// Of two frames, the second's light having moved: seconds of each phase.
+/// Seconds of each phase of two frames; in the second the light has moved.
 struct TwoFrames {
   Seconds first, second;
 };
@@ -38,7 +40,7 @@ scenes::Scene with_light_moved(scenes::Scene scene) {
   return scene;
 }
 
-/// The program on Embree.
+/// Plain program on Embree.
 class PlainProgram {
  public:
   PlainProgram(const scenes::Scene& scene, const scenes::Scene& next, const Subject& subject, std::uint32_t samples)
@@ -100,7 +102,7 @@ class PlainProgram {
   int packet_ = 0, fastest_ = 0;
 };
 
-/// `penumbra render`, from a scene in memory.
+/// Method in `penumbra render`, from a scene in memory.
 class MethodFrame {
  public:
   MethodFrame(const app::MethodEntry& method, const Subject& subject, std::uint32_t samples,

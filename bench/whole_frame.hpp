@@ -11,22 +11,22 @@
 
 namespace penumbra::bench {
 
-/// One contestant's whole frames: seconds of each phase, run by run.
+/// Whole frames of one contestant: seconds of each phase, run by run.
 struct FrameTimes {
   using Phases = std::map<std::string, std::vector<double>>;
 
   std::string name;
   /// `floats` (double to float, planes), `mesh`, `view`, `light`, `evaluate`, `beauty`, `write`; rays have no `floats`
-  /// and nothing after `evaluate`.
+  /// and no phase after `evaluate`.
   Phases phases;
-  /// The same of the frame after it, in which the light has moved.
+  /// Phases of the next frame, in which the light has moved.
   Phases next_phases;
 
-  /// From a scene in memory to V of each pixel.
+  /// Return the seconds from a scene in memory to V of each pixel.
   [[nodiscard]] std::vector<double> frame() const { return until_evaluate(phases); }
   [[nodiscard]] std::vector<double> next() const { return until_evaluate(next_phases); }
 
-  /// Run by run, all of these that there are.
+  /// Returns the sums of the named phases, run by run; absent phases are skipped.
   [[nodiscard]] static std::vector<double> sum_of(const Phases& phases, const std::vector<std::string>& names);
 
  private:
@@ -40,18 +40,19 @@ struct FrameEntry {
   std::uint64_t triangles = 0, samples = 0;
   std::uint32_t size = 0;
   double load_before = 0;
-  std::vector<FrameTimes> contestants;  ///< the first: plain rays, which the others are compared with
+  std::vector<FrameTimes> contestants;  ///< the first: plain rays, the basis of comparison
 };
 
-/// Whole pictures, each from a scene in memory, as `penumbra render` makes them, beside a plain program on Embree:
-/// hierarchy of medium quality, primary rays, 64 shadow rays at every view sample, then all N where they disagree; each
-/// followed by a frame in which the light has moved. They take turns; the first run of each is discarded.
+/// Times whole pictures, each from a scene in memory, as made by `penumbra render`, in comparison with a plain program
+/// on Embree: hierarchy of medium quality, primary rays, 64 shadow rays at every view sample, then all N where these
+/// disagree; each followed by a frame in which the light has moved. The contestants alternate; the first run of each is
+/// discarded.
 void measure_whole_frames(const Options& options, const render::Machine& machine,
                           const std::function<void(const FrameEntry&)>& sink);
 
 std::string frame_table_head();
 std::string frame_table_rows(const FrameEntry& entry);
-/// One a contestant.
+/// Returns one line for each contestant.
 std::string frame_json_lines(const FrameEntry& entry, const Options& options);
 
 }  // namespace penumbra::bench

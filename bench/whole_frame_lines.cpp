@@ -1,3 +1,5 @@
+// Formats times of whole frames as a table and JSON lines.
+
 #include "bench/entry.hpp"
 #include "bench/whole_frame.hpp"
 #include "compare/machine.hpp"
@@ -21,7 +23,7 @@ Json timing_json(const std::vector<double>& seconds) {
       {"median", timing.median}, {"lowest", timing.lowest}, {"highest", timing.highest}, {"spread", timing.spread()}};
 }
 
-/// The plain program's median over the contestant's: how many times faster the contestant is.
+/// Returns the plain program's median over the contestant's: the factor by which the contestant is faster.
 double times_faster(const std::vector<double>& plain, const std::vector<double>& seconds) {
   return timing_of(plain).median / timing_of(seconds).median;
 }
