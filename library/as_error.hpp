@@ -5,9 +5,9 @@
 
 namespace penumbra {
 
-/// Throws the exception that is being handled: the library's own errors and what functions of the calling program threw
-/// as they are, all others (no memory, a library below) as ResourceError with the command line's message. Only inside
-/// of a catch block.
+/// Rethrows the current exception: the library's own errors, and exceptions of the calling program's functions,
+/// unchanged; all others (out of memory, errors of other libraries) as ResourceError with the command line's message.
+/// Callable only inside a catch block.
 [[noreturn]] inline void throw_as_error() {
   try {
     throw;
@@ -20,7 +20,7 @@ namespace penumbra {
   }
 }
 
-/// Returns what `function` returns; its exceptions leave as Error (throw_as_error()).
+/// Returns the result of `function`; its exceptions are converted to Error by throw_as_error().
 template <typename Function>
 decltype(auto) with_errors(const Function& function) {
   try {

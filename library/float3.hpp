@@ -8,7 +8,7 @@
 
 namespace penumbra {
 
-/// The same numbers as the interface has them: GLM's vectors are three floats one after the other, too.
+/// Returns the same memory in the interface's type: GLM's vectors also are three consecutive floats.
 inline std::span<const std::array<float, 3>> as_floats(const std::vector<glm::vec3>& values) {
   static_assert(sizeof(glm::vec3) == sizeof(std::array<float, 3>));
   return {reinterpret_cast<const std::array<float, 3>*>(values.data()), values.size()};

@@ -8,10 +8,10 @@
 
 namespace penumbra {
 
-/// Passes on what long work reports to the calling program's functions, and ends the work when they ask for that.
+/// Passes progress of long work to the calling program's functions, and ends the work on their request.
 class LibraryProgress final : public app::Progress {
  public:
-  /// The options must outlive it.
+  /// `options` must outlive this object.
   explicit LibraryProgress(const RendererOptions& options) : options_(options) {}
 
   void begin(std::string stage, std::uint64_t steps) override;
@@ -19,13 +19,13 @@ class LibraryProgress final : public app::Progress {
   void advance(std::uint64_t steps) override;
   void clear() override {}
   void say(Level level, const std::string& message) override;
-  /// Throws on what a function of the calling program threw, and Cancelled if that asked for the end: also where the
-  /// work between caught it.
+  /// Rethrows the exception thrown by a function of the calling program, and throws Cancelled if that function ended
+  /// the call: also where an exception was caught in between.
   void rethrow();
 
  private:
   void report();
-  /// Calls it once; whatever it throws ends the work.
+  /// Calls `function` once; any exception thrown by `function` ends the work.
   template <typename Function>
   void call(const Function& function);
 

@@ -10,7 +10,7 @@
 namespace penumbra {
 namespace {
 
-/// Returns the unit vector; throws InputError for one without a direction.
+/// Returns the unit vector; throws InputError for a vector of length 0.
 glm::dvec3 unit(const Vector& v, const char* what) {
   const double length = glm::length(to_glm(v));
   if (!(length > 0) || !std::isfinite(length))

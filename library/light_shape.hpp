@@ -8,7 +8,7 @@
 
 #include <optional>
 
-/// The interface's vectors and shapes of lights as the rooms have them, and back.
+/// Conversions between the interface's vectors and shapes of lights and those of the rooms.
 namespace penumbra {
 
 inline glm::dvec3 to_glm(const Vector& v) {
@@ -18,9 +18,9 @@ inline Vector from_glm(const glm::dvec3& v) {
   return {v.x, v.y, v.z};
 }
 
-/// Throws InputError for a direction without length.
+/// Returns the room's shape. Throws InputError for a direction of length 0.
 scenes::LightShape to_scene(const LightShape& shape);
-/// Nullopt for a light in pieces, which the interface has no shape for.
+/// Returns the interface's shape; nullopt for a light in pieces, for which the interface has no shape.
 std::optional<LightShape> from_scene(const scenes::LightShape& shape);
 
 }  // namespace penumbra

@@ -14,7 +14,7 @@ namespace penumbra {
 
 void require_coordinates(std::span<const Vector> positions, const std::string& where) {
   for (std::size_t i = 0; i < positions.size(); ++i) {
-    const auto is_coordinate = [](double x) { return std::abs(x) <= scenes::kLargestCoordinate; };  // not NaN
+    const auto is_coordinate = [](double x) { return std::abs(x) <= scenes::kLargestCoordinate; };  // false for NaN
     if (!std::ranges::all_of(positions[i], is_coordinate)) {
       throw InputError("{}: vertex {} is ({}, {}, {}); expected finite numbers up to {}", where, i, positions[i][0],
                        positions[i][1], positions[i][2], scenes::kLargestCoordinate);

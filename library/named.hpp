@@ -13,7 +13,8 @@
 
 namespace penumbra {
 
-/// The place of the element of that name. Throws UsageError, listing what is there; `what` is its kind.
+/// Returns the index of the element with this name. Throws UsageError, with the list of existing names, if there is
+/// none; `what` is the elements' kind.
 template <typename Named>
 std::size_t find_named(const std::vector<Named>& elements, std::string_view name, const char* what) {
   const auto found = std::ranges::find(elements, name, &Named::name);

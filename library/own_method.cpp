@@ -1,5 +1,5 @@
-// Methods of the calling program among those of the program: each is a row of the table of methods whose method asks
-// the program's.
+// Adds methods of the calling program to those of this program: each is a row of the table of methods whose method
+// calls the calling program's.
 
 #include "app/methods.hpp"
 #include "app/process/failure.hpp"
@@ -40,7 +40,7 @@ MethodScene scene_of(const visibility::SceneFloats& scene) {
           .upper = floats_of(scene.upper)};
 }
 
-/// Refers to the light.
+/// Returns the interface's light, which refers to `light`.
 MethodLight light_of(const visibility::Light& light) {
   const bool has_frame = visibility::is_planar(light.kind) || light.sun.has_value();
   const visibility::LightFrame frame =
@@ -75,7 +75,7 @@ MethodView view_of(const visibility::ViewSamples& samples) {
           .triangle = samples.triangle};
 }
 
-/// Calls code of the calling program. What it throws, but for this library's errors, goes through to the program.
+/// Calls a function of the calling program. Exceptions other than this library's errors pass through to the program.
 template <typename Function>
 auto call(const Function& function) {
   try {
@@ -87,7 +87,7 @@ auto call(const Function& function) {
   }
 }
 
-/// Asks the calling program's method about the pixels that the definition leaves open.
+/// Method that calls the calling program's method for the pixels not decided by the definition.
 class HostedMethod final : public visibility::Method {
  public:
   HostedMethod(MethodDescription description, std::unique_ptr<OwnMethod> own)
@@ -125,8 +125,8 @@ class HostedMethod final : public visibility::Method {
   const visibility::Light* light_ = nullptr;
   const visibility::ViewSamples* samples_ = nullptr;
   std::optional<std::vector<std::uint32_t>> wanted_;  // ascending; nullopt: every pixel
-  std::size_t first_ = 0, count_ = 0;                 // pixels of the tile last evaluated
-  std::vector<std::uint32_t> pixels_;                 // of these, what was asked
+  std::size_t first_ = 0, count_ = 0;                 // pixels of the most recent tile
+  std::vector<std::uint32_t> pixels_;                 // of these, the pixels passed to the method
   std::vector<float> visibility_;                     // of pixels_
   std::vector<std::uint32_t> masks_;                  // of pixels_
 };
@@ -148,7 +148,7 @@ void HostedMethod::choose_pixels(std::size_t first, std::size_t end) {
 std::uint32_t HostedMethod::max_tile_rows() const {
   if (light_ == nullptr || samples_ == nullptr || !light_->points.empty())
     return std::numeric_limits<std::uint32_t>::max();
-  // A method may want the light samples of all of a tile's pixels at once, which differ from pixel to pixel.
+  // A method may need the light samples of all of a tile's pixels at once, which differ from pixel to pixel.
   constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 28;
   const std::uint64_t row_bytes = std::uint64_t{samples_->width} * light_->sample_count() * sizeof(Float3);
   return static_cast<std::uint32_t>(std::clamp<std::uint64_t>(kMostBytes / row_bytes, 1, samples_->height));
@@ -254,7 +254,7 @@ visibility::OptionDescription option_of(const OwnMethodInfo& info, const MethodO
   described.default_value = !option.choices.empty() ? option.choices.front()
                             : option.whole          ? fmt::format("{}", static_cast<std::uint64_t>(option.least))
                                                     : fmt::format("{}", option.least);
-  // Throws if the default cannot be.
+  // Throws if the default value is invalid.
   static_cast<void>(visibility::ParsedOptions(info.name, {{described}}, {{option.name, option.default_value}}));
   described.default_value = option.default_value;
   return described;
@@ -271,7 +271,7 @@ MethodDescription description_of(const OwnMethodInfo& info) {
   description.exact_for = info.exact_for;
   description.lights = kinds_of(info);
   description.textures = info.masks || info.textures;
-  description.on_request = true;  // nobody's default
+  description.on_request = true;  // never a default
   description.verdict_on = verdict_of_own;
   for (const MethodOption& option : info.options) {
     if (std::ranges::find(description.options, option.name, &visibility::OptionDescription::name) !=

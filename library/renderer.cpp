@@ -1,4 +1,4 @@
-// Pictures of one scene after each other, by what renders the command line's frames.
+// Renders pictures of one scene one after another, with the frame renderer of the command line.
 
 #include "app/light_methods.hpp"
 #include "app/machine.hpp"
@@ -32,7 +32,7 @@ namespace {
 
 constexpr float kFar = 1e10F;  // Z of the background
 
-/// View samples along each axis of a pixel. Throws UsageError for a number that is no square.
+/// Returns the number of view samples along each axis of a pixel. Throws UsageError for a number that is not a square.
 std::uint32_t pixel_side(std::uint32_t samples) {
   for (std::uint32_t side = 1; side <= 8; ++side) {
     if (side * side == samples) return side;
@@ -160,11 +160,11 @@ struct Renderer::State {
   State(Scene made, RendererOptions wished)
       : scene(std::move(made)), options(std::move(wished)), machine(app::make_machine(options.device)) {}
 
-  /// Throws UsageError while a picture is made: its progress and log functions cannot ask for another.
+  /// Throws UsageError during a call: its progress and log functions cannot start another.
   void require_idle() const {
     if (working) throw UsageError("the renderer is at work; it is for one call at a time");
   }
-  /// While it exists, a picture is made.
+  /// Marks the state as at work during its lifetime.
   class Working {
    public:
     explicit Working(State& state) : state_(state) { state_.working = true; }
@@ -183,7 +183,7 @@ struct Renderer::State {
   LibraryProgress progress{options};
   app::RunOptions run;
   app::MethodWish wish;
-  std::uint64_t rendered = 0;                  // Scene::State::meshes of the last picture
+  std::uint64_t rendered = 0;                  // Scene::State::meshes of the most recent picture
   std::unique_ptr<app::FrameRenderer> frames;  // refers to run, wish and progress
 };
 
@@ -222,7 +222,7 @@ Picture Renderer::render(const RenderOptions& options) {
                          .pixel_tolerance = pixel_tolerance(options.pixel_tolerance),
                          .same_meshes = same_meshes,
                          .keeps_masks = options.masks && options.pixel_samples == 1};
-  // Wrong options are refused before anything changes, so that what is kept stays.
+  // Invalid options are rejected before any change, so that the kept data stay valid.
   static_cast<void>(app::parse_light_samples(run));
   app::NamedMethod method = app::parse_method(options.method);
   for (const auto& [key, value] : options.options) {
@@ -244,12 +244,12 @@ Picture Renderer::render(const RenderOptions& options) {
     state.progress.rethrow();
     return picture;
   } catch (const render::DeviceDoesNotAnswer& error) {
-    // Nothing of the device may be destroyed while it is at work: what holds it is left alone for ever.
+    // Objects of a device at work must not be destroyed: the frame renderer is leaked deliberately.
     static_cast<void>(state.frames.release());
     state.machine = app::make_machine(state.options.device);
     throw ResourceError(error.what());
   } catch (...) {
-    state.frames.reset();  // whatever it holds may be half of one scene and half of another
+    state.frames.reset();  // its data may belong partly to one scene and partly to another
     state.progress.rethrow();
     throw_as_error();
   }

@@ -1,4 +1,4 @@
-// A scene in a program's hands: read and written, its lights and cameras, each change checked as a file is.
+// Scene of the interface: reading, writing, lights and cameras, with the checks of a file for each change.
 
 #include "base/error.hpp"
 #include "library/as_error.hpp"
@@ -43,7 +43,7 @@ scenes::ReadOptions reading(const LoadOptions& options) {
   read.studio.always = options.studio;
   if (options.frame) {
     if (!(options.fps > 0)) throw UsageError("fps {}: expected frames a second, above 0", options.fps);
-    read.time = *options.frame * (1 / options.fps);  // as the command line has it
+    read.time = *options.frame * (1 / options.fps);  // as on the command line
   }
   return read;
 }
@@ -81,7 +81,7 @@ Scene Scene::parse(std::string_view json, const std::filesystem::path& folder, c
 
 namespace {
 
-/// Changes a copy of a light, and takes it if it is one.
+/// Changes a copy of a light, and replaces the light if the copy is valid.
 template <typename Change>
 void change_light(scenes::Scene& scene, std::string_view name, Change change) {
   scenes::AreaLight& light = scene.lights[find_named(scene.lights, name, "light")];
@@ -91,7 +91,7 @@ void change_light(scenes::Scene& scene, std::string_view name, Change change) {
   light = std::move(changed);
 }
 
-/// Gives the light a shape; a dome's picture is read unless the light has it already.
+/// Sets a light's shape; reads a dome's picture unless the light already has this picture.
 void set_shape(scenes::AreaLight& light, scenes::LightShape shape) {
   const auto* const before = std::get_if<scenes::Dome>(&light.shape);
   const auto* const after = std::get_if<scenes::Dome>(&shape);
@@ -138,7 +138,7 @@ void Scene::set_light(std::string_view name, const LightShape& shape) {
     scenes::LightShape made = to_scene(shape);
     const auto* const before = std::get_if<scenes::Sphere>(&light.shape);
     auto* const after = std::get_if<scenes::Sphere>(&made);
-    if (before != nullptr && after != nullptr) after->cone = before->cone;  // a spot lamp stays one
+    if (before != nullptr && after != nullptr) after->cone = before->cone;  // a spot lamp stays a spot lamp
     set_shape(light, std::move(made));
   });
 }

@@ -1,4 +1,4 @@
-// The meshes of a scene in a program's hands: added, replaced, moved. A call that throws changes nothing.
+// Meshes of the interface's scene: adding, replacing, moving. A call that throws changes nothing.
 
 #include "library/as_error.hpp"
 #include "library/light_shape.hpp"
@@ -22,7 +22,7 @@
 namespace penumbra {
 namespace {
 
-/// The mesh's vertices among the scene's.
+/// Returns the range of the mesh's vertices among the scene's.
 std::pair<std::uint32_t, std::uint32_t> vertices_of(const scenes::Scene& scene, std::uint32_t object) {
   std::uint32_t first = std::numeric_limits<std::uint32_t>::max(), end = 0;
   for (std::size_t i = 0; i < scene.soup.triangles.size(); ++i) {
@@ -35,18 +35,18 @@ std::pair<std::uint32_t, std::uint32_t> vertices_of(const scenes::Scene& scene, 
   return {std::min(first, end), end};
 }
 
-/// A light and its body move together, which the interface cannot do.
+/// Throws if the mesh is the body of a light: a light and its body move together, which the interface does not support.
 void require_no_light(const scenes::Scene& scene, std::uint32_t object, const std::string& name) {
   if (const auto& emits = scene.objects[object].emits)
     throw InputError("mesh \"{}\" is the body of light \"{}\", which would stay behind: remove the light first", name,
                      scene.lights[*emits].name);
 }
 
-/// A mesh as a program gave it, without the vertices that no triangle uses.
+/// Mesh as given by a program, without the vertices that no triangle uses.
 struct GivenMesh {
   mesh::TriangleSoup soup;
   GivenVertices vertices;
-  std::string warning;  ///< empty: all are used
+  std::string warning;  ///< empty: all vertices are used
 };
 
 GivenMesh given_mesh(const std::string& where, std::span<const Vector> positions,
@@ -59,14 +59,14 @@ GivenMesh given_mesh(const std::string& where, std::span<const Vector> positions
   return given;
 }
 
-/// Room for so many more elements, in steps that grow with the list.
+/// Reserves room for `more` further elements, in steps that grow with the list.
 template <typename List>
 void reserve_more(List& list, std::size_t more) {
   const std::size_t wanted = list.size() + more;
   if (wanted > list.capacity()) list.reserve(std::max(wanted, 2 * list.capacity()));
 }
 
-/// Makes room for a mesh, so that append() cannot fail.
+/// Reserves room for a mesh, so that append() cannot fail.
 void reserve_for(scenes::Scene& scene, const mesh::TriangleSoup& soup, const std::string& where) {
   if (scene.soup.positions.size() + soup.positions.size() > std::numeric_limits<std::uint32_t>::max())
     throw InputError("{}: the scene has more than 2^32 vertices", where);
@@ -74,7 +74,7 @@ void reserve_for(scenes::Scene& scene, const mesh::TriangleSoup& soup, const std
   reserve_more(scene.soup.triangles, soup.triangles.size());
   reserve_more(scene.soup.object, soup.triangles.size());
   reserve_more(scene.soup.source_face, soup.triangles.size());
-  // Lists of looks that exist are as long as the soup's positions.
+  // Non-empty lists of looks have the length of the soup's positions.
   if (!scene.looks.normals.empty()) reserve_more(scene.looks.normals, soup.positions.size());
   if (!scene.looks.colors.empty()) reserve_more(scene.looks.colors, soup.positions.size());
   if (!scene.looks.places.empty()) reserve_more(scene.looks.places, soup.positions.size());
@@ -97,7 +97,7 @@ bool any_has_moved(const Scene::State& state) {
   return std::ranges::any_of(state.rest, [](const auto& rest) { return rest.has_value(); });
 }
 
-/// The centre of the bounding box of all vertices at rest, and of those that come.
+/// Returns the centre of the bounding box of all vertices at rest, and of the added ones.
 glm::dvec3 rest_center(const Scene::State& state, std::span<const glm::dvec3> more = {}) {
   std::vector<glm::dvec3> positions = state.scene.soup.positions;
   for (const auto& rest : state.rest) {
@@ -112,14 +112,14 @@ glm::dvec3 rest_center(const Scene::State& state, std::span<const glm::dvec3> mo
   return 0.5 * (low + high);
 }
 
-/// The file's, if it gives one. Else, once meshes have moved, the scene's origin stays where it was at rest; before
-/// that it follows from the vertices.
+/// Returns the file's origin, if given. Otherwise, once meshes have moved, the scene's origin stays at its position at
+/// rest; before, it follows from the vertices.
 std::optional<glm::dvec3> settled_origin(const Scene::State& state, std::span<const glm::dvec3> more = {}) {
   if (state.file_origin || !any_has_moved(state)) return state.file_origin;
   return rest_center(state, more);
 }
 
-/// Appends one object of a scene with all that its vertices have.
+/// Appends one object of a scene with all data of its vertices.
 void copy_object(const scenes::Scene& from, std::uint32_t object, scenes::Scene& to) {
   const auto [first, end] = vertices_of(from, object);
   const std::size_t start = to.soup.positions.size();
@@ -158,7 +158,7 @@ RestMesh& rest_of(Scene::State& state, std::uint32_t object) {
   return *rest;
 }
 
-/// Notes which of a mesh's given vertices the scene has.
+/// Records the indices of a mesh's given vertices that the scene keeps.
 void note_given(Scene::State& state, std::uint32_t object, GivenVertices vertices) {
   if (vertices.used.empty() && object >= state.given.size()) return;
   if (object >= state.given.size()) state.given.resize(object + 1);
@@ -187,7 +187,7 @@ MeshId Scene::add_mesh(std::string name, std::span<const Vector> positions,
     made.color = to_glm(options.color);
     made.casts_shadow = options.casts_shadow;
     made.receives_shadow = options.receives_shadow;
-    // All that can fail comes first.
+    // All operations that can fail come first.
     scenes::Scene& scene = state_->scene;
     const auto object = static_cast<std::uint32_t>(scene.objects.size());
     reserve_for(scene, given.soup, where);
@@ -256,7 +256,7 @@ void Scene::set_transform(MeshId mesh, const Matrix& m) {
   const bool is_affine = m[12] == 0 && m[13] == 0 && m[14] == 0 && m[15] == 1;
   if (!is_affine || !std::ranges::all_of(m, [](double x) { return std::isfinite(x); }))
     throw InputError("transform of mesh \"{}\": expected finite numbers, and 0 0 0 1 in the last row", mesh_name(mesh));
-  const glm::dmat3 linear(m[0], m[4], m[8], m[1], m[5], m[9], m[2], m[6], m[10]);  // column by column
+  const glm::dmat3 linear(m[0], m[4], m[8], m[1], m[5], m[9], m[2], m[6], m[10]);  // by columns
   const glm::dvec3 offset(m[3], m[7], m[11]);
   with_errors([&] {
     RestMesh& rest = rest_of(*state_, mesh.index);
@@ -269,7 +269,7 @@ void Scene::set_transform(MeshId mesh, const Matrix& m) {
     }
     state_->meshes = next_meshes();
     std::ranges::copy(moved, state_->scene.soup.positions.begin() + rest.first);
-    // Normals turn as planes do: by the matrix of cofactors, which also a singular matrix has.
+    // Normals transform as planes: by the matrix of cofactors, which also exists for a singular matrix.
     const glm::dmat3 cofactors(glm::cross(linear[1], linear[2]), glm::cross(linear[2], linear[0]),
                                glm::cross(linear[0], linear[1]));
     for (std::size_t i = 0; i < rest.normals.size(); ++i) {

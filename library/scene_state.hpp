@@ -12,33 +12,33 @@
 
 namespace penumbra {
 
-/// A mesh as it was added or read: what set_transform() starts from.
+/// Mesh as added or read: the positions to which set_transform() applies its matrix.
 struct RestMesh {
-  std::uint32_t first = 0;  ///< of its vertices among the scene's; one after the other
+  std::uint32_t first = 0;  ///< of its vertices among the scene's, which are consecutive
   std::vector<glm::dvec3> positions;
   std::vector<glm::vec3> normals;  ///< empty: the scene has none
 };
 
-/// Which vertices a mesh was given.
+/// Vertices given for a mesh.
 struct GivenVertices {
-  std::vector<std::uint32_t> used;  ///< numbers of those that the scene has, in order; empty: all
-  std::size_t count = 0;            ///< of all
+  std::vector<std::uint32_t> used;  ///< indices of the given vertices that the scene keeps, in order; empty: all
+  std::size_t count = 0;            ///< number of given vertices
 };
 
-/// A number that no scene has had.
+/// Returns a number that no scene has had before.
 std::uint64_t next_meshes();
 
 struct Scene::State {
   scenes::Scene scene;
-  /// For each object, from its first set_transform() on.
+  /// For each object, set by its first set_transform().
   std::vector<std::optional<RestMesh>> rest = {};
-  /// For each object, or the first of them: those after have all their vertices.
+  /// For each object, or a prefix of the objects: the others keep all their vertices.
   std::vector<GivenVertices> given = {};
-  /// The origin that the file gives, as of scenes that move: it stays, whatever is added.
+  /// The origin given by the file, as of scenes that move: unchanged when meshes are added.
   std::optional<glm::dvec3> file_origin = {};
-  /// Another number, other triangles, pictures or vertices' looks: of all scenes of the process.
+  /// Differs between any two scenes of the process whose triangles, pictures or vertices' looks differ.
   std::uint64_t meshes = next_meshes();
-  std::optional<std::size_t> camera = {};  ///< the one that looks by default; nullopt: the first
+  std::optional<std::size_t> camera = {};  ///< default camera; nullopt: the first
 };
 
 }  // namespace penumbra
