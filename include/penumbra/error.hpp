@@ -8,23 +8,23 @@
 
 namespace penumbra {
 
-/// What the command line returns to the shell; the meaning of each number never changes.
+/// Exit codes of the command line; the meaning of each number never changes.
 enum class ExitCode {
   done = 0,
-  answer_is_no = 1,  ///< the job ran and the answer is no (validation failed, --max-rmse exceeded)
+  answer_is_no = 1,  ///< the job ran and its result is negative (validation failed, --max-rmse exceeded)
   usage = 2,         ///< wrong usage
-  input = 3,         ///< bad input: file, line or JSON pointer, what is wrong, what would be right
-  resource = 4,      ///< device or resource: no device, out of memory, disk full, lost
+  input = 3,         ///< invalid input: file, line or JSON pointer, the error, and the expected value
+  resource = 4,      ///< device or resource: no device, out of memory, disk full, device lost
   interrupted = 130,
 };
 
 namespace detail {
 template <typename... Args>
-class Format;  // inside the library: base/error.hpp
+class Format;  // internal to the library: base/error.hpp
 }
 
-/// Something that the user or the calling program can act on. The message says what is wrong, where, and what would be
-/// right; it is the command line's. What only Penumbra's authors can act on is an assertion, not an Error.
+/// Error that the user or the calling program can correct. The message states the error, its location, and the expected
+/// value; it is the command line's message. Errors that only Penumbra's authors can correct are assertions, not Error.
 class PENUMBRA_API Error : public std::runtime_error {
  public:
   Error(ExitCode code, const std::string& message);
@@ -37,7 +37,7 @@ class PENUMBRA_API Error : public std::runtime_error {
   ExitCode code_;
 };
 
-/// A request that cannot be meant: an unknown method, option or name, or a number out of its range.
+/// Invalid request: an unknown method, option or name, or a number out of its range.
 class PENUMBRA_API UsageError : public Error {
  public:
   explicit UsageError(const std::string& message);
@@ -49,7 +49,7 @@ class PENUMBRA_API UsageError : public Error {
   ~UsageError() override;
 };
 
-/// A file or scene that cannot be used as it is.
+/// File or scene that cannot be used.
 class PENUMBRA_API InputError : public Error {
  public:
   explicit InputError(const std::string& message);
@@ -61,7 +61,7 @@ class PENUMBRA_API InputError : public Error {
   ~InputError() override;
 };
 
-/// The machine refuses: no device, no memory, no room on the disk.
+/// Missing resource: no device, out of memory, disk full.
 class PENUMBRA_API ResourceError : public Error {
  public:
   explicit ResourceError(const std::string& message);

@@ -1,6 +1,6 @@
 #pragma once
 
-/// Marks what a program that links libpenumbra may use; everything else in the library is hidden.
+/// Marks symbols for programs that link libpenumbra; all others in the library are hidden.
 #define PENUMBRA_API __attribute__((visibility("default")))
-/// Marks a part of a class that it may not.
+/// Marks a hidden member of an exported class.
 #define PENUMBRA_HIDDEN __attribute__((visibility("hidden")))

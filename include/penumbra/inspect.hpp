@@ -13,14 +13,14 @@
 namespace penumbra {
 
 struct InspectOptions {
-  double weld = 0;                 ///< vertices at most this far apart are one
-  bool self_intersections = true;  ///< search them, which takes longest
-  std::size_t list_limit = 100;    ///< places listed of each defect
+  double weld = 0;                 ///< vertices at most this far apart are merged
+  bool self_intersections = true;  ///< search for self-intersections, the slowest search
+  std::size_t list_limit = 100;    ///< number of listed locations of each defect
 };
 
-/// What is wrong with a mesh, and what each method makes of it: the JSON of `penumbra inspect --json`. Throws
-/// InputError for a file that cannot be read, or arrays that are no mesh (Scene::add_mesh), and Cancelled. Of `host`
-/// the log and progress functions count.
+/// Returns the defects of a mesh, and each method's verdict on the mesh: the JSON of `penumbra inspect --json`. Throws
+/// InputError for a file that cannot be read, or arrays that are not a mesh (Scene::add_mesh), and Cancelled. Of `host`
+/// only the log and progress functions are used.
 PENUMBRA_API std::string inspect_json(const std::filesystem::path& file, const InspectOptions& options = {},
                                       const RendererOptions& host = {});
 PENUMBRA_API std::string inspect_json(std::span<const Vector> positions,

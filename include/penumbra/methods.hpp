@@ -11,21 +11,21 @@ struct MethodOption {
   std::string name, default_value, help;
   std::vector<std::string> choices;  ///< empty: a number from `least` to `most`
   double least = 0, most = 0;
-  bool whole = false;  ///< of a number: without a fraction
+  bool whole = false;  ///< for a number: without a fraction
 };
 
-/// A shadow method, as `penumbra methods` lists it.
+/// Shadow method, as listed by `penumbra methods`.
 struct MethodInfo {
   std::string name, family, paper;
-  std::string output;     ///< mask: a bit for each light sample; scalar: V alone; radiance: V and form factors
-  std::string exact_for;  ///< what its answers are exact for
-  std::vector<std::string> lights;  ///< kinds of lights that it does
+  std::string output;     ///< mask: one bit for each light sample; scalar: V alone; radiance: V and form factors
+  std::string exact_for;  ///< cases in which its results are exact
+  std::vector<std::string> lights;  ///< supported kinds of lights
   std::vector<MethodOption> options;
 };
 
-/// All methods, those of a family from the best on.
+/// Returns all methods, in each family the best first.
 PENUMBRA_API std::vector<MethodInfo> methods();
-/// The JSON of `penumbra methods --json`.
+/// Returns the JSON of `penumbra methods --json`.
 PENUMBRA_API std::string methods_json();
 
 }  // namespace penumbra

@@ -1,11 +1,11 @@
 #pragma once
 
-/// Penumbra: how much of an area light each visible point sees. Everything that the library offers:
+/// Penumbra computes the visible fraction of an area light at each visible point. Contents of the library:
 ///   scene.hpp     meshes, lights, cameras      renderer.hpp  pictures by any method, kept from call to call
-///   picture.hpp   the numbers of a picture     methods.hpp   which methods there are
-///   compare.hpp   methods against a reference  inspect.hpp   what is wrong with a mesh
+///   picture.hpp   the numbers of a picture     methods.hpp   list of methods
+///   compare.hpp   methods against a reference  inspect.hpp   defects of a mesh
 ///   wedges.hpp    penumbra wedges              own_method.hpp  methods of the calling program
-///   error.hpp     what can be thrown
+///   error.hpp     exceptions
 #include <penumbra/compare.hpp>
 #include <penumbra/error.hpp>
 #include <penumbra/inspect.hpp>
@@ -18,7 +18,7 @@
 
 namespace penumbra {
 
-/// The version of the library, as `penumbra --version` prints it.
+/// Returns the version of the library, as printed by `penumbra --version`.
 PENUMBRA_API std::string version();
 
 }  // namespace penumbra
