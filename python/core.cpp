@@ -1,6 +1,5 @@
-// penumbra._core: the library's classes for Python. Arrays of pictures are views that keep the picture alive;
-// everything that takes long gives the interpreter's lock away and listens to Ctrl-C. What Python users see is in
-// __init__.py.
+// Module penumbra._core: the library's classes for Python. Arrays of pictures are views that keep the picture alive;
+// every long call releases the interpreter's lock and handles Ctrl-C. The interface for Python users is in __init__.py.
 
 #include "python/own_method.hpp"
 
@@ -45,7 +44,7 @@ std::vector<std::array<std::uint32_t, 3>> faces_of(const Indices& array) {
   return faces;
 }
 
-/// A read-only array over a picture's memory, which lives as long as the array.
+/// Returns a read-only array over a picture's memory; the array keeps the memory alive.
 template <typename Value>
 py::array view(const Picture& picture, std::span<const Value> values, std::vector<py::ssize_t> shape) {
   const py::capsule keeper(new Picture(picture), [](void* kept) { delete static_cast<Picture*>(kept); });
@@ -96,7 +95,7 @@ py::dict dict_of(const LightShape& shape) {
   return std::visit(Convert(), shape);
 }
 
-/// The value of a key that must be there; UsageError says what it should be.
+/// Returns the value of a required key. Throws UsageError, with the expected type, if it is missing or wrong.
 template <typename Value>
 Value wanted(const py::dict& dict, const char* key) {
   if (!dict.contains(key)) throw UsageError(std::string("a light of this kind needs ") + key);
@@ -129,7 +128,7 @@ LightShape shape_of(const std::string& kind, const py::dict& d) {
   throw UsageError("light of kind \"" + kind + "\": expected rectangle, disk, ellipse, polygon, sphere, sun or dome");
 }
 
-/// The calling program's functions, called with the interpreter's lock held; Ctrl-C ends the call.
+/// Returns options that call the calling program's functions with the interpreter's lock held; Ctrl-C ends the call.
 RendererOptions options_of(std::string device, py::object log, py::object progress) {
   RendererOptions options;
   options.device = std::move(device);

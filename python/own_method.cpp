@@ -1,5 +1,5 @@
-// Shadow methods that Python functions answer: arrays of a question, and an answer as an array. The interpreter's lock
-// is taken for each call, since the library works without it.
+// Shadow methods implemented by Python functions: called with arrays, returning an array. The interpreter's lock is
+// taken for each call, since the library runs without the lock.
 
 #include "python/own_method.hpp"
 
@@ -17,7 +17,7 @@ namespace py = pybind11;
 namespace penumbra {
 namespace {
 
-/// A copy: a method may keep it.
+/// Returns a copy: a method may keep the array.
 template <typename Value>
 py::array copied(std::span<const Value> values) {
   if constexpr (std::is_arithmetic_v<Value>) {
@@ -29,7 +29,7 @@ py::array copied(std::span<const Value> values) {
   }
 }
 
-/// A method whose answers a Python function gives.
+/// Method whose results come from a Python function.
 class PythonMethod final : public OwnMethod {
  public:
   PythonMethod(const py::object& function, bool has_masks, const std::map<std::string, std::string>& options)
@@ -100,7 +100,8 @@ class PythonMethod final : public OwnMethod {
   py::object ask(std::span<const std::uint32_t> pixels) {
     py::dict& q = *question_;
     const py::ssize_t count = static_cast<py::ssize_t>(pixels.size());
-    const std::size_t samples = light_.points.empty() ? light_.light_samples : 0;  // a sphere's: each pixel's own
+    // a sphere's light samples: different for each pixel
+    const std::size_t samples = light_.points.empty() ? light_.light_samples : 0;
     py::array_t<float> p({count, py::ssize_t{3}}), n({count, py::ssize_t{3}});
     py::array_t<std::int32_t> face(count);
     py::array_t<float> points({samples == 0 ? 0 : count, static_cast<py::ssize_t>(samples), py::ssize_t{3}});
@@ -123,7 +124,7 @@ class PythonMethod final : public OwnMethod {
     return function_(q);
   }
 
-  const py::object& function_;  // lives as long as the process
+  const py::object& function_;  // never freed
   bool has_masks_;
   py::dict* question_ = nullptr;
   MethodLight light_;

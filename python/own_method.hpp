@@ -4,7 +4,7 @@
 
 namespace penumbra {
 
-/// Adds `add_method` to the module: shadow methods that Python functions answer.
+/// Adds `add_method` to the module: shadow methods implemented by Python functions.
 void define_own_methods(pybind11::module_& module);
 
 }  // namespace penumbra

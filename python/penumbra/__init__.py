@@ -99,7 +99,7 @@ class Scene:
                 if "fit" in mesh:
                     raise UsageError(f"mesh {index}: fit is for files; give arrays a transform")
                 arrays[index] = mesh.pop("vertices"), mesh.pop("faces")
-                # Takes the mesh's place while the file's other rules are checked; shows what its transform does.
+                # Placeholder for the mesh while the file's other rules are checked; shows the effect of its transform.
                 mesh["triangles"] = [[0, 0, 0, 1, 0, 0, 0, 1, 0], [0, 0, 0, 0, 1, 0, 0, 0, 1]]
             meshes.append(mesh)
         scene["meshes"] = meshes
