@@ -1,7 +1,8 @@
-// E. Chan, F. Durand, An efficient hybrid shadow rendering algorithm, EGSR 2004. A view sample is at a silhouette where
-// the four texels around it do not agree; shadow volumes are drawn for those alone, under a mask that keeps all others
-// out of the stencil, and the map answers the others. Departures: the map compares the receiver's plane
-// (receiverPlane=off: its depth, as published), and the mask is view samples that are left out, not a depth test.
+// Combines a shadow map with shadow volumes: E. Chan, F. Durand, An efficient hybrid shadow rendering algorithm, EGSR
+// 2004. A view sample is at a silhouette where the four texels around it disagree; shadow volumes are drawn for these
+// samples alone, under a mask that keeps all others out of the stencil, and the map decides the others. Departures: the
+// map compares the receiver's plane (receiverPlane=off: its depth, as published), and the mask consists of view samples
+// that are left out, not of a depth test.
 
 #include "hybrids/methods.hpp"
 
@@ -88,7 +89,7 @@ class HybridVolume final : public visibility::Method {
   [[nodiscard]] std::uint64_t memory_bytes() const override { return map_->memory_bytes() + volumes_->memory_bytes(); }
 
  private:
-  /// The four texels around a view sample, weighed bilinearly: 0 or 1 where they agree.
+  /// Returns options of a map with bilinear weights of the four texels around a view sample: 0 or 1 where these agree.
   static MethodOptions map_options(const MethodOptions& given) {
     const visibility::MethodDescription description = hybrid_volume_description();
     static_cast<void>(visibility::parse_options(description, given));
@@ -99,7 +100,7 @@ class HybridVolume final : public visibility::Method {
   }
   static bool is_silhouette(float map_says) { return map_says > 0 && map_says < 1; }
 
-  /// Classifies all view samples, and leaves the volumes those at silhouettes.
+  /// Classifies all view samples, and passes those at silhouettes to the volumes.
   void ask_map() {
     map_says_.resize(samples_.size());
     const std::uint32_t rows = map_->max_tile_rows();
@@ -118,8 +119,8 @@ class HybridVolume final : public visibility::Method {
 
   visibility::MethodDescription description_;
   std::unique_ptr<visibility::Method> map_, volumes_;
-  ViewSamples samples_, masked_;  ///< all, and those at silhouettes
-  std::vector<float> map_says_;   ///< of all view samples; empty: not asked
+  ViewSamples samples_, masked_;  ///< all view samples, and those at silhouettes
+  std::vector<float> map_says_;   ///< result of the map at all view samples; empty: not yet computed
   Tile tile_;
 };
 

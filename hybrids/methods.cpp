@@ -1,3 +1,5 @@
+// Table of the family's methods.
+
 #include "hybrids/methods.hpp"
 
 #include <array>

@@ -7,12 +7,13 @@
 
 namespace penumbra::hybrids {
 
-/// Chan and Durand 2004: a shadow map, and shadow volumes where its texels do not agree. docs/hybrid-volume.md.
+/// Makes `hybrid-volume` (Chan and Durand 2004): a shadow map, and shadow volumes where its texels disagree.
+/// docs/hybrid-volume.md.
 std::unique_ptr<visibility::Method> make_hybrid_volume(const render::Device& device,
                                                        const visibility::MethodOptions& options);
 visibility::MethodDescription hybrid_volume_description();
 
-/// The table of these.
+/// Returns the family's table of methods.
 std::span<const engines::MethodRow> methods();
 
 }  // namespace penumbra::hybrids
