@@ -1,5 +1,5 @@
-// HTTP and WebSocket by Boost.Beast, asynchronously on one thread, on which all that follows runs but make() of files.
-// Connections own themselves (shared_ptr) as long as an operation of theirs is under way: Asio's way of life.
+// HTTP and WebSocket server by Boost.Beast, asynchronous on one thread, which runs all of the following except make()
+// of files. Connections own themselves (shared_ptr) while one of their operations is pending, as usual with Asio.
 #include "network/page_server.hpp"
 
 #include "base/error.hpp"
@@ -94,7 +94,8 @@ class PageServer::State {
   ServerOptions options_;
   PageHandler& handler_;
   std::string nonce_ = make_token();
-  std::size_t connections_ = 0;  // that have not become sockets; those that io_ still holds at its end count down
+  std::size_t connections_ = 0;  // number of connections that have not become sockets; connections still held by io_ in
+                                 // its destructor decrement this counter
   asio::io_context io_{1};
   tcp::acceptor acceptor_{io_};
   std::uint16_t port_ = 0;
@@ -104,7 +105,7 @@ class PageServer::State {
   std::thread thread_;
 };
 
-/// One client's WebSocket.
+/// WebSocket of one client.
 class PageServer::State::Socket : public std::enable_shared_from_this<Socket> {
  public:
   Socket(State& server, tcp::socket&& socket) : server_(server), stream_(std::move(socket)) {}
@@ -202,7 +203,7 @@ class PageServer::State::Socket : public std::enable_shared_from_this<Socket> {
 
   void close(websocket::close_code code) {
     if (std::exchange(closing_, true)) return;
-    // Who does not read does not read this either: then silence ends the connection.
+    // A client that does not read does not read this message either: then the timeout ends the connection.
     stream_.async_close(code, [self = this->shared_from_this()](beast::error_code) { self->end(); });
   }
 
@@ -223,10 +224,10 @@ class PageServer::State::Socket : public std::enable_shared_from_this<Socket> {
   std::optional<std::string> newest_;
   std::shared_ptr<const std::string> frame_, going_;
   bool writing_ = false, closing_ = false;
-  bool has_frame_ = false;  // one that it has not taken
+  bool has_frame_ = false;  // a frame not yet taken by the client
 };
 
-/// A connection until its one request has been answered, or has become a socket.
+/// Connection until its one request has been answered, or has become a socket.
 class PageServer::State::Connection : public std::enable_shared_from_this<Connection> {
  public:
   Connection(State& server, tcp::socket&& socket) : server_(server), stream_(std::move(socket)) {
@@ -247,7 +248,7 @@ class PageServer::State::Connection : public std::enable_shared_from_this<Connec
   }
 
  private:
-  /// Why the request is not answered; empty: it is.
+  /// Returns the reason why the request is rejected; empty: accepted.
   [[nodiscard]] const char* refusal(const Request& request) const {
     const std::string_view host = view_of(request[http::field::host]);
     if (!has_token(view_of(request.target()), server_.options_.token))

@@ -1,3 +1,5 @@
+// Checks requests: token, host and origin.
+
 #include "network/requests.hpp"
 
 #include "base/error.hpp"

@@ -3,23 +3,24 @@
 #include <string>
 #include <string_view>
 
-/// What a request must have to be answered.
+/// Requirements of a request.
 namespace penumbra::network {
 
-/// 128 bits that nobody can guess, as 32 hexadecimal digits. Throws ResourceError where the system has none.
+/// Returns 128 random bits, as 32 hexadecimal digits. Throws ResourceError if the system has no source of randomness.
 std::string make_token();
 
-/// The part of a request's target before the question mark.
+/// Returns the part of a request's target before the question mark.
 std::string_view path_of(std::string_view target);
 
-/// Has the target the parameter `token` with this value? Takes as long whichever digit is wrong.
+/// Returns whether the target has the parameter `token` with this value, in constant time.
 bool has_token(std::string_view target, std::string_view token);
 
-/// Does the header `Host` name this machine's loopback, with any port (a tunnel may have another)? A page elsewhere
-/// whose name has been pointed to this machine sends its own name.
+/// Returns whether the header `Host` names this machine's loopback, with any port (a tunnel may have another). A page
+/// elsewhere whose name was pointed to this machine (DNS rebinding) sends its own name.
 bool is_loopback_host(std::string_view host);
 
-/// Is the header `Origin` that of a page from `host`? Programs that are no browsers send none, which is empty.
+/// Returns whether the header `Origin` is that of a page from `host`. Programs that are not browsers send none, which
+/// is empty and accepted.
 bool is_own_origin(std::string_view origin, std::string_view host);
 
 }  // namespace penumbra::network

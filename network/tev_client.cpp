@@ -1,3 +1,5 @@
+// Sends pictures to tev by its network protocol.
+
 #include "network/tev_client.hpp"
 
 #include "base/assert.hpp"
@@ -25,11 +27,11 @@ constexpr std::chrono::seconds kConnect{5}, kSend{30};
 
 enum class Packet : std::uint8_t { create_image = 4, update_image = 6 };
 
-/// Values one after the other, behind the length of all.
+/// Writes values one after the other, preceded by the total length.
 class PacketText {
  public:
   explicit PacketText(Packet type) {
-    number(std::uint32_t{0});  // the length, once it is known
+    number(std::uint32_t{0});  // the length, set at the end
     number(static_cast<std::uint8_t>(type));
   }
   template <typename Number>
@@ -58,7 +60,7 @@ class PacketText {
 
 std::string create_image(const TevPicture& picture) {
   PacketText packet(Packet::create_image);
-  packet.number(std::uint8_t{1});  // comes to the front
+  packet.number(std::uint8_t{1});  // grabs the focus
   packet.text(picture.name);
   packet.number(static_cast<std::int32_t>(picture.width));
   packet.number(static_cast<std::int32_t>(picture.height));
@@ -75,7 +77,7 @@ std::string update_image(const TevPicture& picture, std::uint32_t row, std::uint
   for (const TevChannel& channel : picture.channels) packet.text(channel.name);
   for (const std::uint32_t value : {0U, row, picture.width, rows}) packet.number(static_cast<std::int32_t>(value));
   const std::size_t first = std::size_t{row} * picture.width, count = std::size_t{rows} * picture.width;
-  // Where each channel begins among the floats that follow, and how far its values are apart.
+  // Offset of each channel in the following floats, and the stride of its values.
   for (std::size_t i = 0; i < picture.channels.size(); ++i) packet.number(static_cast<std::int64_t>(i * count));
   for (std::size_t i = 0; i < picture.channels.size(); ++i) packet.number(std::int64_t{1});
   for (const TevChannel& channel : picture.channels) packet.values(channel.values.subspan(first, count));
@@ -133,7 +135,7 @@ class TevClient::Connection {
     error_ = error;
     is_done_ = true;
   }
-  /// Why the operation that was begun failed; empty: it did not.
+  /// Waits for the pending operation and returns the reason of its failure; empty: success.
   std::string wait(std::chrono::seconds most) {
     is_done_ = false;
     io_.restart();

@@ -8,7 +8,7 @@
 
 namespace penumbra::network {
 
-/// One channel of a picture: a number for each pixel, row by row from the top.
+/// Channel of a picture: a number for each pixel, row by row from the top.
 struct TevChannel {
   std::string name;
   std::span<const float> values;
@@ -24,14 +24,14 @@ struct TevPicture {
 /// counts itself, a type and values, all little-endian; texts end with a zero byte.
 class TevClient {
  public:
-  /// `address`: HOST:PORT; tev listens on 127.0.0.1:14158 unless it was told otherwise. Throws UsageError for what is
-  /// no such address, ResourceError if nobody listens.
+  /// Connects to tev. `address`: HOST:PORT; tev listens on 127.0.0.1:14158 by default. Throws UsageError for an invalid
+  /// address, ResourceError if the connection is refused.
   explicit TevClient(const std::string& address);
   TevClient(const TevClient&) = delete;
   TevClient& operator=(const TevClient&) = delete;
   ~TevClient();
 
-  /// Shows a picture; one of the same name is replaced. Throws ResourceError if tev takes nothing for half a minute.
+  /// Shows a picture; replaces one of the same name. Throws ResourceError if tev accepts nothing for half a minute.
   void show(const TevPicture& picture);
 
  private:
@@ -39,8 +39,8 @@ class TevClient {
   std::unique_ptr<Connection> connection_;
 };
 
-/// The packets that show a picture, one after the other: CreateImage, then UpdateImage (its third version) for stripes
-/// of rows.
+/// Returns the packets that show a picture, in order: CreateImage, then UpdateImage (its third version) for stripes of
+/// rows.
 std::vector<std::string> tev_packets(const TevPicture& picture);
 
 /// Splits HOST:PORT. Throws UsageError for anything else.
