@@ -7,7 +7,7 @@ import sys
 
 import bpy
 
-_failed = None  # the first frame that did
+_failed = None  # the first frame that failed
 
 
 def asked_for_frames(arguments):
@@ -34,7 +34,7 @@ def _end(temporary):
     """The last that Python does before Blender would leave."""
     print(f"Penumbra: frame {_failed} failed (above); no frame after it was rendered, and this process ends with code 1",
           file=sys.stderr)
-    shutil.rmtree(temporary, ignore_errors=True)  # Blender's own, which it would remove
+    shutil.rmtree(temporary, ignore_errors=True)  # Blender's own folder, which it would remove
     sys.stdout.flush()
     sys.stderr.flush()
     os._exit(1)

@@ -31,7 +31,7 @@ class PenumbraEngine(bpy.types.RenderEngine):
             self._render(depsgraph)
         except (Refused, ValueError, OSError) as error:
             self._fail(depsgraph, str(error))
-        except Exception as error:  # what the add-on does wrong
+        except Exception as error:  # errors of the add-on
             traceback.print_exc()
             self._fail(depsgraph, f"the add-on failed ({type(error).__name__}: {error}); the console says where")
 
@@ -87,7 +87,7 @@ class PenumbraEngine(bpy.types.RenderEngine):
             for name, letters, _ in names.own_passes(passes.layers(picture)):
                 self.add_pass(name, len(letters), letters, layer=layer)
         result = self.begin_result(0, 0, picture.width, picture.height, layer=layer)
-        # Pixels one by one would take Python minutes; Blender reads them itself where their names are its own.
+        # Copying pixels one by one would take Python minutes; Blender reads passes with its own names from the file.
         file = os.path.join(folder, "passes.exr")
         wanted = {one.name for one in result.layers[0].passes}
         content = {f"{layer}.{name}": values for name, values in names.channels(picture).items()

@@ -17,10 +17,11 @@ class SceneWriter:
         self.depsgraph, self.losses, self.shading_normals = depsgraph, losses, shading_normals
         self.scene, self.layer = depsgraph.scene, depsgraph.view_layer_eval
         self.glb = glb.Glb()
-        self.background = (0.0, 0.0, 0.0)  # the colour that is seen behind everything
+        self.background = (0.0, 0.0, 0.0)  # colour of the background
         self._meshes, self._materials, self._looks, self._images = {}, {}, {}, {}
         self._shines = False
-        self._balls, self._placed = [], []  # lamps of some size, and surfaces in the world, whose distances are looked at
+        self._balls, self._placed = [], []  # lamps of some size, and surfaces in the world, for tests of their
+                                            # distances
 
     def write(self, path, region):
         """`region`: which pixels (frames.py)."""
@@ -231,7 +232,8 @@ def shared(vertices, rows):
     """What corners have, once each, and which of it is each corner's. `vertices`: the mesh's own, of each corner."""
     first = numpy.zeros(int(vertices.max()) + 1, numpy.int64)
     first[vertices[::-1]] = numpy.arange(len(vertices))[::-1]
-    if numpy.array_equal(rows, rows[first[vertices]]):  # quick, and the rule: a vertex has one normal, one place in a picture
+    # fast path for the usual case: a vertex has one normal, one position in a picture
+    if numpy.array_equal(rows, rows[first[vertices]]):
         used = numpy.unique(vertices)
         number = numpy.zeros(len(first), numpy.int64)
         number[used] = numpy.arange(len(used))
@@ -257,7 +259,7 @@ class Corners:
         self.smooth = numpy.zeros(count, bool)
         if shading_normals:
             data.loop_triangles.foreach_get("use_smooth", self.smooth)
-            # Normals at corners count for flat faces, too.
+            # Normals at corners are needed for flat faces, too.
             if getattr(data, "use_auto_smooth", False) or getattr(data, "normals_domain", "FACE") == "CORNER":
                 self.smooth[:] = True
         if self.smooth.any():

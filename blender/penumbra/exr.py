@@ -10,7 +10,7 @@ import zlib
 import numpy
 
 _TYPES = {0: numpy.dtype("<u4"), 2: numpy.dtype("<f4")}
-_LINES = {0: 1, 2: 1, 3: 16}  # of a block, by compression: none, ZIPS, ZIP
+_LINES = {0: 1, 2: 1, 3: 16}  # lines of a block, by compression: none, ZIPS, ZIP
 
 
 class Picture:
@@ -53,9 +53,9 @@ def _channels(value):
 def _unzip(block, size):
     """OpenEXR's ZIP: deflate of differences (plus 128) of bytes whose two halves were interleaved."""
     if len(block) == size:
-        return block  # what would not get smaller is stored as it is
+        return block  # data that would not become smaller is stored unchanged
     plain = numpy.cumsum(numpy.frombuffer(zlib.decompress(block), numpy.uint8), dtype=numpy.uint8)
-    plain[1::2] ^= 128  # what was added to each, so often
+    plain[1::2] ^= 128  # removes the offset 128 added to each difference
     whole, half = numpy.empty_like(plain), (len(plain) + 1) // 2
     whole[0::2], whole[1::2] = plain[:half], plain[half:]
     return whole.tobytes()

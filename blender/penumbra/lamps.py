@@ -8,9 +8,9 @@ from math import acos, cos, degrees, pi, radians, sqrt, tan
 
 from . import graph, space
 
-# Wider suns are refused: from there on, as seen by a surface that they stand 45 degrees above, they are 2 % and more off.
+# Wider suns are refused: above this angle, for a surface with the sun 45 degrees above, they are 2 % and more off.
 _WIDEST_SUN, _WIDE_SUN = radians(120), radians(90)
-# How much brighter than Cycles' disk a lamp's ball may be without a word.
+# Largest difference in brightness between a lamp's ball and Cycles' disk without a message.
 _UNSAID = 0.02
 
 
@@ -176,7 +176,7 @@ def lens_of(camera, region):
     """What glb.camera takes of a lens for some pixels (frames.Region): shift, and half_angle or height."""
     width, height = region.whole
     wide = width >= height if camera.sensor_fit == "AUTO" else camera.sensor_fit == "HORIZONTAL"
-    fitted = width if wide else height  # the side that the sensor, or the scale, is of
+    fitted = width if wide else height  # the side that the sensor, or the scale, applies to
     sensor = camera.sensor_height if camera.sensor_fit == "VERTICAL" else camera.sensor_width
     rows = region.size[1]
     lens = {"shift": tuple(shift * fitted / rows + away

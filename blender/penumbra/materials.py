@@ -17,10 +17,10 @@ class Look:
     radiance: tuple = (0.0, 0.0, 0.0)
     alpha: float = 1.0
     image: object = None        # multiplies the colour
-    image_alpha: bool = False   # and its alpha the alpha
-    pixels: object = None       # linear, in place of the image's own: what nodes make of it
-    uv_map: str = ""            # by which the image lies on it; "": the active one
-    placing: tuple = None       # of it: two rows of three numbers; None: as it is
+    image_alpha: bool = False   # and its alpha multiplies the alpha
+    pixels: object = None       # linear, in place of the image's own: the result of nodes
+    uv_map: str = ""            # UV map of the image; "": the active one
+    placing: tuple = None       # transform of the UV map: two rows of three numbers; None: identity
     interpolation: str = "Linear"
     wrap: str = "REPEAT"        # or EXTEND
     attribute: str = None       # a colour attribute that multiplies the colour; "": the active one
@@ -36,14 +36,14 @@ class _Shader:
     diffuse: tuple = (0.0, 0.0, 0.0)
     emission: tuple = (0.0, 0.0, 0.0)
     through: float = 0.0
-    pictured: list = field(default_factory=list)  # Values behind `diffuse`, which has their factors
-    cut: object = None          # an image (graph.ImageUse) whose alpha lets the rest through
+    pictured: list = field(default_factory=list)  # Values of `diffuse`, with their factors
+    cut: object = None          # an image (graph.ImageUse) whose alpha makes the rest transparent
 
 
 _GLOSSY = {"BSDF_GLOSSY", "BSDF_ANISOTROPIC", "BSDF_TOON", "BSDF_VELVET", "BSDF_SHEEN", "SUBSURFACE_SCATTERING",
            "BSDF_HAIR", "BSDF_HAIR_PRINCIPLED", "BSDF_METALLIC", "EEVEE_SPECULAR"}
 _CLEAR = {"BSDF_GLASS", "BSDF_REFRACTION", "BSDF_TRANSLUCENT"}
-_GREY = (0.8, 0.8, 0.8)  # in place of a colour that is not known, where that is left out
+_GREY = (0.8, 0.8, 0.8)  # in place of an unknown colour, if left out
 
 
 def may_shine(material):
@@ -242,7 +242,7 @@ class Reader:
         share = At(node.inputs[0], groups)
         try:
             source = share.source()
-            # The one graph that cuts holes: an image's alpha between nothing and a surface.
+            # The only supported graph that cuts holes: an image's alpha between transparent and a surface.
             if source and source[0].type == "TEX_IMAGE" and source[1].name == "Alpha" and first.through == 1:
                 return self._sum([second], [1.0], graph.ImageUse(source[0], source[2]))
             share = min(max(graph.constant(share)[0], 0.0), 1.0)
@@ -292,7 +292,7 @@ def _placing(node, groups):
     if turn[0] or turn[1] or node.vector_type not in ("POINT", "TEXTURE", "VECTOR"):
         raise Unknown(f"the node '{node.name}', which turns it out of its plane")
     c, s = cos(turn[2]), sin(turn[2])
-    if node.vector_type == "TEXTURE":  # moved back, turned back, scaled back
+    if node.vector_type == "TEXTURE":  # inverse translation, rotation and scale
         x, y = (1 / one if one else 0.0 for one in scale[:2])
         rows = ((x * c, x * s), (-y * s, y * c))
         return tuple((a, b, -(a * place[0] + b * place[1])) for a, b in rows)

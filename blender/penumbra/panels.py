@@ -6,14 +6,14 @@ import bpy
 from . import program
 
 ENGINE = "PENUMBRA"
-# Panels of Blender's that offer what is not rendered, or that one of ours stands for.
+# Panels of Blender for unsupported features, or replaced by one of the add-on's.
 _NOT_OURS = {
     "DATA_PT_light", "DATA_PT_area", "DATA_PT_spot", "DATA_PT_falloff_curve", "DATA_PT_preview", "DATA_PT_lightprobe", "DATA_PT_context_lightprobe",
     "DATA_PT_lightprobe_parallax", "DATA_PT_lightprobe_display",
     "DATA_PT_camera_stereoscopy", "RENDER_PT_stereoscopy", "NODE_DATA_PT_light", "NODE_DATA_PT_spot", "OBJECT_PT_visibility",
     "VIEWLAYER_PT_filter", "VIEWLAYER_PT_layer_passes", "RENDER_PT_eevee_motion_blur", "RENDER_PT_freestyle",
     "RENDER_PT_gpencil", "EEVEE_WORLD_PT_mist"}
-# Panels of EEVEE's that say what Penumbra reads, too.
+# Panels of EEVEE for properties that Penumbra also reads.
 _OF_EEVEE = {"EEVEE_MATERIAL_PT_context_material"}
 
 
@@ -99,7 +99,7 @@ class PENUMBRA_PT_light(_Panel, bpy.types.Panel):
         column = layout.column()
         column.prop(light, "color")
         column.prop(light, "energy")
-        for name in ("exposure", "normalize", "use_soft_falloff"):  # of newer Blenders
+        for name in ("exposure", "normalize", "use_soft_falloff"):  # in newer versions of Blender
             if hasattr(light, name):
                 column.prop(light, name)
         column.separator()

@@ -5,7 +5,7 @@ import json
 
 import numpy
 
-_CHANNELS = {  # of passes that Blender knows: the pictures' own, and what turns them round
+_CHANNELS = {  # Channels of passes known to Blender: the pictures' own names, and the conversion of their values
     "Combined.R": "R", "Combined.G": "G", "Combined.B": "B", "Combined.A": "A", "Depth.Z": "Z",
     "Position.X": "P.X", "Position.Y": "-P.Z", "Position.Z": "P.Y",
     "Normal.X": "N.X", "Normal.Y": "-N.Z", "Normal.Z": "N.Y",
@@ -17,7 +17,7 @@ def layers(picture):
     return [light["layer"] for light in json.loads(picture.attributes.get("penumbra.lights", "[]"))]
 
 
-_LONGEST_LAYER = 44  # bytes of UTF-8, as the program cuts them
+_LONGEST_LAYER = 44  # bytes of UTF-8, as truncated by the program
 
 
 def layer_of(name):
@@ -31,7 +31,7 @@ def matte_groups(name, pixel_samples):
     return [f"{name}{group:02}" for group in range(1 if int(pixel_samples) == 1 else 3)]
 
 
-# Of a whole name, layer and channel included ("ViewLayer.Light Key.R"), Blender keeps so many bytes.
+# Number of bytes of a whole name, layer and channel included ("ViewLayer.Light Key.R"), kept by Blender.
 _LONGEST = 63
 
 
@@ -73,7 +73,7 @@ class Names:
         names["V.X"] = "V"
         for layer in layers(picture):
             if f"{layer}.V" not in picture.channels:
-                continue  # nobody asked for those of each light
+                continue  # passes of each light were not requested
             names[self._short(f"V {layer}") + ".X"] = f"{layer}.V"
             for letter in "RGB":
                 names[f"{self._short(f'Light {layer}')}.{letter}"] = f"{layer}.{letter}"

@@ -23,7 +23,7 @@ def find(wanted):
     raise FileNotFoundError("penumbra is not found; say in the add-on's preferences where it is, or set PENUMBRA")
 
 
-# What passes are made of, but those of each light: of hundreds of lights those take longer than the picture.
+# Layers needed for passes except those of each light: for hundreds of lights, the latter take longer than the picture.
 _WITHOUT_LIGHTS = "beauty,V,Z,P,N,Crypto*"
 
 
@@ -49,7 +49,7 @@ def arguments(program, scene, picture, size, settings):
     return command
 
 
-# What the program says of command lines and files, in the words of who sits before Blender.
+# Translations of the program's terms for command lines and files to those of Blender's user interface.
 _IN_BLENDER = (
     (re.compile(r"Shadows would be wrong: --lenient .*"), "Shadows would be wrong; 'Lenient' renders all the same"),
     (re.compile(r"--lenient"), "'Lenient'"),
@@ -76,8 +76,8 @@ def messages(text, scene=""):
     return warnings, "; ".join(errors) or None
 
 
-# Ends with whoever holds its input open, however that one ends; then the program that still works for it ends, too, and
-# the folder is removed. Lines are the program's number, or nothing where there is none.
+# Ends when its input is closed, however the other process ends; then the running program is ended, too, and the folder
+# is removed. Lines of input are the program's process id, or empty if there is none.
 _KEEPER = """while read -r line; do program=$line; done
 [ -n "$program" ] && kill "$program" && sleep 1
 rm -rf -- "$1"

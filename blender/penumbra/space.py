@@ -60,7 +60,7 @@ def distances(triangles, point):
         t = -numpy.einsum("ij,ij->i", a, way) / numpy.where(squared > 0, squared, 1)
         nearest = numpy.minimum(nearest, numpy.linalg.norm(a + numpy.clip(t, 0, 1)[:, None] * way, axis=1))
     normal = numpy.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    above = numpy.ones(len(corners), bool)  # is the foot of the perpendicular within the triangle?
+    above = numpy.ones(len(corners), bool)  # whether the foot of the perpendicular is within the triangle
     for i in range(3):
         a, b = corners[:, i], corners[:, (i + 1) % 3]
         above &= numpy.einsum("ij,ij->i", numpy.cross(a, b), normal) > 0
@@ -74,7 +74,7 @@ class Frustum:
 
     def __init__(self, matrix, aspect, shift, half_angle=None, height=None):
         self._to_camera = numpy.linalg.inv(numpy.asarray(matrix, float))
-        # Planes (x, y, depth, 1) of which the inside is positive.
+        # Planes (x, y, depth, 1) whose inner side is positive.
         half = half_angle if half_angle is not None else height / 2
         self._sides = []
         for axis, reach in ((0, half * aspect), (1, half)):
@@ -97,7 +97,7 @@ class Frustum:
         inside = self._seen(placed.triangles().reshape(-1, 3)) @ planes.T > 0
         inside = inside.reshape(-1, 3, len(planes))
         if inside.all(axis=2).any():
-            return True  # a corner is
+            return True  # a corner is inside
         candidates = placed.triangles()[inside.any(axis=1).all(axis=1)]
         return any(_is_left(self._seen(triangle), planes) for triangle in candidates)
 

@@ -6,7 +6,7 @@ import zlib
 
 import numpy
 
-# Images that are smaller are given the texels that Cycles sees between theirs: so many times as wide at most.
+# Width below which images get interpolated texels, as Cycles interpolates; and the largest factor of their width.
 FINE, _MOST = 1024, 16
 
 
