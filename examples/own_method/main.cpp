@@ -1,12 +1,12 @@
-// A shadow method of one's own, in one file, compared with those of Penumbra:
+// Shadow method in one file outside of Penumbra's tree, compared with Penumbra's methods:
 //
 //   own_method SCENE -o DIR      compares it with pcss and hard shadows; the report is DIR/report.html
 //
-// It is image-space gathering (Robison and Shirley, Image space gathering, High Performance Graphics 2009): one shadow
-// ray a pixel to the light's center gives a hard shadow, which is then averaged over the pixels around. How far around
-// is what a penumbra's width would be by similar triangles: the light's size · (d − b) / b, with d and b the distances
-// from the light's center to the receiver and to the nearest thing that blocks the ray, both of the pixel itself or, if
-// its ray is free, of the pixels around it whose rays are blocked.
+// The method is image-space gathering (Robison and Shirley, Image space gathering, High Performance Graphics 2009): one
+// shadow ray a pixel to the light's center gives a hard shadow, which is then averaged over the pixels around. The
+// averaging width is a penumbra's width by similar triangles: the light's size · (d − b) / b, with d and b the
+// distances from the light's center to the receiver and to the nearest blocker of the ray, both of the pixel itself or,
+// if its ray is free, of the pixels around with blocked rays.
 
 #include <penumbra/penumbra.hpp>
 
@@ -52,7 +52,8 @@ class Gathering final : public penumbra::OwnMethod {
  private:
   static constexpr double kNotAsked = -1, kFree = std::numeric_limits<double>::infinity();
 
-  /// Distance from the light's center to the nearest triangle on the segment to the pixel's point, or kFree.
+  /// Returns the distance from the light's center to the nearest triangle on the segment to the pixel's point, or
+  /// kFree.
   [[nodiscard]] double nearest_to_light(std::uint32_t pixel, const Float3& center) const {
     const Vector to_point = minus(view_.p[pixel], center);
     double nearest = 1;
@@ -63,7 +64,7 @@ class Gathering final : public penumbra::OwnMethod {
     return nearest < 1 - 1e-6 ? nearest * length(to_point) : kFree;
   }
 
-  /// Where start + t · direction meets a triangle, 0 < t < 1 (Möller and Trumbore 1997).
+  /// Returns t at the intersection of start + t · direction with a triangle, 0 < t < 1 (Möller and Trumbore 1997).
   [[nodiscard]] std::optional<double> meets(const Float3& start, const Vector& direction,
                                             const std::array<std::uint32_t, 3>& corners) const {
     const Float3& a = scene_.positions[corners[0]];
@@ -78,7 +79,7 @@ class Gathering final : public penumbra::OwnMethod {
     return t;
   }
 
-  /// Calls f(pixel) for those around whose point lies on nearly the same plane.
+  /// Calls f(pixel) for the pixels around whose point lies on nearly the same plane.
   template <typename Function>
   void around(std::uint32_t pixel, const Function& f) const {
     const auto width = static_cast<int>(view_.width), height = static_cast<int>(view_.height);
