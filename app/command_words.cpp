@@ -1,3 +1,5 @@
+// Collects the words of commands and options from CLI11 and formats help.
+
 #include "app/command_words.hpp"
 
 #include <CLI/CLI.hpp>
@@ -17,7 +19,8 @@ namespace {
 constexpr std::array kGroups = {"Input", "Light", "Picture", "Method", "Output", "General"};
 constexpr std::size_t kHelpColumn = 34, kHelpWidth = 100;
 
-/// The group of each option that several commands have, or that is not about output. Others are outputs.
+/// Returns the group of each option that several commands have, or that is not about output. All other options are
+/// outputs.
 const std::map<std::string_view, std::string_view>& groups() {
   static const std::map<std::string_view, std::string_view> table = [] {
     std::map<std::string_view, std::string_view> map;
@@ -54,7 +57,7 @@ std::string with_default(const CLI::Option& option) {
   return text;
 }
 
-/// Breaks a text at blanks into lines of at most `width` letters; words that are longer stand alone.
+/// Breaks a text at blanks into lines of at most `width` letters; longer words are on lines of their own.
 std::string in_lines(std::string_view text, std::size_t width) {
   std::string result;
   std::size_t column = 0;
@@ -74,7 +77,7 @@ std::string in_lines(std::string_view text, std::size_t width) {
   return result;
 }
 
-/// The type of an option's value, without what CLI11 adds of the checks on it (":INT in [1 - 4096]").
+/// Returns the type of an option's value, without CLI11's description of its checks (":INT in [1 - 4096]").
 std::string value_name(const CLI::Option& option) {
   const std::string name = option.get_type_name();
   return name.substr(0, std::min(name.find(":INT in"), name.find(":UINT in")));

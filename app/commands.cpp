@@ -1,3 +1,5 @@
+// Parses the command line and runs the chosen command.
+
 #include "app/commands.hpp"
 
 #include "app/command_words.hpp"
@@ -35,7 +37,7 @@ void start_log(const GlobalOptions& global) {
   spdlog::set_default_logger(logger);
 }
 
-/// `--flag=3` is wrong usage: CLI11 would take it as the flag's value.
+/// Rejects `--flag=3`: CLI11 would interpret the text as the flag's value.
 void refuse_values_of_flags(CLI::App& app) {
   for (CLI::Option* option : app.get_options()) {
     if (option->get_items_expected_max() == 0) option->disable_flag_override();
@@ -51,8 +53,8 @@ int run_command_line(int argc, char** argv) {
   app.set_version_flag("-V,--version", "penumbra " PENUMBRA_VERSION, "print the program's version");
   app.set_help_flag("-h,--help", "print this help");
   use_grouped_help(app);
-  app.require_subcommand(0, 1);  // none is refused below: CLI11 would not name a word that it does not know
-  app.fallthrough();             // --quiet and --verbose stand before or after the command's name
+  app.require_subcommand(0, 1);  // a missing command is rejected below: CLI11 would not name an unknown word
+  app.fallthrough();             // --quiet and --verbose may come before or after the command's name
 
   GlobalOptions global;
   global.arguments.assign(argv + 1, argv + argc);
@@ -85,7 +87,7 @@ int run_command_line(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    // `penumbra WORD --help`: CLI11 answers the second before it looks at the first.
+    // `penumbra WORD --help`: CLI11 handles the second before it checks the first.
     const bool no_command =
         app.get_subcommands().empty() &&
         std::ranges::any_of(app.remaining(), [](const std::string& word) { return !word.starts_with('-'); });

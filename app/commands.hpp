@@ -11,18 +11,18 @@ class App;
 
 namespace penumbra::app {
 
-/// What all commands share.
+/// Options common to all commands.
 struct GlobalOptions {
   bool quiet = false, verbose = false;
-  std::uint32_t threads = 0;           ///< the most that work at once; 0: as many as there are processors
-  std::vector<std::string> arguments;  ///< what followed the program's name
+  std::uint32_t threads = 0;           ///< largest number of threads at work; 0: the number of processors
+  std::vector<std::string> arguments;  ///< arguments of the program
 };
 
-/// A subcommand: holds the options that it added to the command line, and does the job when it was chosen.
+/// Subcommand: holds the options it added to the command line, and runs if chosen.
 class Command {
  public:
   virtual ~Command() = default;
-  /// Returns the exit code, or throws Error.
+  /// Runs the command and returns the exit code. Throws Error.
   virtual int run(const GlobalOptions& global) = 0;
   [[nodiscard]] bool chosen() const;
 
@@ -31,7 +31,7 @@ class Command {
   CLI::App& cli_;
 };
 
-/// Parses the command line, and runs the command that it names. Returns the exit code, or throws Error.
+/// Parses the command line, runs the named command and returns its exit code. Throws Error.
 int run_command_line(int argc, char** argv);
 
 std::unique_ptr<Command> make_render_command(CLI::App& app);

@@ -1,3 +1,5 @@
+// Chooses a method for each light.
+
 #include "app/light_methods.hpp"
 
 #include "app/methods.hpp"
@@ -24,7 +26,7 @@ bool has_option(const MethodDescription& method, const std::string& key) {
   return std::ranges::find(method.options, key, &visibility::OptionDescription::name) != method.options.end();
 }
 
-/// Those of the options that the method has; all, if it was named.
+/// Returns the options that the method has; all options, if the method was named.
 MethodOptions options_for(const MethodDescription& method, const MethodWish& wish) {
   if (!wish.method.empty()) return wish.options;
   MethodOptions options;
@@ -34,24 +36,24 @@ MethodOptions options_for(const MethodDescription& method, const MethodWish& wis
   return options;
 }
 
-/// The method with the options that make areas of its answers, if the light and what was given allow it.
+/// Returns the method with options that make its output areas, if the light and the given options allow it.
 std::optional<LightMethod> area_method(const MethodDescription& method, const Light& light, const MethodWish& wish) {
   if (!method.exact_area || !method.exact_area->lights.contains(light.kind)) return std::nullopt;
   const bool has_all =
       std::ranges::all_of(wish.options, [&](const auto& one) { return has_option(method, one.first); });
   if (!has_all) return std::nullopt;
   MethodOptions options = wish.options;
-  options.insert(method.exact_area->options.begin(), method.exact_area->options.end());  // what was given stands
+  options.insert(method.exact_area->options.begin(), method.exact_area->options.end());  // given options have priority
   try {
     MethodDescription description = describe_method(method.name, options);
     if (!description.gives_area() || !can_do(description, {light})) return std::nullopt;
     return LightMethod{std::move(description), std::move(options), {}};
-  } catch (const UsageError&) {  // what was given excludes it
+  } catch (const UsageError&) {  // excluded by the given options
     return std::nullopt;
   }
 }
 
-/// Why another method does the light than does lights like it.
+/// Returns a note about the reason why the light has another method than similar lights.
 std::string note_of_span(const Light& light, const std::string& method, const std::string& chosen) {
   return fmt::format("light \"{}\": too far away, too large or too small beside the scene for {}; {} takes its place",
                      light.name, method, chosen);
@@ -59,7 +61,7 @@ std::string note_of_span(const Light& light, const std::string& method, const st
 
 LightMethod choose(const Light& light, const SceneFloats& scene, const MethodWish& wish) {
   if (!wish.samples) {
-    std::string first;  // that would do it, were it nearer
+    std::string first;  // name of the method for lights of this kind that are nearer
     for (const MethodDescription* method : all_methods()) {
       if (!wish.method.empty() && method->name != wish.method) continue;
       auto found = area_method(*method, light, wish);
@@ -74,7 +76,7 @@ LightMethod choose(const Light& light, const SceneFloats& scene, const MethodWis
   const MethodDescription& method = wish.method.empty() ? default_method(light, &scene) : describe_method(wish.method);
   MethodOptions options = options_for(method, wish);
   LightMethod chosen{describe_method(method.name, options), std::move(options), {}};
-  const MethodDescription* nearer = nullptr;  // what does such lights, where they are nearer
+  const MethodDescription* nearer = nullptr;  // method for lights of this kind that are nearer
   if (wish.samples && wish.method.empty()) nearer = &default_method(light);
   if (nearer != nullptr && nearer->name != method.name && !can_span(nearer->span, light, scene)) {
     chosen.note = note_of_span(
@@ -95,7 +97,7 @@ LightMethod choose(const Light& light, const SceneFloats& scene, const MethodWis
   return chosen;
 }
 
-/// Pieces of one light are done by one method, if some of those chosen can do all.
+/// Gives the pieces of one light the same method, if one of the chosen methods supports all.
 void unite(const std::vector<Light>& lights, const SceneFloats& scene, const WholeLight& whole,
            std::vector<LightMethod>& chosen) {
   const auto first = static_cast<std::ptrdiff_t>(whole.first), end = first + static_cast<std::ptrdiff_t>(whole.count);

@@ -9,29 +9,29 @@
 
 namespace penumbra::app {
 
-/// What was said of methods on the command line.
+/// Method and options given on the command line.
 struct MethodWish {
   std::string method;  ///< empty: the best for each light
   visibility::MethodOptions options;
-  bool samples = false;  ///< light samples were asked for, too
+  bool samples = false;  ///< light samples were requested
 };
 
-/// What one light is done with.
+/// Method of one light.
 struct LightMethod {
   visibility::MethodDescription description;  ///< with its options
   visibility::MethodOptions options;
-  std::string note;  ///< why light samples are looked at that nobody asked for; else empty
+  std::string note;  ///< reason why light samples are used without a request; else empty
 };
 
-/// Exact by default, light by light: where nobody asked for light samples, the first method of the table that gives a
-/// light's exact area (`exact_area`) and holds it beside the scene (`span`), with the options that this takes; of a
-/// method that was named, only that one, if it does. Where none does, or light samples were asked for, the default
-/// method for light samples. An option goes to those chosen methods that have it. Throws UsageError for one that none
-/// has, and what describe_method throws.
+/// Chooses the methods, exact by default, light by light. Without a request for light samples: the first method of the
+/// table that computes a light's exact area (`exact_area`) and supports its distance and size relative to the scene
+/// (`span`), with the options needed for this; if a method was named, only that one, if possible. If there is none, or
+/// light samples were requested: the default method for light samples. An option applies to the chosen methods that
+/// have it. Throws UsageError for an option that none has, and the exceptions of describe_method.
 std::vector<LightMethod> choose_light_methods(const std::vector<visibility::Light>& lights,
                                               const visibility::SceneFloats& scene, const MethodWish& wish);
 
-/// Those lights (indices) that are done by one method with the same options, in the order of the first of each.
+/// Returns the lights (indices) with one method and the same options, in the order of the first of each.
 std::vector<std::vector<std::size_t>> same_methods(const std::vector<LightMethod>& chosen);
 
 }  // namespace penumbra::app

@@ -6,8 +6,8 @@
 
 namespace penumbra::app {
 
-/// Makes the machine that a command runs on. `wanted`: as `--device` takes it. PENUMBRA_VALIDATION=1 in the environment
-/// switches the validation layer on.
+/// Makes the machine for a command. `wanted`: in the form of `--device`. PENUMBRA_VALIDATION=1 in the environment
+/// enables the validation layer.
 render::Machine make_machine(const std::string& wanted);
 
 }  // namespace penumbra::app

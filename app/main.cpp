@@ -11,7 +11,8 @@ int main(int argc, char** argv) {
     penumbra::app::watch_for_interrupts();
     return penumbra::app::run_command_line(argc, argv);
   } catch (const penumbra::render::DeviceDoesNotAnswer&) {
-    // The driver's threads may be at work still: what runs at a regular exit would run under their feet.
+    // The driver's threads may still be running: the handlers of a regular exit would destroy data used by these
+    // threads.
     std::_Exit(penumbra::app::explain_current_exception());
   } catch (...) {
     return penumbra::app::explain_current_exception();

@@ -1,3 +1,5 @@
+// Formats manual pages.
+
 #include "app/man_pages.hpp"
 
 #include <fmt/format.h>
@@ -8,8 +10,7 @@
 namespace penumbra::app {
 namespace {
 
-/// Text as man(7) takes it: a backslash is \e, a hyphen that is typed is \-, and a line never begins with a control
-/// character.
+/// Escapes text for man(7): a backslash is \e, a typed hyphen is \-, and no line begins with a control character.
 std::string roff(std::string_view text) {
   std::string result;
   bool starts_line = true;
@@ -69,7 +70,7 @@ std::string options_of(const CommandWords& command) {
 std::string man_page(std::span<const CommandWords> commands, const CommandWords& command) {
   const bool is_program = &command == commands.data();
   const std::string name = is_program ? "penumbra" : "penumbra-" + command.name;
-  // The first line of the program's description says what it is.
+  // First line of the program's description.
   const std::string what = command.help.substr(0, command.help.find('\n'));
   std::string text = fmt::format(".TH {} 1 \"\" \"Penumbra {}\" \"User Commands\"\n.SH NAME\n{} \\- {}\n", upper(name),
                                  PENUMBRA_VERSION, roff(name), roff(what));

@@ -7,8 +7,8 @@
 
 namespace penumbra::app {
 
-/// The manual page of one command, penumbra-NAME(1), or, of the program itself (the first of all), penumbra(1), in the
-/// language of man(7).
+/// Returns the manual page of one command, penumbra-NAME(1), or, for the program itself (the first of all),
+/// penumbra(1), in the language of man(7).
 std::string man_page(std::span<const CommandWords> commands, const CommandWords& command);
 
 }  // namespace penumbra::app

@@ -1,3 +1,5 @@
+// Lists methods as JSON.
+
 #include "app/method_list.hpp"
 
 #include "app/methods.hpp"
@@ -33,7 +35,7 @@ std::vector<Variant> variants_of(const MethodDescription& method) {
       try {
         with = describe_method(method.name, {{option.name, value}});
       } catch (const UsageError&) {
-        continue;  // it takes another option, too
+        continue;  // needs another option, too
       }
       if (with.lights == method.lights && with.textures == method.textures && with.output == method.output &&
           with.any_pattern == method.any_pattern)
@@ -47,7 +49,7 @@ std::vector<Variant> variants_of(const MethodDescription& method) {
 
 namespace {
 
-/// null: it never gives it.
+/// null: exact areas are not supported.
 nlohmann::ordered_json exact_area_json(const MethodDescription& method) {
   if (!method.exact_area) return nullptr;
   const MethodDescription with = describe_method(method.name, method.exact_area->options);

@@ -9,19 +9,20 @@
 
 namespace penumbra::app {
 
-/// Names of the kinds of lights that the method does.
+/// Returns the names of the kinds of lights supported by the method.
 std::vector<std::string> light_names(const visibility::MethodDescription& method);
 
-/// A method with one option set, where that changes what the method is.
+/// Method with one option set, where this option changes the method's description.
 struct Variant {
   std::string option, value;
   visibility::MethodDescription method;
 };
 
-/// Each option by itself, at all of its choices; of a number the first that matters of the least two and the most.
+/// Returns the variants: each option by itself, at all of its choices; for a number the first value with an effect,
+/// among the two least and the greatest.
 std::vector<Variant> variants_of(const visibility::MethodDescription& method);
 
-/// The JSON that `methods --json` prints.
+/// Returns the JSON printed by `methods --json`.
 nlohmann::ordered_json methods_json();
 
 }  // namespace penumbra::app

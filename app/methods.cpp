@@ -1,3 +1,5 @@
+// Joins the tables of methods and selects default methods.
+
 #include "app/methods.hpp"
 
 #include "base/assert.hpp"
@@ -32,7 +34,7 @@ using visibility::Method;
 using visibility::MethodDescription;
 using visibility::MethodOptions;
 
-/// The tables of all families, joined.
+/// Returns the tables of all families, joined.
 const std::vector<MethodRow>& table() {
   static const std::vector<MethodRow> rows = [] {
     std::vector<MethodRow> all;
@@ -45,7 +47,7 @@ const std::vector<MethodRow>& table() {
   return rows;
 }
 
-/// Methods that a program added. A row stays where it is.
+/// Methods added by a program. Rows are never moved.
 struct AddedMethods {
   std::shared_mutex mutex;
   std::deque<MethodRow> rows;
@@ -55,7 +57,7 @@ AddedMethods& added() {
   return methods;
 }
 
-/// All rows there are at the moment.
+/// Returns all current rows.
 std::vector<const MethodRow*> all_rows() {
   std::vector<const MethodRow*> rows;
   for (const MethodRow& row : table()) rows.push_back(&row);
@@ -168,11 +170,11 @@ bool can_do(const MethodDescription& method, const std::vector<Light>& lights) {
 
 namespace {
 
-/// Are rays sooner done than geometry? Never of a light that a plane has a picture of. All around p there are a mesh's
-/// edges on every side, whatever the number of light samples, and so many rays cost as much as there are of them:
-/// measured, they meet at about 40 triangles a light sample (docs/domes.md).
+/// Returns whether rays are faster than geometry. Never for a light with an image on a plane. All around p a mesh has
+/// edges on every side, whatever the number of light samples, while the cost of rays is proportional to that number:
+/// measured, the two are equal at about 40 triangles for each light sample (docs/domes.md).
 bool rays_are_quicker(const Light& light, const visibility::SceneFloats* scene) {
-  constexpr std::size_t kTriangles = 32;  // a light sample
+  constexpr std::size_t kTriangles = 32;  // for each light sample
   return light.dome && scene != nullptr && scene->triangles.size() > kTriangles * light.sample_count();
 }
 
@@ -181,10 +183,10 @@ bool rays_are_quicker(const Light& light, const visibility::SceneFloats* scene) 
 const MethodDescription& default_method(const Light& light, const visibility::SceneFloats* scene) {
   const bool by_rays = rays_are_quicker(light, scene);
   const MethodDescription *rays = nullptr, *areas = nullptr;
-  bool refused = false;  // is there one that does such lights where they are nearer?
+  bool refused = false;  // a method would support the light if it were nearer
   for (const MethodDescription* method : all_methods()) {
     if (!can_do(*method, {light})) continue;
-    // A hard shadow of the light's centre is no answer where rays give one, nor is what takes longer than rays.
+    // A hard shadow of the light's centre is not accepted where rays are possible, nor is a method slower than rays.
     if (method->output == visibility::Output::scalar || method->on_request) continue;
     const bool holds = scene == nullptr || visibility::can_span(method->span, light, *scene);
     if (method->family == Family::geometry && by_rays) continue;

@@ -1,3 +1,5 @@
+// Adds and parses options common to several commands.
+
 #include "app/options.hpp"
 
 #include "app/methods.hpp"
@@ -18,7 +20,7 @@ namespace {
 constexpr std::uint32_t kMostLightSamples = 4096;
 constexpr std::uint32_t kLongestSide = 32768;
 
-/// "AxB" → both numbers, or nothing.
+/// Parses "AxB"; returns nullopt for any other text.
 std::optional<std::pair<std::uint32_t, std::uint32_t>> parse_product(std::string_view text) {
   const auto x = text.find('x');
   if (x == std::string_view::npos) return std::nullopt;
@@ -223,7 +225,7 @@ std::vector<MethodEntry> parse_methods(std::string_view text) {
     }
     entries.push_back(std::move(entry));
   };
-  // Unless it gives nothing else, or the group's options exclude it.
+  // Unless the method computes nothing else, or the group's options exclude it.
   const auto add_exact_area = [&](const visibility::MethodDescription& method, const visibility::MethodOptions& given) {
     visibility::MethodOptions options = given;
     options.insert(method.exact_area->options.begin(), method.exact_area->options.end());
@@ -245,12 +247,12 @@ std::vector<MethodEntry> parse_methods(std::string_view text) {
     if (const auto group = method_group(fields[0])) {
       if (group->empty()) throw UsageError("--methods {}: this build has no {} method", text, fields[0]);
       for (const visibility::MethodDescription* description : *group) {
-        describe_method(description->name, options);  // throws for options that it has not
+        describe_method(description->name, options);  // throws for unknown options
         add(description->name, description->name, options, true);
         if (description->exact_area) add_exact_area(*description, options);
       }
     } else {
-      describe_method(fields[0], options);  // throws for a name that is not there, and for such options
+      describe_method(fields[0], options);  // throws for an unknown name, and for invalid options
       add(part, fields[0], std::move(options), false);
     }
   }

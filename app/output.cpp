@@ -1,3 +1,5 @@
+// Sums beauty, writes bits and collects statistics of runs.
+
 #include "app/output.hpp"
 
 #include "app/methods.hpp"
@@ -59,7 +61,7 @@ BeautyAccumulator::BeautyAccumulator(const Session& session, std::span<const vis
       parts_(whole_lights(lights).size()) {}
 
 void BeautyAccumulator::add(const TileResult& result) {
-  // One light at a time: light adds up, and a light's body shows its radiance in its own turn alone.
+  // One light at a time: light is additive, and a light's body shows its radiance only in its own sum.
   std::vector<glm::vec3>& pixels = parts_[whole_of_[result.light]];
   if (pixels.empty()) resize_on_all_cores(pixels, session_.pixel_count());
   compare::LightVisibility seen;
@@ -77,7 +79,7 @@ void BeautyAccumulator::add(const TileResult& result) {
                        .pixel_colors = looks_.colors,
                        .normals = looks_.normals,
                        .first_pixel = first_pixel},
-                      {&seen, 1}, result.visibility,  // what was not evaluated stays as it is
+                      {&seen, 1}, result.visibility,  // pixels that were not evaluated are unchanged
                       std::span(pixels).subspan(first_pixel, result.visibility.size()));
 }
 
@@ -95,7 +97,7 @@ float auto_exposure(const Session& session, std::span<const glm::vec3> beauty, s
     const std::int32_t triangle = session.samples.triangle[i];
     const bool body = triangle >= 0 && session.floats.emits[static_cast<std::size_t>(triangle)] >= 0;
     const bool through_body = !lamps.empty() && lamps[i] != 0;
-    const bool sky = triangle < 0 && lamps.empty();  // of antialiased pixels a part is
+    const bool sky = triangle < 0 && lamps.empty();  // of antialiased pixels a part is background
     bodies[i] = body || sky || through_body ? 1 : 0;
   }
   return compare::auto_exposure(beauty, bodies);
@@ -140,8 +142,8 @@ std::uint64_t bytes_of(const Lists&... lists) {
   return (... + (lists.capacity() * sizeof(typename Lists::value_type)));
 }
 
-/// What is held while a method runs: the scene as read, the numbers that all methods share, what the camera sees, the
-/// method's own, and its answers (V, and their part of the light).
+/// Returns the memory in use while a method runs: the scene as read, the numbers shared by all methods, the view
+/// samples, the method's own memory, and its results (V, and their part of the light).
 std::map<std::string, std::uint64_t> memory_of(const Session& session, std::size_t lights, const MethodRun& run) {
   const mesh::TriangleSoup& soup = session.scene.soup;
   const auto floats_bytes = [](const visibility::SceneFloats& floats) {
@@ -178,7 +180,7 @@ compare::Stats make_stats(const Session& session, const LabelledLights& lights, 
   stats.sample_pattern = pattern_of(lights, wholes.front()).value_or("");
   for (std::size_t light = 0; light < wholes.size(); ++light) {
     stats.lights.push_back(light_stats(lights, wholes[light]));
-    if (light >= run.times.lights.size()) continue;  // it failed
+    if (light >= run.times.lights.size()) continue;  // the run failed
     stats.lights.back().light = run.times.lights[light].light;
     stats.lights.back().evaluate = run.times.lights[light].evaluate;
   }

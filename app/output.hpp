@@ -19,43 +19,43 @@
 
 namespace penumbra::app {
 
-/// The linear beauty of a run, of each whole light alone, tile by tile and light by light as results come, so that no
-/// light's masks need be kept.
+/// Linear beauty of a run, of each whole light alone, summed tile by tile and light by light as results arrive, so that
+/// no light's masks need be kept.
 class BeautyAccumulator {
  public:
-  /// Both must outlive it.
+  /// Both arguments must outlive this object.
   BeautyAccumulator(const Session& session, std::span<const visibility::Light> lights);
   void add(const TileResult& result);
-  /// For each of whole_lights each pixel; empty for a light of which nothing came.
+  /// Returns, for each of whole_lights, each pixel; empty for a light without results.
   [[nodiscard]] const std::vector<std::vector<glm::vec3>>& parts() const& { return parts_; }
   [[nodiscard]] std::vector<std::vector<glm::vec3>> parts() && { return std::move(parts_); }
-  /// All lights together, added in their order: what does not depend on the order in which they were done.
+  /// Returns all lights together, added in their order: independent of the order of the runs.
   [[nodiscard]] std::vector<glm::vec3> sum() const;
 
  private:
   const Session& session_;
   std::span<const visibility::Light> lights_;
-  std::vector<std::size_t> whole_of_;  // each of lights_
+  std::vector<std::size_t> whole_of_;  // whole light of each of lights_
   std::vector<glm::dvec3> colors_;     // of objects
   compare::SurfaceLooks looks_;
   std::vector<std::vector<glm::vec3>> parts_;
 };
 
-/// compare::auto_exposure of pixels that show no body of a light; of everything, if nothing else is seen. `lamps`
-/// (empty, or of each pixel): not 0 where a body is seen that does not carry the pixel.
+/// Returns compare::auto_exposure of the pixels that show no body of a light; of all pixels, if there are no others.
+/// `lamps` (empty, or one value for each pixel): not 0 where a body is visible other than at the pixel's carrier.
 float auto_exposure(const Session& session, std::span<const glm::vec3> beauty,
                     std::span<const std::uint8_t> lamps = {});
 
-/// Throws UsageError if `--bits` cannot be had of this method and the first of these lights.
+/// Throws UsageError if `--bits` is not possible for this method and the first of these lights.
 void check_bits(const visibility::MethodDescription& description, std::span<const visibility::Light> lights);
 
-/// `--bits` as tiles come.
+/// Output of `--bits`, tile by tile.
 class BitsOutput {
  public:
-  /// check_bits comes first. All must outlive it.
+  /// check_bits must be called first. All arguments must outlive this object.
   BitsOutput(std::filesystem::path path, const Session& session, const visibility::Light& light)
       : path_(std::move(path)), session_(session), light_(light) {}
-  /// The tiles of `light` in order.
+  /// Adds a tile of `light`; tiles must be in order.
   void add(const TileResult& result);
   void settle() { writer_->settle(); }
   void commit();
@@ -67,19 +67,19 @@ class BitsOutput {
   std::optional<visibility::BitsWriter> writer_;
 };
 
-/// A method as it was asked for, with what its files and stats say of it.
+/// Method as requested, with its label in files and stats.
 struct MethodLabel {
   const visibility::MethodDescription& description;
   const visibility::MethodOptions& options;
   std::string device;    ///< where it ran
-  bool in_part = false;  ///< only where something may let light through; elsewhere another gave exact areas
+  bool in_part = false;  ///< used only where some light may be visible; elsewhere another method computed exact areas
 };
 
-/// What a method runs on with these options, for this light: the Vulkan device, or the processor's name.
+/// Returns the device of a method with these options, for this light: the Vulkan device, or the processor's name.
 std::string device_of(const std::string& method, const visibility::MethodOptions& options,
                       const visibility::Light& light, const render::Machine& machine);
 
-/// Lights, as in Session::lights, with what each was done with: one label a light, or one for all of them.
+/// Lights, as in Session::lights, with their methods: one label for each light, or one for all.
 struct LabelledLights {
   std::span<const visibility::Light> lights;
   std::span<const MethodLabel> labels;
@@ -87,17 +87,18 @@ struct LabelledLights {
   [[nodiscard]] const MethodLabel& label(std::size_t light) const { return labels[labels.size() == 1 ? 0 : light]; }
 };
 
-/// Of one of whole_lights, all pieces together: 0 if V is an area, exactly or about.
+/// Returns the number of samples of one of whole_lights, all pieces together: 0 if V is an area, exact or estimated.
 std::uint32_t samples_of(const LabelledLights& all, const WholeLight& whole);
-/// Nothing if V is an area.
+/// Returns nullopt if V is an area.
 std::optional<std::string> pattern_of(const LabelledLights& all, const WholeLight& whole);
-/// What stats.json says of it, except its seconds.
+/// Returns the light's entry of stats.json, except its seconds.
 compare::LightStats light_stats(const LabelledLights& all, const WholeLight& whole);
 
-/// `run`: of whole lights.
+/// Returns the statistics. `run`: of whole lights.
 compare::Stats make_stats(const Session& session, const LabelledLights& lights, const MethodRun& run);
 
-/// One line a method for people: its name, the picture's size, triangles, light samples, seconds of `shadow`, device.
+/// Returns one line about a method: its name, the picture's size, triangles, light samples, seconds of `shadow`,
+/// device.
 std::string summary(const compare::Stats& stats);
 
 }  // namespace penumbra::app

@@ -9,7 +9,7 @@
 
 namespace penumbra::app {
 
-/// The whole text as a number, or nothing.
+/// Parses the whole text as a number; returns nullopt for any other text.
 template <typename Integer>
 std::optional<Integer> parse_integer(std::string_view text) {
   Integer value{};
@@ -18,13 +18,13 @@ std::optional<Integer> parse_integer(std::string_view text) {
   return value;
 }
 
-/// The whole text as a finite number, or nothing.
+/// Parses the whole text as a finite number; returns nullopt for any other text.
 inline std::optional<double> parse_number(std::string_view text) {
   const auto value = parse_integer<double>(text);
   return value && std::isfinite(*value) ? value : std::nullopt;
 }
 
-/// The parts between separators; of a text without any, the text.
+/// Returns the parts between separators; for a text without any, the text.
 inline std::vector<std::string_view> split(std::string_view text, char separator) {
   std::vector<std::string_view> parts;
   for (;;) {

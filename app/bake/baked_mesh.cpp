@@ -1,3 +1,5 @@
+// Selects the baked mesh of a scene and its points: texels of a lightmap, or vertices with angle-weighted points.
+
 #include "app/bake/baked_mesh.hpp"
 
 #include "app/whole_lights.hpp"
@@ -20,7 +22,7 @@ namespace {
 
 constexpr double kInset = 1.0 / 256;  // from a vertex toward the middle of a triangle
 
-/// The angle of a triangle at its corner k; 0 of one without area.
+/// Returns the angle of a triangle at its corner k; 0 for a triangle without area.
 double angle_at(const mesh::TriangleSoup& soup, const mesh::Triangle& triangle, std::size_t k) {
   const glm::dvec3 at = soup.positions[triangle[k]];
   const glm::dvec3 to = soup.positions[triangle[(k + 1) % 3]] - at, other = soup.positions[triangle[(k + 2) % 3]] - at;

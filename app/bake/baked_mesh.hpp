@@ -11,41 +11,41 @@
 
 namespace penumbra::app {
 
-/// The part of a scene that is baked.
+/// Baked part of a scene.
 struct BakedMesh {
-  std::vector<std::uint32_t> objects;    ///< all that have the name
-  std::vector<std::uint32_t> triangles;  ///< numbers of their triangles, ascending
+  std::vector<std::uint32_t> objects;    ///< all objects with the name
+  std::vector<std::uint32_t> triangles;  ///< indices of their triangles, ascending
 };
 
-/// The objects of this name. Throws UsageError that says which there are.
+/// Returns the objects with this name. Throws UsageError, with the list of existing names, if there are none.
 BakedMesh find_baked(const scenes::Scene& scene, const std::string& name);
 
-/// Makes every surface white, so that its beauty is the irradiance over π; what lets light through stays so. The camera
-/// becomes one that sees all of the mesh: methods that fit their maps to what is seen fit them to the mesh.
+/// Makes every surface white, so that its beauty is the irradiance over π; transparency is unchanged. The camera is
+/// replaced by one that sees all of the mesh: methods that fit their maps to the view fit them to the mesh.
 void prepare_scene(scenes::Scene& scene, const BakedMesh& mesh);
 
-/// The texels of the mesh's lightmap. Throws InputError if it has none, or if no texel lies on it. Overlaps, triangles
-/// that leave the map and triangles without coordinates go to `notes`.
+/// Returns the texels of the mesh's lightmap. Throws InputError if there is none, or if no texel lies on the mesh.
+/// Overlaps, triangles outside the map and triangles without coordinates are listed in `notes`.
 std::vector<visibility::SurfacePoint> lightmap_points(const scenes::Scene& scene, const BakedMesh& mesh,
                                                       const scenes::LightmapPlaces& lightmap, std::uint32_t width,
                                                       std::uint32_t height, std::vector<std::string>& notes);
 
-/// The vertices of the mesh, and the points that their values are means of: one in each triangle at the vertex, a 256th
-/// of the way from it to the middle of the triangle, so that a wall that meets the vertex shades it.
+/// Vertices of the mesh, and the points whose mean is a vertex's value: one in each triangle at the vertex, a 256th of
+/// the distance from the vertex to the middle of the triangle, so that a wall that meets the vertex shades the point.
 struct VertexPoints {
-  std::vector<std::uint32_t> vertices;           ///< numbers of the soup's positions, in order of first use
-  std::vector<mesh::Triangle> triangles;         ///< of these vertices
-  std::vector<visibility::SurfacePoint> points;  ///< three a triangle, then no points up to a full row
-  std::vector<double> weights;                   ///< of the first of these: the triangle's angle at the vertex
+  std::vector<std::uint32_t> vertices;           ///< indices of the soup's positions, in order of first use
+  std::vector<mesh::Triangle> triangles;         ///< indices into `vertices`
+  std::vector<visibility::SurfacePoint> points;  ///< three for each triangle, padded with empty points to a full row
+  std::vector<double> weights;                   ///< of the first of these points: the triangle's angle at the vertex
 };
-/// `width`: points in a row.
+/// Returns the vertices and their points. `width`: points in a row.
 VertexPoints vertex_points(const scenes::Scene& scene, const BakedMesh& mesh, std::uint32_t width);
 
-/// Beauty of white surfaces becomes irradiance; a light's own body gets none from it.
+/// Converts the beauty of white surfaces to irradiance; a light's own body receives none from that light.
 void make_irradiance(RenderedFrame& frame, const Session& session);
 
-/// Texels around those of the mesh get the values of the nearest (margin_sources), alpha stays 0 there. What is not
-/// covered, and no margin, is 0.
+/// Fills texels around those of the mesh with the values of the nearest (margin_sources); alpha stays 0 there. Texels
+/// neither covered nor in the margin are 0.
 void fill_margins(RenderedFrame& frame, std::span<const std::int64_t> sources);
 
 }  // namespace penumbra::app

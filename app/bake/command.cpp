@@ -1,3 +1,5 @@
+// Command `bake`: options and the run.
+
 #include "app/bake/baked_mesh.hpp"
 #include "app/bake/vertex_file.hpp"
 #include "app/commands.hpp"
@@ -124,13 +126,13 @@ class BakeCommand : public Command {
   }
 
  private:
-  /// A wrong command line is refused before anything long begins.
+  /// Checks the command line before any long work.
   [[nodiscard]] PictureRequest checked_request() {
     std::string& size = options_.run.size;
     if (size.empty()) size = fmt::format("{}", kDefaultSide);
     if (parse_integer<std::uint32_t>(size)) size = fmt::format("{0}x{0}", size);
     std::tie(width_, height_) = parse_size(size);
-    // The rest of the request is that of a picture, whose name ends so.
+    // The rest of the request is that of a picture, whose name has this ending.
     PictureOptions as_picture = options_;
     if (vertices_) {
       if (options_.run.out.extension() != ".ply")
@@ -161,7 +163,7 @@ class BakeCommand : public Command {
     return outputs;
   }
 
-  /// Also the size of the picture of view samples.
+  /// Finds the points; also sets the size of the picture of view samples.
   std::vector<visibility::SurfacePoint> find_points(const scenes::Scene& scene, const BakedMesh& mesh,
                                                     std::vector<std::string>& notes) {
     if (!vertices_) return lightmap_points(scene, mesh, lightmap_, width_, height_, notes);

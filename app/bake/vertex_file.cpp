@@ -1,3 +1,5 @@
+// Averages values at vertices and writes them as PLY.
+
 #include "app/bake/vertex_file.hpp"
 
 #include "app/pictures/picture_format.hpp"

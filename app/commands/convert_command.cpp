@@ -45,7 +45,7 @@ class ConvertCommand : public Command {
     reading.studio = parse_studio(studio_, camera_);
     if (!camera_.empty() && reading.studio.fit_camera.empty() && !reading.studio.camera)
       throw UsageError("--camera {}: expected fit, or EX,EY,EZ:TX,TY,TZ[:FOV]", camera_);
-    reading.needs_light = out_.extension() != ".obj";  // which holds none
+    reading.needs_light = out_.extension() != ".obj";  // which contains none
     OutputFiles outputs;
     outputs.add("-o", out_);
     outputs.refuse_inputs({&scene_, 1});

@@ -24,7 +24,7 @@ std::string verdict_of(const std::vector<std::string>& refusals, const char* wha
   return refusals.empty() ? what : fmt::format("no: {}", fmt::join(refusals, "; "));
 }
 
-/// A method that a usable device cannot run.
+/// Prints the methods that a usable device cannot run.
 void print_exceptions(const render::DeviceInfo& device) {
   if (!device.usable() || device.lacks.empty()) return;
   fmt::print("\n{} {} lacks {}. So these do not run there:\n", device.index, device.name,

@@ -15,7 +15,7 @@
 namespace penumbra::app {
 namespace {
 
-/// The command of this name, among those of the whole program.
+/// Returns the command with this name, among those of the whole program.
 const CLI::App& find_command(const CLI::App& program, const std::string& name) {
   std::vector<std::string> names;
   for (const CLI::App* command : program.get_subcommands([](const CLI::App*) { return true; })) {

@@ -37,7 +37,8 @@ void print_table(const std::vector<const MethodDescription*>& methods) {
   }
 }
 
-/// One method in full: what the row says, each option on lines of its own, how to ask for it, its page.
+/// Prints one method in full: the contents of its row, each option on lines of its own, an example of its use, its
+/// page.
 void print_method(const MethodDescription& method) {
   const auto line = [](const char* label, const std::string& text) { fmt::print("{:<11} {}\n", label, text); };
   fmt::print("{}\n", method.name);
@@ -75,7 +76,7 @@ class MethodsCommand : public Command {
   }
 
   int run(const GlobalOptions&) override {
-    for (const std::string& name : names_) describe_method(name);  // throws for a name that is not there
+    for (const std::string& name : names_) describe_method(name);  // throws for an unknown name
     if (json_) {
       nlohmann::ordered_json json = methods_json();
       if (!names_.empty()) {

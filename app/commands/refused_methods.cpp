@@ -12,7 +12,8 @@
 namespace penumbra::app {
 namespace {
 
-/// Why the device lacks what the method needs; nullopt if it lacks nothing, or there is no such form of the method.
+/// Returns the feature that the method needs and the device lacks; nullopt if nothing is missing, or if there is no
+/// such form of the method.
 std::optional<std::string> why_not(const std::string& method, const visibility::MethodOptions& options,
                                    const render::Machine& machine) {
   try {
@@ -20,7 +21,7 @@ std::optional<std::string> why_not(const std::string& method, const visibility::
   } catch (const render::LacksFeature& error) {
     return error.what();
   } catch (const UsageError&) {     // options that exclude each other
-  } catch (const ResourceError&) {  // something else than this device, such as no OpenGL
+  } catch (const ResourceError&) {  // a cause other than this device, such as no OpenGL
   }
   return std::nullopt;
 }

@@ -7,14 +7,14 @@
 
 namespace penumbra::app {
 
-/// A method, or a form of it, that does not run on a device.
+/// Method, or form of a method, that does not run on a device.
 struct RefusedMethod {
   std::string method;  ///< "hard-volume", "depth-complexity:variant=forest"
-  std::string reason;  ///< begins with the method's name
+  std::string reason;  ///< beginning with the method's name
 };
 
-/// Finds the methods that a usable device cannot run: makes each method there, as it is and with each
-/// choice of each option. No device is made for one that lacks nothing.
+/// Returns the methods that a usable device cannot run: makes each method there, with its defaults and with each choice
+/// of each option. Does not open a device that lacks nothing.
 std::vector<RefusedMethod> refused_methods(const render::DeviceInfo& device);
 
 }  // namespace penumbra::app

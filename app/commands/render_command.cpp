@@ -1,3 +1,5 @@
+// Command `render`: frames and cameras one after another, with the next scene read in parallel.
+
 #include "app/process/terminal_progress.hpp"
 #include "app/commands.hpp"
 #include "app/machine.hpp"
@@ -25,7 +27,7 @@
 namespace penumbra::app {
 namespace {
 
-/// A scene with what reading it took.
+/// Scene and the time of reading it.
 struct ReadScene {
   scenes::Scene scene;
   double seconds = 0;
@@ -49,7 +51,7 @@ class RenderCommand : public Command {
     Exposure exposure = request_.exposure;
     const bool all_cameras = options_.run.camera == "all";
     const std::vector<std::optional<double>>& frames = request_.frames;
-    // Cameras' names are in the scene; everything else is refused before it is read.
+    // Cameras' names are in the scene; everything else is checked before the scene is read.
     std::vector<std::string> cameras = {options_.run.camera};
     OutputFiles outputs;
     if (!all_cameras) outputs = claim(cameras);
@@ -69,11 +71,11 @@ class RenderCommand : public Command {
     // While the scene is read, mostly by another process.
     machine.begin(!request_.wish.method.empty() && needs_device(request_.wish.method, request_.wish.options));
     ReadScene now = read(frames[at]);
-    now.seconds = seconds_since_start();  // nothing else has been done yet
+    now.seconds = seconds_since_start();  // no other work has been done yet
     if (all_cameras) {
       cameras.clear();
       for (const scenes::Camera& camera : now.scene.cameras) {
-        visibility::make_camera(camera, {}, 1, 1);  // refuses now what would be refused after the others' pictures
+        visibility::make_camera(camera, {}, 1, 1);  // fails now instead of after the other cameras' pictures
         cameras.push_back(camera.name);
       }
       options_.camera_words = camera_words(cameras);
@@ -87,7 +89,7 @@ class RenderCommand : public Command {
       spdlog::warn("{} has no animation: every frame shows the same", now.scene.name);
     }
     if (exposure.kind == Exposure::Kind::first && options_.skip_existing) {
-      // Where it is not whole it is rendered now, and decides again.
+      // An incomplete first picture is rendered now, and determines the exposure again.
       const std::filesystem::path first = files_of(options_, frames.front(), cameras.front()).picture;
       if (is_whole_exr(first, kExposureAttribute)) exposure.stops = written_exposure(first).value_or(exposure.stops);
     }
@@ -111,7 +113,7 @@ class RenderCommand : public Command {
                         {frames[at], camera, request_.pixel_side, request_.filter, request_.pixel_tolerance,
                          moments_of(frames[at], moves)},
                         files.bits, now.seconds);
-        now.seconds = 0;  // once
+        now.seconds = 0;  // counted once
         const std::string made = summary(renderer.write(files, exposure));
         spdlog::info("{}{}", frames[at] ? files.picture.filename().string() + ": " : "", made);
         check_interrupt();
@@ -123,7 +125,8 @@ class RenderCommand : public Command {
   }
 
  private:
-  /// The middle of each of so many equal parts of the time that the shutter is open; none if one is enough.
+  /// Returns the scenes at the middle of each of the equal parts of the time that the shutter is open; empty if one
+  /// scene is sufficient.
   [[nodiscard]] std::vector<std::function<scenes::Scene()>> moments_of(std::optional<double> frame, bool moves) const {
     std::vector<std::function<scenes::Scene()>> all;
     if (!frame || !moves || request_.moments == 1) return all;
@@ -152,7 +155,7 @@ class RenderCommand : public Command {
     return outputs;
   }
 
-  /// The first frame from `from` on of which something is to be made.
+  /// Returns the first frame from `from` on with a file to be made.
   [[nodiscard]] std::size_t next_wanted(const std::vector<std::string>& cameras, std::size_t from) const {
     const auto& frames = request_.frames;
     while (options_.skip_existing && from < frames.size() && is_there(options_, frames[from], cameras)) ++from;

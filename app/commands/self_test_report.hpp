@@ -8,19 +8,20 @@
 
 namespace penumbra::app {
 
-/// What `devices --self-test` found, for people and for programs, on stdout.
+/// Results of `devices --self-test`, as a table and as JSON, on stdout.
 class SelfTestReport {
  public:
   SelfTestReport(const render::Device& device, std::vector<selftest::Check> checks);
 
-  /// Nothing failed. What could not run for want of OpenGL is no failure, and is said to have been left out.
+  /// Returns whether nothing failed. Checks that could not run without OpenGL are no failures, and are reported as left
+  /// out.
   [[nodiscard]] bool passed() const;
   void print_table() const;
   void print_json() const;
 
  private:
   std::vector<selftest::Check> checks_;
-  std::string vulkan_, opengl_;  ///< what was tested; of OpenGL perhaps why not
+  std::string vulkan_, opengl_;  ///< tested devices; for OpenGL possibly the reason why it was not tested
   bool has_opengl_ = false;
 };
 

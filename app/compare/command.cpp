@@ -1,3 +1,5 @@
+// Command `compare`: options, tables and exit codes.
+
 #include "app/process/terminal_progress.hpp"
 #include "app/commands.hpp"
 #include "app/compare/comparison.hpp"
@@ -26,8 +28,8 @@ std::string number(const std::optional<double>& value, const char* format) {
   return value ? fmt::format(fmt::runtime(format), *value) : "-";
 }
 
-/// The result for people, on stdout: one line a method, and one for its errors at horizon pixels, which the first
-/// leaves out.
+/// Prints the result as a table on stdout: one line for each method, and one for its errors at horizon pixels, which
+/// are not part of the first line.
 void print_table(const compare::Metrics& metrics) {
   fmt::print("{} judged pixels, {} at the horizon; errors of V against {}{}\n", metrics.judged_pixels,
              metrics.horizon_pixels, metrics.reference.method,
@@ -64,7 +66,8 @@ void print_table(const compare::Metrics& metrics) {
     fmt::print("{:<28} {:>9}\n", result.entry, number(result.flicker, "{:.6f}"));
 }
 
-/// By how much each method's RMSE changes when one cause alone is repaired, and what is left without all of them.
+/// Prints the change of each method's RMSE by the repair of one cause alone, and the remaining error without all
+/// causes.
 void print_budgets(const compare::Metrics& metrics) {
   std::size_t lights = 0;
   for (const compare::MethodResult& result : metrics.methods) lights = std::max(lights, result.lights.size());
@@ -156,7 +159,7 @@ class CompareCommand : public Command {
     const Exposure exposure = parse_exposure(exposure_);
     if (exposure.kind == Exposure::Kind::fixed) options_.exposure = exposure.stops;
     const double fps = parse_fps(fps_);
-    if (frame_) options_.time = parse_frame(*frame_) * (1 / fps);  // as `render` has it
+    if (frame_) options_.time = parse_frame(*frame_) * (1 / fps);  // as in `render`
     if (run_.camera == "all")
       throw UsageError("--camera all: errors are of one camera's pixels; name one, and compare once for each");
     TerminalProgress progress(!global.quiet);
@@ -166,7 +169,7 @@ class CompareCommand : public Command {
     print_table(metrics);
     print_budgets(metrics);
     spdlog::info("{} shows it all", (run_.out / "report.html").string());
-    // What failed has been said; the others' answers are written all the same.
+    // Failures have already been reported; the others' results are written nevertheless.
     const auto failed =
         std::ranges::find_if(metrics.methods, [](const auto& result) { return result.failure.has_value(); });
     const bool exceeded = max_rmse_ && exceeds_max_rmse(metrics);
@@ -175,7 +178,8 @@ class CompareCommand : public Command {
   }
 
  private:
-  /// Options of `render` that would make another question of it. They are known here, so that it can be said why.
+  /// Adds options of `render` that would change the measured quantity: known here so that the error message can give
+  /// the reason.
   void add_refused_options() {
     cli_.add_option("--pixel-samples", pixel_samples_, "1 alone: errors are of pixels' centres")->type_name("1");
     cli_.add_option("--pixel-filter", pixel_filter_, "box alone: of one view sample there is nothing to weigh")
@@ -224,7 +228,7 @@ class CompareCommand : public Command {
     bool exceeded = false;
     for (const compare::MethodResult& result : metrics.methods) {
       if (result.failure) continue;
-      // No judged pixel, no error: that the error is small has not been shown.
+      // Without judged pixels the error is unknown, and therefore not shown to be small.
       if (result.error && result.error->rmse <= *max_rmse_) continue;
       exceeded = true;
       spdlog::error("{}: rmse {} exceeds --max-rmse {}", result.entry,

@@ -1,3 +1,5 @@
+// Runs a comparison: reference, rays, methods, and all files of its folder.
+
 #include "app/compare/comparison.hpp"
 
 #include "app/compare/comparison_entries.hpp"
@@ -40,7 +42,7 @@ using visibility::Light;
 using visibility::MethodDescription;
 using visibility::Output;
 
-/// A run with what is made of it on the way.
+/// Run and the results computed during it.
 struct Finished {
   MethodRun run;
   std::vector<glm::vec3> beauty;
@@ -49,12 +51,12 @@ struct Finished {
 
 class Comparison {
  public:
-  /// Of all lights' masks by rays, which are kept while the methods run.
+  /// Limit of all lights' masks by rays, which are kept while the methods run.
   static constexpr std::uint64_t kMostRayBytes = std::uint64_t{1} << 30;
-  /// How often view samples are found where no number of runs is asked for.
+  /// Number of repetitions of the search for view samples if no number of runs is requested.
   static constexpr std::uint32_t kViewRuns = 3;
 
-  /// `scene`: nullopt: it is read from the run's file.
+  /// `scene`: nullopt: read from the run's file.
   Comparison(const RunOptions& run, const ComparisonOptions& options, std::optional<scenes::Scene> scene,
              Progress& progress)
       : run_(run),
@@ -119,7 +121,7 @@ class Comparison {
     return std::move(report_.metrics);
   }
 
-  /// Once all ran.
+  /// Returns the errors; valid after all runs.
   [[nodiscard]] EntryErrors errors() const {
     EntryErrors all;
     for (const auto& of_lights : visibility_) {
@@ -129,14 +131,14 @@ class Comparison {
   }
 
  private:
-  /// Of all lights' masks, on the methods' light samples.
+  /// Returns the size of all lights' masks, on the methods' light samples.
   [[nodiscard]] std::uint64_t mask_bytes() const {
     std::uint64_t words = 0;
     for (const Light& light : session_.lights) words += std::uint64_t{session_.pixel_count()} * light.words_per_mask();
     return words * sizeof(std::uint32_t);
   }
 
-  /// Masks of rays are kept whole, light by light: every method's are held against them.
+  /// Masks of rays are kept complete, light by light: every method's masks are compared with them.
   [[nodiscard]] TileSink keep_rays() {
     return [this, whole_of = wholes_of_pieces(session_.lights)](const TileResult& tile) {
       auto& pieces = truths_[whole_of[tile.light]].ray_masks;
@@ -164,7 +166,7 @@ class Comparison {
     }
     try {
       sort_into_classes(session_, truths_, progress_);
-    } catch (const Error& error) {  // a reference of areas does lights that rays do not
+    } catch (const Error& error) {  // a reference of areas supports lights that rays do not
       if (error.code() == ExitCode::interrupted) throw;
       warn(fmt::format("errors are not told apart by who casts the shadow: {}", error.what()));
     }
@@ -174,8 +176,8 @@ class Comparison {
       separated_ = separated_beauty(session_, truths_);
   }
 
-  /// Methods with masks are held against rays on their own light samples, whatever else the reference looks at: so one
-  /// sees what is the method's fault, and what the number of light samples costs. Once, untimed.
+  /// Compares methods with masks against rays on their own light samples, whatever the reference's samples: separates
+  /// errors of the method from the effect of the number of light samples. Runs once, untimed.
   void run_rays() {
     if (!truths_.front().ray_masks.empty()) return;
     if (std::ranges::none_of(entries_, [](const Entry& e) { return e.description.output == Output::mask; })) return;
@@ -202,7 +204,7 @@ class Comparison {
     progress_.clear();
     compare::SampleCost cost;
     cost.stats = stats_of(rays, session_.lights, done.run);
-    cost.stats.seconds = {};  // one run that nothing warmed up
+    cost.stats.seconds = {};  // one run without warm-up
     cost.all_lights_error = error_of_all_lights(done.run, truths_);
     cost.lights = LightJudge(session_, truths_, 0).judge(done.run, progress_);
     report_.rays = report_entry(session_, rays.description, report_.exposure, {done.run, {}, masks.finish()});
@@ -211,8 +213,8 @@ class Comparison {
       truths_[light].rays = std::move(done.run.visibility[light]);
   }
 
-  /// One method that fails is no reason to lose what the others have to say. After a device that does not answer no
-  /// other method runs, and what it threw is thrown on once everything is written.
+  /// A method that fails does not end the comparison of the others. After a device stops answering, no other method
+  /// runs, and the device's exception is rethrown once everything is written.
   void run_or_report(const Entry& entry) {
     if (hang_) {
       report_failure(entry, {ExitCode::resource, "not run, since the device does not answer any more"});
@@ -245,7 +247,8 @@ class Comparison {
 
   void run_entry(const Entry& entry) {
     const bool pairs_of_reference = same_samples_ && reference_.description.output == Output::mask;
-    // Exact decisions take milliseconds each: a few say who is right, and who asks for pairs gets many.
+    // Exact decisions take milliseconds each: a small number is sufficient for verdicts, and a large one is used if
+    // pairs were requested.
     LightJudge judge(session_, truths_, pairs_of_reference ? 4000 : 400);
     Finished done = run_one(entry, session_.lights, [&](const TileResult& tile) { judge.add(tile); });
 
@@ -268,7 +271,7 @@ class Comparison {
     visibility_.push_back(std::move(done.run.visibility));
   }
 
-  /// Runs a method and writes its EXR and, if wanted, its bits.
+  /// Runs a method and writes its EXR and, if requested, its bits.
   Finished run_one(const Entry& entry, const std::vector<Light>& lights, const TileSink& sink) {
     const MethodDescription& description = entry.description;
     const auto method = make_method(description.name, entry.options, machine_);
@@ -277,7 +280,7 @@ class Comparison {
     if (wants_bits(entry)) bits.emplace(files_.of(entry.label, ".bits"), session_, lights.front());
     RunPlan plan = plan_of(entry, &entry == &reference_, options_);
     plan.lights = lights;
-    // Maps answer all pixels in little time, and their pictures are whole.
+    // Map methods compute all pixels in little time, and their pictures are complete.
     if (description.family != visibility::Family::image) plan.pixels = wanted_;
     PackedMasks masks(lights.size());
     Finished done;
@@ -319,7 +322,7 @@ class Comparison {
     return pictures;
   }
 
-  /// Last, because all share one scale.
+  /// Runs last, because all pictures share one scale.
   void make_error_pictures() {
     double largest = 0;
     for (const compare::MethodResult& result : report_.metrics.methods) {
@@ -332,7 +335,7 @@ class Comparison {
     for (std::size_t light = 0; light < truths_.size(); ++light) {
       if (report_.rays) report_.rays->lights[light].error = picture(light, truths_[light].rays);
       for (std::size_t i = 0; i < visibility_.size(); ++i) {
-        if (visibility_[i].empty()) continue;  // it failed
+        if (visibility_[i].empty()) continue;  // the entry failed
         report_.methods[i].lights[light].error = picture(light, visibility_[i][light]);
         if (light == 0)
           write_png(files_.of(report_.metrics.methods[i].entry, "-error.png"), *report_.methods[i].lights[0].error);
@@ -340,7 +343,7 @@ class Comparison {
     }
   }
 
-  /// The errors' scale is known: pictures of what repairs change have the same.
+  /// Computes error budgets; pictures of the change by repairs use the known scale of the errors.
   void explain_errors() {
     const std::vector<WholeLight> wholes = whole_lights(session_.lights);
     for (const WholeLight& whole : wholes) {
@@ -397,13 +400,13 @@ class Comparison {
   std::vector<Entry> entries_;
   std::vector<LightTruth> truths_;  ///< of each light
   std::optional<std::vector<std::uint32_t>>
-      wanted_;  ///< all their pixels, if --sample-pixels chose; nothing: every one
+      wanted_;  ///< all their pixels, if --sample-pixels chose some; nullopt: every pixel
   std::vector<glm::vec3> reference_beauty_;
-  std::vector<glm::vec3> separated_;  ///< V of the reference · ∫G; empty: nobody asks, or it is not known
-  std::vector<std::vector<std::vector<float>>> visibility_;  ///< of each entry, of each light; empty: it failed
+  std::vector<glm::vec3> separated_;  ///< V of the reference · ∫G; empty: not requested, or unknown
+  std::vector<std::vector<std::vector<float>>> visibility_;  ///< of each entry, of each light; empty: the entry failed
   std::vector<std::string> warnings_;
   compare::ReportInput report_;
-  std::exception_ptr hang_;  ///< what a device that does not answer threw; it must not be used again
+  std::exception_ptr hang_;  ///< exception of a device that does not answer; the device must not be used again
 };
 
 }  // namespace

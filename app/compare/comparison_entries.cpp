@@ -1,3 +1,5 @@
+// Selects the entries of a comparison and the number of their runs.
+
 #include "app/compare/comparison_entries.hpp"
 
 #include "app/methods.hpp"
@@ -17,8 +19,8 @@ namespace {
 
 using visibility::MethodDescription;
 
-/// With its options: they may change what it gives and which lights it can do. Nothing: a group's exact areas, which
-/// --method-option excludes.
+/// Returns the entry described with its options, which may change its output and its supported lights. Returns nullopt
+/// for a group's exact areas if --method-option excludes them.
 std::optional<Entry> describe_entry(const MethodEntry& chosen, const std::function<void(std::string)>& warn) {
   try {
     return Entry{chosen.label, describe_method(chosen.name, chosen.options), chosen.options};
@@ -29,7 +31,7 @@ std::optional<Entry> describe_entry(const MethodEntry& chosen, const std::functi
   }
 }
 
-/// Why no method of a group can run on a Vulkan device; empty if they can, or none has to.
+/// Returns the reason why no method of a group can run on a Vulkan device; empty if they can, or none needs to.
 std::string why_no_device(const ComparisonOptions& options, const render::Machine& machine) {
   const auto needs = [](const MethodEntry& chosen) {
     return chosen.from_group && needs_device(chosen.name, chosen.options);
@@ -43,7 +45,7 @@ std::string why_no_device(const ComparisonOptions& options, const render::Machin
   }
 }
 
-/// Returns the features that the device lacks and a method of a group needs there; empty if it lacks none.
+/// Returns the features that the device lacks and a method of a group needs there; empty if none is missing.
 std::string why_not_there(const MethodEntry& chosen, const render::Machine& machine) {
   if (machine.device().info().lacks.empty()) return {};
   try {
@@ -63,7 +65,7 @@ std::vector<MethodEntry> with_method_options(const ComparisonOptions& options) {
     for (MethodEntry& entry : entries) {
       const auto& has = describe_method(entry.name).options;
       if (std::ranges::find(has, key, &visibility::OptionDescription::name) == has.end()) continue;
-      entry.options.emplace(key, value);  // an entry's own option stands
+      entry.options.emplace(key, value);  // an entry's own option has priority
       known = true;
     }
     if (!known) throw UsageError("--method-option {}={}: none of the chosen methods has such an option", key, value);
@@ -104,7 +106,7 @@ std::vector<Entry> choose_entries(const ComparisonOptions& options, const Sessio
   const std::string no_device = why_no_device(options, machine);
   std::vector<std::string> without_device, costly;
   std::vector<Entry> costly_entries;
-  // Maps see a sphere as up to 54 disks (maps/host/lamp_disks.hpp).
+  // For maps, a sphere is up to 54 disks (maps/host/lamp_disks.hpp).
   const bool costs_maps_much = std::ranges::any_of(
       session.lights, [](const visibility::Light& light) { return visibility::kBodies.contains(light.kind); });
   for (const MethodEntry& chosen : with_method_options(options)) {
@@ -167,7 +169,7 @@ void require_explainable(std::span<const MethodEntry> methods) {
 RunPlan plan_of(const Entry& entry, bool is_reference, const ComparisonOptions& options) {
   const visibility::MethodDescription& method = entry.description;
   const bool is_judge = is_reference || method.family == visibility::Family::reference;
-  // Areas of a judge are not raced, and they may take minutes.
+  // Areas of a judge are not timed against others, and may take minutes.
   if (is_judge && method.output != visibility::Output::mask) return {.lights = {}, .runs = 1};
   if (options.runs != 0) return {.lights = {}, .runs = options.runs, .discard_first = true};
   return {.lights = {}, .runs = 5, .run_seconds = 2, .discard_first = true};

@@ -1,3 +1,5 @@
+// Names and removes the files of a comparison.
+
 #include "app/compare/comparison_files.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,5 @@
+// Runs the repairs of a method's error and concludes its budget (docs/error-budget.md).
+
 #include "app/compare/error_budget.hpp"
 
 #include "app/methods.hpp"
@@ -29,7 +31,7 @@ using visibility::Light;
 using visibility::RepairEnd;
 using visibility::RepairRun;
 
-/// Why a light cannot be looked at part by part; empty if it can.
+/// Returns the reason why a light cannot be divided into parts; empty if it can.
 std::string why_whole(const Light& light) {
   if (!visibility::is_planar(light.kind))
     return fmt::format("the light is a {}: only what has a plane is cut in parts", visibility::name_of(light.kind));
@@ -46,7 +48,7 @@ class BudgetRuns {
         std::make_shared<const std::vector<float>>(question.visibility.begin(), question.visibility.end());
   }
 
-  /// V of each pixel; nothing, and why in `run`, if it cannot be done.
+  /// Returns V of each pixel; nullptr, with the reason in `run`, if the run fails.
   std::shared_ptr<const std::vector<float>> visibility_of(BudgetRun& run, const std::string& stage) {
     auto& known = runs_[key_of(run.run)];
     try {
@@ -99,7 +101,7 @@ class BudgetRuns {
   std::map<Key, std::shared_ptr<const std::vector<float>>> runs_;
 };
 
-/// By how much a repair changes V, over judged pixels.
+/// Returns a picture of the change of V by a repair, over judged pixels.
 Image8 picture_of(const BudgetQuestion& question, const std::vector<float>& repaired, double limit) {
   constexpr float kNobody = std::numeric_limits<float>::quiet_NaN();
   std::vector<float> shown(repaired.size(), kNobody);
@@ -147,7 +149,7 @@ BudgetAnswer measure_error_budget(const BudgetQuestion& question, double limit, 
     if (last) show(name_of(repair.cause), last_made, *last);
   }
 
-  // The most thorough that can be done.
+  // The most thorough repair that can be run.
   const auto first_of = [&](const std::vector<RepairRun>& wanted, const char* repaired) {
     BudgetRun made;
     for (RepairRun run : wanted) {

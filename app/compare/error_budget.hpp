@@ -14,24 +14,23 @@
 
 namespace penumbra::app {
 
-/// What is explained: a method's V under one of the session's lights, over that light's judged pixels.
+/// V of a method to be explained, under one of the session's lights, over that light's judged pixels.
 struct BudgetQuestion {
   const Session& session;
-  const visibility::Light& light;            ///< of the session's lights
-  const LightTruth& truth;                   ///< of that light; it has judged pixels
+  const visibility::Light& light;            ///< one of the session's lights
+  const LightTruth& truth;                   ///< of this light; must have judged pixels
   const visibility::SampleRequest& samples;  ///< pattern and seed for runs with a number of light samples of their own
-  const Entry& entry;                        ///< its description has repairs
-  std::span<const float> visibility;         ///< as asked, of each pixel
+  const Entry& entry;                        ///< its description must have repairs
+  std::span<const float> visibility;         ///< with the requested options, of each pixel
 };
 
 struct BudgetAnswer {
   compare::ErrorBudget budget;
-  std::vector<compare::BudgetPicture>
-      pictures;  ///< where each repair changes V, by how much; not those that do nothing
+  std::vector<compare::BudgetPicture> pictures;  ///< change of V by each repair; without repairs that change nothing
 };
 
-/// Runs what the method's description says, one run after the other. A run that the device or the scene refuses is
-/// noted and left out. `limit`: of the pictures' scale.
+/// Runs the repairs of the method's description one after another. A run that the device or the scene rejects is noted
+/// and left out. `limit`: of the pictures' scale.
 BudgetAnswer measure_error_budget(const BudgetQuestion& question, double limit, const render::Machine& machine,
                                   Progress& progress);
 

@@ -1,3 +1,5 @@
+// Classifies judged pixels by visibility and hiding object.
+
 #include "app/compare/error_classes.hpp"
 
 #include "reference/hiding_objects.hpp"
@@ -18,7 +20,7 @@ void sort_by_visibility(LightTruth& truth) {
   }
 }
 
-/// Finds whose triangles hide one piece of the light, or a light in one piece.
+/// Finds the objects whose triangles hide one piece of the light, or a light in one piece.
 void sort_by_object(const Session& session, std::size_t light, std::span<const std::uint32_t> shadowed,
                     std::vector<reference::HiddenBy>& hidden) {
   const auto found =
@@ -31,7 +33,7 @@ void sort_by_object(const Session& session, std::size_t light, std::span<const s
   }
 }
 
-/// `hidden`: of the shadowed pixels, with widths in place of what makes them.
+/// Returns the sizes. `hidden`: of the shadowed pixels.
 PenumbraSizes sizes_of(const Session& session, std::span<const std::uint32_t> shadowed,
                        std::span<const reference::HiddenBy> hidden) {
   const visibility::PinholeCamera& camera = session.samples.camera;

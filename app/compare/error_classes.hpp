@@ -8,11 +8,11 @@
 
 namespace penumbra::app {
 
-/// Sorts each light's judged pixels by what happens there, once V of the reference is known (LightTruth::classes): by
-/// that V (lit, penumbra, umbra), and by whose triangles hide some of the light (cast: another object's, self: those of
-/// the object that the pixel shows; a pixel can be in both); and says how wide penumbrae are there, and how far what
-/// hides the light is (LightTruth::sizes). Throws InputError for a light that rays do not reach, and
-/// ResourceError; then the classes by V are there all the same.
+/// Classifies each light's judged pixels, once V of the reference is known (LightTruth::classes): by V (lit, penumbra,
+/// umbra), and by the object whose triangles hide some of the light (cast: another object's, self: those of the object
+/// visible at the pixel; a pixel can be in both); and computes the width of penumbrae and the distance of the hiding
+/// object (LightTruth::sizes). Throws InputError for a light not supported by rays, and ResourceError; the classes by V
+/// are set in both cases.
 void sort_into_classes(const Session& session, std::vector<LightTruth>& truths, Progress& progress);
 
 }  // namespace penumbra::app

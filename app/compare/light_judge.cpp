@@ -1,3 +1,5 @@
+// Judges methods light by light: errors, pairs, classes.
+
 #include "app/compare/light_judge.hpp"
 
 #include "app/sample_pixels.hpp"

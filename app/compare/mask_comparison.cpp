@@ -1,3 +1,5 @@
+// Counts differing pairs and samples them evenly for exact decisions.
+
 #include "app/compare/mask_comparison.hpp"
 
 #include "visibility/pair_truth.hpp"
@@ -25,7 +27,7 @@ void MaskComparison::add(const TileResult& result) {
     if (seen_++ % stride_ != 0) return;
     kept_.push_back({static_cast<std::uint32_t>(first) + pixel, sample, visible});
     if (kept_.size() <= question_.most_decided) return;
-    // Too many: keep every other one, and from now on half as many.
+    // Too many: keeps every other one, and from now on half as many.
     stride_ *= 2;
     for (std::size_t i = 0; 2 * i < kept_.size(); ++i) kept_[i] = kept_[2 * i];
     kept_.resize((kept_.size() + 1) / 2);

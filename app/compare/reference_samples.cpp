@@ -10,7 +10,7 @@
 namespace penumbra::app {
 
 visibility::SampleRequest reference_samples(const RunOptions& run, const std::string& wanted) {
-  const visibility::SampleRequest own = parse_light_samples(run);  // refuses by its options' own names
+  const visibility::SampleRequest own = parse_light_samples(run);  // throws with its options' own names
   if (wanted == "same") return own;
   RunOptions reference = run;
   reference.light_samples = wanted;

@@ -9,11 +9,11 @@
 
 namespace penumbra::app {
 
-/// Which light samples the reference looks at: the methods' own (`wanted` is "same"), or a number of its own, by the
-/// same pattern. UsageError for what is neither.
+/// Returns the light samples of the reference: the methods' own (`wanted` is "same"), or a number of its own, by the
+/// same pattern. Throws UsageError for any other text.
 visibility::SampleRequest reference_samples(const RunOptions& run, const std::string& wanted);
 
-/// The session's lights again, piece by piece, with other light samples.
+/// Returns the session's lights, piece by piece, with other light samples.
 std::vector<visibility::Light> with_samples(const Session& session, const visibility::SampleRequest& request);
 
 }  // namespace penumbra::app

@@ -1,3 +1,5 @@
+// Prepares pictures and packed numbers for the report.
+
 #include "app/compare/report_views.hpp"
 
 #include "app/whole_lights.hpp"
@@ -38,7 +40,7 @@ std::vector<compare::ReportLight> report_lights(const Session& session, std::spa
     shown.name = light.name;
     const std::vector<visibility::PixelClass> classes = whole_classes(whole, session.classes);
     shown.packed_classes = compare::pack_bytes(std::as_bytes(std::span(classes)));
-    if (whole.count > 1 || light.dome) continue;  // many samples of many shapes: no drawing has them
+    if (whole.count > 1 || light.dome) continue;  // many samples of many shapes: not drawn
     shown.round = is_round(light.kind);
     if (!is_circle(light.kind) && !is_polygon(light.kind)) {  // sides or axes of two lengths
       const visibility::LightFrame frame = visibility::light_frame(light);

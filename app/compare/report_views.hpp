@@ -15,17 +15,17 @@
 
 namespace penumbra::app {
 
-/// A run's masks on their way into the report, deflated as they come.
+/// Masks of a run for the report, deflated tile by tile.
 class PackedMasks {
  public:
   explicit PackedMasks(std::size_t lights) : lights_(lights) {}
   void add(const TileResult& tile);
-  /// base64 of each light's masks; empty for a light without, or whose masks were too many.
+  /// Returns base64 of each light's masks; empty for a light without masks, or with too many.
   std::vector<std::string> finish();
 
-  /// Of one light, in a browser's memory. A picture of 512 × 512 pixels with 1024 light samples has 32 MiB.
+  /// Limit for one light, in a browser's memory. A picture of 512 × 512 pixels with 1024 light samples has 32 MiB.
   static constexpr std::size_t kMostBytes = std::size_t{64} << 20;
-  /// Of one light, in the page.
+  /// Limit for one light, in the page.
   static constexpr std::size_t kMostPackedBytes = std::size_t{3} << 20;
 
  private:
@@ -36,7 +36,7 @@ class PackedMasks {
   std::vector<One> lights_;
 };
 
-/// What the report's read-out needs to know of each whole light. `reference`: the lights as the reference sampled them.
+/// Returns each whole light's data for the report's read-out. `reference`: the lights with the reference's samples.
 std::vector<compare::ReportLight> report_lights(const Session& session, std::span<const visibility::Light> reference,
                                                 bool same_samples);
 

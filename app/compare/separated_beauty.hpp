@@ -10,8 +10,8 @@
 
 namespace penumbra::app {
 
-/// The linear beauty that V of the reference alone would make, V · ∫G, light by light (compare::Separation). Empty if a
-/// light is cut in pieces, whose own V are not known.
+/// Returns the linear beauty computed from V of the reference alone, V · ∫G, light by light (compare::Separation).
+/// Empty if a light is cut in pieces, whose own V are unknown.
 std::vector<glm::vec3> separated_beauty(const Session& session, std::span<const LightTruth> truths);
 
 }  // namespace penumbra::app

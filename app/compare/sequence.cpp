@@ -1,3 +1,5 @@
+// Compares the frames of an animation and sums their errors.
+
 #include "app/compare/sequence.hpp"
 
 #include "app/compare/comparison_files.hpp"
@@ -23,10 +25,10 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Errors of V over the pixels of several frames, of which only the largest are kept: for p999.
+/// Errors of V over the pixels of several frames; keeps only the largest, for p999.
 class ErrorSum {
  public:
-  /// `most`: pixels of all frames together, at the most.
+  /// `most`: largest number of pixels of all frames together.
   explicit ErrorSum(std::size_t most) : kept_(most / 1000 + 2) {}
 
   void add(std::span<const float> errors) {
@@ -43,7 +45,7 @@ class ErrorSum {
     }
   }
 
-  /// Nullopt over no pixels.
+  /// Returns the error; nullopt if there are no pixels.
   [[nodiscard]] std::optional<compare::VisibilityError> error() {
     if (count_ == 0) return std::nullopt;
     std::ranges::sort(largest_, std::greater());
@@ -69,7 +71,7 @@ class ErrorSum {
   std::vector<float> largest_;
 };
 
-/// Sum of squares of changes of the error from frame to frame, how many there are, and those that pop.
+/// Sum of squares of changes of the error from frame to frame, their number, and the number of pops.
 struct Changes {
   static constexpr double kPop = 0.05;
   double sum = 0, largest = 0;
@@ -104,12 +106,12 @@ struct EntrySum {
   ErrorSum errors;
   Changes flicker;
   std::vector<double> light, evaluate;
-  std::vector<float> before;                      ///< errors of the frame before
-  std::optional<compare::MethodFailure> failure;  ///< of the first frame in which it failed
-  std::size_t frames = 0;                         ///< in which it was asked
+  std::vector<float> before;                      ///< errors of the previous frame
+  std::optional<compare::MethodFailure> failure;  ///< of the first frame in which the entry failed
+  std::size_t frames = 0;                         ///< number of frames with the entry
 };
 
-/// Replaces the last frame's numbers by those of all frames, and takes out what is not added up over the frames.
+/// Replaces the last frame's numbers by those of all frames, and removes numbers that are not summed over the frames.
 void take_sum(compare::MethodResult& result, EntrySum& sum, std::size_t frames) {
   result.horizon_error.reset();
   result.beauty_error.reset();
@@ -167,7 +169,7 @@ Json frame_json(std::int64_t number, const compare::Metrics& metrics, std::span<
 compare::Metrics compare_frames(const RunOptions& run, const ComparisonOptions& options,
                                 std::span<const std::int64_t> frames, double fps,
                                 const std::vector<std::string>& arguments, Progress& progress) {
-  // Before anything that takes long; the last frame's comparison claims them again.
+  // Before any long work; the last frame's comparison claims them again.
   ComparisonFiles files(run.out, {.png = options.png, .bits = options.bits});
   files.claim(run.scene, options.methods, options.stats);
   compare::Metrics all;
@@ -177,7 +179,7 @@ compare::Metrics compare_frames(const RunOptions& run, const ComparisonOptions& 
   std::uint64_t judged = 0, horizon = 0;
   for (const std::int64_t number : frames) {
     ComparisonOptions of_frame = options;
-    of_frame.time = static_cast<double>(number) * (1 / fps);  // as `render` has it
+    of_frame.time = static_cast<double>(number) * (1 / fps);  // as in `render`
     of_frame.writes = number == frames.back();
     if (!of_frame.writes) of_frame.stats.clear();
     EntryErrors errors;

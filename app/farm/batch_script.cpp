@@ -1,3 +1,5 @@
+// Writes the batch script of a Slurm array and its sbatch commands.
+
 #include "app/farm/batch_script.hpp"
 
 #include <fmt/format.h>
@@ -16,14 +18,15 @@ std::string replaced(std::string_view text, char wanted, std::string_view by) {
   return result;
 }
 
-/// Each a word for the shell.
+/// Returns the words, each quoted for the shell.
 std::string shell_words(const std::vector<std::string>& words) {
   std::vector<std::string> quoted;
   for (const std::string& word : words) quoted.push_back(shell_word(word));
   return fmt::format("{}", fmt::join(quoted, " "));
 }
 
-/// Does the user say how much of a node a task gets? Otherwise it gets all of one: a frame uses all cores there are.
+/// Returns whether the user specified a task's part of a node. Otherwise a task gets a whole node, because a frame uses
+/// all cores.
 bool shares_nodes(const BatchJob& job) {
   constexpr std::array kShares = {"cpus-per-task", "ntasks", "ntasks-per-node", "oversubscribe", "exclusive"};
   return std::ranges::any_of(job.sbatch, [&](const std::string& option) {
@@ -69,7 +72,7 @@ std::string text_of(const BatchJob& job) {
   text += fmt::format("#SBATCH --job-name={}\n", sbatch_word(job.name));
   text += fmt::format("#SBATCH --array=0-{}\n", job.tasks.size() - 1);
   text += fmt::format("#SBATCH --output={}\n", sbatch_word(sbatch_name(job.folder.string()) + "/%A_%a.log"));
-  // A task that lost its node goes on elsewhere, and its log too.
+  // A task that lost its node continues elsewhere, with the same log.
   text += "#SBATCH --open-mode=append\n#SBATCH --requeue\n#SBATCH --nodes=1\n";
   if (!shares_nodes(job)) text += "#SBATCH --exclusive\n";
   for (const std::string& option : job.sbatch) {

@@ -7,35 +7,35 @@
 
 namespace penumbra::app {
 
-/// One word of a shell, whatever is in it; there must be no newline.
+/// Returns one word of a shell, for any text without a newline.
 std::string shell_word(std::string_view text);
-/// One value of an #SBATCH line, likewise.
+/// Returns one value of an #SBATCH line, for any text without a newline.
 std::string sbatch_word(std::string_view text);
-/// A name whose every character stands for itself where Slurm looks for %A and %a.
+/// Returns a name in which Slurm replaces no %A and %a.
 std::string sbatch_name(std::string_view name);
 
-/// What a Slurm array is to do.
+/// Job of a Slurm array.
 struct BatchJob {
-  std::string program;               ///< penumbra
-  std::vector<std::string> words;    ///< after `submit`: what is the same for tasks and summary
-  std::string frames;                ///< the sequence
-  std::string exposure;              ///< of all
-  std::string first_frame;           ///< decides the exposure and is not there yet; empty: no matter
-  std::vector<std::string> tasks;    ///< each one's frames
-  std::vector<std::string> sbatch;   ///< more options: KEY or KEY=VALUE
-  std::vector<std::string> summary;  ///< what the summary is told besides: how it submits again
+  std::string program;               ///< path of penumbra
+  std::vector<std::string> words;    ///< after `submit`: words common to tasks and summary
+  std::string frames;                ///< of the sequence
+  std::string exposure;              ///< of all frames
+  std::string first_frame;           ///< frame that determines the exposure and does not exist yet; empty: none
+  std::vector<std::string> tasks;    ///< frames of each task
+  std::vector<std::string> sbatch;   ///< further options: KEY or KEY=VALUE
+  std::vector<std::string> summary;  ///< further words of the summary: how to submit again
   std::filesystem::path folder;      ///< of script and logs
-  std::string name;                  ///< the job's
+  std::string name;                  ///< of the job
 };
 
-/// The batch script: a Slurm array, whose summary is `bash SCRIPT summary`.
+/// Returns the batch script: a Slurm array, whose summary is `bash SCRIPT summary`.
 std::string text_of(const BatchJob& job);
 std::filesystem::path script_of(const BatchJob& job);
-/// The two commands that submit it; `array`: the number that the first one printed.
+/// Return the two commands that submit the job; `array`: the number printed by the first one.
 std::vector<std::string> sbatch_array(const BatchJob& job);
 std::vector<std::string> sbatch_summary(const BatchJob& job, std::string_view array);
 
-/// Names of sbatch's options that are this program's own to set.
+/// Returns whether an option of sbatch is set by this program.
 bool is_own_option(std::string_view name);
 
 }  // namespace penumbra::app

@@ -1,3 +1,5 @@
+// Command `submit`: renders the missing frames of a sequence here or by Slurm.
+
 #include "app/commands.hpp"
 #include "app/farm/batch_script.hpp"
 #include "app/farm/slurm.hpp"
@@ -70,7 +72,7 @@ class SubmitCommand : public Command {
     frames_ = numbers_of(range_);
     for (const std::string& option : sbatch_) refuse_option(option);
     read_cameras();
-    outputs_of(options_, request_.frames, cameras_);  // refuses files that are one
+    outputs_of(options_, request_.frames, cameras_);  // throws for files with the same name
     check_png_name(options_);
     words_ = words_for_all(global);
     folder_ = folder_of(absolute(options_.run.out));
@@ -78,7 +80,7 @@ class SubmitCommand : public Command {
       throw ResourceError("--logs {}: {}", logs_.string(), error.message());
     if (jobs_ > 0) return render_here();
     if (folder_.string().find('\\') != std::string::npos) {
-      // Slurm takes it as a sign that no %A of the name is to be replaced.
+      // For Slurm, a backslash means that no %A of the name is to be replaced.
       throw UsageError("{}: Slurm cannot write logs into a folder with a backslash in its name; rename it",
                        folder_.string());
     }
@@ -86,7 +88,7 @@ class SubmitCommand : public Command {
   }
 
  private:
-  // The command line.
+  // ---- the command line
 
   static std::filesystem::path absolute(const std::filesystem::path& path) {
     return std::filesystem::absolute(path).lexically_normal();
@@ -102,7 +104,7 @@ class SubmitCommand : public Command {
     if (is_own_option(name)) throw UsageError("--sbatch {}: `submit` sets this one itself", option);
   }
 
-  /// All of render's options that were given, but those that tasks get each its own of; paths are absolute.
+  /// Returns all given options of render, except those set for each task; paths are absolute.
   [[nodiscard]] std::vector<std::string> words_for_all(const GlobalOptions& global) const {
     const std::vector<std::string> own = {"--frames", "--exposure", "--skip-existing", "--dry-run", "--jobs", "--chunk",
                                           "--rounds", "--round",    "--sbatch",        "--logs",    "--help"};
@@ -129,7 +131,7 @@ class SubmitCommand : public Command {
     return words;
   }
 
-  /// Beside the pictures, named after them: OUT.####.exr → OUT.farm.
+  /// Returns the folder beside the pictures, named after them: OUT.####.exr → OUT.farm.
   static std::filesystem::path folder_of(const std::filesystem::path& out) {
     const std::string name = sequence_name(out);
     return out.parent_path() / ((name.empty() ? "frames" : name) + ".farm");
@@ -144,7 +146,7 @@ class SubmitCommand : public Command {
     options_.camera_words = camera_words(cameras_);
   }
 
-  // What is there.
+  // ---- existing files
 
   [[nodiscard]] bool has(std::int64_t frame) const { return is_there(options_, static_cast<double>(frame), cameras_); }
   [[nodiscard]] std::vector<std::int64_t> missing() const {
@@ -156,7 +158,7 @@ class SubmitCommand : public Command {
     return files_of(options_, static_cast<double>(frame), cameras_.front()).picture;
   }
 
-  // Rendering here.
+  // ---- rendering on this machine
 
   [[nodiscard]] Workers workers(const std::string& exposure, std::size_t at_once) const {
     std::vector<std::string> command = {own_program(), "render"};
@@ -165,8 +167,9 @@ class SubmitCommand : public Command {
     return {std::move(command), range_.step, at_once, [this](std::int64_t frame) { return has(frame); }, logs_};
   }
 
-  /// How the frames are exposed, as --exposure takes it. The first frame decides where none was asked for: it is
-  /// rendered if it is not there. If it cannot be, the next one decides, and so on; those that failed go into `failed`.
+  /// Returns the exposure of the frames, in the form of --exposure. If none is requested, the first frame determines
+  /// it: that frame is rendered if missing. If rendering fails, the next frame determines it, and so on; failed frames
+  /// are added to `failed`.
   std::string decide_exposure(std::vector<FailedFrame>& failed) {
     if (request_.exposure.kind == Exposure::Kind::automatic) return "auto";
     if (request_.exposure.kind == Exposure::Kind::fixed) return fmt::format("{}", request_.exposure.stops);
@@ -184,7 +187,7 @@ class SubmitCommand : public Command {
       if (const auto stops = written_exposure(picture(frame))) return fmt::format("{}", *stops);
       spdlog::warn("{} does not say how it was exposed: the next frame decides", picture(frame).string());
     }
-    return "auto";  // nothing is left to be exposed
+    return "auto";  // there is no frame left to be exposed
   }
 
   static std::string give_up(const std::vector<FailedFrame>& failed) {
@@ -218,9 +221,9 @@ class SubmitCommand : public Command {
     return failed.front().code;
   }
 
-  // The farm.
+  // ---- the farm
 
-  /// Renders a frame here as the farm would, and says what it cost. Throws what the frame fails with.
+  /// Renders a frame here as the farm would, and returns its cost. Throws the error of the frame.
   FrameCost measure(std::int64_t frame, const std::string& exposure) {
     PictureOptions named = options_;
     Workers here = workers(exposure, 1);
@@ -354,7 +357,7 @@ class SubmitCommand : public Command {
   std::vector<std::string> sbatch_;
   std::filesystem::path logs_;
 
-  // What they come to:
+  // Parsed options:
   PictureRequest request_;
   FrameRange range_;
   std::vector<std::int64_t> frames_;

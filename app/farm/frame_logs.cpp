@@ -1,3 +1,5 @@
+// Splits a worker's output into logs of frames.
+
 #include "app/farm/frame_logs.hpp"
 
 #include <fmt/chrono.h>
@@ -20,7 +22,7 @@ std::string node_name() {
   return name.data();
 }
 
-/// "penumbra: info: NAME.exr: …", the last that is said of a picture, once its files are there.
+/// "penumbra: info: NAME.exr: …", the last line about a picture, written after its files.
 bool ends_a_picture(std::string_view line) {
   return line.starts_with("penumbra: info: ") && line.find(".exr: ") != std::string_view::npos;
 }
@@ -49,7 +51,8 @@ void FrameLogs::begin() {
 void FrameLogs::add(const std::string& line) {
   if (workers_.logs.empty()) return;
   const auto go_on = [&] {
-    if (at_ >= frames_.size() || !workers_.is_there(frames_[at_])) return false;  // of several cameras some are left
+    // of several cameras, some pictures are missing
+    if (at_ >= frames_.size() || !workers_.is_there(frames_[at_])) return false;
     ++at_;
     begin();
     return true;

@@ -10,13 +10,13 @@
 
 namespace penumbra::app {
 
-/// What a worker says, parted into a log for each frame that it renders: Workers::logs/frame-0012.log. A frame that is
-/// tried again goes on in its log. Logs that cannot be written are left out: no frame fails for them.
+/// Output of a worker, split into a log for each frame: Workers::logs/frame-0012.log. A frame that is tried again
+/// continues its log. A log that cannot be written is left out, without failure of the frame.
 class FrameLogs {
  public:
-  /// `frames`: those that the worker was given, in the order in which it renders them.
+  /// `frames`: the worker's frames, in the order of rendering.
   FrameLogs(const Workers& workers, std::vector<std::int64_t> frames);
-  /// One line of the worker's, in their order.
+  /// Adds one line of the worker; lines are in order.
   void add(const std::string& line);
 
  private:
@@ -25,12 +25,12 @@ class FrameLogs {
 
   const Workers& workers_;
   std::vector<std::int64_t> frames_;
-  bool says_when_done_;  ///< is there a line at a picture's end?
-  std::size_t at_ = 0;   ///< which of the frames it works on
+  bool says_when_done_;  ///< whether a picture's end has a line
+  std::size_t at_ = 0;   ///< index of the current frame
   std::ofstream log_;
 };
 
-/// Where a frame's log is.
+/// Returns the path of a frame's log.
 std::filesystem::path frame_log(const std::filesystem::path& folder, std::int64_t frame);
 
 }  // namespace penumbra::app

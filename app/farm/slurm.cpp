@@ -1,3 +1,5 @@
+// Runs Slurm's commands and parses their output.
+
 #include "app/farm/slurm.hpp"
 
 #include "app/parse.hpp"
@@ -45,7 +47,7 @@ std::size_t most_tasks(std::string_view config) {
 }
 
 std::string job_number(std::string_view printed) {
-  // sbatch may say something of the site's before.
+  // sbatch may print messages of the site first.
   const std::string_view last = split(trimmed(printed), '\n').back();
   const std::string_view number = last.substr(0, last.find(';'));
   if (!parse_integer<std::uint64_t>(number))
@@ -55,7 +57,7 @@ std::string job_number(std::string_view printed) {
 
 bool is_queued(const std::string& job) {
   const ProgramEnding ending = run_program({"squeue", "--noheader", "--jobs=" + job});
-  return ending.code == 0 && !trimmed(ending.output).empty();  // one that ended long ago is unknown, and an error
+  return ending.code == 0 && !trimmed(ending.output).empty();  // a job that ended long ago is unknown, and an error
 }
 
 bool was_cancelled(const std::string& job) {

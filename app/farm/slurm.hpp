@@ -7,23 +7,23 @@
 
 namespace penumbra::app {
 
-/// Tasks that one array may have where nobody has said otherwise (slurm.conf(5), MaxArraySize less one).
+/// Slurm's default limit of the tasks of one array (slurm.conf(5), MaxArraySize less one).
 inline constexpr std::size_t kDefaultMostTasks = 1001;
 
-/// Runs a command of Slurm and returns what it printed. Throws ResourceError if it cannot, in its own words.
+/// Runs a command of Slurm and returns its output. Throws ResourceError with Slurm's message if it fails.
 std::string run_slurm(const std::vector<std::string>& command);
 
-/// How many tasks an array may have, of `scontrol show config`: their numbers stay below MaxArraySize. Throws
-/// ResourceError where there can be no arrays.
+/// Returns the largest number of tasks of an array from the output of `scontrol show config`: indices stay below
+/// MaxArraySize. Throws ResourceError if arrays are disabled.
 std::size_t most_tasks(std::string_view config);
 
-/// The job's number, of what `sbatch --parsable` printed ("12", or "12;cluster"). Throws ResourceError for anything
-/// else.
+/// Returns the job's number from the output of `sbatch --parsable` ("12", or "12;cluster"). Throws ResourceError for
+/// any other text.
 std::string job_number(std::string_view printed);
 
-/// Is any of the job still waiting or running?
+/// Returns whether any part of the job is still waiting or running.
 bool is_queued(const std::string& job);
-/// Did somebody cancel any of it? Nothing is known of jobs that ended long ago.
+/// Returns whether any part of the job was cancelled. Jobs that ended long ago are unknown.
 bool was_cancelled(const std::string& job);
 
 }  // namespace penumbra::app

@@ -1,3 +1,5 @@
+// Divides missing frames into tasks.
+
 #include "app/farm/tasks.hpp"
 
 #include "base/assert.hpp"
@@ -11,7 +13,7 @@ namespace penumbra::app {
 
 std::size_t frames_per_task(const FrameCost& cost) {
   constexpr double kLeastSeconds = 60, kBeginningsShare = 0.1;
-  constexpr double kMost = 100'000;  // as many as a sequence may have; a frame that took no time is not divided by
+  constexpr double kMost = 100'000;  // largest length of a sequence; avoids division by a frame's time of 0
   const double seconds = std::max(kLeastSeconds - cost.begin, cost.begin / kBeginningsShare);
   if (!(seconds < kMost * cost.frame)) return static_cast<std::size_t>(kMost);
   return static_cast<std::size_t>(std::max(1.0, std::ceil(seconds / cost.frame)));

@@ -1,3 +1,5 @@
+// Runs worker processes and repeats failed frames.
+
 #include "app/farm/workers.hpp"
 
 #include "app/farm/frame_logs.hpp"
@@ -20,13 +22,13 @@
 namespace penumbra::app {
 namespace {
 
-/// Missing frames that one worker is to render; `again`: one frame, which has ended a worker already.
+/// Missing frames of one worker; `again`: one frame, which has already ended a worker.
 struct Run {
   std::vector<std::int64_t> frames;
   bool again = false;
 };
 
-/// A run, and the process that does it.
+/// Run, and its process.
 class Worker {
  public:
   Worker(const Workers& workers, Run run)
@@ -41,7 +43,7 @@ class Worker {
   }
   [[nodiscard]] const Run& run() const { return run_; }
   int exit_code() { return program_.exit_code(); }
-  /// Its error message, or how it ended.
+  /// Returns the worker's error message, or the way it ended.
   std::string reason() {
     if (!reason_.empty()) return reason_;
     const int code = exit_code();
@@ -56,7 +58,8 @@ class Worker {
     words.push_back("--frames=" + text_of({run.frames.front(), run.frames.back(), workers.step}));
     return words;
   }
-  /// Whole lines, so that those of several workers do not mix. What begins an error message is kept, with all after it.
+  /// Passes on whole lines, so that lines of several workers do not mix. Keeps the beginning of an error message and
+  /// everything after it.
   void pass_on(bool all) {
     constexpr std::string_view kError = "penumbra: error: ";
     for (;;) {
@@ -75,14 +78,14 @@ class Worker {
   Run run_;
   FrameLogs logs_;
   ChildProgram program_;
-  std::string errors_, reason_;  // not passed on yet; kept
+  std::string errors_, reason_;  // not yet passed on; kept
 };
 
 /// All runs of one call of render_frames.
 class Supervisor {
  public:
   Supervisor(const Workers& workers, const std::vector<std::int64_t>& frames) : workers_(workers) {
-    // One worker takes all; several get their share in four parts, so that none is left with much at the end.
+    // One worker takes all frames; several get their part in four runs each, so that none has much left at the end.
     const std::size_t runs = workers.at_once == 1 ? 1 : 4 * workers.at_once;
     const std::size_t size = std::max<std::size_t>(1, (frames.size() + runs - 1) / runs);
     for (const FrameRange& range : cut_into_tasks(frames, workers.step, size, frames.size() + 1)) {
@@ -94,7 +97,7 @@ class Supervisor {
   Supervisor(const Supervisor&) = delete;
   Supervisor& operator=(const Supervisor&) = delete;
   ~Supervisor() {
-    for (const auto& worker : running_) worker->ask_to_end();  // all, before the first is waited for
+    for (const auto& worker : running_) worker->ask_to_end();  // all, before waiting for the first
   }
 
   std::vector<FailedFrame> run() {

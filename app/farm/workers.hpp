@@ -9,26 +9,27 @@
 
 namespace penumbra::app {
 
-/// A frame that could not be rendered, and why.
+/// Frame that could not be rendered, with the reason.
 struct FailedFrame {
   std::int64_t frame = 0;
-  int code = 0;        ///< an exit code of this program
-  std::string reason;  ///< what the worker said of it
+  int code = 0;        ///< exit code of this program
+  std::string reason;  ///< the worker's message
 };
 
-/// How frames are rendered: by processes that run `render`.
+/// Worker processes, each running `render`.
 struct Workers {
-  std::vector<std::string> command;  ///< the program, and all arguments but --frames
+  std::vector<std::string> command;  ///< the program, and all arguments except --frames
   std::int64_t step = 1;             ///< of the sequence
   std::size_t at_once = 1;
-  std::function<bool(std::int64_t)> is_there;  ///< are all of the frame's files there?
-  std::filesystem::path logs = {};             ///< folder of a log a frame (see FrameLogs); empty: none are kept
+  std::function<bool(std::int64_t)> is_there;  ///< whether all of the frame's files exist
+  std::filesystem::path logs = {};             ///< folder with one log for each frame (see FrameLogs); empty: none are
+                                               ///< kept
 };
 
-/// Renders frames (ascending) that are missing, and leaves out what is there, so that nothing is rendered twice. Where
-/// a worker ends early, however it ends, its first missing frame is tried once more, alone, and those after it go to
-/// the next worker. Returns the frames that failed again, ascending. What workers say goes to stderr, line by line.
-/// Throws UsageError for a command line that cannot be meant, and Interrupted; then all workers have ended.
+/// Renders missing frames (ascending), and skips existing ones, so that nothing is rendered twice. Where a worker ends
+/// early, for any reason, its first missing frame is tried once more, alone, and the frames after it go to the next
+/// worker. Returns the frames that failed again, ascending. Output of workers goes to stderr, line by line. Throws
+/// UsageError for an invalid command line, and Interrupted; then all workers have ended.
 std::vector<FailedFrame> render_frames(const Workers& workers, const std::vector<std::int64_t>& frames);
 
 }  // namespace penumbra::app

@@ -1,3 +1,5 @@
+// Command `inspect`: options, reports, pictures, repair.
+
 #include "app/commands.hpp"
 #include "app/inspect/counts.hpp"
 #include "app/inspect/defect_picture.hpp"
@@ -28,7 +30,7 @@
 namespace penumbra::app {
 namespace {
 
-constexpr std::uint32_t kListed = 16;  ///< places of each defect in JSON
+constexpr std::uint32_t kListed = 16;  ///< locations of each defect in JSON
 constexpr std::uint32_t kListedInTable = 3;
 
 class InspectCommand : public Command {
@@ -121,7 +123,7 @@ class InspectCommand : public Command {
   }
 
  private:
-  /// Reads, examines, draws and repairs one file; what is wrong with reading it is in the report.
+  /// Reads, examines, draws and repairs one file; errors of reading are in the report.
   FileReport report_on(std::size_t number, const OutputFiles& outputs, std::optional<RepairReport>& repaired,
                        Progress& progress) const {
     const std::filesystem::path& file = inspected_.files[number];
@@ -158,7 +160,7 @@ class InspectCommand : public Command {
     }
   }
 
-  /// Places of defects are needed by the JSON alone, and may be many.
+  /// Locations of defects are needed only by the JSON, and may be many.
   static void forget_places(FileReport& report) {
     for (const DefectRow& row : kDefects) (report.total.diagnosis.*row.counted).first = {};
     if (report.total.diagnosis.self_intersections) report.total.diagnosis.self_intersections->first = {};
@@ -166,7 +168,7 @@ class InspectCommand : public Command {
     report.source_face = {};
   }
 
-  /// "defects.png" of one file; of several "defects-0001-bunny.png".
+  /// Returns "defects.png" for one file; for several "defects-0001-bunny.png".
   [[nodiscard]] std::filesystem::path picture_of(std::size_t number) const {
     if (!inspected_.several) return png_;
     std::string name = file_name_of(inspected_.files[number].stem().string());
@@ -174,7 +176,7 @@ class InspectCommand : public Command {
     return png_.parent_path() / fmt::format("{}-{:04}-{}.png", png_.stem().string(), number + 1, name);
   }
 
-  /// What is wrong with the command line is said before anything long begins.
+  /// Checks the command line before any long work.
   [[nodiscard]] OutputFiles checked_outputs() const {
     if (!(weld_ >= 0 && std::isfinite(weld_))) {
       throw UsageError("--weld {}: expected a distance, 0 or more, in the file's unit", weld_);
@@ -206,7 +208,7 @@ class InspectCommand : public Command {
     mesh::DiagnosisOptions options;
     options.weld = weld_;
     options.search_intersections = !no_intersections_;
-    // A picture needs every place.
+    // A picture needs every location.
     const bool draws = !defects_.empty() || !png_.empty();
     options.list_limit = draws ? std::numeric_limits<std::size_t>::max() : list_.value_or(kListed);
     return options;
@@ -216,7 +218,7 @@ class InspectCommand : public Command {
     const std::size_t limit = list_.value_or(kListed);
     const nlohmann::ordered_json json =
         inspected_.several ? report_json(reports, limit) : report_json(reports.front(), repaired, limit);
-    // A file's name may hold bytes that are no UTF-8.
+    // A file's name may contain bytes that are not UTF-8.
     const std::string text = json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
     if (json_ == "-") {
       fmt::print("{}", text);

@@ -1,3 +1,5 @@
+// Counts of defects by keys of the JSON, tables and CSV.
+
 #include "app/inspect/counts.hpp"
 
 #include "app/inspect/report.hpp"
@@ -33,7 +35,7 @@ std::vector<std::string_view> keys_of_counts() {
   return keys;
 }
 
-/// Without hyphens, underscores and capitals.
+/// Returns the name without hyphens, underscores and capitals.
 std::string letters_of(std::string_view name) {
   std::string text;
   for (const char c : name) {

@@ -11,16 +11,16 @@
 
 namespace penumbra::app {
 
-/// The defects that `--fail-on` names: counts of the JSON by their keys, and `open`.
+/// Defects named by `--fail-on`: counts of the JSON by their keys, and `open`.
 class FailOn {
  public:
   FailOn() = default;
-  /// "boundaryEdges,nonManifoldEdges,open": keys of the JSON, `open` (not closed), `non-manifold` (edges and vertices).
-  /// Capitals and hyphens make no difference. Throws UsageError for other names, and for `selfIntersections` where they
-  /// are not searched.
+  /// Parses "boundaryEdges,nonManifoldEdges,open": keys of the JSON, `open` (not closed), `non-manifold` (edges and
+  /// vertices). Capitals and hyphens are ignored. Throws UsageError for other names, and for `selfIntersections` if
+  /// they are not searched.
   FailOn(std::string_view names, bool searches_intersections);
 
-  /// The defects of that list that a file has, in words: "not closed, 3 boundaryEdges". Empty: nothing.
+  /// Returns the listed defects found in a file, in words: "not closed, 3 boundaryEdges". Empty: none.
   [[nodiscard]] std::string found_in(const FileReport& file) const;
 
  private:
@@ -28,22 +28,22 @@ class FailOn {
   bool open_ = false;
 };
 
-/// The count of a key of the JSON; empty where it was not searched.
+/// Returns the count of a key of the JSON; nullopt if not searched.
 std::optional<std::uint64_t> count_of(const mesh::Diagnosis& diagnosis, std::string_view key);
 
-/// The worst that a method says of a mesh, and how many methods say it.
+/// Worst verdict of a method on a mesh, and the number of methods with this verdict.
 struct WorstVerdict {
   visibility::Verdict verdict = visibility::Verdict::exact;
   std::size_t methods = 0;
 };
 WorstVerdict worst_verdict(const ObjectReport& object);
 
-/// The table of several files: its first line, and a row of a file. Columns have fixed widths and no blanks in them;
-/// the file's name is the last one.
+/// Return the table of several files: its first line, and the row of a file. Columns have fixed widths and contain no
+/// blanks; the file's name is last.
 std::string summary_header();
 std::string summary_row(const FileReport& file);
 
-/// All files as CSV (RFC 4180): a row a file, with the keys of the JSON as names of columns.
+/// Returns all files as CSV (RFC 4180): one row for each file, with the keys of the JSON as names of columns.
 std::string report_csv(std::span<const FileReport> files);
 
 }  // namespace penumbra::app

@@ -1,4 +1,5 @@
-// Two views of a mesh with its defects: view samples of a camera, shaded by a light at the eye, and lines over them.
+// Draws two views of a mesh with its defects: view samples of a camera, shaded by a light at the eye, with lines over
+// them.
 
 #include "app/inspect/defect_picture.hpp"
 
@@ -18,11 +19,11 @@
 namespace penumbra::app {
 namespace {
 
-constexpr std::uint32_t kFine = 2;  ///< pixels of the views a side of each pixel of the picture
+constexpr std::uint32_t kFine = 2;  ///< pixels of the views along a side of each pixel of the picture
 constexpr float kHalfWidth = 2.0F;  ///< of lines, in pixels of the views
 constexpr glm::vec3 kBackground{255};
 
-/// One view, in sRGB values of 0 to 255 a channel.
+/// View, in sRGB values of 0 to 255 for each channel.
 class View {
  public:
   View(const visibility::SceneFloats& scene, const scenes::Camera& camera, std::uint32_t side)
@@ -40,7 +41,7 @@ class View {
     }
   }
 
-  /// A line between two points relative to the scene's origin; a dot where they are one.
+  /// Draws a line between two points relative to the scene's origin; a dot if they are equal.
   void draw(const glm::dvec3& a, const glm::dvec3& b, mesh::Color color, float half_width) {
     const glm::dvec3 from = place(a), to = place(b);
     if (!(from.z > 0) || !(to.z > 0)) return;
@@ -51,7 +52,7 @@ class View {
       dot(glm::mix(from, to, static_cast<double>(i) / steps), bytes_of(color), half_width);
   }
 
-  /// Paints what was drawn over the surface.
+  /// Paints the drawn lines over the surface.
   void finish() {
     for (std::size_t i = 0; i < lines_.size(); ++i) {
       if (lines_[i].w > 0) colors_[i] = glm::mix(colors_[i], glm::vec3(lines_[i]), lines_[i].w);
@@ -63,7 +64,7 @@ class View {
  private:
   static glm::vec3 bytes_of(mesh::Color color) { return {color[0], color[1], color[2]}; }
 
-  /// Where a point appears, in pixels, and its depth.
+  /// Returns the position of a point, in pixels, and its depth.
   [[nodiscard]] glm::dvec3 place(const glm::dvec3& p) const {
     const glm::dvec3 seen = p - camera_.eye;
     const double depth = glm::dot(seen, camera_.forward);
@@ -92,7 +93,7 @@ class View {
   visibility::PinholeCamera camera_;
   visibility::ViewSamples samples_;
   std::vector<glm::vec3> colors_;
-  std::vector<glm::vec4> lines_;  // colour, and how much of it covers the surface; empty: no line yet
+  std::vector<glm::vec4> lines_;  // colour, and its coverage of the surface; empty: no line yet
   double size_;
 };
 

@@ -8,10 +8,10 @@
 
 namespace penumbra::app {
 
-/// The mesh with its defects in the colours of --export-defects, twice: seen from its front, right and above, and from
-/// the opposite side. Edges and vertices with a defect are drawn over the surface, paler where it hides them. The
-/// picture is 2 `side` wide and `side` high. `report` lists all places of the soup's defects. Throws InputError for
-/// coordinates that no scene can hold.
+/// Returns a picture of the mesh with its defects in the colours of --export-defects, twice: seen from its front, right
+/// and above, and from the opposite side. Edges and vertices with a defect are drawn over the surface, paler where the
+/// surface hides them. The picture is 2 `side` wide and `side` high. `report` must list all locations of the soup's
+/// defects. Throws InputError for coordinates out of a scene's range.
 Image8 defect_picture(const mesh::TriangleSoup& soup, const ObjectReport& report, std::uint32_t side);
 
 }  // namespace penumbra::app

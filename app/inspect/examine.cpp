@@ -1,3 +1,5 @@
+// Reads meshes and scenes and diagnoses their objects.
+
 #include "app/inspect/examine.hpp"
 
 #include "app/methods.hpp"
@@ -33,7 +35,7 @@ InspectedMesh read_scene(const std::filesystem::path& file, bool allow_outside) 
   return mesh;
 }
 
-/// One object's triangles, with only the positions that they use.
+/// Returns one object's triangles, with only the positions used by them.
 mesh::TriangleSoup part_of(const mesh::TriangleSoup& soup, const std::vector<std::uint32_t>& triangles,
                            std::vector<std::uint32_t>& new_index) {
   constexpr std::uint32_t kUnused = std::numeric_limits<std::uint32_t>::max();
@@ -52,7 +54,7 @@ mesh::TriangleSoup part_of(const mesh::TriangleSoup& soup, const std::vector<std
     }
     part.triangles.push_back(triangle);
   }
-  for (const std::uint32_t corner : touched) new_index[corner] = kUnused;  // ready for the next object
+  for (const std::uint32_t corner : touched) new_index[corner] = kUnused;  // reset for the next object
   return part;
 }
 
@@ -156,7 +158,7 @@ FileReport examine(const std::filesystem::path& file, const InspectedMesh& mesh,
   report.scene = mesh.scene;
   report.source_face = mesh.soup.source_face;
   report.total = examine_part(file.filename().string(), mesh.soup, mesh, options, progress);
-  if (mesh.objects.size() == 1) {  // all together is then this one
+  if (mesh.objects.size() == 1) {  // the total equals this object
     report.objects.push_back(report.total);
     report.objects.front().name = mesh.objects.front();
   } else {

@@ -15,34 +15,34 @@
 
 namespace penumbra::app {
 
-/// A mesh file, or a scene, as `inspect` looks at it.
+/// Mesh file or scene, as input of `inspect`.
 struct InspectedMesh {
   mesh::TriangleSoup soup;                     ///< world space
-  std::vector<std::string> objects;            ///< their names, by TriangleSoup::object
-  std::vector<std::string> notes;              ///< what reading skipped or changed
-  std::vector<std::filesystem::path> sources;  ///< this file and those it names: never to be overwritten
+  std::vector<std::string> objects;            ///< names, by TriangleSoup::object
+  std::vector<std::string> notes;              ///< parts skipped or changed on reading
+  std::vector<std::filesystem::path> sources;  ///< this file and the files named in it: never to be overwritten
   struct Light {
     std::string name;
     visibility::LightKind kind;
   };
-  std::vector<Light> lights;             ///< a scene's
-  std::optional<SceneFacts> scene = {};  ///< nothing: a mesh file
+  std::vector<Light> lights;             ///< of a scene
+  std::optional<SceneFacts> scene = {};  ///< nullopt: a mesh file
 };
 
-/// Reads .json, .gltf and .glb as scenes (glTF: with or without a light), anything else as a mesh. Throws InputError.
+/// Reads .json, .gltf and .glb as scenes (glTF: with or without a light), any other file as a mesh. Throws InputError.
 InspectedMesh read_inspected(const std::filesystem::path& file, bool allow_outside);
 
-/// A soup as a scene of one object, without light and camera.
+/// Returns a soup as a scene of one object, without light and camera.
 scenes::Scene scene_of(const mesh::TriangleSoup& soup, const std::string& name);
 
-/// How many edges are silhouettes, seen from the eight points that lie one diagonal of the bounds from their centre
-/// toward the corners of a cube. The literature's rule of thumb for closed meshes is n^0.8 of n triangles.
+/// Number of silhouette edges seen from the eight points that lie one diagonal of the bounds from their centre toward
+/// the corners of a cube. The literature's rule of thumb for closed meshes is n^0.8 of n triangles.
 struct SilhouetteCounts {
   double mean = 0;
   std::uint64_t most = 0;
 };
 
-/// What a method says of an object.
+/// Verdict of a method on an object.
 struct MethodVerdict {
   std::string method;
   visibility::MeshVerdict verdict;
@@ -51,22 +51,23 @@ struct MethodVerdict {
 struct ObjectReport {
   std::string name;
   mesh::Diagnosis diagnosis;
-  std::optional<SilhouetteCounts> silhouettes;  ///< nothing if such points are beyond double's range
-  std::vector<std::uint32_t> triangles;         ///< numbers in the file of the diagnosis' triangles; empty: the same
+  std::optional<SilhouetteCounts> silhouettes;  ///< nullopt if such points are beyond double's range
+  std::vector<std::uint32_t> triangles;         ///< for each of the diagnosis' triangles, its index in the file; empty:
+                                                ///< the same
   std::vector<MethodVerdict> verdicts;
 };
 
 struct FileReport {
   std::filesystem::path file;
-  std::string error;  ///< why it could not be read; the rest is then empty
+  std::string error;  ///< reason why the file could not be read; the other members are then empty
   std::vector<std::string> notes;
-  std::optional<SceneFacts> scene = {};    ///< nothing: a mesh file
-  std::vector<std::uint32_t> source_face;  ///< for each triangle, the face's number in its file
+  std::optional<SceneFacts> scene = {};    ///< nullopt: a mesh file
+  std::vector<std::uint32_t> source_face;  ///< for each triangle, the face's index in its file
   std::vector<ObjectReport> objects;
   ObjectReport total;  ///< of all triangles together, as one soup
 };
 
-/// Diagnoses each object, and all together. `options.progress` is not used: progress goes to the bar.
+/// Diagnoses each object, and all together. `options.progress` is not used: progress goes to `progress`.
 FileReport examine(const std::filesystem::path& file, const InspectedMesh& mesh, const mesh::DiagnosisOptions& options,
                    Progress& progress);
 

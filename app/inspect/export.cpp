@@ -1,3 +1,5 @@
+// Colours defects and writes them as PLY.
+
 #include "app/inspect/export.hpp"
 
 #include "app/inspect/report.hpp"
@@ -21,11 +23,11 @@ struct Legend {
   mesh::Defect Diagnosis::*counted;
   std::string_view what, color_name;
   Color color;
-  bool faces, edges;   ///< what is coloured
-  bool point = false;  ///< is the first point of a place a vertex to be marked?
+  bool faces, edges;   ///< coloured elements
+  bool point = false;  ///< the first point of a location is a vertex to be marked
 };
 
-/// From the harmless to what other programs stumble over.
+/// In increasing order of severity.
 constexpr std::array<Legend, 9> kLegend = {{
     {&Diagnosis::needles, "needles", "green", {60, 170, 60}, true, false},
     {&Diagnosis::duplicate_faces, "duplicate faces", "blue", {40, 80, 220}, true, false},
@@ -44,7 +46,7 @@ constexpr std::array<Legend, 9> kLegend = {{
     {&Diagnosis::non_manifold_edges, "non-manifold edges", "magenta", {255, 0, 200}, false, true},
 }};
 
-/// An edge of its own two points: no search for the soup's vertices there.
+/// Adds an edge with two points of its own: no search for the soup's vertices there.
 void add_edge(mesh::PlyMesh& ply, const glm::dvec3& a, const glm::dvec3& b, Color color) {
   const auto first = static_cast<std::uint32_t>(ply.positions.size());
   ply.positions.push_back(a);
@@ -52,7 +54,8 @@ void add_edge(mesh::PlyMesh& ply, const glm::dvec3& a, const glm::dvec3& b, Colo
   ply.edges.push_back({first, first + 1, color});
 }
 
-/// A T-junction's first point is the vertex, and its edge the other two; elsewhere all points are the edges' ends.
+/// A T-junction's first point is the vertex, and its edge the other two; for other defects all points are the edges'
+/// ends.
 void add_edges(mesh::PlyMesh& ply, const mesh::DefectPlace& place, const Legend& legend) {
   const std::size_t first = legend.counted == &Diagnosis::t_junctions ? 1 : 0;
   for (std::size_t i = first; i + 1 < place.points.size(); ++i) {

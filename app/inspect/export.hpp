@@ -9,7 +9,7 @@
 
 namespace penumbra::app {
 
-/// All triangles of a soup with the bad ones coloured, bad edges as coloured edges, and bad vertices.
+/// All triangles of a soup with defective ones coloured, defective edges as coloured edges, and defective vertices.
 struct MarkedMesh {
   struct Point {
     glm::dvec3 position;
@@ -19,13 +19,14 @@ struct MarkedMesh {
   std::vector<Point> points;
 };
 
-/// `report` must list every place. What several defects claim has the colour of the one that comes last in the legend.
+/// Returns the marked mesh. `report` must list every location. An element with several defects has the colour of the
+/// last of these in the legend.
 MarkedMesh mark_defects(const mesh::TriangleSoup& soup, const ObjectReport& report);
 
-/// Writes its triangles and edges as PLY.
+/// Writes the marked triangles and edges as PLY.
 void export_defects(const std::filesystem::path& file, const mesh::TriangleSoup& soup, const ObjectReport& report);
 
-/// The colours, one defect a line.
+/// Returns the colours, one line for each defect.
 std::string defect_legend();
 
 }  // namespace penumbra::app

@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Endings by which files of a folder are taken for meshes. Any other file that the importer reads can be named.
+/// Endings of a folder's files that count as meshes. Any other file readable by the importer can be named explicitly.
 constexpr std::array<std::string_view, 23> kMeshEndings = {
     ".3ds", ".3mf", ".ac",  ".amf",  ".ase", ".b3d", ".dae", ".dxf", ".fbx", ".glb", ".gltf", ".lwo",
     ".md2", ".md3", ".nff", ".ms3d", ".obj", ".off", ".ply", ".smd", ".stl", ".x",   ".x3d"};
@@ -26,7 +26,7 @@ std::string lower_ending(const fs::path& file) {
   return ending;
 }
 
-/// A JSON file may be anything: one whose first 4 KiB name the format is a scene.
+/// Returns whether a JSON file is a scene: its first 4 KiB name the format.
 bool names_scene_format(const fs::path& file) {
   std::string start(4096, '\0');
   std::ifstream stream(file, std::ios::binary);

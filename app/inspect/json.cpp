@@ -14,7 +14,8 @@ ordered_json vector_json(const glm::dvec3& v) {
   return {v.x, v.y, v.z};
 }
 
-/// Where a list's triangles are found again: their numbers in this file, and the faces of its own that they came from.
+/// Returns the locations of a defect with the triangles' indices in this file, and the file's faces from which they
+/// came.
 ordered_json places_json(const mesh::Defect& defect, const FileReport& file, const ObjectReport& object,
                          std::size_t list_limit) {
   auto places = ordered_json::array();

@@ -40,7 +40,7 @@ RepairReport repaired_file(const std::filesystem::path& file, const mesh::Triang
   mesh::Repaired repaired = mesh::repair(soup, repair);
   RepairReport report{file, repaired.soup.triangles.size(), std::move(repaired.done), std::move(repaired.left), {}};
   write_mesh(file, repaired.soup);
-  if (repaired.soup.triangles.empty()) return report;  // of which no reader makes a mesh
+  if (repaired.soup.triangles.empty()) return report;  // a file without triangles is not a mesh for any reader
   report.written = examine(file, read_inspected(file, false), diagnosis, progress).total.diagnosis;
   const std::uint64_t edges = report.written.non_manifold_edges.count,
                       vertices = report.written.non_manifold_vertices.count;

@@ -11,10 +11,10 @@ namespace penumbra::app {
 /// Throws UsageError for an ending that repaired_file cannot write.
 void require_mesh_ending(const std::filesystem::path& file);
 
-/// Repairs a soup, writes it as .ply, .off (double precision, vertices shared as the repair says), .obj, .stl or .glb
-/// (single precision), and reads and diagnoses what it wrote, so that the report is true of the file: where sheets only
-/// touch, the repair gives each vertices of its own, and a reader that joins vertices by position, ours among them,
-/// joins them again.
+/// Repairs a soup, writes it as .ply, .off (double precision, vertices shared as in the repaired soup), .obj, .stl or
+/// .glb (single precision), and reads and diagnoses the written file, so that the report describes the file: where
+/// sheets only touch, the repair gives each its own vertices, and a reader that joins vertices by position, including
+/// Penumbra's, joins them again.
 RepairReport repaired_file(const std::filesystem::path& file, const mesh::TriangleSoup& soup,
                            const mesh::RepairOptions& repair, const mesh::DiagnosisOptions& diagnosis,
                            Progress& progress);

@@ -14,13 +14,13 @@
 
 namespace penumbra::app {
 
-/// One defect as `inspect` presents it.
+/// Defect as presented by `inspect`.
 struct DefectRow {
   const char* key;    ///< in JSON
   const char* label;  ///< in the table
   mesh::Defect mesh::Diagnosis::*counted;
 };
-/// All but self-intersections, which may not have been searched.
+/// All defects but self-intersections, which may not have been searched.
 inline constexpr std::array<DefectRow, 9> kDefects = {{
     {"boundaryEdges", "boundary edges", &mesh::Diagnosis::boundary_edges},
     {"nonManifoldEdges", "non-manifold edges", &mesh::Diagnosis::non_manifold_edges},
@@ -33,29 +33,29 @@ inline constexpr std::array<DefectRow, 9> kDefects = {{
     {"tJunctions", "T-junctions", &mesh::Diagnosis::t_junctions},
 }};
 
-/// What `--repair` did to a file.
+/// Result of `--repair` for a file.
 struct RepairReport {
   std::filesystem::path file;
-  std::uint64_t triangles = 0;  ///< that were written
+  std::uint64_t triangles = 0;  ///< number of written triangles
   std::vector<mesh::RepairStep> done;
   std::vector<std::string> left;
-  mesh::Diagnosis written;  ///< of the file that was written, read again
+  mesh::Diagnosis written;  ///< of the written file, read again
 };
 
-/// `inspect`'s JSON of one file: its entry, its total's keys at the top level, too, and "files", a list of the entry
-/// alone. Of each defect the first `list_limit` places are listed.
+/// Returns `inspect`'s JSON of one file: its entry, its total's keys also at the top level, and "files", a list of the
+/// entry alone. For each defect the first `list_limit` locations are listed.
 nlohmann::ordered_json report_json(const FileReport& file, const std::optional<RepairReport>& repaired,
                                    std::size_t list_limit);
-/// The entries of several files, as an array.
+/// Returns the entries of several files, as an array.
 nlohmann::ordered_json report_json(std::span<const FileReport> files, std::size_t list_limit);
 
-/// How much of a report is printed.
+/// Extent of a printed report.
 struct TableOptions {
-  std::size_t list_limit = 3;  ///< places of each defect
-  bool methods = false;        ///< each method's verdict with its reason; else how many say what
+  std::size_t list_limit = 3;  ///< locations of each defect
+  bool methods = false;        ///< each method's verdict with its reason; false: the number of methods for each verdict
 };
 
-/// A FileReport, or what a repair did, as a table for the terminal.
+/// Return a FileReport, or the result of a repair, as a table for the terminal.
 std::string report_table(const FileReport& file, const TableOptions& options);
 std::string report_table(const RepairReport& repaired);
 

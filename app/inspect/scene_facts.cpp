@@ -25,7 +25,7 @@ std::string alpha_text(const Alpha& alpha) {
   return "";
 }
 
-/// Does the object shade any light? Not the one that it is the body of. Of a mesh without lights: it may.
+/// Returns whether the object shades any light other than the one whose body it is. For a mesh without lights: true.
 bool dims_light(const scenes::Scene& scene, const scenes::Object& object) {
   const auto number = static_cast<std::uint32_t>(&object - scene.objects.data());
   const auto shades = [&](const scenes::AreaLight& light) {

@@ -1,3 +1,5 @@
+// Formats reports of `inspect` as tables.
+
 #include "app/inspect/report.hpp"
 
 #include <fmt/format.h>
@@ -18,7 +20,7 @@ std::string grouped(std::uint64_t number) {
   return text;
 }
 
-/// Of coordinates near the end of double's range some figures overflow.
+/// Returns the number as text, or "overflow": for coordinates near the end of double's range some results are infinite.
 std::string figure(double value, int digits) {
   return std::isfinite(value) ? fmt::format("{:.{}g}", value, digits) : "overflow";
 }
@@ -27,7 +29,7 @@ std::string point_text(const glm::dvec3& p) {
   return fmt::format("({:.7g}, {:.7g}, {:.7g})", p.x, p.y, p.z);
 }
 
-/// Breaks a text at blanks, so that it stands in lines under one another from column `indent` on.
+/// Breaks a text at blanks into lines that begin at column `indent`.
 std::string wrapped(std::string_view text, std::size_t indent) {
   std::string result;
   std::size_t column = indent;
@@ -55,7 +57,8 @@ std::string row(std::string_view label, std::string_view value, std::string_view
 
 std::string place_line(const mesh::DefectPlace& place, const ObjectReport& object) {
   std::string line = "      at";
-  const std::size_t points = place.points.size() > 3 ? 1 : place.points.size();  // of two triangles one corner will do
+  // of two triangles one corner is sufficient
+  const std::size_t points = place.points.size() > 3 ? 1 : place.points.size();
   for (std::size_t i = 0; i < points; ++i) line += (i == 0 ? " " : " – ") + point_text(place.points[i]);
   line += place.triangles.size() == 1 ? ": triangle" : ": triangles";
   constexpr std::size_t kMost = 6;
@@ -112,7 +115,7 @@ std::string all_rows(const ObjectReport& object, std::size_t list_limit) {
   return text;
 }
 
-/// "12 boundary edges, 3 needles", or "nothing".
+/// Returns "12 boundary edges, 3 needles", or "nothing".
 std::string what_is_wrong(const mesh::Diagnosis& d) {
   std::string text;
   const auto add = [&](std::uint64_t count, const char* label) {
@@ -136,7 +139,7 @@ std::string object_rows(const FileReport& file) {
   return text + "  all together:\n";
 }
 
-/// "7 exact, 31 approximate".
+/// Returns "7 exact, 31 approximate".
 std::string verdict_counts(const std::vector<MethodVerdict>& verdicts) {
   using visibility::Verdict;
   std::string text;

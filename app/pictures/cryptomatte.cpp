@@ -1,3 +1,5 @@
+// Writes Cryptomatte layers (Friedman, Jones: "Cryptomatte specification" 1.2, 2018; MurmurHash3, Appleby 2011).
+
 #include "app/pictures/cryptomatte.hpp"
 
 #include "app/pictures/surfaces.hpp"

@@ -6,22 +6,22 @@
 
 namespace penumbra::app {
 
-/// Of a picture's header: the stops that its PNG was exposed by.
+/// Attribute of a picture's header: the stops of its PNG's exposure.
 inline constexpr const char* kExposureAttribute = "penumbra.exposure";
 
-/// How bright the PNG is: stops by which linear values are multiplied, or found from the picture.
+/// Brightness of the PNG: a number of stops, or automatic from the picture.
 struct Exposure {
   enum class Kind { automatic, first, fixed };
   Kind kind = Kind::automatic;
-  float stops = 0;  ///< fixed; first: once it is known
+  float stops = 0;  ///< with fixed; with first: set once known
 };
 
-/// "auto", "first", a number of stops, or FILE.exr: those that this picture's header says. Throws UsageError;
-/// InputError for a picture that does not say.
+/// Parses "auto", "first", a number of stops, or FILE.exr: the stops in this picture's header. Throws UsageError;
+/// throws InputError for a picture without them.
 Exposure parse_exposure(const std::string& text);
 
-/// The stops that an earlier run wrote into a picture's header; nothing if there is no such picture, or it does
-/// not say.
+/// Returns the stops in the header of a picture written by an earlier run; nullopt if there is no such picture, or no
+/// such attribute.
 std::optional<float> written_exposure(const std::filesystem::path& picture);
 
 }  // namespace penumbra::app

@@ -1,3 +1,5 @@
+// Checks whether files of a picture are complete.
+
 #include "app/pictures/frame_files.hpp"
 
 #include "app/pictures/exposure.hpp"
@@ -18,7 +20,7 @@ namespace {
 
 enum class State { missing, spoilt, whole };
 
-/// So many bytes from `offset` on; fewer where the file ends.
+/// Returns `count` bytes from `offset` on; fewer where the file ends.
 std::string read_bytes(const std::filesystem::path& path, std::uint64_t offset, std::size_t count) {
   std::ifstream stream(path, std::ios::binary);
   stream.seekg(static_cast<std::streamoff>(offset));
@@ -28,13 +30,13 @@ std::string read_bytes(const std::filesystem::path& path, std::uint64_t offset, 
   return bytes;
 }
 
-/// Do its first and last bytes say that it is whole?
+/// Returns whether the file's first and last bytes are those of a complete file.
 bool has_ends(const std::filesystem::path& path, std::uint64_t size, std::string_view first, std::string_view last) {
   if (size < first.size() + last.size()) return false;
   return read_bytes(path, 0, first.size()) == first && read_bytes(path, size - last.size(), last.size()) == last;
 }
 
-/// The format is that of visibility/masks/bits_file.hpp: all sizes follow from the first line.
+/// Checks the format of visibility/masks/bits_file.hpp: all sizes follow from the first line.
 bool is_whole_bits(const std::filesystem::path& path, std::uint64_t size) {
   std::istringstream line(read_bytes(path, 0, 64));
   std::string format;
@@ -49,7 +51,7 @@ State state_of(std::string_view option, const std::filesystem::path& path) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(path, error)) return State::missing;
   const std::uint64_t size = std::filesystem::file_size(path, error);
-  if (error || size == 0) return State::missing;  // what is empty was made by another process, to keep the place
+  if (error || size == 0) return State::missing;  // an empty file was made by another process, to reserve the name
   using namespace std::string_view_literals;
   const bool whole = option == "-o"      ? is_whole_exr(path, kExposureAttribute)
                      : option == "--png" ? has_ends(path, size, "\x89PNG\r\n\x1a\n"sv, "\0\0\0\0IEND\xae\x42\x60\x82"sv)
