@@ -1,4 +1,13 @@
-# The figures of docs/ are what their script draws; each picture and link of a page leads somewhere.
+# The figures of docs/ are what their script draws; each picture and link of a page leads somewhere; the commands of the README and of the
+# tutorials print what the pages say; options.md is what the program says.
 find_package(Python3 REQUIRED COMPONENTS Interpreter)
 add_test(NAME docs.figures COMMAND ${Python3_EXECUTABLE} ${PROJECT_SOURCE_DIR}/docs/figures/make.py --check)
-set_tests_properties(docs.figures PROPERTIES LABELS quick)
+add_test(NAME docs.options COMMAND ${Python3_EXECUTABLE} ${PROJECT_SOURCE_DIR}/docs/option_tables.py --program $<TARGET_FILE:penumbra> --check)
+set_tests_properties(docs.figures docs.options PROPERTIES LABELS quick)
+foreach(page IN ITEMS README docs/start/artist docs/start/researcher docs/start/mesh-tester docs/start/wedge-validator)
+  cmake_path(GET page FILENAME name)
+  string(TOLOWER ${name} name)
+  add_test(NAME docs.commands.${name}
+           COMMAND ${Python3_EXECUTABLE} ${CMAKE_CURRENT_SOURCE_DIR}/docs/console.py $<TARGET_FILE:penumbra> ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/${page}.md)
+  set_tests_properties(docs.commands.${name} PROPERTIES LABELS quick)
+endforeach()

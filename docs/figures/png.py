@@ -41,7 +41,31 @@ def write_grey(rows):
     return encoded(rows, 1)
 
 
+def write_moving(path, pictures, delay):
+    """RGB pictures of one size as an animated PNG that repeats for ever, `delay` milliseconds a picture."""
+    height, width = len(pictures[0]), len(pictures[0][0]) // 3
+    out, number = header(width, height, 3) + chunk(b"acTL", struct.pack(">II", len(pictures), 0)), 0
+    for k, rows in enumerate(pictures):
+        out += chunk(b"fcTL", struct.pack(">IIIIIHHBB", number, width, height, 0, 0, delay, 1000, 0, 0))
+        out += chunk(b"fdAT", struct.pack(">I", number + 1) + packed(rows, 3)) if k else chunk(b"IDAT", packed(rows, 3))
+        number += 2 if k else 1
+    path.write_bytes(out + chunk(b"IEND", b""))
+
+
+def chunk(kind, data):
+    return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+
+
+def header(width, height, channels):
+    return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 2 if channels == 3 else 0, 0, 0, 0))
+
+
 def encoded(rows, channels):
+    return header(len(rows[0]) // channels, len(rows), channels) + chunk(b"IDAT", packed(rows, channels)) + chunk(b"IEND", b"")
+
+
+def packed(rows, channels):
+    """The compressed lines of a picture."""
     def filtered(line, before):
         """Of the five filters the one whose differences are smallest in sum."""
         choices = []
@@ -55,10 +79,4 @@ def encoded(rows, channels):
         return min(choices)[2]
 
     body = b"".join(filtered(line, rows[y - 1] if y else bytes(len(line))) for y, line in enumerate(rows))
-
-    def chunk(kind, data):
-        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
-
-    head = struct.pack(">IIBBBBB", len(rows[0]) // channels, len(rows), 8, 2 if channels == 3 else 0, 0, 0, 0)
-    return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", head) + chunk(b"IDAT", zlib.compress(body, 9)) +
-            chunk(b"IEND", b""))
+    return zlib.compress(body, 9)

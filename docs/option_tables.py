@@ -1,0 +1,69 @@
+#!/usr/bin/env python3
+"""Writes docs/options.md, every option of every method, from `penumbra methods --json`.
+
+  docs/option_tables.py [--program build/penumbra]            writes the page
+  docs/option_tables.py [--program build/penumbra] --check    exits 1 if the page is not what this script writes, or if a method's own page
+                                                              lacks one of its options"""
+
+import argparse
+import json
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+DOCS = Path(__file__).resolve().parent
+SHARED = ("map-fits.md", "rasterisers.md", "shadow-map.md")  # pages that several methods refer to for options that they share
+HEAD = """# Options of all methods
+
+Every method with what it can do and the options that it takes. `docs/option_tables.py` generates this page from `penumbra methods --json`; do not edit it. An option is
+given as `--method-option KEY=VALUE`, or after the method's name: `--method pcss:size=512`. `penumbra methods NAME` prints the same for one method.
+"""
+
+
+def cell(text):
+    return text.replace("|", "\\|").replace("\n", " ")
+
+
+def section(method):
+    lights = ", ".join(method["lights"])
+    lines = [f"## {method['name']}",
+             f"[{method['name']}]({method['name']}.md): {method['family']}, {method['output']} output. {method['paper']}. Lights: {lights}.", ""]
+    if not method["options"]:
+        return "\n".join(lines + ["No options.", ""])
+    lines += ["| option | values | default | meaning |", "| --- | --- | --- | --- |"]
+    for option in method["options"]:
+        values = option["values"].replace("|", ", ")
+        lines.append(f"| `{option['name']}` | {cell(values)} | {cell(str(option['default']))} | {cell(option['help'])} |")
+    return "\n".join(lines + [""])
+
+
+def left_out(methods):
+    """Options that neither the method's page nor a page that it shares with others names."""
+    shared = "".join((DOCS / name).read_text(encoding="utf-8") for name in SHARED)
+    for method in methods:
+        page = (DOCS / f"{method['name']}.md").read_text(encoding="utf-8")
+        for option in method["options"]:
+            if not re.search(rf"`{re.escape(option['name'])}[`=]|{re.escape(option['name'])}=", page + shared):
+                yield f"docs/{method['name']}.md: lacks the option {option['name']}"
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--program", default=DOCS.parent / "build" / "penumbra")
+    parser.add_argument("--check", action="store_true")
+    args = parser.parse_args()
+    listed = subprocess.run([args.program, "methods", "--json"], check=True, capture_output=True, text=True).stdout
+    methods = json.loads(listed)["methods"]
+    text = "\n".join([HEAD, *map(section, methods)])
+    page = DOCS / "options.md"
+    if not args.check:
+        page.write_text(text, encoding="utf-8")
+        return
+    complaints = list(left_out(methods))
+    if not page.is_file() or page.read_text(encoding="utf-8") != text:
+        complaints.append("docs/options.md: not what docs/option_tables.py writes; run it")
+    sys.exit("\n".join(complaints) if complaints else 0)
+
+
+main()
