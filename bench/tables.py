@@ -1,0 +1,113 @@
+#!/usr/bin/env python3
+"""Writes the tables of bench/README.md and docs/devices.md from bench/results/*.json, and the list of these files in bench/results/README.md.
+
+  bench/tables.py            writes them
+  bench/tables.py --check    exits 1 if a page is not what this script writes, or if a file of results lacks commit, machine or command
+
+A table stands between the lines `<!-- results/NAME.json -->` and `<!-- end -->`. A file of results has `title`, `commit`, `machine`, `command`, `conditions`, `columns` and
+`rows`; a row holds text and numbers, null where nothing was measured, and `formats`, if there, says how the numbers of a column are printed. `recordedAt` in place of `commit` names the commit that wrote the figures down, where the one that was measured is
+not known."""
+
+import json
+import re
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+sys.dont_write_bytecode = True
+sys.path[:0] = [str(ROOT / "docs" / "figures"), str(ROOT / "docs" / "figures" / "papers")]
+
+import times  # noqa: E402
+
+RESULTS = ROOT / "bench" / "results"
+BLOCK = re.compile(r"(<!-- results/([\w-]+)\.json -->\n).*?(<!-- end -->)", re.S)
+GPU = "nvidia-h100"  # docs/devices.md has its table
+PAGES = [ROOT / "bench" / "README.md", ROOT / "docs" / "devices.md"]
+
+
+def read(path):
+    return json.loads(path.read_text(encoding="utf-8"))
+
+
+def decimals(value):
+    return len(repr(value).partition(".")[2]) if isinstance(value, float) and "e" not in repr(value) else 0
+
+
+def column_texts(values, form):
+    """Cells as texts: by the column's format, or all with the decimals of the longest; large whole numbers with commas."""
+    places = max((decimals(value) for value in values if isinstance(value, float)), default=0)
+    if form is None:
+        form = ".1e" if any("e" in repr(value) for value in values if isinstance(value, float)) else f".{places}f"
+    return [f"{value:{form}}" if isinstance(value, float) else f"{value:,}" if isinstance(value, int) and value >= 10000 else "" if value is None else str(value)
+            for value in values]
+
+
+def table(data):
+    when = f"Commit {data['commit']}" if "commit" in data else f"Written down at {data['recordedAt']}, the measured commit is not known"
+    lines = [f"{when}; {data['machine']}. {data['conditions']}", "", f"`{data['command']}`", ""]
+    columns = list(zip(*data["rows"]))
+    texts = [isinstance(cell, str) for cell in data["rows"][0]]
+    lines += ["| " + " | ".join(data["columns"]) + " |", "| " + " | ".join("---" if text else "---:" for text in texts) + " |"]
+    lines += ["| " + " | ".join(row) + " |" for row in zip(*map(column_texts, columns, data.get("formats", [None] * len(columns))))]
+    return "\n".join(lines) + "\n"
+
+
+def block(name):
+    """The table of one file; that of all methods is kept, and drawn, with the papers' figures."""
+    if name == GPU:
+        return gpu_table(read(RESULTS / f"{name}.json"))
+    if name != "times":
+        return table(read(RESULTS / f"{name}.json"))
+    kept = read(ROOT / "docs" / "figures" / "papers" / "times.json")
+    return f"Commit {kept['commit']}; {kept['device']}. {kept['data']['of']}.\n\n{times.table(kept['data'])}\n"
+
+
+def milliseconds(value):
+    return f"{value:.1f}" if value < 10 else f"{value:.0f}"
+
+
+def gpu_table(data):
+    lines = ["| method | size | light samples | evaluate, ms | of it passes on the GPU, ms |", "| --- | --- | ---: | ---: | ---: |"]
+    runs = [run for run in data["bunny"] if run["method"] in ("edge-scatter:engine=vulkan", "view-sample:engine=vulkan")]
+    for run in sorted(runs, key=lambda run: (run["method"], run["size"], run["lightSamples"])):
+        size = "x".join(map(str, run["size"]))
+        lines.append(f"| {run['method'].partition(':')[0]} | {size} | {run['lightSamples']} | {1000 * run['seconds']['evaluate']:.0f} | "
+                     f"{milliseconds(sum(run['passesMilliseconds'].values()))} |")
+    return "\n".join(lines) + "\n"
+
+
+def listing(files):
+    lines = ["# Results", "", "Measured figures, a file a question: what was measured at which commit, on which machine, by which command. `bench/tables.py` writes this list, and the tables of",
+             "[bench/README.md](../README.md) from these files; do not edit either.", "", "| file | what | commit | machine |", "| --- | --- | --- | --- |"]
+    for path in files:
+        data = read(path)
+        machine = data["machine"] if isinstance(data["machine"], str) else data["machine"]["device"]
+        lines.append(f"| [{path.name}]({path.name}) | {data.get('title', 'shadows on a GPU')} | {data.get('commit', 'not known')} | {machine} |")
+    return "\n".join(lines) + "\n"
+
+
+def main():
+    check = sys.argv[1:] == ["--check"]
+    if sys.argv[1:] and not check:
+        sys.exit(__doc__)
+    files, complaints = sorted(RESULTS.glob("*.json")), []
+    before = {page: page.read_text(encoding="utf-8") for page in PAGES}
+    for path in files:
+        data = read(path)
+        if path.stem != GPU:
+            complaints += [f"{path.name}: lacks {key}" for key in ("title", "machine", "command", "conditions", "columns", "rows") if key not in data]
+            complaints += [] if {"commit", "recordedAt"} & data.keys() else [f"{path.name}: lacks commit"]
+        complaints += [] if any(f"<!-- results/{path.name} -->" in text for text in before.values()) else [f"{path.name}: no page shows it"]
+    if complaints:
+        sys.exit("\n".join(complaints))
+    texts = {page: BLOCK.sub(lambda found: found[1] + block(found[2]) + found[3], text) for page, text in before.items()}
+    texts |= {RESULTS / "README.md": listing(files)}
+    for path, text in texts.items():
+        if not check:
+            path.write_text(text, encoding="utf-8")
+        elif not path.is_file() or path.read_text(encoding="utf-8") != text:
+            complaints.append(f"{path.relative_to(ROOT)}: not what bench/tables.py writes; run it")
+    sys.exit("\n".join(complaints) if complaints else 0)
+
+
+main()
