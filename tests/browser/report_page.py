@@ -9,25 +9,13 @@ import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
 from browser import Browser  # noqa: E402
+from claims import expect, same, verdict  # noqa: E402
 from exr import read_bits, read_exr  # noqa: E402
 
 WIDTH, HEIGHT, SAMPLES = 96, 96, 64
 METHODS = ["edge-scatter", "pcss", "accumulate:size=16"]
 READY = "document.getElementById('viewer').dataset.drawn !== undefined"
 READ = "document.getElementById('viewer').dataset.read"
-
-failures = 0
-
-
-def expect(claim, what):
-    global failures
-    if not claim:
-        failures += 1
-        print(f"FAILED: {what}")
-
-
-def same(found, wanted, what):
-    expect(found == wanted, f"{what}: {found!r}, not {wanted!r}")
 
 
 class Page:
@@ -364,8 +352,7 @@ def main():
                             "--error-budget", "--quiet"], check=True, stdout=subprocess.DEVNULL)
             check_budget(browser, budget, photographs)
             same(browser.problems, [], "the page complains, or asks for what is not in it")
-    print("failed" if failures else "all is as it should be")
-    return 1 if failures else 0
+    return verdict()
 
 
 if __name__ == "__main__":

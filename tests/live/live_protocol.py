@@ -13,24 +13,12 @@ import time
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
 sys.path.insert(0, str(pathlib.Path(__file__).parent.parent / "browser"))
+from claims import expect, same, verdict  # noqa: E402
 from exr import read_bits, read_exr  # noqa: E402
 from live_client import LIGHTS, Client, Closed, Server, png_pixels  # noqa: E402
 
 PROGRAM = sys.argv[1]
 SIZE = 64
-
-failures = 0
-
-
-def expect(claim, what):
-    global failures
-    if not claim:
-        failures += 1
-        print(f"FAILED: {what}")
-
-
-def same(found, wanted, what):
-    expect(found == wanted, f"{what}: {found!r}, not {wanted!r}")
 
 
 def render(scene, folder, name, *arguments):
@@ -268,8 +256,7 @@ def main():
             out, _ = server.process.communicate(timeout=10)
             same(out, "", "nothing but the address is on stdout")
         check_ending(folder)
-    print("failed" if failures else "all as documented")
-    return 1 if failures else 0
+    return verdict()
 
 
 if __name__ == "__main__":

@@ -10,18 +10,11 @@ import threading
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
 sys.path.insert(0, str(pathlib.Path(__file__).parent.parent / "browser"))
+from claims import same, verdict  # noqa: E402
 from exr import read_exr  # noqa: E402
 from live_client import LIGHTS  # noqa: E402
 
 PROGRAM = sys.argv[1]
-failures = 0
-
-
-def same(found, wanted, what):
-    global failures
-    if found != wanted:
-        failures += 1
-        print(f"FAILED: {what}: {found!r}, not {wanted!r}")
 
 
 class FakeTev(threading.Thread):
@@ -125,8 +118,7 @@ def main():
         same((folder / "none.exr").exists(), False, "and nothing is rendered")
         for wrong in ("tev", "127.0.0.1", "127.0.0.1:0", ":14158", "127.0.0.1:x"):
             same(run("render", scene, "-o", folder / "none.exr", "--tev", wrong).returncode, 2, wrong)
-    print("failed" if failures else "all as documented")
-    return 1 if failures else 0
+    return verdict()
 
 
 if __name__ == "__main__":

@@ -1,0 +1,19 @@
+"""What tests of pages and live views claim: all of it is looked at, and what does not hold is printed."""
+
+_failed = []
+
+
+def expect(claim, what):
+    if not claim:
+        _failed.append(what)
+        print(f"FAILED: {what}")
+
+
+def same(found, wanted, what):
+    expect(found == wanted, f"{what}: {found!r}, not {wanted!r}")
+
+
+def verdict():
+    """The exit code."""
+    print("failed" if _failed else "all is as it should be")
+    return 1 if _failed else 0
