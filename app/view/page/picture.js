@@ -1,7 +1,13 @@
 // The picture on its canvas, which has the final picture's pixels; one or two answers, by wipe or side by side.
 let shown = null;  // header, and bitmaps by what they show
 const canvas = byId("picture"), overlay = byId("overlay");
-const mode = () => (shown && shown.by.a && shown.by.b ? byId("compare").value : "a");
+let flipped = false;       // of `flip`: B is shown
+/// What is shown of the answers: wipe, side, a or b.
+function mode() {
+  if (!shown || !shown.by.a || !shown.by.b) return "a";
+  const how = byId("compare").value;
+  return how === "flip" ? (flipped ? "b" : "a") : how;
+}
 
 function draw() {
   if (!shown) return;
@@ -57,6 +63,24 @@ function placeOf(event) {
   return [x, (event.clientY - box.top) / height];
 }
 
+const answerWords = (answer) => answer.method + (answer.lightSamples ? `, ${answer.lightSamples} light samples` : "");
+
+/// Names what is shown, and offers what belongs to the way of comparing.
+function nameShown() {
+  const two = shown && shown.header.answers.length > 1 && shown.by.b, answers = shown ? shown.header.answers : [];
+  byId("label-a").textContent = two && mode() !== "b" ? "A: " + answerWords(answers[0]) : "";
+  byId("label-b").textContent = two && mode() !== "a" ? "B: " + answerWords(answers[1]) : "";
+  byId("wipe-row").hidden = mode() !== "wipe";
+  byId("flip").hidden = !two || byId("compare").value !== "flip";
+  byId("flip").textContent = flipped ? "Flip to A" : "Flip to B";
+}
+function flip() {
+  if (byId("flip").hidden) return;
+  flipped = !flipped;
+  draw();
+  nameShown();
+}
+
 on("frame", (header, images) => {
   if (shown) for (const image of Object.values(shown.by)) image.close();
   shown = { header, by: Object.fromEntries(images.map((image, i) => [header.images[i].shows, image])) };
@@ -67,14 +91,10 @@ on("frame", (header, images) => {
   root.exact = String(header.final && !(sentStamp > (stamp ?? 0)));
   root.ms = (stamp === undefined ? header.milliseconds : performance.now() - stamp).toFixed(1);
   root.method = header.answers.map((answer) => answer.method).join(" | ");
-  const words = (answer) => answer.method + (answer.lightSamples ? `, ${answer.lightSamples} light samples` : "");
   const reduced = header.images[0].width < header.width ? `, ${header.images[0].width}\u00d7${header.images[0].height}` : "";
-  byId("shown").textContent = `${words(header.answers[0])}${header.answers[1] ? " | " + words(header.answers[1]) : ""}: ` +
+  byId("shown").textContent = `${answerWords(header.answers[0])}${header.answers[1] ? " | " + answerWords(header.answers[1]) : ""}: ` +
     `${header.final ? "final" : "preview" + reduced}, ${Math.round(root.ms)} ms`;
-  byId("wipe-row").hidden = mode() !== "wipe";
-  const two = header.answers.length > 1 && shown.by.b;
-  byId("label-a").textContent = two && mode() !== "b" ? "A: " + words(header.answers[0]) : "";
-  byId("label-b").textContent = two && mode() !== "a" ? "B: " + words(header.answers[1]) : "";
+  nameShown();
   byId("difference").textContent = header.difference
     ? `V of A \u2212 B: RMSE ${header.difference.rmse.toFixed(5)}, bias ${header.difference.bias.toFixed(5)}, largest ${header.difference.largest.toFixed(3)}; ` +
       `shadow ${header.answers.map((answer) => answer.milliseconds.toFixed(1)).join(" and ")} ms` : "";
@@ -82,5 +102,6 @@ on("frame", (header, images) => {
   if (byId("auto-stops").checked && document.activeElement !== byId("stops")) byId("stops").value = header.stops.toFixed(2);
 });
 byId("wipe").addEventListener("input", draw);
-byId("compare").addEventListener("change", () => { draw(); byId("wipe-row").hidden = mode() !== "wipe"; });
+byId("compare").addEventListener("change", () => { draw(); nameShown(); });
+byId("flip").addEventListener("click", flip);
 new ResizeObserver(fit).observe(byId("frame"));
