@@ -76,10 +76,12 @@ bool parse(int argc, char** argv, Arguments& arguments) {
       arguments.options.clips.emplace_back(flag.substr(kClip.size()));
       continue;
     }
-    if (flag != "--allow-outside" && flag != "--without-light" && flag != "--lenient") return false;
+    if (flag != "--allow-outside" && flag != "--without-light" && flag != "--without-surface" && flag != "--lenient")
+      return false;
     arguments.options.allow_outside |= flag == "--allow-outside";
     arguments.options.lenient |= flag == "--lenient";
     arguments.options.needs_light &= flag != "--without-light";
+    arguments.options.needs_surface &= flag != "--without-surface";
   }
   constexpr std::array<std::string_view, 4> kKinds = {"mesh", "gltf", "texture", "sky"};
   return std::ranges::find(kKinds, arguments.kind) != kKinds.end() && parse(argv[2], arguments.milliseconds) &&

@@ -4,6 +4,7 @@ penumbra_test(scenes
   unit/scenes/atomic_file.cpp
   unit/scenes/files.cpp
   unit/scenes/float_rounding.cpp
+  unit/scenes/joined_parts.cpp
   unit/scenes/json.cpp
   unit/scenes/json_schema.cpp
   unit/scenes/json_scene.cpp

@@ -17,7 +17,7 @@
 #include "import/gltf/gltf_surface.hpp"
 #include "import/gltf/gltf_triangles.hpp"
 #include "import/gltf/punctual_lights.hpp"
-#include "import/gltf/unique_names.hpp"
+#include "scenes/unique_names.hpp"
 
 #include <tiny_gltf.h>
 
@@ -63,6 +63,7 @@ class GltfScene {
   GltfScene(const tinygltf::Model& model, const SceneRequest& request, Purpose purpose)
       : model_(model),
         purpose_(purpose),
+        needs_surface_(request.options.needs_surface),
         lenient_(request.options.lenient || purpose == Purpose::any_scene || purpose == Purpose::rest),
         unhidden_(request.unhidden),
         lamps_(model, request.options, losses_),
@@ -113,7 +114,7 @@ class GltfScene {
           "export without compression",
           compressed_.front());
     }
-    if (scene_.soup.triangles.empty()) {
+    if (scene_.soup.triangles.empty() && needs_surface_) {
       throw InputError(
           "there are no triangles in the scene ({} primitives of points or lines, {} without POSITION, {} with "
           "fewer than three vertices)",
@@ -376,8 +377,8 @@ class GltfScene {
 
   const tinygltf::Model& model_;
   Purpose purpose_;
-  bool lenient_;
-  std::span<const std::optional<glm::dmat4>> unhidden_;  // for each node; or empty
+  bool needs_surface_, lenient_;
+  std::span<const std::optional<glm::dmat4>> unhidden_;  // empty, or of each node
   Scene scene_;
   std::vector<std::optional<glm::dmat4>> to_world_;  // for each node; nullopt for nodes outside of the scene
   Losses losses_;

@@ -1,21 +1,29 @@
 #include "scenes/formats/gltf_reader.hpp"
 
+#include "base/descriptor.hpp"
 #include "base/error.hpp"
+#include "base/file_error.hpp"
 #include "mesh/import_helper.hpp"
 #include "mesh/import_wire.hpp"
 #include "scenes/scene_wire.hpp"
 
+#include <cerrno>
 #include <utility>
 
-namespace penumbra::scenes {
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <unistd.h>
 
-Scene read_gltf(const std::filesystem::path& file, const ReadOptions& options) {
-  const mesh::InputFile input = mesh::open_input(file);
+namespace penumbra::scenes {
+namespace {
+
+Scene read_by_helper(const mesh::InputFile& input, const ReadOptions& options) {
   mesh::HelperJob job{"gltf", input, {}};
   if (options.allow_outside) job.flags.emplace_back("--allow-outside");
   if (options.lenient) job.flags.emplace_back("--lenient");
   if (!options.needs_light) job.flags.emplace_back("--without-light");
-  // {} gives the shortest text that reads back as the same number.
+  if (!options.needs_surface) job.flags.emplace_back("--without-surface");
+  // {} gives the shortest text that is this very number again.
   if (options.lamp_radius) job.flags.push_back(fmt::format("--lamp-radius={}", *options.lamp_radius));
   if (options.sun_angle) job.flags.push_back(fmt::format("--sun-angle={}", *options.sun_angle));
   if (options.lumens_per_watt) job.flags.push_back(fmt::format("--lumens-per-watt={}", *options.lumens_per_watt));
@@ -35,9 +43,34 @@ Scene read_gltf(const std::filesystem::path& file, const ReadOptions& options) {
     from.expect_end();
     return scene;
   } catch (const mesh::WireError& error) {
-    throw InputError("{}: the importer's answer is damaged ({}); the file is probably damaged", file.string(),
+    throw InputError("{}: the importer's answer is damaged ({}); the file is probably damaged", input.name.string(),
                      error.what());
   }
+}
+
+/// A file without a name that holds these bytes.
+Descriptor file_of(std::span<const std::byte> bytes, const std::string& name) {
+  Descriptor file(::memfd_create("glb", MFD_CLOEXEC));
+  if (!file.is_open()) throw_file_error(errno, name);
+  while (!bytes.empty()) {
+    const ssize_t written = ::write(file.get(), bytes.data(), bytes.size());
+    if (written < 0 && errno != EINTR) throw_file_error(errno, name);
+    if (written > 0) bytes = bytes.subspan(static_cast<std::size_t>(written));
+  }
+  return file;
+}
+
+}  // namespace
+
+Scene read_gltf(const std::filesystem::path& file, const ReadOptions& options) {
+  return read_by_helper(mesh::open_input(file), options);
+}
+
+Scene read_glb(std::span<const std::byte> bytes, const std::string& name, const ReadOptions& options) {
+  if (bytes.empty()) throw InputError("{}: it is empty", name);
+  mesh::InputFile input{name + ".glb", file_of(bytes, name), Descriptor(::open("/dev/null", O_RDONLY | O_CLOEXEC))};
+  if (!input.folder.is_open()) throw_file_error(errno, name);  // no folder: nothing lies beside
+  return read_by_helper(input, options);
 }
 
 }  // namespace penumbra::scenes

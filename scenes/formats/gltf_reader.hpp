@@ -3,7 +3,10 @@
 #include "scenes/formats/reader.hpp"
 #include "scenes/scene.hpp"
 
+#include <cstddef>
 #include <filesystem>
+#include <span>
+#include <string>
 
 namespace penumbra::scenes {
 
@@ -22,5 +25,7 @@ namespace penumbra::scenes {
 /// Throws InputError, with a place such as "/accessors/3", for relevant violations of glTF 2.0, for a scene without an
 /// area light if `options.needs_light`, and for a buffer outside the file's folder unless `options.allow_outside`.
 Scene read_gltf(const std::filesystem::path& file, const ReadOptions& options = {});
+/// A file's bytes (.glb) that lie in memory: what they name beside them is not there. `name`: in messages.
+Scene read_glb(std::span<const std::byte> bytes, const std::string& name, const ReadOptions& options = {});
 
 }  // namespace penumbra::scenes

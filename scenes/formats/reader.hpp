@@ -26,13 +26,13 @@ struct LightmapPlaces {
 using mesh::kNoPlace;
 
 struct ReadOptions {
-  bool allow_outside = false;              ///< allows files outside the scene's folder
-  bool needs_light = true;                 ///< puts a studio around a scene without a light (JSON: makes that an error)
-  std::optional<double> lamp_radius = {};  ///< glTF: radius of point and spot lamps whose file specifies none; above 0
-  std::optional<double> sun_angle = {};  ///< glTF: angle of sun lamps whose file specifies none, degrees; 0 ≤ angle <
-                                         ///< 180
-  /// glTF: divisor of lamps' intensities; above 0. Default: 683 for files of Blender's exporter (before 3.4.36: 4π, for
-  /// suns 1), else 1.
+  bool allow_outside = false;  ///< may the scene name files outside its folder?
+  bool needs_light = true;     ///< has a scene without a light a studio put around it (JSON: is it an error)?
+  bool needs_surface = true;   ///< read_gltf: is a file without triangles, such as one of lamps alone, an error?
+  std::optional<double> lamp_radius = {};  ///< glTF: of point and spot lamps whose file says none; above 0
+  std::optional<double> sun_angle = {};    ///< glTF: of sun lamps whose file says none, degrees; 0 ≤ angle < 180
+  /// glTF: by what lamps' intensities are divided; above 0. Nothing: 683 in files of Blender's exporter (before 3.4.36:
+  /// 4π, of suns 1), else 1.
   std::optional<double> lumens_per_watt = {};
   bool lenient = false;             ///< glTF: leaves out unsupported features that would change shadows, with a warning
   std::optional<double> time = {};  ///< glTF: time of the animations, in seconds; nullopt: at rest
