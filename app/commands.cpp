@@ -77,6 +77,7 @@ int run_command_line(int argc, char** argv) {
   commands.push_back(make_wedges_command(app));
   commands.push_back(make_submit_command(app));
   commands.push_back(make_view_command(app));
+  commands.push_back(make_serve_command(app));
   commands.push_back(make_help_command(app));
   commands.push_back(make_version_command(app));
   commands.push_back(make_completion_command(app));

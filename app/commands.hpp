@@ -44,6 +44,7 @@ std::unique_ptr<Command> make_devices_command(CLI::App& app);
 std::unique_ptr<Command> make_convert_command(CLI::App& app);
 std::unique_ptr<Command> make_wedges_command(CLI::App& app);
 std::unique_ptr<Command> make_submit_command(CLI::App& app);
+std::unique_ptr<Command> make_serve_command(CLI::App& app);
 std::unique_ptr<Command> make_view_command(CLI::App& app);
 std::unique_ptr<Command> make_help_command(CLI::App& app);
 std::unique_ptr<Command> make_version_command(CLI::App& app);

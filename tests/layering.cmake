@@ -61,7 +61,7 @@ set(may_compare ${all_visibility} scenes mesh base)
 set(may_app/process render base)
 set(may_app app/process network selftest compare reference areas engines engines/vectors hybrids maps vsm volumes volumes/wedges render/opengl render ${all_visibility}
     scenes/formats scenes mesh/diagnosis mesh base)
-foreach(room bake commands compare farm inspect pictures sweep view wedges)
+foreach(room bake commands compare farm inspect pictures serve sweep view wedges)
   set(may_app/${room} ${may_app} app)
 endforeach()
 list(APPEND may_app/commands app/pictures)
@@ -70,6 +70,7 @@ list(APPEND may_app/compare app/pictures)
 list(APPEND may_app/farm app/pictures)
 list(APPEND may_app/sweep app/pictures app/compare)
 list(APPEND may_app/view app/pictures)
+list(APPEND may_app/serve app/pictures app/view)
 set(may_library app app/compare app/inspect app/pictures app/process app/wedges compare render ${all_visibility}
     scenes/formats scenes mesh base)
 set(may_python)
@@ -80,7 +81,7 @@ set(rooms base network mesh mesh/diagnosis mesh/shapes repair scenes scenes/form
     volumes/wedges volumes/edges/device volumes/edges/vectors volumes/edges volumes/raster volumes/soft volumes/counters volumes/scatter volumes vsm maps/host maps/products maps/products/lists
     maps/filters maps/sampling maps/single_shadow maps/backprojection maps/backprojection/patches maps/backprojection/contours
     maps/backprojection/soft_shadow_map maps hybrids selftest reference compare
-    app/process app app/pictures app/bake app/commands app/compare app/sweep app/view app/farm app/inspect app/wedges library python bench)
+    app/process app app/pictures app/bake app/commands app/compare app/sweep app/view app/serve app/farm app/inspect app/wedges library python bench)
 set(may_tests import ${rooms})
 list(APPEND rooms tests)
 

@@ -123,6 +123,7 @@ scenes::Camera changed_camera(const scenes::Camera& camera, const json& change) 
   made.up = read.up;
   made.vertical_fov = read.vertical_fov;
   made.height = read.height;
+  if (change.contains("shift")) made.shift = read.shift;
   visibility::make_camera(made, {}, 1, 1);  // refuses one that sees nothing
   return made;
 }

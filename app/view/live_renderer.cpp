@@ -79,6 +79,25 @@ LiveChange LiveRenderer::apply(const json& message, std::uint64_t client) {
   return change;
 }
 
+void LiveRenderer::update(LiveUpdate update, std::uint64_t client) {
+  const std::lock_guard lock(mutex_);
+  LiveState state = state_;
+  if (update.scene) {
+    state.scene = without_meshes(update.scene->scene);
+    const auto& lights = state.scene.lights;
+    if (std::ranges::find(lights, state.display.light, &scenes::AreaLight::name) == lights.end())
+      state.display.light = lights.front().name;
+  }
+  for (const json& change : update.changes) static_cast<void>(app::apply(state, change));
+  state.moving = update.moving;
+  state_ = std::move(state);
+  if (update.scene && !update.scene->same_meshes)
+    whole_ = std::make_shared<const scenes::Scene>(std::move(update.scene->scene));
+  if (update.stamp) stamps_[client] = *update.stamp;
+  ++revision_;
+  wake_.notify_all();
+}
+
 ordered_json LiveRenderer::state() const {
   const std::lock_guard lock(mutex_);
   return to_json(state_);

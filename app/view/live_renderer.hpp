@@ -8,7 +8,7 @@
 #include "app/view/live_state.hpp"
 #include "render/machine.hpp"
 
-#include <nlohmann/json_fwd.hpp>
+#include <nlohmann/json.hpp>
 
 #include <condition_variable>
 #include <cstdint>
@@ -17,6 +17,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <thread>
@@ -24,11 +25,26 @@
 
 namespace penumbra::app {
 
-/// Callbacks of the renderer, called on its thread.
+/// Callbacks of the renderer, called on its thread; those that are empty are not called.
 struct LiveEvents {
   std::function<void(std::shared_ptr<const std::string>)> frame;  ///< frame_message()
   std::function<void(std::string_view level, const std::string& text)> say;
   std::function<void()> reloaded;  ///< the state is that of another version of the file
+  std::function<void(std::shared_ptr<const LivePicture>)> picture = {};  ///< its numbers
+};
+
+/// Another scene in the place of the one that is shown.
+struct LiveScene {
+  scenes::Scene scene;
+  bool same_meshes = false;  ///< it is without_meshes(), and has those of the last one
+};
+
+/// Several changes that are one.
+struct LiveUpdate {
+  std::optional<LiveScene> scene = {};       ///< nothing: the one that is shown
+  std::vector<nlohmann::json> changes = {};  ///< messages, as for apply()
+  std::optional<double> stamp = {};          ///< comes back with the first picture that shows all of it
+  bool moving = false;                       ///< more will come soon
 };
 
 /// Makes pictures of a state that changes meanwhile, on a thread of its own: quick ones as long as it changes, then a
@@ -44,6 +60,8 @@ class LiveRenderer {
 
   /// Changes the state as a message says; `client` and its `stamp` come back with the first picture that shows it.
   LiveChange apply(const nlohmann::json& message, std::uint64_t client);
+  /// Throws InputError or UsageError for a change that cannot be, and then changes nothing.
+  void update(LiveUpdate update, std::uint64_t client);
   [[nodiscard]] nlohmann::ordered_json state() const;
   /// Shows what there is once more: to a client that is new.
   void show_again();

@@ -128,6 +128,7 @@ scenes::Scene LiveRenderer::scene_of(const LiveState& state) const {
   }
   const bool same_meshes = frames_ && frames_->has_meshes() && rendered_ == whole;
   scenes::Scene scene = same_meshes ? state.scene : *whole;
+  scene.objects = state.scene.objects;  // which of them are bodies of which lights may have changed without the meshes
   scene.lights = state.scene.lights;
   scene.cameras = {state.camera};
   return scene;
@@ -304,7 +305,8 @@ void LiveRenderer::show() {
     for (const auto& [client, stamp] : picture->stamps) stamps[fmt::format("{}", client)] = stamp;
   }
   const ordered_json more = {{"frame", ++frame_}, {"stamps", std::move(stamps)}};
-  events_.frame(std::make_shared<const std::string>(frame_message(*picture, display, more)));
+  if (events_.frame) events_.frame(std::make_shared<const std::string>(frame_message(*picture, display, more)));
+  if (events_.picture) events_.picture(std::move(picture));
 }
 
 }  // namespace penumbra::app

@@ -1,6 +1,7 @@
 #include "app/view/live_view.hpp"
 
 #include "app/method_list.hpp"
+#include "app/view/message_text.hpp"
 #include "app/view/page.hpp"
 #include "base/error.hpp"
 #include "network/requests.hpp"
@@ -14,30 +15,6 @@ namespace penumbra::app {
 
 using nlohmann::json;
 using nlohmann::ordered_json;
-
-namespace {
-
-std::string message_text(const ordered_json& message) {
-  return message.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
-}
-
-/// Is JSON nested deeper than any message? What copies and writes it calls itself level by level.
-bool is_deep(std::string_view text) {
-  constexpr int kMost = 32;
-  int depth = 0;
-  for (const char c : text) {
-    if (c == '[' || c == '{') ++depth;
-    if (c == ']' || c == '}') --depth;
-    if (depth > kMost) return true;
-  }
-  return false;
-}
-
-ordered_json saying(std::string_view level, const std::string& text) {
-  return {{"type", "say"}, {"level", level}, {"text", text}};
-}
-
-}  // namespace
 
 std::string view_page() {
   return fmt::format(
@@ -75,15 +52,13 @@ void LiveView::opened(network::ClientId client) {
 }
 
 void LiveView::send_state(network::ClientId except) {
+  const std::lock_guard lock(sending_);
   server_->send_newest(message_text(renderer_->state()), except);
 }
 
 void LiveView::message(network::ClientId client, std::string_view text) {
   try {
-    if (is_deep(text)) throw InputError("a message is nested deeper than any that is known");
-    const json message = json::parse(text, nullptr, false);
-    if (message.is_discarded()) throw InputError("a message is JSON");
-    do_message(client, message);
+    do_message(client, parse_message(text));
   } catch (const Error& error) {
     server_->send(client, message_text(saying("error", error.what())));
     server_->send(client, message_text(renderer_->state()));

@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <mutex>
 #include <string>
 #include <string_view>
 
@@ -35,6 +36,7 @@ class LiveView final : public network::PageHandler {
   void send_state(network::ClientId except);
 
   std::string methods_;  // JSON
+  std::mutex sending_;   // a state is told before another is asked for: else an old one could be told last
   std::unique_ptr<network::PageServer> server_;
   std::unique_ptr<LiveRenderer> renderer_;  // tells the server, so it goes first
 };

@@ -1,0 +1,75 @@
+#include "app/serve/picture_job.hpp"
+
+#include "app/machine.hpp"
+#include "app/options.hpp"
+#include "app/output.hpp"
+#include "app/process/stopwatch.hpp"
+#include "app/session.hpp"
+#include "base/error.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <tuple>
+#include <utility>
+
+namespace penumbra::app {
+namespace {
+
+PictureOptions parse_picture(const std::vector<std::string>& arguments) {
+  PictureOptions options;
+  CLI::App app("", "render");
+  add_picture_options(app, options);
+  try {
+    std::vector<std::string> reversed(arguments.rbegin(), arguments.rend());
+    app.parse(reversed);
+  } catch (const CLI::ParseError& error) {
+    throw UsageError("{}", error.what());
+  }
+  return options;
+}
+
+auto format_key(const FormatOptions& format) {
+  return std::tie(format.layers, format.half, format.compression);
+}
+
+}  // namespace
+
+void PictureJob::run(const std::vector<std::string>& arguments) {
+  PictureOptions options = parse_picture(arguments);
+  PictureRequest request = parse_request(options);
+  if (request.frames.size() != 1 || options.run.camera == "all" || request.moments > 1)
+    throw UsageError("one picture of one moment is made at a time");
+  OutputFiles outputs = outputs_of(options, request.frames, {options.run.camera});
+  outputs.require_writable();
+  check_png_name(options);
+  const bool same_device = kept_ && kept_->options.run.device == options.run.device;
+  const bool same = same_device && format_key(kept_->options.run.format) == format_key(options.run.format);
+  if (!same) {
+    const render::Machine machine = same_device ? kept_->machine : make_machine(options.run.device);
+    kept_.reset();
+    kept_ = std::make_unique<Kept>(Kept{options, request, machine, nullptr});
+    kept_->renderer = std::make_unique<FrameRenderer>(kept_->options.run, kept_->request.wish, machine, progress_);
+    kept_->renderer->expect_frames();
+  }
+  kept_->options = std::move(options);
+  kept_->request = std::move(request);
+  const PictureRequest& now = kept_->request;
+  try {
+    const Stopwatch watch;
+    scenes::Scene scene = read_session_scene(kept_->options.run, std::nullopt);
+    outputs.refuse_inputs(scene.sources);
+    const FrameFiles files = files_of(kept_->options, now.frames.front(), kept_->options.run.camera);
+    kept_->renderer->render(
+        std::move(scene),
+        {now.frames.front(), kept_->options.run.camera, now.pixel_side, now.filter, now.pixel_tolerance, {}},
+        files.bits, watch.seconds());
+    Exposure exposure = now.exposure;
+    progress_.info(summary(kept_->renderer->write(files, exposure)));
+  } catch (...) {
+    kept_.reset();  // whatever it holds may be half of one picture and half of another
+    throw;
+  }
+}
+
+}  // namespace penumbra::app

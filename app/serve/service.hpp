@@ -1,0 +1,66 @@
+#pragma once
+
+#include "app/options.hpp"
+#include "app/process/terminal_progress.hpp"
+#include "app/serve/message_pipe.hpp"
+#include "app/serve/picture_job.hpp"
+#include "app/serve/scene_parts.hpp"
+#include "app/view/live_renderer.hpp"
+
+#include <atomic>
+#include <condition_variable>
+#include <exception>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <set>
+#include <string>
+#include <thread>
+
+namespace penumbra::app {
+
+/// Answers the messages of another program (docs/serve.md), which ends it by closing its input.
+class Service {
+ public:
+  /// Messages come from `input` and go to `output`, descriptors that stay open. `options`: device and normals.
+  Service(RunOptions options, int input, int output);
+  Service(const Service&) = delete;
+  Service& operator=(const Service&) = delete;
+  ~Service() = default;
+
+  /// Returns when the input has ended and all but pictures has been written. Throws InputError for input that is no
+  /// message, ResourceError if nobody reads the output any more.
+  void run();
+
+ private:
+  /// What has been read, and not answered.
+  struct Inbox {
+    std::mutex mutex;
+    std::condition_variable came;
+    std::optional<PipeMessage> message;  // the next; another one is read when it has been taken
+    std::exception_ptr fault;            // of the input
+    bool ended = false;
+    bool renders = false;  // a picture that is written: ends with the input
+  };
+  static void read_messages(const std::shared_ptr<Inbox>& inbox, int input);
+  [[nodiscard]] std::optional<PipeMessage> next_message();
+  void answer(const PipeMessage& message);
+  void show(const nlohmann::json& message);
+  void render(const nlohmann::json& message);
+  void send_picture(const LivePicture& picture);
+  void say(std::string_view level, const std::string& text);
+
+  RunOptions options_;
+  MessageSink out_;
+
+  std::shared_ptr<Inbox> inbox_;  // shared with the thread that reads: that ends with the process, maybe after this
+
+  SceneParts parts_;
+  scenes::Camera camera_;
+  std::atomic<bool> wants_visibility_ = false;
+  TerminalProgress progress_{false};
+  PictureJob job_{progress_};
+  std::unique_ptr<LiveRenderer> renderer_;  // tells out_, so it goes first
+};
+
+}  // namespace penumbra::app

@@ -1,0 +1,43 @@
+#include "app/view/message_text.hpp"
+
+#include "base/error.hpp"
+
+#include <nlohmann/json.hpp>
+
+namespace penumbra::app {
+
+using nlohmann::json;
+using nlohmann::ordered_json;
+
+namespace {
+
+/// Is JSON nested deeper than any message? What copies and writes it calls itself level by level.
+bool is_deep(std::string_view text) {
+  constexpr int kMost = 32;
+  int depth = 0;
+  for (const char c : text) {
+    if (c == '[' || c == '{') ++depth;
+    if (c == ']' || c == '}') --depth;
+    if (depth > kMost) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+json parse_message(std::string_view text) {
+  if (is_deep(text)) throw InputError("a message is nested deeper than any that is known");
+  json message = json::parse(text, nullptr, false);
+  if (message.is_discarded()) throw InputError("a message is JSON");
+  return message;
+}
+
+std::string message_text(const ordered_json& message) {
+  return message.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+}
+
+ordered_json saying(std::string_view level, const std::string& text) {
+  return {{"type", "say"}, {"level", level}, {"text", text}};
+}
+
+}  // namespace penumbra::app
