@@ -81,12 +81,10 @@ class ViewCommand : public Command {
     if (!run_.size.empty()) static_cast<void>(parse_size(run_.size));
     TerminalProgress progress(!global.quiet);
     progress.begin("reading " + run_.scene.filename().string(), 1);
+    FileWatch files({run_.scene});  // before it is read: what changes meanwhile is read again
     scenes::Scene scene = read_session_scene(run_, {});
     progress.clear();
     for (const std::string& warning : scene.warnings) spdlog::warn("{}", warning);
-    std::vector<std::filesystem::path> sources = scene.sources;
-    sources.push_back(run_.scene);
-    FileWatch files(std::move(sources));
     LiveView view(run_, std::move(scene), static_cast<std::uint16_t>(port_));
     if (!method_.empty()) view.renderer().apply({{"type", "method"}, {"slot", "a"}, {"entry", method_}}, 0);
     if (samples_ != 0) view.renderer().apply({{"type", "samples"}, {"count", samples_}}, 0);
