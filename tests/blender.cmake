@@ -6,7 +6,8 @@ add_test(NAME blender.addon
                  $<TARGET_FILE:penumbra>)
 add_test(NAME blender.nodes
          COMMAND ${PENUMBRA_SYSTEM_PYTHON} ${CMAKE_CURRENT_SOURCE_DIR}/blender/addon_nodes.py ${addon})
-set_tests_properties(blender.addon blender.nodes PROPERTIES LABELS quick)
+add_test(NAME blender.serve COMMAND ${PENUMBRA_SYSTEM_PYTHON} ${CMAKE_CURRENT_SOURCE_DIR}/blender/serve.py ${addon} $<TARGET_FILE:penumbra>)
+set_tests_properties(blender.addon blender.nodes blender.serve PROPERTIES LABELS quick)
 add_test(NAME blender.farm
          COMMAND ${PENUMBRA_SYSTEM_PYTHON} ${CMAKE_CURRENT_SOURCE_DIR}/blender/farm.py ${addon} $<TARGET_FILE:penumbra>
                  ${PROJECT_BINARY_DIR}/blender_farm)
@@ -17,3 +18,6 @@ foreach(script engine panels surfaces cycles exported compositor)
                    ${PROJECT_BINARY_DIR}/blender_${script})
   set_tests_properties(blender.${script} PROPERTIES LABELS full TIMEOUT 7200)
 endforeach()
+add_test(NAME blender.viewport
+         COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/blender/run.sh viewport.py ${addon} $<TARGET_FILE:penumbra> ${PROJECT_BINARY_DIR}/blender_viewport)
+set_tests_properties(blender.viewport PROPERTIES LABELS full TIMEOUT 1800 ENVIRONMENT WINDOW=1)

@@ -14,16 +14,21 @@ bl_info = {
 def register():
     import bpy
 
-    from . import engine, panels, settings
+    from . import engine, panels, serving, settings
     settings.register()
     bpy.utils.register_class(engine.PenumbraEngine)
     panels.register()
+    for handlers in (bpy.app.handlers.render_complete, bpy.app.handlers.render_cancel):
+        handlers.append(bpy.app.handlers.persistent(serving.forget))  # in the next file, too
 
 
 def unregister():
     import bpy
 
-    from . import engine, panels, settings
+    from . import engine, panels, serving, settings
+    for handlers in (bpy.app.handlers.render_complete, bpy.app.handlers.render_cancel):
+        handlers.remove(serving.forget)
+    serving.forget()
     panels.unregister()
     bpy.utils.unregister_class(engine.PenumbraEngine)
     settings.unregister()

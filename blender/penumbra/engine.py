@@ -5,7 +5,7 @@ import traceback
 
 import bpy
 
-from . import background, exr, frames, losses, passes, program, settings
+from . import background, exr, frames, losses, passes, program, serving, settings, viewport
 from .export import SceneWriter
 
 
@@ -16,7 +16,7 @@ class Refused(Exception):
     """What the user can act on."""
 
 
-class PenumbraEngine(bpy.types.RenderEngine):
+class PenumbraEngine(viewport.ShownInViews, bpy.types.RenderEngine):
     bl_idname = "PENUMBRA"
     bl_label = "Penumbra"
     bl_use_preview = False
@@ -60,7 +60,7 @@ class PenumbraEngine(bpy.types.RenderEngine):
                 """What the program only warns of, and which is too bright: at once, not after the render."""
                 if _TOO_BRIGHT in line and not wanted.lenient:
                     raise Refused(f"{program.messages(line, glb)[0][0]}: it would be too bright. Close it, or tick 'Lenient'")
-            code, printed = program.run(command, self.test_break, workspace, refuse)
+            code, printed = serving.run(command, self.test_break, refuse)
             if code is None:
                 return
             warnings, error = program.messages(printed, glb)

@@ -143,5 +143,20 @@ class Glb:
         return struct.pack("<III", 0x46546C67, 2, 12 + len(chunks)) + chunks
 
 
+class OfThings(Glb):
+    """A file whose nodes say of which thing each is, for `penumbra serve` (docs/serve.md)."""
+
+    def __init__(self):
+        super().__init__()
+        self.thing = ""  # of the nodes that come next
+        self.things, self.shadeless = set(), set()  # those that have nodes; those whose lamps cast no shadows
+
+    def node(self, name, matrix, extras=None, **what):
+        self.things.add(self.thing)
+        if "mesh" not in what and (extras or {}).get("castsShadow") is False:
+            self.shadeless.add(self.thing)
+        return super().node(f"{self.thing}\u241f{name}", matrix, extras, **what)
+
+
 def _shadow(casts_shadow):
     return {} if casts_shadow else {"castsShadow": False}

@@ -99,13 +99,13 @@ class Engine(unittest.TestCase):
 
     def test_sizes_are_as_blender_rounds_them(self):
         """Every percentage: what is asked of the program is what Blender has room for."""
-        from penumbra import program
-        asked, own = [], program.run
+        from penumbra import serving
+        asked, own = [], serving.run
 
         def stop(command, *_):
             asked.append(tuple(int(side) for side in command[command.index("--size") + 1].split("x")))
             return None, ""
-        program.run = stop
+        serving.run = stop
         scene = inside.fresh(scenes.area_square)
         scene.render.image_settings.file_format, scene.render.filepath = "BMP", out("size")
         try:
@@ -132,7 +132,7 @@ class Engine(unittest.TestCase):
                 self.assertEqual(tuple(bpy.data.images.load(out("size.bmp")).size), asked[-1], f"region {low} to {high}")
                 bpy.data.images.remove(bpy.data.images["size.bmp"])
         finally:
-            program.run = own
+            serving.run = own
 
     def test_a_region_is_a_part_of_the_whole(self):
         """With and without cropping, and of both kinds of lenses."""

@@ -1,0 +1,155 @@
+"""A `penumbra serve` child and its messages (docs/serve.md). Knows nothing of Blender."""
+
+import collections
+import json
+import queue
+import struct
+import subprocess
+import threading
+
+import numpy
+
+_LEVELS = {"note": "info"}  # else as they are on the program's stderr
+
+
+def packed(head, data=b""):
+    """A message as it passes through the pipe."""
+    if data:
+        head = {**head, "bytes": len(data)}
+    text = json.dumps(head, separators=(",", ":")).encode()
+    return struct.pack("<I", len(text)) + text + data
+
+
+def read_message(stream):
+    """(head, bytes) of the next message; None at the end."""
+    length = stream.read(4)
+    if len(length) < 4:
+        return None
+    head = json.loads(stream.read(struct.unpack("<I", length)[0]))
+    data = stream.read(head.get("bytes", 0))
+    return (head, data) if len(data) == head.get("bytes", 0) else None
+
+
+class Picture:
+    """`head`: its message; `rgba`: height x width x 4, first row at the top; `visibility`: of each light, by its name."""
+
+    def __init__(self, head, data):
+        self.head, self.visibility, at = head, {}, 0
+        for buffer in head["buffers"]:
+            values = numpy.frombuffer(data, "<f4", buffer["bytes"] // 4, at).reshape(head["height"], head["width"], -1)
+            at += buffer["bytes"]
+            if buffer["name"] == "RGBA":
+                self.rgba = values
+            else:
+                self.visibility[buffer["light"]] = values[..., 0]
+
+
+class Child:
+    """Ends with this process, however that ends: its input is closed then. Neither sending nor receiving waits for it."""
+
+    def __init__(self, program, *arguments):
+        self.process = subprocess.Popen([program, "serve", *arguments], stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+        self.messages = queue.SimpleQueue()  # heads of all but pictures, in their order; None behind the last
+        self._picture, self._waiting, self._wake = None, collections.deque(), threading.Condition()
+        self._ends = False
+        for work in (self._write, self._read):
+            threading.Thread(target=work, daemon=True).start()
+
+    def send(self, head, data=b""):
+        """Of two `show` that wait, one behind the other, one is made."""
+        with self._wake:
+            waiting = self._waiting
+            if head["type"] == "show" and waiting and waiting[-1][0]["type"] == "show":
+                waiting[-1] = ({**waiting[-1][0], **head}, b"")
+            else:
+                waiting.append((head, data))
+            self._wake.notify_all()
+
+    def has_news(self):
+        return self._picture is not None or not self.messages.empty()
+
+    def take_picture(self):
+        """The newest, once; None if there is none that has not been taken."""
+        with self._wake:
+            picture, self._picture = self._picture, None
+        return picture
+
+    def close(self):
+        """It ends at once, unless it hangs."""
+        with self._wake:
+            self._ends = True
+            self._waiting.clear()
+            self._wake.notify_all()
+        try:
+            self.process.wait(2)
+        except subprocess.TimeoutExpired:
+            self.kill()
+
+    def kill(self):
+        self.process.kill()
+        self.process.wait()
+
+    def _write(self):
+        while True:
+            with self._wake:
+                self._wake.wait_for(lambda: self._waiting or self._ends)
+                message = self._waiting.popleft() if self._waiting else None
+            try:
+                if message is None:
+                    self.process.stdin.close()
+                    return
+                self.process.stdin.write(packed(*message))
+                self.process.stdin.flush()
+            except (OSError, ValueError):
+                return  # the reader hears of it
+
+    def _read(self):
+        stream = self.process.stdout
+        while (message := read_message(stream)) is not None:
+            if message[0]["type"] == "picture":
+                picture = Picture(*message)
+                with self._wake:
+                    self._picture = picture
+            else:
+                self.messages.put(message[0])
+        self.messages.put(None)
+
+
+_kept = {}  # the child that makes pictures of a sequence, by its program
+
+
+def run(command, cancelled, hears=lambda line: None):
+    """As program.run, by a child that is kept for the next picture. `command`: PROGRAM render ARGUMENT…"""
+    program, _, *arguments = command
+    child = _kept.get(program)
+    if child is None or child.process.poll() is not None:
+        child = _kept[program] = Child(program)
+    printed = []
+    child.send({"type": "render", "arguments": arguments})
+    try:
+        while True:
+            try:
+                head = child.messages.get(timeout=0.1)
+            except queue.Empty:
+                if cancelled():
+                    forget(now=True)
+                    return None, ""
+                continue
+            if head is None:
+                _kept.pop(program)
+                return child.process.wait(), "".join(printed)
+            if head["type"] == "done":
+                return head["code"], "".join(printed)
+            if head["type"] == "say":
+                printed.append(f"penumbra: {_LEVELS.get(head['level'], head['level'])}: {head['text']}\n")
+                hears(printed[-1])
+    except BaseException:
+        forget(now=True)
+        raise
+
+
+def forget(*_, now=False):
+    """No other picture of the sequence comes."""
+    while _kept:
+        child = _kept.popitem()[1]
+        child.kill() if now else child.close()

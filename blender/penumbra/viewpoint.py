@@ -1,0 +1,52 @@
+"""From where a 3D view looks. Knows nothing of Blender, whose Z is up."""
+
+from math import atan, degrees, sqrt
+
+
+def _turned(x, y, z):
+    """Z up into Y up, as the exchange file's first node does."""
+    return (x, z, -y)
+
+
+def _unit(vector):
+    """In the order of operations of the program's reader, so that all digits are the same."""
+    x, y, z = vector
+    scale = 1.0 / sqrt(x * x + y * y + z * z)
+    return (x * scale, y * scale, z * scale)
+
+
+class Viewpoint:
+    """`matrix`: rows, from the view to the world, without scale; `projection`: rows, as OpenGL's; `size`: in pixels."""
+
+    def __init__(self, matrix, projection, size):
+        self.matrix, self.size = [[float(x) for x in row] for row in matrix], tuple(size)
+        self.aspect = size[0] / size[1]
+        rows = [[float(x) for x in row] for row in projection]
+        self.half_angle = self.height = None
+        if rows[3][3] == 0:  # perspective
+            self.half_angle = 1 / rows[1][1]
+            middle = rows[0][2], rows[1][2]
+        else:
+            self.height = 2 / rows[1][1]
+            middle = -rows[0][3], -rows[1][3]
+        self.shift = (middle[0] / 2 * self.aspect, middle[1] / 2)
+
+    def key(self):
+        return self.matrix, self.half_angle, self.height, self.shift, self.size
+
+    def camera(self):
+        """As `show` takes it."""
+        column = [tuple(self.matrix[row][i] for row in range(3)) for i in range(4)]
+        eye = _turned(*column[3])
+        forward = _unit(_turned(*(-x for x in column[2])))
+        camera = {"eye": eye, "target": [a + b for a, b in zip(eye, forward)], "up": _unit(_turned(*column[1])),
+                  "shift": self.shift}
+        if self.height is None:
+            camera["verticalFov"] = degrees(2 * atan(self.half_angle))
+        else:
+            camera["orthographicHeight"] = self.height
+        return camera
+
+    def write(self, glb):
+        """As a camera of an exchange file: the same view."""
+        glb.camera("View", self.matrix, self.aspect, self.shift, half_angle=self.half_angle, height=self.height)

@@ -1,0 +1,293 @@
+#!/usr/bin/python3
+"""`penumbra serve` as the add-on's own client meets it, without Blender: what is shown in the end is what `render` makes of
+the whole scene, byte for byte; what is refused; how it ends.
+
+    serve.py ADDON.zip PENUMBRA
+"""
+
+import math
+import os
+import signal
+import struct
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+ZIP, PENUMBRA = sys.argv[1:3]
+sys.path.insert(0, ZIP)  # what users get is what is tested
+
+import numpy  # noqa: E402
+
+from penumbra import exr, glb, serving  # noqa: E402
+from penumbra.viewpoint import Viewpoint  # noqa: E402
+
+SIZE = (60, 44)
+
+
+def at(x, y, z, scale=1.0, turn=0.0):
+    c, s = scale * math.cos(turn), scale * math.sin(turn)
+    return [[c, -s, 0, x], [s, c, 0, y], [0, 0, scale, z], [0, 0, 0, 1]]
+
+
+def seen_from(angle, distance=7.0, height=4.0, ortho=False):
+    """A view of the origin, Z up, as a 3D view's matrices are."""
+    eye = numpy.array([distance * math.sin(angle), -distance * math.cos(angle), height])
+    back = eye / numpy.linalg.norm(eye)
+    right = numpy.cross([0, 0, 1], back)
+    right /= numpy.linalg.norm(right)
+    up = numpy.cross(back, right)
+    matrix = numpy.eye(4)
+    matrix[:3, 0], matrix[:3, 1], matrix[:3, 2], matrix[:3, 3] = right, up, back, eye
+    aspect = SIZE[0] / SIZE[1]
+    if ortho:
+        projection = [[2 / (6 * aspect), 0, 0, 0.1], [0, 2 / 6, 0, -0.05], [0, 0, -0.01, 0], [0, 0, 0, 1]]
+    else:
+        projection = [[2 / aspect, 0, 0.1, 0], [0, 2, -0.2, 0], [0, 0, -1, -0.2], [0, 0, -1, 0]]
+    rows = matrix.astype(numpy.float32)
+    return Viewpoint(rows.tolist(), numpy.array(projection, numpy.float32).tolist(), SIZE)
+
+
+class Scene:
+    """Things by name, each a function that adds it to an exchange file, in their order."""
+
+    def __init__(self):
+        self.things = {
+            "Floor": self.mesh("Floor", [(-4, -4, 0), (4, -4, 0), (4, 4, 0), (-4, 4, 0)], [(0, 1, 2), (0, 2, 3)], at(0, 0, 0)),
+            "Block": self.block(at(0.2, 0, 1, 1, 0.4)),
+            "Key": self.area(at(1, -1, 4)),
+            "Bulb": lambda file: file.lamp("Bulb", at(-2, 1, 3), "point", 20, (1, 0.5, 0.2), {"radius": 0.2}),
+            "Fill": lambda file: file.lamp("Fill", at(0, 0, 9), "directional", 0.2, (1, 1, 1), {"angle": 4}, False),
+            "Panel": self.mesh("Panel", [(-1, 0, -1), (1, 0, -1), (1, 0, 1), (-1, 0, 1)], [(0, 1, 2), (0, 2, 3)], at(0, 3, 2), 3.0)}
+
+    @staticmethod
+    def mesh(name, corners, triangles, matrix, radiance=0.0):
+        def add(file):
+            rows = numpy.array(corners, "<f4")
+            place = file.accessor(rows.tobytes(), "VEC3", bounds=(rows.min(axis=0), rows.max(axis=0)))
+            indices = file.accessor(numpy.array(triangles, "<u4").tobytes(), "SCALAR", glb.UNSIGNED)
+            material = file.material("Plain", (0.7, 0.6, 0.5), (radiance,) * 3)
+            file.node(name, matrix, mesh=file.mesh(name, [
+                {"attributes": {"POSITION": place}, "indices": indices, "material": material}]))
+        return add
+
+    @classmethod
+    def block(cls, matrix, top=1.0):
+        corners = [(x, y, top * z) for z in (-0.5, 0.5) for y in (-0.5, 0.5) for x in (-0.5, 0.5)]
+        faces = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
+        return cls.mesh("Block", corners, [half for a, b, c, d in faces for half in ((a, b, c), (a, c, d))], matrix)
+
+    @staticmethod
+    def area(matrix):
+        return lambda file: file.area_lamp("Key", matrix, "rectangle", (1.2, 0.8), (9, 8, 7))
+
+    def put(self, child, *names):
+        file = glb.OfThings()
+        for name in names:
+            file.thing = name
+            self.things[name](file)
+        child.send({"type": "put", "shadeless": sorted(file.shadeless)}, file.encoded())
+
+    def write(self, path, viewpoint):
+        """All of it in one file, as for F12."""
+        file = glb.Glb()
+        for add in self.things.values():
+            add(file)
+        viewpoint.write(file)
+        with open(path, "wb") as out:
+            out.write(file.encoded())
+
+
+class Serve(unittest.TestCase):
+    def setUp(self):
+        self.child, self.scene, self.stamp = serving.Child(PENUMBRA), Scene(), 0
+        self.folder = tempfile.TemporaryDirectory(prefix="penumbra-serve-")
+        self.assertEqual(self.heard()["type"], "hello")
+
+    def tearDown(self):
+        self.child.kill()
+        self.folder.cleanup()
+
+    def path(self, name):
+        return os.path.join(self.folder.name, name)
+
+    def heard(self):
+        return self.child.messages.get(timeout=60)
+
+    def show(self, **message):
+        self.stamp += 1
+        self.child.send({"type": "show", "stamp": self.stamp, "visibility": True, **message})
+
+    def final(self, stamps=None):
+        """The final picture of all that was sent; `stamps` gets those of what came before."""
+        end = time.monotonic() + 60
+        while time.monotonic() < end:
+            picture = self.child.take_picture()
+            if picture is None:
+                time.sleep(0.002)
+                continue
+            if stamps is not None:
+                stamps.append(picture.head["stamp"])
+            if picture.head["final"] and picture.head["stamp"] == self.stamp:
+                return picture
+        said = []
+        while not self.child.messages.empty():
+            said.append(self.child.messages.get())
+        self.fail(f"no final picture came; said: {said}")
+
+    def rendered(self, viewpoint, *arguments):
+        self.scene.write(self.path("whole.glb"), viewpoint)
+        subprocess.run([PENUMBRA, "render", self.path("whole.glb"), "-o", self.path("whole.exr"), "--no-studio", "--lenient", "-q",
+                        "--size", "{}x{}".format(*viewpoint.size), *arguments], check=True)
+        with open(self.path("whole.exr"), "rb") as file:
+            return exr.read(file.read())
+
+    def expect_whole(self, picture, viewpoint, *arguments):
+        whole = self.rendered(viewpoint, *arguments).channels
+        for number, letter in enumerate("RGBA"):
+            self.assertEqual(picture.rgba[..., number].tobytes(), whole[letter].tobytes(), letter)
+        self.assertGreater(len(picture.visibility), 0)
+        for light, values in picture.visibility.items():
+            self.assertEqual(values.tobytes(), whole[f"{light}.V"].tobytes(), light)
+        self.assertGreater(len(numpy.unique(picture.rgba)), 100)
+
+    def begin(self, viewpoint):
+        self.scene.put(self.child, *self.scene.things)
+        self.order()
+        self.show(camera=viewpoint.camera(), size=viewpoint.size)
+        return self.final()
+
+    def order(self):
+        self.child.send({"type": "order", "things": list(self.scene.things)})
+
+    def test_what_is_shown_is_what_render_makes(self):
+        viewpoint = seen_from(0.3)
+        self.expect_whole(self.begin(viewpoint), viewpoint)
+        stamps = []
+        for step in range(30):
+            viewpoint = seen_from(0.3 + 0.02 * step)
+            self.show(camera=viewpoint.camera(), moving=True)
+            time.sleep(0.01)
+        picture = self.final(stamps)
+        self.assertEqual(stamps, sorted(stamps))
+        self.expect_whole(picture, viewpoint)
+        # A lamp moves: it alone is sent.
+        self.scene.things["Key"] = self.scene.area(at(-1, -2, 3.5, 1.1, 0.7))
+        self.scene.put(self.child, "Key")
+        self.show()
+        self.expect_whole(self.final(), viewpoint)
+        # A mesh is edited, an emitting one moves, a lamp goes.
+        self.scene.things["Block"] = self.scene.block(at(0.5, 0.3, 1, 1, 0.9), 1.7)
+        self.scene.put(self.child, "Block")
+        self.show()
+        self.expect_whole(self.final(), viewpoint)
+        del self.scene.things["Bulb"]
+        self.scene.things["Panel"] = self.scene.mesh("Panel", [(-1, 0, -1), (1, 0, -1), (1, 0, 1)], [(0, 1, 2)], at(1, 3, 2), 4.0)
+        self.scene.put(self.child, "Panel")
+        self.child.send({"type": "remove", "things": ["Bulb", "nothing"]})
+        self.show(lightSamples=64)
+        self.expect_whole(self.final(), viewpoint, "--light-samples", "64")
+        # Another order, other lights' shadows, and another kind of lens.
+        self.scene.things = {name: self.scene.things[name] for name in ("Panel", "Fill", "Block", "Key", "Floor")}
+        self.order()
+        viewpoint = seen_from(-0.4, ortho=True)
+        self.show(lightSamples=0, method="", camera=viewpoint.camera())
+        picture = self.final()
+        self.expect_whole(picture, viewpoint)
+        self.assertEqual(picture.head["lightSamples"], 0)
+
+    def test_what_is_refused_changes_nothing(self):
+        viewpoint = seen_from(0)
+        before = self.begin(viewpoint)
+        for message, data, words in (
+                ({"type": "shutdown"}, b"", "shutdown"), ({"type": "order", "things": ["Moon"]}, b"", "Moon"),
+                ({"type": "put"}, b"", "empty"), ({"type": "put"}, b"glTF is this not", "GLB"),
+                ({"type": "put", "shadeless": 7}, b"x", "put"), ({"type": "show", "size": [9]}, b"", "show"),
+                ({"type": "show", "size": [100000, 4]}, b"", "size"), ({"type": "show", "lightSamples": 99999}, b"", "99999"),
+                ({"type": "show", "camera": {"eye": [0, 0, 0], "target": [0, 0, 0]}}, b"", "eye"),
+                ({"type": "show", "method": "magic"}, b"", "magic"), ({"type": "render"}, b"", "arguments"),
+                ({"type": "render", "arguments": ["--frames", "1-3"]}, b"", "")):
+            self.child.send(message, data)
+            said = self.heard()
+            while said["type"] == "done":
+                said = self.heard()
+            self.assertEqual((said["type"], said["level"]), ("say", "error"), message)
+            self.assertIn(words, said["text"])
+        self.child.send({"type": "remove", "things": list(self.scene.things)})
+        self.show()
+        while "no light" not in (said := self.heard()).get("text", ""):
+            self.assertEqual(said["type"], "done")
+        self.scene.put(self.child, *self.scene.things)
+        self.order()
+        self.show()
+        self.assertEqual(self.final().rgba.tobytes(), before.rgba.tobytes())
+
+    def ends(self, data, code, seconds=20):
+        """What is left of input when this has been written, and nothing after it."""
+        process = subprocess.Popen([PENUMBRA, "serve"], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        out, error = process.communicate(data, seconds)
+        self.assertEqual(process.returncode, code, error)
+        return out, error.decode()
+
+    def test_ends_with_its_input(self):
+        self.ends(b"", 0)
+        self.assertIn(b"ends within", self.ends(b"\5\0", 3)[0])
+        self.assertIn(b"bytes", self.ends(struct.pack("<I", 1 << 30), 3)[0])
+        for text in (b"{", b"[1]", b"{}", b'{"type": 3}', b"[" * 5000, b'{"type": "put", "bytes": -1}'):
+            self.assertIn(b'"error"', self.ends(struct.pack("<I", len(text)) + text, 3)[0])
+        self.assertIn("ends within", self.ends(serving.packed({"type": "put", "bytes": 1 << 30}), 3)[1])
+        viewpoint = seen_from(0)
+        self.scene.put(self.child, *self.scene.things)
+        for _ in range(5):
+            self.show(camera=viewpoint.camera(), size=(3000, 2000))  # of which nobody will read a picture
+        time.sleep(0.5)
+        began = time.monotonic()
+        self.child.close()
+        self.assertEqual(self.child.process.returncode, 0)
+        self.assertLess(time.monotonic() - began, 10)
+
+    def test_ends_with_who_started_it(self):
+        """However that one ends; though a picture is written meanwhile, and nobody ever reads."""
+        self.scene.write(self.path("long.glb"), seen_from(0))
+        script = ("import sys, time; sys.path.insert(0, sys.argv[1]); from penumbra import serving; child = serving.Child(sys.argv[2]); "
+                  "child.send({'type': 'render', 'arguments': sys.argv[3:]}); print(child.process.pid, flush=True); time.sleep(99)")
+        parent = subprocess.Popen([sys.executable, "-c", script, ZIP, PENUMBRA, self.path("long.glb"), "-o", self.path("long.exr"),
+                                   "--pixel-samples", "64", "--size", "2000x2000"], stdout=subprocess.PIPE, text=True)
+        number = int(parent.stdout.readline())
+        time.sleep(1)
+        parent.send_signal(signal.SIGKILL)
+        parent.wait()
+        end = time.monotonic() + 20
+        while os.path.exists(f"/proc/{number}/fd/0") and time.monotonic() < end:  # a process that has ended has none
+            time.sleep(0.05)
+        self.assertLess(time.monotonic(), end, "the child lives on")
+        self.assertEqual([name for name in os.listdir(self.folder.name) if "exr" in name], [])
+
+    def test_pictures_of_a_sequence_are_those_of_render(self):
+        viewpoint, heard = seen_from(0.1), []
+        try:
+            for frame in range(3):
+                self.scene.things["Block"] = self.scene.block(at(0.2 * frame, 0, 1, 1, 0.3 * frame))
+                self.scene.write(self.path("frame.glb"), viewpoint)
+                command = [PENUMBRA, "render", self.path("frame.glb"), "-o", self.path("kept.exr"), "--no-studio", "--size", "48x32"]
+                code, printed = serving.run(command, lambda: False, heard.append)
+                self.assertEqual(code, 0, printed)
+                subprocess.run([*command[:3], "-q", "-o", self.path("alone.exr"), *command[5:]], check=True)
+                with open(self.path("kept.exr"), "rb") as kept, open(self.path("alone.exr"), "rb") as alone:
+                    self.assertEqual(kept.read(), alone.read())
+                numbers = {child.process.pid for child in serving._kept.values()}
+                self.assertEqual(len(numbers), 1)
+            self.assertIn("48x32", "".join(heard))
+            code, printed = serving.run([PENUMBRA, "render", self.path("none.glb"), "-o", self.path("none.exr")], lambda: False)
+            self.assertEqual(code, 3)
+            self.assertIn("penumbra: error: ", printed)
+            self.assertEqual({child.process.pid for child in serving._kept.values()}, numbers)
+            self.assertEqual(serving.run([*command, "--pixel-samples", "64"], lambda: True), (None, ""))
+            self.assertEqual(serving._kept, {})
+        finally:
+            serving.forget(now=True)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])
