@@ -14,6 +14,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <optional>
 #include <span>
 #include <string_view>
@@ -29,10 +30,14 @@ glm::dmat4 to_glm(const aiMatrix4x4& m) {  // Assimp's letters are rows, glm's c
 
 class SceneReader {
  public:
-  /// `to_scene` places the file's root, converting its units and axes. `triangles`, if not 0, is the number of
-  /// triangles that must be read.
-  SceneReader(const aiScene& scene, std::string file, const glm::dmat4& to_scene, std::uint64_t triangles)
-      : scene_(scene), file_(std::move(file)), to_scene_(to_scene), triangles_(triangles), faces_(mesh_.soup) {}
+  /// `to_scene` places the file's root, which turns its units and axes into ours.
+  SceneReader(const aiScene& scene, std::string file, const glm::dmat4& to_scene, const AssimpSceneOptions& options)
+      : scene_(scene),
+        file_(std::move(file)),
+        to_scene_(to_scene),
+        triangles_(options.triangles),
+        parts_of_scene_(options.parts),
+        faces_(mesh_.soup) {}
 
   ImportedMesh read() {
     struct Visit {
@@ -44,11 +49,14 @@ class SceneReader {
     while (!stack.empty()) {  // no recursion: a file may nest a million nodes
       const Visit visit = stack.back();
       stack.pop_back();
-      for (const unsigned number : std::span(visit.node->mMeshes, visit.node->mNumMeshes)) {
+      const std::string name = visit.node->mName.C_Str();
+      places_.try_emplace(name, visit.to_world);
+      for (unsigned i = 0; i < visit.node->mNumMeshes; ++i) {
+        const unsigned number = visit.node->mMeshes[i];
         if (number >= scene_.mNumMeshes)
           throw InputError("{}: a node names mesh {} of {}", file_, number, scene_.mNumMeshes);
         shown[number] = true;
-        add(*scene_.mMeshes[number], visit.to_world);
+        add(*scene_.mMeshes[number], visit.to_world, visit.node->mNumMeshes > 1 ? fmt::format("{}/{}", name, i) : name);
       }
       for (unsigned i = visit.node->mNumChildren; i-- > 0;) {  // pushed last first, so that they are popped in the
                                                                // file's order
@@ -71,6 +79,7 @@ class SceneReader {
     mesh_.notes.insert(mesh_.notes.end(), notes.begin(), notes.end());
     note_what_was_ignored();
     note_lost_precision();
+    if (parts_of_scene_ != nullptr) add_lamps_and_lenses(scene_, places_, *parts_of_scene_);
     return std::move(mesh_);
   }
 
@@ -86,13 +95,14 @@ class SceneReader {
     }
     mesh_.notes.push_back(fmt::format("{} of {} meshes taken as they are: no node shows them", hidden, shown.size()));
     for (unsigned i = 0; i < scene_.mNumMeshes; ++i) {
-      if (!shown[i]) add(*scene_.mMeshes[i], to_scene_);
+      if (!shown[i]) add(*scene_.mMeshes[i], to_scene_, scene_.mMeshes[i]->mName.C_Str());
     }
   }
 
-  void add(const aiMesh& part, const glm::dmat4& to_world) {
+  void add(const aiMesh& part, const glm::dmat4& to_world, const std::string& name) {
     auto& positions = mesh_.soup.positions;
     const std::size_t first = positions.size();
+    if (parts_of_scene_ != nullptr) add_looks(part, to_world, name);
     if (first + part.mNumVertices > std::numeric_limits<std::uint32_t>::max()) {
       throw InputError("{}: more than 4,294,967,295 vertices", file_);
     }
@@ -132,6 +142,29 @@ class SceneReader {
     morphs_ += part.mNumAnimMeshes > 0 ? 1 : 0;
   }
 
+  /// What the mesh looks like, before its positions and triangles come.
+  void add_looks(const aiMesh& part, const glm::dmat4& to_world, const std::string& name) {
+    parts_of_scene_->parts.push_back(part_of(scene_, part, name));
+    parts_of_scene_->parts.back().first_triangle = mesh_.soup.triangles.size();
+    const glm::dmat3 turned = glm::transpose(glm::inverse(glm::dmat3(to_world)));
+    for (unsigned i = 0; i < part.mNumVertices; ++i) {
+      glm::dvec3 normal(0);
+      if (part.HasNormals()) {
+        const aiVector3D& n = part.mNormals[i];
+        normal = turned * glm::dvec3(n.x, n.y, n.z);
+        const double length = glm::length(normal);
+        normal = std::isfinite(length) && length > 0 ? normal / length : glm::dvec3(0);
+      }
+      parts_of_scene_->normals.emplace_back(normal);
+      glm::dvec2 place = kNoPlace;
+      if (parts_of_scene_->uv < AI_MAX_NUMBER_OF_TEXTURECOORDS && part.HasTextureCoords(parts_of_scene_->uv)) {
+        const aiVector3D& uv = part.mTextureCoords[parts_of_scene_->uv][i];
+        if (std::abs(uv.x) < 1e6F && std::abs(uv.y) < 1e6F) place = {uv.x, 1 - static_cast<double>(uv.y)};
+      }
+      parts_of_scene_->places.push_back(place);
+    }
+  }
+
   [[noreturn]] void refuse_vertex(std::uint32_t vertex) const {
     const auto next = std::ranges::upper_bound(parts_, vertex, {}, &std::pair<std::size_t, const aiMesh*>::first);
     const auto& [first, part] = *std::prev(next);
@@ -150,7 +183,7 @@ class SceneReader {
     const auto mention = [&](std::uint64_t count, std::string_view what) {
       if (count > 0) ignored += fmt::format("{}{} of {} meshes", ignored.empty() ? "" : ", ", what, count);
     };
-    mention(normals_, "vertex normals");
+    if (parts_of_scene_ == nullptr) mention(normals_, "vertex normals");
     mention(uvs_, "texture coordinates");
     mention(colors_, "vertex colours");
     mention(skins_, "bones");
@@ -182,6 +215,8 @@ class SceneReader {
   std::string file_;
   glm::dmat4 to_scene_;
   std::uint64_t triangles_;
+  SceneParts* parts_of_scene_;
+  std::map<std::string, glm::dmat4, std::less<>> places_;  // of nodes, by name
   ImportedMesh mesh_;
   FaceCollector faces_;
   std::vector<std::uint32_t> corners_;
@@ -240,9 +275,9 @@ class FbxFrame {
 }  // namespace
 
 ImportedMesh read_assimp_scene(const aiScene& scene, const std::string& file, const AssimpSceneOptions& options) {
-  if (!options.is_fbx) return SceneReader(scene, file, glm::dmat4(1), options.triangles).read();
+  if (!options.is_fbx) return SceneReader(scene, file, glm::dmat4(1), options).read();
   const FbxFrame frame(scene.mMetaData);
-  ImportedMesh mesh = SceneReader(scene, file, frame.to_scene(), options.triangles).read();
+  ImportedMesh mesh = SceneReader(scene, file, frame.to_scene(), options).read();
   mesh.notes.insert(mesh.notes.end(), frame.notes().begin(), frame.notes().end());
   return mesh;
 }

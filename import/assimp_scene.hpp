@@ -1,5 +1,6 @@
 #pragma once
 
+#include "import/scene_parts.hpp"
 #include "mesh/import.hpp"
 
 #include <cstdint>
@@ -10,9 +11,9 @@ struct aiScene;
 namespace penumbra::mesh {
 
 struct AssimpSceneOptions {
-  bool is_fbx = false;          ///< applies the file's unit and axes
-  std::uint64_t triangles = 0;  ///< least number of triangles that the file shows, if it was counted: fewer are an
-                                ///< error
+  bool is_fbx = false;          ///< its unit and axes are applied
+  std::uint64_t triangles = 0;  ///< so many at least the file shows, where it was counted: fewer are refused
+  SceneParts* parts = nullptr;  ///< gets what there is beside triangles
 };
 
 /// Returns every mesh of the node tree, transformed by its nodes, in one soup.

@@ -8,6 +8,7 @@
 #include "import/read.hpp"
 #include "mesh/import_wire.hpp"
 #include "mesh/opened_files.hpp"
+#include "import/foreign_scene.hpp"
 #include "import/gltf/gltf_import.hpp"
 #include "scenes/scene_wire.hpp"
 #include "import/texture_file.hpp"
@@ -83,7 +84,7 @@ bool parse(int argc, char** argv, Arguments& arguments) {
     arguments.options.needs_light &= flag != "--without-light";
     arguments.options.needs_surface &= flag != "--without-surface";
   }
-  constexpr std::array<std::string_view, 4> kKinds = {"mesh", "gltf", "texture", "sky"};
+  constexpr std::array<std::string_view, 4> kKinds = {"mesh", "scene", "texture", "sky"};
   return std::ranges::find(kKinds, arguments.kind) != kKinds.end() && parse(argv[2], arguments.milliseconds) &&
          parse(argv[3], arguments.bytes) && parse(argv[4], arguments.asker);
 }
@@ -115,11 +116,12 @@ Answer answer_for(const Arguments& arguments) {
       answer.mesh = read_mesh(input, arguments);
       mesh::put_mesh(answer.payload, answer.mesh);
       if (arguments.uv) answer.payload.put_array(std::span<const glm::dvec2>(answer.mesh.places));
-    } else if (arguments.kind == "gltf") {
+    } else if (arguments.kind == "scene") {
       scenes::ReadOptions options = arguments.options;
       answer.lightmap.set = static_cast<std::uint32_t>(std::clamp(arguments.uv.value_or(0), 0.0, 1e6));
       if (arguments.uv) options.lightmap = &answer.lightmap;
-      answer.scene = scenes::import_gltf(input, options);
+      const bool foreign = scenes::is_foreign_scene(input.name);
+      answer.scene = foreign ? scenes::import_foreign_scene(input, options) : scenes::import_gltf(input, options);
       scenes::put_scene(answer.payload, answer.scene);
       if (arguments.uv) answer.payload.put_array(std::span<const glm::dvec2>(answer.lightmap.places));
     } else {

@@ -136,8 +136,9 @@ void rethrow_out_of_memory(std::string_view message) {
   }
 }
 
-/// Reads a file with Assimp; if `triangles` is not 0, that many triangles must be delivered.
-ImportedMesh read_with_assimp(const InputFile& input, const std::string& content, std::uint64_t triangles = 0) {
+/// Of what the file shows so many triangles are known, and must come.
+ImportedMesh read_with_assimp(const InputFile& input, const std::string& content, std::uint64_t triangles = 0,
+                              SceneParts* parts = nullptr) {
   const std::string file = input.name.string(), extension = input.name.extension().string();
   if (lower_extension(input.name) == ".3ds") audit_3ds(content, file);
   Complaints complaints;
@@ -172,6 +173,11 @@ ImportedMesh read_with_assimp(const InputFile& input, const std::string& content
   AssimpSceneOptions options;
   options.is_fbx = lower_extension(input.name) == ".fbx";
   options.triangles = triangles;
+  options.parts = parts;
+  if (parts != nullptr) {
+    parts->has_orthographic = has_orthographic_camera(content);
+    parts->white_is_grey = has_template_of_lamps(content);
+  }
   ImportedMesh mesh = read_assimp_scene(*scene, file, options);
   const auto said = complaints.notes();
   mesh.notes.insert(mesh.notes.end(), said.begin(), said.end());
@@ -191,6 +197,20 @@ void note_material_libraries(std::string_view text, const std::filesystem::path&
   }
 }
 
+ImportedMesh read_collada(const InputFile& input, const std::string& content, SceneParts* parts) {
+  const std::string file = input.name.string();
+  const std::uint64_t triangles = triangles_of_collada(content, file);
+  return read_with_assimp(input, without_leading_blanks(content, file), triangles, parts);
+}
+
+/// Formats that artists have, and that nothing on this system reads.
+void refuse_unknown(const std::string& extension, const std::string& file) {
+  for (const auto& [known, name] :
+       {std::pair(".usd", "USD"), {".usda", "USD"}, {".usdc", "USD"}, {".usdz", "USD"}, {".abc", "Alembic"}}) {
+    if (extension == known) throw InputError("{}: {} is not read; export the scene as glTF 2.0 (.glb)", file, name);
+  }
+}
+
 ImportedMesh read_as(const std::string& extension, const InputFile& input, const std::string& content,
                      bool with_places) {
   const std::string file = input.name.string();
@@ -203,10 +223,7 @@ ImportedMesh read_as(const std::string& extension, const InputFile& input, const
   if (extension == ".stl") return read_stl(content, file);
   if (extension == ".amf") return read_amf(content, file);
   if (extension == ".3mf") return read_3mf(content, file);
-  if (extension == ".dae") {
-    const std::uint64_t triangles = triangles_of_collada(content, file);
-    return read_with_assimp(input, without_leading_blanks(content, file), triangles);
-  }
+  if (extension == ".dae") return read_collada(input, content, nullptr);
   if (extension == ".x3d") return read_x3d(content, file);
   if (content.starts_with("FORM") && std::string_view(content).substr(4).find("LWOB") == 4) {
     throw InputError("{}: LWOB, the format of LightWave before version 6, is not supported; save it as LWO2 or OBJ",
@@ -219,6 +236,7 @@ ImportedMesh read_as(const std::string& extension, const InputFile& input, const
 
 ImportedMesh read_mesh(const InputFile& input, bool with_places) {
   const std::string file = input.name.string(), extension = lower_extension(input.name);
+  refuse_unknown(extension, file);
   const std::string content = utf8_content(read_content(input.content.get(), file), extension, file);
   const auto looks_like = sniff(content);
   try {
@@ -227,6 +245,13 @@ ImportedMesh read_mesh(const InputFile& input, bool with_places) {
     if (!looks_like || *looks_like == extension) throw;
     throw InputError("{}; its first bytes look like a {} file: is its name wrong?", error.what(), *looks_like);
   }
+}
+
+ImportedMesh read_scene_parts(const InputFile& input, SceneParts& parts) {
+  const std::string file = input.name.string(), extension = lower_extension(input.name);
+  const std::string content = utf8_content(read_content(input.content.get(), file), extension, file);
+  if (extension == ".dae") return read_collada(input, content, &parts);
+  return read_with_assimp(input, content, 0, &parts);
 }
 
 }  // namespace penumbra::mesh

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "import/scene_parts.hpp"
 #include "mesh/import.hpp"
 #include "mesh/input_file.hpp"
 
@@ -9,5 +10,8 @@ namespace penumbra::mesh {
 /// import helper under its limits. No other code may call it, because hostile files crash, hang and exhaust the
 /// libraries behind it. Throws InputError; std::bad_alloc. `with_places`: fills ImportedMesh::places for OBJ files.
 ImportedMesh read_mesh(const InputFile& input, bool with_places = false);
+
+/// Reads a file that Assimp reads, as the scene that it is: the mesh, and what there is beside it.
+ImportedMesh read_scene_parts(const InputFile& input, SceneParts& parts);
 
 }  // namespace penumbra::mesh

@@ -15,7 +15,7 @@ namespace penumbra::mesh {
 /// Arguments of the helper: `penumbra-import KIND MILLISECONDS BYTES ASKER FILE FLAGS…`. FILE is only a name: the
 /// helper gets the file and its folder opened, as the descriptors below.
 struct HelperJob {
-  std::string kind;  ///< "mesh", "gltf", "texture" or "sky"
+  std::string kind;  ///< "mesh", "scene", "texture" or "sky"
   const InputFile& input;
   std::vector<std::string> flags;
 };

@@ -41,7 +41,7 @@ auto fields_of(Is<Pieces> auto& shape) {
   return std::tie(shape.pieces);
 }
 auto fields_of(Is<AreaLight> auto& light) {
-  return std::tie(light.name, light.shape, light.radiance, light.two_sided, light.unshaded_by);
+  return std::tie(light.name, light.shape, light.radiance, light.two_sided, light.unshaded_by, light.visible);
 }
 auto fields_of(Is<PictureUse> auto& use) {
   return std::tie(use.picture, use.wrap_s, use.wrap_t, use.nearest);

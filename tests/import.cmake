@@ -7,6 +7,8 @@ penumbra_test(import FULL ImportCorpus.*
   unit/import/flat_light.cpp
   unit/import/gltf_animation.cpp
   unit/import/gltf_as_written.cpp
+  unit/import/foreign_scene.cpp
+  unit/import/gltf_domes.cpp
   unit/import/gltf_lamps.cpp
   unit/import/gltf_reader.cpp
   unit/import/gltf_surfaces.cpp

@@ -1,35 +1,20 @@
 #include "import/gltf/area_lamp.hpp"
 
 #include "base/error.hpp"
+#include "import/gltf/gltf_extras.hpp"
 
 #include <tiny_gltf.h>
 
 #include <glm/geometric.hpp>
 
-#include <array>
 #include <cmath>
-#include <cstddef>
 #include <limits>
 #include <string>
 
 namespace penumbra::scenes {
 namespace {
 
-template <std::size_t N>
-std::array<double, N> numbers(const tinygltf::Value& lamp, const char* key, double least, const std::string& place) {
-  std::array<double, N> all{};
-  const tinygltf::Value& list = lamp.Get(key);
-  bool good = list.IsArray() && list.ArrayLen() == N;
-  for (std::size_t i = 0; good && i < N; ++i) {
-    const tinygltf::Value& value = list.Get(static_cast<int>(i));
-    all[i] = value.IsNumber() ? value.GetNumberAsDouble() : -1;
-    good = std::isfinite(all[i]) && all[i] >= least;
-  }
-  if (!good) throw InputError("{}/{}: expected {} numbers from {} up", place, key, N, least);
-  return all;
-}
-
-/// Returns whether u and v span a circle, up to the rounding of a transform in single precision.
+/// A circle, up to the rounding of a transform in single precision?
 bool is_round(const glm::dvec3& u, const glm::dvec3& v) {
   const double rounding = 8 * static_cast<double>(std::numeric_limits<float>::epsilon()) * glm::dot(u, u);
   return std::abs(glm::dot(u, v)) <= rounding && std::abs(glm::dot(u, u) - glm::dot(v, v)) <= rounding;
@@ -46,8 +31,8 @@ std::optional<AreaLight> area_lamp_of(const tinygltf::Node& node, const PlacedNo
                    node.name);
     return std::nullopt;
   }
-  const auto size = numbers<2>(lamp, "size", 0, place);
-  const auto radiance = numbers<3>(lamp, "radiance", 0, place);
+  const auto size = list_of_extras(lamp, "size", 2, 0, place);
+  const auto radiance = list_of_extras(lamp, "radiance", 3, 0, place);
   const glm::dvec3 center(placed.to_world[3]);
   const glm::dvec3 u = size[0] / 2 * glm::dvec3(placed.to_world[0]);
   glm::dvec3 v = size[1] / 2 * glm::dvec3(placed.to_world[1]);

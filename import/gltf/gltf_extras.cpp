@@ -1,12 +1,17 @@
 #include "import/gltf/gltf_extras.hpp"
 
+#include "base/error.hpp"
+
 #include <tiny_gltf.h>
 
 #include <fmt/format.h>
 
+#include <cmath>
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace penumbra::scenes {
 namespace {
@@ -62,6 +67,20 @@ std::optional<double> number_of_extras(const tinygltf::Value& extras, const char
   if (value->IsNumber()) return value->GetNumberAsDouble();
   mention_foreign(key, "number", owner, losses);
   return std::nullopt;
+}
+
+std::vector<double> list_of_extras(const tinygltf::Value& object, const char* key, std::size_t count, double least,
+                                   const std::string& place) {
+  const tinygltf::Value& list = object.Get(key);
+  bool good = list.IsArray() && list.ArrayLen() == count;
+  std::vector<double> all;
+  for (std::size_t i = 0; good && i < count; ++i) {
+    const tinygltf::Value& value = list.Get(static_cast<int>(i));
+    all.push_back(value.IsNumber() ? value.GetNumberAsDouble() : least - 1);
+    good = std::isfinite(all.back()) && all.back() >= least;
+  }
+  if (!good) throw InputError("{}/{}: expected {} numbers from {} up", place, key, count, least);
+  return all;
 }
 
 }  // namespace penumbra::scenes

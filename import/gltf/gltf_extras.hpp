@@ -2,8 +2,10 @@
 
 #include "scenes/losses.hpp"
 
+#include <cstddef>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace tinygltf {
 class Node;
@@ -36,5 +38,10 @@ std::optional<bool> flag_of_extras(const tinygltf::Value& extras, const char* ke
 /// Returns a number of extras, read as by flags_of.
 std::optional<double> number_of_extras(const tinygltf::Value& extras, const char* key, const std::string& owner,
                                        Losses& losses);
+
+/// A list of `count` finite numbers from `least` up, under `key` of an object. Throws InputError, which begins with
+/// `place`, for anything else.
+std::vector<double> list_of_extras(const tinygltf::Value& object, const char* key, std::size_t count, double least,
+                                   const std::string& place);
 
 }  // namespace penumbra::scenes

@@ -5,6 +5,7 @@
 #include "base/assert.hpp"
 #include "base/error.hpp"
 #include "import/gltf/area_lamp.hpp"
+#include "import/gltf/dome_extras.hpp"
 #include "import/gltf/gltf_camera.hpp"
 #include "import/gltf/gltf_deform.hpp"
 #include "import/gltf/gltf_emission.hpp"
@@ -186,6 +187,7 @@ class GltfScene {
         note_refused_light(name, "a lamp of a type that KHR_lights_punctual does not have");
     }
     if (const auto lamp = area_lamp_of(node, placed, losses_)) add_lamp(*lamp, node, name);
+    if (const auto dome = dome_of(node, placed, losses_)) add_lamp(*dome, node, name);
   }
 
   void add_meshes(const tinygltf::Node& node, const PlacedNode& placed, const std::string& name) {

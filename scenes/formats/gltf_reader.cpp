@@ -5,10 +5,12 @@
 #include "base/file_error.hpp"
 #include "mesh/import_helper.hpp"
 #include "mesh/import_wire.hpp"
+#include "scenes/formats/json_meshes.hpp"
 #include "scenes/scene_wire.hpp"
 
 #include <cerrno>
 #include <utility>
+#include <variant>
 
 #include <fcntl.h>
 #include <sys/mman.h>
@@ -17,8 +19,18 @@
 namespace penumbra::scenes {
 namespace {
 
+/// Pictures of domes lie beside the file, as with JSON scenes.
+void read_skies(const std::filesystem::path& file, const ReadOptions& options, Scene& scene) {
+  for (AreaLight& light : scene.lights) {
+    const auto* const dome = std::get_if<Dome>(&light.shape);
+    if (dome == nullptr || dome->image.empty()) continue;
+    light.texture =
+        read_sky(dome->image, {file.string(), fmt::format("dome \"{}\", image", light.name)}, options, scene);
+  }
+}
+
 Scene read_by_helper(const mesh::InputFile& input, const ReadOptions& options) {
-  mesh::HelperJob job{"gltf", input, {}};
+  mesh::HelperJob job{"scene", input, {}};
   if (options.allow_outside) job.flags.emplace_back("--allow-outside");
   if (options.lenient) job.flags.emplace_back("--lenient");
   if (!options.needs_light) job.flags.emplace_back("--without-light");
@@ -41,6 +53,7 @@ Scene read_by_helper(const mesh::InputFile& input, const ReadOptions& options) {
         throw mesh::WireError("not every vertex has a place");
     }
     from.expect_end();
+    read_skies(input.name, options, scene);
     return scene;
   } catch (const mesh::WireError& error) {
     throw InputError("{}: the importer's answer is damaged ({}); the file is probably damaged", input.name.string(),

@@ -22,8 +22,11 @@ namespace penumbra::scenes {
 ///   which its triangles run counter-clockwise, to both if the material is double-sided. It stays an object, with
 ///   `emits` set.
 ///
-/// Throws InputError, with a place such as "/accessors/3", for relevant violations of glTF 2.0, for a scene without an
-/// area light if `options.needs_light`, and for a buffer outside the file's folder unless `options.allow_outside`.
+/// InputError, with a place such as "/accessors/3", for whatever glTF 2.0 forbids and matters here, for a scene
+/// without an area light if `options.needs_light`, and for a buffer outside the file's folder unless
+/// `options.allow_outside`.
+///
+/// FBX and COLLADA files (.fbx, .dae) likewise, with what import/foreign_scene.hpp says of them.
 Scene read_gltf(const std::filesystem::path& file, const ReadOptions& options = {});
 /// A file's bytes (.glb) that lie in memory: what they name beside them is not there. `name`: in messages.
 Scene read_glb(std::span<const std::byte> bytes, const std::string& name, const ReadOptions& options = {});

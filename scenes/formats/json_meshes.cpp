@@ -7,6 +7,7 @@
 #include "mesh/soup_memory.hpp"
 #include "mesh/unused_vertices.hpp"
 #include "scenes/formats/package_files.hpp"
+#include "scenes/light_texture.hpp"
 
 #include <fcntl.h>
 
@@ -258,6 +259,13 @@ SceneFile open_scene_file(const std::string& name, const Place& place, const Rea
   if (file.error == ENOENT) throw missing();
   if (file.error != 0) throw_file_error(file.error, fmt::format("{}: \"{}\"", place.str(), name));
   return {std::move(file.input), home / file.path};
+}
+
+Texture read_sky(const std::string& name, const Place& place, const ReadOptions& options, Scene& scene) {
+  const SceneFile file = open_scene_file(name, place, options);
+  Texture picture = at_place(place, [&] { return read_sky_picture(file.input, name); });
+  scene.sources.push_back(file.path);
+  return picture;
 }
 
 glm::dvec3 read_vector(const json& value) {

@@ -9,6 +9,7 @@
 #include "scenes/formats/json_meshes.hpp"
 #include "scenes/formats/json_schema.hpp"
 #include "scenes/formats/lights/light_formats.hpp"
+#include "scenes/light_kind.hpp"
 #include "scenes/light_texture.hpp"
 
 #include <fmt/ranges.h>
@@ -83,16 +84,7 @@ Texture read_light_texture(const json& value, const Place& place, const ReadOpti
   return texture;
 }
 
-/// Reads the picture of a dome.
-Texture read_sky(const std::string& name, const Place& place, const ReadOptions& options, Scene& scene) {
-  const SceneFile file = open_scene_file(name, place, options);
-  Texture picture = at_place(place, [&] { return read_sky_picture(file.input, name); });
-  scene.sources.push_back(file.path);
-  return picture;
-}
-
-/// Reads the emission of a sun: its radiance, or the irradiance of a surface that faces it. A point-like sun has no
-/// radiance.
+/// What a sun sends, by its radiance or by the irradiance of what faces it. A point has no radiance.
 void read_sun_light(const json& value, const Place& place, AreaLight& light, Scene& scene) {
   const Sun& sun = std::get<Sun>(light.shape);
   if (value.contains("irradiance")) {
@@ -170,6 +162,17 @@ std::uint32_t named_light(const json& value, const Place& place, const std::vect
   return static_cast<std::uint32_t>(found - lights.begin());
 }
 
+/// The light that a mesh is the body of.
+std::uint32_t named_body(const json& value, const Place& place, const std::vector<AreaLight>& lights) {
+  const std::uint32_t light = named_light(value, place, lights);
+  const auto kind = kind_of(lights[light].shape);
+  if (kind && traits_of(*kind).place == LightPlace::directions) {
+    throw InputError("{}: the light \"{}\" is a {}, infinitely far away, so no mesh is its body; take \"emits\" away",
+                     place.str(), lights[light].name, traits_of(*kind).name);
+  }
+  return light;
+}
+
 Object read_object(const json& value, const Place& place, const std::vector<AreaLight>& lights,
                    std::string fallback_name) {
   Object object;
@@ -177,7 +180,7 @@ Object read_object(const json& value, const Place& place, const std::vector<Area
   if (value.contains("color")) object.color = read_vector(value["color"]);
   object.casts_shadow = value.value("castsShadow", true);
   object.receives_shadow = value.value("receivesShadow", true);
-  if (value.contains("emits")) object.emits = named_light(value["emits"], place / "emits", lights);
+  if (value.contains("emits")) object.emits = named_body(value["emits"], place / "emits", lights);
   if (value.contains("lights")) {
     std::set<std::uint32_t> lit_by;
     const json& names = value["lights"];

@@ -49,7 +49,7 @@ Scene read_scene(const std::filesystem::path& file, const ReadOptions& options) 
   const bool is_json = extension == ".json";
   if (is_json) {
     scene = read_json(file, options);
-  } else if (extension == ".gltf" || extension == ".glb") {
+  } else if (extension == ".gltf" || extension == ".glb" || extension == ".fbx" || extension == ".dae") {
     scene = read_gltf(file, options);
   } else if (extension == ".blend") {
     throw InputError("{}: a file of Blender's own; export it as glTF 2.0 (.glb), or render it by Blender's add-on",
