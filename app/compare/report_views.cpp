@@ -8,9 +8,31 @@
 
 #include <glm/geometric.hpp>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <utility>
+#include <vector>
 
 namespace penumbra::app {
+namespace {
+
+/// The light samples of a dome as who lies on the back sees them, in the unit disk and of equal areas for equal solid
+/// angles: `up` is in the middle, straight down (of half a dome, the horizon) the rim.
+std::vector<glm::dvec2> seen_upward(const visibility::Light& light) {
+  const std::array<glm::vec3, 3>& axes = light.dome->axes;
+  std::vector<glm::dvec2> places;
+  for (const glm::vec3& point : light.points) {
+    const glm::dvec3 d = glm::normalize(glm::dvec3(point));
+    const glm::dvec2 around(glm::dot(d, glm::dvec3(axes[0])), glm::dot(d, glm::dvec3(axes[1])));
+    const double height = std::clamp(glm::dot(d, glm::dvec3(axes[2])), -1.0, 1.0);
+    const double radius = std::sqrt((1 - height) / (light.dome->half ? 1 : 2)), flat = glm::length(around);
+    places.push_back(flat > 0 ? radius / flat * glm::dvec2(around.x, -around.y) : glm::dvec2(radius, 0));
+  }
+  return places;
+}
+
+}  // namespace
 
 void PackedMasks::add(const TileResult& tile) {
   if (tile.masks.empty()) return;
@@ -40,7 +62,13 @@ std::vector<compare::ReportLight> report_lights(const Session& session, std::spa
     shown.name = light.name;
     const std::vector<visibility::PixelClass> classes = whole_classes(whole, session.classes);
     shown.packed_classes = compare::pack_bytes(std::as_bytes(std::span(classes)));
-    if (whole.count > 1 || light.dome) continue;  // many samples of many shapes: not drawn
+    if (whole.count > 1) continue;  // many samples of many shapes: no drawing has them
+    if (light.dome) {
+      shown.round = true;
+      shown.samples = seen_upward(light);
+      if (!same_samples) shown.reference_samples = seen_upward(reference[whole.first]);
+      continue;
+    }
     shown.round = is_round(light.kind);
     if (!is_circle(light.kind) && !is_polygon(light.kind)) {  // sides or axes of two lengths
       const visibility::LightFrame frame = visibility::light_frame(light);

@@ -116,6 +116,27 @@ TEST_F(DomeCommands, BitsHoldDirections) {
   EXPECT_GT(partly, 50U);
 }
 
+/// The report draws a dome's light samples in the unit disk, each in a place of its own, and with their masks.
+TEST_F(DomeCommands, ReportsDrawLightSamples) {
+  scene(R"({"name": "sky", "dome": {"half": true}})");
+  ASSERT_EQ(run({"compare", path("scene.json"), "-o", path("dir"), "--runs", "1", "--methods", "raytrace",
+                 "--light-samples", "64", "--reference-samples", "same"})
+                .code,
+            0);
+  const std::string html = read("dir/report.html"), key = R"(id="report-data">)";
+  const std::size_t begin = html.find(key) + key.size();
+  const json light = json::parse(html.substr(begin, html.find("</script>", begin) - begin)).at("lights").at(0);
+  EXPECT_TRUE(light.at("round").get<bool>());
+  ASSERT_EQ(light.at("samples").size(), 64u);
+  double within = 0;
+  for (const json& place : light.at("samples")) {
+    const double radius = std::hypot(place.at(0).get<double>(), place.at(1).get<double>());
+    EXPECT_LE(radius, 1 + 1e-4);
+    within += radius < std::sqrt(0.5) ? 1 : 0;
+  }
+  EXPECT_EQ(within, 32) << "half of them are above 30 degrees, where half of the solid angle is";
+}
+
 /// What is right of the picture's middle lies along +X, where the wall is; turned by half a turn, it does not.
 TEST_F(DomeCommands, APictureLooksWhereItIsTurned) {
   sky(6, 1);  // turns from 3/4 to 7/8: from +X toward +Z; 0 to 45 degrees high
