@@ -15,6 +15,7 @@
 #include <limits>
 #include <numbers>
 #include <span>
+#include <string_view>
 #include <utility>
 
 namespace penumbra::app {
@@ -37,13 +38,21 @@ std::vector<glm::dvec3> positions_of(const scenes::Scene& scene, const BakedMesh
   return positions;
 }
 
+/// Is it `whole`, or one of the parts that a glTF mesh of several materials comes in: `whole`/0, `whole`/1 …?
+bool is_of(const std::string& name, const std::string& whole) {
+  if (!name.starts_with(whole)) return false;
+  const std::string_view rest = std::string_view(name).substr(whole.size());
+  return rest.empty() || (rest.size() > 1 && rest[0] == '/' &&
+                          std::ranges::all_of(rest.substr(1), [](char c) { return c >= '0' && c <= '9'; }));
+}
+
 }  // namespace
 
 BakedMesh find_baked(const scenes::Scene& scene, const std::string& name) {
   BakedMesh mesh;
   std::vector<std::string> names;
   for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
-    if (scene.objects[i].name == name) mesh.objects.push_back(i);
+    if (is_of(scene.objects[i].name, name)) mesh.objects.push_back(i);
     names.push_back(scene.objects[i].name);
   }
   if (mesh.objects.empty()) {

@@ -37,7 +37,8 @@ class BakeCommand : public Command {
     cli_.get_option("--size")
         ->description(fmt::format("texels of the map: S for a square, or WxH (default: {})", kDefaultSide))
         ->type_name("S|WxH");
-    cli_.add_option("--mesh", mesh_, "the mesh that is baked, by its name; of several of one name all")
+    cli_.add_option("--mesh", mesh_,
+                    "the mesh that is baked, by its name: all of that name, and of a glTF mesh all its materials")
         ->required()
         ->type_name("NAME");
     auto* uv = cli_.add_option("--uv", lightmap_.set,
