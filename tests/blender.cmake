@@ -12,7 +12,7 @@ add_test(NAME blender.farm
          COMMAND ${PENUMBRA_SYSTEM_PYTHON} ${CMAKE_CURRENT_SOURCE_DIR}/blender/farm.py ${addon} $<TARGET_FILE:penumbra>
                  ${PROJECT_BINARY_DIR}/blender_farm)
 set_tests_properties(blender.farm PROPERTIES LABELS full TIMEOUT 1200)
-foreach(script engine panels surfaces cycles exported compositor)
+foreach(script engine panels surfaces baked cycles exported foreign compositor)
   add_test(NAME blender.${script}
            COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/blender/run.sh ${script}.py ${addon} $<TARGET_FILE:penumbra>
                    ${PROJECT_BINARY_DIR}/blender_${script})

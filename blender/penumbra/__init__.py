@@ -14,9 +14,10 @@ bl_info = {
 def register():
     import bpy
 
-    from . import engine, panels, serving, settings
+    from . import bake, engine, panels, serving, settings
     settings.register()
     bpy.utils.register_class(engine.PenumbraEngine)
+    bpy.utils.register_class(bake.PENUMBRA_OT_bake)
     panels.register()
     for handlers in (bpy.app.handlers.render_complete, bpy.app.handlers.render_cancel):
         handlers.append(bpy.app.handlers.persistent(serving.forget))  # in the next file, too
@@ -25,10 +26,11 @@ def register():
 def unregister():
     import bpy
 
-    from . import engine, panels, serving, settings
+    from . import bake, engine, panels, serving, settings
     for handlers in (bpy.app.handlers.render_complete, bpy.app.handlers.render_cancel):
         handlers.remove(serving.forget)
     serving.forget()
     panels.unregister()
+    bpy.utils.unregister_class(bake.PENUMBRA_OT_bake)
     bpy.utils.unregister_class(engine.PenumbraEngine)
     settings.unregister()

@@ -1,9 +1,11 @@
 """Blender's scene, as its dependency graph evaluates it for a render, in the exchange file (glb.py)."""
 
+import os
+
 import bpy
 import numpy
 
-from . import glb, graph, lamps, materials, space, texels
+from . import glb, lamps, materials, sky, space, texels
 
 _SURFACES = {"MESH", "CURVE", "SURFACE", "META", "FONT"}
 _UNKNOWN = {"VOLUME": "is a volume", "POINTCLOUD": "is a point cloud", "CURVES": "is hair", "GPENCIL": "is grease pencil",
@@ -13,27 +15,31 @@ _UNKNOWN = {"VOLUME": "is a volume", "POINTCLOUD": "is a point cloud", "CURVES":
 class SceneWriter:
     """Writes one frame. What is lost goes to `losses` by name (losses.py)."""
 
-    def __init__(self, depsgraph, losses, shading_normals):
+    def __init__(self, depsgraph, losses, shading_normals, baked=None):
+        """`baked`: the object that is baked (bake.py), whose own coordinates are written beside those of images; None: none."""
         self.depsgraph, self.losses, self.shading_normals = depsgraph, losses, shading_normals
         self.scene, self.layer = depsgraph.scene, depsgraph.view_layer_eval
         self.glb = glb.Glb()
-        self.background = (0.0, 0.0, 0.0)  # colour of the background
+        self.background = (0.0, 0.0, 0.0)  # the colour that is still to be put behind everything
         self._meshes, self._materials, self._looks, self._images = {}, {}, {}, {}
-        self._shines = False
-        self._balls, self._placed = [], []  # lamps of some size, and surfaces in the world, for tests of their
-                                            # distances
+        self._baked, self._shines = baked, False
+        self._balls, self._placed = [], []  # lamps of some size, and surfaces in the world, whose distances are looked at
 
     def write(self, path, region):
-        """`region`: which pixels (frames.py)."""
+        """`region`: which pixels (frames.py); None: there is no picture."""
         for instance in self.depsgraph.object_instances:
-            if instance.show_self:
+            if instance.show_self and not (region is None and instance.object.hide_render):
                 self._object(instance)
+        self._world(os.path.dirname(path))
         if not self._shines and not self.glb.has_lamps:
-            raise ValueError("there is no light in the scene: no lamp and no emissive material that is shown in renders")
+            raise ValueError("there is no light in the scene: no lamp, no emissive material that is shown in renders, and no "
+                             "world that lights")
         if not self._placed:
             raise ValueError("there is no surface in the scene that is shown in renders")
-        self._camera(region)
-        self._world()
+        if region is not None:
+            self._camera(region)
+        else:  # nothing is asked by it
+            self.glb.camera("None", numpy.eye(4).tolist(), 1, (0, 0), half_angle=1)
         lamps.check_balls(self._balls, self._placed, self.losses)
         with open(path, "wb") as file:
             file.write(self.glb.encoded())
@@ -56,7 +62,8 @@ class SceneWriter:
         owner = instance.parent if instance.is_instance else thing
         if thing.is_holdout or thing.is_shadow_catcher or owner.holdout_get(view_layer=self.layer):
             self.losses.refuse("is a holdout or shadow catcher, or in a collection that is a holdout", thing.name)
-        mesh = self._mesh(thing)
+        is_baked = self._baked is not None and self._baked.is_it(instance)
+        mesh = self._mesh(thing, is_baked)
         if mesh is None:
             return
         number, emits, corners = mesh
@@ -70,7 +77,7 @@ class SceneWriter:
             else:
                 extras["body"] = False
         self._placed.append(space.Placed(thing.name, corners.positions, corners.vertices, numpy.array(instance.matrix_world)))
-        self.glb.node(thing.name, instance.matrix_world, extras, mesh=number)
+        self.glb.node(self._baked.name if is_baked else thing.name, instance.matrix_world, extras, mesh=number)
 
     def _materials_of(self, thing):
         """Of its slots; the view layer's override stands for all."""
@@ -78,17 +85,17 @@ class SceneWriter:
             return [self.layer.material_override]
         return [slot.material for slot in thing.material_slots]
 
-    def _mesh(self, thing):
+    def _mesh(self, thing, is_baked):
         """The number of an object's mesh in the file, whether it shines, and its corners; None for one without faces."""
-        key = (thing.data.as_pointer(), thing.original.as_pointer() if thing.type != "MESH" else 0,
+        key = (is_baked, thing.data.as_pointer(), thing.original.as_pointer() if thing.type != "MESH" else 0,
                tuple(material.name_full if material else "" for material in self._materials_of(thing)))
         if key not in self._meshes:
             data = thing.to_mesh()
-            self._meshes[key] = self._primitives(thing, data) if data is not None else None
+            self._meshes[key] = self._primitives(thing, data, is_baked) if data is not None else None
             thing.to_mesh_clear()
         return self._meshes[key]
 
-    def _primitives(self, thing, data):
+    def _primitives(self, thing, data, is_baked):
         data.calc_loop_triangles()
         count = len(data.loop_triangles)
         if count == 0:
@@ -107,7 +114,7 @@ class SceneWriter:
             for smooth in (False, True):
                 chosen = (material_of == slot) & (corners.smooth == smooth)
                 if chosen.any():
-                    attributes, indices = corners.of(chosen, look, self, smooth)
+                    attributes, indices = corners.of(chosen, look, self, smooth, is_baked)
                     primitives.append({"attributes": attributes, "indices": indices, "material": number})
         corners.forget()
         return self.glb.mesh(thing.data.name, primitives), emits, corners
@@ -170,35 +177,11 @@ class SceneWriter:
             if frustum.sees(placed, lens.clip_end, numpy.inf):
                 self.losses.mention(f"reaches beyond the clip end of camera '{camera.name}', and is shown there", placed.name)
 
-    def _world(self):
+    def _world(self, folder):
         world = getattr(self.layer, "world_override", None) or self.scene.world
-        if world is None:
-            return
-        try:
-            self.background = world_color(world)
-        except graph.Unknown as error:
-            self.losses.mention(f"is a world made by {error}, which is not evaluated: black, and its light is not rendered",
-                                world.name)
-            return
-        if max(self.background) > 0:
-            self.losses.mention("is a world whose light is not rendered", world.name)
-
-
-def world_color(world):
-    """What is seen of a world of one colour."""
-    if not world.use_nodes or world.node_tree is None:
-        return tuple(world.color)
-    output = world.node_tree.get_output_node("CYCLES")
-    source = graph.At(output.inputs["Surface"]).source() if output else None
-    if source is None:
-        return (0.0, 0.0, 0.0)
-    node, _, groups = source
-    if node.type != "BACKGROUND":
-        raise graph.Unknown(f"the node '{node.name}'")
-    strength = graph.constant(graph.At(node.inputs["Strength"], groups))[0]
-    if strength == 0:
-        return (0.0, 0.0, 0.0)
-    return tuple(x * strength for x in graph.constant(graph.At(node.inputs["Color"], groups)))
+        if world is not None:
+            self.background = sky.write(world, world.name, self.scene.penumbra.world, not self.scene.render.film_transparent,
+                                        self.glb, folder, self.losses)
 
 
 def encoded_image(image, look):
@@ -273,17 +256,22 @@ class Corners:
         """Only where triangles are is kept."""
         self.data = self.loops = self.smooth = self.normals = None
 
-    def of(self, chosen, look, writer, smooth):
-        """Attributes and indices of some triangles (a mask), as numbers of accessors."""
+    def of(self, chosen, look, writer, smooth, is_baked):
+        """Attributes and indices of some triangles (a mask), as numbers of accessors. `is_baked`: the active UV map is there as
+        the second set of coordinates."""
         corners = numpy.repeat(chosen, 3)
         columns = [self.positions[self.vertices[corners]]]
         names = [("POSITION", "VEC3")]
         if smooth:
             columns.append(self.normals[corners])
             names.append(("NORMAL", "VEC3"))
-        if look.image is not None:
+        if look.image is not None or is_baked:
             columns.append(self._places(look)[self.loops[corners]])
             names.append(("TEXCOORD_0", "VEC2"))
+        if is_baked:
+            active = self.data.uv_layers.active
+            columns.append(self._places(materials.Look(uv_map=active.name if active else ""))[self.loops[corners]])
+            names.append(("TEXCOORD_1", "VEC2"))
         if look.attribute is not None:
             columns.append(self._colors(look, corners))
             names.append(("COLOR_0", "VEC4"))

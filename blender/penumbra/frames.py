@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy
 
-from . import materials, passes
+from . import materials, passes, sky
 
 
 @dataclass
@@ -63,7 +63,10 @@ def check_render(scene, layer, lost):
 
 
 def likely_lights(scene):
-    """The lights that a render will have: lamps, and objects with an emissive material."""
+    """The lights that a render will have: lamps, objects with an emissive material, and the world."""
     def shines(thing):
         return any(slot.material and materials.may_shine(slot.material) for slot in thing.material_slots)
-    return [passes.layer_of(thing.name) for thing in scene.objects if not thing.hide_render and (thing.type == "LIGHT" or shines(thing))]
+    found = [thing for thing in scene.objects if not thing.hide_render and (thing.type == "LIGHT" or shines(thing))]
+    if scene.penumbra.world != sky.SEEN and sky.may_light(scene.world):
+        found.append(scene.world)
+    return [passes.layer_of(thing.name) for thing in found]

@@ -128,6 +128,14 @@ class Glb:
         extras = {"areaLamp": {"shape": shape, "size": list(size), "radiance": list(radiance)}}
         self.node(name, matrix, {**extras, **_shadow(casts_shadow)})
 
+    def dome(self, name, matrix, radiance, image=None, visible=False):
+        """The sky: +Y of the matrix is up, and -Z is where the middle column of the picture lies, a file beside this one."""
+        self.has_lamps = True
+        dome = {"radiance": list(radiance), "visible": visible}
+        if image is not None:
+            dome["image"] = image
+        self.node(name, matrix, {"dome": dome})
+
     def encoded(self):
         document = dict(self._document)
         if self._extensions:

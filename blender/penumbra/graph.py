@@ -26,6 +26,10 @@ def find_socket(sockets, *names):
     return None
 
 
+def is_moved(mapping):
+    return mapping is not None and (any(mapping.translation) or any(mapping.rotation) or any(x != 1 for x in mapping.scale))
+
+
 class At:
     """A socket in its tree. `groups`: the group nodes that the tree is inside of, outermost first."""
 
@@ -121,7 +125,7 @@ def evaluate(at):
         return Value(node.outputs[0].default_value[:3])
     if node.type == "VALUE":
         return Value(node.outputs[0].default_value)
-    if node.type == "TEX_IMAGE" and node.image is not None and output.name == "Color":
+    if node.type in ("TEX_IMAGE", "TEX_ENVIRONMENT") and node.image is not None and output.name == "Color":
         return Value(image=ImageUse(node, groups))
     if node.type == "VERTEX_COLOR" and output.name == "Color":
         return Value(attribute=node.layer_name)

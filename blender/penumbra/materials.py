@@ -99,6 +99,9 @@ class Reader:
             look.attribute = value.attribute
         if value.image is None:
             return
+        if value.image.node.type == "TEX_ENVIRONMENT":
+            self.losses.refuse(f"has a colour made by the node '{value.image.node.name}', which is for worlds", self.name)
+            return
         if look.image is not None and not (look.image is value.image.node.image and look.pixels is value.pixels):
             self.losses.refuse("mixes surfaces of several images", self.name)
             return
@@ -123,7 +126,7 @@ class Reader:
         look.wrap = "EXTEND" if node.extension == "EXTEND" else "REPEAT"
         if node.extension not in ("EXTEND", "REPEAT") or node.projection != "FLAT":
             self.losses.refuse("has an image that neither repeats nor extends, or is not laid flat", self.name)
-        if _is_moved(getattr(node, "texture_mapping", None)):
+        if graph.is_moved(getattr(node, "texture_mapping", None)):
             self.losses.refuse("has an image that is placed by its node's own texture mapping", self.name)
         try:
             self._place(At(find_socket(node.inputs, "Vector"), use.groups), look)
@@ -277,10 +280,6 @@ class Reader:
         shader.emission = tuple(alpha * x for x in shader.emission)
         shader.through = 1 - alpha
         return shader
-
-
-def _is_moved(mapping):
-    return mapping is not None and (any(mapping.translation) or any(mapping.rotation) or any(x != 1 for x in mapping.scale))
 
 
 def _placing(node, groups):

@@ -76,6 +76,18 @@ class PENUMBRA_PT_sampling(_Panel, bpy.types.Panel):
                 layout.prop(settings, "filter_width")
 
 
+class PENUMBRA_PT_bake(_Panel, bpy.types.Panel):
+    bl_label = "Bake"
+    bl_context = "render"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context):
+        settings, layout = context.scene.penumbra, self.split_layout()
+        for name in ("bake_what", "bake_size", "bake_margin"):
+            layout.prop(settings, name)
+        layout.operator("penumbra.bake", icon="RENDER_STILL")
+
+
 class PENUMBRA_PT_film(_Panel, bpy.types.Panel):
     bl_label = "Film"
     bl_context = "render"
@@ -202,7 +214,7 @@ class PENUMBRA_PT_world(_Panel, bpy.types.Panel):
 
     def draw(self, context):
         world, layout = context.world, self.split_layout()
-        layout.label(text="Seen behind objects; its light is not rendered", icon="INFO")
+        layout.prop(context.scene.penumbra, "world", text="Light")
         if not _draw_nodes(layout, world, "Surface"):
             layout.prop(world, "color")
 
@@ -253,7 +265,7 @@ class PENUMBRA_PT_override(_Panel, bpy.types.Panel):
         self.split_layout().prop(context.view_layer, "material_override")
 
 
-CLASSES = (PENUMBRA_PT_shadows, PENUMBRA_PT_sampling, PENUMBRA_PT_film, PENUMBRA_PT_light, PENUMBRA_PT_spot,
+CLASSES = (PENUMBRA_PT_shadows, PENUMBRA_PT_sampling, PENUMBRA_PT_bake, PENUMBRA_PT_film, PENUMBRA_PT_light, PENUMBRA_PT_spot,
            PENUMBRA_PT_light_nodes, PENUMBRA_PT_surface, PENUMBRA_PT_material_settings, PENUMBRA_PT_world,
            PENUMBRA_PT_visibility, PENUMBRA_PT_passes, PENUMBRA_PT_override)
 

@@ -31,25 +31,35 @@ def arguments(program, scene, picture, size, settings):
     """The command. `settings`: exactness, light_samples, method, pixel_samples, pixel_filter, filter_width,
     shading_normals, lenient, device, light_passes."""
     command = [program, "render", scene, "-o", picture, "--no-studio", "--size", f"{size[0]}x{size[1]}"]
-    if settings.method:
-        command += ["--method", settings.method]
-    if settings.exactness == SAMPLES:
-        command += ["--light-samples", str(settings.light_samples)]
+    command += _of_shadows(settings)
     if int(settings.pixel_samples) > 1:
         command += ["--pixel-samples", str(settings.pixel_samples)]
         if settings.pixel_filter == BLACKMAN_HARRIS:
             command += ["--pixel-filter", "blackman-harris", "--filter-width", f"{settings.filter_width:.6g}"]
-    command += ["--normals", "shading" if settings.shading_normals else "geometric"]
-    if settings.lenient:
-        command += ["--lenient"]
-    if settings.device:
-        command += ["--device", settings.device]
+    command += _of_surfaces(settings)
     if not settings.light_passes:
         command += ["--layers", _WITHOUT_LIGHTS]
     return command
 
 
-# Translations of the program's terms for command lines and files to those of Blender's user interface.
+def bake_arguments(program, scene, picture, mesh, settings):
+    """The command that bakes a mesh by its second coordinates. `settings`: those of `arguments` that are not about pixels,
+    and bake_size, bake_margin."""
+    return [program, "bake", scene, "-o", picture, "--no-studio", "--mesh", mesh, "--uv", "1", "--size", str(settings.bake_size),
+            "--margin", str(settings.bake_margin), *_of_shadows(settings), *_of_surfaces(settings)]
+
+
+def _of_shadows(settings):
+    method = ["--method", settings.method] if settings.method else []
+    return method + (["--light-samples", str(settings.light_samples)] if settings.exactness == SAMPLES else [])
+
+
+def _of_surfaces(settings):
+    normals = ["--normals", "shading" if settings.shading_normals else "geometric"]
+    return normals + (["--lenient"] if settings.lenient else []) + (["--device", settings.device] if settings.device else [])
+
+
+# What the program says of command lines and files, in the words of who sits before Blender.
 _IN_BLENDER = (
     (re.compile(r"Shadows would be wrong: --lenient .*"), "Shadows would be wrong; 'Lenient' renders all the same"),
     (re.compile(r"--lenient"), "'Lenient'"),

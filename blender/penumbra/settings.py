@@ -3,7 +3,7 @@
 import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, PointerProperty, StringProperty
 
-from . import program
+from . import program, sky
 
 
 class PenumbraPreferences(bpy.types.AddonPreferences):
@@ -32,10 +32,20 @@ class PenumbraSettings(bpy.types.PropertyGroup):
     filter_width: FloatProperty(name="Width", default=1.5, min=1, max=10, description="Of the filter, in pixels")
     shading_normals: BoolProperty(name="Smooth shading", default=True, description="Cosines of smooth faces are those of "
                                   "their normals, as in Cycles; shadows are always those of the triangles")
+    world: EnumProperty(name="World", default=sky.SAMPLED, items=[
+        (sky.SAMPLED, "Light samples", "The world lights the scene, from so many directions: quick"),
+        (sky.EXACT, "Exact", "The exact share of a world of one colour that is seen; slow where there are many triangles. "
+         "A picture is counted in light samples"),
+        (sky.SEEN, "Background only", "The world lights nothing")])
     lenient: BoolProperty(name="Lenient", description="Leave out what would change shadows and cannot be done, with a "
                           "warning, instead of refusing")
     light_passes: BoolProperty(name="Passes of each light", default=True,
                                description="V, and each light's V and its light alone")
+    bake_size: IntProperty(name="Size", default=1024, min=4, max=8192, description="Texels a side of the baked image")
+    bake_margin: IntProperty(name="Margin", default=8, min=0, max=1024, description="Texels around the mesh's own")
+    bake_what: EnumProperty(name="Bake", default="LIGHT", items=[
+        ("LIGHT", "Light", "What a white surface shows; times the base colour it is the picture"),
+        ("VISIBILITY", "Visibility", "How much of the first light is seen, from 0 to 1")])
     device: StringProperty(name="Device", description="Part of a Vulkan device's name, its number, or cpu; empty: the best")
 
 

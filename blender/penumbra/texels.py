@@ -43,7 +43,7 @@ def linear(node):
     """The image of a node, linear, with what Cycles sees between its texels, which it interpolates as they are stored."""
     values = pixels(node.image)[..., :3].astype(numpy.float64)
     if node.interpolation != "Closest":
-        values = finer(values, node.interpolation, node.extension)
+        values = finer(values, node.interpolation, getattr(node, "extension", "REPEAT"))
     return linear_of(values) if is_encoded(node.image) else values
 
 

@@ -257,6 +257,10 @@ class Programs(unittest.TestCase):
         self.assertEqual(filtered[8:], ["--pixel-samples", "4", "--pixel-filter", "blackman-harris", "--filter-width", "1.6",
                                         "--normals", "geometric"])
 
+        baking = self.settings(bake_size=64, bake_margin=3, lenient=True, method="exact")
+        self.assertEqual(program.bake_arguments("p", "s.glb", "o.exr", "It", baking), [
+            "p", "bake", "s.glb", "-o", "o.exr", "--no-studio", "--mesh", "It", "--uv", "1", "--size", "64", "--margin", "3",
+            "--method", "exact", "--normals", "geometric", "--lenient"])
         alone = program.arguments("p", "s", "o", (3, 2), self.settings(light_passes=False))
         self.assertEqual(alone[10:], ["--layers", "beauty,V,Z,P,N,Crypto*"])
 

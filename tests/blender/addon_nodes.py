@@ -16,7 +16,7 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 
 import numpy  # noqa: E402
 
-from penumbra import losses, materials, spectrum, texels  # noqa: E402
+from penumbra import graph, losses, materials, sky, spectrum, texels  # noqa: E402
 from stubs import Inputs, Socket, box, image, image_node, node  # noqa: E402
 
 
@@ -227,6 +227,84 @@ class Texels(unittest.TestCase):
         rows = numpy.frombuffer(zlib.decompress(packed), numpy.uint8).reshape(2, 13)
         numpy.testing.assert_array_equal(rows[:, 1:], values.reshape(2, 12))
         self.assertEqual(rows[:, 0].tolist(), [0, 0])
+
+
+class Skies(unittest.TestCase):
+    """What a world's nodes say of directions, beside Cycles' own rule: u = 1/2 - atan2(y, x) / 2 pi, v = acos(z) / pi from the top."""
+
+    def world_of(self, turn=(0, 0, 0), scale=(1, 1, 1), kind="POINT", place=(0, 0, 0)):
+        mapping = node("MAPPING", Vector=None, Location=place, Rotation=turn, Scale=scale)
+        mapping.vector_type = kind
+        mapping.inputs["Vector"].link(node("TEX_COORD"), "Generated")
+        values = numpy.ones((4, 8, 4))
+        values[..., 0] = numpy.arange(32).reshape(4, 8) / 32
+        picture = image_node(image(values, is_float=True))
+        picture.type, picture.projection = "TEX_ENVIRONMENT", "EQUIRECTANGULAR"
+        picture.inputs["Vector"].link(mapping)
+        background = node("BACKGROUND", Color=(1, 1, 1, 1), Strength=2.0)
+        background.inputs["Color"].link(picture)
+        output = node("OUTPUT_WORLD", Surface=None, Volume=None)
+        output.inputs["Surface"].link(background)
+        return box(use_nodes=True, node_tree=box(get_output_node=lambda _: output))
+
+    def looked_up(self, direction, world):
+        """By the dome that is written: the node's +Y is up, -Z the middle column, +X to the right of it."""
+        lights, seen = sky.skies_of(world)
+        self.assertIs(lights, seen)
+        self.assertEqual(lights.radiance, (2, 2, 2))
+        rows, mirrored = sky.placed(sky.looked_up(lights))
+        right, up, back = numpy.array(rows)[:3, :3].T @ direction
+        values = sky.picture(lights, mirrored)
+        u, v = 0.5 + math.atan2(right, -back) / (2 * math.pi), math.acos(up) / math.pi
+        return values[int(v * 4), int(u * 8) % 8, 0]
+
+    def test_pictures_lie_as_mappings_say(self):
+        random = numpy.random.default_rng(5)
+        def turned(v, angles):  # about X, then Y, then Z
+            for axis, angle in enumerate(angles):
+                i, j = (axis + 1) % 3, (axis + 2) % 3
+                v = v.copy()
+                v[i], v[j] = v[i] * math.cos(angle) - v[j] * math.sin(angle), v[i] * math.sin(angle) + v[j] * math.cos(angle)
+            return v
+        for _ in range(60):
+            angles, direction = random.uniform(-3, 3, 3), random.normal(size=3)
+            direction /= numpy.linalg.norm(direction)
+            signs = random.choice((-1, 1), 3)
+            x, y, z = turned(direction * signs, angles)
+            wanted = int(math.acos(z) / math.pi * 4) * 8 + int((0.5 - math.atan2(y, x) / (2 * math.pi)) * 8) % 8
+            found = self.looked_up(direction, self.world_of(tuple(angles), tuple(2.5 * signs)))
+            self.assertAlmostEqual(found * 32, wanted, places=4)
+            # A texture mapping is the way back.
+            world = self.world_of(tuple(angles), tuple(2.5 * signs), "TEXTURE")
+            self.assertAlmostEqual(self.looked_up(turned(signs * direction, angles), world) * 32, int(
+                math.acos(direction[2]) / math.pi * 4) * 8 + int((0.5 - math.atan2(direction[1], direction[0]) / (2 * math.pi)) * 8) % 8,
+                places=4) if (signs == 1).all() else None
+
+    def test_what_is_no_turn_is_unknown(self):
+        for values in (dict(place=(1, 0, 0)), dict(scale=(1, 2, 1)), dict(scale=(0, 0, 0))):
+            with self.assertRaises(graph.Unknown):
+                sky.looked_up(sky.skies_of(self.world_of(**values))[0])
+
+    def test_cameras_may_see_another(self):
+        first, second = (node("BACKGROUND", Color=(color, 0, 0, 1), Strength=1.0) for color in (0.5, 0.25))
+        mix = node("MIX_SHADER", Fac=0.5, First=None, Second=None)
+        mix.inputs["Fac"].link(node("LIGHT_PATH"), "Is Camera Ray")
+        mix.inputs["First"].link(first)
+        mix.inputs["Second"].link(second)
+        output = node("OUTPUT_WORLD", Surface=None, Volume=None)
+        output.inputs["Surface"].link(mix)
+        lights, seen = sky.skies_of(box(use_nodes=True, node_tree=box(get_output_node=lambda _: output)))
+        self.assertEqual((lights.radiance, seen.radiance), ((0.5, 0, 0), (0.25, 0, 0)))
+        mix.inputs["Fac"].links = []
+        with self.assertRaises(graph.Unknown):
+            sky.skies_of(box(use_nodes=True, node_tree=box(get_output_node=lambda _: output)))
+
+    def test_environments_are_for_worlds(self):
+        surface = node("BSDF_DIFFUSE", Color=None, Roughness=0.0)
+        picture = image_node(image(numpy.ones((4, 8, 4))))
+        picture.type = "TEX_ENVIRONMENT"
+        surface.inputs["Color"].link(picture)
+        self.assertIn("which is for worlds", " ".join(look(surface)[1].refused))
 
 
 if __name__ == "__main__":

@@ -31,7 +31,8 @@ BIAS = 1e-3
 # Beside an umbra's edge Cycles, whose pixels are a hundredth wide and not points, may see a last bit of light.
 EDGE = 1e-2
 # Light that passes holes and panes is counted in light samples: as many as there may be.
-COUNTED = {"translucent", "cut_out"}
+COUNTED = {"translucent", "cut_out", "world_color_counted", "world_and_lamp", "world_picture", "world_picture_turned",
+           "world_picture_texture_mapping", "world_picture_mirrored", "world_and_translucent"}
 # Beside that, where another shape is meant: a point lamp of radius r at distance d is a disk to Cycles, a ball here, which
 # gives up to r² / d² more (spots' disks are in their cones); an icosphere of 1280 faces and its sphere differ by 0.25 %; under the tube Cycles is 0.15 % below
 # Lambert's closed form, which ours meets to 1e-6 (both at 509 pixels of the floor).

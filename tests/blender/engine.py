@@ -184,6 +184,7 @@ class Engine(unittest.TestCase):
         scene.world.use_nodes = True
         sky = scene.world.node_tree.nodes["Background"]
         sky.inputs["Color"].default_value, sky.inputs["Strength"].default_value = (0.1, 0.2, 0.4, 1), 2
+        scene.penumbra.world = "SEEN"
         found = inside.channels(scene, out("film.exr"))
         self.assertEqual((float(found["Combined.A"].min()), float(clear["Combined.A"].min())), (1, 0))
         nothing = clear["Combined.A"] == 0
@@ -191,12 +192,51 @@ class Engine(unittest.TestCase):
             numpy.testing.assert_allclose(found[f"Combined.{letter}"][nothing], value, rtol=1e-6)
             numpy.testing.assert_array_equal(found[f"Combined.{letter}"][~nothing], clear[f"Combined.{letter}"][~nothing])
 
-    def test_the_world_is_warned_of_by_name(self):
+    def test_a_film_that_is_not_transparent_shows_the_worlds_picture(self):
+        """As Cycles does, whichever way the camera looks."""
+        for turn, target in (((0, 0, 0), (0, 0, 0)), ((0.4, -0.3, 2.1), (3, 4, 9)), ((0, 0, 0.7), (-9, 0, 2))):
+            def build():
+                scenes.add("Far", scenes.quad("Far", half=0.01), (90, 90, -90))
+                scenes.camera((0, 0, 0), target) if any(target) else scenes.camera((0, 0, 0.1), (0, 0, -1))
+                scenes.pictured_world(turn, interpolation="Closest")
+            scene = inside.fresh(build)
+            scene.render.film_transparent = False
+            ours = inside.channels(scene, out("ours.exr"))
+            scene.render.engine = "CYCLES"
+            scene.cycles.samples, scene.cycles.use_denoising = 1, False
+            scene.cycles.pixel_filter_type, scene.cycles.filter_width = "GAUSSIAN", 0.01
+            theirs = inside.channels(scene, out("theirs.exr"))
+            self.assertEqual(float(ours["Combined.A"].min()), 1)
+            for letter in "RGB":
+                off = numpy.abs(ours[f"Combined.{letter}"] - theirs[f"Combined.{letter}"])
+                self.assertGreater(float(numpy.ptp(theirs[f"Combined.{letter}"])), 0.05)
+                self.assertLess(float(numpy.mean(off > 1e-3)), 0.01, letter)  # but where a pixel lies on a texel's border
+
+    def test_worlds_that_are_not_evaluated_are_refused_by_name(self):
+        def refused(change):
+            scene = inside.fresh(scenes.area_square)
+            change(*scenes.pictured_world(), lambda kind: next(
+                node for node in scene.world.node_tree.nodes if node.type == kind))
+            return self.refusal(scene)
+        self.assertIn("moves its picture", refused(
+            lambda tree, _, find: setattr(find("MAPPING").inputs["Location"], "default_value", (1, 0, 0))))
+        self.assertIn("scales its picture unevenly", refused(
+            lambda tree, _, find: setattr(find("MAPPING").inputs["Scale"], "default_value", (1, 2, 1))))
+        self.assertIn("whose projection is not Equirectangular", refused(
+            lambda tree, _, find: setattr(find("TEX_ENVIRONMENT"), "projection", "MIRROR_BALL")))
+        self.assertIn("'Sky' is a world made by the node 'Noise Texture'", refused(
+            lambda tree, background, find: tree.links.new(tree.nodes.new("ShaderNodeTexNoise").outputs[1], background.inputs[0])))
+        self.assertIn("a world with a volume", refused(
+            lambda tree, _, find: tree.links.new(tree.nodes.new("ShaderNodeVolumeScatter").outputs[0], find("OUTPUT_WORLD").inputs[1])))
+
+    def test_what_is_left_out_is_warned_of_by_name(self):
         scene = inside.fresh(scenes.area_square)
         self.assertEqual(self.warnings(scene), [])
         scene.world = bpy.data.worlds.new("Sky")
         scene.world.color = (0.1, 0.1, 0.1)
-        self.assertTrue(any("whose light is not rendered" in text for text in self.warnings(scene)))
+        self.assertEqual(self.warnings(scene), [])
+        scene.penumbra.world = "SEEN"
+        self.assertTrue(any("whose light is left out" in text for text in self.warnings(scene)))
         scene.render.use_motion_blur = bpy.data.cameras["Shot"].dof.use_dof = True
         self.assertEqual(len(self.warnings(scene)), 3)
 

@@ -6,6 +6,7 @@ Each function builds its scene from nothing; `SCENES` has them by name.
 from math import pi, radians
 
 import bpy
+import numpy
 from mathutils import Matrix, Vector
 
 SCENES = {}
@@ -364,3 +365,105 @@ def particles():
     settings.instance_object, settings.particle_size, settings.size_random = crumb, 0.1, 0.5
     sower.show_instancer_for_render = False
     lamp("AREA", (1, -1, 4), (15, 15, 0), energy=300, shape="SQUARE", size=1.2)
+
+
+def world(color=(1, 1, 1), strength=1.0):
+    """A world of a Background node, whose tree comes back with that node."""
+    made = bpy.data.worlds.new("Sky")
+    bpy.context.scene.world = made
+    made.use_nodes = True
+    background = made.node_tree.nodes["Background"]
+    background.inputs["Color"].default_value, background.inputs["Strength"].default_value = (*color, 1), strength
+    return made.node_tree, background
+
+
+def environment(width=32):
+    """A picture of all around: floats, with a bright patch, and different wherever one looks."""
+    height = width // 2
+    image = bpy.data.images.new("Around", width, height, float_buffer=True)
+    x, y = numpy.meshgrid((numpy.arange(width) + 0.5) / width, (numpy.arange(height) + 0.5) / height)
+    values = numpy.ones((height, width, 4), numpy.float32)
+    values[..., 0], values[..., 1], values[..., 2] = 0.2 + 0.8 * x, 0.2 + 0.5 * y, 0.6 - 0.4 * x * y
+    patch = (numpy.abs(x - 0.7) < 0.08) & (numpy.abs(y - 0.7) < 0.1)
+    values[patch, :3] = (12, 9, 5)
+    image.pixels.foreach_set(values.ravel())
+    image.pack()
+    return image
+
+
+def pictured_world(turn=(0, 0, 0), scale=(1, 1, 1), kind="POINT", **values):
+    tree, background = world(strength=values.pop("strength", 1.0))
+    picture, mapping, place = (tree.nodes.new(f"ShaderNode{name}") for name in ("TexEnvironment", "Mapping", "TexCoord"))
+    picture.image = environment()
+    mapping.vector_type = kind
+    mapping.inputs["Rotation"].default_value, mapping.inputs["Scale"].default_value = turn, scale
+    for key, value in values.items():
+        setattr(picture, key, value)
+    tree.links.new(place.outputs["Generated"], mapping.inputs["Vector"])
+    tree.links.new(mapping.outputs[0], picture.inputs["Vector"])
+    tree.links.new(picture.outputs["Color"], background.inputs["Color"])
+    return tree, background
+
+
+@scene
+def world_color():
+    """One radiance all around, its light in closed form."""
+    stage()
+    world((0.3, 0.5, 0.9), 1.5)
+    bpy.context.scene.penumbra.world = "EXACT"
+
+
+@scene
+def world_color_counted():
+    stage()
+    world((0.3, 0.5, 0.9), 1.5)
+
+
+@scene
+def world_and_lamp():
+    area_square()
+    world((0.2, 0.3, 0.4), 2)
+
+
+@scene
+def world_picture():
+    stage()
+    pictured_world()
+
+
+@scene
+def world_picture_turned():
+    stage()
+    pictured_world((0.4, -0.3, 2.1), strength=2)
+
+
+@scene
+def world_picture_texture_mapping():
+    stage()
+    pictured_world((-0.2, 0.5, 1.1), (2, 2, 2), "TEXTURE", interpolation="Closest")
+
+
+@scene
+def world_picture_mirrored():
+    stage()
+    pictured_world((0.1, 0, 0.7), (-1, 1, 1))
+
+
+@scene
+def world_camera_apart():
+    """What lights is not what the camera sees."""
+    stage()
+    tree, background = world((0.9, 0.7, 0.5))
+    seen, mix, path = (tree.nodes.new(f"ShaderNode{name}") for name in ("Background", "MixShader", "LightPath"))
+    seen.inputs["Color"].default_value = (0, 1, 0, 1)
+    for number, source in enumerate((path.outputs["Is Camera Ray"], background.outputs[0], seen.outputs[0])):
+        tree.links.new(source, mix.inputs[number])
+    tree.links.new(mix.outputs[0], next(node for node in tree.nodes if node.type == "OUTPUT_WORLD").inputs["Surface"])
+    bpy.context.scene.penumbra.world = "EXACT"
+
+
+@scene
+def world_and_translucent():
+    """A pane before the sky and the floor."""
+    translucent()
+    world((0.3, 0.5, 0.9), 1.5)

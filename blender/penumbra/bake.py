@@ -1,0 +1,94 @@
+"""The Bake button: what arrives at the active object, by its active UV map, into an image of Blender."""
+
+import math
+import os
+import traceback
+
+import bpy
+import numpy
+
+from . import exr, losses, program, settings
+from .export import SceneWriter
+
+_NAME = "baked"  # of the object's mesh in the exchange file, which no other has
+_LINEAR = ("Linear Rec.709", "Linear")
+
+
+class PENUMBRA_OT_bake(bpy.types.Operator):
+    """Bake the active object's light or visibility by its active UV map into an image"""
+    bl_idname = "penumbra.bake"
+    bl_label = "Bake"
+    bl_options = {"REGISTER"}
+
+    @classmethod
+    def poll(cls, context):
+        return context.object is not None and context.object.type == "MESH"
+
+    def execute(self, context):
+        try:
+            image = self._bake(context)
+        except (ValueError, OSError) as error:
+            self.report({"ERROR"}, str(error))
+            return {"CANCELLED"}
+        except Exception as error:  # what the add-on does wrong
+            traceback.print_exc()
+            self.report({"ERROR"}, f"the add-on failed ({type(error).__name__}: {error}); the console says where")
+            return {"CANCELLED"}
+        self.report({"INFO"}, f"baked into the image '{image.name}'")
+        return {"FINISHED"}
+
+    def _bake(self, context):
+        thing, wanted, lost = context.object, context.scene.penumbra, losses.Losses()
+        if not thing.data.uv_layers:
+            raise ValueError(f"'{thing.name}' has no UV map; unwrap it first, without overlaps")
+        binary = program.find(settings.program_path())
+        with program.Workspace() as workspace:
+            glb, picture = (os.path.join(workspace.folder, name) for name in ("scene.glb", "baked.exr"))
+            writer = SceneWriter(context.evaluated_depsgraph_get(), lost, wanted.shading_normals, Baked(thing))
+            writer.write(glb, None)
+            refused = losses.sentences(lost.refused)
+            if refused and not wanted.lenient:
+                raise ValueError("; ".join(refused) + ". The image would be wrong; 'Lenient' bakes all the same")
+            command = program.bake_arguments(binary, glb, picture, _NAME, wanted)
+            code, printed = program.run(command, lambda: False, workspace)
+            warnings, error = program.messages(printed, glb)
+            for text in refused + losses.sentences(lost.mentioned) + warnings:
+                self.report({"WARNING"}, text)
+            if code != 0:
+                raise ValueError(error or f"{binary} ended with code {code}")
+            with open(picture, "rb") as file:
+                return _put(image_for(thing.name, wanted.bake_size), exr.read(file.read()), wanted.bake_what)
+
+
+class Baked:
+    """Which object is baked, as SceneWriter asks."""
+    name = _NAME
+
+    def __init__(self, thing):
+        self._thing = thing
+
+    def is_it(self, instance):
+        return not instance.is_instance and instance.object.original == self._thing
+
+
+def image_for(name, size):
+    """The object's image, of this size; one that another bake made is used again."""
+    name = f"{name} light"
+    image = bpy.data.images.get(name)
+    if image is None or not image.is_float:
+        image = bpy.data.images.new(name, size, size, float_buffer=True)
+    elif tuple(image.size) != (size, size):
+        image.scale(size, size)
+    spaces = image.colorspace_settings.bl_rna.properties["name"].enum_items.keys()
+    image.colorspace_settings.name = next(name for name in (*_LINEAR, "Non-Color") if name in spaces)
+    return image
+
+
+def _put(image, picture, what):
+    values = numpy.ones((picture.height, picture.width, 4), numpy.float32)
+    for number, letter in enumerate("RGB"):
+        values[..., number] = picture.channels["V"] if what == "VISIBILITY" else picture.channels[letter] / math.pi
+    image.pixels.foreach_set(values[::-1].ravel())
+    image.update()
+    image.pack()
+    return image
