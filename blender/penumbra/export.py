@@ -8,8 +8,12 @@ import numpy
 from . import glb, lamps, materials, sky, space, texels
 
 _SURFACES = {"MESH", "CURVE", "SURFACE", "META", "FONT"}
-_UNKNOWN = {"VOLUME": "is a volume", "POINTCLOUD": "is a point cloud", "CURVES": "is hair", "GPENCIL": "is grease pencil",
-            "GREASEPENCIL": "is grease pencil"}
+_MESH_OR_NOTHING = "make a mesh of it, or hide it in renders"
+_UNKNOWN = {"VOLUME": f"is a volume, which is not rendered; {_MESH_OR_NOTHING} (Volume to Mesh modifier)",
+            "POINTCLOUD": f"is a point cloud, which is not rendered; {_MESH_OR_NOTHING}",
+            "CURVES": f"is hair, which is not rendered; {_MESH_OR_NOTHING} (Object, Convert; Curve to Mesh in geometry nodes)",
+            "GPENCIL": f"is grease pencil, which is not rendered; {_MESH_OR_NOTHING}",
+            "GREASEPENCIL": f"is grease pencil, which is not rendered; {_MESH_OR_NOTHING}"}
 
 
 class SceneWriter:
@@ -53,12 +57,13 @@ class SceneWriter:
                 self._balls += lamps.write_lamp(thing.data, thing.name, instance.matrix_world, self.glb, self.losses)
             return
         if thing.type in _UNKNOWN:
-            self.losses.refuse(f"{_UNKNOWN[thing.type]}, which is not rendered", thing.name)
+            self.losses.refuse(_UNKNOWN[thing.type], thing.name)
         if thing.type not in _SURFACES:
             return
         for system in thing.particle_systems:
             if system.settings.type == "HAIR" and system.settings.render_type == "PATH":
-                self.losses.refuse("has hair, which is not rendered", thing.name)
+                self.losses.refuse("has hair, which is not rendered; convert it to a mesh (Modifiers, Convert to Mesh, and give that "
+                                   "a thickness), or do not show it in renders", thing.name)
         owner = instance.parent if instance.is_instance else thing
         if thing.is_holdout or thing.is_shadow_catcher or owner.holdout_get(view_layer=self.layer):
             self.losses.refuse("is a holdout or shadow catcher, or in a collection that is a holdout", thing.name)

@@ -74,7 +74,7 @@ class Reader:
             return Look(color=tuple(material.diffuse_color[:3]))
         output = material.node_tree.get_output_node("CYCLES")
         if output and output.inputs["Volume"].is_linked:
-            self.losses.refuse("has a volume, which is not rendered", self.name)
+            self.losses.refuse("has a volume, which is not rendered; take it off the material's output", self.name)
         if output and output.inputs["Displacement"].is_linked:
             self.losses.mention("is not displaced by its material", self.name)
         return self._look_of(self._input(At(output.inputs["Surface"])) if output else _Shader())
@@ -151,7 +151,8 @@ class Reader:
         try:
             value = graph.evaluate(at)
         except Unknown as error:
-            self.losses.refuse(f"has a colour made by {error}, which is not evaluated (left out, it is grey)", self.name)
+            self.losses.refuse(f"has a colour made by {error}, which is not evaluated; bake it into an image (Cycles, Bake, Diffuse, Color "
+                               "alone) and use that (left out, it is grey)", self.name)
             return _GREY
         except OSError as error:
             self.losses.refuse(f"has an image that cannot be read ({error})", self.name)

@@ -11,6 +11,7 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 
 import bpy  # noqa: E402
 import numpy  # noqa: E402
+from mathutils import Matrix  # noqa: E402
 
 import inside  # noqa: E402
 import scenes  # noqa: E402
@@ -196,14 +197,21 @@ class Engine(unittest.TestCase):
         """As Cycles does, whichever way the camera looks."""
         for turn, target in (((0, 0, 0), (0, 0, 0)), ((0.4, -0.3, 2.1), (3, 4, 9)), ((0, 0, 0.7), (-9, 0, 2))):
             def build():
-                scenes.add("Far", scenes.quad("Far", half=0.01), (90, 90, -90))
-                scenes.camera((0, 0, 0), target) if any(target) else scenes.camera((0, 0, 0.1), (0, 0, -1))
+                scenes.translucent()  # whose pane is black here, half in the picture, and the only thing there
+                for name in ("Floor", "Block", "Key"):
+                    bpy.data.objects.remove(bpy.data.objects[name])
+                pane = bpy.data.objects["Pane"]
+                pane.data.materials[0].node_tree.nodes["Diffuse BSDF"].inputs["Color"].default_value = (0, 0, 0, 1)
+                scenes.camera((0, 0, 0), target) if any(target) else scenes.camera((0, 0, 0.1), (0.03, 0.05, -1))
+                bpy.context.view_layer.update()
+                pane.matrix_world = bpy.context.scene.camera.matrix_world @ Matrix.Translation((-0.9, 0, -2))
                 scenes.pictured_world(turn, interpolation="Closest")
             scene = inside.fresh(build)
             scene.render.film_transparent = False
             ours = inside.channels(scene, out("ours.exr"))
             scene.render.engine = "CYCLES"
-            scene.cycles.samples, scene.cycles.use_denoising = 1, False
+            scene.cycles.samples, scene.cycles.use_denoising, scene.cycles.max_bounces = 64, False, 0
+            scene.cycles.transparent_max_bounces = 8
             scene.cycles.pixel_filter_type, scene.cycles.filter_width = "GAUSSIAN", 0.01
             theirs = inside.channels(scene, out("theirs.exr"))
             self.assertEqual(float(ours["Combined.A"].min()), 1)

@@ -25,8 +25,8 @@ _spec = importlib.util.spec_from_file_location("beside_cycles", os.path.join(os.
 cycles = importlib.util.module_from_spec(_spec)
 _spec.loader.exec_module(cycles)
 
-# Not these: lens shift, shadow visibility and what particles scatter are not in the file, and mixed shaders are not either.
-LOST = {"camera_shift", "orthographic_shift", "shadowless_lamp", "shadowless_object", "translucent", "cut_out", "hidden"}
+# Not these: lens shift, shadow visibility, worlds and what particles scatter are not in the file, and mixed shaders are not either.
+LOST = {name for name in scenes.SCENES if name.startswith("world_")} | {"camera_shift", "orthographic_shift", "shadowless_lamp", "shadowless_object", "translucent", "cut_out", "hidden"}
 # The file has what faces a sun, which is what it gets here; in Cycles a sun of half angle a gives that less about a² / 4.
 cycles.MODEL = {**cycles.MODEL, "sun": radians(4) ** 2 / 4}
 SIDES = 64  # of what stands for a round lamp

@@ -141,6 +141,13 @@ def spot_rim():
 
 
 @scene
+def spot_wide():
+    """Nearly half of all directions, beyond which nothing is lit."""
+    stage()
+    lamp("SPOT", (1, -1, 2.5), (40, 30, 0), energy=1000, shadow_soft_size=0.05, spot_size=radians(175), spot_blend=0.3)
+
+
+@scene
 def emissive_plane():
     stage()
     add("Panel", quad("Panel", emission((1, 0.9, 0.7), 12), 0.5), (0.8, 0, 3), (200, 10, 0))

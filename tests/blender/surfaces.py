@@ -283,6 +283,13 @@ class Refusals(unittest.TestCase):
         self.shear("Shot")
         self.assertIn("'Shot' is a camera that is sheared", self.said(scene)[0])
 
+    def test_hair_is_refused_with_what_to_do(self):
+        def hairy():
+            scenes.area_square()
+            system = bpy.data.objects["Floor"].modifiers.new("Hair", "PARTICLE_SYSTEM").particle_system
+            system.settings.type, system.settings.count = "HAIR", 5
+        self.expect(inside.fresh(hairy), "'Floor' has hair, which is not rendered; convert it to a mesh")
+
     def test_clip_distances(self):
         scene = inside.fresh(scenes.area_square)
         lens = bpy.data.cameras["Shot"]
