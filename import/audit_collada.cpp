@@ -142,4 +142,14 @@ std::string without_leading_blanks(std::string_view content, const std::string& 
   return std::move(out).str();
 }
 
+std::string with_named_cameras(std::string content) {
+  constexpr std::string_view kTag = "<camera ";
+  for (std::size_t at = content.find(kTag); at != std::string::npos; at = content.find(kTag, at + 1)) {
+    const std::size_t end = std::min(content.find('>', at), content.size());
+    if (std::string_view(content).substr(at, end - at).find(" name=") == std::string_view::npos)
+      content.insert(at + kTag.size(), R"(name="camera" )");
+  }
+  return content;
+}
+
 }  // namespace penumbra::mesh

@@ -200,7 +200,7 @@ void note_material_libraries(std::string_view text, const std::filesystem::path&
 ImportedMesh read_collada(const InputFile& input, const std::string& content, SceneParts* parts) {
   const std::string file = input.name.string();
   const std::uint64_t triangles = triangles_of_collada(content, file);
-  return read_with_assimp(input, without_leading_blanks(content, file), triangles, parts);
+  return read_with_assimp(input, with_named_cameras(without_leading_blanks(content, file)), triangles, parts);
 }
 
 /// Formats that artists have, and that nothing on this system reads.

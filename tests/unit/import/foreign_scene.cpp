@@ -83,6 +83,12 @@ TEST_F(ForeignScenes, ColladaHasColoursLampsAndCameras) {
   EXPECT_NEAR(scene.cameras[0].vertical_fov, glm::degrees(2 * std::atan(0.5)), 1e-4);
   EXPECT_THAT(scene.warnings, Contains(HasSubstr("2 lamps have no size in such files")));
 
+  std::string vertical = kLamps;
+  for (std::size_t at; (at = vertical.find("xfov")) != std::string::npos;) vertical[at] = 'y';
+  const Scene upright = read_scene(write("y.dae", collada("", vertical, kLampNodes)), options);
+  EXPECT_NEAR(upright.cameras.at(0).vertical_fov, 90, 1e-4);
+  EXPECT_NEAR(*upright.cameras[0].aspect, 2, 1e-6);
+
   // Blender has watts: a point lamp's candela are 1 / 4π of them.
   const Scene blenders = read_scene(
       write("b.dae", collada("<diffuse><color>1 1 1 1</color></diffuse>", kLamps, kLampNodes, "Blender 3.4.1")),
