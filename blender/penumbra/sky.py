@@ -165,7 +165,7 @@ def write(world, name, wanted, is_seen, glb, folder, losses):
                 space = sky.image.node.image.colorspace_settings.name
                 losses.refuse(f"is a world with a picture in the colour space {space}, which is not known", name)
         if wanted == SEEN and not lights.is_dark:
-            losses.mention("is a world whose light is left out (Shadows, World)", name)
+            losses.mention("is a world whose light is left out (World, Surface, Light)", name)
         if wanted == SEEN and lights is not seen:
             lights = Sky()
         return _write(lights, seen, name, wanted, glb, folder, losses)
