@@ -1,0 +1,80 @@
+#!/bin/bash
+# gpu.sh [FILE.json] [DEVICE] [largest side]: is every pass right on this machine's GPU, and how fast is it? Eight minutes at most. Runs
+# from the unpacked tarball (cmake/tarball.sh), where nothing needs to be installed, or from a built clone. DEVICE as for --device.
+# Three parts, in FILE.json (gpu.json): the self-test; the bits of exact methods on the device against those of the processor's vector
+# units; seconds and milliseconds a pass of exact and image-based methods from 512x512 to 4K. Exit 1 where something is wrong.
+set -uo pipefail
+file=${1:-gpu.json} device=${2:-} largest=${3:-3840}
+here=$(cd -- "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")" && pwd)
+if [[ -x $here/bin/penumbra ]]; then
+  program=$here/bin/penumbra scenes=$here/share/penumbra/scenes commit=$(cat "$here/share/doc/penumbra/commit" 2>/dev/null)
+else
+  program=$here/../build/penumbra scenes=$here/../scenes commit=$(git -C "$here" describe --always --dirty --abbrev=12 --exclude='*' 2>/dev/null)
+fi
+[[ -x $program ]] || { echo "gpu.sh: no program at $program" >&2; exit 4; }
+# Containers that only mount NVIDIA's driver name it nowhere.
+nvidia=/usr/local/nvidia/share
+[[ ! -e $nvidia/vulkan/icd.d/nvidia_icd.json ]] || export VK_DRIVER_FILES=${VK_DRIVER_FILES:-$nvidia/vulkan/icd.d/nvidia_icd.json}
+[[ ! -e $nvidia/glvnd/egl_vendor.d/10_nvidia.json ]] ||
+  export __EGL_VENDOR_LIBRARY_FILENAMES=${__EGL_VENDOR_LIBRARY_FILENAMES:-$nvidia/glvnd/egl_vendor.d/10_nvidia.json}
+work=$(mktemp -d "$(dirname -- "$file")/gpu.XXXXXX") || exit 4
+trap 'rm -rf "$work"' EXIT
+on=() wrong=0
+[[ -z $device ]] || on=(--device "$device")
+say() { printf '%4d s  %s\n' "$SECONDS" "$*" >&2; }
+left() { local rest=$((${1} - SECONDS)); echo $((rest > 0 ? rest : 1)); }  # seconds until the one named, for `timeout`
+
+say "devices"
+"$program" devices --json >"$work/devices.json" 2>/dev/null || echo null >"$work/devices.json"
+say "self-test"
+timeout "$(left 150)" "$program" devices --self-test "${on[@]}" --json >"$work/self-test.json" 2>"$work/errors.txt"
+self_test=$?
+((self_test == 0)) || { wrong=1; say "self-test: exit $self_test"; cat "$work/errors.txt" >&2; }
+[[ -s $work/self-test.json ]] || echo null >"$work/self-test.json"
+
+# picture NAME METHOD SIZE SAMPLES SCENE UNTIL: one run; its stats are NAME.json, and its bits NAME.bits where the method has any.
+picture() {
+  local bits=()
+  [[ $1 != *-bits-* ]] || bits=(--bits "$work/$1.bits")
+  timeout "$(left "$6")" "$program" render "$scenes/$5.json" --method "$2" "${on[@]}" --light-samples "$4" --size "$3" -o "$work/x.exr" \
+    --stats "$work/$1.json" "${bits[@]}" --quiet >"$work/errors.txt" 2>&1
+}
+
+bits=()
+for scene in contact thin fusion; do
+  for method in edge-scatter view-sample depth-complexity; do
+    same=null
+    if picture x-bits-device $method:engine=vulkan 512x512 256 $scene 270 && picture x-bits-vectors $method:engine=native 512x512 256 $scene 270; then
+      if cmp -s "$work"/x-bits-{device,vectors}.bits; then same=true; else same=false wrong=1; fi
+    else
+      say "$(tail -1 "$work/errors.txt")"
+    fi
+    say "$scene, $method: same bits as the vector units: $same"
+    bits+=("{\"scene\": \"$scene\", \"method\": \"$method\", \"size\": [512, 512], \"lightSamples\": 256, \"same\": $same}")
+  done
+done
+
+speed=()
+for size in 512x512 1920x1080 3840x2160; do
+  ((${size%x*} <= largest)) || continue
+  for method in edge-scatter:engine=vulkan view-sample:engine=vulkan depth-complexity:engine=vulkan soft-volume hard-volume shadow-map pcss vssm \
+    accumulate backproject; do
+    name=${method%%:*}
+    # Image-based methods ask their own number of samples; 256 is for those that take light samples.
+    if picture "speed" "$method" "$size" 256 self-shadow 470; then
+      speed+=("$(cat "$work/speed.json")")
+      say "$size, $name: shadow $(sed -n 's/^ *"shadow": \([0-9.e-]*\).*/\1/p' "$work/speed.json" | head -1) s"
+    else
+      say "$size, $name: $(tail -1 "$work/errors.txt")"
+    fi
+  done
+done
+
+join() { local IFS=,; printf '%s' "$*"; }
+{
+  printf '{"format": "penumbra-gpu/1", "commit": "%s", "date": "%s", "processors": %d, "seconds": %d,\n' "$commit" "$(date -u +%FT%TZ)" "$(nproc)" "$SECONDS"
+  printf '"devices": %s,\n"selfTest": {"exitCode": %d, "rows": %s},\n' "$(cat "$work/devices.json")" $self_test "$(cat "$work/self-test.json")"
+  printf '"sameBitsAsVectorUnits": [%s],\n"speed": [%s]}\n' "$(join "${bits[@]}")" "$(join "${speed[@]}")"
+} >"$work/all.json" && mv -- "$work/all.json" "$file"
+say "written: $file"
+exit $wrong
