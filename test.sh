@@ -7,7 +7,7 @@ build=$root/build
 source "$root/cmake/bootstrap.sh"
 
 case " $* " in
-  *" full "* | *" -R blender"*) install_packages full ;;
+  *" full "* | *" -R blender"* | *" -R "*Slurm* | *" -R packages"*) install_packages full ;;
   *) install_packages all ;;
 esac
 build ON all
