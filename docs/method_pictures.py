@@ -32,7 +32,7 @@ STRIPS = {
     "image": (128, 1, 64, ["pcf:size=256", "vssm:size=256", "convolution:size=256", "occlusion-textures:size=256", "soft-shadow-map:receiverSize=128",
                        "backproject:size=128", "backproject-peel:size=128", "bitmask:size=128", "contour:size=128:traversal=hierarchy",
                        "packet:size=128:sublights=2", "adaptive-light:size=128", "layered-attenuation:size=128", "deep-penumbra:size=128", "layer-rays:size=128",
-                       "penumbra-map:size=256", "smoothies:size=256", "parker:size=256", "brabec-seidel:size=256", "kirsch-doellner:size=256", "arvo:size=256", "silhouette-map:size=256"]),
+                       "penumbra-map:size=256", "smoothies:size=256", "parker:size=256", "brabec-seidel:size=256", "kirsch-doellner:size=256", "arvo:size=256", "silhouette-map:size=256", "forward-map:size=256"]),
 }
 # Page: scene, light samples, one or two entries. Not `exact`: it is the judge.
 PAGES = {
@@ -53,6 +53,7 @@ PAGES = {
     "raytrace": ("bunny", 64, ["raytrace"]),
     "shadow-map": ("contact", 64, ["shadow-map:size=256"]),
     "silhouette-map": ("contact", 64, ["silhouette-map:size=256"]),
+    "forward-map": ("contact", 64, ["forward-map:size=256"]),
     "pcf": ("contact", 64, ["pcf:size=256"]),
     "pcss": ("papers/fusion-half", 64, ["pcss"]),
     "vssm": ("papers/two-sheets", 64, ["vssm", "vssm:moments=esm"]),
@@ -65,6 +66,8 @@ PAGES = {
     "layer-rays": ("papers/gap-closed", 256, ["layer-rays:size=256:layers=1", "layer-rays:size=256:layers=2"]),
     "convolution": ("papers/tower", 64, ["convolution"]),
     "occlusion-textures": ("contact", 64, ["occlusion-textures:size=512"]),
+    "ssao": ("skies/knot", 64, ["ssao"]),
+    "hbao": ("skies/knot", 64, ["hbao"]),
     "accumulate": ("contact", 64, ["accumulate:size=128"]),
     "soft-shadow-map": ("papers/ball", 64, ["soft-shadow-map", "soft-shadow-map:passes=2"]),
     "backproject": ("papers/plate-over-plate", 64, ["backproject:size=128:fill=none", "backproject:size=128"]),
@@ -76,6 +79,7 @@ PAGES = {
     "layered-attenuation": ("contact", 36, ["layered-attenuation:size=128"]),
     "deep-penumbra": ("contact", 36, ["deep-penumbra:size=128", "deep-penumbra:size=128:bound=0.2"]),
 }
+LIGHTS = {"skies/knot": ["--light", "around"]}  # of scenes with several: the first
 PAGE_SIZE, PAGE_LIMIT = 144, 0.5  # pixels on a side; the error of the deepest colour
 # As compare/error_picture.cpp.
 BACKGROUND = (96, 104, 116)
@@ -132,7 +136,7 @@ def render_pages(program, pages):
         runs.setdefault(PAGES[page][:2], []).append(page)
     for (scene, samples), together in runs.items():
         entries = [entry for page in together for entry in PAGES[page][2]]
-        found = Runner(program).compare(f"scenes/{scene}.json", entries, size=PAGE_SIZE, samples=samples)
+        found = Runner(program).compare(f"scenes/{scene}.json", entries, size=PAGE_SIZE, samples=samples, more=LIGHTS.get(scene, []))
         found[TRUTH] = found["truth"]
         for page in together:
             print(f"{page}: scenes/{scene}.json, {samples} light samples, {write_page(page, found)} bytes")

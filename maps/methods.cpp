@@ -6,12 +6,16 @@
 #include "maps/backprojection/patches/methods.hpp"
 #include "maps/backprojection/soft_shadow_map/methods.hpp"
 #include "maps/filters/methods.hpp"
+#include "maps/host/dome_suns.hpp"
 #include "maps/host/every_light.hpp"
 #include "maps/host/texel_widths.hpp"
 #include "maps/sampling/methods.hpp"
+#include "maps/screen/methods.hpp"
 #include "maps/single_shadow/methods.hpp"
 
 #include <array>
+#include <cstdint>
+#include <memory>
 #include <utility>
 
 namespace penumbra::maps {
@@ -26,20 +30,37 @@ Given given_with(Given given, const visibility::MethodOptions& options) {
   return given;
 }
 
-/// Returns the row of a method of this family, extended to every light in `kGiven`.
+/// A method's own options: all but the one that says how many suns a dome is.
+visibility::MethodOptions own_options(visibility::MethodOptions options) {
+  options.erase(kDomeSuns.name());
+  return options;
+}
+
+/// With all lights that a method of this family is given.
+visibility::MethodDescription described(visibility::MethodDescription description, Given given) {
+  description = for_every_light(std::move(description), given);
+  description.texel_widths = texel_widths;
+  description.options.push_back(kDomeSuns.description());
+  return given.suns ? with_dome_suns(std::move(description)) : description;
+}
+
+/// A method of this family, for every light that `kGiven` names.
 template <auto kDescribe, auto kMake, Given kGiven = Given{}>
 engines::MethodRow row() {
   engines::MethodRow row = engines::on_device<kDescribe, kMake>();
-  row.description = for_every_light(std::move(row.description), kGiven);
-  row.description.texel_widths = texel_widths;
+  row.description = described(std::move(row.description), kGiven);
   row.describe = [](const visibility::MethodOptions& options) {
     visibility::MethodDescription description =
-        for_every_light(engines::describe_with<kDescribe>(options), given_with(kGiven, options));
-    description.texel_widths = texel_widths;
+        described(engines::describe_with<kDescribe>(own_options(options)), given_with(kGiven, options));
+    visibility::parse_options(description, options);
     return description;
   };
   row.make = [](const render::Machine& machine, const visibility::MethodOptions& options) {
-    return for_every_light(kMake(machine.device(), options), given_with(kGiven, options));
+    const Given given = given_with(kGiven, options);
+    const visibility::MethodDescription all = described(engines::describe_with<kDescribe>(own_options(options)), given);
+    const std::uint32_t suns = visibility::parse_options(all, options)[kDomeSuns];
+    std::unique_ptr<visibility::Method> method = for_every_light(kMake(machine.device(), own_options(options)), given);
+    return given.suns ? with_dome_suns(std::move(method), suns) : std::move(method);
   };
   return row;
 }
@@ -76,7 +97,10 @@ std::span<const engines::MethodRow> methods() {
       row<arvo_description, make_arvo, kWithoutSpheres>(),
       row<pcf_description, make_pcf>(),
       row<silhouette_map_description, make_silhouette_map, kWithoutHoles>(),
+      row<forward_map_description, make_forward_map>(),
       row<shadow_map_description, make_shadow_map>(),
+      engines::on_processor<make_ssao>(),
+      engines::on_processor<make_hbao>(),
   };
   return rows;
 }

@@ -4,6 +4,7 @@ penumbra_test(domes
   SOURCES
   agreement/domes.cpp
   analytic/dome_closed_forms.cpp
+  analytic/dome_screen.cpp
   cli/domes.cpp
   cli/program.cpp
   unit/dome_samples.cpp

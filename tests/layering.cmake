@@ -47,12 +47,13 @@ set(may_maps/products/lists ${may_maps/products} maps/products)
 set(may_maps/filters maps/products maps/host render ${all_visibility} scenes mesh base)
 set(may_maps/sampling maps/products/lists maps/products maps/host render ${all_visibility} scenes mesh base)
 set(may_maps/single_shadow maps/products maps/host render/opengl render ${all_visibility} scenes mesh base)
+set(may_maps/screen maps/host render ${all_visibility} scenes mesh base)
 set(may_maps/backprojection maps/products maps/host render ${all_visibility} scenes mesh base)
 foreach(room patches contours soft_shadow_map)
   set(may_maps/backprojection/${room} ${may_maps/backprojection} maps/backprojection)
 endforeach()
 list(APPEND may_maps/backprojection/soft_shadow_map maps/backprojection/patches)  # self=backproject
-set(may_maps maps/host maps/filters maps/sampling maps/single_shadow maps/backprojection/patches maps/backprojection/contours maps/backprojection/soft_shadow_map engines render ${all_visibility} scenes mesh base)
+set(may_maps maps/host maps/filters maps/sampling maps/single_shadow maps/screen maps/backprojection/patches maps/backprojection/contours maps/backprojection/soft_shadow_map engines render ${all_visibility} scenes mesh base)
 set(may_hybrids volumes/soft maps/filters maps/host engines render ${all_visibility} scenes mesh base)
 set(may_selftest maps/products/lists maps/products maps/host vsm engines/vectors volumes/scatter volumes/counters volumes/raster ${signed_edges} volumes/wedges render/opengl render
     ${all_visibility} scenes mesh/shapes mesh base)
@@ -79,7 +80,7 @@ set(rooms base network mesh mesh/diagnosis mesh/shapes repair scenes scenes/form
     visibility/tree visibility/lights
     visibility/masks visibility/alpha areas render/opengl render engines/device engines/vectors engines/pairs engines
     volumes/wedges volumes/edges/device volumes/edges/vectors volumes/edges volumes/raster volumes/soft volumes/counters volumes/scatter volumes vsm maps/host maps/products maps/products/lists
-    maps/filters maps/sampling maps/single_shadow maps/backprojection maps/backprojection/patches maps/backprojection/contours
+    maps/filters maps/sampling maps/single_shadow maps/screen maps/backprojection maps/backprojection/patches maps/backprojection/contours
     maps/backprojection/soft_shadow_map maps hybrids selftest reference compare
     app/process app app/pictures app/bake app/commands app/compare app/sweep app/view app/serve app/farm app/inspect app/wedges library python bench)
 set(may_tests import ${rooms})

@@ -6,8 +6,10 @@ penumbra_test(maps FULL MapsTable.*
   analytic/maps/box_means.cpp
   analytic/maps/closed_form.cpp
   analytic/maps/degenerate.cpp
+  analytic/maps/dome_suns.cpp
   analytic/maps/every_light.cpp
   analytic/maps/filters_robust.cpp
+  analytic/maps/forward_map.cpp
   analytic/maps/formulas.cpp
   analytic/maps/identities.cpp
   analytic/maps/layers.cpp
@@ -54,6 +56,6 @@ penumbra_test(maps FULL MapsTable.*
   analytic/maps/backprojection/sphere_form.cpp
   analytic/maps/backprojection/subsampled.cpp
   analytic/maps/backprojection/umbra.cpp
-  LIBRARIES penumbra_selftest penumbra_maps penumbra_scenes penumbra_vsm penumbra_reference TBB::tbb)
+  LIBRARIES penumbra_selftest penumbra_maps penumbra_scenes penumbra_volumes penumbra_vsm penumbra_reference TBB::tbb)
 penumbra_shaders(maps_test analytic/maps/backprojection/lens.comp analytic/maps/box_means.comp analytic/maps/box_windows.comp)
 target_compile_definitions(maps_test PRIVATE PENUMBRA_DOCS="${PROJECT_SOURCE_DIR}/docs")

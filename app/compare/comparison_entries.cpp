@@ -106,9 +106,10 @@ std::vector<Entry> choose_entries(const ComparisonOptions& options, const Sessio
   const std::string no_device = why_no_device(options, machine);
   std::vector<std::string> without_device, costly;
   std::vector<Entry> costly_entries;
-  // For maps, a sphere is up to 54 disks (maps/host/lamp_disks.hpp).
-  const bool costs_maps_much = std::ranges::any_of(
-      session.lights, [](const visibility::Light& light) { return visibility::kBodies.contains(light.kind); });
+  // Maps see a sphere as up to 54 disks (maps/host/lamp_disks.hpp), a dome as suns (maps/host/dome_suns.hpp).
+  const bool costs_maps_much = std::ranges::any_of(session.lights, [](const visibility::Light& light) {
+    return (visibility::kBodies | visibility::kDomes).contains(light.kind);
+  });
   for (const MethodEntry& chosen : with_method_options(options)) {
     std::optional<Entry> described = describe_entry(chosen, warn);
     if (!described) continue;
@@ -143,7 +144,7 @@ std::vector<Entry> choose_entries(const ComparisonOptions& options, const Sessio
     entries = std::move(costly_entries);
   else if (!costly.empty())
     warn(fmt::format(
-        "{} left out: maps see a sphere as up to 54 disks, each with maps of its own; name a method to have it",
+        "{} left out: maps see a sphere as up to 54 disks and a dome as many suns, each with maps of its own; name a method to have it",
         fmt::join(costly, ", ")));
   if (!without_device.empty()) {
     if (entries.empty()) throw ResourceError("{}: {}", fmt::join(without_device, ", "), no_device);

@@ -6,6 +6,7 @@ from drawing import BLUE, DARK, GREEN, INK, RED, Drawing
 METHODS = {
     "shadow-map": (1978, (90, 235), "nearest depth"),
     "silhouette-map": (2003, (265, 128), "outlines between"),
+    "forward-map": (1998, (540, 128), "texels throw light"),
     "pcf": (1987, (265, 60), "share of a window"),
     "pcss": (2005, (540, 60), "window from blockers"),
     "vssm": (2010, (770, 60), "means made beforehand"),
@@ -31,7 +32,7 @@ METHODS = {
 }
 # From, to, what the second repairs of the first.
 ARROWS = [
-    ("shadow-map", "pcf", "soft edges", BLUE), ("pcf", "pcss", "width of penumbrae", BLUE), ("shadow-map", "silhouette-map", "straight edges", BLUE), ("pcss", "vssm", "no taps", BLUE),
+    ("shadow-map", "pcf", "soft edges", BLUE), ("pcf", "pcss", "width of penumbrae", BLUE), ("shadow-map", "silhouette-map", "straight edges", BLUE), ("pcss", "vssm", "no taps", BLUE), ("shadow-map", "forward-map", "", BLUE),
     ("shadow-map", "convolution", "areas", GREEN), ("convolution", "occlusion-textures", "several planes", GREEN),
     ("shadow-map", "soft-shadow-map", "the light from each receiver", RED), ("shadow-map", "backproject", "", RED),
     ("backproject", "backproject-peel", "gaps", RED), ("backproject", "bitmask", "overlaps", RED), ("backproject", "contour", "gaps", RED),
@@ -43,7 +44,7 @@ ARROWS = [
 ]
 def family_figure():
     d = Drawing(1000, 860, "The image-based family: who improves on whom",
-                "A graph from shadow-map of 1978 in five branches: filters (pcf, pcss, vssm; silhouette-map between texels), images of slices (convolution, occlusion-textures), patches "
+                "A graph from shadow-map of 1978 in five branches: filters (pcf, pcss, vssm; silhouette-map between texels, forward-map the other way round), images of slices (convolution, occlusion-textures), patches "
                 "projected back onto the light (soft-shadow-map, backproject, backproject-peel, bitmask, contour, packet, layer-rays), many maps (accumulate, layered-attenuation, "
                 "deep-penumbra, adaptive-light), and penumbrae around one hard shadow (parker, penumbra-map, smoothies, brabec-seidel, kirsch-doellner, arvo). Each arrow says what the later method repairs.")
     assert {name for pair in ARROWS for name in pair[:2]} == set(METHODS)

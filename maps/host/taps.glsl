@@ -159,17 +159,27 @@ bool is_before(Tap tap, float receiver, float forgiven) {
 // Returns whether the tap's surface is nearer to the light than this depth, independent of the receiver's slope.
 bool is_before_depth(Tap tap, float depth, float bias) { return is_before(tap, depth, bias * tap.texel * tap.along); }
 
-// Returns whether the tap's surface is nearer to the light than the receiver's plane (normal m away from the light, at
-// distance h = m . p > 0 from the light point). A plane that the direction misses, or meets beyond `limit`, counts as
-// at `limit`.
-bool blocks(Tap tap, vec3 m, float h, float limit, float bias) {
+// Where a receiver's plane is in the direction of a tap, and how far before it in depth the bias forgives a surface.
+struct PlaneDepth {
+  float depth, forgiven;
+};
+
+// The receiver's plane: normal m away from the light, at distance h = m . p > 0 from the light point. A plane that the
+// direction misses, or meets beyond `limit`, is taken to be at `limit`.
+PlaneDepth plane_depth(Tap tap, vec3 m, float h, float limit, float bias) {
   const float facing = dot(m, tap.direction);
   const float plane = h < limit * facing ? h / facing : limit;
   // Depth of the plane per unit across, bounded: a bias of 1 covers one texel of this slope plus one texel's width.
   const float across = abs(m.x) + abs(m.y) + abs(m.z) - abs(m[tap.axis]);
   const float slope = across < kSteepest * facing ? across / facing : kSteepest;
   const float forgiven = bias * tap.texel * tap.along * (1.0 + slope);
-  return is_before(tap, plane, forgiven);
+  return PlaneDepth(plane, forgiven);
+}
+
+// Is what the map has nearer to the light than the receiver's plane?
+bool blocks(Tap tap, vec3 m, float h, float limit, float bias) {
+  const PlaneDepth plane = plane_depth(tap, m, h, limit, bias);
+  return is_before(tap, plane.depth, plane.forgiven);
 }
 
 // Returns whether the tap's surface lies between the receiver at d and some point of the light. The receiver's plane is

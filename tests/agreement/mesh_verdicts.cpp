@@ -127,11 +127,12 @@ class MeshVerdicts : public testing::Test {
   static inline std::unique_ptr<render::Machine> machine_;
 };
 
-/// All methods of the table except the ray caster, which judges them. Maps are small: these methods are approximate
-/// anyway.
+/// All methods of the table that do rectangles, except the ray caster, which judges them. Maps are small: these methods
+/// are approximate anyway.
 std::vector<std::unique_ptr<visibility::Method>> make_methods(const render::Machine& machine) {
   std::vector<std::unique_ptr<visibility::Method>> methods;
   for (const visibility::MethodDescription* method : app::all_methods()) {
+    if (!method->lights.contains(visibility::LightKind::rectangle)) continue;
     const bool is_map = method->family == visibility::Family::image;
     const visibility::MethodOptions options =
         is_map ? visibility::MethodOptions{{"size", "64"}} : visibility::MethodOptions{};

@@ -8,11 +8,11 @@ namespace penumbra::tests {
 namespace {
 
 /// A floor below a plate below a rectangle light, by so many light samples.
-Stage plate_over_floor(std::uint32_t samples) {
+Stage plate_over_floor(std::uint32_t samples, const scenes::AreaLight& light) {
   scenes::Scene scene;
   add_quad(scene, {0, 0, 0}, {4, 0, 0}, {0, 0, 4});
   add_quad(scene, {0.1, 1, 0.2}, {0.7, 0, 0}, {0, 0, 0.6});
-  scene.lights.push_back(ceiling_light(3, 0.8));
+  scene.lights.push_back(light);
   scene.cameras.push_back(camera({0.4, 3, 7}, {0, 0.3, 0}));
   return Stage(scene, 24, 16, light_samples(samples));
 }
@@ -27,12 +27,25 @@ visibility::MethodOptions small_maps(const visibility::MethodDescription& method
   return options;
 }
 
+/// Does the method refuse lamps?
+bool is_of_domes_alone(const visibility::MethodDescription& method) {
+  return !method.lights.contains(visibility::LightKind::rectangle);
+}
+
 class MethodTable : public DeviceTest {};
 
 TEST_F(MethodTable, MakesWhatItDescribesAndKnowsWhichCountLightSamples) {
-  const Stage one = plate_over_floor(1), many = plate_over_floor(16);
+  scenes::AreaLight sky;
+  sky.name = "sky";
+  sky.shape = scenes::Dome{};
+  const Stage ceiling_one = plate_over_floor(1, ceiling_light(3, 0.8)),
+              ceiling_many = plate_over_floor(16, ceiling_light(3, 0.8)), sky_one = plate_over_floor(1, sky),
+              sky_many = plate_over_floor(16, sky);
   for (const visibility::MethodDescription* described : app::all_methods()) {
-    const visibility::MethodOptions options = small_maps(*described);
+    visibility::MethodOptions options = small_maps(*described);
+    const bool sky_alone = is_of_domes_alone(*described);
+    if (sky_alone) options["radius"] = "0.5";
+    const Stage &one = sky_alone ? sky_one : ceiling_one, &many = sky_alone ? sky_many : ceiling_many;
     const auto method = app::make_method(described->name, options, device());
     EXPECT_EQ(method->description().name, described->name);
     EXPECT_EQ(method->description().output, app::describe_method(described->name, options).output) << described->name;

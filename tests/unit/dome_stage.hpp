@@ -62,11 +62,12 @@ inline DomeAnswer answer_of(visibility::Method& method, const visibility::SceneF
   method.prepare_light(light);
   method.prepare_view(samples);
   const bool gives_masks = method.description().output == visibility::Output::mask;
+  const bool gives_area = method.description().gives_area();
   DomeAnswer answer;
   answer.masks.words_per_pixel = gives_masks ? light.words_per_mask() : 0;
   answer.masks.words.resize(samples.size() * answer.masks.words_per_pixel);
   answer.masks.visibility.resize(samples.size());
-  answer.form_factors.resize(gives_masks ? 0 : samples.size());
+  answer.form_factors.resize(gives_area ? samples.size() : 0);
   for (std::uint32_t first = 0; first < samples.height;) {
     const std::uint32_t rows = std::min(method.max_tile_rows(), samples.height - first);
     method.evaluate({first, rows});
@@ -74,7 +75,7 @@ inline DomeAnswer answer_of(visibility::Method& method, const visibility::SceneF
     const std::size_t words = answer.masks.words_per_pixel;
     if (gives_masks)
       method.read_masks(std::span(answer.masks.words).subspan(pixel * words, pixels * words));
-    else
+    if (gives_area)
       method.read_form_factors(std::span(answer.form_factors).subspan(pixel, pixels));
     method.read_visibility(std::span(answer.masks.visibility).subspan(pixel, pixels));
     first += rows;

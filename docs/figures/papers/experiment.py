@@ -63,8 +63,10 @@ def dot(a, b):
 
 
 def judged(world, channels):
-    """Of each pixel, whether errors are counted there: something is seen, in front of the first light, a rectangle, and all of
-    this is above its tangent plane."""
+    """Of each pixel, whether errors are counted there: something is seen, and under a first light that is a rectangle it is in front
+    of this, all of which is above its tangent plane."""
+    if "dome" in world["lights"][0]:
+        return [a > 0 for a in channels["A"]]
     light = world["lights"][0]["rectangle"]
     u, v = light["halfU"], light["halfV"]
     corners = [[c + s * x + t * y for c, x, y in zip(light["center"], u, v)] for s in (-1, 1) for t in (-1, 1)]

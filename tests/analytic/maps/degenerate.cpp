@@ -43,6 +43,8 @@ constexpr const char* kDegenerateWays[] = {"shadow-map",
                                            "bitmask:occluder=rect:level=2:budget=20",
                                            "bitmask:subsample=2:subsampleBy=grid",
                                            "silhouette-map",
+                                           "forward-map",
+                                           "forward-map:splat=spline:depth=midpoint:bias=0",
                                            "shadow-map:projection=paraboloid",
                                            "pcf:projection=cube:bias=0",
                                            "layer-rays",
@@ -196,9 +198,9 @@ TEST_F(MapsDegenerate, WhatCastsNoShadowReceivesIt) {
   };
   const Given both = given("", ceiling_light(2, 0.2), plate), one = given("", ceiling_light(2, 0.2), plate_alone);
   for (const char* words :
-       {"shadow-map", "pcf", "silhouette-map", "pcf:projection=paraboloid", "backproject", "bitmask", "penumbra-map",
-        "smoothies", "brabec-seidel", "parker", "arvo", "layer-rays", "contour", "packet", "accumulate",
-        "adaptive-light:levels=1", "deep-penumbra", "layered-attenuation"}) {
+       {"shadow-map", "pcf", "silhouette-map", "forward-map:splat=box", "pcf:projection=paraboloid", "backproject",
+        "bitmask", "penumbra-map", "smoothies", "brabec-seidel", "parker", "arvo", "layer-rays", "contour", "packet",
+        "accumulate", "adaptive-light:levels=1", "deep-penumbra", "layered-attenuation"}) {
     const Way way = Way(words).with({{"size", "64"}});
     const Masks expected = run(*way.make(device()), both.stage), found = run(*way.make(device()), one.stage);
     EXPECT_LT(*std::ranges::min_element(expected.visibility), 0.5F) << words;
@@ -240,6 +242,7 @@ TEST_F(MapsDegenerate, NoMapIsSmallerThanEightTexels) {
                             "arvo",
                             "layer-rays",
                             "silhouette-map",
+                            "forward-map",
                             "contour",
                             "packet",
                             "accumulate",

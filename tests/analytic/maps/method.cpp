@@ -31,6 +31,7 @@ class MapsMethod : public MapsTest {
                                   small(maps::make_backproject),
                                   small(maps::make_layer_rays),
                                   small(maps::make_silhouette_map),
+                                  small(maps::make_forward_map),
                                   small(maps::make_penumbra_map),
                                   small(maps::make_smoothies),
                                   small(maps::make_brabec_seidel),

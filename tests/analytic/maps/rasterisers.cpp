@@ -159,6 +159,7 @@ std::vector<Named> every_method() {
   return {{"shadow-map", maps::make_shadow_map, {{"depth", "midpoint"}}},
           {"pcf", maps::make_pcf, {}},
           {"silhouette-map", maps::make_silhouette_map, {}},
+          {"forward-map", maps::make_forward_map, {}},
           {"pcss", maps::make_pcss, {}},
           {"vssm", maps::make_vssm, {}},
           {"convolution", maps::make_convolution, {}},

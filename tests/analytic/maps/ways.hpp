@@ -34,6 +34,7 @@ struct Way {
   [[nodiscard]] std::unique_ptr<visibility::Method> make(const render::Device& device) const {
     static const std::map<std::string, Factory> factories{{"shadow-map", maps::make_shadow_map},
                                                           {"silhouette-map", maps::make_silhouette_map},
+                                                          {"forward-map", maps::make_forward_map},
                                                           {"pcf", maps::make_pcf},
                                                           {"pcss", maps::make_pcss},
                                                           {"vssm", maps::make_vssm},
