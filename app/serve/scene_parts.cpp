@@ -30,9 +30,10 @@ void add(const std::string& thing, std::uint32_t number, std::uint32_t& first, s
 
 }  // namespace
 
-void SceneParts::put(std::span<const std::byte> glb, const std::set<std::string>& shadeless) {
+void SceneParts::put(std::span<const std::byte> glb, const std::set<std::string>& shadeless,
+                     const std::filesystem::path& folder) {
   auto file = std::make_shared<scenes::Scene>(
-      scenes::read_glb(glb, "the scene", {.needs_light = false, .needs_surface = false, .lenient = true}));
+      scenes::read_glb(glb, "the scene", {.needs_light = false, .needs_surface = false, .lenient = true}, folder));
   std::vector<std::string> order;
   std::map<std::string, Thing> things;
   const auto part_of = [&](std::string& name) {

@@ -150,7 +150,8 @@ void Service::answer(const PipeMessage& message) {
   const auto type = message.head["type"].get<std::string>();
   try {
     if (type == "put")
-      parts_.put(std::as_bytes(std::span(message.bytes)), message.head.value("shadeless", std::set<std::string>()));
+      parts_.put(std::as_bytes(std::span(message.bytes)), message.head.value("shadeless", std::set<std::string>()),
+                 message.head.value("folder", std::string()));
     else if (type == "remove")
       parts_.remove(message.head.at("things").get<std::vector<std::string>>());
     else if (type == "order")

@@ -114,6 +114,9 @@ class Workspace:
         return self
 
     def __exit__(self, *_):
+        self.close()
+
+    def close(self):
         if self._keeper is not None:
             self._keeper.stdin.close()
             self._keeper.wait()

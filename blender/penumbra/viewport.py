@@ -53,6 +53,10 @@ def _mark(instance):
             tuple(slot.material.name_full if slot.material else "" for slot in thing.material_slots))
 
 
+def _world_of(depsgraph):
+    return getattr(depsgraph.view_layer_eval, "world_override", None) or depsgraph.scene.world
+
+
 def _shown(depsgraph):
     for instance in depsgraph.object_instances:
         if instance.show_self and instance.object.type not in ("CAMERA", "EMPTY", "ARMATURE"):
@@ -64,6 +68,7 @@ class View:
 
     def __init__(self):
         self.child, self.started_with = None, None  # and with which program and settings
+        self._workspace = None  # for the picture of the world, from the first time that there is one
         self.lost = losses.Losses()
         self.picture, self.texture, self.said = None, None, ""
         self.background = (0.0, 0.0, 0.0)
@@ -78,6 +83,9 @@ class View:
         if self.child is not None:
             self.child.close()
         self.child = None
+        if self._workspace is not None:
+            self._workspace.close()
+        self._workspace = None
 
     def _start(self, wanted):
         key = (program.find(settings.program_path()), wanted.device, wanted.shading_normals)
@@ -99,8 +107,8 @@ class View:
             marks.setdefault(thing, []).append(_mark(instance))
             if changes.touch(instance.object):
                 touched.add(thing)
-        world = depsgraph.scene.world
-        marks[_WORLD] = world.name_full if world is not None else ""
+        world = _world_of(depsgraph)
+        marks[_WORLD] = (world.name_full if world is not None else "", wanted.world, depsgraph.scene.render.film_transparent)
         if changes.all or (world is not None and _key(world) in changes.blocks):
             touched.add(_WORLD)
         touched |= {thing for thing, mark in marks.items() if self._marks.get(thing) != mark}
@@ -127,11 +135,14 @@ class View:
                 writer._object(instance)
         if _WORLD in touched:
             writer.glb.thing = _WORLD
-            writer._world()
+            if self._workspace is None:
+                self._workspace = program.Workspace()
+            writer._world(self._workspace.folder)
             self.background = writer.background
         there = writer.glb.things
         if there:
-            self.child.send({"type": "put", "shadeless": sorted(writer.glb.shadeless)}, writer.glb.encoded())
+            folder = {"folder": self._workspace.folder} if _WORLD in there else {}
+            self.child.send({"type": "put", "shadeless": sorted(writer.glb.shadeless), **folder}, writer.glb.encoded())
         gone = sorted(self._sent & touched - there)
         if gone:
             self.child.send({"type": "remove", "things": gone})

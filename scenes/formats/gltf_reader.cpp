@@ -79,10 +79,14 @@ Scene read_gltf(const std::filesystem::path& file, const ReadOptions& options) {
   return read_by_helper(mesh::open_input(file), options);
 }
 
-Scene read_glb(std::span<const std::byte> bytes, const std::string& name, const ReadOptions& options) {
+Scene read_glb(std::span<const std::byte> bytes, const std::string& name, const ReadOptions& options,
+               const std::filesystem::path& folder) {
   if (bytes.empty()) throw InputError("{}: it is empty", name);
-  mesh::InputFile input{name + ".glb", file_of(bytes, name), Descriptor(::open("/dev/null", O_RDONLY | O_CLOEXEC))};
-  if (!input.folder.is_open()) throw_file_error(errno, name);  // no folder: nothing lies beside
+  // Without a folder the place of files that the bytes name is one that holds none.
+  const std::filesystem::path home = folder.empty() ? "/dev/null" : folder;
+  const int flags = O_RDONLY | O_CLOEXEC | (folder.empty() ? 0 : O_DIRECTORY);
+  mesh::InputFile input{folder / (name + ".glb"), file_of(bytes, name), Descriptor(::open(home.c_str(), flags))};
+  if (!input.folder.is_open()) throw_file_error(errno, home.string());
   return read_by_helper(input, options);
 }
 

@@ -87,7 +87,17 @@ class Scene:
         for name in names:
             file.thing = name
             self.things[name](file)
-        child.send({"type": "put", "shadeless": sorted(file.shadeless)}, file.encoded())
+        folder = {"folder": self.folder} if "Sky" in names else {}
+        child.send({"type": "put", "shadeless": sorted(file.shadeless), **folder}, file.encoded())
+
+    def add_sky(self, folder, bright):
+        """A world with a picture, half of which is `bright`."""
+        self.folder = folder
+        texels = numpy.full((8, 16), 0.1, numpy.float32)
+        texels[:, :8] = bright
+        with open(os.path.join(folder, "world.exr"), "wb") as out:
+            out.write(exr.encoded({letter: texels for letter in "RGB"}))
+        self.things["Sky"] = lambda file: file.dome("Sky", numpy.eye(4).tolist(), (1, 1, 1), "world.exr", True)
 
     def write(self, path, viewpoint):
         """All of it in one file, as for F12."""
@@ -196,6 +206,20 @@ class Serve(unittest.TestCase):
         picture = self.final()
         self.expect_whole(picture, viewpoint)
         self.assertEqual(picture.head["lightSamples"], 0)
+
+    def test_a_world_with_a_picture(self):
+        viewpoint = seen_from(0.3)
+        self.scene.add_sky(self.folder.name, 0.4)
+        self.expect_whole(self.begin(viewpoint), viewpoint)
+        self.scene.add_sky(self.folder.name, 0.8)
+        self.scene.put(self.child, "Sky")
+        self.show()
+        self.expect_whole(self.final(), viewpoint)
+        self.scene.folder = os.path.join(self.folder.name, "none")
+        self.scene.put(self.child, "Sky")
+        while (said := self.heard())["type"] != "say" or said["level"] != "error":
+            pass
+        self.assertIn("none", said["text"])
 
     def test_what_is_refused_changes_nothing(self):
         viewpoint = seen_from(0)
