@@ -8,8 +8,8 @@
 
 namespace penumbra::app {
 
-/// The view samples of a few pixels (y · width + x), found without a device: all others are left background. Tries
-/// every triangle at each of them, in parallel over pixels.
+/// Returns the view samples of a few pixels (y · width + x), found without a device: all others are background. Tests
+/// every triangle at each of these pixels, in parallel over pixels.
 visibility::ViewSamples samples_at(const visibility::SceneFloats& scene, const visibility::PinholeCamera& camera,
                                    std::span<const std::uint32_t> pixels);
 

@@ -1,3 +1,5 @@
+// Runs methods on sessions: timing, tiles, and the host's rules.
+
 #include "app/runner.hpp"
 
 #include "app/process/stopwatch.hpp"
@@ -23,8 +25,8 @@ using visibility::Output;
 using visibility::PixelClass;
 using visibility::Tile;
 
-/// The smallest V of a round light that is no rounding error. V is a sum of arcs in double, off by up to 16 · 2⁻⁵³ a
-/// corner (DiskPart); smaller values appear where a sphere touches the receiver's plane from below.
+/// Smallest V of a round light that is not a rounding error. V is a sum of arcs in double, off by up to 16 · 2⁻⁵³ for
+/// each corner (DiskPart); smaller values appear where a sphere touches the receiver's plane from below.
 constexpr float kLeastRoundShare = 0x1p-44F;
 
 /// Form factors are sums of terms up to 1/2, each off by a few roundings (visibility/lights/form_factor.hpp).
@@ -34,14 +36,14 @@ bool lies_in_light_by_rule(PixelClass pixel) {
   return pixel == PixelClass::background || pixel == PixelClass::emitter || pixel == PixelClass::unshadowed;
 }
 
-/// Refuses a mesh that this machine has no memory for with this method, before it is asked for.
+/// Throws for a mesh that needs more memory with this method than this machine has, before it is allocated.
 void require_mesh_memory(const visibility::MethodDescription& method, const visibility::SceneFloats& floats) {
   require_memory(floats.triangles.size() * method.bytes_per_triangle,
                  fmt::format("{} on {} triangles", method.name, floats.triangles.size()),
                  "make the meshes smaller, or choose another --method");
 }
 
-/// One run's times, of each light, and of meshes.
+/// Times of one run, for each light, and for meshes.
 struct OneRun {
   std::vector<LightTimes> lights;
   double mesh = 0, view = 0, read = 0;
@@ -52,7 +54,7 @@ double sum_of(const OneRun& run, double LightTimes::*time) {
                                [&](const LightTimes& light) { return light.*time; });
 }
 
-/// The lights that a plan does, as indices.
+/// Returns the lights of a plan, as indices.
 std::vector<std::size_t> chosen_lights(const RunPlan& plan) {
   if (!plan.only.empty()) return plan.only;
   std::vector<std::size_t> all(plan.lights.size());
@@ -60,7 +62,7 @@ std::vector<std::size_t> chosen_lights(const RunPlan& plan) {
   return all;
 }
 
-/// Runs a method on all lights of a session; knows where the results go.
+/// Runs a method on all lights of a session and passes on the results.
 class Host {
  public:
   Host(visibility::Method& method, const Session& session, const RunPlan& plan, const TileSink& sink,
@@ -69,7 +71,7 @@ class Host {
 
   [[nodiscard]] const visibility::SceneFloats* prepared() const { return mesh_; }
 
-  /// `reads`: hands the results on.
+  /// `reads`: pass on the results.
   OneRun run(bool reads, MethodRun& result) {
     OneRun times{std::vector<LightTimes>(plan_.lights.size())};
     result.counters.clear();
@@ -105,7 +107,7 @@ class Host {
         times.read += watch.seconds();
         progress_.advance(tile.row_count);
       }
-      // Counters start again with each light; what is wanted is their sum.
+      // Counters start again with each light; the result has their sum.
       for (const auto& [name, count] : method_.counters()) result.counters[name] += count;
       if (filters(light)) {
         result.counters["maskPairs"] += alpha_counts_.mask_pairs;
@@ -121,14 +123,14 @@ class Host {
     mesh_ = floats;
     if (plan_.holds != nullptr) *plan_.holds = floats;
   }
-  /// Is some of this light's shadow the host's?
+  /// Returns whether part of this light's shadow is computed by the host.
   [[nodiscard]] bool filters(std::size_t light) const {
     return !visibility::left_to_host(method_.description(), plan_.lights[light]).empty();
   }
   [[nodiscard]] bool filtered_alone(std::size_t light) const {
     return plan_.filtered_alone && !plan_.lights[light].filtered_by.empty();
   }
-  /// Background is where nothing is asked.
+  /// Returns the view samples for a light; samples that need no evaluation are background.
   [[nodiscard]] const visibility::ViewSamples& samples_for(std::size_t light) {
     if (!filtered_alone(light)) return session_.samples;
     const std::vector<std::uint8_t>& filtered = session_.filtered[light];
@@ -137,8 +139,8 @@ class Host {
       part_.triangle[i] = filtered[i] != 0 ? session_.samples.triangle[i] : visibility::ViewSamples::kBackground;
     return part_;
   }
-  /// Lights for which the same meshes cast one after the other, so that each is prepared once a run. The same order in
-  /// every run: beauty is a sum over lights.
+  /// Returns the lights in an order in which lights with the same casters are consecutive, so that each mesh is
+  /// prepared once a run. The same order in every run: beauty is a sum over lights.
   [[nodiscard]] std::vector<std::size_t> in_order_of_meshes() const {
     std::vector<std::size_t> lights = chosen_lights(plan_);
     const visibility::SceneFloats* mesh = nullptr;
@@ -149,7 +151,7 @@ class Host {
     }
     return lights;
   }
-  /// Masks of a tile are read back into memory of the host: a quarter of a GiB is plenty, and never more than it.
+  /// Returns the rows whose masks are read back at once: at most a quarter of a GiB of host memory.
   [[nodiscard]] std::uint32_t most_rows_to_read(std::size_t light_index) const {
     const Light& light = plan_.lights[light_index];
     constexpr std::uint64_t kMostBytes = 1u << 28;
@@ -165,8 +167,7 @@ class Host {
     return watch.seconds();
   }
 
-  /// Takes out of masks what surfaces that let light through dim. Returns the seconds that it took, reading masks left
-  /// out.
+  /// Applies translucent surfaces and holes to the masks. Returns the seconds, without reading masks.
   double filter(std::size_t light_index, const visibility::ViewSamples& samples, const Tile& tile) {
     const Light& light = plan_.lights[light_index];
     transmittances_.clear();
@@ -187,7 +188,7 @@ class Host {
     return watch.seconds();
   }
 
-  /// V of masks that filter() has changed.
+  /// Computes V of masks changed by filter().
   void share_filtered(const Light& light, std::size_t first, std::span<float> values) {
     const std::span<const glm::vec3> normals = std::span(session_.samples.n).subspan(first, values.size());
     visibility::visible_shares(light, masks_, normals, values);
@@ -227,14 +228,14 @@ class Host {
     if (sink_) sink_({light_index, tile, values, masks_, transmittances_, dimmed_, form_factors_});
   }
 
-  /// The one place through which every method's V passes: what is no share of the light goes no further.
+  /// Throws for values outside 0 … 1; V of every method passes through this function.
   void require_shares(const Light& light, std::size_t first, std::span<const float> values) const {
     for (std::size_t i = 0; i < values.size(); ++i) {
       if ((values[i] >= 0 && values[i] <= 1) || !wanted(first + i)) continue;
       refuse(light, first + i, fmt::format("V = {}, which is no share of a light (0 to 1)", values[i]));
     }
   }
-  /// Sets form factors to 0 where V is 0, and where they are negative by rounding; refuses other negative numbers.
+  /// Sets form factors to 0 where V is 0, and where negative by rounding; throws for other negative numbers.
   void settle_form_factors(const Light& light, std::size_t first, std::span<const float> values) {
     for (std::size_t i = 0; i < form_factors_.size(); ++i) {
       glm::dvec3& f = form_factors_[i];
@@ -290,12 +291,12 @@ class Host {
   const RunPlan& plan_;
   const TileSink& sink_;
   Progress& progress_;
-  const visibility::SceneFloats* mesh_;                // that the method has
-  const visibility::SceneFloats* filtered_ = nullptr;  // that filter_ has
+  const visibility::SceneFloats* mesh_;                // scene that the method has
+  const visibility::SceneFloats* filtered_ = nullptr;  // scene that filter_ has
   std::optional<visibility::AlphaFilter> filter_;
-  visibility::ViewSamples part_;          // of the light at hand, where nobody else is asked
-  visibility::AlphaCounts alpha_counts_;  // of the light at hand
-  std::vector<float> transmittances_;     // of the tile last evaluated, as filter() left it
+  visibility::ViewSamples part_;          // view samples of the current light, if only some are evaluated
+  visibility::AlphaCounts alpha_counts_;  // of the current light
+  std::vector<float> transmittances_;     // of the most recent tile, as set by filter()
   std::vector<std::uint8_t> dimmed_;
   UnsetList<std::uint32_t> masks_;
   std::vector<glm::dvec3> form_factors_;
@@ -333,7 +334,7 @@ void add_run(MethodRun& to, MethodRun&& other) {
 
 MethodRun run_method(visibility::Method& method, const Session& session, const RunPlan& plan, const TileSink& sink,
                      Progress& progress) {
-  // Lights that the method cannot do are refused before any work.
+  // Throws for unsupported lights before any work.
   const std::vector<std::size_t> chosen = chosen_lights(plan);
   for (const std::size_t light : chosen) visibility::check_light(method.description(), plan.lights[light]);
 
@@ -354,7 +355,7 @@ MethodRun run_method(visibility::Method& method, const Session& session, const R
   std::optional<OneRun> first;
   double elapsed = 0;  // of timed runs
   while (runs.empty() || (runs.size() < plan.runs && elapsed < plan.run_seconds)) {
-    method.take_pass_times();  // those of earlier runs
+    method.take_pass_times();  // discards those of earlier runs
     const bool is_first = !first && runs.empty(), is_discarded = is_first && plan.discard_first;
     const Stopwatch watch;
     OneRun times = host.run(is_first, result);
@@ -384,7 +385,7 @@ MethodRun run_method(visibility::Method& method, const Session& session, const R
                                    median_of([&](const OneRun& run) { return run.lights[light].evaluate; })});
   }
   if (first) {
-    // A first run that chance made faster than the median warmed nothing up.
+    // A first run that happens to be faster than the median has no warm-up time.
     const double longer = sum_of(*first, &LightTimes::light) + sum_of(*first, &LightTimes::evaluate) -
                           result.times.light - result.times.evaluate;
     result.times.warmup = std::max(longer, 0.0);

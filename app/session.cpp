@@ -1,3 +1,5 @@
+// Opens sessions: scene, view samples, lights and classes of pixels.
+
 #include "app/session.hpp"
 
 #include "app/process/stopwatch.hpp"
@@ -20,7 +22,8 @@
 namespace penumbra::app {
 namespace {
 
-/// The element whose name is wanted; the first one if none is. `what` and `scene` are for the message.
+/// Returns the element with the requested name; the first one if none is requested. `option` and `scene` are for the
+/// message.
 template <typename Named>
 std::size_t find_named(const std::vector<Named>& elements, const std::string& wanted, std::string_view option,
                        const std::string& scene) {
@@ -32,7 +35,7 @@ std::size_t find_named(const std::vector<Named>& elements, const std::string& wa
                    did_you_mean(wanted, names));
 }
 
-/// The scene's lights (indices) that are asked for, in the order asked for; all, if none is.
+/// Returns the requested lights (indices), in the order of the request; all, if there is no request.
 std::vector<std::size_t> wanted_lights(const scenes::Scene& scene, const std::vector<std::string>& names,
                                        const std::string& scene_name) {
   std::vector<std::size_t> wanted;
@@ -47,15 +50,15 @@ std::vector<std::size_t> wanted_lights(const scenes::Scene& scene, const std::ve
   return wanted;
 }
 
-/// Refuses an image that this machine has no memory for, before minutes of work end in a killed process.
+/// Throws for an image that needs more memory than this machine has, before long work ends in a killed process.
 void require_image_memory(std::uint64_t width, std::uint64_t height, std::uint64_t lights, std::uint64_t pieces) {
   // A pixel: view sample 48, scene colours, normals, depths and ids in the EXR 120, beauty 12 bytes; a light: channel
-  // of V 4, beauty and channels 24; each piece of it: V and class 5.
+  // of V 4, beauty and channels 24; each of its pieces: V and class 5.
   require_memory(width * height * (180 + 28 * lights + 5 * pieces),
                  fmt::format("an image of {}x{} pixels", width, height), "choose a smaller --size");
 }
 
-/// Whether the objects' flags are the same, and the origin.
+/// Returns whether the objects' flags and the origins are equal.
 bool same_casters(const scenes::Scene& a, const scenes::Scene& b) {
   const auto alike = [](const scenes::Object& one, const scenes::Object& other) {
     return one.casts_shadow == other.casts_shadow && one.receives_shadow == other.receives_shadow &&
@@ -64,7 +67,7 @@ bool same_casters(const scenes::Scene& a, const scenes::Scene& b) {
   return a.origin == b.origin && std::ranges::equal(a.objects, b.objects, alike);
 }
 
-/// Whether the two scenes, with the objects' flags, give the same scene floats.
+/// Returns whether the two scenes, with equal flags, have the same scene floats.
 bool same_mesh(const scenes::Scene& a, const scenes::Scene& b) {
   const bool filters = std::ranges::any_of(
       a.objects, [](const scenes::Object& object) { return object.alpha.mode != scenes::Alpha::Mode::opaque; });
@@ -75,14 +78,14 @@ bool same_mesh(const scenes::Scene& a, const scenes::Scene& b) {
          mesh::equal_on_all_cores(a.soup.object, b.soup.object);
 }
 
-/// For each light, whom its own scene leaves out (Light::unshaded_by).
+/// Returns, for each light, the objects left out of its own scene (Light::unshaded_by).
 std::vector<std::vector<std::uint8_t>> casters_of(const std::vector<visibility::Light>& lights) {
   std::vector<std::vector<std::uint8_t>> all;
   for (const visibility::Light& light : lights) all.push_back(light.unshaded_by);
   return all;
 }
 
-/// Lights in whose light the same triangles cast shadows share a scene, however their casters are named.
+/// Shares one scene among lights for which the same triangles cast shadows, however their casters are named.
 void link_casters(Session& session) {
   session.linked.clear();
   session.linked_of.clear();
@@ -178,7 +181,7 @@ void SessionMaker::show(scenes::Scene scene, bool changed, const std::string& ca
   session_.load_seconds = load.seconds();
 
   const Stopwatch start_up;
-  static_cast<void>(machine_.has_gpu());  // begun while the scene was read
+  static_cast<void>(machine_.has_gpu());  // started while the scene was read
   session_.device_seconds = start_up.seconds();
   load.restart();
   if (changed) {
@@ -277,7 +280,7 @@ Session open_session(scenes::Scene scene, const RunOptions& options, const rende
 Session open_session(const RunOptions& options, std::optional<double> time, const render::Machine& machine,
                      std::uint32_t runs, Progress& progress) {
   progress.begin("reading " + options.scene.filename().string(), 1);
-  // What is wrong with the command line is said before anything long begins.
+  // Errors of the command line are reported before any long work.
   SessionMaker maker(options, machine);
   machine.begin(false);
   const Stopwatch load;

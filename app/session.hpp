@@ -20,74 +20,75 @@
 
 namespace penumbra::app {
 
-/// The question that every method of a run answers: the scene, what each pixel sees of it, and the light samples.
+/// Input common to all methods of a run: the scene, the view samples, and the light samples.
 struct Session {
   scenes::Scene scene;
   std::uint32_t width = 0, height = 0;
   visibility::SceneFloats floats;
-  std::vector<visibility::SceneFloats> linked;  ///< the scene as some lights have it, whose casters are not all
-  std::size_t camera_index = 0;                 ///< the chosen one of scene.cameras
+  std::vector<visibility::SceneFloats> linked;  ///< scenes of lights for which not all objects cast
+  std::size_t camera_index = 0;                 ///< index of the chosen one of scene.cameras
   visibility::PinholeCamera camera;
   visibility::ViewSamples samples;
-  std::vector<visibility::Light> lights;  ///< those asked for, in that order, or all of the scene's; pieces of one
-                                          ///< (app/whole_lights.hpp) one after the other
+  std::vector<visibility::Light> lights;  ///< requested lights, in the order of the request, or all of the scene's;
+                                          ///< pieces of one light (app/whole_lights.hpp) are consecutive
   std::vector<std::vector<visibility::PixelClass>> classes;  ///< for each light, each pixel
-  /// For each light, each pixel, 1: what lets light through may be on the way (AlphaReach). Empty: nowhere; then the
-  /// light's filtered_by and dimmed_by are empty, too.
+  /// For each light, each pixel, 1: a translucent surface or hole may be on the way (AlphaReach). Empty: nowhere; then
+  /// the light's filtered_by and dimmed_by are empty, too.
   std::vector<std::vector<std::uint8_t>> filtered;
-  std::vector<double> filtered_seconds;  ///< finding them, of each light
-  bool shading_normals = false;          ///< of beauty: vertices' normals, where there are any
-  std::uint64_t mesh_version = 0;        ///< another number, another scene to prepare methods for
-  double load_seconds = 0;               ///< reading the scene, its floats, and handing them to the visibility buffer
+  std::vector<double> filtered_seconds;  ///< time of computing `filtered`, of each light
+  bool shading_normals = false;          ///< for the beauty: use vertices' normals where present
+  std::uint64_t mesh_version = 0;        ///< changes whenever methods must be prepared again
+  double load_seconds = 0;               ///< reading the scene, its floats, and passing them to the visibility buffer
   double device_seconds = 0;             ///< starting the device
-  double receiver_seconds = 0;           ///< classes
-  double view_seconds = 0;               ///< finding the view samples: the median of the runs asked for
+  double receiver_seconds = 0;           ///< computing classes
+  double view_seconds = 0;               ///< finding the view samples: the median of the requested runs
   std::vector<std::string> warnings;
 
-  std::vector<std::optional<std::size_t>> linked_of;  ///< for each light, its own among these; nothing: `floats`
+  std::vector<std::optional<std::size_t>> linked_of;  ///< for each light, index of its own scene in `linked`; nullopt:
+                                                      ///< `floats`
 
   [[nodiscard]] std::size_t pixel_count() const { return std::size_t{width} * height; }
-  /// The scene as it casts shadows of this one of `lights`.
+  /// Returns the scene in which casters of this one of `lights` cast.
   [[nodiscard]] const visibility::SceneFloats& floats_for(std::size_t light) const {
     return light < linked_of.size() && linked_of[light] ? linked[*linked_of[light]] : floats;
   }
 };
 
-/// Finds view samples in place of a camera's pixels, as many as the camera's picture has: points on surfaces.
+/// Function that finds view samples in place of a camera's pixels, as many as the camera's picture has: points on
+/// surfaces.
 using ViewFinder =
     std::function<visibility::ViewSamples(const visibility::SceneFloats&, const visibility::PinholeCamera&)>;
 
-/// Makes a session, and makes it again of the same scene at other times or from other cameras: what has not changed
-/// since is kept, where methods look for it too. An object that stays where it is, since its session is looked at.
+/// Makes a session, and again sessions of the same scene at other times or from other cameras: unchanged data are kept,
+/// at the same addresses. Not movable, because its session is referenced.
 class SessionMaker {
  public:
-  /// The options must outlive it, and may change before each show(). Throws UsageError for what is wrong with the
-  /// options.
+  /// `options` must outlive this object, and may change before each show(). Throws UsageError for invalid options.
   SessionMaker(const RunOptions& options, const render::Machine& machine);
   SessionMaker(const SessionMaker&) = delete;
   SessionMaker& operator=(const SessionMaker&) = delete;
 
-  /// `camera`: its name; empty: the first. View samples are found once if `runs` is 0 and the camera, the picture's
-  /// size or the mesh is another than before, else `runs` times after a discarded one. Throws UsageError for what is
-  /// wrong with the options.
+  /// Makes the session. `camera`: name; empty: the first. View samples are found once if `runs` is 0 and the camera,
+  /// the picture's size or the mesh has changed, else `runs` times after a discarded run. Throws UsageError for invalid
+  /// options.
   void show(scenes::Scene scene, const std::string& camera, std::uint32_t runs, Progress& progress);
-  /// `scene` has the triangles, pictures and vertices' looks of the last one, and comes without them (without_meshes);
-  /// after a show() that came to its end.
+  /// Makes the session of `scene`, which is without_meshes() and has the triangles, pictures and vertices' looks of the
+  /// last one; callable after a completed show().
   void show_again(scenes::Scene scene, const std::string& camera, Progress& progress);
-  /// From now on view samples are what `finder` finds; before the first show().
+  /// Replaces the search for view samples by `finder`; to be called before the first show().
   void find_view_by(ViewFinder finder) { finder_ = std::move(finder); }
-  /// Whether the last show() came to its end.
+  /// Returns whether the last show() was completed.
   [[nodiscard]] bool is_whole() const { return is_whole_; }
   [[nodiscard]] const Session& session() const { return session_; }
-  /// Puts other view samples of the same camera in the place of the session's. Returns those.
+  /// Replaces the session's view samples by others of the same camera. Returns the previous ones.
   visibility::ViewSamples look_at(visibility::ViewSamples samples);
-  /// Gives it away: this object is of no more use.
+  /// Returns the session by move: this object must not be used afterwards.
   Session take() { return std::move(session_); }
 
  private:
-  /// `changed`: triangles, or whether they cast, are others than in the last one.
+  /// `changed`: triangles, or whether they cast, differ from the last scene.
   void show(scenes::Scene scene, bool changed, const std::string& camera, std::uint32_t runs, Progress& progress);
-  /// What the session's lights are to its view samples.
+  /// Computes the classes of the session's view samples for its lights.
   void classify();
 
   const RunOptions& options_;
@@ -96,32 +97,32 @@ class SessionMaker {
   struct Filters {
     std::string filtered_by, dimmed_by;
   };
-  std::vector<Filters> filters_;  // of each light as made, whatever is looked at
-  std::map<const visibility::SceneFloats*, visibility::AlphaReach> reaches_;  // of session_.floats and of those linked
+  std::vector<Filters> filters_;  // of each light, independent of the view samples
+  std::map<const visibility::SceneFloats*, visibility::AlphaReach> reaches_;  // of session_.floats and of the linked
+                                                                              // scenes
   std::optional<engines::ViewSampler> sampler_;
   ViewFinder finder_;                              // empty: the camera's pixels
-  bool is_whole_ = false;                          // the last show() came to its end
-  std::optional<visibility::PinholeCamera> seen_;  // what session_.samples were found for
+  bool is_whole_ = false;                          // the last show() was completed
+  std::optional<visibility::PinholeCamera> seen_;  // camera of session_.samples
 };
 
-/// All of a scene but its triangles, pictures and vertices' looks.
+/// Returns the scene without triangles, pictures and vertices' looks.
 scenes::Scene without_meshes(const scenes::Scene& scene);
 
-/// The scene at a time of its animation; at rest without one. `lightmap`: ReadOptions::lightmap.
+/// Reads the scene at a time of its animation; at rest without a time. `lightmap`: ReadOptions::lightmap.
 scenes::Scene read_session_scene(const RunOptions& options, std::optional<double> time,
                                  scenes::LightmapPlaces* lightmap = nullptr);
 
-/// Reads the scene and finds its view samples; once if `runs` is 0, else `runs` times after a
-/// discarded one. `time`: see read_session_scene.
-/// Throws UsageError, InputError or ResourceError.
+/// Reads the scene and finds its view samples; once if `runs` is 0, else `runs` times after a discarded run. `time`:
+/// see read_session_scene. Throws UsageError, InputError or ResourceError.
 Session open_session(const RunOptions& options, std::optional<double> time, const render::Machine& machine,
                      std::uint32_t runs, Progress& progress);
 
-/// Finds the view samples of a scene that has been read.
+/// Finds the view samples of a scene in memory.
 Session open_session(scenes::Scene scene, const RunOptions& options, const render::Machine& machine, std::uint32_t runs,
                      Progress& progress);
 
-/// The middle one; of an even number, the mean of the two in the middle. Not of nothing.
+/// Returns the middle value; for an even number, the mean of the two in the middle. `values` must not be empty.
 double median(std::vector<double> values);
 
 }  // namespace penumbra::app

@@ -1,3 +1,5 @@
+// Generates completion scripts of shells.
+
 #include "app/shell_completion.hpp"
 
 #include "base/error.hpp"
@@ -11,7 +13,7 @@
 namespace penumbra::app {
 namespace {
 
-/// Completions of a value.
+/// Kind of completions of a value.
 enum class ValueKind { nothing, files, methods, commands };
 
 ValueKind values_of(const CommandWords& command, const OptionWords& option) {
@@ -47,7 +49,7 @@ std::vector<std::string> names_of(std::span<const CommandWords> commands) {
   return names;
 }
 
-/// Options that take a value of this kind, in any command, as patterns of a shell's `case`.
+/// Returns the options with a value of this kind, in any command, as patterns of a shell's `case`.
 std::string pattern_of(std::span<const CommandWords> commands, ValueKind kind) {
   std::vector<std::string> names;
   for (const CommandWords& command : commands) {
@@ -106,7 +108,7 @@ complete -o filenames -F _penumbra penumbra
                      pattern_of(commands, ValueKind::files), pattern_of(commands, ValueKind::nothing), cases);
 }
 
-/// For a text in single quotes, in which `stops` get a backslash.
+/// Escapes a text in single quotes: characters in `stops` get a backslash.
 std::string in_quotes(std::string_view text, std::string_view stops) {
   std::string result;
   for (const char c : text) {

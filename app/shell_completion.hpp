@@ -8,9 +8,9 @@
 
 namespace penumbra::app {
 
-/// The completion script of a shell (bash, zsh or fish) for the commands, their options, names of methods and files.
-/// `commands`: the names of all commands in one line, semicolons between, for CMake. Throws UsageError for another
-/// word.
+/// Returns the completion script of a shell (bash, zsh or fish) for the commands, their options, names of methods and
+/// files. `shell` = "commands": returns the names of all commands in one line, separated by semicolons, for CMake.
+/// Throws UsageError for any other word.
 std::string shell_completion(std::string_view shell, std::span<const CommandWords> commands,
                              std::span<const std::string> methods);
 

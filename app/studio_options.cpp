@@ -15,7 +15,7 @@
 namespace penumbra::app {
 namespace {
 
-/// "X,Y,Z" → the numbers, or nothing.
+/// Parses "X,Y,Z"; returns nullopt for any other text.
 std::optional<glm::dvec3> parse_point(std::string_view text) {
   const auto parts = split(text, ',');
   if (parts.size() != 3) return std::nullopt;
@@ -65,7 +65,7 @@ scenes::AddedLight parse_light(const std::string& text) {
   return light;
 }
 
-/// Nothing for a text that can only be a name.
+/// Returns nullopt for a text that can only be a name.
 std::optional<scenes::Camera> parse_camera(const std::string& text) {
   const auto parts = split(text, ':');
   if (parts.size() != 2 && parts.size() != 3) return std::nullopt;
@@ -75,7 +75,7 @@ std::optional<scenes::Camera> parse_camera(const std::string& text) {
   camera.name = text;
   camera.eye = *eye;
   camera.target = *target;
-  if (eye->x == target->x && eye->z == target->z) camera.up = {0, 0, -1};  // looks straight up or down
+  if (eye->x == target->x && eye->z == target->z) camera.up = {0, 0, -1};  // the camera looks straight up or down
   if (parts.size() == 3) {
     const auto angle = parse_number(parts[2]);
     if (!angle || !(*angle > 0 && *angle < 180))

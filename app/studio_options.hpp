@@ -11,7 +11,7 @@ class App;
 
 namespace penumbra::app {
 
-/// The studio around a scene (scenes/studio.hpp), as the user gave it.
+/// Studio around a scene (scenes/studio.hpp), as given by the user.
 struct StudioOptions {
   bool always = false, never = false;
   std::string floor = "auto";
@@ -21,8 +21,9 @@ struct StudioOptions {
 /// Adds --studio, --no-studio, --floor and --add-light.
 void add_studio_options(CLI::App& command, StudioOptions& options);
 
-/// `camera`: the value of --camera, which names a camera of the scene, or says `fit` or EX,EY,EZ:TX,TY,TZ[:FOV]; the
-/// camera that is put in then has that text for its name. Throws UsageError that says what would be right.
+/// Parses the options. `camera`: the value of --camera, which names a camera of the scene, or is `fit` or
+/// EX,EY,EZ:TX,TY,TZ[:FOV]; an added camera has this text as its name. Throws UsageError, with the expected form, if
+/// invalid.
 scenes::StudioWish parse_studio(const StudioOptions& options, const std::string& camera);
 
 }  // namespace penumbra::app

@@ -1,3 +1,5 @@
+// Combines the results of a light's pieces.
+
 #include "app/whole_lights.hpp"
 
 #include "base/assert.hpp"

@@ -1,4 +1,4 @@
-// Of FrameRenderer: which method each light gets, and what they all make of the view samples that are looked at.
+// Part of FrameRenderer: the methods of each light, and their results at the current view samples.
 
 #include "app/methods.hpp"
 #include "app/pictures/frame_render.hpp"
@@ -19,7 +19,7 @@
 namespace penumbra::app {
 namespace {
 
-/// Is any pixel lit by what is in sight of all of it (Session::filtered)?
+/// Returns whether any pixel is lit without a possible translucent surface or hole on the way (Session::filtered).
 bool any_seen_openly(std::span<const visibility::PixelClass> classes, std::span<const std::uint8_t> filtered) {
   using visibility::PixelClass;
   for (std::size_t i = 0; i < classes.size(); ++i) {
@@ -32,7 +32,8 @@ bool any_seen_openly(std::span<const visibility::PixelClass> classes, std::span<
 
 }  // namespace
 
-/// Areas know nothing of what lets light through: they are right wherever none of it is on the way.
+/// Chooses the methods. Area methods do not handle translucent surfaces and holes: their result is right only where
+/// none of these is on the way.
 void FrameRenderer::choose_methods(const Session& session) {
   const std::vector<visibility::Light>& lights = session.lights;
   plan_.lights = lights;
@@ -58,12 +59,12 @@ void FrameRenderer::choose_methods(const Session& session) {
 }
 
 void FrameRenderer::say_notes() {
-  std::vector<std::pair<std::string, std::vector<std::string>>> news;  // what is said, and of which lights
+  std::vector<std::pair<std::string, std::vector<std::string>>> news;  // notes, each with the names of its lights
   for (std::size_t i = 0; i < plan_.chosen.size(); ++i) {
     const std::string& note = plan_.counting[i] ? plan_.counting[i]->note : plan_.chosen[i].note;
     if (note.empty()) continue;
     if (std::ranges::find(picture_.notes, note) == picture_.notes.end())
-      picture_.notes.push_back(note);  // pieces say the same
+      picture_.notes.push_back(note);  // the same for all pieces
     if (std::ranges::find(said_.warnings, note) != said_.warnings.end()) continue;
     said_.warnings.push_back(note);
     const std::string subject = fmt::format("light \"{}\"", plan_.lights[i].name);
@@ -111,7 +112,7 @@ FrameRenderer::Kept& FrameRenderer::method_for(const LightMethod& wanted) {
     kept.mesh_version = lit().mesh_version;
     return kept;
   }
-  // Idle methods wait for a picture that uses them, but not without end: each holds its hierarchies.
+  // Idle methods are kept for a picture that uses them, but only a few: each holds its hierarchies.
   constexpr std::ptrdiff_t kMostIdle = 8;
   if (std::ranges::count(kept_, false, &Kept::used) >= kMostIdle)
     kept_.erase(std::ranges::find(kept_, false, &Kept::used));  // the oldest
@@ -180,9 +181,9 @@ MethodRun FrameRenderer::run_lights(BeautyAccumulator& beauty, BitsOutput* bits)
           spent_.bits += watch.seconds();
         },
         progress_);
-    // Whatever was made for a mesh is counted by who made it (Method::take_mesh_counters).
+    // Structures made for a mesh are counted by the method that made them (Method::take_mesh_counters).
     if (!std::exchange(kept.used, true) && before == run.prepared) ++run.counters["meshesKept"];
-    // Whatever is no phase of the method's is about its answers.
+    // Time outside of the method's phases is spent on its results.
     const RunTimes& times = run.times;
     spent_.beauty += times.total - times.mesh - times.light - times.evaluate - times.view;
     add_run(all, std::move(run));
@@ -199,7 +200,7 @@ MethodRun FrameRenderer::run_lights(BeautyAccumulator& beauty, BitsOutput* bits)
     done_.with.insert_or_assign(plan_.lights[i].name, *plan_.counting[i]);
     all.counters["viewSamplesCounted"] +=
         static_cast<std::uint64_t>(std::ranges::count(lit().filtered[i], std::uint8_t{1}));
-    if (!plan_.lights[i].filtered_by.empty()) continue;  // no areas
+    if (!plan_.lights[i].filtered_by.empty()) continue;  // not done by areas
     done_.in_part.insert(plan_.lights[i].name);
     in_part.push_back(i);
     with.push_back(*plan_.counting[i]);
@@ -209,7 +210,8 @@ MethodRun FrameRenderer::run_lights(BeautyAccumulator& beauty, BitsOutput* bits)
     for (std::size_t& light : lights) light = in_part[light];
     run_with(method, {.lights = lit().lights, .filtered_alone = true, .only = lights});
   }
-  for (std::size_t i = 0; i < lit().lights.size(); ++i) {  // whom to ask is part of the answer
+  // the search for pixels with translucent surfaces is part of the evaluation
+  for (std::size_t i = 0; i < lit().lights.size(); ++i) {
     all.times.evaluate += lit().filtered_seconds[i];
     all.times.lights[i].evaluate += lit().filtered_seconds[i];
   }

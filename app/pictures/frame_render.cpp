@@ -1,3 +1,5 @@
+// Renders a picture of a scene and writes its files.
+
 #include "app/pictures/frame_render.hpp"
 
 #include "app/methods.hpp"
@@ -26,7 +28,7 @@
 namespace penumbra::app {
 namespace {
 
-/// All lights together, in their order.
+/// Returns the sum of all lights, in their order.
 std::vector<glm::vec3> sum_of(std::span<const std::vector<glm::vec3>> parts, std::size_t pixels) {
   std::vector<glm::vec3> sum(pixels, glm::vec3(0));
   for (const std::vector<glm::vec3>& part : parts) {
@@ -35,7 +37,7 @@ std::vector<glm::vec3> sum_of(std::span<const std::vector<glm::vec3>> parts, std
   return sum;
 }
 
-/// What became of the meshes of the picture before (docs/frames.md); empty: nothing is known.
+/// Returns, in words, which structures of the previous picture's meshes were reused (docs/frames.md); empty: unknown.
 std::string mesh_line(const std::map<std::string, std::uint64_t>& counters) {
   std::string line;
   for (const auto& [counter, words] : {std::pair{"meshesKept", "nothing moved"},
@@ -56,7 +58,7 @@ double sum_of(std::span<const double> seconds) {
   return std::reduce(seconds.begin(), seconds.end());
 }
 
-/// Is any pixel on a side that the light shines to?
+/// Returns whether any pixel is on an emitting side of the light.
 bool lights_anything(std::span<const visibility::PixelClass> classes) {
   using visibility::PixelClass;
   return std::ranges::any_of(classes, [](PixelClass one) {
@@ -65,7 +67,7 @@ bool lights_anything(std::span<const visibility::PixelClass> classes) {
   });
 }
 
-/// What other moments of the same lights cost is added to what this one did.
+/// Adds the times of other moments of the same lights to `to`.
 void add_times(MethodRun& to, const MethodRun& before) {
   to.times.mesh += before.times.mesh;
   to.times.light += before.times.light;
@@ -150,7 +152,7 @@ void FrameRenderer::check_wanted_layers() const {
   check_layers(format_, session(), picture_.frame.pixel_side > 1 || !picture_.frame.moments.empty());
 }
 
-/// Notes in which of the picture's pixels the surfaces that are looked at are bodies of lights.
+/// Marks the pixels at which the current surfaces are bodies of lights.
 void FrameRenderer::mark_lamps() {
   picture_.lamps.resize(session().pixel_count());
   const std::uint32_t side = lit().width / session().width;
@@ -225,7 +227,7 @@ void FrameRenderer::render(scenes::Scene scene, const Frame& frame, const std::f
   picture_.notes.clear();
   picture_.run = {};
   if (frame.pixel_side == 1 && fine_) {
-    kept_.clear();  // what they hold is of the session that goes
+    kept_.clear();  // their data refer to the previous session
     fine_.reset();
   }
   if (frame.moments.empty() && frame.pixel_side == 1) {
@@ -236,7 +238,8 @@ void FrameRenderer::render(scenes::Scene scene, const Frame& frame, const std::f
     render_mean(std::move(scene));
   }
   label_lights();
-  machine_.check_validation();  // before anything appears: a picture that cannot be trusted is none
+  machine_.check_validation();  // throws before a file appears: a picture computed with validation errors is not
+                                // written
 }
 
 void FrameRenderer::render_mean(scenes::Scene scene) {
@@ -246,10 +249,10 @@ void FrameRenderer::render_mean(scenes::Scene scene) {
     check_wanted_layers();
     spent_.view += sum_of(session().filtered_seconds);
     const std::string size = fmt::format("{}x{}", session().width * side, session().height * side);
-    RunOptions options = options_;  // which may have changed since the last picture
+    RunOptions options = options_;  // may have changed since the last picture
     options.size = size;
     if (!fine_ || fine_->options.size != size) {
-      kept_.clear();  // what they hold is of the session that goes
+      kept_.clear();  // their data refer to the previous session
       fine_.emplace(options, machine_);
     }
     fine_->options = std::move(options);
@@ -281,7 +284,7 @@ void FrameRenderer::render_mean(scenes::Scene scene) {
       times[names[light]].light += picture_.run.times.lights[light].light;
       times[names[light]].evaluate += picture_.run.times.lights[light].evaluate;
     }
-    before.times.lights.clear();  // its lights may be others
+    before.times.lights.clear();  // its lights may differ
     add_times(picture_.run, before);
   };
   if (picture_.frame.moments.empty()) add(scene);
@@ -295,7 +298,7 @@ void FrameRenderer::render_mean(scenes::Scene scene) {
     show(maker_, std::move(scene));
     spent_.view += sum_of(session().filtered_seconds);
   }
-  // What is written of lights is about those of the frame's own time.
+  // Numbers of lights are written for those of the frame's own time.
   picture_.run.times.lights.clear();
   const std::vector<std::string> own = whole_names(session().lights);
   for (const std::string& light : own) picture_.run.times.lights.push_back(times[light]);
@@ -316,7 +319,7 @@ RenderedFrame FrameRenderer::take() {
   frame.masks = std::move(picture_.masks);
   frame.sum = sum_of(frame.beauty, session().pixel_count());
   if (!picture_.mean) return frame;
-  std::vector<std::string> others = picture_.mean->lights();  // lights of other moments alone
+  std::vector<std::string> others = picture_.mean->lights();  // lights of other moments only
   std::erase_if(others, [&](const std::string& light) { return std::ranges::find(own, light) != own.end(); });
   const std::vector<glm::vec3> more = sum_of(picture_.mean->beauty(others), frame.sum.size());
   for (std::size_t i = 0; i < more.size(); ++i) frame.sum[i] += more[i];
@@ -349,13 +352,13 @@ compare::Stats FrameRenderer::write(const FrameFiles& files, Exposure& exposure)
   if (picture_.frame.number) attributes["penumbra.frame"] = fmt::format("{}", *picture_.frame.number);
 
   progress_.clear();
-  // All are on the disk before the first has its name: what has no room leaves nothing.
+  // All files are completely on the disk before the first gets its name: if there is no room, nothing is left.
   AtomicFile picture(files.picture);
   std::optional<AtomicFile> png, stats_file;
   std::future<std::vector<std::byte>> packed;
   if (!files.png.empty()) {
     png.emplace(files.png);
-    // libpng has one thread; OpenEXR's compress beside it.
+    // libpng uses one thread; OpenEXR's compression runs in parallel.
     packed = std::async(std::launch::async, [this, &content, stops] {
       return encode_png(to_srgb(session().width, session().height, content.sum, std::exp2(stops)));
     });
@@ -373,7 +376,7 @@ compare::Stats FrameRenderer::write(const FrameFiles& files, Exposure& exposure)
   compare::Stats stats = this->stats();
   compare::Seconds& seconds = stats.seconds;
   seconds.write = write.seconds() + spent_.bits;
-  // From the last picture to this one: the seconds of a sequence's pictures add up to its own.
+  // From the last picture to this one: the seconds of a sequence's pictures add up to the total.
   const double now = seconds_since_start();
   seconds.total = now - std::exchange(written_, now);
   if (!files.stats.empty()) {
@@ -382,7 +385,7 @@ compare::Stats FrameRenderer::write(const FrameFiles& files, Exposure& exposure)
     stats_file->settle();
   }
   if (picture_.bits) picture_.bits->settle();
-  // All of a frame's files or none, also where a signal comes now.
+  // Either all of a frame's files get their names or none, even if a signal arrives now.
   const UnwindsAfterSignals unwinds;
   if (picture_.bits) picture_.bits->commit();
   picture_.bits.reset();

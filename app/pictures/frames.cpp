@@ -1,3 +1,5 @@
+// Parses frame ranges and forms names of frames' files.
+
 #include "app/pictures/frames.hpp"
 
 #include "app/parse.hpp"
@@ -16,7 +18,7 @@ namespace {
 
 constexpr std::int64_t kMostFrames = 100'000;
 
-/// Where a number goes in a name: the characters that it replaces, and its least number of digits.
+/// Position of a number in a name: the replaced characters, and the least number of digits.
 struct NumberPlace {
   std::size_t at = 0, size = 0;
   int digits = 1;
@@ -54,7 +56,7 @@ FrameRange parse_frames(std::string_view text) {
     step = parse_integer<std::int64_t>(text.substr(x + 1));
     frames = text.substr(0, x);
   }
-  const auto dash = frames.find('-', 1);  // from 1: a first frame may be negative
+  const auto dash = frames.find('-', 1);  // from 1: the first frame may be negative
   if (dash != std::string_view::npos && step && *step >= 1) {
     const auto first = parse_integer<std::int64_t>(frames.substr(0, dash));
     const auto last = parse_integer<std::int64_t>(frames.substr(dash + 1));
@@ -74,7 +76,7 @@ double parse_frame(const std::string& text) {
   if (!frame || std::abs(*frame) > kFar)
     throw UsageError("--frame {}: expected a frame's number, such as 12, or 12.5 for the moment halfway to the next",
                      text);
-  return *frame + 0.0;  // no −0
+  return *frame + 0.0;  // avoids −0
 }
 
 double parse_fps(const std::string& text) {
@@ -112,12 +114,13 @@ std::filesystem::path frame_path(const std::filesystem::path& out, std::int64_t 
 }
 
 std::map<std::string, std::string> camera_words(std::span<const std::string> cameras) {
-  constexpr std::size_t kLongest = 100;  // bytes: file systems end at 255 for all that is in a name
+  constexpr std::size_t kLongest = 100;  // bytes: file systems limit a whole name to 255
   std::map<std::string, std::string> words;
   std::set<std::string> taken;
   for (const std::string& camera : cameras) {
     std::string word = camera.substr(0, kLongest);
-    const auto continues = [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) == 0x80U; };  // of UTF-8
+    // continuation byte of UTF-8
+    const auto continues = [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) == 0x80U; };
     if (camera.size() > kLongest && continues(camera[kLongest])) {
       while (continues(word.back())) word.pop_back();
       word.pop_back();

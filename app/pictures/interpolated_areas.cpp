@@ -1,3 +1,6 @@
+// Interpolates areas at several view samples a pixel from one sample a pixel, where second differences bound the error
+// (docs/pictures.md). Not from a paper.
+
 #include "app/pictures/interpolated_areas.hpp"
 
 #include "base/assert.hpp"
@@ -19,19 +22,19 @@ namespace {
 using visibility::Tile;
 using visibility::ViewSamples;
 
-/// Below this V the light that would arrive without casters is not estimated from what arrives.
+/// Below this V the unoccluded light is not estimated from the arriving light.
 constexpr float kLeastShare = 1.0f / 64;
 /// Neighbours on one smooth surface: the angle of their normals has at least this cosine (23°), and neither is farther
-/// from the other's plane than this share of their distance, as on an arc of that angle.
+/// from the other's plane than this fraction of their distance, as on an arc of this angle.
 constexpr float kLeastCosine = 0.92f, kMostRise = 0.2f;
 
-/// Surfaces so many pixels away from one another cast wide penumbras on one another.
+/// Surfaces at least this many pixels apart cast wide penumbrae on one another.
 constexpr float kApart = 16;
 
-/// Engines take regions of so many pixels along each side, and their pixels in Z order.
+/// Engines process regions of this many pixels along each side, and their pixels in Z order.
 constexpr std::size_t kRegion = 16, kRegionPixels = kRegion * kRegion, kRegionsAcross = 64;
 
-/// The bits at even places, moved together.
+/// Returns the bits at even positions, moved together.
 std::uint32_t even_bits(std::uint32_t bits) {
   bits &= 0x55555555u;
   bits = (bits | bits >> 1) & 0x33333333u;
@@ -73,7 +76,7 @@ std::uint32_t InterpolatedAreas::max_tile_rows() const {
   return std::max(kMostSamples / fine_->width / side_, 1u) * side_;
 }
 
-/// The view sample in the middle of a pixel, or right below and beside its middle.
+/// Returns the view sample in the middle of a pixel, or to the lower right of its middle.
 std::size_t InterpolatedAreas::corner_of(std::uint32_t x, std::uint32_t y) const {
   return (std::size_t{y} * side_ + side_ / 2) * fine_->width + std::size_t{x} * side_ + side_ / 2;
 }
@@ -108,11 +111,12 @@ std::vector<InterpolatedAreas::Answer> InterpolatedAreas::ask(const Part& part) 
     method_.read_form_factors(form_factors);
     for (std::size_t i = 0; i < count; ++i) answers[first + i] = {shares[i], form_factors[i]};
   }
-  // Counters start again with prepare_light() alone, which is not called in between: the last ones are of all.
+  // Counters start again only with prepare_light(), which is not called in between: the last ones are those of all
+  // parts.
   return answers;
 }
 
-/// View samples in the order given, region by region in Z order.
+/// Returns a picture of view samples in the given order, region by region in Z order.
 InterpolatedAreas::Part InterpolatedAreas::part_of(std::span<const std::size_t> fine) const {
   const std::size_t regions = (fine.size() + kRegionPixels - 1) / kRegionPixels,
                     across = std::min(regions, kRegionsAcross), down = (regions + across - 1) / across;
@@ -167,8 +171,8 @@ void InterpolatedAreas::look_at_corners() {
   has_corners_ = true;
 }
 
-/// The second difference at a corner, as an error of V: its own, or that of the light that arrives over what would
-/// arrive without casters.
+/// Returns the second difference at a corner, as an error of V: of V itself, or of the arriving light over the
+/// unoccluded light.
 float InterpolatedAreas::bend(std::size_t before, std::size_t at, std::size_t after, std::uint32_t step) const {
   const auto x = static_cast<std::uint32_t>(at % width_), y = static_cast<std::uint32_t>(at / width_);
   const std::size_t here = corner_of(x, y);
@@ -202,16 +206,17 @@ void InterpolatedAreas::find_cells() {
   });
 }
 
-/// Is each surface in the cell that begins at a view sample far from the others, in pixels as large as they are there?
+/// Returns whether each surface in the cell that begins at a view sample is far from the others, in pixels of their
+/// size there.
 bool InterpolatedAreas::are_apart(std::size_t first) const {
-  std::vector<std::size_t> shown;  // background is far from everything
+  std::vector<std::size_t> shown;  // background is far from every surface
   for (std::uint32_t y = 0; y <= side_; ++y) {
     for (std::uint32_t x = 0; x <= side_; ++x) {
       const std::size_t at = first + std::size_t{y} * fine_->width + x;
       if (fine_->triangle[at] != ViewSamples::kBackground) shown.push_back(at);
     }
   }
-  float same = std::numeric_limits<float>::infinity(), other = same;  // the shortest distances
+  float same = std::numeric_limits<float>::infinity(), other = same;  // shortest distances
   for (std::size_t i = 0; i < shown.size(); ++i) {
     for (std::size_t j = i + 1; j < shown.size(); ++j) {
       float& shortest = on_one_surface(shown[i], shown[j]) ? same : other;
@@ -230,7 +235,7 @@ InterpolatedAreas::Cell InterpolatedAreas::cell_of(std::uint32_t column, std::ui
     }
   }
   const std::size_t at = std::size_t{row} * width_ + column;
-  float along_x = -1, along_y = -1;  // nothing is known
+  float along_x = -1, along_y = -1;  // unknown
   for (const std::size_t corner : {at, at + 1, at + width_, at + width_ + 1}) {
     along_x = std::fmax(along_x, bends_[corner].x);
     along_y = std::fmax(along_y, bends_[corner].y);
@@ -242,10 +247,11 @@ InterpolatedAreas::Cell InterpolatedAreas::cell_of(std::uint32_t column, std::ui
 std::optional<InterpolatedAreas::Slope> InterpolatedAreas::slope(std::uint32_t x, std::uint32_t y) const {
   const std::size_t at = std::size_t{y} * width_ + x;
   struct Along {
-    std::size_t from, to;  // corners
+    std::size_t from, to;  // indices of corners
     float bend;
   };
-  // Between the neighbours on both sides; or to the one that is on the surface, if the one behind it is, too.
+  // Slope between the neighbours on both sides; or to the one on the surface, if the one behind it is also on the
+  // surface.
   const auto along = [&](std::size_t step, bool has_before, bool has_after, float Bend::*bend) -> std::optional<Along> {
     if (const float here = bends_[at].*bend; here >= 0) return Along{at - step, at + step, here};
     if (has_before && bends_[at - step].*bend >= 0) return Along{at - step, at, bends_[at - step].*bend};
@@ -269,10 +275,10 @@ std::optional<InterpolatedAreas::Slope> InterpolatedAreas::slope(std::uint32_t x
 
 std::optional<InterpolatedAreas::Answer> InterpolatedAreas::from_corner(std::uint32_t x, std::uint32_t y) const {
   const std::size_t at = std::size_t{y} * fine_->width + x;
-  const std::uint32_t half = side_ / 2;  // whole, as in corner_of()
+  const std::uint32_t half = side_ / 2;  // integer, as in corner_of()
   const auto in_pixels = [&](std::uint32_t place) { return (static_cast<double>(place) - half) / side_; };
   const double right = in_pixels(x), below = in_pixels(y);
-  // The corners around it, the nearest first.
+  // The corners around the view sample, the nearest first.
   const auto nearest = [](double place) {
     const double first = std::round(place);
     return std::array{first, place < first ? first - 1 : first + 1};
@@ -310,7 +316,7 @@ std::vector<std::size_t> InterpolatedAreas::interpolate(const Tile& tile) {
   std::atomic<std::uint64_t> interpolated = 0;
   tbb::parallel_for(std::uint32_t{0}, tile.row_count, [&](std::uint32_t i) {
     const std::uint32_t y = tile.first_row + i;
-    // Rows and columns of cells, from −1; the cells around all corners are none.
+    // Rows and columns of cells, from −1; the border around all corners has no cells.
     const std::int64_t row = (std::int64_t{y} - half + side_) / side_ - 1;
     const double down = static_cast<double>((y + side_ - half) % side_) / side_;
     std::uint64_t count = 0;
@@ -357,7 +363,7 @@ std::vector<std::size_t> InterpolatedAreas::interpolate(const Tile& tile) {
     interpolated += count;
   });
   counters_["viewSamplesInterpolated"] += interpolated;
-  // Pixels in Z order, and each one's view samples after one another.
+  // Pixels in Z order, and the view samples of each consecutively.
   std::vector<std::size_t> open;
   const std::uint32_t rows = (tile.row_count + side_ - 1) / side_;
   std::uint32_t edge = 1;

@@ -14,28 +14,28 @@
 
 namespace penumbra::app {
 
-/// How far from each view sample's own V an interpolated one may be estimated to be: less than half a step of an 8-bit
+/// Largest estimated difference between an interpolated V and a view sample's own V: less than half a step of an 8-bit
 /// picture.
 inline constexpr double kPixelTolerance = 1.0 / 512;
 
-/// Areas at several view samples a pixel, for little more than those at one. The method given looks at one view sample
-/// of each pixel. Four neighbours of these are the corners of a cell; where all view samples of a cell lie on one
-/// smooth surface and V, and the light that arrives, hardly bend from corner to corner, the cell's other view samples
-/// are interpolated. How far V bends along x and y is its second difference over three neighbouring pixels, D: of a
-/// function whose second derivative is bounded, bilinear interpolation errs by at most (|Dx| + |Dy|) / 8, which has to
-/// be below the tolerance. In a cell of several surfaces, none near another, a view sample takes the value of a corner
-/// on its own surface, with the slope there, where |Dx| + |Dy|, what the slope errs by within a pixel, is below the
-/// tolerance, and the cell's other corners on that surface agree. Everywhere
-/// else the method looks at each view sample. V has kinks where edges of casters are parallel to edges of the light,
-/// and a caster may be so thin that its shadow passes between the corners: there the bound is an estimate
-/// (docs/pictures.md has what it errs by).
+/// Computes areas at several view samples a pixel at little more than the cost of one. The given method evaluates one
+/// view sample of each pixel. Four neighbours of these are the corners of a cell; where all view samples of a cell lie
+/// on one smooth surface and the curvature of V, and of the arriving light, is small from corner to corner, the cell's
+/// other view samples are interpolated. The curvature along x and y is measured by the second difference over three
+/// neighbouring pixels, D: for a function whose second derivative is bounded, the error of bilinear interpolation is at
+/// most (|Dx| + |Dy|) / 8, which must be below the tolerance. In a cell of several surfaces, none near another, a view
+/// sample takes the value of a corner on its own surface, with the slope there, if |Dx| + |Dy|, the error of the slope
+/// within a pixel, is below the tolerance, and the cell's other corners on this surface agree. Everywhere else the
+/// method evaluates each view sample. V has kinks where edges of casters are parallel to edges of the light, and a
+/// caster may be so thin that its shadow passes between the corners: there the bound is an estimate (measured errors:
+/// docs/pictures.md).
 ///
-/// V and form factors of view samples that the method has looked at are the method's own, bit for bit.
-/// Everything that it is given must outlive it. A method of Output::radiance alone; one thread at a time.
+/// V and form factors of view samples evaluated by the method are the method's own, bit for bit. All arguments must
+/// outlive this object. Only for methods with Output::radiance; one thread at a time.
 class InterpolatedAreas final : public visibility::Method {
  public:
-  /// `side`: view samples a pixel along each axis, at least 2; view samples that prepare_view() gets are a picture of
-  /// whole pixels. `tolerance`: of V, above 0.
+  /// `side`: view samples of a pixel along each axis, at least 2; prepare_view() requires a picture of whole pixels.
+  /// `tolerance`: of V, above 0.
   InterpolatedAreas(visibility::Method& method, const visibility::SceneFloats& scene, std::uint32_t side,
                     double tolerance);
 
@@ -50,30 +50,30 @@ class InterpolatedAreas final : public visibility::Method {
   void read_visibility(std::span<float> visibility) override;
   void read_form_factors(std::span<glm::dvec3> form_factors) override;
   std::vector<visibility::PassTime> take_pass_times() override { return method_.take_pass_times(); }
-  /// The method's, and viewSamplesInterpolated.
+  /// Returns the method's counters, and viewSamplesInterpolated.
   [[nodiscard]] std::map<std::string, std::uint64_t> counters() const override;
   std::map<std::string, std::uint64_t> take_mesh_counters() override { return method_.take_mesh_counters(); }
   [[nodiscard]] std::uint64_t memory_bytes() const override;
 
  private:
-  /// `touching`: of several surfaces so near to one another that the shadow where they meet may begin between corners.
+  /// `touching`: several surfaces so near to one another that a contact shadow may begin between corners.
   enum class Cell : std::uint8_t { touching, apart, bent, smooth };
-  /// A method's answer at a view sample.
+  /// Result of the method at a view sample.
   struct Answer {
     float visibility = 1;
     glm::dvec3 form_factor{0};
   };
-  /// How far answers bend at a corner along x and y, as an error of V; NaN where a neighbour is on another surface.
+  /// Curvature of the results at a corner along x and y, as an error of V; NaN where a neighbour is on another surface.
   struct Bend {
     float x, y;
   };
-  /// Answers near a corner, as a linear function of pixels across and down, and its largest error within one.
+  /// Results near a corner, as a linear function of pixels across and down, and its largest error within a pixel.
   struct Slope {
     double share, share_x, share_y;
     glm::dvec3 factor, factor_x, factor_y;
     float error;
   };
-  /// A picture of view samples, and where in the fine one each of them is.
+  /// Picture of view samples, and the index of each in the fine picture.
   struct Part {
     visibility::ViewSamples samples;
     std::vector<std::size_t> from;
@@ -84,15 +84,15 @@ class InterpolatedAreas final : public visibility::Method {
   [[nodiscard]] float bend(std::size_t before, std::size_t at, std::size_t after, std::uint32_t step_in_fine) const;
   [[nodiscard]] bool are_apart(std::size_t first) const;
   [[nodiscard]] Cell cell_of(std::uint32_t column, std::uint32_t row) const;
-  /// The answers of a picture, in its order.
+  /// Returns the results of a picture, in its order.
   std::vector<Answer> ask(const Part& part);
   [[nodiscard]] Part part_of(std::span<const std::size_t> fine) const;
   [[nodiscard]] std::optional<Slope> slope(std::uint32_t x, std::uint32_t y) const;
-  /// The answer at a view sample of the fine picture, by the nearest corner on its surface that allows it.
+  /// Returns the result at a view sample of the fine picture, from the nearest suitable corner on its surface.
   [[nodiscard]] std::optional<Answer> from_corner(std::uint32_t x, std::uint32_t y) const;
   void look_at_corners();
   void find_cells();
-  /// Sets what is interpolated in the tile; returns the view samples that are not, neighbours after one another.
+  /// Sets the interpolated view samples of the tile; returns the others, neighbours consecutively.
   std::vector<std::size_t> interpolate(const visibility::Tile& tile);
 
   visibility::Method& method_;
@@ -101,7 +101,7 @@ class InterpolatedAreas final : public visibility::Method {
   double tolerance_;
   const visibility::ViewSamples* fine_ = nullptr;
   std::uint32_t width_ = 0, height_ = 0;  // of corners
-  bool has_corners_ = false;              // of the light and view at hand
+  bool has_corners_ = false;              // of the current light and view
   std::vector<Answer> corners_;
   std::vector<Bend> bends_;  // of each corner
   std::vector<Cell> cells_;  // row by row: (width_ − 1) · (height_ − 1)

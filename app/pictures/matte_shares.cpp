@@ -1,3 +1,5 @@
+// Sums the coverage of mattes over view samples.
+
 #include "app/pictures/matte_shares.hpp"
 
 #include "app/pictures/surfaces.hpp"

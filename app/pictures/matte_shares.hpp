@@ -11,27 +11,27 @@
 
 namespace penumbra::app {
 
-/// How much of each pixel each name has, over all of its view samples, weighed by the filter that weighs colours.
+/// Fraction of each pixel for each name, over all of the pixel's view samples, with the filter's weights of colours.
 class MatteShares {
  public:
   struct Share {
     std::uint32_t name = 0;  ///< index into names()
-    float part = 0;          ///< of the pixel: 1 if nothing else is in it
+    float part = 0;          ///< fraction of the pixel: 1 if there is no other name
   };
 
   MatteShares(std::uint32_t width, std::uint32_t height, const PixelFilter& filter);
-  /// A picture of `side` times the width and height: of each view sample an index into `names`, or Surfaces::kNothing.
-  /// Equal names are one.
+  /// Adds a picture of `side` times the width and height: for each view sample an index into `names`, or
+  /// Surfaces::kNothing. Equal names are one.
   void add(std::span<const std::string> names, std::span<const std::uint32_t> of_sample, std::uint32_t side);
 
   [[nodiscard]] std::span<const std::string> names() const& { return names_; }
   std::span<const std::string> names() const&& = delete;
   [[nodiscard]] std::size_t pixel_count() const { return std::size_t{width_} * rows_.size(); }
-  /// What is in a pixel, the largest first; nothing is not among it.
+  /// Returns the names in a pixel, the largest first; background is not included.
   [[nodiscard]] std::vector<Share> of_pixel(std::size_t pixel) const;
 
  private:
-  /// Of a row of pixels: those of pixel x are shares[ends[x − 1]] to before shares[ends[x]], sums of shares so far.
+  /// Row of pixels: the shares of pixel x are shares[ends[x − 1]] to before shares[ends[x]]; running sums.
   struct Row {
     std::vector<std::uint32_t> ends;
     std::vector<Share> shares;

@@ -1,3 +1,5 @@
+// Writes OUT.exr: channels, header attributes, matrices.
+
 #include "app/pictures/picture_file.hpp"
 
 #include "app/pictures/cryptomatte.hpp"
@@ -18,7 +20,7 @@
 namespace penumbra::app {
 namespace {
 
-constexpr float kFar = 1e10f;  // Z of the background, as Blender has it
+constexpr float kFar = 1e10f;  // Z of the background, as in Blender
 
 std::string options_text(const visibility::MethodOptions& options) {
   std::string text;
@@ -42,8 +44,8 @@ std::string text_of(const nlohmann::ordered_json& json) {
   return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 
-/// `lights` of stats.json without the seconds (the same command gives the same bytes), each with its layer and what it
-/// emits.
+/// Returns `lights` of stats.json without the seconds (so that the same command gives the same bytes), each with its
+/// layer and its emission.
 std::string lights_text(const Session& session, const LabelledLights& all, std::span<const std::string> layers) {
   auto rows = nlohmann::ordered_json::array();
   for (const WholeLight& whole : whole_lights(all.lights)) {
@@ -61,7 +63,7 @@ std::string lights_text(const Session& session, const LabelledLights& all, std::
   return text_of(rows);
 }
 
-/// The channels of a picture: those that are wanted, each as the format has it.
+/// Requested channels of a picture, each in the format's type.
 class Channels {
  public:
   Channels(ExrImage& image, std::set<std::string> wanted, bool half)
@@ -76,21 +78,21 @@ class Channels {
     channel.exact = must_be_exact(channel.name);
     image_.channels.push_back(std::move(channel));
   }
-  /// The components of interleaved vectors or colours, which need no copy.
+  /// Adds the components of interleaved vectors or colours, without a copy.
   void add(const std::string& prefix, const char* letters, std::span<const glm::vec3> values) {
     if (values.empty()) return;
     const auto* floats = &values.front().x;
     for (std::size_t c = 0; c < 3; ++c)
       add({prefix + letters[c], std::span<const float>(floats + c, 3 * values.size() - 2), 3});
   }
-  /// A channel whose values are made pixel by pixel when its lines are written.
+  /// Adds a channel whose values are computed pixel by pixel when its lines are written.
   template <typename ValueOf>
   void add_made(const std::string& name, ValueOf value_of) {
     add({name, [value_of](std::size_t first, std::span<float> values) {
            for (std::size_t i = 0; i < values.size(); ++i) values[i] = value_of(first + i);
          }});
   }
-  /// All that are wanted must have come.
+  /// Asserts that all requested channels have been added.
   void check() const {
     PENUMBRA_ASSERT(image_.channels.size() == wanted_.size(), "{} channels of {}", image_.channels.size(),
                     wanted_.size());
@@ -102,12 +104,12 @@ class Channels {
   bool half_;
 };
 
-/// The number that the picture has of a name: from 1; 0: nothing.
+/// Returns the picture's number of a name: from 1; 0: background.
 float picture_number(std::uint32_t index) {
   return index == Surfaces::kNothing ? 0.0f : static_cast<float>(index) + 1;
 }
 
-/// World space to the camera's (X right, Y up, looking along −Z), and on to [−1, 1] over the picture.
+/// Matrices from world space to the camera's (X right, Y up, looking along −Z), and to [−1, 1] over the picture.
 struct CameraMatrices {
   glm::mat4 to_camera, to_picture;
 };
@@ -122,19 +124,19 @@ CameraMatrices matrices_of(const Session& session) {
     for (glm::length_t column = 0; column < 3; ++column) to_camera[column][row] = axis[column];
     to_camera[3][row] = -glm::dot(axis, eye);
   }
-  // OpenGL's projection, with the far plane at infinity and, for want of one, the near plane at 1.
+  // OpenGL's projection, with the far plane at infinity and the near plane, which the camera lacks, at 1.
   const double aspect = static_cast<double>(session.width) / session.height;
   glm::dmat4 projection(0);
   const double half = camera.half_height.value_or(camera.tan_half_fov);
   projection[0][0] = 1 / (aspect * half);
   projection[1][1] = 1 / half;
   projection[2][2] = -1;
-  if (camera.half_height) {  // no plane is far: depth stays a length
+  if (camera.half_height) {  // no far plane: depth stays a length
     projection[3][3] = 1;
   } else {
     projection[2][3] = -1;
     projection[3][2] = -2;
-    projection[2][0] = glm::dot(camera.middle, camera.right) / (aspect * half);  // of a shifted lens
+    projection[2][0] = glm::dot(camera.middle, camera.right) / (aspect * half);  // for a shifted lens
     projection[2][1] = glm::dot(camera.middle, camera.up) / half;
   }
   return {glm::mat4(to_camera), glm::mat4(projection * to_camera)};
@@ -189,7 +191,7 @@ std::vector<std::string> write_picture(AtomicFile& file, const PictureContent& c
   channels.add("Prel.", "XYZ", samples.p);
   channels.add("N.", "XYZ", samples.n);
   channels.add_made("Z", [&, is_background](std::size_t i) { return is_background(i) ? kFar : samples.depth[i]; });
-  // The background's, −1, is 4294967295 there.
+  // The background's −1 is stored as 4294967295.
   const auto* const id = reinterpret_cast<const std::uint32_t*>(samples.triangle.data());
   channels.add({"id", std::span(id, samples.size()), 1});
   channels.add_made("triangle.X", [&samples](std::size_t i) { return low_number(samples.triangle[i]); });

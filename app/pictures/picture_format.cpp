@@ -1,3 +1,5 @@
+// Names and selects layers and channels of pictures.
+
 #include "app/pictures/picture_format.hpp"
 
 #include "app/pictures/cryptomatte.hpp"
@@ -15,8 +17,8 @@
 namespace penumbra::app {
 namespace {
 
-/// Layer names that no light may take: the picture's own layers, and the names under which programs show channels
-/// without a layer ("Combined" and "Depth" in Blender, the others in Nuke).
+/// Reserved layer names: the picture's own layers, and the names under which programs show channels without a layer
+/// ("Combined" and "Depth" in Blender, the others in Nuke).
 constexpr std::array kOwnLayers = {"P",
                                    "Prel",
                                    "N",
@@ -36,11 +38,11 @@ constexpr std::array kOwnLayers = {"P",
                                    "rgba",
                                    "other"};
 
-/// A light's layers: of all that it has, and on request each of its two parts for Blender's compositor, which has room
-/// for one kind of channels in a layer: of R, G, B and V it takes V for R.
+/// Endings of a light's layers: all its channels, and on request each of two parts for Blender's compositor, which
+/// supports one kind of channels in a layer: of R, G, B and V it would show V as R.
 constexpr std::array kEndings = {"", "_V", "_light"};
 
-/// Up to so many bytes of UTF-8, whole characters.
+/// Returns the first bytes of a UTF-8 text, at most `most`, in whole characters.
 std::string cut(std::string text, std::size_t most) {
   if (text.size() <= most) return text;
   while (most > 0 && (static_cast<unsigned char>(text[most]) & 0xc0U) == 0x80U) --most;
@@ -54,12 +56,12 @@ std::string without_dots(std::string name) {
   return name;
 }
 
-/// Before the only dot; a channel without is its own.
+/// Returns the part before the only dot; a channel without a dot is its own layer.
 std::string_view layer_of(std::string_view channel) {
   return channel.substr(0, channel.find('.'));
 }
 
-/// `*` stands for any characters, `?` for one.
+/// Matches a pattern: `*` stands for any characters, `?` for one.
 bool fits(std::string_view pattern, std::string_view text) {
   std::size_t p = 0, t = 0, star = std::string_view::npos, resume = 0;
   while (t < text.size()) {
@@ -185,7 +187,8 @@ std::set<std::string> wanted_channels(const PictureFormat& format, std::span<con
   }
   for (const std::string& wish : format.layers) {
     bool fits_any = false;
-    for (const bool on_request : {false, true}) {  // a pattern takes what repeats others only where all that fits does
+    // a pattern selects duplicate channels only if all channels that match are duplicates
+    for (const bool on_request : {false, true}) {
       for (const PictureChannel& channel : channels) {
         if (channel.on_request != on_request || !asks_for(wish, channel.name)) continue;
         wanted.insert(channel.name);

@@ -13,46 +13,47 @@
 
 namespace penumbra::app {
 
-/// The names of whole lights' layers: the light's own, with dots and slashes, which make layers in layers, and control
-/// characters as "_", and cut where it is longer than hosts take (kLongestLayer). Where this makes two equal, or one
-/// that the picture or a host has for something else, the later one gets "_2", "_3" and so on; each light has its
-/// layer's name with "_V" and "_light", too.
+/// Returns the names of whole lights' layers: the light's own, with dots and slashes, which create nested layers, and
+/// control characters as "_", and cut where longer than hosts support (kLongestLayer). If this gives equal names, or a
+/// reserved one, the later gets "_2", "_3" and so on; each light also has its layer's name with "_V" and "_light".
 std::vector<std::string> layer_names(std::span<const visibility::Light> lights);
 
-/// Blender keeps 50 bytes of a pass' name, and "_light" comes behind.
+/// Blender keeps 50 bytes of a pass' name, including "_light".
 inline constexpr std::size_t kLongestLayer = 44;
 
-/// How OUT.exr is written.
+/// Format of OUT.exr.
 struct PictureFormat {
   std::vector<std::string>
-      layers;         ///< as the user gave them: names, patterns, "beauty"; none: all but those on request
-  bool half = false;  ///< 16 bits of colours, V and N
+      layers;         ///< as given by the user: names, patterns, "beauty"; empty: all except those on request
+  bool half = false;  ///< 16 bits for colours, V and N
   ExrCompression compression = ExrCompression::zip;
 };
 
-/// Throws UsageError.
+/// Parses the options. Throws UsageError if they are invalid.
 PictureFormat parse_format(const FormatOptions& options);
 
-/// A channel that a picture may have.
+/// Channel of a picture.
 struct PictureChannel {
   std::string name;
-  bool on_request = false;  ///< it repeats others, for one host's sake
+  bool on_request = false;  ///< duplicate of other channels, for one host
 };
 
-/// All channels of a picture: of lights with these layers, and of as many triangles. `several`: view samples a pixel.
+/// Returns all channels of a picture: for lights with these layers, and this number of triangles. `several`: several
+/// view samples a pixel.
 std::vector<PictureChannel> picture_channels(std::span<const std::string> lights, bool several,
                                              std::uint64_t triangles);
 
-/// Names of the channels that are written. Throws UsageError for a requested layer that the picture does not have.
+/// Returns the names of the channels to be written. Throws UsageError for a requested layer that the picture does not
+/// have.
 std::set<std::string> wanted_channels(const PictureFormat& format, std::span<const PictureChannel> channels);
 
-/// Are 16 bits enough for what it shows?
+/// Returns whether 16 bits are sufficient for the channel's values.
 bool stands_half(const std::string& channel);
-/// Is it wrong if it is off by a little?
+/// Returns whether a small error makes the channel's values wrong.
 bool must_be_exact(const std::string& channel);
 
-/// Triangle numbers as floats, for programs that drop integer channels: `id` + 1, and 0 where there is no triangle. A
-/// float holds each whole number below this one exactly; larger numbers are split into low and high parts.
+/// Triangle numbers as floats, for programs that drop integer channels: `id` + 1, and 0 where there is no triangle.
+/// Floats represent each integer below kFloatNumbers exactly; larger numbers are split into low and high parts.
 constexpr std::uint64_t kFloatNumbers = std::uint64_t{1} << 24;
 constexpr float low_number(std::int64_t triangle) {
   return static_cast<float>(static_cast<std::uint64_t>(triangle + 1) % kFloatNumbers);

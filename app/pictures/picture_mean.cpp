@@ -1,3 +1,5 @@
+// Averages pictures, with weights of a pixel filter.
+
 #include "app/pictures/picture_mean.hpp"
 
 #include "base/assert.hpp"

@@ -1,5 +1,6 @@
-// Pixel filters. Blackman-Harris: Harris, "On the use of windows for harmonic analysis with the discrete Fourier
-// transform", Proc. IEEE 66 (1978), the four terms of at most −92 dB; as Blender's Cycles has it, over both axes.
+// Computes weights of pixel filters. Blackman-Harris: Harris, "On the use of windows for harmonic analysis with the
+// discrete Fourier transform", Proc. IEEE 66 (1978), the four terms of at most −92 dB; over both axes, as in Blender's
+// Cycles.
 
 #include "app/pictures/pixel_filter.hpp"
 
@@ -42,7 +43,7 @@ std::vector<FilterTaps> filter_taps(const PixelFilter& filter, std::size_t pixel
     const std::ptrdiff_t first = std::max<std::ptrdiff_t>(pixel * step - reach, 0);
     const std::ptrdiff_t end = std::min((pixel + 1) * step + reach, samples);
     for (std::ptrdiff_t i = first; i < end; ++i) {
-      // In halves of a view sample's distance, which are whole: both sides of the centre get the same share.
+      // In halves of a view sample's distance, which are integers: both sides of the centre get the same weight.
       const std::ptrdiff_t halves = 2 * i + 1 - (2 * pixel + 1) * step;
       const double share = filter.share(static_cast<double>(halves) / static_cast<double>(2 * side));
       if (share <= 0) continue;

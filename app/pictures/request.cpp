@@ -1,3 +1,5 @@
+// Adds and parses the options of `render` and `submit`.
+
 #include "app/pictures/request.hpp"
 
 #include "app/methods.hpp"
@@ -21,7 +23,7 @@ std::uint32_t parse_count(const std::string& text, const char* option, std::uint
   return *value;
 }
 
-/// --pixel-samples, --motion-samples and --shutter.
+/// Parses --pixel-samples, --motion-samples and --shutter.
 void parse_means(const PictureOptions& options, PictureRequest& request) {
   const std::uint32_t samples =
       parse_count(options.pixel_samples, "--pixel-samples", 64, "a number from 1 to 64, such as 4, 9 or 16");
@@ -54,7 +56,7 @@ void parse_means(const PictureOptions& options, PictureRequest& request) {
     throw UsageError("--motion-samples {}: of which frame? --frame or --frames says", options.motion_samples);
 }
 
-/// A moment between frames has no number that a file's name could have.
+/// A moment between frames has no number for a file's name.
 void refuse_numbered_moments(const PictureOptions& options, const PictureRequest& request) {
   const auto& frame = request.frames.front();
   if (!frame || *frame == std::floor(*frame)) return;
@@ -132,7 +134,7 @@ void add_picture_options(CLI::App& command, PictureOptions& options) {
 PictureRequest parse_request(const PictureOptions& options) {
   PictureRequest request;
   NamedMethod method = parse_method(options.method, options.run.method_options);
-  if (!method.name.empty()) describe_method(method.name, method.options);  // refuses now, not later
+  if (!method.name.empty()) describe_method(method.name, method.options);  // throws now instead of later
   request.wish.method = std::move(method.name);
   request.wish.options = std::move(method.options);
   request.wish.samples =
@@ -140,7 +142,7 @@ PictureRequest parse_request(const PictureOptions& options) {
   request.exposure = parse_exposure(options.exposure);
   request.seconds_per_frame = 1 / parse_fps(options.fps);
   parse_means(options, request);
-  parse_format(options.run.format);  // refuses now, not later
+  parse_format(options.run.format);  // throws now instead of later
   if (options.run.out.extension() != ".exr") {
     throw UsageError("-o {}: expected a name that ends in .exr (--png writes a PNG file beside it)",
                      options.run.out.string());

@@ -18,21 +18,22 @@ class App;
 
 namespace penumbra::app {
 
-/// What `render` and `submit` are asked for, as the user gave it; what is empty was not said.
+/// Options of `render` and `submit` as given by the user; empty members were not given.
 struct PictureOptions {
   RunOptions run;
   std::string method, exposure, frames, fps, pixel_samples, pixel_filter, filter_width, pixel_tolerance, motion_samples,
       shutter;
-  std::optional<std::string> frame;  ///< of `render` alone
+  std::optional<std::string> frame;  ///< only `render`
   bool skip_existing = false;
-  std::map<std::string, std::string> camera_words;  ///< --camera all: of the scene's cameras, once it is read
+  std::map<std::string, std::string> camera_words;  ///< --camera all: of the scene's cameras, set after the scene is
+                                                    ///< read
   std::filesystem::path stats, png, bits;
 };
 
-/// Adds all of them but --frame.
+/// Adds all of the options except --frame.
 void add_picture_options(CLI::App& command, PictureOptions& options);
 
-/// What they mean, as far as that can be told before the scene is read.
+/// Parsed options, as far as possible before the scene is read.
 struct PictureRequest {
   MethodWish wish;
   Exposure exposure;
@@ -41,21 +42,22 @@ struct PictureRequest {
   PixelFilter filter;
   double pixel_tolerance = kPixelTolerance;
   double shutter_frames = 0.5;
-  /// One entry without a number if no frame was asked for; a sequence's are whole.
+  /// One entry without a number if no frame was given; a sequence's are integers.
   std::vector<std::optional<double>> frames;
 };
 
-/// Throws UsageError; InputError for a picture that --exposure names and that does not say how it was exposed.
+/// Parses the options. Throws UsageError; throws InputError if --exposure names a picture without an exposure
+/// attribute.
 PictureRequest parse_request(const PictureOptions& options);
 
-/// Throws UsageError for a --png that does not end so. After outputs_of, whose reasons say more.
+/// Throws UsageError for a --png without this ending. To be called after outputs_of, whose messages are more specific.
 void check_png_name(const PictureOptions& options);
 
-/// Where the picture of a frame goes: named after camera and frame, where there are several.
+/// Returns the files of a frame's picture: named after camera and frame, if there are several.
 FrameFiles files_of(const PictureOptions& options, std::optional<double> frame, const std::string& camera);
-/// Are the frame's files there, of all cameras?
+/// Returns whether the frame's files exist, for all cameras.
 bool is_there(const PictureOptions& options, std::optional<double> frame, const std::vector<std::string>& cameras);
-/// All files of these frames and cameras. UsageError if two are one, or one is the scene.
+/// Returns all files of these frames and cameras. Throws UsageError if two are the same, or one is the scene.
 OutputFiles outputs_of(const PictureOptions& options, const std::vector<std::optional<double>>& frames,
                        const std::vector<std::string>& cameras);
 

@@ -9,7 +9,7 @@
 
 namespace penumbra::app {
 
-/// Adds to the beauty of domes that are visible (scenes::AreaLight::visible) what the background's pixels see of them.
+/// Adds the radiance of visible domes (scenes::AreaLight::visible) to their beauty at the background's pixels.
 /// `beauty`: of each whole light, all pixels, or empty.
 void add_visible_skies(const Session& session, std::span<std::vector<glm::vec3>> beauty);
 

@@ -14,13 +14,13 @@ namespace penumbra::app {
 /// Adds --tev to a command.
 void add_tev(CLI::App& command, std::string& address);
 
-/// Pictures in an open tev, beside their files.
+/// Shows pictures in an open tev, in addition to their files.
 class TevPictures {
  public:
-  /// `address`: HOST:PORT. Throws UsageError, or ResourceError if nobody answers there.
+  /// Connects to `address`: HOST:PORT. Throws UsageError if it is invalid, ResourceError if the connection fails.
   explicit TevPictures(const std::string& address) : client_(address) {}
 
-  /// Shows R G B A, V and, of several lights, V of each, as OUT.exr has them. One of the same name is replaced.
+  /// Shows R G B A, V and, of several lights, V of each, as in OUT.exr. Replaces a picture of the same name.
   void show(const std::string& name, const PictureContent& content);
 
  private:

@@ -1,3 +1,5 @@
+// Starts programs, reads their output, ends them.
+
 #include "app/process/child_program.hpp"
 
 #include "base/error.hpp"
@@ -17,9 +19,9 @@
 namespace penumbra::app {
 namespace {
 
-constexpr std::chrono::milliseconds kLook(10);  // how often one is looked at
+constexpr std::chrono::milliseconds kLook(10);  // interval of polling
 constexpr std::chrono::seconds kPatience(10);   // a worker may be flushing a picture to a slow disk
-constexpr int kNotThere = 127;                  // as shells have it
+constexpr int kNotThere = 127;                  // as in shells
 
 }  // namespace
 
@@ -49,13 +51,13 @@ pid_t ChildProgram::start(std::vector<std::string>& command, const Said& output,
     throw ResourceError("cannot start {}: {}; raise the limit on processes (ulimit -u, the control group's pids.max)",
                         command.front(), std::generic_category().message(errno));
   }
-  if (child == 0) {  // the other threads are not here: only what is safe in a signal handler
+  if (child == 0) {  // only this thread exists in the child: calls async-signal-safe functions only
     ::prctl(PR_SET_PDEATHSIG, SIGTERM);
-    if (::getppid() != parent) ::_exit(static_cast<int>(ExitCode::interrupted));  // it has ended already
+    if (::getppid() != parent) ::_exit(static_cast<int>(ExitCode::interrupted));  // the parent has already ended
     ::dup2(nothing.get(), STDIN_FILENO);
     ::dup2(output.pipe.write.get(), STDOUT_FILENO);
     ::dup2(errors.pipe.write.get(), STDERR_FILENO);
-    ::signal(SIGPIPE, SIG_DFL);  // what prepare_process ignores; what the user ignores stays so
+    ::signal(SIGPIPE, SIG_DFL);  // ignored by prepare_process; signals ignored by the user stay ignored
     ::signal(SIGXFSZ, SIG_DFL);
     ::sigprocmask(SIG_SETMASK, &none, nullptr);
     ::execvp(argv.front(), argv.data());
@@ -79,7 +81,7 @@ ChildProgram::~ChildProgram() {
 }
 
 bool ChildProgram::has_ended() {
-  const bool ended = child_.has_ended();  // first: what it said before its end is in the pipes
+  const bool ended = child_.has_ended();  // first: output written before the end is then in the pipes
   for (Said& said : said_) said.read();
   return ended;
 }

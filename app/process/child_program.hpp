@@ -10,23 +10,23 @@
 
 namespace penumbra::app {
 
-/// A program that this one started. It ends with this object, and with the thread that started it, however that ends
-/// (so with this process, even if that is killed). It gets nothing on its standard input.
+/// Program started by this one. The child ends with this object, and with the thread that started it, however that
+/// thread ends (so also with this process, even if killed). Its standard input is empty.
 class ChildProgram {
  public:
-  /// `command`: the program, found as a shell would find it, and its arguments. Throws ResourceError if there can be no
-  /// more processes; one that is not there ends with 127.
+  /// `command`: the program, found as by a shell, and its arguments. Throws ResourceError if no process can be created;
+  /// a program that does not exist ends with 127.
   explicit ChildProgram(std::vector<std::string> command);
-  /// Asks it to end, and after a few seconds makes it.
+  /// Requests the program's end, and kills it after a few seconds.
   ~ChildProgram();
 
-  /// SIGTERM.
+  /// Sends SIGTERM.
   void ask_to_end() const { child_.kill(SIGTERM); }
-  /// Reads what it has said by now. Has it ended? Then all that it said has been read.
+  /// Reads all output available now. Returns whether the program has ended; then all of its output has been read.
   bool has_ended();
-  /// Of one that has ended: 128 + signal if a signal ended it.
+  /// Returns the exit code of an ended program: 128 + signal if ended by a signal.
   [[nodiscard]] int exit_code();
-  /// What came since the last call.
+  /// Return the output, and the errors, since the last call.
   std::string take_output() { return std::exchange(said_[0].text, {}); }
   std::string take_errors() { return std::exchange(said_[1].text, {}); }
 
@@ -43,16 +43,16 @@ class ChildProgram {
   Child child_;
 };
 
-/// What a program left behind that ran to its end.
+/// Result of a program that ran to its end.
 struct ProgramEnding {
   int code = 0;
   std::string output, errors;
 };
 
-/// Runs one to its end. Throws Interrupted after a signal.
+/// Runs a program to its end. Throws Interrupted after a signal.
 ProgramEnding run_program(std::vector<std::string> command);
 
-/// This program's own file.
+/// Returns this program's own file.
 std::string own_program();
 
 }  // namespace penumbra::app

@@ -1,3 +1,5 @@
+// Converts exceptions to messages and exit codes.
+
 #include "app/process/failure.hpp"
 
 #include "base/memory.hpp"
@@ -14,7 +16,7 @@
 namespace penumbra::app {
 namespace {
 
-/// What an exception of a library means, as far as that can be told.
+/// Returns the meaning of a library's exception, as far as it can be determined.
 std::string explain(const std::exception& error) {
   const auto* system = dynamic_cast<const std::system_error*>(&error);
   if (std::ferror(stdout) != 0)
@@ -27,7 +29,7 @@ std::string explain(const std::exception& error) {
         "on memory (ulimit -v)",
         error.what());
   }
-  // No library's exception should come this far; if one does, it is ours to repair, and no crash for the user.
+  // No library's exception should arrive here; if one does, it is an internal error with a message, not a crash.
   return fmt::format("internal: {}", error.what());
 }
 
@@ -39,7 +41,7 @@ Failure describe_current_exception() {
   } catch (const Error& error) {
     return {error.code(), error.what()};
   } catch (const std::bad_alloc&) {
-    // How much there was cannot be told any more: unwinding has given back what was taken.
+    // The amount in use cannot be reported any more: unwinding has released the memory.
     give_back_memory();
     const MemoryRoom room = memory_room();
     return {ExitCode::resource, fmt::format("out of memory ({} is all that {}, now that everything is given back); "
@@ -54,7 +56,7 @@ Failure current_failure() {
   try {
     throw;
   } catch (const render::DeviceDoesNotAnswer&) {
-    throw;  // nothing can go on with that device, and the process must end without destroying it
+    throw;  // rethrown: no further work is possible with this device, and the process must end without destroying it
   } catch (const ThrownByCaller&) {
     throw;
   } catch (const Error& error) {

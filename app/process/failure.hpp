@@ -7,22 +7,22 @@
 
 namespace penumbra::app {
 
-/// Why something ended early: what the user is told, and the exit code that goes with it.
+/// Reason of an early end: the message to the user, and its exit code.
 struct Failure {
   ExitCode code = ExitCode::resource;
   std::string message;
 };
 
-/// An exception out of a shadow method that a program using the library added. It goes through to that program.
+/// Exception from a shadow method added by a program that uses the library. Passed through to this program.
 struct ThrownByCaller {
   std::exception_ptr thrown;
 };
 
-/// The exception that is being handled, whatever it is. Only inside of a catch block.
+/// Returns the current exception, of any type, as a failure. Callable only inside a catch block.
 Failure describe_current_exception();
 
-/// The exception that is being handled, as a failure; an interruption, a device that does not answer, and
-/// ThrownByCaller are thrown on. Only inside of a catch block.
+/// Returns the current exception as a failure; rethrows an interruption, a device that does not answer, and
+/// ThrownByCaller. Callable only inside a catch block.
 Failure current_failure();
 
 }  // namespace penumbra::app

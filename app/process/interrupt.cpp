@@ -1,3 +1,5 @@
+// Ends the process on signals, from a thread of its own.
+
 #include "app/process/interrupt.hpp"
 
 #include "base/atomic_file.hpp"
@@ -14,12 +16,12 @@
 namespace penumbra::app {
 namespace {
 
-// A signal is the process's, so its state is too: the one global of this program.
+// A signal concerns the whole process, and so does this state: the only global of this program.
 std::atomic<bool> g_interrupted{false};
-std::mutex g_mutex;  // held while the process ends, so that nothing begins meanwhile that must unwind
+std::mutex g_mutex;  // held while the process ends, so that no section that must unwind can begin
 int g_unwinding = 0;
 
-/// Not exit(): its handlers would run under the feet of the working threads.
+/// Not exit(): its handlers would destroy data used by working threads.
 [[noreturn]] void end_at_once() {
   remove_unfinished_files();
   constexpr char kText[] = "penumbra: interrupted\n";
@@ -46,7 +48,7 @@ void watch_for_interrupts() {
     struct sigaction current {};
     if (sigaction(signal, nullptr, &current) == 0 && current.sa_handler != SIG_IGN) sigaddset(&signals, signal);
   }
-  // Threads inherit the mask: only the watcher ever sees these signals.
+  // Threads inherit the mask: only the watching thread receives these signals.
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
   std::thread(wait_for_signals, signals).detach();
 }

@@ -1,3 +1,5 @@
+// Checks output files before long work.
+
 #include "app/process/output_files.hpp"
 
 #include "base/atomic_file.hpp"
@@ -14,13 +16,13 @@ namespace {
 FileIdentity identity_of(const std::filesystem::path& path) {
   struct stat status {};
   if (::stat(path.c_str(), &status) == 0) return {status.st_dev, status.st_ino, {}};
-  // Nothing there yet: it will be what its folder, which may be called many things, has by this name.
+  // A file that does not exist yet is identified by its folder (which may have several paths) and its name.
   std::error_code error;
   std::filesystem::path target = std::filesystem::weakly_canonical(path, error);
   if (error || target.empty()) target = path.lexically_normal();
   const std::filesystem::path folder = target.has_parent_path() ? target.parent_path() : ".";
   if (::stat(folder.c_str(), &status) == 0) return {status.st_dev, status.st_ino, target.filename()};
-  return {0, 0, target};  // no folder, either
+  return {0, 0, target};  // the folder does not exist either
 }
 
 }  // namespace
@@ -36,7 +38,7 @@ void OutputFiles::add(const std::string& option, const std::filesystem::path& pa
 }
 
 void OutputFiles::refuse_inputs(std::span<const std::filesystem::path> inputs) const {
-  // Anew: folders may have been made since the outputs were named.
+  // Computed again: folders may have been made since the outputs were named.
   std::map<FileIdentity, std::size_t> numbers;
   for (std::size_t i = 0; i < files_.size(); ++i) numbers.emplace(identity_of(files_[i].path), i);
   for (const std::filesystem::path& input : inputs) {
@@ -67,7 +69,7 @@ void OutputFolder::make(const std::filesystem::path& folder) {
 }
 
 OutputFolder::~OutputFolder() {
-  std::error_code ignored;  // one that is not empty stays
+  std::error_code ignored;  // a folder that is not empty stays
   for (const std::filesystem::path& folder : made_) std::filesystem::remove(folder, ignored);
 }
 

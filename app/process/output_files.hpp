@@ -12,42 +12,43 @@
 
 namespace penumbra::app {
 
-/// A file that a command is going to write.
+/// Output file of a command.
 struct OutputFile {
-  std::string option;  ///< what asks for it, for messages: "-o", "--stats"
+  std::string option;  ///< option that requests the file, for messages: "-o", "--stats"
   std::filesystem::path path;
 };
 
-/// Equal for two paths if and only if they lead to one file, now or when it will have been written.
+/// Equal for two paths if and only if they lead to the same file, now or once it is written.
 struct FileIdentity {
   dev_t device = 0;
   ino_t inode = 0;
-  std::filesystem::path name;  ///< in the folder that the two numbers are of; empty: they are the file's own
+  std::filesystem::path name;  ///< name in the folder identified by the two numbers; empty: the numbers are the file's
+                               ///< own
   auto operator<=>(const FileIdentity&) const = default;
 };
 
-/// All files that a command writes. No two of them may be one file, and none may be a file that it reads; which files
-/// are one is decided by what they are (device and inode; of what is not there yet, its folder and name), so that
-/// links, relative names and "a/../b" do not hide it.
+/// All output files of a command. No two of them may be the same file, and none may be an input file. Identity is
+/// decided by device and inode (for a file that does not exist, by its folder and name), so that links, relative names
+/// and "a/../b" are recognised.
 class OutputFiles {
  public:
-  /// Adds a file; an empty path is none. UsageError if another output is the same file.
+  /// Adds a file; an empty path is ignored. Throws UsageError if another output is the same file.
   void add(const std::string& option, const std::filesystem::path& path);
 
-  /// UsageError if an output is one of these. Call it for what the command line names before anything is read, and
-  /// again for all that was opened before anything is written.
+  /// Throws UsageError if an output is one of `inputs`. To be called for inputs on the command line before any are
+  /// read, and again for all opened files before any output is written.
   void refuse_inputs(std::span<const std::filesystem::path> inputs) const;
 
-  /// ResourceError now, before long work, if one of them could not be written.
+  /// Throws ResourceError now, before long work, if an output is not writable.
   void require_writable() const;
 
  private:
   std::vector<OutputFile> files_;
-  std::map<FileIdentity, std::size_t> numbers_;  ///< into files_
+  std::map<FileIdentity, std::size_t> numbers_;  ///< indices into files_
 };
 
-/// A folder for outputs. What of it, and of the folders around it, had to be made goes again with this object if it is
-/// still empty then: a command that is refused leaves nothing.
+/// Folder for outputs. The destructor removes the folders made by make() that are still empty: a command that fails
+/// early leaves nothing.
 class OutputFolder {
  public:
   OutputFolder() = default;
@@ -55,7 +56,7 @@ class OutputFolder {
   OutputFolder& operator=(const OutputFolder&) = delete;
   ~OutputFolder();
 
-  /// Throws ResourceError if it cannot be made.
+  /// Makes the folder and its parents. Throws ResourceError if it cannot be made.
   void make(const std::filesystem::path& folder);
 
  private:

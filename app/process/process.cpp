@@ -1,3 +1,5 @@
+// Prepares the process and explains exceptions.
+
 #include "app/process/process.hpp"
 
 #include "app/process/failure.hpp"
@@ -23,11 +25,12 @@
 namespace penumbra::app {
 namespace {
 
-/// A closed stream's number goes to the next file that is opened, and what is printed then ends up in it.
+/// Opens /dev/null for closed standard streams: otherwise the next opened file would get the stream's number, and
+/// printed text would be written to this file.
 void occupy_closed_streams() {
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     if (::fcntl(stream, F_GETFD) >= 0 || errno != EBADF) continue;
-    // stdout for reading only, so that results nobody can get are an error; messages nobody wants are none.
+    // stdout for reading only, so that writing results is an error; messages are dropped without an error.
     ::open("/dev/null", stream == STDERR_FILENO ? O_WRONLY : O_RDONLY);
   }
 }
@@ -38,7 +41,8 @@ double boot_clock() {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-/// On the boot clock: field 22 of proc(5)'s stat, in ticks. The second field, a name in brackets, may hold anything.
+/// Returns the start on the boot clock: field 22 of proc(5)'s stat, in ticks. The second field, a name in brackets, may
+/// contain any characters.
 double start_of_process() {
   std::ifstream file("/proc/self/stat");
   const std::string text{std::istreambuf_iterator<char>(file), {}};
@@ -83,7 +87,7 @@ int explain_current_exception() noexcept try {
   const Failure failure = describe_current_exception();
   say(fmt::format("penumbra: error: {}\n", failure.message));
   return static_cast<int>(failure.code);
-} catch (...) {  // no memory left even for the message
+} catch (...) {  // no memory even for the message
   say("penumbra: error: out of memory\n");
   return static_cast<int>(ExitCode::resource);
 }

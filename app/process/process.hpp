@@ -4,22 +4,22 @@
 
 namespace penumbra::app {
 
-/// Call once, first thing in main: after it, nothing that the caller of this program left out (standard streams that
-/// are closed) or limits (the size of files, a reader that stops reading) ends the process by a signal; writing fails
-/// instead, and costs an exit code. An exception that nobody catches ends the process with exit code 4 and a message.
-/// Memory that is given back is kept (keep_freed_memory).
+/// Prepares the process; to be called once, first in main. Afterwards closed standard streams, a limit on the size of
+/// files, or a reader that stops reading do not end the process by a signal; writing fails instead, with an exit code.
+/// An uncaught exception ends the process with exit code 4 and a message. Freed memory is kept (keep_freed_memory).
 void prepare_process();
 
-/// Wall-clock seconds since this process began, to a hundredth; since the first call where the system does not say.
+/// Returns the wall-clock seconds since the start of this process, to a hundredth; since the first call if the system
+/// does not provide the start.
 double seconds_since_start();
 
-/// Writes to stderr if that is possible; what cannot be said is not said, and is no error.
+/// Writes to stderr if possible; failures are ignored.
 void say(std::string_view text) noexcept;
 
-/// Says on stderr what the exception that is being handled means for the user; returns the exit code for it.
+/// Writes a message about the current exception to stderr; returns its exit code.
 int explain_current_exception() noexcept;
 
-/// Throws ResourceError if something that was printed to stdout did not get there.
+/// Throws ResourceError if text printed to stdout could not be written.
 void check_stdout();
 
 }  // namespace penumbra::app

@@ -5,7 +5,7 @@
 
 namespace penumbra::app {
 
-/// The receiver of what long work reports while it runs; it can also stop the work.
+/// Receiver of reports from long work; can also stop the work.
 class Progress {
  public:
   enum class Level : std::uint8_t { debug, info, warning, error };
@@ -15,14 +15,14 @@ class Progress {
   Progress& operator=(const Progress&) = delete;
   virtual ~Progress() = default;
 
-  /// Starts a stage of `steps` steps, which ends the one before.
+  /// Starts a stage of `steps` steps, which ends the previous one.
   virtual void begin(std::string stage, std::uint64_t steps) = 0;
-  /// Throws an Error if the work is to stop.
+  /// Reports completed steps. Throws an Error to stop the work.
   virtual void advance(std::uint64_t steps) = 0;
   void advance() { advance(1); }
-  /// Takes away what shows the stage, so that other text can be written.
+  /// Removes the display of the stage, so that other text can be written.
   virtual void clear() = 0;
-  /// One message, without a line break at its end.
+  /// Reports one message, without a line break at its end.
   virtual void say(Level level, const std::string& message) = 0;
   void debug(const std::string& message) { say(Level::debug, message); }
   void info(const std::string& message) { say(Level::info, message); }

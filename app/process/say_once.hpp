@@ -8,7 +8,7 @@
 
 namespace penumbra::app {
 
-/// Hands everything on, but says each message once: for work that does the same several times.
+/// Passes everything on, but each message only once: for work that repeats the same steps.
 class SayOnce final : public Progress {
  public:
   explicit SayOnce(Progress& progress) : progress_(progress) {}

@@ -4,7 +4,7 @@
 
 namespace penumbra::app {
 
-/// Wall-clock time since it was made or restarted.
+/// Wall-clock time since construction or the last restart.
 class Stopwatch {
  public:
   void restart() { start_ = std::chrono::steady_clock::now(); }

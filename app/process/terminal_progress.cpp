@@ -1,3 +1,5 @@
+// Shows progress on stderr.
+
 #include "app/process/terminal_progress.hpp"
 
 #include "app/process/interrupt.hpp"
@@ -17,7 +19,7 @@ namespace penumbra::app {
 
 namespace {
 
-/// Between lines, where there is no bar: what is done in less says nothing.
+/// Interval of lines, where there is no bar: shorter stages print nothing.
 constexpr auto kSilence = std::chrono::seconds(5);
 
 }  // namespace

@@ -8,8 +8,8 @@
 
 namespace penumbra::app {
 
-/// A bar on stderr if stderr is a terminal, else a line every five seconds; neither if the user asked for quiet. Each
-/// step also looks for an interrupt (Interrupted). Messages go to spdlog.
+/// Shows a bar on stderr if stderr is a terminal, else a line every five seconds; neither with --quiet. Each step also
+/// checks for an interrupt (Interrupted). Messages go to spdlog.
 class TerminalProgress final : public Progress {
  public:
   explicit TerminalProgress(bool wanted);

@@ -1,3 +1,5 @@
+// Command `sweep`: options and tables.
+
 #include "app/commands.hpp"
 #include "app/compare/comparison.hpp"
 #include "app/compare/comparison_entries.hpp"
@@ -107,13 +109,13 @@ class SweepCommand : public Command {
     write_file_atomically(svg, sweep_svg(sweep));
     print_table(sweep);
     for (const SweepRow& row : sweep.rows) {
-      if (row.result.failure) return row.result.failure->exit_code;  // its message has been said
+      if (row.result.failure) return row.result.failure->exit_code;  // its message has already been printed
     }
     return 0;
   }
 
  private:
-  /// Exact areas where the first method that has them by options does all lights, else rays.
+  /// Returns exact areas if the first method that computes them by options supports all lights, else rays.
   [[nodiscard]] std::string best_reference(const scenes::Scene& scene) const {
     const std::string areas = exact_area_example();
     const visibility::MethodDescription method = describe_reference(areas).description;

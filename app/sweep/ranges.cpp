@@ -19,7 +19,7 @@ constexpr std::size_t kMostValues = 64;  // of one key
       "--over {}: expected KEY=VALUE,VALUE,… or KEY=A..B (doubled) or KEY=A..B+STEP, such as size=256..4096", text);
 }
 
-/// "256..4096" or "1..9+2"; a text without ".." stands for itself.
+/// Expands "256..4096" or "1..9+2"; returns a text without ".." unchanged.
 std::vector<std::string> values_of(std::string_view text, std::string_view whole) {
   const auto dots = text.find("..");
   if (text.empty()) refuse(whole);
@@ -34,7 +34,7 @@ std::vector<std::string> values_of(std::string_view text, std::string_view whole
   for (std::size_t i = 0; i <= kMostValues; ++i) {
     const auto n = static_cast<double>(i);
     const double value = *step > 0 ? *first + n * *step : *first * static_cast<double>(std::uint64_t{1} << i % 64);
-    // A step such as 0.1 has no exact double: the last value may be beyond the end by rounding.
+    // A step such as 0.1 is not exactly representable: the last value may be beyond the end by rounding.
     if (value > *last + std::abs(*last) * 0x1p-40) return values;
     values.push_back(fmt::format("{:.12g}", value));
     if (i == 63) break;

@@ -1,3 +1,5 @@
+// Runs comparisons over products of values and finds the Pareto front of error and time.
+
 #include "app/sweep/sweep.hpp"
 
 #include "app/compare/comparison_entries.hpp"
@@ -23,7 +25,7 @@ constexpr const char *kHalf = "light.half", *kAngle = "light.angle", *kSamples =
 
 using Values = std::map<std::string, std::string>;
 
-/// Every choice of one value a key.
+/// Returns every combination of one value for each key.
 std::vector<Values> products(std::span<const SweptKey> keys) {
   std::vector<Values> all = {{}};
   for (const SweptKey& key : keys) {
@@ -74,7 +76,7 @@ struct SetHalf {
     const double larger = std::max({extent.x, extent.y, extent.z});
     for (glm::dvec3& vertex : light.vertices) vertex = center + (vertex - center) * (half / larger);
   }
-  void operator()(scenes::Sun& /*light*/) const {}  // has no half
+  void operator()(scenes::Sun& /*light*/) const {}  // has no extent
   void operator()(scenes::Dome& /*light*/) const {
     throw UsageError("--over {}: light \"{}\" is a dome, which has no size; choose others with --light", kHalf, name);
   }
@@ -92,7 +94,7 @@ struct SetHalf {
   }
 };
 
-/// The scene with the chosen lights at these sizes.
+/// Returns the scene with the chosen lights at these sizes.
 scenes::Scene with_lights(scenes::Scene scene, const Values& sizes, const std::vector<std::string>& chosen) {
   for (std::size_t i = 0; i < scene.lights.size() && !sizes.empty(); ++i) {
     scenes::AreaLight& light = scene.lights[i];
@@ -117,7 +119,7 @@ bool has_option(const MethodEntry& entry, const std::string& key) {
   return std::ranges::find(options, key, &visibility::OptionDescription::name) != options.end();
 }
 
-/// Each entry with each choice of the swept options that it has and does not set itself.
+/// Returns each entry with each combination of the swept options that it has and does not set itself.
 std::vector<MethodEntry> with_swept_options(std::span<const MethodEntry> entries, std::span<const SweptKey> keys) {
   std::vector<MethodEntry> all;
   std::set<std::string> labels;
@@ -136,7 +138,7 @@ std::vector<MethodEntry> with_swept_options(std::span<const MethodEntry> entries
   return all;
 }
 
-/// Is there a chosen light that has this size (light.half, light.angle)?
+/// Returns whether a chosen light has this size (light.half, light.angle).
 bool is_size_of_some(const std::string& key, const scenes::Scene& scene, const std::vector<std::string>& chosen) {
   return std::ranges::any_of(scene.lights, [&](const scenes::AreaLight& light) {
     const bool is_chosen = chosen.empty() || std::ranges::find(chosen, light.name) != chosen.end();
@@ -148,7 +150,7 @@ bool counts_samples(const MethodEntry& entry) {
   return describe_method(entry.name, entry.options).counts_light_samples();
 }
 
-/// Refuses a key that would change nothing.
+/// Throws for a key that would have no effect.
 void require_known_keys(std::span<const SweptKey> over, std::span<const MethodEntry> entries,
                         const scenes::Scene& scene, const std::vector<std::string>& lights) {
   for (const SweptKey& key : over) {
@@ -183,7 +185,7 @@ std::optional<double> rmse_of(const SweepRow& row) {
   return error ? std::optional(error->rmse) : std::nullopt;
 }
 
-/// Marks the rows of one light that no other of it beats in both error and time.
+/// Marks the rows of one light that no other row of this light surpasses in both error and time.
 void mark_hull(std::span<SweepRow> rows) {
   for (SweepRow& row : rows) {
     const auto rmse = rmse_of(row), seconds = row.result.stats.seconds.shadow();
@@ -227,7 +229,7 @@ Sweep sweep_methods(const scenes::Scene& scene, const RunOptions& run, Compariso
       keys_where(sweep.over, [](const SweptKey& key) { return !is_of_light(key) && key.name != kSamples; });
   const std::vector<MethodEntry> entries = with_swept_options(options.methods, of_methods);
   options.writes = false;
-  // Refuses wrong values before anything that takes long.
+  // Throws for invalid values before any long work.
   for (const MethodEntry& entry : entries) static_cast<void>(describe_method(entry.name, entry.options));
   std::vector<RunOptions> counts;
   for (const Values& count : products(samples)) {

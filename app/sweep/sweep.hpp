@@ -13,21 +13,21 @@
 
 namespace penumbra::app {
 
-/// One method with one choice of values, under one size of the lights.
+/// Method with one combination of values, under one size of the lights.
 struct SweepRow {
-  std::map<std::string, std::string> light;  ///< light.half, light.angle: values that were swept; empty: the scene's
+  std::map<std::string, std::string> light;  ///< light.half, light.angle: swept values; empty: the scene's
   compare::MethodResult result;
   bool on_hull = false;  ///< under this light no other row has both less error and less time
 };
 
-/// Seconds for the shadow that a method needs, at the least, for an error of V of at most `rmse`.
+/// Least seconds for the shadow of a method with an error of V of at most `rmse`.
 struct SecondsTo {
   double rmse = 0;
-  std::optional<double> seconds = {};  ///< nullopt: no row of the method comes that near
+  std::optional<double> seconds = {};  ///< nullopt: no row of the method has so small an error
   std::string entry = {};
 };
 
-/// The best of a method's rows under one size of the lights.
+/// Best rows of a method under one size of the lights.
 struct SweepSummary {
   std::map<std::string, std::string> light;
   std::string method;
@@ -41,10 +41,10 @@ struct Sweep {
   std::vector<SweepSummary> summaries;
 };
 
-/// Compares each of the methods at each value of the keys that it has as options (all of their products), under each
-/// size of the lights (light.half: the larger half of a light's extent in the scene's unit; light.angle: a sun's
-/// diameter in degrees), and for each number of light-samples those methods that count them. Throws UsageError for a
-/// key that is nobody's, and as compare_methods().
+/// Compares each of the methods at each value of the keys that are its options (all products), under each size of the
+/// lights (light.half: the larger half of a light's extent in the scene's unit; light.angle: a sun's diameter in
+/// degrees), and for each number of light-samples if the method uses light samples. Throws UsageError for a key without
+/// effect, and as compare_methods().
 Sweep sweep_methods(const scenes::Scene& scene, const RunOptions& run, ComparisonOptions options,
                     std::vector<SweptKey> over, Progress& progress);
 

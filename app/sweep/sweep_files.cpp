@@ -1,3 +1,5 @@
+// Writes sweeps as JSON, CSV and SVG.
+
 #include "app/sweep/sweep_files.hpp"
 
 #include "base/csv.hpp"
@@ -29,7 +31,7 @@ Json object_of(const Map& map) {
   return json;
 }
 
-/// The value of a swept key in a row; empty where the method has no such option.
+/// Returns the value of a swept key in a row; empty if the method has no such option.
 std::string value_of(const SweepRow& row, const std::string& key) {
   if (const auto light = row.light.find(key); light != row.light.end()) return light->second;
   const auto& options = row.result.stats.options;
@@ -41,7 +43,7 @@ std::string number(const std::optional<double>& value) {
   return value ? fmt::format("{:.9g}", *value) : std::string();
 }
 
-/// "light.half=0.5"; empty of the scene's own lights.
+/// Returns "light.half=0.5"; empty for the scene's own lights.
 std::string name_of(const std::map<std::string, std::string>& light) {
   std::string name;
   for (const auto& [key, value] : light) name += fmt::format("{}{}={}", name.empty() ? "" : ", ", key, value);
@@ -53,7 +55,8 @@ constexpr const char* kStyle =
     ".grid{stroke:#ddd}.frame{stroke:#888;fill:none}.leader{stroke:#999;fill:none}.geometry{fill:#1f77b4}"
     ".image{fill:#d1580b}.reference{fill:#222}.title{font-size:15px}</style>\n";
 
-/// The rows of one size of the lights as marks, each method's joined; the method's name stands at its last mark.
+/// Returns a plot of the rows of one size of the lights, each method's rows joined; the method's name is at its last
+/// mark.
 std::string drawing(std::span<const SweepRow> rows) {
   compare::ErrorPlot plot;
   std::map<std::string, std::vector<std::size_t>> marks;

@@ -9,9 +9,10 @@
 namespace penumbra::app {
 
 nlohmann::ordered_json sweep_json(const Sweep& sweep);
-/// A line a row (RFC 4180), with a column for each swept key that is empty where a method has no such option.
+/// Returns one line for each row (RFC 4180), with a column for each swept key that is empty where a method has no such
+/// option.
 std::string sweep_csv(const Sweep& sweep);
-/// Error against time, a drawing a size of the lights, each method's rows joined in their order.
+/// Returns a plot of error against time for each size of the lights, each method's rows joined in their order.
 std::string sweep_svg(const Sweep& sweep);
 
 }  // namespace penumbra::app

@@ -1,3 +1,5 @@
+// Command `view`: serves a scene to a browser.
+
 #include "app/commands.hpp"
 #include "app/options.hpp"
 #include "app/process/process.hpp"
@@ -30,7 +32,7 @@
 namespace penumbra::app {
 namespace {
 
-/// Where a shell would find a program; empty: nowhere.
+/// Returns the path of a program, found as by a shell; empty: not found.
 std::string program_path(const std::string& name) {
   const char* const variable = std::getenv("PATH");
   std::string rest = variable == nullptr ? "" : variable;
@@ -104,7 +106,7 @@ class ViewCommand : public Command {
   }
 
  private:
-  /// Without a display there is none to open.
+  /// Without a display there is no browser to open.
   static std::optional<Child> open_browser(const std::string& address) {
     const bool has_display = std::getenv("DISPLAY") != nullptr || std::getenv("WAYLAND_DISPLAY") != nullptr;
     const std::string opener = has_display ? program_path("xdg-open") : "";

@@ -13,7 +13,7 @@ FileWatch::Looks FileWatch::look() const {
   Looks looks;
   for (const std::filesystem::path& file : files_) {
     std::error_code gone;
-    Look& one = looks[file];  // of a file that is not there: nothing
+    Look& one = looks[file];  // empty for a file that does not exist
     one.time = std::filesystem::last_write_time(file, gone);
     one.size = gone ? 0 : std::filesystem::file_size(file, gone);
   }

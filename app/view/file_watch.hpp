@@ -7,14 +7,14 @@
 
 namespace penumbra::app {
 
-/// Notices when files change on disk, by their times and sizes. A change counts once the files have been the same at
-/// two looks: editors write in pieces.
+/// Detects changes of files on disk, by their times and sizes. A change counts once the files have been the same at two
+/// checks: editors write in pieces.
 class FileWatch {
  public:
   explicit FileWatch(std::vector<std::filesystem::path> files);
-  /// Has one changed since the last true answer, or since the files were named?
+  /// Returns whether a file has changed since the last true result, or since the files were named.
   bool changed();
-  /// Looks at these from now on; those that it knew already stay as they are known.
+  /// Watches these files from now on; the state of files already watched is kept.
   void look_at(std::vector<std::filesystem::path> files);
 
  private:

@@ -1,3 +1,5 @@
+// Converts lights and cameras to and from the page's JSON.
+
 #include "app/view/light_json.hpp"
 
 #include "base/error.hpp"
@@ -50,7 +52,7 @@ struct ToJson {
   void operator()(const Other&) const {}
 };
 
-/// Reads a scene that has this light and camera alone, over a triangle that nobody looks at.
+/// Reads a scene with only this light and camera, and a triangle that is not used.
 scenes::Scene read_alone(json light, json camera) {
   const json triangle = {0, 0, 0, 1, 0, 0, 0, 1, 0};
   light["name"] = "light";
@@ -93,7 +95,7 @@ ordered_json camera_json(const scenes::Camera& camera) {
 scenes::AreaLight changed_light(const scenes::AreaLight& light, const json& change) {
   json own = require_object(change, "light");
   for (const auto& [key, value] : own.items()) {
-    // Other keys of a file name files and meshes.
+    // Other keys of scene files name files and meshes.
     constexpr std::array kKnown = {"name",   "rectangle", "ellipse",    "disk",     "polygon",
                                    "sphere", "sun",       "irradiance", "radiance", "twoSided"};
     if (std::ranges::find(kKnown, key) == kKnown.end())

@@ -1,3 +1,5 @@
+// Adapts the quality of live pictures to the time they take.
+
 #include "app/view/live_pace.hpp"
 
 #include <algorithm>
@@ -7,12 +9,12 @@
 namespace penumbra::app {
 namespace {
 
-/// From the best down.
+/// From the best to the lowest.
 constexpr std::array kLevels{LiveQuality{1, 64}, LiveQuality{1, 16}, LiveQuality{2, 16},
                              LiveQuality{2, 4},  LiveQuality{4, 4},  LiveQuality{8, 4}};
-constexpr double kQuickTime = 28;  // milliseconds, that leave time for more
+constexpr double kQuickTime = 28;  // milliseconds; a faster picture leaves time for a better level
 
-constexpr int kLongestPatience = 256;  // pictures
+constexpr int kLongestPatience = 256;  // in pictures
 
 }  // namespace
 
@@ -20,7 +22,7 @@ LiveQuality LivePace::quality() const {
   return kLevels.at(level_);
 }
 
-/// A level that turned out too slow is tried again after twice as many quick pictures as before.
+/// A level that was too slow is tried again after twice as many quick pictures as before.
 void LivePace::took(double milliseconds) {
   const bool was_raised = std::exchange(raised_, false);
   if (milliseconds > kPictureTime) {

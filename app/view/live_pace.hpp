@@ -5,27 +5,27 @@
 
 namespace penumbra::app {
 
-/// About fifteen pictures a second: milliseconds of one.
+/// Milliseconds of one picture at about fifteen pictures a second.
 inline constexpr double kPictureTime = 62;
 
-/// How much of a picture is made while something moves.
+/// Quality of a picture during changes.
 struct LiveQuality {
   std::uint32_t divisor = 2;         ///< of width and height
-  std::uint32_t light_samples = 16;  ///< at most, of methods that have them
+  std::uint32_t light_samples = 16;  ///< at most, for methods with light samples
 };
 
-/// Chooses the best quality that keeps about fifteen pictures a second.
+/// Chooses the best quality with about fifteen pictures a second.
 class LivePace {
  public:
   [[nodiscard]] LiveQuality quality() const;
-  /// Notes what a picture of that quality took.
+  /// Records the duration of a picture with the current quality.
   void took(double milliseconds);
 
  private:
   std::size_t level_ = 2;
   static constexpr int kPatience = 4;
-  int patience_ = kPatience;  // quick pictures before a better level is tried
-  int quick_ = 0;             // since the last change of level
+  int patience_ = kPatience;  // number of quick pictures before a better level is tried
+  int quick_ = 0;             // number since the last change of level
   bool raised_ = false;       // the level is new, and may be too slow
 };
 

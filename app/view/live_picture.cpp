@@ -1,3 +1,5 @@
+// Converts live pictures to messages and pixels to JSON.
+
 #include "app/view/live_picture.hpp"
 
 #include "base/error.hpp"
@@ -22,9 +24,9 @@ namespace {
 using nlohmann::ordered_json;
 using visibility::ViewSamples;
 
-constexpr int kQuality = 88;  // of JPEG, while something moves
+constexpr int kQuality = 88;  // of JPEG, during changes
 
-/// Which of the picture's lights it is; the first if it has none of that name.
+/// Returns the index of the picture's light with this name; the first if there is none.
 std::size_t light_number(const LivePicture& picture, const std::string& name) {
   const auto found = std::ranges::find(picture.lights, name);
   return found == picture.lights.end() ? 0 : static_cast<std::size_t>(found - picture.lights.begin());
@@ -43,7 +45,7 @@ Image8 colored(const ViewSamples& samples, Color color) {
   return image;
 }
 
-/// A colour of its own for each number, none of them dark.
+/// Returns a distinct colour for each number, none of them dark.
 Color8 color_of_number(std::uint32_t number) {
   std::uint32_t mixed = number * 2654435761U;  // Knuth's multiplicative hash
   mixed ^= mixed >> 15U;
@@ -74,7 +76,7 @@ Image8 depth_image(const ViewSamples& samples) {
   });
 }
 
-/// The pictures of a channel, each with the answer that it shows.
+/// Returns the pictures of a channel, each with the index of its answer.
 std::vector<std::pair<const char*, Image8>> images_of(const LivePicture& picture, const LiveDisplay& display,
                                                       std::optional<double>& limit) {
   const ViewSamples& samples = picture.samples;

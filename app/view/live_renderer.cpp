@@ -1,3 +1,5 @@
+// Interface of the live renderer; its thread is in live_thread.cpp.
+
 #include "app/view/live_renderer.hpp"
 
 #include "app/machine.hpp"
@@ -22,7 +24,7 @@ namespace {
 using nlohmann::json;
 using nlohmann::ordered_json;
 
-/// A folder that is gone with this object.
+/// Folder removed by the destructor.
 class ScratchFolder {
  public:
   ScratchFolder() : path_((std::filesystem::temp_directory_path() / "penumbra-view-XXXXXX").string()) {
@@ -59,7 +61,7 @@ LiveRenderer::~LiveRenderer() {
   {
     const std::lock_guard lock(mutex_);
     ending_ = true;
-    ++revision_;  // what is at work on is given up
+    ++revision_;  // cancels the current picture
   }
   wake_.notify_all();
   thread_.join();
@@ -118,7 +120,7 @@ void LiveRenderer::reload() {
 std::vector<std::filesystem::path> LiveRenderer::sources() const {
   const std::lock_guard lock(mutex_);
   std::vector<std::filesystem::path> files = file_->sources;
-  files.push_back(options_.scene);  // of a JSON scene those that it names alone are listed
+  files.push_back(options_.scene);  // for a JSON scene, the list only contains files named in it
   return files;
 }
 

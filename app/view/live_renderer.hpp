@@ -47,32 +47,33 @@ struct LiveUpdate {
   bool moving = false;                       ///< more will come soon
 };
 
-/// Makes pictures of a state that changes meanwhile, on a thread of its own: quick ones as long as it changes, then a
-/// final one, which is given up when the state changes again. Meshes, view samples and methods are kept from picture to
-/// picture. Functions may be called on any thread.
+/// Renders a state that changes during rendering, on a thread of its own: quick pictures while it changes, then a final
+/// one, which is cancelled if the state changes again. Meshes, view samples and methods are kept from picture to
+/// picture. Thread-safe.
 class LiveRenderer {
  public:
-  /// `scene`: read as `options` say.
+  /// `scene`: read with `options`.
   LiveRenderer(RunOptions options, scenes::Scene scene, LiveEvents events);
   LiveRenderer(const LiveRenderer&) = delete;
   LiveRenderer& operator=(const LiveRenderer&) = delete;
   ~LiveRenderer();
 
-  /// Changes the state as a message says; `client` and its `stamp` come back with the first picture that shows it.
+  /// Changes the state by a message; `client` and its `stamp` are returned with the first picture that includes the
+  /// change.
   LiveChange apply(const nlohmann::json& message, std::uint64_t client);
   /// Throws InputError or UsageError for a change that cannot be, and then changes nothing.
   void update(LiveUpdate update, std::uint64_t client);
   [[nodiscard]] nlohmann::ordered_json state() const;
-  /// Shows what there is once more: to a client that is new.
+  /// Shows the current picture again, for a new client.
   void show_again();
   /// Reads the scene's file again.
   void reload();
-  /// All files that the scene was read from.
+  /// Returns all files that the scene was read from.
   [[nodiscard]] std::vector<std::filesystem::path> sources() const;
   [[nodiscard]] nlohmann::ordered_json pixel(std::uint32_t x, std::uint32_t y) const;
-  /// The scene as it has been changed, in the form of `convert`; lights that are off have no radiance.
+  /// Returns the changed scene, in the form of `convert`; lights that are off have no radiance.
   [[nodiscard]] std::string scene_text() const;
-  /// Waits so long. Throws what ended the thread, if something did.
+  /// Waits for this time. Throws the exception that ended the thread, if any.
   void watch(std::chrono::milliseconds time) const;
 
  private:
@@ -92,7 +93,7 @@ class LiveRenderer {
   void read_again();
   void make_picture(const Order& order);
   void make_masks(const Order& order);
-  /// Has something come that makes the picture at work on useless?
+  /// Returns whether a change has made the current picture obsolete.
   [[nodiscard]] bool is_overtaken(std::uint64_t revision) const;
   LiveAnswer answer(const Order& order, const std::string& entry, scenes::Scene& scene);
   MethodWish wish_for(const Order& order, const std::string& entry);
@@ -110,20 +111,20 @@ class LiveRenderer {
   mutable std::condition_variable wake_, ended_;
   bool ending_ = false, wants_reload_ = false, wants_show_ = false;
   LiveState state_;
-  std::uint64_t revision_ = 1;                         // of state_; another number, another picture
+  std::uint64_t revision_ = 1;                         // of state_; a different number requires another picture
   std::map<std::uint64_t, double> stamps_;             // of each client, of its last change
-  std::shared_ptr<const scenes::Scene> whole_, file_;  // with meshes, as read; without
+  std::shared_ptr<const scenes::Scene> whole_, file_;  // with meshes, as read; without meshes
   std::shared_ptr<const LivePicture> picture_;
   std::shared_ptr<const LiveMasks> masks_;
-  std::uint64_t failed_ = 0, masks_failed_ = 0;  // the revision that cannot be shown
+  std::uint64_t failed_ = 0, masks_failed_ = 0;  // revision that could not be shown
   std::exception_ptr thrown_;
 
-  // Of the thread alone:
+  // Used only by the thread:
   RunOptions run_;
   MethodWish wish_;
   std::unique_ptr<Steps> steps_;
   std::unique_ptr<FrameRenderer> frames_;          // refers to run_, wish_ and steps_
-  std::shared_ptr<const scenes::Scene> rendered_;  // whose meshes frames_ has
+  std::shared_ptr<const scenes::Scene> rendered_;  // scene whose meshes frames_ has
   LivePace pace_;
   double final_milliseconds_ = 1000;
   float automatic_stops_ = 0;

@@ -1,3 +1,5 @@
+// Applies messages of the page to the state.
+
 #include "app/view/live_state.hpp"
 
 #include "app/methods.hpp"

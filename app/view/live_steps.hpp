@@ -7,24 +7,24 @@
 #include <string>
 #include <utility>
 
-/// Inside app/view/ only: what stops a picture that LiveRenderer is at work on.
+/// Cancellation of LiveRenderer's pictures. Internal to app/view/.
 namespace penumbra::app {
 
-/// The state has changed while a picture of it was made.
+/// Thrown if the state has changed during rendering.
 class LiveRenderer::GivenUp : public Error {
  public:
   GivenUp() : Error(ExitCode::interrupted, "given up") {}
 };
 
-/// Passes messages on, each once, and stops final pictures that have been overtaken.
+/// Passes messages on, each once, and stops final pictures that are obsolete.
 class LiveRenderer::Steps final : public Progress {
  public:
   explicit Steps(const LiveRenderer& renderer) : renderer_(renderer) {}
 
-  /// What is at work from now on: 0: it is not given up.
+  /// Sets the revision of the current picture; 0: not cancelled.
   void set_revision(std::uint64_t revision) { revision_ = revision; }
 
-  /// View samples are always finished: those of a part could not be kept.
+  /// The search for view samples is always completed: a part of them could not be kept.
   void begin(std::string stage, std::uint64_t) override { can_stop_ = stage != "view samples" && stage != "receivers"; }
   using Progress::advance;
   void advance(std::uint64_t) override {

@@ -1,4 +1,4 @@
-// Of LiveRenderer: what its thread does.
+// Thread of LiveRenderer.
 #include "app/machine.hpp"
 #include "app/methods.hpp"
 #include "app/output.hpp"
@@ -25,9 +25,9 @@ namespace {
 
 constexpr std::uint32_t kSmallestSide = 32;  // of a reduced picture
 constexpr std::uint32_t kMaskSamples = 256;
-/// A final picture is done in bands of so many rows, after each of which it can be given up.
+/// Number of rows of a band of a final picture; the picture can be cancelled after each band.
 constexpr std::uint32_t kBand = 64;
-/// While something is dragged, a final picture waits so long for what comes next.
+/// Time that a final picture waits for further changes during a drag.
 constexpr std::chrono::milliseconds kPause{90};
 
 }  // namespace
@@ -84,7 +84,7 @@ void LiveRenderer::work_on(std::unique_lock<std::mutex>& lock) {
       return ending_ || wants_reload_ || wants_show_ || revision_ != order.revision || !state_.moving;
     };
     if (wake_.wait_for(lock, kPause, something_came)) {
-      // The pointer has been let go, or there is something newer: look again.
+      // The drag ended, or there is a newer state: checks again.
       if (revision_ != order.revision || ending_ || wants_reload_ || wants_show_) return;
     }
   }
@@ -116,7 +116,7 @@ void LiveRenderer::read_again() {
   } catch (const Interrupted&) {
     throw;
   } catch (const Error& error) {
-    events_.say("error", error.what());  // what was shown before stays
+    events_.say("error", error.what());  // the previous picture stays
   }
 }
 
@@ -154,7 +154,7 @@ void LiveRenderer::render(scenes::Scene scene, bool keeps_masks) {
   frames_->render(std::move(scene), frame, {}, 0);
 }
 
-/// Quick pictures of areas are light samples of the method that has them by default.
+/// Quick pictures of areas use light samples of the default method for light samples.
 MethodWish LiveRenderer::wish_for(const Order& order, const std::string& entry) {
   NamedMethod method = parse_method(entry);
   const std::uint32_t asked = order.state.light_samples;
@@ -201,7 +201,7 @@ void LiveRenderer::make_picture(const Order& order) {
     run_.size = fmt::format("{}x{}", (width + divisor - 1) / divisor, (height + divisor - 1) / divisor);
     run_.lights = lights_on(state);
     scenes::Scene scene = scene_of(state);
-    if (run_.lights.empty()) {  // a picture is of one light at least
+    if (run_.lights.empty()) {  // a picture needs at least one light
       run_.lights = {scene.lights.front().name};
       scene.lights.front().radiance = glm::dvec3(0);
     }
@@ -239,11 +239,11 @@ void LiveRenderer::make_picture(const Order& order) {
   } catch (const Interrupted&) {
     throw;
   } catch (const render::DeviceDoesNotAnswer& error) {
-    static_cast<void>(frames_.release());  // nothing of the device may be destroyed while it is at work
+    static_cast<void>(frames_.release());  // objects of a device at work must not be destroyed
     machine_ = make_machine(options_.device);
     failed(order.revision, error.what());
   } catch (const Error& error) {
-    frames_.reset();  // whatever it holds may be half of one scene and half of another
+    frames_.reset();  // its data may belong partly to one scene and partly to another
     failed(order.revision, error.what());
   }
 }

@@ -1,3 +1,5 @@
+// Connects the page's server with the renderer.
+
 #include "app/view/live_view.hpp"
 
 #include "app/method_list.hpp"
@@ -44,7 +46,7 @@ LiveView::LiveView(RunOptions options, scenes::Scene scene, std::uint16_t port)
                  .reloaded = [this] { send_state(0); }});
 }
 
-/// Nobody but who reads the address knows the token, and that is printed once all is there: renderer_ is.
+/// Only a reader of the address knows the token, and the address is printed after renderer_ is set.
 void LiveView::opened(network::ClientId client) {
   server_->send(client, fmt::format(R"({{"type": "hello", "client": {}, "methods": {}}})", client, methods_));
   server_->send(client, message_text(renderer_->state()));
@@ -81,7 +83,7 @@ void LiveView::do_message(network::ClientId client, const json& message) {
   const auto moving = message.find("moving");
   const bool is_moving = moving != message.end() && moving->is_boolean() && moving->get<bool>();
   if (*type == "still") return;
-  send_state(is_moving ? client : 0);  // who drags knows
+  send_state(is_moving ? client : 0);  // the dragging client already has this state
 }
 
 }  // namespace penumbra::app

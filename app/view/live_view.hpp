@@ -13,11 +13,10 @@
 
 namespace penumbra::app {
 
-/// A scene in a browser: the page's server, and the renderer that makes its pictures. All pages that are open show, and
-/// change, one state.
+/// Scene in a browser: the page's server, and the renderer of its pictures. All open pages show, and change, one state.
 class LiveView final : public network::PageHandler {
  public:
-  /// `port`: 0 for any that is free.
+  /// `port`: 0 for any free port.
   LiveView(RunOptions options, scenes::Scene scene, std::uint16_t port);
 
   LiveView(const LiveView&) = delete;
@@ -38,10 +37,10 @@ class LiveView final : public network::PageHandler {
   std::string methods_;  // JSON
   std::mutex sending_;   // a state is told before another is asked for: else an old one could be told last
   std::unique_ptr<network::PageServer> server_;
-  std::unique_ptr<LiveRenderer> renderer_;  // tells the server, so it goes first
+  std::unique_ptr<LiveRenderer> renderer_;  // calls the server, therefore destroyed first
 };
 
-/// The page as it is served.
+/// Returns the page as served.
 std::string view_page();
 
 }  // namespace penumbra::app

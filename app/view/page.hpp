@@ -4,7 +4,7 @@
 
 namespace penumbra::app {
 
-/// The page's parts: app/view/page/.
+/// Parts of the page: app/view/page/.
 extern const std::string_view kViewStyle, kViewScript, kViewMarkup;
 
 }  // namespace penumbra::app

@@ -1,3 +1,5 @@
+// Builds and validates the wedges of a light for a request.
+
 #include "app/wedges/built_wedges.hpp"
 
 #include "base/did_you_mean.hpp"
@@ -35,7 +37,7 @@ volumes::SilhouettesFrom parse_from(const std::string& text) {
   throw UsageError("--from {}: expected centre or anywhere", text);
 }
 
-/// The number of the light of this name; of an empty one the first.
+/// Returns the index of the light with this name; for an empty name the first.
 std::uint32_t find_light(const scenes::Scene& scene, const std::string& name) {
   if (name.empty()) return 0;
   const auto found = std::ranges::find(scene.lights, name, &scenes::AreaLight::name);
@@ -46,8 +48,8 @@ std::uint32_t find_light(const scenes::Scene& scene, const std::string& name) {
                    did_you_mean(name, names));
 }
 
-/// What the light itself is, where its hull is larger: points of a disk's or ellipse's rim. A sphere's outline changes
-/// with the point it is seen from; its hull stands for it.
+/// Returns points of the light itself, if its hull is larger: points of a disk's or ellipse's rim. A sphere's outline
+/// depends on the viewpoint; its hull is used instead.
 std::vector<glm::dvec3> shape_of(const visibility::Light& light, const volumes::LightHull& hull) {
   if (is_body(light.kind) || !is_round(light.kind)) return hull.corners;
   constexpr int kRim = 256;

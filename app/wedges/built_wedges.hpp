@@ -14,7 +14,7 @@
 
 namespace penumbra::app {
 
-/// Which wedges are built, as the user gave it.
+/// Wedges to be built, as given by the user.
 struct WedgeRequest {
   std::string light = {};                 ///< empty: the scene's first
   std::string construction = "original";  ///< original, tight, or broken:1 to broken:6
@@ -22,17 +22,16 @@ struct WedgeRequest {
   bool validate = false;                  ///< prove every invariant
 };
 
-/// The wedges of one light of a scene, and what proving them found. An object that stays where it is, since its result
-/// refers to it.
+/// Wedges of one light of a scene, and the results of their proofs. Not movable, because its result refers to it.
 class BuiltWedges {
  public:
-  /// Coverage is checked through the scene's first camera and at its size. Throws UsageError for what is wrong with the
-  /// request, InputError for a light that has no wedges.
+  /// Builds and validates the wedges. Coverage is checked for the scene's first camera and size. Throws UsageError for
+  /// an invalid request, InputError for a light without wedges.
   BuiltWedges(const scenes::Scene& scene, const WedgeRequest& request);
   BuiltWedges(const BuiltWedges&) = delete;
   BuiltWedges& operator=(const BuiltWedges&) = delete;
 
-  /// Refers to this object.
+  /// Returns the result, which refers to this object.
   [[nodiscard]] WedgesResult result() const;
   [[nodiscard]] bool holds() const { return !report || report->violations.empty(); }
 
@@ -43,7 +42,7 @@ class BuiltWedges {
   volumes::Casters casters;
   volumes::CastingEdges casting;
   std::vector<volumes::Wedge> wedges;
-  std::optional<volumes::ValidationReport> report;  ///< of what was validated, as the next two
+  std::optional<volumes::ValidationReport> report;  ///< set if validated, as the next two
   std::optional<volumes::Tightness> tightness;
   std::optional<CoverageOutcome> coverage;
   std::vector<std::string> warnings;

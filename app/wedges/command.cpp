@@ -1,3 +1,5 @@
+// Command `wedges`: options and output.
+
 #include "app/commands.hpp"
 #include "app/options.hpp"
 #include "app/process/output_files.hpp"
@@ -26,7 +28,7 @@
 namespace penumbra::app {
 namespace {
 
-/// The number of what has this name; of an empty one the first.
+/// Returns the index of the element with this name; for an empty name the first.
 template <typename Named>
 std::uint32_t find_named(const std::vector<Named>& all, const char* option, const std::string& name,
                          const scenes::Scene& scene) {
@@ -39,7 +41,7 @@ std::uint32_t find_named(const std::vector<Named>& all, const char* option, cons
                    did_you_mean(name, names));
 }
 
-/// Whose pixels are explained: the scene's first camera and size become those that `render` would take.
+/// Makes the camera and the size of `render` the scene's first, for the explained pixel.
 void look_through(scenes::Scene& scene, const std::string& camera, const std::string& size) {
   std::swap(scene.cameras.front(), scene.cameras[find_named(scene.cameras, "--camera", camera, scene)]);
   std::tie(scene.width, scene.height) =

@@ -1,3 +1,5 @@
+// Checks sums over silhouettes against triangles and exact unions at pixels of a scene.
+
 #include "app/wedges/coverage.hpp"
 
 #include "app/pixel_samples.hpp"
@@ -40,7 +42,7 @@ std::vector<LitPoint> judged_samples(const scenes::Scene& scene, const visibilit
   return judged;
 }
 
-/// Those that see a silhouette on the light, thinned out evenly.
+/// Returns the samples that see a silhouette on the light, thinned out evenly.
 std::vector<LitPoint> where_edges_appear(const volumes::SoftVisibility& soft, const std::vector<LitPoint>& samples) {
   std::vector<std::uint8_t> sees(samples.size());
   tbb::parallel_for(std::size_t{0}, samples.size(), [&](std::size_t i) {

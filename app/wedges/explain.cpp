@@ -1,3 +1,5 @@
+// Explains one pixel: its wedges, edges and sums.
+
 #include "app/wedges/explain.hpp"
 
 #include "app/wedges/light_picture.hpp"
@@ -31,7 +33,7 @@ double exact_visibility(const ToExplain& input, const volumes::LitPoint& sample)
   return area.visibility({sample.p, sample.carrier, sample.facing});
 }
 
-/// Each edge once, by its first wedge that contains p; and the edges that are seen, yet in no such wedge.
+/// Adds each edge once, with its first wedge that contains p; and the visible edges without such a wedge.
 void explain_wedges(const ToExplain& input, const volumes::SoftVisibility& soft, Explanation& result) {
   std::map<std::uint32_t, std::int32_t> multiplicity;
   for (const auto& [edge, k] : soft.silhouettes(result.sample, volumes::Viewer::center)) multiplicity[edge] = k;
@@ -53,9 +55,9 @@ void explain_wedges(const ToExplain& input, const volumes::SoftVisibility& soft,
     entry.seen = found->second->clipped;
     unexplained.erase(found);
   }
-  // Without p's own triangle, and those in its plane, edges of theirs are silhouettes that are none of the mesh: no
-  // wedge is built of them.
-  const std::vector<volumes::SoftVisibility::Silhouette>& built = soft.silhouettes_of_center();  // by number
+  // Without p's own triangle, and the triangles in its plane, some of their edges become silhouettes that are not
+  // silhouettes of the mesh: these have no wedges.
+  const std::vector<volumes::SoftVisibility::Silhouette>& built = soft.silhouettes_of_center();  // by index
   for (const auto& [edge, covered] : unexplained) {
     if (std::ranges::binary_search(built, edge, {}, &volumes::SoftVisibility::Silhouette::first))
       result.outside.push_back(edge);

@@ -1,3 +1,5 @@
+// Draws a light as seen from a view sample, with edges, as SVG (docs/coverage.md).
+
 #include "app/wedges/light_picture.hpp"
 
 #include "volumes/wedges/layer_areas.hpp"
@@ -20,10 +22,10 @@ using volumes::LayerSum;
 using volumes::LightOutline;
 
 constexpr double kPanel = 440, kMargin = 24, kHead = 64, kFoot = 118;
-constexpr double kAround = 0.35;            // shown beyond the light, of its size
-constexpr std::uint32_t kMostCells = 32;    // of a texture, a side
+constexpr double kAround = 0.35;            // margin around the light, relative to its size
+constexpr std::uint32_t kMostCells = 32;    // of a texture, on a side
 constexpr double kDarkest = 0.3;            // opacity over a black texel
-constexpr std::size_t kMostLabels = 24;     // more would hide what they label
+constexpr std::size_t kMostLabels = 24;     // more would hide the labelled edges
 constexpr const char* kTakes = "#c0392b";   // edges that take from the light
 constexpr const char* kGives = "#2471a3";   // edges that give back
 constexpr const char* kHidden = "#bdbdbd";  // by any triangle
@@ -40,7 +42,7 @@ std::string escaped(const std::string& text) {
   return result;
 }
 
-/// The light's boundary as points; a disk's every two degrees.
+/// Returns the light's boundary as points; a disk's every two degrees.
 std::vector<glm::dvec2> boundary_of(const LightOutline& outline) {
   if (!outline.corners.empty()) return outline.corners;
   std::vector<glm::dvec2> rim;
@@ -51,7 +53,7 @@ std::vector<glm::dvec2> boundary_of(const LightOutline& outline) {
   return rim;
 }
 
-/// Where the ray from a point within leaves the boundary.
+/// Returns the point where the ray from an interior point leaves the boundary.
 glm::dvec2 leaves_at(const std::vector<glm::dvec2>& boundary, const glm::dvec2& from, const glm::dvec2& direction) {
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < boundary.size(); ++i) {
@@ -63,7 +65,7 @@ glm::dvec2 leaves_at(const std::vector<glm::dvec2>& boundary, const glm::dvec2& 
   return from + least * direction;
 }
 
-/// Which way, and how far, the edge turns around the reference point.
+/// Returns the signed angle of the edge's turn around the reference point.
 double turn_of(const CoveredEdge& edge, const glm::dvec2& from, const glm::dvec2& to) {
   const double turn = std::atan2(cross2(from, to), glm::dot(from, to));
   if (glm::dot(from, to) > 0) return turn;
@@ -72,12 +74,12 @@ double turn_of(const CoveredEdge& edge, const glm::dvec2& from, const glm::dvec2
   return turn;
 }
 
-/// What lies beyond the edge: along it, and back along the light's boundary.
+/// Returns the region beyond the edge: along the edge, and back along the light's boundary.
 std::vector<glm::dvec2> region_beyond(const std::vector<glm::dvec2>& boundary, const LayerSum& sum,
                                       const CoveredEdge& edge) {
   const glm::dvec2 c = sum.reference_at, from = edge.clipped.from - c, to = edge.clipped.to - c;
   const double turn = turn_of(edge, from, to);
-  std::vector<std::pair<double, glm::dvec2>> between;  // how far back from `to`
+  std::vector<std::pair<double, glm::dvec2>> between;  // distance back from `to`
   for (const glm::dvec2& corner : boundary) {
     double back = std::atan2(cross2(corner - c, to), glm::dot(corner - c, to));
     if (turn < 0) back = -back;
@@ -91,7 +93,7 @@ std::vector<glm::dvec2> region_beyond(const std::vector<glm::dvec2>& boundary, c
   return region;
 }
 
-/// Draws one panel after the other into a text.
+/// Draws one panel after another into a text.
 class Drawing {
  public:
   explicit Drawing(const LightPicture& picture) : picture_(picture), boundary_(boundary_of(picture.soft.outline())) {
@@ -150,7 +152,7 @@ class Drawing {
     put("<line x1=\"{:.2f}\" y1=\"{:.2f}\" x2=\"{:.2f}\" y2=\"{:.2f}\" {}/>\n", a.x, a.y, b.x, b.y, style);
   }
 
-  /// The page's panel in frame coordinates: what is drawn of edges.
+  /// Computes the panel's extent in frame coordinates: the drawn part of edges.
   void set_shown() {
     const double half = kPanel / 2 / scale_, determinant = cross2(axis_u_, axis_v_);
     for (const glm::dvec2& sign :
@@ -194,7 +196,8 @@ class Drawing {
                      sum.visibility));
   }
 
-  /// The texture, faintly: the darker a cell, the less it weighs. Blocks of texels where there are too many to see.
+  /// Draws the texture, faintly: the darker a cell, the smaller its weight. Blocks of texels if there are too many to
+  /// distinguish.
   void texels() {
     if (!picture_.light.texture) return;
     const visibility::LightTexture& texture = *picture_.light.texture;

@@ -7,7 +7,7 @@
 
 namespace penumbra::app {
 
-/// A light as a view sample sees it, by the centre's silhouettes and by the sample's own.
+/// Light as seen from a view sample, by the centre's silhouettes and by the sample's own.
 struct LightPicture {
   const visibility::Light& light;
   const volumes::Casters& casters;
@@ -18,7 +18,7 @@ struct LightPicture {
   std::string title;
 };
 
-/// An SVG document of two panels side by side, in the light's true proportions, as docs/coverage.md says how to read.
+/// Returns an SVG document of two panels side by side, in the light's true proportions; explained in docs/coverage.md.
 std::string svg_of(const LightPicture& picture);
 
 }  // namespace penumbra::app

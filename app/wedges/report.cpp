@@ -1,3 +1,5 @@
+// Writes the results of `wedges` as JSON and as text.
+
 #include "app/wedges/report.hpp"
 
 #include "base/atomic_file.hpp"
@@ -19,14 +21,14 @@ using volumes::Violation;
 using volumes::Wedge;
 using volumes::WedgeOutcome;
 
-constexpr std::size_t kShown = 10;  // violations that are printed one by one
+constexpr std::size_t kShown = 10;  // number of violations printed one by one
 
 ordered_json array_of(const glm::dvec3& v) {
   return {v.x, v.y, v.z};
 }
 
 ordered_json array_of(const volumes::Plane& plane) {
-  return {plane.a, plane.b, plane.c, plane.d};  // what is not finite becomes null
+  return {plane.a, plane.b, plane.c, plane.d};  // values that are not finite become null
 }
 
 ordered_json light_json(const WedgesResult& result) {
@@ -81,7 +83,7 @@ ordered_json tightness_json(const volumes::Tightness& tightness) {
   return entry;
 }
 
-/// Of the samples that are held against something.
+/// Figures of the samples that were checked.
 struct CoverageFigures {
   std::uint64_t samples = 0, touching = 0, single = 0;
   double worst_layers = 0, worst_union = 0;  ///< the latter over single layers
@@ -183,7 +185,7 @@ void print_validation(const volumes::ValidationReport& report, std::span<const W
 }  // namespace
 
 std::string wedges_json(const WedgesResult& result) {
-  // The list may be long: each entry becomes text before the next is made.
+  // The list may be long: each entry is converted to text before the next is made.
   fmt::memory_buffer text;
   const auto put = [&](const std::string& piece) { text.append(piece.data(), piece.data() + piece.size()); };
   const ordered_json head{{"light", light_json(result)}, {"origin", array_of(result.origin)}};

@@ -13,26 +13,25 @@
 
 namespace penumbra::app {
 
-/// What `wedges` found out.
+/// Results of `wedges`.
 struct WedgesResult {
   const visibility::Light& light;
   const volumes::LightHull& hull;
   glm::dvec3 origin{0};
   std::string construction, from;  ///< as on the command line
   std::span<const volumes::Wedge> wedges;
-  const volumes::ValidationReport* validation = nullptr;  ///< if it was asked for
+  const volumes::ValidationReport* validation = nullptr;  ///< set if requested
   const volumes::Tightness* tightness = nullptr;
   const CoverageOutcome* coverage = nullptr;
   const Explanation* explanation = nullptr;
   std::filesystem::path svg{};  ///< of the explanation
 };
 
-/// The JSON of `wedges --json`, and beside it "counts", and if they were validated "checks",
-/// "tightness" and "coverage", if
-/// a pixel was to be explained "explain".
+/// Returns the JSON of `wedges --json`, with "counts", if validated also "checks", "tightness" and "coverage", and for
+/// an explained pixel "explain".
 std::string wedges_json(const WedgesResult& result);
 
-/// For people, on stdout: how many of which outcome, what was proved, the first violations.
+/// Prints the results on stdout: number of wedges of each outcome, proofs, the first violations.
 void print_wedges(const WedgesResult& result);
 
 }  // namespace penumbra::app
