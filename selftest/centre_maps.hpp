@@ -1,6 +1,6 @@
 #pragma once
 
-// The maps of a stage's light from its centre, as methods render them, and read back.
+// Maps of a stage's light from its centre, rendered as by methods, and read back.
 
 #include "maps/host/caster_maps.hpp"
 #include "maps/host/light_basis.hpp"
@@ -15,8 +15,8 @@
 namespace penumbra::selftest {
 
 struct CentreMaps {
-  /// What else is rendered: peeled layers, the farthest after them; whether all that stands in front of the light fits,
-  /// or all casters; and who draws.
+  /// Further options of the maps: peeled layers, and the farthest after them; windows for all occluders of the light,
+  /// or all casters; and the rasteriser.
   struct More {
     std::uint32_t layers = 1;
     bool farthest = false, whole_light = false, all_casters = false;
@@ -48,14 +48,14 @@ struct CentreMaps {
   }
   CentreMaps(const render::Device& device, const Stage& stage, std::uint32_t texels, const glm::dvec2& beside = {0, 0})
       : CentreMaps(device, stage, texels, beside, More()) {}
-  /// Of one layer.
+  /// Returns the number of texels of one layer.
   [[nodiscard]] std::size_t texel_count() const { return std::size_t{size} * size * std::max(fitted.faces, 1U); }
   [[nodiscard]] std::vector<float> read() const {
     std::vector<float> texels(depths.bytes() / sizeof(float));
     depths.read<float>(texels);
     return texels;
   }
-  /// For products: what a method would give them.
+  /// Returns the maps in the form given to products by a method.
   [[nodiscard]] maps::MapSet set(const Stage& stage) const {
     return {views, depths, fitted.faces, size, stage.light, basis, stage.floats};
   }

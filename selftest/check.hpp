@@ -4,27 +4,28 @@
 #include <limits>
 #include <string>
 
-/// The device's passes, on whatever device and driver there is, held against their twins in C++: the comparisons that
-/// tests make on scenes of theirs, and `penumbra devices --self-test` on the user's machine.
+/// Comparison of the device's passes, on any device and driver, with their twins in C++: used by tests on their own
+/// scenes, and by `penumbra devices --self-test` on the user's machine.
 namespace penumbra::selftest {
 
-/// One pass against what says what is right.
+/// Comparison of one pass with its reference.
 struct Check {
   std::string pass;
   std::string against{};
-  std::string rule{};           ///< what must hold, in words
-  std::uint64_t compared = 0;   ///< values
-  std::uint64_t differing = 0;  ///< that are not the twin's own
-  std::uint64_t wrong = 0;      ///< that break the rule
+  std::string rule{};           ///< condition to hold, in words
+  std::uint64_t compared = 0;   ///< number of values
+  std::uint64_t differing = 0;  ///< number of values that differ from the twin's
+  std::uint64_t wrong = 0;      ///< number of values that violate the rule
   double largest = 0,
-         allowed = 0;     ///< the difference that comes nearest to its bound, or is farthest beyond, and that bound
-  std::string first{};    ///< the first wrong one: where, and what it is
-  std::string refused{};  ///< why it could not run, if so
-  bool lacking = false;   ///< it could not because this device lacks what the pass needs: no fault
+         allowed = 0;     ///< the difference nearest to its bound, or farthest beyond, and this bound
+  std::string first{};    ///< location and value of the first violation
+  std::string refused{};  ///< reason why the check could not run, if so
+  bool lacking = false;   ///< the check could not run because this device lacks a feature needed by the pass: not a
+                          ///< fault
 
   [[nodiscard]] bool passed() const { return refused.empty() && wrong == 0 && compared > 0; }
 
-  /// A value that must be the twin's own.
+  /// Compares a value that must equal the twin's.
   template <typename T, typename Where>
   void same(const T& found, const T& expected, const Where& where) {
     ++compared;
@@ -32,7 +33,7 @@ struct Check {
     ++differing;
     fail(where);
   }
-  /// A value that may be off by `bound`.
+  /// Compares a value that may be off by `bound`.
   template <typename Where>
   void within(double difference, double bound, const Where& where) {
     ++compared;
@@ -40,7 +41,7 @@ struct Check {
     keep_worst(difference, bound);
     if (!(difference <= bound)) fail(where);
   }
-  /// A difference, and what is allowed there: kept if it comes nearer to its bound than any before.
+  /// Keeps a difference and its bound if it is nearer to its bound than all previous ones.
   void keep_worst(double difference, double bound) {
     const auto share = [](double d, double b) {
       return b > 0 ? d / b : d > 0 ? std::numeric_limits<double>::infinity() : 0;
@@ -53,7 +54,7 @@ struct Check {
   void fail(const Where& where) {
     if (wrong++ == 0) first = where();
   }
-  /// Joins what another run of the same check found.
+  /// Adds the result of another run of the same check.
   void add(const Check& more) {
     compared += more.compared;
     differing += more.differing;

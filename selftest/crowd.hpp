@@ -4,8 +4,8 @@
 
 namespace penumbra::selftest {
 
-/// What maps of every kind are tried on: a floor, a sphere of small triangles and a tilted board below a light; a wall
-/// up to the light, where maps become hemicubes; and a second half above a two-sided light.
+/// Returns a scene for tests of maps of every kind: a floor, a sphere of small triangles and a tilted board below a
+/// light; a wall up to the light, where maps become hemicubes; and a second half above a two-sided light.
 inline scenes::Scene crowd(bool wall, bool two_sided) {
   scenes::Scene scene;
   add_quad(scene, {0, 0, 0}, {2, 0, 0}, {0, 0, -2});

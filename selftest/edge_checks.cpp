@@ -1,3 +1,5 @@
+// Compares silhouettes, facings, volumes and wedges of the device with the host's.
+
 #include "selftest/edge_checks.hpp"
 
 #include "mesh/predicates.hpp"
@@ -32,13 +34,13 @@ void compare_volumes(const volumes::LightVolumes& found, const volumes::LightVol
   check.same(found.left_out, expected.left_out, [] { return "which triangles are left out"; });
 }
 
-/// Between normals, as a sine; more than 3 where they point to opposite sides.
+/// Returns the sine of the angle between normals; more than 3 if they point to opposite sides.
 double angle(const volumes::Plane& a, const volumes::Plane& b) {
   const glm::dvec3 n = glm::normalize(a.normal()), m = glm::normalize(b.normal());
   return glm::length(glm::cross(n, m)) + (glm::dot(n, m) < 0 ? 4 : 0);
 }
 
-/// It is not enough that planes bound the penumbra: they must be those of the construction.
+/// Compares the planes with the host's construction: bounding the penumbra alone is not sufficient.
 void compare_wedges(const volumes::LightWedges& found, const volumes::LightWedges& expected, Check& check) {
   constexpr double kAngle = 1e-6;  // planes are rounded outward in steps of floats
   const auto place = [](std::size_t i) { return [=] { return fmt::format("wedge {}", i); }; };

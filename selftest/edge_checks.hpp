@@ -16,7 +16,7 @@
 
 namespace penumbra::selftest {
 
-/// A soup in floats with its edge graph.
+/// Soup in floats with its edge graph.
 struct EdgeMesh {
   explicit EdgeMesh(const mesh::TriangleSoup& soup, double scale = 1);
   [[nodiscard]] mesh::MeshView view() const { return {wide, triangles}; }
@@ -27,14 +27,14 @@ struct EdgeMesh {
   mesh::EdgeGraph graph;
 };
 
-/// What a silhouette check met, so that who calls it can say that it saw what it is about.
+/// Counts of the cases in a silhouette check, so that the caller can verify that the intended cases occurred.
 struct SilhouetteTally {
   std::size_t points = 0, silhouettes = 0, ties = 0, open = 0;
 };
 
-/// SilhouettePass (which has the mesh) from `l`, against mesh::facings and mesh::signed_multiplicity, both exact: every
-/// triangle's side, every silhouette edge with its multiplicity, in order. `counted`: of each triangle, the sides that
-/// count.
+/// Compares SilhouettePass (which has the mesh) from `l` with mesh::facings and mesh::signed_multiplicity, both exact:
+/// every triangle's side, every silhouette edge with its multiplicity, in order. `counted`: for each triangle, the
+/// counted sides.
 Check check_silhouettes(volumes::SilhouettePass& pass, const EdgeMesh& mesh, const glm::vec3& l,
                         const std::vector<std::uint32_t>& counted, SilhouetteTally& tally);
 
@@ -42,8 +42,8 @@ struct WedgeTally {
   std::size_t edges = 0, on_host = 0, planes = 0;
 };
 
-/// Wedges that the device builds, of every light: the volumes are the host's own, every plane bounds the penumbra by
-/// exact signs, and, with `like_host`, is the host's to within 1e-6 of an angle.
+/// Compares wedges built by the device, for every light: the volumes equal the host's, every plane bounds the penumbra
+/// by exact signs, and, with `like_host`, equals the host's to within an angle of 1e-6.
 Check check_wedges(const render::Device& device, const visibility::SceneFloats& floats,
                    std::span<const visibility::Light> lights, volumes::Layers layers, bool like_host,
                    WedgeTally& tally);

@@ -1,3 +1,5 @@
+// Compares lists made from maps of light samples with each sample's map.
+
 #include "selftest/list_checks.hpp"
 
 #include "maps/host/map_fit.hpp"
@@ -13,7 +15,7 @@
 namespace penumbra::selftest {
 namespace {
 
-/// How many samples do not see a place, each asked in its own map; nothing where rounding decides.
+/// Counts the samples that do not see a position, each by its own map; nullopt where rounding decides.
 class SampleTwin {
  public:
   SampleTwin(const ListSource& made, const maps::SampleMaps& samples, std::uint32_t size)
@@ -33,7 +35,7 @@ class SampleTwin {
         const glm::dvec2 cell = (glm::dvec2(glm::dot(d, axes.a), glm::dot(d, axes.b)) / w - axes.lower) /
                                 (axes.upper - axes.lower) * static_cast<double>(size_);
         const double off = std::min(std::abs(cell.x - std::round(cell.x)), std::abs(cell.y - std::round(cell.y)));
-        if (off < 1e-3) return std::nullopt;  // on a texel's border: rounding chooses
+        if (off < 1e-3) return std::nullopt;  // on a texel's border: rounding decides
         const auto size = static_cast<double>(size_);
         if (cell.x < 0 || cell.y < 0 || cell.x >= size || cell.y >= size) continue;
         const std::size_t index =
@@ -104,7 +106,7 @@ Check check_penumbra_events(const render::Device& device, const Stage& stage, st
     const glm::dvec3 direction = maps::face_of(centre, made.basis, face).direction(x, y, size);
     for (int i = 1; i < 40; ++i) {
       const double t = 7.0 * i / 40 + 0.0137;
-      if (t > static_cast<double>(centre.far)) break;  // past the far end of all that there is nobody asks
+      if (t > static_cast<double>(centre.far)) break;  // beyond the far end of the scene the lists are never used
       const auto hidden =
           twin.hidden(glm::dvec3(centre.point) + t * direction, glm::dot(direction, made.basis.n) > 0 ? 0 : 1);
       if (!hidden) continue;

@@ -15,7 +15,7 @@
 
 namespace penumbra::selftest {
 
-/// What products that join the maps of many light samples are made from.
+/// Input of products that join the maps of many light samples.
 struct ListSource {
   ListSource(const render::Device& device, const Stage& s, std::uint32_t size);
   const Stage& stage;
@@ -27,14 +27,14 @@ struct ListSource {
   std::optional<maps::MapSource> source;
 };
 
-/// The maps that they were made of, read back.
+/// Returns the maps from which lists were made, read back.
 std::vector<float> depths_of(const maps::SampleMaps& samples, std::uint32_t size);
 
-/// V of a texel at depth t, from the words of PenumbraEvents.
+/// Returns V of a texel at depth t, from the words of PenumbraEvents.
 float stepped(std::span<const std::uint32_t> words, std::size_t texels, std::size_t texel, float t);
 
-/// PenumbraEvents without compression: V at 39 places along every texel's ray, against each sample's map asked there in
-/// double. Where a map's texel is not certain (a border, a surface within 10⁻⁴) nothing is compared.
+/// Compares PenumbraEvents without compression: V at 39 positions along every texel's ray, with each sample's map
+/// evaluated there in double. Positions where a map's texel is uncertain (a border, a surface within 10⁻⁴) are skipped.
 Check check_penumbra_events(const render::Device& device, const Stage& stage, std::uint32_t size);
 
 }  // namespace penumbra::selftest

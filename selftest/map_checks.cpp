@@ -1,3 +1,5 @@
+// Compares products of maps with their twins.
+
 #include "selftest/map_checks.hpp"
 
 #include "maps/host/map_fit.hpp"
@@ -18,7 +20,7 @@
 namespace penumbra::selftest {
 namespace {
 
-/// NearestCaster's twin.
+/// Twin of NearestCaster.
 std::array<float, 2> nearest_heights(const CentreMaps& maps, std::span<const float> depths) {
   std::array<float, 2> nearest{};
   nearest.fill(std::numeric_limits<float>::infinity());
@@ -35,7 +37,7 @@ std::array<float, 2> nearest_heights(const CentreMaps& maps, std::span<const flo
   return nearest;
 }
 
-/// The nodes of a pyramid, each from its texels alone.
+/// Returns the nodes of a pyramid, each computed from its texels alone.
 std::vector<glm::vec2> pyramid_nodes(const maps::gpu::PyramidHeader& header, std::uint32_t faces,
                                      std::span<const float> depths) {
   const std::uint32_t size = header.cells - 1;
@@ -46,7 +48,7 @@ std::vector<glm::vec2> pyramid_nodes(const maps::gpu::PyramidHeader& header, std
       for (std::uint32_t y = 0; y < header.cells; y += spacing) {
         for (std::uint32_t x = 0; x < header.cells; x += spacing) {
           glm::vec2 range(1, 0);
-          // Cell x lies between the texels x − 1 and x; texels −1 and `size` are beyond the map.
+          // Cell x lies between the texels x − 1 and x; texels −1 and `size` are outside the map.
           const std::uint32_t width = 1U << level;
           for (std::uint32_t j = y; j <= std::min(y + width, header.cells); ++j) {
             for (std::uint32_t i = x; i <= std::min(x + width, header.cells); ++i) {
@@ -111,11 +113,11 @@ Check check_nearest_ids(const render::Device& device, const Stage& stage, std::u
                           corners);
     for (std::uint32_t i = 0; i < size * size; ++i) {
       twin.find(i % size, i / size, surfaces);
-      double limit = std::numeric_limits<double>::infinity();  // the nearest is no farther
+      double limit = std::numeric_limits<double>::infinity();  // upper bound of the nearest depth
       for (const Surface& surface : surfaces) {
         if (surface.sure) limit = std::min(limit, surface.high);
       }
-      // One surface is what is within 2⁻²⁰; another rounding, of the product.
+      // Surfaces within 2⁻²⁰ are one; plus another rounding, of the product.
       limit *= 1 + 0x1p-20 + 0x1p-22;
       const std::uint32_t id = found[std::size_t{face} * size * size + i];
       const auto may_be = [&](const Surface& s) { return s.low <= limit && ids[s.triangle] == id; };
@@ -241,10 +243,10 @@ Check check_slices(const render::Device& device, const Stage& stage, std::uint32
         twin.find(x, y, surfaces);
         std::uint32_t sure = 0, perhaps = 0;
         for (const Surface& surface : surfaces) {
-          // Two roundings of a float more: the product, and the row.
+          // Two more roundings of a float: the product, and the row.
           const std::uint32_t low = slice_of(surface.low * along * (1 - 0x1p-22)),
                               high = slice_of(surface.high * along * (1 + 0x1p-22));
-          // Every slice from the one to the other; none at all beyond the last.
+          // Every slice from `low` to `high`; none beyond the last.
           perhaps |= low == 0 ? 0 : (high == 0 ? 0U : 2 * high) - low;
           if (surface.sure && low == high) sure |= low;
         }

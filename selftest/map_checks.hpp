@@ -13,24 +13,25 @@
 
 namespace penumbra::selftest {
 
-/// NearestCaster: the smallest height over the light's plane of each side's texels. Bit by bit.
+/// Compares NearestCaster: the smallest height over the light's plane of each side's texels. Bit by bit.
 Check check_nearest_caster(const render::Device& device, const Stage& stage, std::uint32_t size);
 
-/// NearestIds: each texel has a triangle that may be its nearest surface (RasterTwin), and none where none may be.
+/// Compares NearestIds: each texel has a triangle that may be its nearest surface (RasterTwin), and none where none may
+/// be.
 Check check_nearest_ids(const render::Device& device, const Stage& stage, std::uint32_t size,
                         maps::Rasteriser rasteriser);
 
-/// SummedAreas of images of size² words, any number of them, modulo 2³² (Crow 1984). Bit by bit.
+/// Compares SummedAreas of images of size² words, any number of them, modulo 2³² (Crow 1984). Bit by bit.
 Check check_summed_areas(const render::Device& device, std::span<const std::uint32_t> images, std::uint32_t size);
-/// Crow's sums of one image, modulo 2³².
+/// Returns Crow's sums of one image, modulo 2³².
 std::vector<std::uint32_t> summed_areas(std::span<const std::uint32_t> image, std::uint32_t size);
 
-/// DepthPyramid of `faces` maps: the header, and each node against its texels alone. Bit by bit.
+/// Compares DepthPyramid of `faces` maps: the header, and each node with its texels alone. Bit by bit.
 Check check_depth_pyramid(const render::Device& device, maps::PyramidKind kind, std::span<const float> depths,
                           std::uint32_t size, std::uint32_t faces);
 
-/// Slices of the casters: every surface that a texel surely has is marked in its slice, and no slice is marked but
-/// where a surface may be (RasterTwin).
+/// Compares Slices of the casters: every certain surface of a texel is marked in its slice, and no slice is marked
+/// where no surface may be (RasterTwin).
 Check check_slices(const render::Device& device, const Stage& stage, std::uint32_t size, std::uint32_t count,
                    maps::Rasteriser rasteriser);
 

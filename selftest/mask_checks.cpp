@@ -1,3 +1,5 @@
+// Compares masks and counters with exact predicates.
+
 #include "selftest/mask_checks.hpp"
 
 #include "visibility/pair_truth.hpp"
@@ -13,7 +15,7 @@
 namespace penumbra::selftest {
 namespace {
 
-/// Evaluates the stage tile by tile; `read` gets each tile.
+/// Evaluates the stage tile by tile; calls `read` for each tile.
 template <typename Read>
 void evaluate(visibility::Method& method, const Stage& stage, const Read& read) {
   method.prepare_mesh(stage.floats);

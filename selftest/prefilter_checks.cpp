@@ -1,3 +1,5 @@
+// Compares prefiltered tables and levels with functions in double.
+
 #include "selftest/prefilter_checks.hpp"
 
 #include "maps/products/map_frame.hpp"
@@ -34,14 +36,14 @@ struct Prefiltered {
     nearest.buffer().read<float>(lowest);
     frame.buffer().read<maps::gpu::MapFrame>(std::span(&found_frame, 1));
   }
-  /// The words of block `k`.
+  /// Returns the words of block `k`.
   [[nodiscard]] std::vector<std::uint32_t> block(std::uint32_t k) const {
     std::vector<std::uint32_t> words(layout.table.block);
     const render::Buffer& buffer = product.buffers()[1 + k / layout.table.per_buffer];
     buffer.read<std::uint32_t>(words, std::uint64_t{k % layout.table.per_buffer} * layout.table.block * 4);
     return words;
   }
-  /// The height of a texel in [0, 1].
+  /// Returns the height of a texel in [0, 1].
   [[nodiscard]] double height(const std::vector<float>& depths, std::size_t texel) const {
     const maps::gpu::LightView& view = maps.fitted.views.front();
     if (depths[texel] == 1) return 1;
@@ -85,7 +87,7 @@ std::vector<Case> cases() {
       {{.kind = kSine, .power = kTimesHeight, .a = c}, [=](double t) { return 0.5 + 0.5 * t * std::sin(c * t); }},
       {{.kind = kCosine, .power = kTimesHeight, .a = c}, [=](double t) { return 0.5 + 0.5 * t * std::cos(c * t); }}};
 }
-/// Heights are right to a few units of float32's last place, exponents multiply that by up to 40; exp and sin of a
+/// Heights are right to a few units of float32's last place, exponents multiply this by up to 40; exp and sin of a
 /// device are right to 2⁻²⁰ of their argument's range.
 constexpr double kFloatError = 128 * 0x1p-23;
 

@@ -9,12 +9,12 @@
 
 namespace penumbra::selftest {
 
-/// Prefilter's summed areas, differenced again to digits: of every kind of function of a texel's height, what the
-/// digits add up to against the function in double.
+/// Compares Prefilter's summed areas, differenced again to digits: for every kind of function of a texel's height, the
+/// sum of the digits with the function in double.
 Check check_prefilter_tables(const render::Device& device, const Stage& stage, std::uint32_t size);
 
-/// Prefilter's mip levels or N-buffers: the finest level against the functions in double, each other one bit by bit
-/// against the sums of four of the level before.
+/// Compares Prefilter's mip levels or N-buffers: the finest level with the functions in double, each other level bit by
+/// bit with the sums of four texels of the previous level.
 Check check_prefilter_levels(const render::Device& device, const Stage& stage, std::uint32_t size,
                              maps::PrefilterKind kind);
 

@@ -1,14 +1,14 @@
-// What any rasteriser must do, in homogeneous coordinates: with corners A, B, C = (x, y, w) as the vertex shader gives
-// them, a texel's centre c = (x, y, 1) is covered where c · (B × C), c · (C × A) and c · (A × B) all have the sign of
-// A · (B × C), and 1 / w is there c · (B × C + C × A + A × B) / A · (B × C) (Olano and Greer 1997).
+// Computes the surfaces that any rasteriser must draw, in homogeneous coordinates: with corners A, B, C = (x, y, w)
+// from the vertex shader, a texel's centre c = (x, y, 1) is covered where c · (B × C), c · (C × A) and c · (A × B) all
+// have the sign of A · (B × C), and 1 / w there is c · (B × C + C × A + A × B) / A · (B × C) (Olano and Greer 1997).
 //
 // Errors. The shader computes x, y and w of a corner by five roundings each of the sum of its products' sizes; the
-// division by w, the viewport and clipping add a few roundings of the coordinates. That moves the lines (first order in
-// each, products of sizes and errors summed). Then the corners are snapped: by a step in x and in y at most, whatever
-// way the driver rounds. Every point of the snapped outline is within a step, in x and in y, of the outline before, so
-// a texel is certain where the whole square of that half width around its centre is on one side of each edge. What the
-// driver interpolates at c is the plane's value at a point in this square; its own arithmetic adds roundings of the
-// terms of the plane.
+// division by w, the viewport and clipping add a few roundings of the coordinates. This moves the lines (first order in
+// each, products of sizes and errors summed). Then the corners are snapped: by a step in x and in y at most, in
+// whatever direction the driver rounds. Every point of the snapped outline is within a step, in x and in y, of the
+// outline before, so a texel is certain where the whole square of this half width around its centre is on one side of
+// each edge. The driver's interpolated value at c is the plane's value at a point in this square; its own arithmetic
+// adds roundings of the terms of the plane.
 
 #include "selftest/raster_twin.hpp"
 
@@ -27,16 +27,16 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// Roundings of a sum of three products of differences.
 constexpr double kTransform = 5;
-/// Of a coordinate on its way to the screen: division (2.5), viewport (2), clipping (4).
+/// Roundings of a coordinate in the transformation to the screen: division (2.5), viewport (2), clipping (4).
 constexpr double kToScreen = 9;
-/// Of what a driver sets up to interpolate: differences, products and a quotient of coordinates.
+/// Roundings of a driver's interpolation set-up: differences, products and a quotient of coordinates.
 constexpr double kInterpolation = 32;
-/// Nearer than so many near distances the near plane may cut.
+/// Multiple of the near distance within which the near plane may clip.
 constexpr double kNearZone = 8;
 
 struct Corner {
   glm::dvec3 at;     // x, y, w of the clip space
-  glm::dvec3 error;  // of each
+  glm::dvec3 error;  // of each coordinate
 };
 
 Corner transform(const maps::gpu::CasterPush& face, const glm::vec3& corner) {
@@ -54,7 +54,7 @@ Corner transform(const maps::gpu::CasterPush& face, const glm::vec3& corner) {
   return result;
 }
 
-/// How far off a cross product is, of vectors off by so much.
+/// Returns a bound of the error of a cross product, from the errors ea and eb of its vectors.
 glm::dvec3 cross_error(const glm::dvec3& a, const glm::dvec3& ea, const glm::dvec3& b, const glm::dvec3& eb) {
   const auto component = [&](int i, int j) {
     return (std::abs(a[i]) + ea[i]) * eb[j] + ea[i] * std::abs(b[j]) + (std::abs(a[j]) + ea[j]) * eb[i] +
@@ -135,7 +135,7 @@ void RasterTwin::find(std::uint32_t x, std::uint32_t y, std::vector<Surface>& su
       surface.depth = q > 0 ? 1 / (q * far_) : kInfinity;
       surface.low = q + off > 0 ? (1 - rounded) / ((q + off) * far_) : kInfinity;
       surface.high = q - off > 0 ? (1 + rounded) / ((q - off) * far_) : 1;
-      if (q + off <= 0 || surface.low > 1) continue;  // behind the light point, or beyond all
+      if (q + off <= 0 || surface.low > 1) continue;  // behind the light point, or beyond all surfaces
       surface.sure = surface.sure && surface.low * far_ > kNearZone * near_ && surface.high < 1;
       if (surface.high * far_ < near_ / kNearZone) continue;
       surface.high = std::min(surface.high, 1.0);
@@ -146,10 +146,10 @@ void RasterTwin::find(std::uint32_t x, std::uint32_t y, std::vector<Surface>& su
 
 namespace {
 
-/// Of surfaces of which those count that may be behind `possible`, and surely count that are behind `certain`; what is
-/// found is behind the former.
+/// Judges `found` against the surfaces possibly behind `possible` and certainly behind `certain`; the found surface
+/// must be behind `possible`.
 Judged judge(std::span<const Surface> surfaces, double found, double possible, double certain, double nothing) {
-  double limit = kInfinity;  // the nearest is no farther
+  double limit = kInfinity;  // upper bound of the nearest depth
   for (const Surface& s : surfaces) {
     if (s.sure && s.low > certain) limit = std::min(limit, s.high);
   }

@@ -1,3 +1,5 @@
+// Compares maps and view samples of rasterisers with RasterTwin and with each other.
+
 #include "selftest/rasteriser_checks.hpp"
 
 #include "maps/host/map_fit.hpp"
@@ -27,7 +29,7 @@ double step_of(const render::Device& device, maps::Rasteriser rasteriser) {
   return std::ldexp(1.0, -static_cast<int>(bits));
 }
 
-/// Corners of what shades, as CasterMaps draws it.
+/// Returns the corners of casters, as drawn by CasterMaps.
 std::vector<glm::vec3> casters_of(const Stage& stage) {
   std::vector<glm::vec3> corners;
   for (std::uint32_t i = 0; i < stage.floats.triangles.size(); ++i) {
@@ -37,7 +39,6 @@ std::vector<glm::vec3> casters_of(const Stage& stage) {
   return corners;
 }
 
-/// Every texel of every face, with the surfaces that it may have.
 const char* name_of(ViewSampler sampler) {
   switch (sampler) {
     case ViewSampler::vulkan:
@@ -64,6 +65,7 @@ visibility::ViewSamples view_samples_by(ViewSampler sampler, const render::Devic
   return {};
 }
 
+/// Calls `visit` for every texel of every face, with the surfaces that the texel may have.
 template <typename Visit>
 void for_each_texel(const Stage& stage, const CentreMaps& maps, double step, const Visit& visit) {
   const std::vector<glm::vec3> corners = casters_of(stage);
@@ -156,7 +158,7 @@ Check check_rasterisers_agree(const render::Device& device, const Stage& stage, 
       const auto place = [&] { return fmt::format("{}: {} and {}", where(), one[at], other[at]); };
       if (std::isfinite(bound)) {
         check.within(difference, bound, place);
-      } else {  // either surface: each is judged by itself
+      } else {  // either surface is possible: each is judged by itself
         ++check.compared;
         check.differing += difference != 0 ? 1 : 0;
       }

@@ -9,19 +9,20 @@
 
 namespace penumbra::selftest {
 
-/// Who finds view samples: the device's visibility buffer, what OpenGL proposes, or the processor's scan conversion.
+/// Source of view samples: the device's visibility buffer, candidates from OpenGL, or the processor's scan conversion.
 enum class ViewSampler : std::uint8_t { vulkan, opengl, vectors };
 
-/// Every pixel's carrying triangle and point, bit by bit against `expected` (visibility::brute_force_view_samples).
+/// Compares every pixel's carrying triangle and point, bit by bit with `expected`
+/// (visibility::brute_force_view_samples).
 Check check_view_samples(const render::Device& device, const visibility::SceneFloats& floats,
                          const visibility::ViewSamples& expected, ViewSampler sampler);
 
-/// Maps from the light's centre, `size` texels a side: the nearest surface, three more behind it, and the farthest,
-/// against RasterTwin with the rasteriser's own step.
+/// Compares maps from the light's centre, `size` texels a side: the nearest surface, three more behind, and the
+/// farthest, with RasterTwin for the rasteriser's own step.
 Check check_maps(const render::Device& device, const Stage& stage, std::uint32_t size, maps::Rasteriser rasteriser);
 
-/// The nearest and the farthest surfaces by both rasterisers: they may differ only where an edge passes within the sum
-/// of both steps of a texel's centre, and by what the surface changes within it.
+/// Compares the nearest and the farthest surfaces of both rasterisers: differences are permitted only where an edge
+/// passes within the sum of both steps of a texel's centre, and by the surface's change within this sum.
 Check check_rasterisers_agree(const render::Device& device, const Stage& stage, std::uint32_t size);
 
 }  // namespace penumbra::selftest

@@ -1,3 +1,5 @@
+// Runs all checks on small scenes.
+
 #include "selftest/self_test.hpp"
 
 #include "base/error.hpp"
@@ -27,7 +29,7 @@ namespace {
 
 using maps::Rasteriser;
 
-/// Runs one check several times; a refusal of the machine is the check's own, and the others go on.
+/// Runs one check several times; an error of the machine is the check's own, and the other checks continue.
 Check repeated(const std::string& pass, const std::function<void(Check&)>& work) {
   Check all;
   all.pass = pass;
@@ -49,7 +51,7 @@ void join(Check& all, const Check& one) {
   all.add(one);
 }
 
-/// What every rasteriser meets: besides a crowd, its board again the other way round, and needles.
+/// Returns cases for every rasteriser: a crowd, its board also with the opposite winding, and needles.
 scenes::Scene crowd_with_needles(bool wall, bool two_sided) {
   scenes::Scene scene = crowd(wall, two_sided);
   add_quad(scene, {-0.7, 1.5, 0.1}, {-0.43, -0.21, 0}, {0, 0, 0.77});
@@ -172,7 +174,7 @@ class SelfTest {
     pass.prepare_mesh({mesh.positions, mesh.triangles, &mesh.graph});
     const std::vector<std::uint32_t> counted(mesh.triangles.size(), volumes::gpu::kBothBits);
     SilhouetteTally tally;
-    // From above, from a corner of its own (ties), and from where floats decide nothing.
+    // From above, from one of its corners (ties), and from a point where floats decide nothing.
     for (const glm::vec3& l : {glm::vec3(0.3F, 4, 0.2F), mesh.positions[17], glm::vec3(0, 1e30F, 0)}) {
       join(all, check_silhouettes(pass, mesh, l, counted, tally));
     }

@@ -7,8 +7,8 @@
 
 namespace penumbra::selftest {
 
-/// Everything, on small scenes of its own: seconds. A check that cannot run says why (Check::refused), among them all
-/// of OpenGL where there is none.
+/// Runs all checks, on small scenes, in seconds. A check that cannot run has a reason (Check::refused), including all
+/// checks of OpenGL where it is not available.
 std::vector<Check> run_self_test(const render::Device& device);
 
 }  // namespace penumbra::selftest

@@ -1,6 +1,6 @@
 #pragma once
 
-// Small scenes made by hand: the self-test's, and the tests'.
+// Small scenes made by hand, for the self-test and the tests.
 
 #include "scenes/scene.hpp"
 #include "visibility/light_samples.hpp"
@@ -21,7 +21,7 @@ namespace penumbra::selftest {
 
 using Corners = std::array<glm::dvec3, 3>;
 
-/// A new object of the given triangles, each with vertices of its own.
+/// Adds a new object of the given triangles, each with vertices of its own.
 inline scenes::Object& add_object(scenes::Scene& scene, std::string name, const std::vector<Corners>& triangles) {
   const auto object = static_cast<std::uint32_t>(scene.objects.size());
   for (const Corners& corners : triangles) {
@@ -46,7 +46,7 @@ inline scenes::Object& add_quad(scenes::Scene& scene, const glm::dvec3& center, 
   return add_object(scene, "quad", quad(center, u, v));
 }
 
-/// A sphere of `rings` × 2 `rings` faces.
+/// Returns a sphere of `rings` × 2 `rings` faces.
 inline std::vector<Corners> sphere(const glm::dvec3& center, double radius, int rings) {
   const auto at = [&](int i, int j) {
     const double theta = std::numbers::pi * i / rings, phi = std::numbers::pi * j / rings;
@@ -70,7 +70,7 @@ inline scenes::AreaLight rectangle_light(const glm::dvec3& center, const glm::dv
   return light;
 }
 
-/// A square light of half-size `half` at height `height` over the y axis, facing down.
+/// Returns a square light of half-size `half` at height `height` over the y axis, facing down.
 inline scenes::AreaLight ceiling_light(double height, double half) {
   return rectangle_light({0, height, 0}, {half, 0, 0}, {0, 0, half});
 }
@@ -84,19 +84,19 @@ inline scenes::Camera camera(const glm::dvec3& eye, const glm::dvec3& target, do
   return result;
 }
 
-/// This many light samples, else as usual.
+/// Returns a request of `count` light samples, with defaults otherwise.
 inline visibility::SampleRequest light_samples(std::uint32_t count) {
   visibility::SampleRequest request;
   request.count = count;
   return request;
 }
 
-/// Everything that visibility starts from, for the first camera and light of a scene.
+/// Input of visibility, for the first camera and light of a scene.
 struct Stage {
   Stage(const scenes::Scene& scene, std::uint32_t width, std::uint32_t height,
         const visibility::SampleRequest& request = {})
       : Stage(scene, width, height, request, visibility::brute_force_view_samples) {}
-  /// With view samples that `view(floats, pinhole)` finds.
+  /// Uses the view samples found by `view(floats, pinhole)`.
   template <typename View>
   Stage(const scenes::Scene& scene, std::uint32_t width, std::uint32_t height, const visibility::SampleRequest& request,
         const View& view)
