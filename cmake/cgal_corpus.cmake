@@ -1,6 +1,6 @@
-# The meshes of Debian's package libcgal-demo, unpacked once into the build tree: real ones, many of them flawed.
-# penumbra_cgal_corpus(target): the target's code finds them in PENUMBRA_CGAL_CORPUS (a folder with meshes/*.off).
-# Without the package the folder is empty, and the tests that need it fail and say so.
+# Meshes of Debian's package libcgal-demo, unpacked once into the build tree: real meshes, many with defects.
+# penumbra_cgal_corpus(target): defines PENUMBRA_CGAL_CORPUS for the target's code (a folder with meshes/*.off). Without
+# the package the folder is empty, and the tests that need it fail with a message.
 function(penumbra_cgal_corpus target)
   set(archive /usr/share/doc/libcgal-dev/data.tar.gz)
   set(folder ${PROJECT_BINARY_DIR}/cgal_corpus)

@@ -4,8 +4,8 @@ execute_process(COMMAND ${GLSLANG} -E -DPENUMBRA_OPENGL -I${ROOT} ${SOURCE} OUTP
 if(NOT code EQUAL 0)
   message(FATAL_ERROR "${SOURCE}: ${text}${error}")
 endif()
-# What the preprocessor leaves that drivers do not know: its own extensions, and lines with file names. Which they name
-# are what the text depends on.
+# Removes the preprocessor's output unknown to drivers: its own extensions, and lines with file names. The files named
+# there are the text's dependencies.
 string(REGEX MATCHALL "#line [0-9]+ \"[^\"]+\"" lines "${text}")
 set(depends ${SOURCE})
 foreach(line ${lines})

@@ -1,6 +1,6 @@
-# Turns a page into a source: cmake -DFOLDER=… -DSTYLE=a;b -DSCRIPT=… -DMARKUP=… -DHEADER=… -DNAMESPACE=… -DPREFIX=… -DSOURCE=out.cpp
-# -P embed_text.cmake: the constants k<PREFIX>Style, k<PREFIX>Script and k<PREFIX>Markup, which HEADER declares.
-# Files of one kind follow one another; scripts stand in one strict block, so that none of their names is the window's.
+# Turns a page into a source: cmake -DFOLDER=… -DSTYLE=a;b -DSCRIPT=… -DMARKUP=… -DHEADER=… -DNAMESPACE=… -DPREFIX=…
+# -DSOURCE=out.cpp -P embed_text.cmake: the constants k<PREFIX>Style, k<PREFIX>Script and k<PREFIX>Markup, declared in
+# HEADER. Files of one kind follow one another; scripts are in one strict block, so that none of their names is global.
 foreach(kind STYLE SCRIPT MARKUP)
   set(${kind}_text "")
   foreach(file ${${kind}})

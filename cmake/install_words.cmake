@@ -1,5 +1,5 @@
-# cmake -DPROGRAM=penumbra -DPREFIX=… -P install_words.cmake: asks the program for its manual pages and for the scripts
-# with which shells complete its commands, and puts them where man, bash, zsh and fish look for them.
+# cmake -DPROGRAM=penumbra -DPREFIX=… -P install_words.cmake: writes the program's manual pages and shell completion
+# scripts to the folders searched by man, bash, zsh and fish.
 function(ask file)
   execute_process(COMMAND ${PROGRAM} ${ARGN} OUTPUT_VARIABLE text RESULT_VARIABLE code)
   if(NOT code EQUAL 0)

@@ -1,5 +1,5 @@
-# `cpack` in the build folder makes a Debian package of what `cmake --install` installs: programs, library, headers, Python module, manual
-# pages, completions. Its dependencies are those that dpkg-shlibdeps finds in the files.
+# `cpack` in the build folder makes a Debian package of the files installed by `cmake --install`: programs, library,
+# headers, Python module, manual pages, completions. Its dependencies are determined by dpkg-shlibdeps from the files.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME penumbra)
 set(CPACK_PACKAGE_CONTACT "The Penumbra maintainers <maintainers@users.noreply.example>")

@@ -1,16 +1,19 @@
-# The headers of others that nearly every file includes are parsed once (about half of the compiler's time went there).
-# Files include what they use all the same: preset `dev` builds without this, and says what was forgotten.
+# Headers of libraries included by nearly every file are parsed once (about half of the compiler's time was spent on
+# them). Files still include what they use: preset `dev` builds without precompiled headers, and reports missing
+# includes.
 #   penumbra_precompile(target…)        the standard library, fmt, GLM, and nlohmann-json
 #   penumbra_precompile_tests(target)   these and GoogleTest
-# and penumbra_seldom(target…) compiles what runs once a command, and never long, with -O1: a third of the compiler's time less.
+# penumbra_seldom(target…) compiles code that runs once a command, and never long, with -O1: a third less of the
+# compiler's time.
 set(PENUMBRA_PRECOMPILED
   <algorithm> <array> <atomic> <bit> <charconv> <chrono> <cmath> <cstddef> <cstdint> <cstdio> <cstdlib> <cstring> <filesystem>
   <fstream> <functional> <limits> <map> <memory> <mutex> <numbers> <numeric> <optional> <set> <span> <stdexcept> <string>
   <string_view> <system_error> <thread> <tuple> <unordered_map> <utility> <variant> <vector>
   <fmt/format.h> <fmt/ranges.h> <glm/glm.hpp> <nlohmann/json.hpp>)
 
-# Where nothing is optimised, fmt 9 asks g++ by pragma to optimise its own lines. g++ 12 forgets in a precompiled header that this
-# ends there: __OPTIMIZE__ stays defined, intrinsics are then functions in place of macros, and their immediates no constants.
+# Without optimisation, fmt 9 requests optimisation of its own lines from g++ by pragma. In a precompiled header, g++ 12
+# does not end it: __OPTIMIZE__ stays defined, intrinsics are then functions in place of macros, and their immediates no
+# constants.
 add_compile_options("$<$<AND:$<CXX_COMPILER_ID:GNU>,$<CONFIG:Debug>>:-DFMT_GCC_PRAGMA(text)=>")
 
 find_package(fmt REQUIRED)
@@ -37,15 +40,15 @@ function(penumbra_seldom)
   endforeach()
 endfunction()
 
-# penumbra_join(target [APART file…]): the target's files are compiled as one, up to sixty (app's 58 files take 62 CPU s so,
-# 95 ten at a time). Not those in APART (what owns a hidden type, what has a name inside that another file has, too), nor what
-# Highway compiles once a vector target.
+# penumbra_join(target [APART file…]): the target's files are compiled as one, up to sixty (app's 58 files take 62 CPU s
+# in this form, 95 ten at a time). Except the files in APART (files that own a hidden type, or have an internal name
+# that another file also has), and files that Highway compiles once for each vector target.
 function(penumbra_join target)
   cmake_parse_arguments(ARG "" "" "APART" ${ARGN})
   if(PENUMBRA_JOIN OR NOT CMAKE_DISABLE_PRECOMPILE_HEADERS)
     set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 60)
-    # With more to inline, g++ 12 warns falsely of what it thinks std::string and std::optional do (as in GCC bugs 105651 and
-    # 80635). Where files are compiled alone these warnings stay errors.
+    # With more to inline, g++ 12 warns falsely about std::string and std::optional (as in GCC bugs 105651 and 80635).
+    # Where files are compiled separately, these warnings stay errors.
     target_compile_options(${target} PRIVATE "$<$<CXX_COMPILER_ID:GNU>:-Wno-stringop-overflow;-Wno-stringop-overread;-Wno-array-bounds;-Wno-maybe-uninitialized>")
     get_target_property(sources ${target} SOURCES)
     list(FILTER sources INCLUDE REGEX "^[^/$][^$]*\\.cpp$")

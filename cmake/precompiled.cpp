@@ -1,1 +1,1 @@
-// The source of the targets that own the precompiled headers (precompiled.cmake): it has nothing of its own.
+// Source of the targets that own the precompiled headers (precompiled.cmake): contains no code of its own.

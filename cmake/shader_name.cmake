@@ -1,4 +1,4 @@
-# Sets `name` to what a shader is called in C++: view_sample.comp → kViewSampleComp, in whatever folder.
+# Sets `name` to the C++ name of a shader: view_sample.comp → kViewSampleComp, in any folder.
 get_filename_component(parts ${NAME} NAME)
 string(REPLACE "." "_" parts ${parts})
 string(REPLACE "_" ";" parts ${parts})

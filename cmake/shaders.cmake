@@ -1,7 +1,8 @@
 find_program(GLSLANG glslangValidator REQUIRED)
 find_program(SPIRV_VAL spirv-val REQUIRED)
 
-# penumbra_shader_output(file ending path output): the file's path from the root, and where what is made of it goes.
+# penumbra_shader_output(file ending path output): sets the file's path from the root, and the path of its generated
+# output.
 function(penumbra_shader_output source ending path output)
   file(RELATIVE_PATH from_root ${PROJECT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR}/${source})
   set(made ${PROJECT_BINARY_DIR}/shaders/${from_root}.${ending})
@@ -11,7 +12,7 @@ function(penumbra_shader_output source ending path output)
   set(${output} ${made} PARENT_SCOPE)
 endfunction()
 
-# penumbra_embedded(target header…): the target is built with these, and finds them.
+# penumbra_embedded(target header…): builds the target with these headers on its include path.
 function(penumbra_embedded target)
   target_sources(${target} PRIVATE ${ARGN})
   target_include_directories(${target} PRIVATE ${PROJECT_BINARY_DIR}/shaders)
@@ -41,8 +42,9 @@ function(penumbra_shaders target)
 endfunction()
 
 # penumbra_opengl_shaders(target file.vert …)
-# The same sources for OpenGL, as text: includes are put in, PENUMBRA_OPENGL is defined, and glslang checks the result as
-# GLSL 4.50. Embedded as "<folder>/<name>.<stage>.glsl.hpp" with `inline constexpr std::string_view k<Name><Stage>Text`.
+# Embeds the same sources for OpenGL, as text: includes are resolved, PENUMBRA_OPENGL is defined, and glslang checks the
+# result as GLSL 4.50. Embedded as "<folder>/<name>.<stage>.glsl.hpp" with `inline constexpr std::string_view
+# k<Name><Stage>Text`.
 function(penumbra_opengl_shaders target)
   set(headers)
   foreach(source ${ARGN})

@@ -1,10 +1,10 @@
-# penumbra_discover_suites(target [PREFIX p] FULL pattern… [SHARDS suite=n…]): gives each test suite of a GoogleTest executable
-# to ctest as one test, hence one process in which a device, and what tests share, are made once. The tests that a pattern of
-# FULL matches have the label full, all others quick; a suite that has both kinds is two tests of ctest, `suite` and
-# `suite.full`. The quick tests of a suite in SHARDS are n tests of ctest, `suite.1of<n>` and so on.
-# Where the environment of ctest has PENUMBRA_SINGLE_TESTS, each test is a test of ctest by its own name instead.
+# penumbra_discover_suites(target [PREFIX p] FULL pattern… [SHARDS suite=n…]): adds each test suite of a GoogleTest
+# executable to ctest as one test, hence one process in which a device, and fixtures shared by tests, are made once. The
+# tests that match a pattern of FULL have the label full, all others quick; a suite with both kinds is two tests of
+# ctest, `suite` and `suite.full`. The quick tests of a suite in SHARDS are n tests of ctest, `suite.1of<n>` and so on.
+# If the environment of ctest has PENUMBRA_SINGLE_TESTS, each test is a test of ctest by its own name instead.
 #
-# This file is also the script that asks the executable for its tests after each link and writes what ctest includes.
+# This file is also the script that lists the executable's tests after each link and writes the file included by ctest.
 if(NOT CMAKE_SCRIPT_MODE_FILE)
   set(PENUMBRA_TEST_SUITES_SCRIPT ${CMAKE_CURRENT_LIST_FILE})
   function(penumbra_discover_suites target)
@@ -25,18 +25,19 @@ else()
   include("@file@.cmake")
 endif()
 ]])
-    set_property(TARGET ${target} APPEND PROPERTY LINK_DEPENDS ${PENUMBRA_TEST_SUITES_SCRIPT})  # so that its changes count
+    # relinks when this file changes
+    set_property(TARGET ${target} APPEND PROPERTY LINK_DEPENDS ${PENUMBRA_TEST_SUITES_SCRIPT})
     set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES ${file}_include.cmake)
   endfunction()
   return()
 endif()
 cmake_minimum_required(VERSION 3.25)
 
-# list_tests(filter variable): the names of the tests that match, suite.test.
+# list_tests(filter variable): lists the names of the tests that match, suite.test.
 function(list_tests filter variable)
   execute_process(COMMAND ${EXECUTABLE} --gtest_list_tests --gtest_filter=${filter}
                   OUTPUT_VARIABLE listing COMMAND_ERROR_IS_FATAL ANY TIMEOUT 120)
-  string(REGEX REPLACE " +#[^\n]*" "" listing "\n${listing}")  # the values of parameters
+  string(REGEX REPLACE " +#[^\n]*" "" listing "\n${listing}")  # removes the values of parameters
   string(REGEX MATCHALL "\n(  [A-Za-z0-9_/]+|[A-Za-z0-9_/]+\\.)" lines "${listing}")
   set(tests)
   foreach(line ${lines})
@@ -51,7 +52,8 @@ function(list_tests filter variable)
 endfunction()
 
 # append_test(variable name label filter [environment…])
-# A test of ctest counts as skipped if GoogleTest skipped all of it: then its summary ends with their names.
+# Adds a test of ctest, which counts as skipped if GoogleTest skipped all of its tests: then its summary ends with their
+# names.
 function(append_test variable name label filter)
   set(name "[=[${PREFIX}${name}]=]")
   set(properties "LABELS ${label}")
