@@ -143,9 +143,10 @@ std::vector<Entry> choose_entries(const ComparisonOptions& options, const Sessio
   if (entries.empty())
     entries = std::move(costly_entries);
   else if (!costly.empty())
-    warn(fmt::format(
-        "{} left out: maps see a sphere as up to 54 disks and a dome as many suns, each with maps of its own; name a method to have it",
-        fmt::join(costly, ", ")));
+    warn(
+        fmt::format("{} left out: maps see a sphere as up to 54 disks and a dome as many suns, each with maps of its "
+                    "own; name a method to have it",
+                    fmt::join(costly, ", ")));
   if (!without_device.empty()) {
     if (entries.empty()) throw ResourceError("{}: {}", fmt::join(without_device, ", "), no_device);
     warn(fmt::format("{} left out: {}", fmt::join(without_device, ", "), no_device));

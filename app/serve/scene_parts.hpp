@@ -26,8 +26,8 @@ class SceneParts {
   static constexpr std::string_view kThingEnds = "\xe2\x90\x9f";  ///< ␟, U+241F
 
   /// What the file `glb` has of a thing takes the place of all that there was of it. `shadeless`: things whose lamps
-  /// cast no shadows. `folder`: where the pictures lie that the file names; empty: it names none. Throws InputError for a
-  /// file that is none, and then changes nothing.
+  /// cast no shadows. `folder`: where the pictures lie that the file names; empty: it names none. Throws InputError for
+  /// a file that is none, and then changes nothing.
   void put(std::span<const std::byte> glb, const std::set<std::string>& shadeless, const std::filesystem::path& folder);
   /// Things go; names of none are let be.
   void remove(const std::vector<std::string>& things);

@@ -28,8 +28,8 @@ namespace penumbra::scenes {
 ///
 /// FBX and COLLADA files (.fbx, .dae) likewise, with what import/foreign_scene.hpp says of them.
 Scene read_gltf(const std::filesystem::path& file, const ReadOptions& options = {});
-/// Reads a file's bytes (.glb) that lie in memory. `name`: in messages. `folder`: the files that `bytes` names lie here;
-/// empty: there are none.
+/// Reads a file's bytes (.glb) that lie in memory. `name`: in messages. `folder`: the files that `bytes` names lie
+/// here; empty: there are none.
 Scene read_glb(std::span<const std::byte> bytes, const std::string& name, const ReadOptions& options = {},
                const std::filesystem::path& folder = {});
 

@@ -73,10 +73,8 @@ inline DomeAnswer answer_of(visibility::Method& method, const visibility::SceneF
     method.evaluate({first, rows});
     const std::size_t pixel = std::size_t{first} * samples.width, pixels = std::size_t{rows} * samples.width;
     const std::size_t words = answer.masks.words_per_pixel;
-    if (gives_masks)
-      method.read_masks(std::span(answer.masks.words).subspan(pixel * words, pixels * words));
-    if (gives_area)
-      method.read_form_factors(std::span(answer.form_factors).subspan(pixel, pixels));
+    if (gives_masks) method.read_masks(std::span(answer.masks.words).subspan(pixel * words, pixels * words));
+    if (gives_area) method.read_form_factors(std::span(answer.form_factors).subspan(pixel, pixels));
     method.read_visibility(std::span(answer.masks.visibility).subspan(pixel, pixels));
     first += rows;
   }
