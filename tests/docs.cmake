@@ -1,11 +1,11 @@
-# The figures of docs/ are what their script draws; each picture and link of a page leads somewhere; the commands of the README and of the
-# tutorials print what the pages say; options.md is what the program says; tables of timings are what bench/results/ holds.
+# The figures of docs/ are what their script draws; each picture and link of a page leads somewhere; the commands of the README, of the
+# tutorials and of docs/scenes.md print what the pages say; options.md is what the program says; tables of timings are what bench/results/ holds.
 find_package(Python3 REQUIRED COMPONENTS Interpreter)
 add_test(NAME docs.figures COMMAND ${Python3_EXECUTABLE} ${PROJECT_SOURCE_DIR}/docs/figures/make.py --check)
 add_test(NAME docs.options COMMAND ${Python3_EXECUTABLE} ${PROJECT_SOURCE_DIR}/docs/option_tables.py --program $<TARGET_FILE:penumbra> --check)
 add_test(NAME docs.results COMMAND ${Python3_EXECUTABLE} ${PROJECT_SOURCE_DIR}/bench/tables.py --check)
 set_tests_properties(docs.figures docs.options docs.results PROPERTIES LABELS quick)
-foreach(page IN ITEMS README docs/start/artist docs/start/researcher docs/start/mesh-tester docs/start/wedge-validator)
+foreach(page IN ITEMS README docs/start/artist docs/start/researcher docs/start/mesh-tester docs/start/wedge-validator docs/scenes)
   cmake_path(GET page FILENAME name)
   string(TOLOWER ${name} name)
   add_test(NAME docs.commands.${name}

@@ -5,7 +5,8 @@
   console.py PROGRAM SOURCE PAGE --pictures   writes the page's pictures of docs/images/start/ from what the commands wrote
 
 Commands are the lines that begin with "$ " in blocks of the kind `console`; below each is its standard output, where "…" stands for
-any text and a line "…" for any lines. A line "(exit code N)" ends the output of a command that fails. `penumbra` and `./run.sh` are the program. A page with
+any text and a line "…" for any lines. A line "(exit code N)" ends the output of a command that fails. `penumbra` and `./run.sh` are the program. A block of
+JSON below a line "`NAME`:" is a file. A page with
 pictures of docs/images/start/ has to write files of these names."""
 
 import os
@@ -52,6 +53,7 @@ def main():
     program, source, page = (Path(arg).resolve() for arg in sys.argv[1:4])
     text = page.read_text(encoding="utf-8")
     listed = commands(text)
+    files = re.findall(r"^`([\w.-]+)`:\n+```json\n(.*?)^```", text, re.S | re.M)
     assert listed, f"{page} has no commands"
     for shown in ("a 0.3 s", "a\nb", "a 1 s\nb"):  # what it looks for it finds
         assert matches(shown + "\n", ["a …", "…"]) == shown.startswith("a "), shown
@@ -62,6 +64,8 @@ def main():
         for path in (folder / "bin" / "penumbra", folder / "run.sh"):
             path.write_text(f'#!/bin/sh\nexec {shlex.quote(str(program))} "$@"\n')
             path.chmod(0o755)
+        for file, content in files:
+            (folder / file).write_text(content)
         os.environ["PATH"] = f"{folder / 'bin'}:{os.environ['PATH']}"
         for command, expected in listed:
             run(command, expected, folder, "--show" in sys.argv)
