@@ -5,31 +5,31 @@
 #include <utility>
 #include <vector>
 
-// Inside areas/ only: the part of a region that no polygon covers, by a sweep over slabs.
+// Part of a region that no polygon covers, by a sweep over slabs. Internal to areas/.
 
 namespace penumbra::areas {
 
-/// One edge of a polygon that runs counter-clockwise. What a vertical line counts when it crosses the edge upward: +1
-/// for an edge that runs toward larger s (the polygon is above it), −1 for one that runs back.
+/// Edge of a polygon that runs counter-clockwise. Count of a vertical line that crosses the edge upward: +1 for an edge
+/// that runs toward larger s (the polygon is above the edge), −1 for one that runs back.
 template <typename Number>
 struct SweepEdge {
   Number s0, t0, s1, t1;  ///< s0 < s1
-  int cover = 0;          ///< counted into the depth of what covers
-  int region = 0;         ///< counted into the region itself
+  int cover = 0;          ///< added to the depth of the covering polygons
+  int region = 0;         ///< added to the region itself
 };
 
-/// A sweep's edge at a slab: its height at the two ends of the strip, and in the slab's middle and at its ends.
+/// Edge of a sweep at a slab: its height at the two ends of the strip, and in the slab's middle and at its ends.
 template <typename Number>
 struct ActiveEdge {
   const SweepEdge<Number>* edge;
   Number left, right;  ///< t at the strip's two ends
   Number t;            ///< in the middle of the slab
-  Number from, to;     ///< at the slab's two ends; set only if the measure asks for them
+  Number from, to;     ///< t at the slab's two ends; set only if the measure needs them
 };
 
-/// Measures area as it is. A measure says what lies between two edges that do not cross within a slab, as the mean over
-/// the slab of what a vertical line finds between them; where further strips begin; and in which strip and slab the
-/// sweep is.
+/// Measures plain area. A measure defines: the contribution between two edges that do not cross within a slab, as the
+/// mean over the slab of the contribution to a vertical line; the begin of further strips; and the current strip and
+/// slab.
 template <typename Number>
 struct PlainMeasure {
   static constexpr bool kNeedsEnds = false;
@@ -41,14 +41,14 @@ struct PlainMeasure {
   }
 };
 
-/// The area (or what else Measure measures) of {region > 0 and cover ≤ 0}, where both counts start from 0 at t = −∞ and
-/// step at each edge. Edges may cross, touch, coincide and run along one another.
+/// Computes the area (or the quantity of Measure) of {region > 0 and cover ≤ 0}, where both counts start from 0 at t =
+/// −∞ and step at each edge. Edges may cross, touch, coincide and run along one another.
 ///
 /// Between neighbouring end points (a strip) the same edges are active. Within a strip, between neighbouring crossings
-/// (a slab), they keep their order, and the uncovered length of a vertical line is linear in s: its value in the middle
-/// times the width is the slab's area. With rational numbers the result is exact. With double it is the exact result
-/// for end points and crossings moved by rounding: docs/exact.md has the bound. The result does not depend on the order
-/// of the edges.
+/// (a slab), the edges keep their order, and the uncovered length of a vertical line is linear in s: its value in the
+/// middle times the width is the slab's area. With rational numbers the result is exact. With double it is the exact
+/// result for end points and crossings moved by rounding: docs/exact.md has the bound. The result does not depend on
+/// the order of the edges.
 template <typename Number, typename Measure = PlainMeasure<Number>>
 class AreaSweep {
  public:
@@ -91,7 +91,7 @@ class AreaSweep {
     values.erase(std::unique(values.begin(), values.end()), values.end());
   }
 
-  /// Never outside the edge's own end points, whatever is rounded.
+  /// Returns the edge's height at s, never outside the edge's own end points, for any rounding.
   static Number height(const SweepEdge<Number>& edge, const Number& s) {
     if (s <= edge.s0) return edge.t0;
     if (s >= edge.s1) return edge.t1;
@@ -134,7 +134,7 @@ class AreaSweep {
     return area;
   }
 
-  /// Where the edges are at the ends of a slab, given in shares of the strip.
+  /// Computes the edges' heights at the ends of a slab, given as fractions of the strip.
   void set_ends(const Number& from, const Number& to) {
     if constexpr (Measure::kNeedsEnds) {
       for (Active& active : active_) {
@@ -144,14 +144,15 @@ class AreaSweep {
     }
   }
 
-  /// By insertion: from slab to slab the order hardly changes.
+  /// Insertion sort: from slab to slab the order hardly changes.
   void sort_active() {
     for (std::size_t i = 1; i < active_.size(); ++i) {
       for (std::size_t j = i; j > 0 && active_[j].t < active_[j - 1].t; --j) std::swap(active_[j], active_[j - 1]);
     }
   }
 
-  /// Sorted by their middles, edges that do not cross are sorted at both ends as well.
+  /// Returns whether some edges cross: sorted by their middles, edges that do not cross are sorted at both ends as
+  /// well.
   [[nodiscard]] bool some_cross() const {
     for (std::size_t i = 1; i < active_.size(); ++i) {
       if (active_[i].left < active_[i - 1].left || active_[i].right < active_[i - 1].right) return true;
@@ -179,7 +180,7 @@ class AreaSweep {
   }
 
   Measure measure_;
-  std::vector<Number> breaks_, crossings_;  // of a strip: left, right, then what lies between
+  std::vector<Number> breaks_, crossings_;  // of a strip: left, right, then the values between
   std::vector<Active> active_;
 };
 

@@ -1,3 +1,6 @@
+// Projects triangles to the light's plane in integer homogeneous coordinates and clips them (Sutherland and Hodgman
+// 1974), exactly (back_projection.hpp derives the projection). Not from a paper.
+
 #include "areas/back_projection.hpp"
 
 #include "areas/integer_vector.hpp"
@@ -83,7 +86,7 @@ std::optional<ProjectiveEdge> BackProjection::clip_edge(ProjectiveEdge edge, uns
     if ((planes & bit_of(plane)) == 0) continue;
     const mpz_class at_a = height(plane, a), at_b = height(plane, b);
     if (at_a >= 0 && at_b >= 0) continue;
-    if (at_a <= 0 && at_b <= 0) return std::nullopt;  // outside, but perhaps for an end
+    if (at_a <= 0 && at_b <= 0) return std::nullopt;  // outside, except possibly an end
     ProjectivePoint cut = crossing(a, at_a, b, at_b);
     (at_a < 0 ? a : b) = std::move(cut);
   }

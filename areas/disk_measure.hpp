@@ -8,13 +8,13 @@
 #include <algorithm>
 #include <array>
 
-// Inside areas/ only: what of a region is in the unit disk, for the sweep.
+// Part of a region in the unit disk, for the sweep. Internal to areas/.
 
 namespace penumbra::areas {
 
-/// Measures of each trapezoid between two edges its part in the unit disk (visibility::DiskPart), in double whatever
-/// the sweep computes in: straight edges are the sweep's, and which of them are where is as exact as it is. Off by 64 ·
-/// 2⁻⁵³ for each trapezoid at the rim.
+/// Measures the part in the unit disk of each trapezoid between two edges (visibility::DiskPart), in double for any
+/// number type of the sweep: positions of the straight edges are the sweep's, with its exactness. Off by 64 · 2⁻⁵³ for
+/// each trapezoid at the rim.
 template <typename Number>
 class DiskMeasure {
  public:

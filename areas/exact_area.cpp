@@ -1,13 +1,13 @@
-// The area of the union of back-projected triangles, by signed edges.
+// Computes the area of the union of back-projected triangles, by signed edges.
 //
-// As seen from p each triangle is clipped to what lies between p and the light and taken counter-clockwise; each of its
-// edges then counts +1 or −1. Where triangles share an edge their counts add up: 0 inside a surface, ±2 on the
+// As seen from p each triangle is clipped to the region between p and the light and oriented counter-clockwise; each of
+// its edges then counts +1 or −1. Where triangles share an edge their counts add up: 0 inside a surface, ±2 on the
 // silhouette of a closed one, any integer in a soup (Laine et al. 2005 for closed ones; docs/signed-crossings.md for
-// any). The edges that are left bound the same depth complexity as all triangles do, and they are few; a sweep
-// (area_sweep.hpp) finds the area where it is zero. Nothing is assumed of the mesh.
+// any). The remaining edges bound the same depth complexity as all triangles do, and they are few; a sweep
+// (area_sweep.hpp) computes the area where this complexity is zero. No assumption is made about the mesh.
 //
-// Why not polygon Booleans: the union of n triangles has to merge every inner edge of a surface, which here cancels
-// before any crossing is looked for.
+// Reason for not using polygon Booleans: the union of n triangles has to merge every inner edge of a surface; here
+// these edges cancel before any search for crossings.
 
 #include "areas/exact_area.hpp"
 
@@ -66,13 +66,13 @@ bool all_inside(const GridBox& box, const HalfPlane& half_plane) {
 }  // namespace
 
 struct ExactAreaData {
-  TriangleTree own_tree;  ///< unless there was one
+  TriangleTree own_tree;  ///< unless the caller has one
   WeldedScene scene;
   IntegerGrid grid;  ///< of all positions
   const Light* light = nullptr;
-  IntegerFrame frame;  ///< not of a sphere
+  IntegerFrame frame;  ///< unused for a sphere
   Region region;
-  bool round = false;  ///< the light is what of the region is in the unit disk
+  bool round = false;  ///< the light is the part of the region in the unit disk
   mpq_class area;      ///< of the region
   GridBox box;
   std::vector<SweepEdge<double>> edges;  ///< of the region
@@ -82,15 +82,15 @@ struct ExactAreaData {
 
 namespace {
 
-/// One question: the region of the light that is above the horizon, and what may hide it.
+/// Region of the light above the horizon, with its possible occluders.
 struct Question {
   const ExactAreaData& data;
   const Region& region;
   const OccluderEdges& occluders;
-  FormFactorSum* form_factor;  ///< null: nobody asks
+  FormFactorSum* form_factor;  ///< null: not requested
 };
 
-/// The sweep's measure of the uncovered part; form factors on the way, if they are wanted.
+/// Returns the sweep's measure of the uncovered part; adds form factors during the sweep, if requested.
 template <typename Number, typename Measure>
 Number measure_uncovered(Measure measure, std::vector<SweepEdge<Number>>& edges, FormFactorSum* form_factor) {
   if (form_factor == nullptr) return AreaSweep<Number, Measure>(std::move(measure)).uncovered_area(edges);
@@ -100,7 +100,7 @@ Number measure_uncovered(Measure measure, std::vector<SweepEdge<Number>>& edges,
   return area;
 }
 
-/// The share of the light, by area or by luminance, that is region and not hidden. `edges` are the region's, and the
+/// Returns the visible fraction of the light's region, by area or by luminance. `edges` are the region's, and the
 /// workspace.
 template <typename Number>
 double share_left(const Question& question, std::vector<SweepEdge<Number>> edges, AreaWork& work) {
@@ -182,7 +182,7 @@ ExactView ExactArea::view(const Receiver& receiver, SweepArithmetic arithmetic) 
   FormFactorSum form_factor(seen, data_->blocks);
   ExactView view;
   view.visibility = visible_share(receiver, arithmetic, view.work, &form_factor);
-  if (static_cast<float>(view.visibility) == 1 && view.work.edges != 0) {  // what is near the light hides none of it
+  if (static_cast<float>(view.visibility) == 1 && view.work.edges != 0) {  // occluders near the light hide none of it
     FormFactorSum whole(seen, data_->blocks);
     whole.add_whole();
     view.form_factor = whole.sum();
@@ -192,7 +192,7 @@ ExactView ExactArea::view(const Receiver& receiver, SweepArithmetic arithmetic) 
   return view;
 }
 
-/// Of a sun of one direction: all or nothing.
+/// Returns whether the sun's only direction is visible, for a sun of one direction.
 bool ExactArea::sees_direction(const Receiver& receiver) const {
   const Light& light = *data_->light;
   const SceneFloats& scene = *data_->scene.scene;
@@ -222,7 +222,7 @@ double ExactArea::visible_share(const Receiver& receiver, SweepArithmetic arithm
   BackProjection projection(frame, grid, receiver.p);
   if (projection.on_plane()) return 0;
 
-  // The horizon cuts the region; most view samples see all of it.
+  // Whether the horizon cuts the region; most view samples see all of it.
   const HalfPlane above = projection.above_plane(data_->scene.scene->corners(receiver.carrier), receiver.facing);
   const bool whole = all_inside(data_->box, above);
   const Region cut = whole ? Region() : clip(data_->region, above);

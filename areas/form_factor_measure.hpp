@@ -8,11 +8,11 @@
 #include <utility>
 #include <vector>
 
-// Inside areas/ only: form factors on the way of the sweep.
+// Form factors summed during the sweep. Internal to areas/.
 
 namespace penumbra::areas {
 
-/// A measure of the sweep (area_sweep.hpp) that measures what Measure does, and on the way hands each trapezoid on.
+/// Measure of the sweep (area_sweep.hpp) that measures as Measure does, and passes each trapezoid to a FormFactorSum.
 template <typename Number, typename Measure>
 class FormFactorMeasure {
  public:

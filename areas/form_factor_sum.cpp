@@ -1,3 +1,6 @@
+// Sums form factors of uncovered trapezoids in closed form (visibility/lights/form_factor.hpp), with a texture cut at
+// blocks of texels. Not from a paper.
+
 #include "areas/form_factor_sum.hpp"
 
 #include "base/assert.hpp"
@@ -9,7 +12,7 @@
 namespace penumbra::areas {
 namespace {
 
-/// A convex polygon: one of four corners cut by up to four lines, each of which adds a corner at most.
+/// Convex polygon: a polygon of four corners cut by up to four lines, each of which adds at most one corner.
 struct Corners {
   std::array<glm::dvec2, 8> at{};
   std::size_t count = 0;
@@ -27,7 +30,7 @@ Corners corners_of(std::span<const glm::dvec2> polygon) {
 }
 
 enum Axis : int { kS, kT };
-/// What of it has sign · (s − border) ≥ 0, or t.
+/// Returns the part of the polygon with sign · (s − border) ≥ 0, or t in place of s.
 Corners clip(const Corners& polygon, Axis axis, double border, double sign) {
   Corners inside;
   for (std::size_t i = 0; i < polygon.count; ++i) {
@@ -119,7 +122,7 @@ void FormFactorSum::add(const Trapezoid& shape) {
   }
 }
 
-/// Cut in strips at the borders between columns, from the left.
+/// Cuts the polygon into strips at the borders between columns, from the left.
 void FormFactorSum::add_polygon(std::span<const glm::dvec2> corners) {
   if (texture_ == nullptr) {
     sum_ += seen_.part(corners);
@@ -145,7 +148,7 @@ void FormFactorSum::add_whole() {
   for (std::uint32_t x = 0; x < texture_->columns(); ++x) add({texture_->left(x), texture_->left(x + 1), -1, -1, 1, 1});
 }
 
-/// Cut in bands at the borders between rows, from the top, where row 0 is.
+/// Cuts the polygon into bands at the borders between rows, from the top, where row 0 is.
 void FormFactorSum::add_blocks(std::uint32_t column, std::span<const glm::dvec2> corners) {
   if (corners.empty()) return;
   const auto [lowest, highest] =

@@ -4,7 +4,7 @@
 
 #include <array>
 
-// Inside areas/ only: vectors of integers without a limit.
+// Vectors of integers of unlimited size. Internal to areas/.
 
 namespace penumbra::areas {
 

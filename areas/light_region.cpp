@@ -1,3 +1,5 @@
+// Computes the exact region of a light in its own plane, and grids that convert doubles to integers.
+
 #include "areas/light_region.hpp"
 
 #include "areas/integer_vector.hpp"

@@ -10,41 +10,41 @@
 #include <span>
 #include <vector>
 
-// Inside areas/ only: the light as an exact region of its own plane.
+// Light as an exact region of its own plane. Internal to areas/.
 
 namespace penumbra::areas {
 
-/// A point of the light's plane, centre + s · u + t · v with u, v the axes of the stored frame.
+/// Point of the light's plane, centre + s · u + t · v with u, v the axes of the stored frame.
 struct PlanePoint {
   mpq_class s, t;
 };
 
-/// A polygon in frame coordinates, counter-clockwise; closed. It need not be convex (rounding may dent a stored
+/// Polygon in frame coordinates, counter-clockwise; closed. Not necessarily convex (rounding may dent a stored
 /// outline).
 using Region = std::vector<PlanePoint>;
 
-/// The light in its frame's coordinates, exact for what is stored. rectangle: [−1, 1]², the parallelogram that centre
-/// ± u ± v span (its corners are within rounding of the stored outline). polygon: the stored outline, projected at
-/// right angles onto the frame's plane. A dome's face: [−1, 1]², or its upper half. Round lights (is_round): the square
-/// around the unit disk.
+/// Returns the light in its frame's coordinates, exact for the stored values. rectangle: [−1, 1]², the parallelogram
+/// spanned by centre ± u ± v (its corners are within rounding of the stored outline). polygon: the stored outline,
+/// projected at right angles onto the frame's plane. A dome's face: [−1, 1]², or its upper half. Round lights
+/// (is_round): the square around the unit disk.
 Region light_region(const visibility::Light& light);
 
 mpq_class area_of(const Region& region);
 
-/// What of the region has at + s · along_s + t · along_t ≥ 0.
+/// Half-plane at + s · along_s + t · along_t ≥ 0; clip() returns the part of the region in it.
 struct HalfPlane {
   mpz_class at, along_s, along_t;
 };
 Region clip(const Region& region, const HalfPlane& half_plane);
 
-/// A rectangle around a region whose sides are multiples of 1 / kGrid: small numbers to compute with.
+/// Rectangle around a region with sides at multiples of 1 / kGrid: small numbers, for fast arithmetic.
 struct GridBox {
   static constexpr long kGrid = 1024;
   mpz_class s0, s1, t0, t1;  ///< times kGrid
 };
 GridBox box_around(const Region& region);
 
-/// A power of two, 2^bits, that makes all of a set of doubles integers.
+/// Power of two, 2^bits, that makes all of a set of doubles integers.
 class IntegerGrid {
  public:
   void include(double value);

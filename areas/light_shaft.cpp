@@ -1,3 +1,6 @@
+// Classifies points against the clip planes of a light's shaft in double, with error bounds; the exact test is
+// BackProjection's.
+
 #include "areas/light_shaft.hpp"
 
 #include <glm/common.hpp>
@@ -8,8 +11,8 @@ namespace {
 
 // Each height is a sum of products of at most three differences of stored numbers and one grid coordinate. `size` is
 // the sum of the magnitudes of these products, so that nothing cancels in it. With δ = 2⁻⁵³: differences are off by δ
-// each, products and sums by δ more a step, ten steps at most from the stored numbers to the height: less than 2⁻⁴⁸ =
-// 32 δ times the size (which is itself rounded, by far less than the rest).
+// each, products and sums by another δ in each step, ten steps at most from the stored numbers to the height: less than
+// 2⁻⁴⁸ = 32 δ times the size (which is itself rounded, by far less than the rest).
 constexpr double kRounding = 0x1p-48;
 
 struct Cross {

@@ -1,3 +1,6 @@
+// Collects the signed edges of back-projected occluders, merged where triangles share them (Laine et al. 2005; any
+// soup: docs/signed-crossings.md).
+
 #include "areas/occluder_edges.hpp"
 
 #include "areas/sweep_edges.hpp"
@@ -52,7 +55,7 @@ void OccluderEdges::add_triangle(std::uint32_t triangle) {
   if ((sides[0].outside & sides[1].outside & sides[2].outside) != 0) return;
   ++triangles_;
   int turn = static_cast<int>(mesh::side_of_plane(corners[0], corners[1], corners[2], receiver_.p));
-  if (turn == 0) return;  // seen edge-on: not met
+  if (turn == 0) return;  // seen edge-on: hides nothing
   if (projection_.mirrored()) turn = -turn;
 
   const unsigned inside = sides[0].inside & sides[1].inside & sides[2].inside;

@@ -14,22 +14,22 @@
 #include <cstdint>
 #include <vector>
 
-// Inside areas/ only: what hides a light, as signed edges.
+// Occluders of a light, as signed edges. Internal to areas/.
 
 namespace penumbra::areas {
 
-/// A scene whose triangles are known to share edges. Borrows it, and its tree.
+/// Scene with known shared edges of its triangles. Borrows the scene and its tree.
 struct WeldedScene {
   const visibility::SceneFloats* scene = nullptr;
   const visibility::TriangleTree* tree = nullptr;
-  std::vector<std::uint32_t> corner;  ///< for each position, the first at its place
+  std::vector<std::uint32_t> corner;  ///< for each position, the index of the first equal position
 };
 WeldedScene welded(const visibility::SceneFloats& scene, const visibility::TriangleTree& tree);
 
-/// What hides the light from one view sample: edges on the light's plane, clipped to a box.
+/// Occluders of the light from one view sample: edges on the light's plane, clipped to a box.
 class OccluderEdges {
  public:
-  /// Borrows everything.
+  /// Borrows all arguments.
   OccluderEdges(const WeldedScene& scene, const visibility::Light& light, const Receiver& receiver,
                 const BackProjection& projection, const LightShaft& shaft);
 
@@ -40,7 +40,7 @@ class OccluderEdges {
   void append_to(std::vector<SweepEdge<Number>>& edges) const;
 
  private:
-  /// One triangle's use of an edge from corner `low` to corner `high`.
+  /// Use of an edge from corner `low` to corner `high` by one triangle.
   struct EdgeUse {
     std::uint32_t low, high;
     int count;
@@ -48,11 +48,11 @@ class OccluderEdges {
 
   template <typename Visit>
   void for_each_candidate(Visit&& visit) const;
-  /// All of a triangle's boundary or nothing: then the sums stay closed, whatever is left out.
+  /// Adds all of a triangle's boundary or nothing: then the sums stay closed, whichever triangles are left out.
   void add_triangle(std::uint32_t triangle);
-  /// Clipping closes a triangle along the planes it crosses. Along left and right no vertical line crosses what closes
-  /// it, above the top none is looked at: the cuts at the light's plane and at the bottom are left. False: nothing of
-  /// the triangle is strictly between p and the light.
+  /// Clips a triangle, and adds the closing edges along the crossed planes. Along left and right no vertical line
+  /// crosses the closing edges, and the space above the top is not measured: the cuts at the light's plane and at the
+  /// bottom remain. Returns false if nothing of the triangle is strictly between p and the light.
   bool cut_triangle(const std::array<glm::vec3, 3>& corners, int turn);
   void merge_uses();
 

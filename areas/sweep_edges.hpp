@@ -8,12 +8,12 @@
 #include <utility>
 #include <vector>
 
-// Inside areas/ only: edges in the numbers that a sweep computes in.
+// Edges in the number type of a sweep. Internal to areas/.
 
 namespace penumbra::areas {
 
-/// s = S/W and t = T/W as the sweep wants them. Equal points give equal numbers, however they were come by: that is
-/// what keeps edges that meet together.
+/// Returns s = S/W or t = T/W in the sweep's number type. Equal points give equal numbers, however computed: therefore
+/// edges with a common end stay connected.
 template <typename Number>
 Number ratio_of(const mpz_class& over, const mpz_class& under);
 template <>
@@ -25,7 +25,7 @@ inline mpq_class ratio_of<mpq_class>(const mpz_class& over, const mpz_class& und
 template <>
 inline double ratio_of<double>(const mpz_class& over, const mpz_class& under) {
   return mpq_class(over, under)
-      .get_d();  // cut off toward zero from the exact quotient; needs no common terms cancelled
+      .get_d();  // truncated toward zero from the exact quotient; needs no cancellation of common terms
 }
 
 template <typename Number>
@@ -36,7 +36,7 @@ Number number_of(const mpq_class& value) {
 
 template <typename Number>
 void add_edge(std::vector<SweepEdge<Number>>& edges, SweepEdge<Number> edge) {
-  if (edge.s0 == edge.s1) return;  // no vertical line crosses it
+  if (edge.s0 == edge.s1) return;  // no vertical line crosses the edge
   if (edge.s0 > edge.s1) {
     std::swap(edge.s0, edge.s1);
     std::swap(edge.t0, edge.t1);

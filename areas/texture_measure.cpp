@@ -1,3 +1,5 @@
+// Computes prefix sums of a texture's columns for TextureMeasure.
+
 #include "areas/texture_measure.hpp"
 
 namespace penumbra::areas {

@@ -11,11 +11,11 @@
 #include <cstdint>
 #include <vector>
 
-// Inside areas/ only: a texture's luminance integrated over a region of the light, for the sweep.
+// Luminance of a texture integrated over a region of the light, for the sweep. Internal to areas/.
 
 namespace penumbra::areas {
 
-/// A texture's columns as sums from t = −1 upward, so that what lies between two heights is a difference.
+/// Columns of a texture as sums from t = −1 upward, so that an integral between two heights is a difference.
 class TextureColumns {
  public:
   TextureColumns() = default;
@@ -23,11 +23,12 @@ class TextureColumns {
 
   [[nodiscard]] std::uint32_t width() const { return width_; }
   [[nodiscard]] std::uint32_t height() const { return height_; }
-  /// The luminance of the lowest `row` texels of column x, added up: in double, off by less than 2048 · 2⁻⁵³ of it.
+  /// Returns the sum of the luminance of the lowest `row` texels of column x: in double, off by less than 2048 · 2⁻⁵³
+  /// of it.
   [[nodiscard]] double up_to(std::uint32_t x, std::uint32_t row) const {
     return up_to_[std::size_t{x} * (height_ + 1) + row];
   }
-  /// ∫∫ luminance ds dt over the whole light, of the sums as they are stored.
+  /// Returns ∫∫ luminance ds dt over the whole light, of the stored sums.
   [[nodiscard]] const mpq_class& integral() const { return integral_; }
 
  private:
@@ -36,10 +37,10 @@ class TextureColumns {
   mpq_class integral_;
 };
 
-/// Measures ∫ luminance instead of area. The sweep cuts its strips at the borders between columns. In a strip, what
-/// lies under an edge at height t is F(t), the column's luminance from −1 to t: linear within each texel, whose borders
-/// cut the slab in pieces over which the mean of F is its value in the middle. Nothing is assumed but that the edges
-/// are straight.
+/// Measures ∫ luminance instead of area. The sweep cuts its strips at the borders between columns. In a strip, the
+/// integral under an edge at height t is F(t), the column's luminance from −1 to t: linear within each texel, whose
+/// borders cut the slab in pieces over which the mean of F is its value in the middle. The only assumption is that the
+/// edges are straight.
 template <typename Number>
 class TextureMeasure {
  public:
@@ -66,7 +67,7 @@ class TextureMeasure {
   }
 
  private:
-  /// Which of the cells [0, 1), [1, 2) … holds `at`, clamped.
+  /// Returns the index of the cell [0, 1), [1, 2) … that contains `at`, clamped.
   static std::uint32_t cell(const double& at, std::uint32_t count) {
     return static_cast<std::uint32_t>(std::clamp(std::floor(at), 0.0, count - 1.0));
   }
@@ -76,13 +77,13 @@ class TextureMeasure {
     return static_cast<std::uint32_t>(mpz_class(at.get_num() / at.get_den()).get_ui());
   }
 
-  /// F, with heights and F in rows, for a height within texel `row`.
+  /// Returns F, with heights and F in rows, for a height within texel `row`.
   [[nodiscard]] Number under(const Number& height, std::uint32_t row) const {
     const Number below = columns_->up_to(column_, row), above = columns_->up_to(column_, row + 1);
     return below + (height - row) * (above - below);
   }
 
-  /// The mean of F over the slab, under one edge.
+  /// Returns the mean of F over the slab, under one edge.
   [[nodiscard]] Number mean_under(const ActiveEdge<Number>& edge) const {
     const std::uint32_t rows = columns_->height();
     const Number first = rows_at(edge.from), last = rows_at(edge.to);
@@ -99,7 +100,7 @@ class TextureMeasure {
     return sum / length * 2 / rows;
   }
 
-  /// In texels from below, and not outside of them.
+  /// Returns the height in texels from below, clamped to the texture.
   [[nodiscard]] Number rows_at(const Number& t) const {
     const Number top = columns_->height();
     const Number at = (t + 1) / 2 * columns_->height();

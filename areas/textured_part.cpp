@@ -32,7 +32,7 @@ visibility::LightTexture turned(const visibility::LightTexture& texture) {
 }  // namespace
 
 struct TexturedPart::Rows {
-  TextureColumns columns;  // of the texture turned: the light's rows, upward
+  TextureColumns columns;  // columns of the turned texture: the light's rows, upward
   double integral;
 };
 

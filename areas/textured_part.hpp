@@ -6,7 +6,7 @@
 
 namespace penumbra::areas {
 
-/// A part of a light between two of its rows, in the light's coordinates: s of its two sides at both rows.
+/// Part of a light between two of its rows, in the light's coordinates: s of its two sides at both rows.
 struct LevelTrapezoid {
   double low, high;  ///< t
   double low_left, low_right, high_left, high_right;
