@@ -1,3 +1,6 @@
+// Finds connected components of a mesh and consistent windings by breadth-first search across edges; linear in the
+// mesh. Not from a paper.
+
 #include "mesh/closed_components.hpp"
 
 #include <glm/geometric.hpp>

@@ -1,3 +1,6 @@
+// Builds the edge graph of a triangle soup from its sorted sides: vertices merged by position, kinds of triangles by
+// exact predicates. Not from a paper.
+
 #include "mesh/edge_graph.hpp"
 
 #include "base/assert.hpp"

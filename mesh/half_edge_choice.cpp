@@ -1,3 +1,5 @@
+// Selects the triangles that a half-edge structure can hold, and orients them consistently. Not from a paper.
+
 #include "mesh/half_edge_choice.hpp"
 
 #include "mesh/union_find.hpp"

@@ -1,3 +1,5 @@
+// Builds a half-edge structure (OpenMesh) from the selected triangles, and walks its silhouette loops.
+
 #include "mesh/half_edge_view.hpp"
 
 #include "base/assert.hpp"

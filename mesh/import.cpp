@@ -1,3 +1,5 @@
+// Runs the import helper for a mesh file and checks its answer.
+
 #include "mesh/import.hpp"
 
 #include "base/error.hpp"

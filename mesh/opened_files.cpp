@@ -1,3 +1,5 @@
+// Keeps the list of files opened by the import helper.
+
 #include "mesh/opened_files.hpp"
 
 #include <set>

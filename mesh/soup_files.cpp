@@ -1,3 +1,5 @@
+// Writes STL and OFF files.
+
 #include "mesh/soup_files.hpp"
 
 #include "base/atomic_file.hpp"

@@ -1,3 +1,5 @@
+// Writes PLY files.
+
 #include "mesh/soup_ply.hpp"
 
 #include "base/assert.hpp"

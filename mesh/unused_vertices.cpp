@@ -1,3 +1,5 @@
+// Removes unused vertices and renumbers the others.
+
 #include "mesh/unused_vertices.hpp"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Runs the searches for defects of a mesh and joins their results.
+
 #include "mesh/diagnosis/diagnosis.hpp"
 
 #include "mesh/diagnosis/defect_list.hpp"

@@ -1,3 +1,5 @@
+// Computes fans, components and other connectivity of a triangle soup from its edge graph. Not from a paper.
+
 #include "mesh/diagnosis/mesh_topology.hpp"
 
 #include "mesh/diagnosis/defect_list.hpp"

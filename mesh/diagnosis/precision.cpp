@@ -1,3 +1,6 @@
+// Measures the effect of storing a mesh's positions in float32: spacing of floats, lost vertices and triangles. Not
+// from a paper.
+
 #include "mesh/diagnosis/precision.hpp"
 
 #include "base/parallel.hpp"

@@ -1,3 +1,5 @@
+// Generates boxes, rings and other shapes with known properties.
+
 #include "mesh/shapes/shapes.hpp"
 
 #include "base/assert.hpp"
