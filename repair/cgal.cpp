@@ -1,3 +1,5 @@
+// Orients closed parts outward and fills holes with CGAL's Polygon Mesh Processing.
+
 #include "repair/cgal.hpp"
 
 #include "mesh/box_tree.hpp"

@@ -1,3 +1,6 @@
+// Removes zero-area and duplicate triangles; a triangle with vertices of collinear triangles on its edges is split into
+// fans. Not from a paper.
+
 #include "mesh/edge_graph.hpp"
 #include "repair/steps.hpp"
 

@@ -1,3 +1,5 @@
+// Resolves self-intersections with CGAL's Polygon Mesh Processing, part by part.
+
 #include "mesh/predicates.hpp"
 #include "repair/cgal.hpp"
 

@@ -1,3 +1,6 @@
+// Pairs the triangles around non-manifold edges by their order around the edge, with exact predicates. Not from a
+// paper.
+
 #include "base/assert.hpp"
 #include "mesh/edge_graph.hpp"
 #include "mesh/predicates.hpp"

@@ -1,3 +1,5 @@
+// Runs the steps of a repair in order and counts their changes.
+
 #include "repair/run_repair.hpp"
 
 #include "repair/steps.hpp"
