@@ -1,3 +1,5 @@
+// Sorts light samples by Morton code, so that rays traced together are similar.
+
 #include "reference/tracing_order.hpp"
 
 #include "visibility/dome_faces.hpp"
