@@ -1,3 +1,5 @@
+// Clips convex polygons at axis-parallel lines (Sutherland and Hodgman 1974).
+
 #include "visibility/lights/convex_polygon.hpp"
 
 #include <glm/common.hpp>

@@ -1,3 +1,5 @@
+// Writes masks of visible light samples as a file of packed bits.
+
 #include "visibility/masks/bits_file.hpp"
 
 #include "base/assert.hpp"
