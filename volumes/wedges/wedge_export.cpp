@@ -1,3 +1,5 @@
+// Writes wedges, light and violations as a mesh file for viewing.
+
 #include "volumes/wedges/wedge_export.hpp"
 
 #include "scenes/formats/parts_writer.hpp"

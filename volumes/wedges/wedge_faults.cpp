@@ -1,3 +1,6 @@
+// Builds wedges of the construction of Assarsson and Akenine-Möller 2003 with one deliberate fault each, for tests of
+// the validation.
+
 #include "volumes/wedges/wedge_faults.hpp"
 
 #include <glm/geometric.hpp>

@@ -1,3 +1,6 @@
+// Proves the invariants of wedges, of their split pieces and of silhouette loops (wedge_validation.hpp lists them). Not
+// from a paper.
+
 #include "volumes/wedges/wedge_validation.hpp"
 
 #include "mesh/half_edge_view.hpp"
