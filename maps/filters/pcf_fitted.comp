@@ -1,5 +1,6 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
+// Computes V as pcf.comp does, from faces fitted to the view of a camera.
 #define FITTED_FACES
 #include "maps/filters/pcf.glsl"

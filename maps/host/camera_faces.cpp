@@ -1,3 +1,5 @@
+// Uploads and draws faces fitted to a camera (docs/map-fits.md).
+
 #include "maps/host/camera_faces.hpp"
 
 #include "maps/host/map_method.hpp"

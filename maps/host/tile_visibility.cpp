@@ -1,3 +1,5 @@
+// Reads V of a tile from the device.
+
 #include "maps/host/tile_visibility.hpp"
 
 #include "base/assert.hpp"

@@ -1,3 +1,5 @@
+// Records summed-area tables (Crow 1984): rows, then columns (summed_areas.comp).
+
 #include "maps/products/summed_areas.hpp"
 
 #include "maps/products/summed_areas.comp.spv.hpp"

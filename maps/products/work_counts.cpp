@@ -1,3 +1,5 @@
+// Reads counters of a look-up's work.
+
 #include "maps/products/work_counts.hpp"
 
 #include <utility>

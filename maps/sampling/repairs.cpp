@@ -1,3 +1,6 @@
+// Options that separate the causes of error of the methods with maps from many points of the light
+// (docs/error-budget.md).
+
 #include "maps/sampling/repairs.hpp"
 
 #include "maps/host/error_repairs.hpp"
