@@ -1,3 +1,5 @@
+// Reads, checks and averages pictures on lights.
+
 #include "scenes/light_texture.hpp"
 
 #include "base/error.hpp"

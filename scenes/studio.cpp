@@ -1,3 +1,5 @@
+// Adds a floor, a light and a camera around a mesh or scene.
+
 #include "scenes/studio.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,5 @@
+// Places a camera so that a bounding sphere fits its picture.
+
 #include "scenes/whole_view.hpp"
 
 #include <glm/common.hpp>
