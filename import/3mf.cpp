@@ -1,3 +1,5 @@
+// Reads 3MF files: meshes, components and build items.
+
 #include "import/3mf.hpp"
 
 #include "import/assembly.hpp"

@@ -1,3 +1,5 @@
+// Reads AMF files: meshes and constellations.
+
 #include "import/amf.hpp"
 
 #include "import/assembly.hpp"

@@ -1,3 +1,5 @@
+// Checks the chunk sizes and counts of 3D Studio files before Assimp reads them.
+
 #include "import/audit_3ds.hpp"
 
 #include "base/error.hpp"

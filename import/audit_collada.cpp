@@ -1,3 +1,5 @@
+// Counts the triangles of COLLADA files and checks their polygons before Assimp reads them.
+
 #include "import/audit_collada.hpp"
 
 #include "import/text.hpp"

@@ -1,3 +1,5 @@
+// Triangulates a file's faces and counts changed and skipped ones.
+
 #include "import/faces.hpp"
 
 #include "base/error.hpp"

@@ -1,3 +1,5 @@
+// Reads Wavefront OBJ files in double precision.
+
 #include "import/obj.hpp"
 
 #include "import/faces.hpp"

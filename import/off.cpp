@@ -1,3 +1,5 @@
+// Reads Geomview OFF files in double precision.
+
 #include "import/off.hpp"
 
 #include "import/faces.hpp"

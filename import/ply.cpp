@@ -1,3 +1,5 @@
+// Reads PLY files, ASCII or binary, in double precision.
+
 #include "import/ply.hpp"
 
 #include "import/faces.hpp"

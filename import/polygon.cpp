@@ -1,3 +1,5 @@
+// Triangulates polygons by fans or ear clipping.
+
 #include "import/polygon.hpp"
 
 #include "base/assert.hpp"

@@ -1,3 +1,5 @@
+// Reads STL files, ASCII or binary.
+
 #include "import/stl.hpp"
 
 #include "import/faces.hpp"

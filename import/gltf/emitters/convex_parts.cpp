@@ -1,3 +1,5 @@
+// Divides an emitting mesh into flat convex parts (Hertel and Mehlhorn 1983; convex_parts.hpp has the departures).
+
 #include "import/gltf/emitters/convex_parts.hpp"
 
 #include <glm/geometric.hpp>

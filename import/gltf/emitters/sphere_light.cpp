@@ -1,3 +1,5 @@
+// Recognises meshes that approximate a sphere, by a least-squares fit of the centre. Not from a paper.
+
 #include "import/gltf/emitters/sphere_light.hpp"
 
 #include <glm/geometric.hpp>

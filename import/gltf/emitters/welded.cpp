@@ -1,3 +1,5 @@
+// Merges equal positions of a mesh and divides it into connected parts.
+
 #include "import/gltf/emitters/welded.hpp"
 
 #include <algorithm>
