@@ -1,3 +1,5 @@
+// Reads the bindings and push constants of a shader from its SPIR-V by SPIRV-Cross.
+
 #include "base/assert.hpp"
 #include "render/vulkan.hpp"
 

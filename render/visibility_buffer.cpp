@@ -1,3 +1,5 @@
+// Computes view samples on the device: the rasteriser proposes pixels, and shaders decide coverage in double.
+
 #include "render/visibility_buffer.hpp"
 
 #include "base/error.hpp"
