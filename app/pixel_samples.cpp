@@ -1,3 +1,5 @@
+// Finds the view samples of single pixels by testing every triangle.
+
 #include "app/pixel_samples.hpp"
 
 #include "base/assert.hpp"

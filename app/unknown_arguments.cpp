@@ -1,3 +1,5 @@
+// Explains unknown words of a command line by the nearest existing names.
+
 #include "app/unknown_arguments.hpp"
 
 #include "base/did_you_mean.hpp"

@@ -1,3 +1,5 @@
+// Lists lights, cameras, materials and animations of a scene.
+
 #include "app/inspect/scene_facts.hpp"
 
 #include "compare/scene_words.hpp"

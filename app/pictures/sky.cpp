@@ -1,3 +1,5 @@
+// Adds the radiance of visible domes at background pixels.
+
 #include "app/pictures/sky.hpp"
 
 #include "app/whole_lights.hpp"

@@ -1,3 +1,5 @@
+// Maps view samples to objects and materials.
+
 #include "app/pictures/surfaces.hpp"
 
 #include <algorithm>
