@@ -1,3 +1,5 @@
+// Writes metrics.csv.
+
 #include "compare/metrics_csv.hpp"
 
 #include "base/csv.hpp"

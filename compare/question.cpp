@@ -1,3 +1,5 @@
+// Decides which entries of a comparison compute the same quantity.
+
 #include "compare/question.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,5 @@
+// Plots errors against seconds for the report.
+
 #include "compare/report_plots.hpp"
 
 #include "compare/error_plot.hpp"
