@@ -1,3 +1,5 @@
+// Converts shapes of lights between the interface and the rooms.
+
 #include "library/light_shape.hpp"
 
 #include "base/error.hpp"

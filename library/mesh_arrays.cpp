@@ -1,3 +1,5 @@
+// Checks a program's mesh arrays and converts them to a soup.
+
 #include "library/mesh_arrays.hpp"
 
 #include "base/error.hpp"
