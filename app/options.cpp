@@ -59,7 +59,7 @@ void add_format_options(CLI::App& command, FormatOptions& format) {
   command
       .add_option(
           "--compression", format.compression,
-          "of the EXR: zip, zips (line by line), none, or dwaa, which is lossy for colours alone (default: zip)")
+          "compression of the EXR: zip, zips (line by line), none, or dwaa, lossy for colours only (default: zip)")
       ->type_name("NAME");
 }
 
@@ -110,10 +110,9 @@ void add_run_options(CLI::App& command, RunOptions& options) {
       ->allow_extra_args(false);
   add_allow_outside(command, options.allow_outside);
   command
-      .add_option(
-          "--normals", options.normals,
-          "of the beauty: shading (the file's smooth ones, where it has any) or geometric (facets); visibility is the "
-          "triangles' (default: shading)")
+      .add_option("--normals", options.normals,
+                  "normals of the beauty: shading (the file's smooth ones, if any) or geometric (facets); visibility "
+                  "always uses the triangles' (default: shading)")
       ->type_name("NAME");
   add_lenient(command, options.lenient);
   add_gltf_options(command, options.gltf);

@@ -94,7 +94,7 @@ void add_studio_options(CLI::App& command, StudioOptions& options) {
       "--studio", options.always,
       "put a soft rectangle light and a floor around the scene, as around a mesh or a glTF without lights");
   command.add_flag("--no-studio", options.never, "refuse a scene without lights")->excludes("--studio");
-  command.add_option("--floor", options.floor, "of a studio: none, or auto where the scene does not lie on one")
+  command.add_option("--floor", options.floor, "floor of a studio: none, or auto where the scene does not lie on one")
       ->type_name("none|auto")
       ->capture_default_str();
   command

@@ -67,7 +67,7 @@ class BakeCommand : public Command {
     cli_.add_option("--stats", options_.stats, "times, counters and warnings as JSON")->type_name("FILE.json");
     cli_.add_option("--png", options_.png, "the irradiance as a picture for viewing")->type_name("FILE.png");
     cli_.add_option("--exposure", options_.exposure,
-                    "of the PNG: auto, stops, or a picture whose own it is to have "
+                    "exposure of the PNG: auto, stops, or FILE.exr (that picture's exposure) "
                     "(default: auto)")
         ->type_name("auto|EV|FILE.exr");
     cli_.add_option("--frame", options_.frame,

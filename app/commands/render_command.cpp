@@ -39,8 +39,8 @@ class RenderCommand : public Command {
     add_picture_options(cli_, options_);
     cli_.add_option(
             "--frame", options_.frame,
-            "one frame of the scene's animation, or a moment between two, such as 12.5; files are numbered where "
-            "their names say so alone")
+            "one frame of the scene's animation, or a moment between two, such as 12.5; files are numbered only "
+            "if their names have a place for the number")
         ->type_name("F")
         ->excludes(cli_.get_option("--frames"));
     add_tev(cli_, tev_);

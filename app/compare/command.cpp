@@ -107,8 +107,8 @@ class CompareCommand : public Command {
         ->type_name("LIST")
         ->capture_default_str();
     cli_.add_option("--reference", options_.reference,
-                    fmt::format("who judges: rays on light samples, areas (exact; slow, see --sample-pixels), or any "
-                                "method whose areas are exact, such as {}",
+                    fmt::format("reference of the errors: rays on light samples, areas (exact; slow, see "
+                                "--sample-pixels), or any method whose areas are exact, such as {}",
                                 exact_area_example()))
         ->type_name(fmt::format("{}|NAME:key=value", fmt::join(judge_names(), "|")))
         ->capture_default_str();
@@ -140,7 +140,7 @@ class CompareCommand : public Command {
         ->type_name("A-B[xN]");
     cli_.add_option("--fps", fps_, "frame F is F / fps seconds of a glTF animation (default: 24)")->type_name("N");
     cli_.add_option("--exposure", exposure_,
-                    "of the pictures for eyes: auto and first (the reference's lit surfaces fill them) or stops "
+                    "exposure of the pictures: auto and first (from the reference's lit surfaces) or stops "
                     "(default: auto)")
         ->type_name("auto|first|EV");
     add_tev(cli_, tev_);
@@ -184,9 +184,11 @@ class CompareCommand : public Command {
     cli_.add_option("--pixel-samples", pixel_samples_, "1 alone: errors are of pixels' centres")->type_name("1");
     cli_.add_option("--pixel-filter", pixel_filter_, "box alone: of one view sample there is nothing to weigh")
         ->type_name("box");
-    cli_.add_option("--filter-width", filter_width_, "of --pixel-filter; not here")->type_name("PIXELS");
+    cli_.add_option("--filter-width", filter_width_, "width of --pixel-filter; not supported by compare")
+        ->type_name("PIXELS");
     cli_.add_option("--motion-samples", motion_samples_, "1 alone: errors are of one moment")->type_name("1");
-    cli_.add_option("--shutter", shutter_, "of --motion-samples; not here")->type_name("FRAMES");
+    cli_.add_option("--shutter", shutter_, "shutter of --motion-samples; not supported by compare")
+        ->type_name("FRAMES");
     cli_.add_flag("--skip-existing", skip_existing_, "not supported by compare: all methods are always measured");
   }
 

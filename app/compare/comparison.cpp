@@ -168,7 +168,7 @@ class Comparison {
       sort_into_classes(session_, truths_, progress_);
     } catch (const Error& error) {  // a reference of areas supports lights that rays do not
       if (error.code() == ExitCode::interrupted) throw;
-      warn(fmt::format("errors are not told apart by who casts the shadow: {}", error.what()));
+      warn(fmt::format("errors are not divided by the object that casts the shadow: {}", error.what()));
     }
     reference_beauty_ = std::move(done.beauty);
     if (std::ranges::any_of(entries_, [](const Entry& e) { return e.description.output == Output::scalar; }) &&

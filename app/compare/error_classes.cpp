@@ -60,7 +60,7 @@ void sort_into_classes(const Session& session, std::vector<LightTruth>& truths, 
     sort_by_visibility(truth);
   }
   const std::vector<WholeLight> wholes = whole_lights(session.lights);
-  progress.begin("who casts the shadows", session.lights.size());
+  progress.begin("objects that cast shadows", session.lights.size());
   for (std::size_t whole = 0; whole < truths.size(); ++whole) {
     compare::PixelClasses& classes = truths[whole].classes;
     std::vector<std::uint32_t> shadowed;

@@ -40,7 +40,7 @@ std::size_t most_tasks(std::string_view config) {
     if (equals == std::string_view::npos || trimmed(line.substr(0, equals)) != "MaxArraySize") continue;
     const auto most = parse_integer<std::size_t>(trimmed(line.substr(equals + 1)));
     if (!most) break;
-    if (*most < 1) throw ResourceError("this farm has no job arrays (MaxArraySize is 0); ask who runs it");
+    if (*most < 1) throw ResourceError("this farm has no job arrays (MaxArraySize is 0); ask its administrator");
     return *most;
   }
   return kDefaultMostTasks;

@@ -51,7 +51,7 @@ class InspectCommand : public Command {
                     "exit with 1 if one of these counts of the JSON is not 0 in a file: boundaryEdges, needles …, "
                     "open (not closed), non-manifold (edges and vertices)")
         ->type_name("NAME,…");
-    cli_.add_flag("--methods", methods_, "list what each method makes of the mesh, and why");
+    cli_.add_flag("--methods", methods_, "list each method's verdict on the mesh, with its reason");
     cli_.add_option("--png", png_,
                     "a picture of the mesh with its defects coloured (see below), from two sides; of several files "
                     "OUT-0001-NAME.png and so on")

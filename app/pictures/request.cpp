@@ -63,7 +63,7 @@ void refuse_numbered_moments(const PictureOptions& options, const PictureRequest
   for (const auto& file : {options.run.out, options.stats, options.png, options.bits}) {
     if (has_frame_number(file))
       throw UsageError(
-          "{}: frame {} is none of a sequence, whose numbers are whole; name the file without a number's place",
+          "{}: frame {} lies between two frames and has no number for a file's name; leave out the number's place",
           file.string(), *frame);
   }
 }
@@ -87,9 +87,10 @@ void add_picture_options(CLI::App& command, PictureOptions& options) {
       ->type_name("FILE.json");
   command.add_option("--png", options.png, "the beauty for eyes")->type_name("FILE.png");
   command
-      .add_option("--exposure", options.exposure,
-                  "of the PNG: auto (lit surfaces fill it; light bodies do not count), first (a sequence's first "
-                  "frame decides for all), stops, or a picture whose own it is to have")
+      .add_option(
+          "--exposure", options.exposure,
+          "exposure of the PNG: auto (from lit surfaces, without light bodies), first (that of a sequence's first "
+          "frame for all), stops, or FILE.exr (that picture's exposure)")
       ->type_name("auto|first|EV|FILE.exr");
   command.add_option("--bits", options.bits, "every pair's answer for the first light (penumbra-bits/1; mask methods)")
       ->type_name("FILE");
@@ -107,17 +108,18 @@ void add_picture_options(CLI::App& command, PictureOptions& options) {
       ->type_name("S");
   command
       .add_option("--pixel-filter", options.pixel_filter,
-                  "how they are weighed: box (the mean of the pixel's own) or blackman-harris, which takes in "
-                  "neighbours, as Blender does (default: box)")
+                  "weights of the view samples: box (the mean of the pixel's own) or blackman-harris, which includes "
+                  "neighbours, as in Blender (default: box)")
       ->type_name("NAME");
   command
-      .add_option("--filter-width", options.filter_width, "of blackman-harris, in pixels (default: 1.5, as Blender's)")
+      .add_option("--filter-width", options.filter_width,
+                  "width of blackman-harris, in pixels (default: 1.5, as in Blender)")
       ->type_name("PIXELS");
   command
       .add_option(
           "--pixel-tolerance", options.pixel_tolerance,
-          "of exact areas at several view samples a pixel: V is interpolated between neighbouring pixels where the "
-          "error that is estimated of it is at most this (default: 1/512; 0: every view sample is evaluated)")
+          "largest estimated error of V where exact areas at several view samples a pixel are interpolated between "
+          "neighbouring pixels (default: 1/512; 0: every view sample is evaluated)")
       ->type_name("V");
   command
       .add_option("--motion-samples", options.motion_samples,

@@ -66,11 +66,12 @@ class SweepCommand : public Command {
         ->required()
         ->allow_extra_args(false)
         ->type_name("KEY=VALUES,…");
-    cli_.add_option("--reference", reference_,
-                    fmt::format("who judges, as `compare` has it (default: {} if it does the lights, else rays)",
-                                exact_area_example()))
+    cli_.add_option(
+            "--reference", reference_,
+            fmt::format("reference of the errors, as in `compare` (default: {} if it does the lights, else rays)",
+                        exact_area_example()))
         ->type_name("NAME");
-    cli_.add_option("--reference-samples", options_.reference_samples, "light samples of rays that judge")
+    cli_.add_option("--reference-samples", options_.reference_samples, "light samples of the reference, if rays")
         ->type_name("M")
         ->capture_default_str();
     cli_.add_option("--runs", options_.runs,

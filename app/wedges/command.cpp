@@ -73,8 +73,8 @@ class WedgesCommand : public Command {
             "for this pixel of the picture that `render` makes: the wedges that contain what it sees, what each takes "
             "from the light or gives back, their sum, and the exact area")
         ->type_name("X,Y");
-    cli_.add_option("--size", size_, "of that picture (default: as `render` has it)")->type_name("WxH");
-    cli_.add_option("--camera", camera_, "that it is seen by, as `render` has it (default: the scene's first)")
+    cli_.add_option("--size", size_, "size of that picture (default: as in `render`)")->type_name("WxH");
+    cli_.add_option("--camera", camera_, "camera of that picture, as in `render` (default: the scene's first)")
         ->type_name("NAME|fit|E:T[:FOV]");
     cli_.add_option("--svg", svg_, "the light as seen from there, with projected edges")
         ->type_name("FILE.svg")

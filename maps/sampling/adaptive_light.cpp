@@ -67,7 +67,7 @@ constexpr visibility::ChoiceOption kWeights{
     "weights",
     {{"paper", PointWeights::paper}, {"equal", PointWeights::equal}, {"area", PointWeights::area}},
     PointWeights::paper,
-    "of the maps: the paper's, none, or each cell's area shared by its corners"};
+    "weights of the maps: the paper's, none, or each cell's area shared by its corners"};
 constexpr visibility::ChoiceOption kShareOf{"shareOf",
                                             {{"map", true}, {"pixels", false}},
                                             false,

@@ -48,7 +48,7 @@ constexpr visibility::ChoiceOption kTable{
 constexpr visibility::ChoiceOption kConstruction{"construction",
                                                  {{"original", Construction::original}, {"tight", Construction::tight}},
                                                  Construction::original,
-                                                 "of the wedges, which say where to look"};
+                                                 "construction of the wedges, which bound the search"};
 constexpr auto kWedges =
     wedges_option("where silhouettes and wedges are built for each light (tight ones always on the host)");
 constexpr visibility::ChoiceOption kTests{

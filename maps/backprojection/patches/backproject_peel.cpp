@@ -26,7 +26,7 @@ constexpr visibility::ChoiceOption<std::uint32_t, 2> kSelect{
     "select",
     {{"contribution", 0u}, {"deepest", 1u}},
     0u,
-    "of a texel's surfaces in front of the receiver the deepest that hides some of the light, or the deepest"};
+    "surface of a texel in front of the receiver that counts: the deepest that hides light, or the deepest"};
 constexpr auto kPeelDepth = depth_option(DepthUse::midpoint);
 
 visibility::MeshVerdict backproject_peel_verdict(const mesh::Diagnosis& mesh) {

@@ -22,7 +22,7 @@ constexpr visibility::ChoiceOption kPatches{
     "patches",
     {{"top", SoftPatches::top}, {"bottom", SoftPatches::bottom}},
     SoftPatches::top,
-    "of one pass: texels stand for the surfaces nearest to the light, or for the farthest"};
+    "surfaces of one pass that texels stand for: nearest to the light, or farthest"};
 constexpr visibility::ChoiceOption kPrecision{"precision",
                                               {{"fp32", SoftPrecision::fp32}, {"fp16", SoftPrecision::fp16}},
                                               SoftPrecision::fp32,
