@@ -29,7 +29,7 @@ class ServeCommand : public Command {
       throw UsageError("stdin is a terminal; another program sends the messages (docs/serve.md)");
     Service service(run_, STDIN_FILENO, STDOUT_FILENO);
     service.run();
-    ::_exit(0);  // at once: a picture that is at work on, or the device, could take seconds more
+    ::_exit(0);  // immediately: finishing the current picture, or the device, could take seconds
   }
 
  private:

@@ -1,3 +1,5 @@
+// Reads and writes messages of pipes without blocking on a slow reader.
+
 #include "app/serve/message_pipe.hpp"
 
 #include "app/view/message_text.hpp"
@@ -62,7 +64,7 @@ std::optional<PipeMessage> MessageSource::next() {
   PipeMessage message{parse_message(text), {}};
   if (!message.head.is_object() || !message.head.contains("type") || !message.head["type"].is_string())
     throw InputError("a message is an object with a \"type\"");
-  // Not all at once: that there are so many bytes is only said.
+  // Grows in steps: the announced number of bytes may be wrong.
   constexpr std::uint64_t kStep = std::uint64_t{16} << 20U;
   for (std::uint64_t left = said_bytes(message.head); left > 0;) {
     const std::uint64_t step = std::min(left, kStep);
@@ -76,13 +78,14 @@ std::optional<PipeMessage> MessageSource::next() {
 }
 
 MessageSink::MessageSink(int descriptor)
-    // A description of its own, so that what waits is this thread alone.
+    // A file description of its own, so that only this thread can block.
     : out_(::open(("/proc/self/fd/" + std::to_string(descriptor)).c_str(), O_WRONLY | O_NONBLOCK | O_CLOEXEC)) {
-  constexpr std::size_t kAtOnce = 512;  // always taken by a pipe that poll() says takes something
+  constexpr std::size_t kAtOnce = 512;  // a pipe reported writable by poll() always accepts this many bytes
   piece_ = out_.is_open() ? std::size_t{1} << 20U : kAtOnce;
   if (!out_.is_open()) out_ = Descriptor(::fcntl(descriptor, F_DUPFD_CLOEXEC, 3));
   if (!out_.is_open()) throw ResourceError("stdout cannot be written to");
-  ::fcntl(out_.get(), F_SETPIPE_SZ, 1 << 20);  // pictures are large; no pipe, or no such size: it works as well
+  ::fcntl(out_.get(), F_SETPIPE_SZ, 1 << 20);  // pictures are large; a failure (no pipe, or size not permitted) is
+                                               // ignored
   thread_ = std::thread([this] { work(); });
 }
 

@@ -18,8 +18,8 @@
 
 namespace penumbra::app {
 
-/// What passes through a pipe (docs/serve.md): the length of a JSON object as a 32-bit number, little-endian; the
-/// object; then so many bytes as its member "bytes" says, none without.
+/// Message of a pipe (docs/serve.md): the length of a JSON object as a 32-bit number, little-endian; the object; then
+/// as many bytes as its member "bytes", by default none.
 struct PipeMessage {
   nlohmann::json head;
   std::string bytes;
@@ -28,41 +28,42 @@ struct PipeMessage {
 inline constexpr std::uint32_t kLongestHead = 1U << 20U;
 inline constexpr std::uint64_t kMostBytes = std::uint64_t{2} << 30U;
 
-/// The message in the pipe's form; `bytes` need not be said in `head`.
+/// Returns the message in the pipe's form; `head` need not have the member "bytes".
 std::string in_pipe(nlohmann::ordered_json head, const std::string& bytes = {});
 
-/// Reads messages. `read` fills what it is given as far as it can, and returns how much that was; 0: the end.
+/// Reads messages. `read` fills the given span as far as possible, and returns the number of bytes; 0: end of input.
 class MessageSource {
  public:
   using Read = std::function<std::size_t(std::span<char>)>;
   explicit MessageSource(Read read) : read_(std::move(read)) {}
-  /// Nothing at the end of input. Throws InputError for what is no message: where the next one begins is then unknown.
+  /// Returns the next message; nullopt at the end of input. Throws InputError if the input is not a message: the begin
+  /// of the next one is then unknown.
   std::optional<PipeMessage> next();
 
  private:
-  /// False if the input ends before the first of these bytes. Throws if it ends among them.
+  /// Returns false if the input ends before the first of these bytes. Throws if it ends among them.
   bool fill(std::span<char> bytes, const char* what);
 
   Read read_;
 };
 
-/// Writes messages on a thread of its own, so that a reader who is slow, or has gone, stops nobody.
+/// Writes messages on a thread of its own, so that a slow or absent reader does not block the caller.
 class MessageSink {
  public:
-  /// `descriptor` is not closed.
+  /// `descriptor` is not closed by this object.
   explicit MessageSink(int descriptor);
   MessageSink(const MessageSink&) = delete;
   MessageSink& operator=(const MessageSink&) = delete;
   ~MessageSink();
 
-  /// Messages that wait have a second to be taken; pictures none. Afterwards nothing is written any more.
+  /// Gives waiting messages a second to be written, and waiting pictures none. Afterwards nothing is written.
   void finish();
 
-  /// Messages are written in their order, and none is left out. Waits while a thousand of them wait.
+  /// Writes messages in their order, without losses. Blocks while a thousand messages are waiting.
   void send(std::string message);
-  /// It takes the place of a picture that has not begun to be written.
+  /// Replaces a waiting picture whose writing has not begun.
   void send_picture(std::string message);
-  /// The reader has gone.
+  /// Returns whether the reader has closed the pipe.
   [[nodiscard]] bool is_closed() const;
 
  private:
@@ -70,7 +71,7 @@ class MessageSink {
   bool write(std::span<const char> bytes);
 
   Descriptor out_;
-  std::size_t piece_ = 0;  // what can be written at once without waiting
+  std::size_t piece_ = 0;  // number of bytes that can be written without blocking
   mutable std::mutex mutex_;
   std::condition_variable wake_, room_;
   std::deque<std::string> waiting_;

@@ -67,7 +67,7 @@ void PictureJob::run(const std::vector<std::string>& arguments) {
     Exposure exposure = now.exposure;
     progress_.info(summary(kept_->renderer->write(files, exposure)));
   } catch (...) {
-    kept_.reset();  // whatever it holds may be half of one picture and half of another
+    kept_.reset();  // its data may belong partly to one picture and partly to another
     throw;
   }
 }

@@ -11,17 +11,18 @@
 
 namespace penumbra::app {
 
-/// Pictures that are written as `render` writes them, one after the other. What does not change from one to the next is
-/// kept: the device, methods, and of meshes what still holds.
+/// Writes pictures as `render` does, one after another. Unchanged data are kept between pictures: the device, methods,
+/// and the valid parts of meshes' structures.
 class PictureJob {
  public:
-  /// It must outlive this object.
+  /// `progress` must outlive this object.
   explicit PictureJob(Progress& progress) : progress_(progress) {}
-  /// `arguments`: what would follow `penumbra render`. Throws Error for what that would refuse, and for a sequence.
+  /// Writes one picture. `arguments`: those of `penumbra render`. Throws Error if `render` would reject them, and for a
+  /// sequence.
   void run(const std::vector<std::string>& arguments);
 
  private:
-  /// What cannot change from picture to picture.
+  /// Data that are constant from picture to picture.
   struct Kept {
     PictureOptions options;
     PictureRequest request;

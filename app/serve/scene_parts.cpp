@@ -1,3 +1,5 @@
+// Keeps a scene as replaceable things and joins them.
+
 #include "app/serve/scene_parts.hpp"
 
 #include "base/error.hpp"
@@ -11,7 +13,7 @@
 namespace penumbra::app {
 namespace {
 
-/// Takes the thing's name away from the name of one of its objects or lights.
+/// Removes the thing's name from the name of one of its objects or lights, and returns it.
 std::string take_thing(std::string& name) {
   const std::size_t end = name.find(SceneParts::kThingEnds);
   if (end == std::string::npos) return "";
@@ -20,7 +22,7 @@ std::string take_thing(std::string& name) {
   return thing;
 }
 
-/// Makes a thing's stretch one longer. Throws for one that has ended before.
+/// Extends a thing's range by one. Throws if the range has already ended.
 void add(const std::string& thing, std::uint32_t number, std::uint32_t& first, std::uint32_t& count) {
   if (count == 0) first = number;
   if (first + count != number)

@@ -16,41 +16,41 @@
 
 namespace penumbra::app {
 
-/// A scene of things, each of which is replaced by itself: what changes is read again, and nothing else. Things stand
-/// in the order in which they came, or in one that is said.
+/// Scene of things, each of which can be replaced separately: only changed things are read again. Things are in the
+/// order of their arrival, or in a given order.
 ///
-/// Files that are put have the things' names in those of their nodes, THING␟NAME (kThingEnds); nodes of one thing stand
-/// together. Nodes without that are of the thing "".
+/// Names of nodes in put files begin with the name of their thing, THING␟NAME (kThingEnds); nodes of one thing are
+/// contiguous. Nodes without this prefix belong to the thing "".
 class SceneParts {
  public:
   static constexpr std::string_view kThingEnds = "\xe2\x90\x9f";  ///< ␟, U+241F
 
-  /// What the file `glb` has of a thing takes the place of all that there was of it. `shadeless`: things whose lamps
-  /// cast no shadows. `folder`: where the pictures lie that the file names; empty: it names none. Throws InputError for
-  /// a file that is none, and then changes nothing.
+  /// Replaces each thing by its contents in the file `glb`. `shadeless`: things whose lamps cast no shadows. `folder`:
+  /// folder of the pictures named in the file; empty: the file names none. Throws InputError for an invalid file, and
+  /// then changes nothing.
   void put(std::span<const std::byte> glb, const std::set<std::string>& shadeless, const std::filesystem::path& folder);
-  /// Things go; names of none are let be.
+  /// Removes things; ignores unknown names.
   void remove(const std::vector<std::string>& things);
-  /// Things that are not named stand behind, as they stood. Throws InputError for a name of none.
+  /// Orders the things; things not listed follow, in their previous order. Throws InputError for an unknown name.
   void put_in_order(const std::vector<std::string>& things);
 
-  /// Whether scene() would be another one than the last time that one was shown.
+  /// Returns whether scene() would differ from the last scene shown.
   [[nodiscard]] bool has_changed() const { return changed_ || meshes_changed_; }
-  /// All of it, or without meshes where those are the last scene's. Throws InputError for a scene that cannot be
-  /// rendered: without a light, or without a triangle. `camera`: its only one.
+  /// Returns the whole scene, or the scene without meshes if these equal the last scene's. Throws InputError for a
+  /// scene that cannot be rendered: without a light, or without a triangle. `camera`: its only camera.
   [[nodiscard]] LiveScene scene(const scenes::Camera& camera) const;
-  /// What scene() gave is shown.
+  /// Records that the last result of scene() is shown.
   void note_shown() { changed_ = meshes_changed_ = false; }
 
  private:
   struct Thing {
-    std::shared_ptr<const scenes::Scene> file;  // shared by the things that came in it: one of them may be replaced
+    std::shared_ptr<const scenes::Scene> file;  // shared by the things of one file: each may be replaced separately
     scenes::ScenePart part;
   };
   void note_change_of(const Thing& thing) { (thing.part.objects > 0 ? meshes_changed_ : changed_) = true; }
 
   std::map<std::string, Thing> things_;
-  std::vector<std::string> order_;  // all of them
+  std::vector<std::string> order_;  // of all things
   bool changed_ = false, meshes_changed_ = false;
 };
 

@@ -25,9 +25,9 @@ using nlohmann::ordered_json;
 namespace {
 
 constexpr int kProtocol = 1;
-constexpr std::uint64_t kClient = 1;  // the only one
+constexpr std::uint64_t kClient = 1;  // the only client
 
-/// What is logged while pictures are written goes to the other program, too.
+/// Log sink that also sends messages about written pictures to the other program.
 class PipeLog final : public spdlog::sinks::base_sink<std::mutex> {
  public:
   explicit PipeLog(MessageSink& out) : out_(out) {}
@@ -46,7 +46,7 @@ class PipeLog final : public spdlog::sinks::base_sink<std::mutex> {
   MessageSink& out_;
 };
 
-/// For as long as it lives, the log goes to the other program.
+/// Sends the log to the other program during its lifetime.
 class LogsToPipe {
  public:
   explicit LogsToPipe(MessageSink& out) : before_(spdlog::default_logger()) {
@@ -70,7 +70,7 @@ std::size_t read_some(int descriptor, std::span<char> into) {
   }
 }
 
-/// A list of numbers as bytes, and its line in the head.
+/// Adds a list of numbers as bytes, and its line to the head.
 template <typename T>
 void add_buffer(std::string& bytes, ordered_json& listed, ordered_json line, const std::vector<T>& numbers) {
   line["channels"] = sizeof(T) / sizeof(float);
@@ -84,7 +84,8 @@ void add_buffer(std::string& bytes, ordered_json& listed, ordered_json line, con
 Service::Service(RunOptions options, int input, int output)
     : options_(std::move(options)), out_(output), inbox_(std::make_shared<Inbox>()) {
   options_.scene = "the scene";
-  std::thread([inbox = inbox_, input] { read_messages(inbox, input); }).detach();  // nothing ends what waits for input
+  // the thread blocks on input and cannot be joined
+  std::thread([inbox = inbox_, input] { read_messages(inbox, input); }).detach();
 }
 
 void Service::read_messages(const std::shared_ptr<Inbox>& inbox, int input) {
@@ -106,7 +107,7 @@ void Service::read_messages(const std::shared_ptr<Inbox>& inbox, int input) {
     } else {
       inbox->fault = fault;
       inbox->ended = true;
-      if (inbox->renders) ::kill(::getpid(), SIGTERM);  // nobody waits for the picture any more
+      if (inbox->renders) ::kill(::getpid(), SIGTERM);  // the picture is no longer needed
     }
     inbox->came.notify_all();
   } while (message);

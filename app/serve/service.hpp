@@ -19,28 +19,28 @@
 
 namespace penumbra::app {
 
-/// Answers the messages of another program (docs/serve.md), which ends it by closing its input.
+/// Answers the messages of another program (docs/serve.md), which ends the service by closing its input.
 class Service {
  public:
-  /// Messages come from `input` and go to `output`, descriptors that stay open. `options`: device and normals.
+  /// Reads messages from `input` and writes to `output`, descriptors that stay open. `options`: device and normals.
   Service(RunOptions options, int input, int output);
   Service(const Service&) = delete;
   Service& operator=(const Service&) = delete;
   ~Service() = default;
 
-  /// Returns when the input has ended and all but pictures has been written. Throws InputError for input that is no
-  /// message, ResourceError if nobody reads the output any more.
+  /// Returns when the input has ended and everything except pictures has been written. Throws InputError for input that
+  /// is not a message, ResourceError if the reader has closed the output.
   void run();
 
  private:
-  /// What has been read, and not answered.
+  /// Messages read but not yet answered.
   struct Inbox {
     std::mutex mutex;
     std::condition_variable came;
-    std::optional<PipeMessage> message;  // the next; another one is read when it has been taken
-    std::exception_ptr fault;            // of the input
+    std::optional<PipeMessage> message;  // the next message; another one is read once it has been taken
+    std::exception_ptr fault;            // error of the input
     bool ended = false;
-    bool renders = false;  // a picture that is written: ends with the input
+    bool renders = false;  // a picture is being written: cancelled at the end of the input
   };
   static void read_messages(const std::shared_ptr<Inbox>& inbox, int input);
   [[nodiscard]] std::optional<PipeMessage> next_message();
@@ -53,14 +53,14 @@ class Service {
   RunOptions options_;
   MessageSink out_;
 
-  std::shared_ptr<Inbox> inbox_;  // shared with the thread that reads: that ends with the process, maybe after this
+  std::shared_ptr<Inbox> inbox_;  // shared with the reading thread, which may end after this object
 
   SceneParts parts_;
   scenes::Camera camera_;
   std::atomic<bool> wants_visibility_ = false;
   TerminalProgress progress_{false};
   PictureJob job_{progress_};
-  std::unique_ptr<LiveRenderer> renderer_;  // tells out_, so it goes first
+  std::unique_ptr<LiveRenderer> renderer_;  // uses out_, therefore destroyed first
 };
 
 }  // namespace penumbra::app

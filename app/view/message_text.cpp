@@ -11,7 +11,7 @@ using nlohmann::ordered_json;
 
 namespace {
 
-/// Is JSON nested deeper than any message? What copies and writes it calls itself level by level.
+/// Returns whether the JSON is nested deeper than any valid message: copying and writing JSON is recursive.
 bool is_deep(std::string_view text) {
   constexpr int kMost = 32;
   int depth = 0;
