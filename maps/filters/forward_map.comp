@@ -3,15 +3,17 @@
 #extension GL_GOOGLE_include_directive : require
 #include "maps/host/look_up.glsl"
 
-// Zhang 1998: every texel of the light's picture lights what it lands on, as a splat over the surface that it shows. A
-// view sample adds up the splats that reach it. Splats are B-splines, so that those of a whole surface add up to 1.
+// Computes V by forward mapping (Zhang 1998): every texel of the light's picture lights the surface it hits, as a splat
+// over this surface. A view sample sums the splats that reach it. Splats are B-splines, so that those of a whole
+// surface add up to 1.
 
-layout(constant_id = 0) const uint kDegree = 1;  // of a splat along each axis: 0, a texel wide; 1, two; 2, three
+layout(constant_id = 0) const uint kDegree = 1;  // of a splat along each axis: 0, one texel wide; 1, two; 2, three
 
-// Places in a texel are counted in 64ths, so that weights are integers with the same sum everywhere.
+// Positions in a texel are counted in 64ths, so that weights are integers with the same sum everywhere.
 const int kParts = 64;
 
-// What the texels before, at and behind a place's own one give it along an axis, `at` 64ths of a texel beyond its centre.
+// Returns the weights of the texels before, at and behind a position's own texel along an axis, `at` 64ths of a texel
+// beyond the texel's centre.
 ivec3 weights(int at) {
   if (kDegree == 0) return ivec3(0, 1, 0);
   if (kDegree == 1) return ivec3(max(-at, 0), kParts - abs(at), max(at, 0));
@@ -20,8 +22,8 @@ ivec3 weights(int at) {
 }
 int whole() { return kDegree == 0 ? 1 : kDegree == 1 ? kParts : 2 * kParts * kParts; }
 
-// Does the texel's light land on the receiver's surface, neither before nor behind it? What casts no shadow is not in
-// the map: there light lands that would go on.
+// Returns whether the texel's light hits the receiver's surface, neither before nor behind it. Objects that cast no
+// shadow are not in the map: light hits them even if it continues.
 bool lands(Tap tap, vec3 d, vec3 m, uint beside) {
   const bool is_drawn = receiver_plane != 0xffffffffu;
   PlaneDepth plane = PlaneDepth(tap.along, lookup.bias * tap.texel * tap.along);
@@ -47,7 +49,7 @@ float visibility_of(LightView view, vec3 d, vec3 m) {
     const ivec2 away = ivec2(k % 3, k / 3) - 1;
     const int weight = across[away.x + 1] * upward[away.y + 1];
     if (weight == 0) continue;
-    // At a face's border a texel is splatted for those that the face does not have.
+    // At a face's border, a border texel is used for texels outside the face.
     Tap tap = tap_of(view, lookup.size, face, uvec2(clamp(own + away, ivec2(0), last)));
     tap.along = hit.f.z;
     tap.mirrored = d.z < 0.0 ? -1.0 : 1.0;

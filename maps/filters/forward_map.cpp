@@ -1,7 +1,7 @@
-// Zhang 1998, "Forward shadow mapping", as the course notes of Eisemann et al. (2009, box in section 3.2) tell it.
-// Departures: each view sample gathers the splats that reach it, which are the same sums; a splat lies on the surface
-// that its texel shows, its shape a B-spline; and the receiver's plane is compared at each texel's centre
-// (receiverPlane=off: the receiver's own depth).
+// Gathers the splats of a light's picture: Zhang 1998, "Forward shadow mapping", as described in the course notes of
+// Eisemann et al. (2009, box in section 3.2). Departures: each view sample gathers the splats that reach it, with the
+// same sums; a splat lies on the surface shown by its texel, with a B-spline as shape; and the receiver's plane is
+// compared at each texel's centre (receiverPlane=off: the receiver's own depth).
 
 #include "maps/filters/forward_map.comp.spv.hpp"
 #include "maps/filters/methods.hpp"

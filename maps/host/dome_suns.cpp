@@ -1,6 +1,6 @@
-// Domes for methods of maps: the sky as suns of equal power (Debevec 2005). Departures: parts of the sky are made of
-// the dome's light samples, which have equal power, not of texels; and a sun is as wide as its part, not one direction,
-// so that methods with penumbrae have few steps.
+// Extends methods of maps to domes: the sky as suns of equal power (Debevec 2005). Departures: parts of the sky consist
+// of the dome's light samples, which have equal power, not of texels; and a sun is as wide as its part, not one
+// direction, so that methods with penumbrae have few steps.
 
 #include "maps/host/dome_suns.hpp"
 
@@ -27,10 +27,10 @@ using visibility::Output;
 using visibility::Tile;
 using visibility::ViewSamples;
 
-/// The tangent of the widest part of the sky that one sun stands for.
+/// Tangent of the widest part of the sky represented by one sun.
 constexpr double kWidest = 3;
 
-/// What a disk of this tangent around `middle` has above the horizon of n, as a share.
+/// Returns the fraction of a disk of this tangent around `middle` above the horizon of n.
 double share_above(const Light& sun, const glm::dvec3& n) {
   const double height = glm::dot(n, glm::dvec3(sun.center));
   const double slope =
@@ -41,7 +41,7 @@ double share_above(const Light& sun, const glm::dvec3& n) {
   return 1 - (std::acos(at) - at * std::sqrt((1 - at) * (1 + at))) / std::numbers::pi;
 }
 
-/// Nullopt if it would be too wide.
+/// Returns nullopt if the sun would be too wide.
 std::optional<DomeSun> sun_of(const Light& dome, std::vector<std::uint32_t> samples, bool own_samples) {
   glm::dvec3 middle(0);
   for (const std::uint32_t i : samples) middle += glm::normalize(glm::dvec3(dome.points[i]));
@@ -60,7 +60,7 @@ std::optional<DomeSun> sun_of(const Light& dome, std::vector<std::uint32_t> samp
     squares += square / static_cast<double>(samples.size());
   }
   if (widest > kWidest) return std::nullopt;
-  // A disk's mean square is half of its radius'.
+  // The mean square of a disk is half its squared radius.
   const double tangent = own_samples ? widest : std::sqrt(2 * squares);
   DomeSun sun{dome, std::move(samples)};
   sun.light.kind = visibility::LightKind::sun;
@@ -107,7 +107,7 @@ class DomeOfSuns final : public visibility::Method {
   [[nodiscard]] std::span<const glm::vec3> normals() const {
     return std::span(samples_->n).subspan(std::size_t{tile_.first_row} * samples_->width, pixels_);
   }
-  /// A sun's answer about a band of the tile, its first pixel so far into the tile.
+  /// Adds a sun's result for a band of the tile, with `first` the band's first pixel in the tile.
   void add(const DomeSun& sun, std::size_t first, std::size_t count);
 
   std::unique_ptr<Method> method_;
@@ -117,9 +117,9 @@ class DomeOfSuns final : public visibility::Method {
   std::vector<DomeSun> suns_;
   const ViewSamples* samples_ = nullptr;
   Tile tile_;
-  std::size_t pixels_ = 0;  // of the tile
+  std::size_t pixels_ = 0;  // number of pixels of the tile
   std::vector<std::uint32_t> masks_, part_masks_;
-  std::vector<double> light_, whole_;  // of each pixel: what arrives, and what would
+  std::vector<double> light_, whole_;  // of each pixel: arriving light, and unoccluded light
   std::vector<float> part_;
   std::map<std::string, std::uint64_t> counters_;
 };
@@ -142,7 +142,7 @@ void DomeOfSuns::prepare_view(const ViewSamples& samples) {
 std::uint32_t DomeOfSuns::max_tile_rows() const {
   if (dome_ == nullptr) return method_->max_tile_rows();
   PENUMBRA_ASSERT(samples_ != nullptr, "{}: max_tile_rows before prepare_view", description_.name);
-  constexpr std::size_t kMostBytes = std::size_t{64} << 20;  // every tile asks all suns again
+  constexpr std::size_t kMostBytes = std::size_t{64} << 20;  // every tile evaluates all suns again
   const std::size_t pixel_bytes = gives_masks() ? std::size_t{4} * dome_->words_per_mask() : 2 * sizeof(double);
   return static_cast<std::uint32_t>(std::clamp<std::size_t>(kMostBytes / (pixel_bytes * std::max(samples_->width, 1U)),
                                                             1, std::max(samples_->height, 1U)));
@@ -188,8 +188,8 @@ void DomeOfSuns::add(const DomeSun& sun, std::size_t first, std::size_t count) {
   for (std::size_t i = 0; i < count; ++i) {
     const double cosine = glm::dot(glm::dvec3(n[first + i]), glm::dvec3(sun.light.center));
     if (!(cosine > 0)) continue;
-    // Of a sun that the horizon cuts, what is above it counts as all of it; a method that knows the middle alone
-    // says 1.
+    // The part of a sun above the horizon counts as the whole sun; for a method that uses the middle alone, the result
+    // is limited to 1.
     const double power = cosine * static_cast<double>(sun.samples.size());
     const double seen = std::min(1.0, static_cast<double>(part_[i]) / share_above(sun.light, n[first + i]));
     whole_[first + i] += power;

@@ -1,3 +1,5 @@
+// Divides directions into parts of equal power by median cuts (Debevec 2005).
+
 #include "maps/host/median_cut.hpp"
 
 #include <glm/geometric.hpp>
@@ -10,7 +12,7 @@
 namespace penumbra::maps {
 namespace {
 
-/// As a picture of the sky has a direction, in radians.
+/// Position of a direction in a picture of the sky, in radians.
 struct Place {
   double around, height;
 };

@@ -9,9 +9,9 @@
 
 namespace penumbra::maps {
 
-/// Debevec 2005, "A median cut algorithm for light probe sampling": directions of equal power in so many parts of equal
-/// power, or as many as there are directions. A part is cut across its longer side, by angle: how far it reaches in
-/// height, or around times the cosine of its height. The result is lists of indices. `axes`: the third is up.
+/// Divides directions of equal power into `parts` parts of equal power, or as many as there are directions (Debevec
+/// 2005, "A median cut algorithm for light probe sampling"). A part is cut across its longer side, by angle: its extent
+/// in height, or around times the cosine of its height. Returns lists of indices. `axes`: the third is up.
 std::vector<std::vector<std::uint32_t>> median_cut(std::span<const glm::vec3> directions,
                                                    const std::array<glm::vec3, 3>& axes, std::uint32_t parts);
 

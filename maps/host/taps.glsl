@@ -159,13 +159,13 @@ bool is_before(Tap tap, float receiver, float forgiven) {
 // Returns whether the tap's surface is nearer to the light than this depth, independent of the receiver's slope.
 bool is_before_depth(Tap tap, float depth, float bias) { return is_before(tap, depth, bias * tap.texel * tap.along); }
 
-// Where a receiver's plane is in the direction of a tap, and how far before it in depth the bias forgives a surface.
+// Depth of a receiver's plane in the direction of a tap, and the depth that the bias subtracts.
 struct PlaneDepth {
   float depth, forgiven;
 };
 
-// The receiver's plane: normal m away from the light, at distance h = m . p > 0 from the light point. A plane that the
-// direction misses, or meets beyond `limit`, is taken to be at `limit`.
+// Returns the depth of the receiver's plane: normal m away from the light, at distance h = m . p > 0 from the light
+// point. A plane that the direction misses, or meets beyond `limit`, counts as at `limit`.
 PlaneDepth plane_depth(Tap tap, vec3 m, float h, float limit, float bias) {
   const float facing = dot(m, tap.direction);
   const float plane = h < limit * facing ? h / facing : limit;

@@ -1,8 +1,8 @@
-// Bavoil, Sainz and Dimitrov 2008, "Image-space horizon-based ambient occlusion": along directions of the picture the
-// highest horizon h is found; V = 1 - 1/2π ∫ (sin h - sin t) W dθ, t the angle of the surface's own tangent, both over
-// the picture's plane, each rise of the horizon weighed by how far off what raises it is. Departures: the tangent is
-// taken along the direction in which a sample lies, not that in which it was looked for: they differ in perspective,
-// and a plane would shade itself.
+// Computes horizon-based ambient occlusion: Bavoil, Sainz and Dimitrov 2008, "Image-space horizon-based ambient
+// occlusion": along directions of the picture the highest horizon h is found; V = 1 - 1/2π ∫ (sin h - sin t) W dθ, t
+// the angle of the surface's own tangent, both over the picture's plane, each rise of the horizon weighted by the
+// distance of its cause. Departures: the tangent is taken along the direction of the found sample, not along the
+// direction of the search: the two differ in perspective, and a plane would shade itself.
 
 #include "maps/screen/methods.hpp"
 
@@ -36,7 +36,7 @@ constexpr visibility::ChoiceOption kAttenuation{
 
 struct Hbao {
   std::uint32_t directions, steps;
-  double bias;  ///< radians
+  double bias;  ///< in radians
   Attenuation attenuation;
 
   [[nodiscard]] double weight(double share) const {
@@ -49,14 +49,14 @@ struct Hbao {
     const glm::dvec2 own(static_cast<double>(pixel % picture.width()) + 0.5,
                          static_cast<double>(pixel / picture.width()) + 0.5);
     const double reach = radius * picture.pixels_per_length(-middle.z);
-    // The dither turns directions and, in another order, moves the first step inward: 7 is prime to 16.
+    // The dither rotates directions and, in another order, moves the first step inward: 7 is prime to 16.
     const double turn = static_cast<double>(dither) / kDithers;
     const double first = 1 - static_cast<double>(7 * dither % kDithers) / kDithers;
     double hidden = 0;
     for (std::uint32_t k = 0; k < directions; ++k) {
       const double angle = 2 * std::numbers::pi * (k + turn) / directions;
       const glm::dvec2 along(std::cos(angle), -std::sin(angle));
-      double horizon = -1;  // its sine
+      double horizon = -1;  // sine of the horizon
       for (std::uint32_t step = 0; step < steps; ++step) {
         const glm::dvec2 place = own + reach * (step + first) / steps * along;
         if (!picture.holds(place)) break;
@@ -75,7 +75,7 @@ struct Hbao {
     return 1 - hidden / directions;
   }
 
-  /// The sine of the surface's own angle over the picture's plane in this direction, and the bias.
+  /// Returns the sine of the surface's own angle over the picture's plane in this direction, plus the bias.
   [[nodiscard]] double tangent(const glm::dvec3& n, const glm::dvec2& to) const {
     constexpr double kUpright = std::numbers::pi / 2;
     const double across = glm::length(to);

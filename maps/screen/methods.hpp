@@ -4,13 +4,14 @@
 
 #include <memory>
 
-/// Methods of domes that look at the camera's picture alone. They run on the processor.
+/// Methods of domes that use the camera's picture alone. Run on the processor.
 namespace penumbra::maps {
 
-/// Mittring 2007: points in a ball around the view sample, held against the picture's depths. docs/ssao.md.
+/// Makes `ssao` (Mittring 2007): points in a ball around the view sample, compared with the picture's depths.
+/// docs/ssao.md.
 std::unique_ptr<visibility::Method> make_ssao(const visibility::MethodOptions& options);
 
-/// Bavoil, Sainz, Dimitrov 2008: horizons along directions of the picture. docs/hbao.md.
+/// Makes `hbao` (Bavoil, Sainz, Dimitrov 2008): horizons along directions of the picture. docs/hbao.md.
 std::unique_ptr<visibility::Method> make_hbao(const visibility::MethodOptions& options);
 
 }  // namespace penumbra::maps

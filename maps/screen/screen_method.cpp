@@ -1,5 +1,5 @@
-// What methods that ask the camera's picture do alike. The picture is asked whole, whatever the tiles; a dithered
-// answer is blurred over the 4 x 4 pixels of its pattern, as published, but not across steps of depth.
+// Common part of methods that use the camera's picture. The whole picture is evaluated at once, for any tiles; a
+// dithered result is blurred over the 4 x 4 pixels of its pattern, as published, but not across steps of depth.
 
 #include "maps/screen/screen_method.hpp"
 
@@ -53,7 +53,7 @@ class ScreenMethod final : public visibility::Method {
   ScreenVisibility visibility_;
   double diagonal_ = 0;
   ScreenPicture picture_;
-  std::vector<float> whole_;  ///< V of all pixels; empty: to be found
+  std::vector<float> whole_;  ///< V of all pixels; empty: not yet computed
   visibility::Tile tile_{};
 };
 
@@ -71,7 +71,7 @@ void ScreenMethod::prepare_view(const visibility::ViewSamples& samples) {
 
 void ScreenMethod::evaluate(const visibility::Tile& tile) {
   tile_ = tile;
-  // A call that begins a picture anew gets it whole.
+  // The first tile of a picture computes the whole picture.
   if (!whole_.empty() && tile.first_row > 0) return;
   const double radius = radius_ * diagonal_;
   std::vector<float> values(picture_.size(), 1.0F);

@@ -1,3 +1,5 @@
+// Converts a camera's view samples to a picture of depths in eye space.
+
 #include "maps/screen/screen_picture.hpp"
 
 #include <glm/common.hpp>
@@ -8,8 +10,8 @@
 namespace penumbra::maps {
 namespace {
 
-/// How far, in pixels, a view sample's place may be from its pixel's centre. Positions are rounded to float32, whose
-/// steps are a small part of a pixel unless the eye is millions of scenes away.
+/// Largest permitted distance, in pixels, of a view sample's position from its pixel's centre. Positions are rounded to
+/// float32, with steps of a small part of a pixel unless the eye is millions of scene sizes away.
 constexpr double kOffCentre = 0.25;
 
 }  // namespace

@@ -12,22 +12,22 @@
 
 namespace penumbra::maps {
 
-/// A camera's view samples in the eye's space (x to the right, y up, z toward the viewer) as a picture of depths.
+/// View samples of a camera in the eye's space (x to the right, y up, z toward the viewer) as a picture of depths.
 class ScreenPicture {
  public:
   ScreenPicture() = default;
-  /// Nullopt if the view samples are not where the camera's pixels see them: baked ones are not.
+  /// Returns nullopt if the view samples are not at the positions of the camera's pixels, such as baked ones.
   static std::optional<ScreenPicture> of(const visibility::ViewSamples& samples);
 
-  /// Where a point is in the picture, in pixels; the centre of pixel (x, y) is (x + ½, y + ½). Nullopt for a point that
-  /// is not before the eye.
+  /// Returns the position of a point in the picture, in pixels; the centre of pixel (x, y) is (x + ½, y + ½). Returns
+  /// nullopt for a point that is not in front of the eye.
   [[nodiscard]] std::optional<glm::dvec2> place_of(const glm::dvec3& point) const;
-  /// The pixel at a place; nullopt beside the picture, and where the picture shows background.
+  /// Returns the pixel at a position; nullopt outside the picture, and where the picture shows background.
   [[nodiscard]] std::optional<std::size_t> surface_at(const glm::dvec2& place) const;
   [[nodiscard]] bool holds(const glm::dvec2& place) const {
     return place.x >= 0 && place.y >= 0 && place.x < width_ && place.y < height_;
   }
-  /// How many pixels a length has that lies across the view at this distance along its axis.
+  /// Returns the number of pixels of a unit length across the view at this distance along the view axis.
   [[nodiscard]] double pixels_per_length(double distance) const;
 
   [[nodiscard]] bool shows_surface(std::size_t pixel) const { return shown_[pixel] != 0; }
@@ -39,7 +39,7 @@ class ScreenPicture {
 
  private:
   visibility::PinholeCamera camera_;
-  glm::dvec2 shift_{0};  ///< the middle of a perspective picture is seen along (shift_, −1)
+  glm::dvec2 shift_{0};  ///< direction of the middle of a perspective picture: (shift_, −1)
   std::uint32_t width_ = 0, height_ = 0;
   std::vector<glm::dvec3> points_, normals_;
   std::vector<std::uint8_t> shown_;

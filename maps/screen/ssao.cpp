@@ -1,7 +1,8 @@
-// Mittring 2007, "Finding next gen: CryEngine 2", as Akenine-Möller, Haines and Hoffman (2008) and the course notes of
-// Eisemann et al. (2009, section 6.2) tell it: points in a ball around the view sample that the picture's depths are
-// nearer than are hidden; a plane hides half of the ball, so V is twice the share of the others. Departures: points
-// fill the ball evenly, in pairs around its middle, instead of at random; what is beside the picture hides nothing.
+// Computes screen-space ambient occlusion: Mittring 2007, "Finding next gen: CryEngine 2", as described by
+// Akenine-Möller, Haines and Hoffman (2008) and the course notes of Eisemann et al. (2009, section 6.2): points in a
+// ball around the view sample are hidden if the picture's depth is nearer; a plane hides half of the ball, so V is
+// twice the fraction of the others. Departures: points fill the ball evenly, in pairs around its middle, instead of at
+// random; the outside of the picture hides nothing.
 
 #include "maps/screen/methods.hpp"
 
@@ -33,21 +34,21 @@ constexpr auto kRange = visibility::flag_option(
     "range", false,
     "do not let hide what is nearer to the camera by more than the radius: no dark rims behind objects");
 
-/// Direction i of `count` spread evenly over the sphere (Fibonacci's spiral).
+/// Returns direction i of `count` spread evenly over the sphere (Fibonacci's spiral).
 glm::dvec3 spread(std::uint32_t i, std::uint32_t count) {
   const double z = 1 - (2 * i + 1.0) / count, across = std::sqrt(std::max(0.0, 1 - z * z));
   const double turn = 2 * std::numbers::pi * std::fmod(i * (std::numbers::phi - 1), 1.0);
   return {across * std::cos(turn), across * std::sin(turn), z};
 }
 
-/// The digits of i in base 2, mirrored at the point.
+/// Returns the digits of i in base 2, mirrored at the point.
 double mirrored(std::uint32_t i) {
   double value = 0, digit = 0.5;
   for (; i != 0; i >>= 1, digit /= 2) value += digit * (i & 1U);
   return value;
 }
 
-/// Points that fill the unit ball evenly: each comes with its opposite.
+/// Returns points that fill the unit ball evenly, each with its opposite.
 std::vector<glm::dvec3> ball(std::uint32_t count) {
   std::vector<glm::dvec3> points;
   const std::uint32_t pairs = std::max((count + 1) / 2, 1U);
@@ -63,7 +64,7 @@ struct Ssao {
   Around around;
   bool range;
   std::vector<glm::dvec3> points;
-  std::array<glm::dvec3, kDithers> mirrors;  ///< normals of planes that the points are mirrored at
+  std::array<glm::dvec3, kDithers> mirrors;  ///< normals of planes at which the points are mirrored
 
   double operator()(const ScreenPicture& picture, std::size_t pixel, double radius, std::uint32_t dither) const {
     const glm::dvec3 middle = picture.point(pixel), &n = picture.normal(pixel), &mirror = mirrors[dither];
