@@ -142,7 +142,7 @@ class SceneReader {
     morphs_ += part.mNumAnimMeshes > 0 ? 1 : 0;
   }
 
-  /// What the mesh looks like, before its positions and triangles come.
+  /// Appends the mesh's appearance; to be called before its positions and triangles are added.
   void add_looks(const aiMesh& part, const glm::dmat4& to_world, const std::string& name) {
     parts_of_scene_->parts.push_back(part_of(scene_, part, name));
     parts_of_scene_->parts.back().first_triangle = mesh_.soup.triangles.size();

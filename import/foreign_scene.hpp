@@ -11,9 +11,9 @@ namespace penumbra::scenes {
 /// Is it one of the files that are read as scenes by Assimp: FBX and COLLADA?
 bool is_foreign_scene(const std::filesystem::path& file);
 
-/// Reads one: its meshes where its nodes put them, an object each, with the diffuse colour of its material and its
-/// normals; emissive meshes as lights, as of glTF (gltf/emitters/); point, spot and directional lamps; cameras. Lamps
-/// have no size in these files: ReadOptions says. Throws InputError; std::bad_alloc.
+/// Reads a scene: its meshes where its nodes place them, one object each, with the diffuse colour of its material and
+/// its normals; emissive meshes as lights, as for glTF (gltf/emitters/); point, spot and directional lamps; cameras.
+/// Lamps have no size in these files: sizes come from ReadOptions. Throws InputError and std::bad_alloc.
 Scene import_foreign_scene(const mesh::InputFile& input, const ReadOptions& options);
 
 }  // namespace penumbra::scenes

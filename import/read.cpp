@@ -136,7 +136,7 @@ void rethrow_out_of_memory(std::string_view message) {
   }
 }
 
-/// Of what the file shows so many triangles are known, and must come.
+/// Reads with Assimp. `triangles`: number of triangles that the file is known to contain; fewer are an error.
 ImportedMesh read_with_assimp(const InputFile& input, const std::string& content, std::uint64_t triangles = 0,
                               SceneParts* parts = nullptr) {
   const std::string file = input.name.string(), extension = input.name.extension().string();

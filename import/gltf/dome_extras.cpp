@@ -18,7 +18,7 @@ namespace {
 
 /// By how many degrees a dome is turned about `up` whose picture has +X's side at `right` (both unit, at right angles).
 double turn_of(const glm::dvec3& up, const glm::dvec3& right) {
-  // Where the shortest turn from +Y to `up` takes +X, as scenes::Dome says.
+  // Image of +X under the shortest rotation from +Y to `up`, as defined by scenes::Dome.
   glm::dvec3 start(1, 0, 0);
   if (up.y > -1 + 0x1p-40) start -= up.x / (1 + up.y) * glm::dvec3(up.x, 1 + up.y, up.z);
   return glm::degrees(std::atan2(glm::dot(right, glm::cross(up, start)), glm::dot(right, start)));
