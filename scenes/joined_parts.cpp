@@ -1,3 +1,5 @@
+// Joins parts of scenes into one scene.
+
 #include "scenes/joined_parts.hpp"
 
 #include "base/error.hpp"
@@ -18,7 +20,7 @@ struct Stretch {
   std::size_t first = 0, end = 0;
 };
 
-/// The triangles of a part's objects.
+/// Returns the range of triangles of a part's objects.
 Stretch triangles_of(const ScenePart& part) {
   const std::vector<std::uint32_t>& object = part.scene->soup.object;
   const auto first = std::ranges::lower_bound(object, part.first_object);
@@ -26,7 +28,7 @@ Stretch triangles_of(const ScenePart& part) {
   return {static_cast<std::size_t>(first - object.begin()), static_cast<std::size_t>(end - object.begin())};
 }
 
-/// The vertices of some triangles.
+/// Returns the range of vertices of some triangles.
 Stretch vertices_of(const mesh::TriangleSoup& soup, const Stretch& triangles) {
   if (triangles.first == triangles.end) return {};
   Stretch range{std::numeric_limits<std::size_t>::max(), 0};
@@ -45,7 +47,7 @@ void append_range(std::vector<T>& all, const std::vector<T>& from, const Stretch
              from.begin() + static_cast<std::ptrdiff_t>(range.end));
 }
 
-/// Appends what is said of vertices; of those before that nothing is said of, `otherwise` stands.
+/// Appends attributes of vertices; earlier vertices without attributes get `otherwise`.
 template <typename T>
 void append_looks(std::vector<T>& all, std::size_t before, const std::vector<T>& from, const Stretch& range,
                   const T& otherwise) {
@@ -66,7 +68,8 @@ void append_mesh(Scene& whole, const ScenePart& part) {
   const Stretch triangles = triangles_of(part), vertices = vertices_of(from, triangles);
   if (before + (vertices.end - vertices.first) >= std::numeric_limits<std::uint32_t>::max())
     throw InputError("the scene has more than 4,294,967,294 vertices");
-  const auto moved = static_cast<std::uint32_t>(before - vertices.first);  // around 2³², back where it was added
+  const auto moved = static_cast<std::uint32_t>(before - vertices.first);  // modulo 2³²: adding it to an index wraps
+                                                                           // around
   const auto renumbered = static_cast<std::uint32_t>(whole.objects.size()) - part.first_object;
   append_range(soup.positions, from.positions, vertices);
   append_range(soup.source_face, from.source_face, triangles);
@@ -92,7 +95,7 @@ Scene joined(std::span<const ScenePart> parts, bool with_meshes) {
   Scene whole;
   UniqueNames object_names, light_names;
   std::vector<std::size_t> shadeless;
-  std::map<const Scene*, std::uint32_t> first_picture;  // of each scene of which there is a part
+  std::map<const Scene*, std::uint32_t> first_picture;  // for each scene with a part
   std::uint32_t pictures = 0;
   for (const ScenePart& part : parts) {
     const Scene& scene = *part.scene;

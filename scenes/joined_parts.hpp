@@ -7,18 +7,18 @@
 
 namespace penumbra::scenes {
 
-/// Some neighbouring objects of a scene, and some neighbouring lights: all that these objects are bodies of, and
-/// others.
+/// Contiguous objects of a scene, and contiguous lights: all lights whose bodies are among these objects, and others.
 struct ScenePart {
   const Scene* scene = nullptr;
   std::uint32_t first_object = 0, objects = 0;
   std::uint32_t first_light = 0, lights = 0;
-  bool casts_shadows = true;  ///< of these lights: else no object of the whole casts a shadow
+  bool casts_shadows = true;  ///< of these lights: false: no object of the joined scene casts a shadow
 };
 
-/// The scene that parts make together: what a reader makes of one file that has all of them in this order. It has no
-/// cameras. Objects and lights whose names are taken get numbers. `with_meshes`: else it is without triangles, pictures
-/// and vertices' looks. Triangles of an object stand together in its scene, and so do its vertices, which are its own.
+/// Returns the scene joined from parts: equal to the scene of one file with all of them in this order. Without cameras.
+/// Objects and lights with a taken name get numbers. `with_meshes` false: without triangles, pictures and vertices'
+/// looks. In each part's scene, triangles of an object must be contiguous, as well as its vertices, which must not be
+/// shared.
 Scene joined(std::span<const ScenePart> parts, bool with_meshes);
 
 }  // namespace penumbra::scenes

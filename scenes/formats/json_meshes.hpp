@@ -31,9 +31,9 @@ SceneFile open_scene_file(const std::string& name, const Place& place, const Rea
 /// The picture of a dome, opened likewise; the file goes to `scene.sources`.
 Texture read_sky(const std::string& name, const Place& place, const ReadOptions& options, Scene& scene);
 
-/// Reads, generates or lists the mesh, and brings it into world space, once for each of its instances. What was changed
-/// on the way goes to `scene.warnings`, the files that were read to `scene.sources`; ReadOptions::lightmap gets the
-/// places of its positions after those that are there.
+/// Reads, generates or lists the mesh, and transforms it to world space, once for each of its instances. Changes are
+/// reported in `scene.warnings`, read files in `scene.sources`; the mesh's lightmap coordinates are appended to
+/// ReadOptions::lightmap.
 mesh::TriangleSoup read_mesh(const nlohmann::json& mesh, const Place& place, const ReadOptions& options, Scene& scene);
 
 /// Converts picture coordinates whose v runs upward, as OBJ has them, to v from the top; kNoPlace stays.

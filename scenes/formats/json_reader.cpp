@@ -84,7 +84,8 @@ Texture read_light_texture(const json& value, const Place& place, const ReadOpti
   return texture;
 }
 
-/// What a sun sends, by its radiance or by the irradiance of what faces it. A point has no radiance.
+/// Reads a sun's light, given by its radiance or by the irradiance of a surface facing it. A sun of angle 0 has no
+/// radiance.
 void read_sun_light(const json& value, const Place& place, AreaLight& light, Scene& scene) {
   const Sun& sun = std::get<Sun>(light.shape);
   if (value.contains("irradiance")) {

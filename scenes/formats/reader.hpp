@@ -43,11 +43,11 @@ struct ReadOptions {
   LightmapPlaces* lightmap = nullptr;
 };
 
-/// Reads .json (penumbra-scene/1), .gltf or .glb, .fbx or .dae by the file's extension; any other file as a mesh. Where
-/// a mesh or a glTF scene has no light (and `needs_light` is on), a studio is put around it, with a warning. What comes
-/// back is complete: at least one object, light (unless `needs_light` is off) and camera, every number finite, every
-/// index in range. Otherwise InputError: the file, the place in it (JSON pointer or line), what is there and what would
-/// be right.
+/// Reads .json (penumbra-scene/1), .gltf or .glb, .fbx or .dae by the file's extension; any other file as a mesh. If a
+/// mesh or a glTF scene has no light (and `needs_light` is on), a studio is put around it, with a warning. The result
+/// is complete: at least one object, light (unless `needs_light` is off) and camera, every number finite, every index
+/// in range. Otherwise throws InputError with the file, the location in it (JSON pointer or line), the found value and
+/// the expected one.
 Scene read_scene(const std::filesystem::path& file, const ReadOptions& options = {});
 
 }  // namespace penumbra::scenes
