@@ -59,7 +59,7 @@ def _of_surfaces(settings):
     return normals + (["--lenient"] if settings.lenient else []) + (["--device", settings.device] if settings.device else [])
 
 
-# What the program says of command lines and files, in the words of who sits before Blender.
+# Translations of the program's terms for command lines and files to those of Blender's user interface.
 _IN_BLENDER = (
     (re.compile(r"Shadows would be wrong: --lenient .*"), "Shadows would be wrong; 'Lenient' renders all the same"),
     (re.compile(r"--lenient"), "'Lenient'"),
