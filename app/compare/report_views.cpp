@@ -17,8 +17,8 @@
 namespace penumbra::app {
 namespace {
 
-/// The light samples of a dome as who lies on the back sees them, in the unit disk and of equal areas for equal solid
-/// angles: `up` is in the middle, straight down (of half a dome, the horizon) the rim.
+/// Light samples of a dome as seen from below, in the unit disk with equal areas for equal solid angles: `up` is in the
+/// middle, straight down (for half a dome, the horizon) at the rim.
 std::vector<glm::dvec2> seen_upward(const visibility::Light& light) {
   const std::array<glm::vec3, 3>& axes = light.dome->axes;
   std::vector<glm::dvec2> places;
@@ -62,7 +62,7 @@ std::vector<compare::ReportLight> report_lights(const Session& session, std::spa
     shown.name = light.name;
     const std::vector<visibility::PixelClass> classes = whole_classes(whole, session.classes);
     shown.packed_classes = compare::pack_bytes(std::as_bytes(std::span(classes)));
-    if (whole.count > 1) continue;  // many samples of many shapes: no drawing has them
+    if (whole.count > 1) continue;  // many samples of many shapes: not drawn
     if (light.dome) {
       shown.round = true;
       shown.samples = seen_upward(light);

@@ -83,7 +83,7 @@ class ViewCommand : public Command {
     if (!run_.size.empty()) static_cast<void>(parse_size(run_.size));
     TerminalProgress progress(!global.quiet);
     progress.begin("reading " + run_.scene.filename().string(), 1);
-    FileWatch files({run_.scene});  // before it is read: what changes meanwhile is read again
+    FileWatch files({run_.scene});  // set before reading: the scene is read again after changes during reading
     scenes::Scene scene = read_session_scene(run_, {});
     progress.clear();
     for (const std::string& warning : scene.warnings) spdlog::warn("{}", warning);

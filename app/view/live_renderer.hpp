@@ -25,26 +25,26 @@
 
 namespace penumbra::app {
 
-/// Callbacks of the renderer, called on its thread; those that are empty are not called.
+/// Callbacks of the renderer, called on its thread; empty ones are not called.
 struct LiveEvents {
   std::function<void(std::shared_ptr<const std::string>)> frame;  ///< frame_message()
   std::function<void(std::string_view level, const std::string& text)> say;
   std::function<void()> reloaded;  ///< the state is that of another version of the file
-  std::function<void(std::shared_ptr<const LivePicture>)> picture = {};  ///< its numbers
+  std::function<void(std::shared_ptr<const LivePicture>)> picture = {};  ///< numbers of the displayed picture
 };
 
-/// Another scene in the place of the one that is shown.
+/// Scene that replaces the displayed one.
 struct LiveScene {
   scenes::Scene scene;
-  bool same_meshes = false;  ///< it is without_meshes(), and has those of the last one
+  bool same_meshes = false;  ///< `scene` is without_meshes(), and has the meshes of the last scene
 };
 
-/// Several changes that are one.
+/// Several changes applied together.
 struct LiveUpdate {
-  std::optional<LiveScene> scene = {};       ///< nothing: the one that is shown
-  std::vector<nlohmann::json> changes = {};  ///< messages, as for apply()
-  std::optional<double> stamp = {};          ///< comes back with the first picture that shows all of it
-  bool moving = false;                       ///< more will come soon
+  std::optional<LiveScene> scene = {};       ///< nullopt: the displayed scene
+  std::vector<nlohmann::json> changes = {};  ///< messages, in the form of apply()
+  std::optional<double> stamp = {};          ///< returned with the first picture that includes all changes
+  bool moving = false;                       ///< further changes will follow soon
 };
 
 /// Renders a state that changes during rendering, on a thread of its own: quick pictures while it changes, then a final
@@ -61,7 +61,7 @@ class LiveRenderer {
   /// Changes the state by a message; `client` and its `stamp` are returned with the first picture that includes the
   /// change.
   LiveChange apply(const nlohmann::json& message, std::uint64_t client);
-  /// Throws InputError or UsageError for a change that cannot be, and then changes nothing.
+  /// Applies the changes. Throws InputError or UsageError for an invalid change, and then changes nothing.
   void update(LiveUpdate update, std::uint64_t client);
   [[nodiscard]] nlohmann::ordered_json state() const;
   /// Shows the current picture again, for a new client.

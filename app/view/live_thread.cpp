@@ -128,7 +128,7 @@ scenes::Scene LiveRenderer::scene_of(const LiveState& state) const {
   }
   const bool same_meshes = frames_ && frames_->has_meshes() && rendered_ == whole;
   scenes::Scene scene = same_meshes ? state.scene : *whole;
-  scene.objects = state.scene.objects;  // which of them are bodies of which lights may have changed without the meshes
+  scene.objects = state.scene.objects;  // lights' bodies may have changed without the meshes
   scene.lights = state.scene.lights;
   scene.cameras = {state.camera};
   return scene;

@@ -35,7 +35,7 @@ class LiveView final : public network::PageHandler {
   void send_state(network::ClientId except);
 
   std::string methods_;  // JSON
-  std::mutex sending_;   // a state is told before another is asked for: else an old one could be told last
+  std::mutex sending_;   // a state is sent before the next is taken: otherwise an old one could be sent last
   std::unique_ptr<network::PageServer> server_;
   std::unique_ptr<LiveRenderer> renderer_;  // calls the server, therefore destroyed first
 };
