@@ -30,7 +30,7 @@ glm::dmat4 to_glm(const aiMatrix4x4& m) {  // Assimp's letters are rows, glm's c
 
 class SceneReader {
  public:
-  /// `to_scene` places the file's root, which turns its units and axes into ours.
+  /// `to_scene` transforms the file's root to the scene's units and axes.
   SceneReader(const aiScene& scene, std::string file, const glm::dmat4& to_scene, const AssimpSceneOptions& options)
       : scene_(scene),
         file_(std::move(file)),

@@ -11,9 +11,9 @@ struct aiScene;
 namespace penumbra::mesh {
 
 struct AssimpSceneOptions {
-  bool is_fbx = false;          ///< its unit and axes are applied
-  std::uint64_t triangles = 0;  ///< so many at least the file shows, where it was counted: fewer are refused
-  SceneParts* parts = nullptr;  ///< gets what there is beside triangles
+  bool is_fbx = false;          ///< applies its unit and axes
+  std::uint64_t triangles = 0;  ///< least number of triangles, if counted: a file with fewer is rejected
+  SceneParts* parts = nullptr;  ///< receives everything beside triangles
 };
 
 /// Returns every mesh of the node tree, transformed by its nodes, in one soup.
