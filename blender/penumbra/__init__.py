@@ -20,7 +20,7 @@ def register():
     bpy.utils.register_class(bake.PENUMBRA_OT_bake)
     panels.register()
     for handlers in (bpy.app.handlers.render_complete, bpy.app.handlers.render_cancel):
-        handlers.append(bpy.app.handlers.persistent(serving.forget))  # in the next file, too
+        handlers.append(bpy.app.handlers.persistent(serving.forget))  # also after opening another file
 
 
 def unregister():

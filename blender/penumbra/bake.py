@@ -10,7 +10,7 @@ import numpy
 from . import exr, losses, program, settings
 from .export import SceneWriter
 
-_NAME = "baked"  # of the object's mesh in the exchange file, which no other has
+_NAME = "baked"  # name of the object's mesh in the exchange file, used by no other
 _LINEAR = ("Linear Rec.709", "Linear")
 
 
@@ -30,7 +30,7 @@ class PENUMBRA_OT_bake(bpy.types.Operator):
         except (ValueError, OSError) as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
-        except Exception as error:  # what the add-on does wrong
+        except Exception as error:  # errors of the add-on
             traceback.print_exc()
             self.report({"ERROR"}, f"the add-on failed ({type(error).__name__}: {error}); the console says where")
             return {"CANCELLED"}

@@ -24,10 +24,11 @@ class SceneWriter:
         self.depsgraph, self.losses, self.shading_normals = depsgraph, losses, shading_normals
         self.scene, self.layer = depsgraph.scene, depsgraph.view_layer_eval
         self.glb = glb.Glb()
-        self.background = (0.0, 0.0, 0.0)  # the colour that is still to be put behind everything
+        self.background = (0.0, 0.0, 0.0)  # colour to be composited behind everything
         self._meshes, self._materials, self._looks, self._images = {}, {}, {}, {}
         self._baked, self._shines = baked, False
-        self._balls, self._placed = [], []  # lamps of some size, and surfaces in the world, whose distances are looked at
+        self._balls, self._placed = [], []  # lamps of some size, and surfaces in the world, for tests of their
+                                            # distances
 
     def write(self, path, region):
         """`region`: which pixels (frames.py); None: there is no picture."""
@@ -42,7 +43,7 @@ class SceneWriter:
             raise ValueError("there is no surface in the scene that is shown in renders")
         if region is not None:
             self._camera(region)
-        else:  # nothing is asked by it
+        else:  # without effect
             self.glb.camera("None", numpy.eye(4).tolist(), 1, (0, 0), half_angle=1)
         lamps.check_balls(self._balls, self._placed, self.losses)
         with open(path, "wb") as file:

@@ -156,8 +156,8 @@ class OfThings(Glb):
 
     def __init__(self):
         super().__init__()
-        self.thing = ""  # of the nodes that come next
-        self.things, self.shadeless = set(), set()  # those that have nodes; those whose lamps cast no shadows
+        self.thing = ""  # of the following nodes
+        self.things, self.shadeless = set(), set()  # things with nodes; things whose lamps cast no shadows
 
     def node(self, name, matrix, extras=None, **what):
         self.things.add(self.thing)

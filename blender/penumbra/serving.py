@@ -9,7 +9,7 @@ import threading
 
 import numpy
 
-_LEVELS = {"note": "info"}  # else as they are on the program's stderr
+_LEVELS = {"note": "info"}  # other levels as on the program's stderr
 
 
 def packed(head, data=b""):
@@ -49,7 +49,7 @@ class Child:
 
     def __init__(self, program, *arguments):
         self.process = subprocess.Popen([program, "serve", *arguments], stdin=subprocess.PIPE, stdout=subprocess.PIPE)
-        self.messages = queue.SimpleQueue()  # heads of all but pictures, in their order; None behind the last
+        self.messages = queue.SimpleQueue()  # heads of all messages except pictures, in their order; None at the end
         self._picture, self._waiting, self._wake = None, collections.deque(), threading.Condition()
         self._ends = False
         for work in (self._write, self._read):
@@ -101,7 +101,7 @@ class Child:
                 self.process.stdin.write(packed(*message))
                 self.process.stdin.flush()
             except (OSError, ValueError):
-                return  # the reader hears of it
+                return  # reported to the reader
 
     def _read(self):
         stream = self.process.stdout
@@ -115,7 +115,7 @@ class Child:
         self.messages.put(None)
 
 
-_kept = {}  # the child that makes pictures of a sequence, by its program
+_kept = {}  # the process that renders pictures of a sequence, by its program
 
 
 def run(command, cancelled, hears=lambda line: None):

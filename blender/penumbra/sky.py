@@ -14,7 +14,7 @@ from . import exr, graph, texels
 from .graph import At, Unknown, find_socket
 
 SAMPLED, EXACT, SEEN = "SAMPLED", "EXACT", "SEEN"
-_LARGEST = 8192  # texels a side, of what the program reads
+_LARGEST = 8192  # texels a side, limit of the program
 
 
 @dataclass
@@ -186,7 +186,7 @@ def _write(lights, seen, name, wanted, glb, folder, losses):
     if not lights.is_dark and wanted != SEEN:
         if lights.image is None:
             file, matrix = None, numpy.eye(4).tolist()
-            if wanted == SAMPLED:  # one texel: what has a picture is counted in light samples
+            if wanted == SAMPLED:  # one texel: a dome with a picture is computed from light samples
                 file = _save(numpy.ones((1, 1, 3)), folder)
         else:
             matrix, mirrored = placed(looked_up(lights))

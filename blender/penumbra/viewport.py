@@ -12,7 +12,7 @@ from . import glb, losses, program, serving, settings
 from .export import SceneWriter
 from .viewpoint import Viewpoint
 
-_WORLD = "World"  # the thing that the world is
+_WORLD = "World"  # name of the world's thing
 _views = weakref.WeakSet()
 _TICK = 1 / 60  # seconds
 
@@ -30,7 +30,7 @@ class Changes:
             block = update.id
             if isinstance(block, (bpy.types.Image, bpy.types.Texture)) or \
                     (isinstance(block, bpy.types.NodeTree) and not block.is_embedded_data):
-                self.all = True  # whose materials they are is not known here
+                self.all = True  # the objects with these materials are unknown here
             elif not isinstance(block, bpy.types.Object) or update.is_updated_geometry or update.is_updated_shading:
                 self.blocks.add(_key(block))
 
@@ -67,12 +67,13 @@ class View:
     """One 3D view: its child, what that was sent, and the picture that is shown."""
 
     def __init__(self):
-        self.child, self.started_with = None, None  # and with which program and settings
-        self._workspace = None  # for the picture of the world, from the first time that there is one
+        self.child, self.started_with = None, None  # the process, and its program and settings
+        self._workspace = None  # for the picture of the world, made when first needed
         self.lost = losses.Losses()
         self.picture, self.texture, self.said = None, None, ""
         self.background = (0.0, 0.0, 0.0)
-        self._marks, self._sent, self._order = {}, set(), []  # of things: what is compared, who is there, in which order
+        self._marks, self._sent, self._order = {}, set(), []  # of things: data for comparison, names sent, and their
+                                                              # order
         self._viewpoint, self._wanted, self._stamp = None, None, 0
         self._backdrop = None
         _views.add(self)
