@@ -79,7 +79,9 @@ std::string file_name_of(std::string_view label) {
 void add_run_options(CLI::App& command, RunOptions& options) {
   command
       .add_option("SCENE", options.scene,
-                  "scene file: .json (penumbra-scene/1), .gltf or .glb; or a mesh file, around which a studio is put")
+                  "scene file: .json (penumbra-scene/1), .gltf, .glb, .fbx or .dae; or a mesh file, around which a "
+                  "studio is put; "
+                  "`render` takes mesh.####.obj, a file a frame")
       ->required();
   command
       .add_option("--light-samples", options.light_samples,

@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -35,6 +36,8 @@ struct FormatOptions {
 /// Options common to `render` and `compare`, as given by the user.
 struct RunOptions {
   std::filesystem::path scene;
+  /// Of a scene that is a file a frame: the first of them, around which a studio is built; null: any other.
+  std::shared_ptr<const scenes::Scene> rest = {};
   std::filesystem::path out;
   std::string light_samples, sample_pattern;  ///< empty: not requested; then 256 and rows
   std::uint32_t sample_seed = 0;

@@ -263,6 +263,7 @@ scenes::Scene read_session_scene(const RunOptions& options, std::optional<double
   reading.lenient = options.lenient;
   reading.studio = parse_studio(options.studio, options.camera);
   reading.lightmap = lightmap;
+  reading.rest = options.rest.get();
   if (!options.size.empty()) {
     const auto [width, height] = parse_size(options.size);
     reading.studio.aspect = static_cast<double>(width) / height;

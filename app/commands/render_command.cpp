@@ -19,8 +19,11 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <cmath>
+#include <filesystem>
 #include <functional>
 #include <future>
+#include <memory>
 #include <optional>
 #include <utility>
 
@@ -48,6 +51,8 @@ class RenderCommand : public Command {
 
   int run(const GlobalOptions& global) override {
     request_ = parse_request(options_);
+    is_sequence_ = has_frame_number(options_.run.scene) && !std::filesystem::exists(options_.run.scene);
+    if (is_sequence_) read_rest();
     Exposure exposure = request_.exposure;
     const bool all_cameras = options_.run.camera == "all";
     const std::vector<std::optional<double>>& frames = request_.frames;
@@ -82,7 +87,7 @@ class RenderCommand : public Command {
       outputs = claim(cameras);
     }
     outputs.refuse_inputs(now.scene.sources);
-    const bool moves = now.scene.motion.has_value();
+    const bool moves = is_sequence_ || now.scene.motion.has_value();
     if (moves && (frames.size() > 1 || request_.moments > 1)) renderer.expect_frames();
     if (frames.front() && !moves) {
       progress.clear();
@@ -125,6 +130,22 @@ class RenderCommand : public Command {
   }
 
  private:
+  /// Of a scene that is a file a frame. Throws UsageError where none of them is meant.
+  void read_rest() {
+    const std::string name = options_.run.scene.filename().string();
+    const auto between = [](std::optional<double> frame) { return !frame || *frame != std::floor(*frame); };
+    if (std::ranges::any_of(request_.frames, between))
+      throw UsageError("{} is a file a frame: --frame or --frames says which, in whole numbers", name);
+    if (request_.moments > 1) throw UsageError("--motion-samples: between the files of {} there is nothing", name);
+    RunOptions first = options_.run;
+    first.scene = first_frame_path(first.scene);
+    first.studio = {};
+    first.studio.never = true;
+    scenes::ReadOptions reading = read_options(first.gltf, first.allow_outside);
+    reading.needs_light = false;
+    options_.run.rest = std::make_shared<const scenes::Scene>(scenes::read_scene(first.scene, reading));
+  }
+
   /// Returns the scenes at the middle of each of the equal parts of the time that the shutter is open; empty if one
   /// scene is sufficient.
   [[nodiscard]] std::vector<std::function<scenes::Scene()>> moments_of(std::optional<double> frame, bool moves) const {
@@ -141,9 +162,11 @@ class RenderCommand : public Command {
   [[nodiscard]] ReadScene read(std::optional<double> frame) const {
     const Stopwatch watch;
     std::optional<double> time;
-    if (frame) time = *frame * request_.seconds_per_frame;
+    if (frame && !is_sequence_) time = *frame * request_.seconds_per_frame;
+    RunOptions run = options_.run;
+    if (is_sequence_) run.scene = frame_path(run.scene, std::llround(*frame));
     ReadScene read;
-    read.scene = read_session_scene(options_.run, time);
+    read.scene = read_session_scene(run, time);
     read.seconds = watch.seconds();
     return read;
   }
@@ -164,7 +187,8 @@ class RenderCommand : public Command {
 
   PictureOptions options_;
   PictureRequest request_;
-  std::string tev_;  // HOST:PORT
+  bool is_sequence_ = false;  // the scene is a file a frame
+  std::string tev_;           // HOST:PORT
 };
 
 }  // namespace

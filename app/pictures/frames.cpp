@@ -7,11 +7,14 @@
 
 #include <algorithm>
 #include <cctype>
+#include <charconv>
 #include <cmath>
 #include <cstddef>
 #include <optional>
 #include <set>
 #include <string>
+#include <string_view>
+#include <system_error>
 
 namespace penumbra::app {
 namespace {
@@ -111,6 +114,26 @@ std::filesystem::path frame_path(const std::filesystem::path& out, std::int64_t 
   else
     name = fmt::format("{}.{:04}{}", out.stem().string(), frame, out.extension().string());
   return out.parent_path() / name;
+}
+
+std::filesystem::path first_frame_path(const std::filesystem::path& pattern) {
+  const std::string name = pattern.filename().string();
+  const auto place = number_place(name);
+  const std::filesystem::path folder = pattern.has_parent_path() ? pattern.parent_path() : ".";
+  std::optional<std::int64_t> least;
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
+    const std::string other = entry.path().filename().string();
+    if (!place || other.size() < name.size() - place->size) continue;
+    const std::string_view digits =
+        std::string_view(other).substr(place->at, other.size() - (name.size() - place->size));
+    std::int64_t number = 0;
+    const auto [end, bad] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
+    if (bad != std::errc() || end != digits.data() + digits.size()) continue;
+    if (frame_path(pattern, number).filename() == other) least = std::min(least.value_or(number), number);
+  }
+  if (!least) throw InputError("{}: no file of such a name is there", pattern.string());
+  return frame_path(pattern, *least);
 }
 
 std::map<std::string, std::string> camera_words(std::span<const std::string> cameras) {

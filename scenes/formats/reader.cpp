@@ -7,6 +7,7 @@
 #include "mesh/unused_vertices.hpp"
 #include "scenes/formats/json_meshes.hpp"
 #include "scenes/formats/json_reader.hpp"
+#include "scenes/whole_view.hpp"
 
 #include <fmt/format.h>
 
@@ -57,6 +58,10 @@ Scene read_scene(const std::filesystem::path& file, const ReadOptions& options) 
   } else {
     scene = read_mesh_file(file, options.lightmap);
   }
+  if (options.rest != nullptr && !scene.origin) {
+    const Scene& rest = *options.rest;
+    scene.origin = rest.origin ? *rest.origin : bounds_of(rest.soup.positions).middle();
+  }
   StudioWish studio = options.studio;
   studio.never |= !options.needs_light;
   const bool wishes = studio.always || !studio.lights.empty() || studio.camera || !studio.fit_camera.empty();
@@ -66,13 +71,13 @@ Scene read_scene(const std::filesystem::path& file, const ReadOptions& options) 
   });
   if ((lacks || wishes) && has_room && !scene.soup.triangles.empty()) {
     std::optional<Scene> rest;
-    if (options.time && scene.motion) {
+    if (options.rest == nullptr && options.time && scene.motion) {
       ReadOptions at_rest = options;
       at_rest.lightmap = nullptr;
       at_rest.time.reset();
       rest = read_gltf(file, at_rest);
     }
-    put_in_studio(scene, rest ? *rest : scene, studio);
+    put_in_studio(scene, options.rest != nullptr ? *options.rest : rest ? *rest : scene, studio);
   }
   if (options.lightmap != nullptr) options.lightmap->places.resize(scene.soup.positions.size(), kNoPlace);
   check_scene(scene, file.string(), options.needs_light);

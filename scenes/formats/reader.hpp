@@ -39,6 +39,9 @@ struct ReadOptions {
   /// glTF: the animations that are played, by name or index from 0; empty: all that can be played together.
   std::vector<std::string> clips = {};
   StudioWish studio = {};  ///< studio for scenes that need a light
+  /// For a scene that is a file a frame: the first file. A studio is built around it, and the origin is its. Null: the
+  /// scene itself, or what it is at rest.
+  const Scene* rest = nullptr;
   /// Receives the lightmap coordinates of glTF files, OBJ files and quads of JSON; null: they are not read.
   LightmapPlaces* lightmap = nullptr;
 };

@@ -5,10 +5,12 @@
 #include "base/exr.hpp"
 #include "tests/unit/import/gltf_file.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <map>
 #include <set>
@@ -292,6 +294,44 @@ TEST_F(Frames, OfAllCameras) {
   EXPECT_EQ(first.err.find("the first of 2", said + 1), std::string::npos) << "once a sequence: " << first.err;
   ASSERT_EQ(render({"--camera", "B.2", "--frame", "3", "-o", path("one.exr")}).code, 0);
   EXPECT_EQ(read("one.exr"), read("o.B.2.0003.exr"));
+}
+
+/// A file a frame, of meshes without light or camera: the studio is that of the file with the lowest number.
+TEST_F(Frames, MayBeAFileEach) {
+  for (int frame = 2; frame <= 5; ++frame) {
+    write(
+        fmt::format("m.{:03}.obj", frame),
+        fmt::format("v 0 {0} 0\nv 1 {0} 0\nv 0 {0} -1\nv -3 0 3\nv 3 0 3\nv 0 0 -3\nf 1 2 3\nf 4 5 6\n", 0.2 * frame));
+  }
+  write("m.x.obj", "not of the sequence");
+  const auto frames = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), {"render", path("m.###.obj"), "--size", "24x16"});
+    return run(more);
+  };
+  ASSERT_EQ(frames({"--frames", "2-5", "-o", path("s.####.exr")}).code, 0)
+      << frames({"--frames", "2-5", "-o", path("s.####.exr")}).err;
+  const ExrFile first = read_exr(path("s.0002.exr")), last = read_exr(path("s.0005.exr"));
+  std::size_t same = 0;  // where both see the ground, which the studio's floor is at the height of: nothing else moves
+  for (std::size_t i = 0; i < first.floats.at("P.Y").size(); ++i) {
+    const auto on_ground = [i](const ExrFile& exr) { return std::abs(exr.floats.at("P.Y")[i]) < 1e-5F; };
+    if (first.floats.at("A")[i] == 0 || !on_ground(first) || !on_ground(last)) continue;
+    EXPECT_NEAR(first.floats.at("P.X")[i], last.floats.at("P.X")[i], 1e-5);
+    ++same;
+  }
+  EXPECT_GT(same, 100u);
+  EXPECT_NE(first.floats.at("V"), last.floats.at("V")) << "it moves";
+  ASSERT_EQ(frames({"--frame", "5", "-o", path("alone.exr")}).code, 0);
+  EXPECT_EQ(read("alone.exr"), read("s.0005.exr"));
+  // The first is the picture of its file by itself.
+  ASSERT_EQ(run({"render", path("m.002.obj"), "--size", "24x16", "-o", path("still.exr")}).code, 0);
+  EXPECT_EQ(read_exr(path("still.exr")).floats.at("V"), first.floats.at("V"));
+  EXPECT_THAT(frames({"-o", path("a.exr")}).err,
+              HasSubstr("m.###.obj is a file a frame: --frame or --frames says which"));
+  EXPECT_EQ(frames({"--frame", "2.5", "-o", path("a.exr")}).code, 2);
+  EXPECT_EQ(frames({"--frame", "2", "--motion-samples", "4", "-o", path("a.exr")}).code, 2);
+  EXPECT_THAT(frames({"--frame", "9", "-o", path("a.exr")}).err, HasSubstr("m.009.obj"));
+  EXPECT_THAT(run({"render", path("none.##.obj"), "--frame", "1", "-o", path("a.exr")}).err,
+              HasSubstr("no file of such a name is there"));
 }
 
 }  // namespace
