@@ -2,11 +2,11 @@
 
 #include "base/error.hpp"
 #include "import/gltf/emitters/emitter.hpp"
-#include "import/gltf/unique_names.hpp"
 #include "import/read.hpp"
 #include "import/scene_parts.hpp"
 #include "import/text.hpp"
 #include "scenes/losses.hpp"
+#include "scenes/unique_names.hpp"
 
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
