@@ -40,7 +40,15 @@ std::string facts_html(const std::vector<ReportFact>& facts) {
   return html + "</tbody></table></div>\n";
 }
 
-/// Returns the card of the method that agrees with rays on every pair, or else of the closest.
+/// The first few, and how many more there are.
+std::string names_text(const std::vector<const MethodResult*>& results) {
+  constexpr std::size_t kNamed = 3;
+  std::string text;
+  for (std::size_t i = 0; i < results.size() && i < kNamed; ++i) text += (i == 0 ? "" : ", ") + results[i]->entry;
+  return results.size() > kNamed ? fmt::format("{} and {} more", text, results.size() - kNamed) : text;
+}
+
+/// Who answers every pair as rays do, or else who comes closest to that.
 template <typename Card>
 std::string exactness_card(const ReportInput& in, const Card& card) {
   struct Sum {
@@ -58,14 +66,14 @@ std::string exactness_card(const ReportInput& in, const Card& card) {
   if (sums.empty()) return {};
   const std::uint64_t fewest =
       std::ranges::min(sums, {}, [](const Sum& s) { return s.pairs.differing; }).pairs.differing;
-  std::string names;
+  std::vector<const MethodResult*> tied;
   std::uint64_t all = 0;
   for (const Sum& sum : sums) {
     if (sum.pairs.differing != fewest) continue;
-    names += (names.empty() ? "" : ", ") + sum.result->entry;
+    tied.push_back(sum.result);
     all = sum.pairs.all;
   }
-  return card("Most exact", names,
+  return card("Most exact", names_text(tied),
               fmt::format("{} of {} answers differ from rays on the same light samples",
                           fewest == 0 ? "none" : count_text(fewest), count_text(all)));
 }
@@ -76,15 +84,10 @@ std::string glance_html(const ReportInput& in) {
   };
   const Stats& reference = in.metrics.reference;
   std::string html = "<dl class=\"glance\">\n";
-  const auto names = [](const std::vector<const MethodResult*>& results) {
-    std::string text;
-    for (const MethodResult* result : results) text += (text.empty() ? "" : ", ") + result->entry;
-    return text;
-  };
   const auto closest = smallest(in.metrics.methods, rmse_of, error_text);
   if (!closest.empty()) {
     const VisibilityError& error = *closest.front()->all_lights_error;
-    html += card("Closest to the reference", names(closest),
+    html += card("Closest to the reference", names_text(closest),
                  fmt::format("{}V is off by {} on average (RMSE {})", closest.size() > 1 ? "a tie: " : "",
                              error_text(error.mean), error_text(error.rmse)));
   }
@@ -96,7 +99,7 @@ std::string glance_html(const ReportInput& in) {
     const std::string speed =
         same_question(in, entry, *best) ? speed_text(shadow_of(*best), reference.seconds.shadow()) : std::string("–");
     html +=
-        card("Least time", names(fastest),
+        card("Least time", names_text(fastest),
              fmt::format(
                  "{}{} for the shadow, {}{}", fastest.size() > 1 ? "a tie: " : "", seconds_text(shadow_of(*best)),
                  question_of({entry.description, best->stats}),
@@ -114,7 +117,7 @@ std::string glance_html(const ReportInput& in) {
 std::string question_html(const ReportInput& in) {
   std::uint32_t samples = 0;  // stays 0 if all methods compute areas
   for (const MethodResult& method : in.metrics.methods) samples = std::max(samples, method.stats.light_samples);
-  std::string html = R"(<section id="question"><h2>What is asked</h2><div class="two"><div>
+  std::string html = R"(<div class="two"><div>
 <p>A lamp with a size casts soft shadows: a point behind an object sees none of the lamp, a point beside it sees all,
 and between the two lies a band that sees a part. So the question, asked at every point that the picture shows, is:
 <strong>how much of the light does it see?</strong> The answer is a number <var>V</var> between 0 (nothing) and 1 (all
@@ -148,18 +151,35 @@ of it). Get <var>V</var> right, and the shadow is right.</p>
                                   "answer by answer."
                                 : "");
   }
-  return html + "</div><div>" + shadow_drawing_html() + "</div></div></section>\n";
+  return folded_section_html("question", "What is asked",
+                             html + "</div><div class=\"wide\">" + shadow_drawing_html() + "</div></div>\n");
 }
 
 std::string scene_html(const ReportInput& in) {
-  std::string html =
-      "<section id=\"scene\"><h2>The scene</h2><div class=\"two\"><div>" + facts_html(in.scene) + "</div><div>";
+  std::string html = "<div class=\"two\"><div>" + facts_html(in.scene) + "</div><div>";
   if (in.reference.beauty) {
     html += figure_html(*in.reference.beauty, "The scene " + in.metrics.reference.scene + " as the reference shades it",
                         "<b>" + escape_html(in.metrics.reference.scene) + "</b><span>shaded by the reference, " +
                             escape_html(in.metrics.reference.method) + "</span>");
   }
-  return html + "</div></div></section>\n";
+  return folded_section_html("scene", "The scene", html + "</div></div>\n");
+}
+
+/// What a method is: its place among the page's links, its options and the name of its page.
+std::string method_text_html(const visibility::MethodDescription& d) {
+  ReportTable options{"Options", {"Option", "Values", "Default", "What it does"}, {}};
+  for (const visibility::OptionDescription& option : d.options) {
+    options.rows.push_back({escape_html(option.name), escape_html(option.values()), escape_html(option.default_value),
+                            escape_html(option.help)});
+  }
+  return fmt::format(
+      "<details id=\"{}\"><summary>{}</summary>\n<p>{}-based; after {}. Exact for {}. Answers with {}.{} "
+      "<code>penumbra methods {}</code> says the same; its derivation is in "
+      "<code>docs/{}.md</code>.</p>\n{}</details>\n",
+      method_place(d.name), escape_html(d.name), visibility::name_of(d.family), escape_html(d.paper),
+      escape_html(d.exact_for), visibility::name_of(d.output),
+      d.on_request ? " Compared on request alone: it takes long, or is there for others to be held against." : "",
+      escape_html(d.name), escape_html(d.name), options.rows.empty() ? "" : table_html(options));
 }
 
 std::string methods_html(const ReportInput& in) {
@@ -174,11 +194,24 @@ std::string methods_html(const ReportInput& in) {
   for (std::size_t i = 0; i < in.methods.size(); ++i) {
     row(escape_html(in.metrics.methods[i].entry), in.methods[i].description, in.metrics.methods[i].stats.options);
   }
-  return "<section id=\"methods\"><h2>The methods</h2>\n" + table_html(table) +
-         "<p>A method that answers with a mask is shaded light sample by light sample; one that knows only V (scalar) "
-         "has "
-         "the unshadowed light multiplied by V; one that answers with radiance integrates the light that it sees "
-         "itself.</p></section>\n";
+  std::string texts;
+  std::vector<std::string> told;
+  const auto tell = [&](const visibility::MethodDescription& d, const std::string& name) {
+    if (std::ranges::find(told, name) != told.end()) return;
+    told.push_back(name);
+    visibility::MethodDescription named = d;
+    named.name = name;
+    texts += method_text_html(named);
+  };
+  for (std::size_t i = 0; i < in.methods.size(); ++i)
+    tell(in.methods[i].description, in.metrics.methods[i].stats.method);
+  return folded_section_html(
+      "methods", "The methods",
+      table_html(table) + texts +
+          "<p>A method that answers with a mask is shaded light sample by light sample; one that knows only V (scalar) "
+          "has "
+          "the unshadowed light multiplied by V; one that answers with radiance integrates the light that it sees "
+          "itself.</p>\n");
 }
 
 std::string machine_html(const ReportInput& in) {
@@ -203,7 +236,7 @@ std::string machine_html(const ReportInput& in) {
     facts.push_back({"Compared pixels", fmt::format("{} chosen ones", count_text(in.sampled_pixels))});
   facts.push_back({"Reading the scene", seconds_text(first.seconds.load)});
   facts.push_back({"View samples", seconds_text(first.seconds.view)});
-  return "<section id=\"machine\"><h2>Machine and options</h2>\n" + facts_html(facts) + "</section>\n";
+  return folded_section_html("machine", "Machine and options", facts_html(facts));
 }
 
 std::string warnings_html(const ReportInput& in) {
@@ -219,9 +252,9 @@ std::string warnings_html(const ReportInput& in) {
     if (std::find(once.begin(), once.end(), warning) == once.end()) once.push_back(warning);
   }
   if (once.empty()) return {};
-  std::string html = "<section id=\"warnings\"><h2>Warnings</h2><div class=\"warnings\"><ul>\n";
+  std::string html = "<div class=\"warnings\"><ul>\n";
   for (const std::string& warning : once) html += "<li>" + escape_html(warning) + "</li>\n";
-  return html + "</ul></div></section>\n";
+  return folded_section_html("warnings", fmt::format("Warnings: {}", once.size()), html + "</ul></div>\n");
 }
 
 }  // namespace
@@ -248,23 +281,24 @@ std::string report_html(const ReportInput& in) {
       scene, count, count == 1 ? "" : "s", escape_html(in.metrics.reference.method), count == 1 ? "it" : "them");
   html += glance_html(in);
   html +=
-      "<nav aria-label=\"Sections\"><a href=\"#question\">What is asked</a><a href=\"#scene\">The scene</a>"
-      "<a href=\"#pictures\">Pictures</a><a href=\"#numbers\">Numbers</a><a href=\"#methods\">Methods</a>"
+      "<nav aria-label=\"Sections\"><a href=\"#numbers\">Numbers</a><a href=\"#pictures\">Pictures</a>"
+      "<a href=\"#question\">What is asked</a><a href=\"#scene\">The scene</a><a href=\"#methods\">Methods</a>"
       "<a href=\"#machine\">Machine and options</a>";
   if (!warnings.empty()) html += "<a href=\"#warnings\">Warnings</a>";
   html += "<a href=\"#words\">Words</a><a href=\"#again\">Do it again</a></nav>\n</header>\n<main>\n";
-  html += question_html(in) + scene_html(in) + gallery_html(in);
+  html += first_look_html(in);
   html += "<section id=\"numbers\"><h2>The numbers</h2>\n" + number_tables_html(in) + "</section>\n";
-  html += methods_html(in) + machine_html(in) + warnings;
-  html += "<section id=\"words\"><h2>Words</h2>\n" + std::string(kReportGlossary) + "</section>\n";
-  html +=
-      "<section id=\"again\"><h2>Do it again</h2>\n<p>In a clone of Penumbra on Debian 12; the first call installs "
-      "what is "
-      "missing and builds:</p>\n<pre>./run.sh " +
-      escape_html(shell_text(in.arguments)) +
-      "</pre>\n<p>All numbers of this page, and more, are in <code>metrics.json</code> beside it; the pictures with "
-      "all "
-      "their channels in the <code>.exr</code> files.</p></section>\n";
+  html += gallery_html(in) + question_html(in) + scene_html(in) + methods_html(in) + machine_html(in) + warnings;
+  html += folded_section_html("words", "Words", kReportGlossary);
+  html += folded_section_html("again", "Do it again",
+                              "<p>In a clone of Penumbra on Debian 12; the first call installs "
+                              "what is "
+                              "missing and builds:</p>\n<pre>./run.sh " +
+                                  escape_html(shell_text(in.arguments)) +
+                                  "</pre>\n<p>All numbers of this page, and more, are in <code>metrics.json</code> "
+                                  "beside it; the pictures with "
+                                  "all "
+                                  "their channels in the <code>.exr</code> files.</p>\n");
   html += "</main>\n<footer>Written by penumbra " + escape_html(in.version) + ".</footer>\n";
   if (!report_data_is_empty(in)) html += kReportMarkup;
   html += report_data_html(in) + "<script>\n";

@@ -14,6 +14,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <map>
 #include <vector>
 
 namespace penumbra::compare {
@@ -40,20 +41,30 @@ std::uint16_t radiance_code(float linear) {
   return static_cast<std::uint16_t>(std::lround(std::clamp(code, 1.0, 32767.0)));
 }
 
-/// Packed numbers, each in an element that no browser runs; the JSON refers to them by name.
+/// How many steps of four codes lead from one to another, to two codes. What is black stays as dark as can be.
+int steps_between(int from, int to) {
+  const int away = to - from;
+  return away < 0 ? -((1 - away) / 4) : (away + 1) / 4;
+}
+
+std::uint16_t folded(int steps) {
+  return static_cast<std::uint16_t>(steps < 0 ? -2 * steps - 1 : 2 * steps);
+}
+
+/// The packed numbers, each in an element that no browser runs; the JSON names them. Exact methods have the same ones.
 class Blobs {
  public:
   Json add(const std::string& packed) {
     if (packed.empty()) return nullptr;
-    const std::string name = fmt::format("packed-{}", count_++);
-    html_ += fmt::format("<script type=\"text/plain\" id=\"{}\">{}</script>\n", name, packed);
-    return name;
+    const auto [known, is_new] = names_.try_emplace(packed, fmt::format("packed-{}", names_.size()));
+    if (is_new) html_ += fmt::format("<script type=\"text/plain\" id=\"{}\">{}</script>\n", known->second, packed);
+    return known->second;
   }
   [[nodiscard]] const std::string& html() const { return html_; }
 
  private:
   std::string html_;
-  std::size_t count_ = 0;
+  std::map<std::string, std::string> names_;
 };
 
 Json colors(std::span<const Color8> colors) {
@@ -125,6 +136,19 @@ std::string pack_radiance(std::uint32_t width, std::span<const glm::vec3> linear
       steps[plane * linear.size() + i] = static_cast<std::uint16_t>(here[plane] - left[plane]);
     }
     left = here;
+  }
+  return pack_planes<std::uint16_t>(steps);
+}
+
+std::string pack_radiance_over(std::span<const glm::vec3> reference, std::span<const glm::vec3> linear) {
+  std::vector<std::uint16_t> steps(3 * linear.size());
+  for (std::size_t i = 0; i < linear.size(); ++i) {
+    const int green = steps_between(radiance_code(reference[i].g), radiance_code(linear[i].g));
+    const int red = steps_between(radiance_code(reference[i].r) + 4 * green, radiance_code(linear[i].r));
+    const int blue = steps_between(radiance_code(reference[i].b) + 4 * green, radiance_code(linear[i].b));
+    steps[i] = folded(green);
+    steps[linear.size() + i] = folded(red);
+    steps[2 * linear.size() + i] = folded(blue);
   }
   return pack_planes<std::uint16_t>(steps);
 }

@@ -87,11 +87,12 @@ std::string errors_html(const std::vector<Shown>& entries, std::size_t light) {
 std::string gallery_html(const ReportInput& in) {
   const std::vector<Shown> entries = shown_entries(in);
   std::string html =
-      "<section id=\"pictures\"><h2>The pictures</h2>\n<p class=\"note\">Click a picture to enlarge it, click again to "
+      "<p class=\"note\">Click a picture to enlarge it, click again to "
       "go back.</p>\n";
   if (!report_data_is_empty(in)) {
     html =
-        "<section id=\"pictures\"><h2>The pictures</h2>\n<p class=\"note\">Click a picture to look closely.</p>\n<p "
+        "<noscript><p>This page’s script paints the pictures. Without it, look at the .exr and -error.png files beside "
+        "this page.</p></noscript>\n<p class=\"note\">Click a picture to look closely.</p>\n<p "
         "class=\"open-viewer\"><button type=\"button\" "
         "data-open=\"wipe\" hidden>Wipe between two</button><button type=\"button\" data-open=\"all\" hidden>All side "
         "by side, with one zoom</button></p>\n";
@@ -116,7 +117,46 @@ std::string gallery_html(const ReportInput& in) {
               (light == 0 ? error_legend_html(in.error_limit) : "") + "<div class=\"gallery\">" + errors + "</div>\n";
     }
   }
-  return html + "</section>\n";
+  return folded_section_html("pictures", "All pictures", html);
+}
+
+std::string first_look_html(const ReportInput& in) {
+  const Shown *best = nullptr, *worst = nullptr;
+  double least = 0, most = 0;
+  const std::vector<Shown> entries = shown_entries(in);
+  for (const Shown& shown : entries) {
+    if (shown.lights == nullptr || &shown.entry == (in.rays ? &*in.rays : nullptr) || !shown.place) continue;
+    if (shown.lights->empty() || !shown.lights->front().error) continue;
+    const double rmse = shown.lights->front().error->rmse;
+    if (best == nullptr || rmse < least) {
+      best = &shown;
+      least = rmse;
+    }
+    if (worst == nullptr || rmse > most) {
+      worst = &shown;
+      most = rmse;
+    }
+  }
+  if (best == nullptr) return {};
+  const auto name = [](const Shown& shown, double rmse) {
+    return fmt::format("<b>{}</b>, RMSE {}", escape_html(shown.label), error_text(rmse));
+  };
+  const bool alone = best == worst;
+  const Shown& beside = alone ? entries.front() : *best;
+  const std::string under =
+      in.lights.size() > 1 ? fmt::format(" under light “{}”", escape_html(in.lights.front().name)) : "";
+  return fmt::format(
+      R"html(<section id="look" class="first-look" hidden data-left="{0}" data-right="{1}">
+<canvas width="{2}" height="{3}" role="img" aria-label="V{4} by {5} on the left of the line, by {6} on the right"></canvas>
+<div><h2>{7}</h2>
+<p>V, how much of the light each point sees{4}: on the left of the line {8}; on the right {9}.</p>
+<p><label>Line <input type="range" min="0" max="100" value="50"></label>
+<button type="button">Look closely</button></p></div></section>
+)html",
+      *worst->place, *beside.place, in.metrics.reference.width, in.metrics.reference.height, under,
+      escape_html(worst->label), escape_html(beside.label),
+      alone ? "The method beside the reference" : "The worst beside the best", name(*worst, most),
+      alone ? "<b>" + escape_html(beside.label) + "</b>, the reference" : name(*best, least));
 }
 
 }  // namespace penumbra::compare

@@ -125,14 +125,32 @@ std::string shell_text(std::span<const std::string> arguments) {
 std::string figure_html(const Image8& image, std::string_view alt_text, std::string_view caption_html,
                         const ViewerPlace& place) {
   const std::string alt = escape_html(alt_text);
-  const std::string opens = place.entry ? fmt::format(R"html( data-layer="{}" data-entry="{}" data-light="{}")html",
-                                                      place.layer, *place.entry, place.light)
-                                        : "";
+  if (place.entry) {
+    return fmt::format(
+        R"html(<figure><label class="picture"><input type="button" aria-label="Enlarge: {0}" data-layer="{1}" data-entry="{2}" data-light="{3}">
+<canvas width="{4}" height="{5}" role="img" aria-label="{0}"></canvas></label><figcaption>{6}</figcaption></figure>
+)html",
+        alt, place.layer, *place.entry, place.light, image.width, image.height, caption_html);
+  }
   return fmt::format(
-      R"html(<figure><label class="picture"><input type="checkbox" aria-label="Enlarge: {0}"{5}>
+      R"html(<figure><label class="picture"><input type="checkbox" aria-label="Enlarge: {0}">
 <img alt="{0}" width="{1}" height="{2}" src="{3}"></label><figcaption>{4}</figcaption></figure>
 )html",
-      alt, image.width, image.height, png_data_uri(image), caption_html, opens);
+      alt, image.width, image.height, png_data_uri(image), caption_html);
+}
+
+std::string folded_html(std::string_view summary_html, std::string_view html) {
+  if (html.empty()) return {};
+  return fmt::format("<details><summary>{}</summary>\n{}</details>\n", summary_html, html);
+}
+
+std::string folded_section_html(std::string_view id, std::string_view title, std::string_view html) {
+  return fmt::format("<details class=\"part\" id=\"{}\"><summary><h2>{}</h2></summary>\n{}</details>\n", id, title,
+                     html);
+}
+
+std::string method_place(std::string_view method) {
+  return "method-" + escape_html(method);
 }
 
 std::string error_legend_html(double limit) {

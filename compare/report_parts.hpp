@@ -35,12 +35,17 @@ struct ViewerPlace {
   std::size_t light = 0;
 };
 
-/// Returns a picture that grows to the window when clicked (a check box and CSS: no script), or opens the viewer there.
-/// `caption_html` is finished HTML.
+/// A picture that grows to the window when clicked (a check box and CSS: no script), or, if the viewer has it, one that
+/// the page's script paints when it is looked at, and that opens the viewer there. `caption_html` is finished.
 std::string figure_html(const Image8& image, std::string_view alt_text, std::string_view caption_html,
                         const ViewerPlace& place = {});
 
-/// Returns the scale of the error pictures, with numbers.
+/// A part of the page that opens when it is asked for; nothing around nothing.
+std::string folded_html(std::string_view summary_html, std::string_view html);
+/// Likewise a section with a place that links lead to.
+std::string folded_section_html(std::string_view id, std::string_view title, std::string_view html);
+
+/// The scale of the error pictures, with numbers.
 std::string error_legend_html(double limit);
 /// Returns the scale of the pictures of V.
 std::string visibility_legend_html();
@@ -63,6 +68,8 @@ struct ReportTable {
   std::vector<std::vector<ReportCell>> rows;
 };
 std::string table_html(const ReportTable& table);
+/// Where a method is described on the page: an anchor's name.
+std::string method_place(std::string_view method);
 
 /// Glossary: report_words.cpp.
 extern const std::string_view kReportGlossary;

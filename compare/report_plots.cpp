@@ -31,7 +31,8 @@ std::string error_against_time_html(const ReportInput& in) {
                                     "role=\"img\" aria-label=\"Error of V against time, one mark a method; the tables "
                                     "below have the numbers\"") +
                      "</div>\n"
-                     "<p class=\"note\">Further down is closer to the reference, further left is faster; both scales "
+                     "<details><summary>How to read the plot</summary>\n<p class=\"note\">Further down is closer to "
+                     "the reference, further left is faster; both scales "
                      "step by tens. Circles are geometry-based methods, squares image-based ones, diamonds references.";
   if (plot.level && plot.level->rmse >= kNoError) {
     html += fmt::format(
@@ -39,7 +40,7 @@ std::string error_against_time_html(const ReportInput& in) {
         "mask can be as exact as can be and yet come no lower, and it is no fault of its own.",
         in.metrics.same_samples->stats.light_samples);
   }
-  return html + "</p>\n";
+  return html + "</p></details>\n";
 }
 
 }  // namespace penumbra::compare

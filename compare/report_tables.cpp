@@ -31,7 +31,12 @@ void add_error_cells(std::vector<ReportCell>& row, const std::optional<Visibilit
                          {signed_text(error->bias), error->bias}});
 }
 
-/// Content of a table of errors: of one light, or of all together.
+/// An entry's name, which leads to what the page says of its method.
+std::string method_link_html(const MethodResult& result) {
+  return fmt::format("<a href=\"#{}\">{}</a>", method_place(result.stats.method), escape_html(result.entry));
+}
+
+/// What a table of errors is of: of one light, or of all together.
 struct ErrorRows {
   std::string caption;
   std::optional<VisibilityError> (*error_of)(const MethodResult& result, std::size_t light);
@@ -56,7 +61,7 @@ std::string errors_table_html(const ReportInput& in, const ErrorRows& rows) {
   };
   for (const MethodResult& result : in.metrics.methods) {
     if (result.failure) continue;
-    add(escape_html(result.entry), rows.error_of(result, rows.light), true);
+    add(method_link_html(result), rows.error_of(result, rows.light), true);
     if (!rows.with_beauty) continue;
     const auto& beauty = result.beauty_error;
     table.rows.back().push_back(beauty ? ReportCell(percent_text(beauty->relative_rmse), beauty->relative_rmse) : "–");
@@ -85,14 +90,19 @@ const LightResult* pixels_under(const ReportInput& in, std::size_t light) {
   return nullptr;
 }
 
-std::string errors_html(const ReportInput& in) {
+/// Errors over everything, and those of parts of the picture.
+struct ErrorTables {
+  std::string whole, parts;
+};
+
+ErrorTables errors_html(const ReportInput& in) {
   const std::string against = "Error of V against " + escape_html(in.metrics.reference.method);
   const bool several = in.lights.size() > 1;
   const SampleCost* cost = in.metrics.same_samples ? &*in.metrics.same_samples : nullptr;
   const auto cost_under = [&](std::size_t light) {
     return cost != nullptr && light < cost->lights.size() ? cost->lights[light].error : std::nullopt;
   };
-  std::string html = "<h3>Errors</h3>\n", classes, horizon;
+  std::string html = "<h3>Errors</h3>\n", each, classes, horizon;
   if (several) {
     html += errors_table_html(in, {against + " under all lights together. 0 would be perfect.",
                                    [](const MethodResult& result, std::size_t) { return result.all_lights_error; }, 0,
@@ -102,20 +112,18 @@ std::string errors_html(const ReportInput& in) {
     const LightResult* pixels = pixels_under(in, light);
     if (pixels == nullptr) continue;
     const std::string under = several ? " under light “" + escape_html(in.lights[light].name) + "”" : "";
-    html += errors_table_html(in, {against + under + ". 0 would be perfect. " + count_text(pixels->judged_pixels) +
-                                       " judged pixels, " + count_text(pixels->horizon_pixels) + " horizon pixels.",
-                                   error_under, light, !several, cost_under(light)});
+    (several ? each : html) +=
+        errors_table_html(in, {against + under + ". 0 would be perfect. " + count_text(pixels->judged_pixels) +
+                                   " judged pixels, " + count_text(pixels->horizon_pixels) + " horizon pixels.",
+                               error_under, light, !several, cost_under(light)});
     classes += classes_html(in, light, under);
     if (pixels->horizon_pixels == 0) continue;
     horizon +=
         errors_table_html(in, {against + under + " at " + count_text(pixels->horizon_pixels) + " horizon pixels.",
                                horizon_error_under, light});
   }
-  if (!classes.empty()) html += "<details><summary>Errors by class of pixel</summary>\n" + classes + "</details>\n";
-  const std::string looks = looks_html(in);
-  if (!looks.empty()) html += "<details><summary>Errors to the eye</summary>\n" + looks + "</details>\n";
-  if (!horizon.empty()) html += "<details><summary>Errors at the horizon</summary>\n" + horizon + "</details>\n";
-  return html;
+  return {html, folded_html("Errors under each light", each) + folded_html("Errors by class of pixel", classes) +
+                    folded_html("Errors to the eye", looks_html(in)) + folded_html("Errors at the horizon", horizon)};
 }
 
 /// Exactness: comparison pair by pair with rays on the same light samples.
@@ -158,7 +166,7 @@ std::string pairs_html(const ReportInput& in) {
     if (!verdicts.rows.empty()) html += table_html(verdicts);
   }
   if (html.empty()) return html;
-  return "<h3>Exactness, pair by pair</h3>\n" + html +
+  return html +
          "<p class=\"note\">Methods with a mask are held against rays on their own light samples, so that equal is "
          "compared with equal. A tie: the line of sight meets an edge or a corner exactly; the definition of "
          "visibility "
@@ -231,7 +239,7 @@ std::string seconds_html(const ReportInput& in) {
     table.headers.erase(table.headers.begin() + 2);
     for (auto& cells : table.rows) cells.erase(cells.begin() + 2);
   }
-  return "<h3>Time</h3>\n" + table_html(table);
+  return table_html(table);
 }
 
 std::string details_html(const ReportInput& in) {
@@ -239,23 +247,23 @@ std::string details_html(const ReportInput& in) {
   for (const MethodResult& result : in.metrics.methods) {
     const Stats& stats = result.stats;
     if (stats.passes.empty() && stats.counters.empty()) continue;
-    html += "<details><summary>Passes and counters of " + escape_html(result.entry) + "</summary>\n";
+    std::string tables;
     if (!stats.passes.empty()) {
       ReportTable table{"Where the time goes", {"Pass", "Time"}, {}};
       for (const visibility::PassTime& pass : stats.passes) {
         table.rows.push_back(
             {escape_html(pass.name), {seconds_text(pass.milliseconds / 1000), pass.milliseconds / 1000}});
       }
-      html += table_html(table);
+      tables += table_html(table);
     }
     if (!stats.counters.empty()) {
       ReportTable table{"What was counted", {"Counter", "Count"}, {}};
       for (const auto& [name, count] : stats.counters) {
         table.rows.push_back({escape_html(name), {count_text(count), static_cast<double>(count)}});
       }
-      html += table_html(table);
+      tables += table_html(table);
     }
-    html += "</details>\n";
+    html += folded_html("Passes and counters of " + escape_html(result.entry), tables);
   }
   return html;
 }
@@ -299,8 +307,12 @@ std::optional<double> shadow_of(const MethodResult& result) {
 }
 
 std::string number_tables_html(const ReportInput& in) {
-  return failures_html(in) + error_against_time_html(in) + errors_html(in) + pairs_html(in) + error_budget_html(in) +
-         seconds_html(in) + details_html(in);
+  const ErrorTables errors = errors_html(in);
+  return failures_html(in) + error_against_time_html(in) + errors.whole + error_budget_html(in) +
+         folded_html("More numbers: errors of parts of the picture, time, exactness pair by pair, passes",
+                     errors.parts + folded_html("Time", seconds_html(in)) +
+                         folded_html("Exactness, pair by pair", pairs_html(in)) +
+                         folded_html("Passes and counters", details_html(in)));
 }
 
 }  // namespace penumbra::compare

@@ -316,8 +316,8 @@ class Comparison {
   }
 
   compare::ReportEntry pictures_of(const Entry& entry, Finished& done) {
-    compare::ReportEntry pictures =
-        report_entry(session_, entry.description, report_.exposure, {done.run, done.beauty, std::move(done.masks)});
+    compare::ReportEntry pictures = report_entry(session_, entry.description, report_.exposure,
+                                                 {done.run, done.beauty, std::move(done.masks), reference_beauty_});
     if (options_.png && options_.writes) write_png(files_.of(entry.label, ".png"), *pictures.beauty);
     return pictures;
   }

@@ -86,7 +86,9 @@ compare::ReportEntry report_entry(const Session& session, const visibility::Meth
   entry.description = description;
   if (!seen.beauty.empty()) {
     entry.beauty = to_srgb(session.width, session.height, seen.beauty, exposure);
-    entry.packed_beauty = compare::pack_radiance(session.width, seen.beauty);
+    entry.packed_beauty = seen.reference_beauty.empty()
+                              ? compare::pack_radiance(session.width, seen.beauty)
+                              : compare::pack_radiance_over(seen.reference_beauty, seen.beauty);
   }
   const std::vector<WholeLight> wholes = whole_lights(session.lights);
   for (std::size_t light = 0; light < seen.run.visibility.size(); ++light) {

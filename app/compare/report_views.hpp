@@ -43,8 +43,9 @@ std::vector<compare::ReportLight> report_lights(const Session& session, std::spa
 /// Pictures and packed numbers of a run of whole lights, without errors.
 struct SeenByRun {
   const MethodRun& run;
-  std::span<const glm::vec3> beauty;  ///< empty: none is shown
-  std::vector<std::string> masks;     ///< PackedMasks::finish(), of each of the session's lights
+  std::span<const glm::vec3> beauty;                 ///< empty: none is shown
+  std::vector<std::string> masks;                    ///< PackedMasks::finish(), of each of the session's lights
+  std::span<const glm::vec3> reference_beauty = {};  ///< what the beauty is packed over; empty: it is the reference's
 };
 compare::ReportEntry report_entry(const Session& session, const visibility::MethodDescription& description,
                                   float exposure, SeenByRun seen);

@@ -44,10 +44,24 @@ function masksOf(entry, light) {
   return id ? keep(id, () => unpackBytes(id)) : Promise.resolve(null);
 }
 
-// Linear radiance of each pixel as codes, red green blue: 0 is black, c is 2^((c − 1) / 256 − 64). They come as green,
-// red less green and blue less green, each less its left neighbour, modulo 2^16.
+// Linear radiance of each pixel as codes, red green blue: 0 is black, c is 2^((c − 1) / 256 − 64). The reference's come
+// as green, red less green and blue less green, each less its left neighbour, modulo 2^16; others' as steps of four
+// codes: green's from the reference's green, red's and blue's from the reference's own and green's steps.
 function radianceCodesOf(entry) {
   const id = report.entries[entry].beauty;
+  if (entry !== 0 && report.entries[0].beauty !== null) {
+    return keep(`over ${id}`, async () => {
+      const [codes, planes] = await Promise.all([radianceCodesOf(0), unpackBytes(id)]);
+      const steps = joinPlanes(planes, 2), count = report.width * report.height, own = new Uint16Array(codes.length);
+      const stepsAt = (place) => (steps[place] >>> 1) ^ -(steps[place] & 1);
+      for (let i = 0; i < count; ++i) {
+        const green = stepsAt(i);
+        const all = [green + stepsAt(count + i), green, green + stepsAt(2 * count + i)];
+        for (let c = 0; c < 3; ++c) own[3 * i + c] = Math.min(32767, Math.max(0, codes[3 * i + c] + 4 * all[c]));
+      }
+      return own;
+    });
+  }
   return keep(id, async () => {
     const count = report.width * report.height;
     const steps = joinPlanes(await unpackBytes(id), 2);

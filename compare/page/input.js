@@ -133,24 +133,28 @@ function listenToControls() {
   new ResizeObserver(() => viewer.open && draw()).observe(stage);
 }
 
-// Without script a picture's check box enlarges it; with script it is a button that opens the viewer on that picture.
+// A picture is a button that opens the viewer on it.
 function openFromPage() {
   for (const box of document.querySelectorAll("input[data-entry]")) {
-    box.type = "button";
     box.addEventListener("click", () => open({
       layer: box.dataset.layer, light: Number(box.dataset.light), a: Number(box.dataset.entry), view: "one" }));
   }
-  for (const button of document.querySelectorAll("[data-open]")) {
+  for (const button of document.querySelectorAll("#pictures [data-open]")) {
     button.hidden = false;
     button.addEventListener("click", () => open({ view: button.dataset.open, a: 1, b: 0, bLayer: "" }));
   }
 }
+
+addEventListener("hashchange", unfold);
+unfold();
 
 // An old browser that cannot unpack keeps the page as it is without script.
 if (report && typeof DecompressionStream === "function" && typeof viewer.showModal === "function") {
   listenToPointers();
   listenToControls();
   openFromPage();
+  paintWhenSeen();
+  lookFirst();
   if (readAddress()) open();
   addEventListener("hashchange", () => readAddress() && open());
 }

@@ -1,3 +1,26 @@
+// Tables can be taken along as comma-separated values (RFC 4180): numbers as exact as they are known.
+function csvOf(table) {
+  const quoted = (text) => (/[",\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text);
+  const textOf = (cell) => cell.dataset.value ?? cell.textContent.trim().replaceAll(/\s+/g, " ");
+  return [...table.rows].map((row) => [...row.cells].map((cell) => quoted(textOf(cell))).join(",")).join("\r\n") + "\r\n";
+}
+
+function offerCsv(table) {
+  const button = document.createElement("button");
+  button.type = "button";
+  button.className = "csv";
+  button.textContent = "CSV";
+  button.title = "Save this table as comma-separated values";
+  button.addEventListener("click", () => {
+    const link = document.createElement("a");
+    link.href = URL.createObjectURL(new Blob([csvOf(table)], { type: "text/csv" }));
+    link.download = `${table.caption.firstChild.textContent.slice(0, 40).trim().replaceAll(/[^A-Za-z0-9]+/g, "-")}.csv`;
+    link.click();
+    setTimeout(() => URL.revokeObjectURL(link.href), 1000);
+  });
+  table.caption.append(" ", button);
+}
+
 // Tables sort by a click on a column's header: rising, falling, and back as they were. Rows without a value stay last,
 // and equal rows in their order.
 
@@ -33,4 +56,7 @@ function makeSortable(table) {
   });
 }
 
-document.querySelectorAll("table.sortable").forEach(makeSortable);
+document.querySelectorAll("table.sortable").forEach((table) => {
+  makeSortable(table);
+  offerCsv(table);
+});

@@ -121,7 +121,7 @@ function drawPane(context, { entry, layer, box, from, to }, picture) {
     }
   }
   if (state.view !== "one") {
-    context.font = `${13 * devicePixelRatio}px system-ui, sans-serif`;
+    context.font = `${14 * devicePixelRatio}px system-ui, sans-serif`;
     const text = layer === state.layer ? report.entries[entry].label : pictureName(entry, layer);
     const wide = context.measureText(text).width + 12 * devicePixelRatio, high = 22 * devicePixelRatio;
     const x = state.view === "wipe" && from > 0 ? Math.max(from, to - wide) : from;

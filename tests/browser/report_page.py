@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """The report in a browser, by keys and by pointer, against the files beside it.
   report_page.py PROGRAM SCENE [PHOTOGRAPHS]   PHOTOGRAPHS: a folder for pictures of the page, for people to look at"""
+import csv
 import json
 import pathlib
 import subprocess
@@ -18,6 +19,16 @@ READY = "document.getElementById('viewer').dataset.drawn !== undefined"
 READ = "document.getElementById('viewer').dataset.read"
 
 
+def file_stem(entry):
+    """Names of files have no colon."""
+    return entry.replace(":", ",")
+
+
+def srgb(linear):
+    x = min(1, max(0, linear))
+    return round(255 * (12.92 * x if x <= 0.0031308 else 1.055 * x ** (1 / 2.4) - 0.055))
+
+
 class Page:
     def __init__(self, browser, folder):
         self.browser, self.folder = browser, pathlib.Path(folder)
@@ -26,8 +37,8 @@ class Page:
         self.lights = [light["name"] for light in self.metrics["methods"][0]["lights"]]
         # The viewer's entries in order; rays on the methods' samples have no file of their own.
         self.entries = ["reference", None, *METHODS]
-        self.exr = {name: read_exr(self.folder / f"{name}.exr")[0] for name in self.entries if name}
-        self.bits = {name: read_bits(self.folder / f"{name}.bits") for name in ("edge-scatter", "accumulate:size=16")}
+        self.exr = {name: read_exr(self.folder / f"{file_stem(name)}.exr")[0] for name in self.entries if name}
+        self.bits = {name: read_bits(self.folder / f"{file_stem(name)}.bits") for name in ("edge-scatter", "accumulate:size=16")}
 
     def v(self, entry, light, pixel):
         return self.exr[self.entries[entry]][self.lights[light].replace(".", "_").replace("/", "_") + ".V"][pixel]
@@ -144,6 +155,8 @@ def check_from_the_page(page):
     """Tab and Enter open a picture, Escape closes it and the focus is where it was."""
     browser = page.browser
     browser.open(page.url)
+    browser.ask("document.querySelector('nav a[href=\"#pictures\"]').click()")
+    browser.wait("document.getElementById('pictures').open")
     browser.ask("document.querySelector('input[data-layer=error][data-entry=\"3\"][data-light=\"1\"]').focus()")
     same(browser.ask("document.activeElement.type"), "button", "with script a picture is a button")
     browser.key("Enter")
@@ -175,18 +188,22 @@ def check_pictures(page):
     for layer, entry, light, most in (("v", 3, 0, 0), ("v", 2, 1, 0), ("error", 3, 0, 0), ("error", 4, 1, 0), ("beauty", 3, 0, 1)):
         page.look(f"layer={layer}&a={entry}&light={light}&view=one")
         painted[layer, entry, light] = page.colors([page.place(x, y) for x, y in places])
+        browser.open(page.url)
+        browser.ask("document.getElementById('pictures').open = true")
+        figure = (f"""document.querySelector('input[data-layer={layer}][data-entry="{entry}"][data-light="{light}"]')"""
+                  ".parentElement.querySelector('canvas')")
+        browser.ask(f"{figure}.scrollIntoView({{behavior: 'instant'}})")
+        browser.wait(f"{figure}.dataset.painted === 'yes'")
         wanted = browser.ask(f"""(async () => {{
-            const image = document.querySelector('input[data-layer={layer}][data-entry="{entry}"][data-light="{light}"]')
-                .parentElement.querySelector('img');
-            await image.decode();
-            const canvas = document.createElement('canvas');
-            canvas.width = {WIDTH}; canvas.height = {HEIGHT};
-            const context = canvas.getContext('2d');
-            context.drawImage(image, 0, 0);
+            const canvas = {figure}, context = canvas.getContext('2d');
             return {json.dumps(places)}.map(([x, y]) => [...context.getImageData(x, y, 1, 1).data.slice(0, 3)]);
         }})()""")
-        # Radiance is packed to 1/512 of a stop, 0.14 %: less than a step of sRGB's 255 (the steepest of them, near white,
-        # is 0.9 % of the light).
+        if layer == "beauty":
+            # Radiance is packed to 1/128 of a stop, 0.54 %: less than a step of sRGB's 255 (the steepest of them, near
+            # white, is 0.9 % of the light).
+            exposure = browser.ask("JSON.parse(document.getElementById('report-data').textContent).exposure")
+            channels = page.exr[page.entries[entry]]
+            wanted = [[srgb(exposure * channels[c][y * WIDTH + x]) for c in "RGB"] for x, y in places]
         off = max(abs(a - b) for mine, other in zip(painted[layer, entry, light], wanted) for a, b in zip(mine, other))
         expect(off <= most, f"{layer} of entry {entry} under light {light} is off by {off} of 255")
     page.look("layer=v&view=wipe&a=3&b=3&wipe=0.5&bLayer=error&light=0")
@@ -219,6 +236,18 @@ def check_pictures(page):
 def check_tables(page):
     browser = page.browser
     browser.open(page.url)
+    text = browser.ask("""(() => {
+        const made = URL.createObjectURL.bind(URL);
+        let saved;
+        URL.createObjectURL = (blob) => { saved = blob; return made(blob); };
+        document.querySelector('#numbers table.sortable .csv').click();
+        return saved.text();
+    })()""")
+    lines = list(csv.reader(text.splitlines()))
+    same([float(line[2]) for line in lines[1:len(page.metrics["methods"]) + 1]],
+         [method["errorAllLights"]["rmse"] for method in page.metrics["methods"]], "the saved table has the same numbers")
+    expect(browser.ask("[...document.querySelectorAll('table.sortable caption')].every(c => c.querySelector('.csv'))"),
+           "every table can be saved")
     columns = "[...document.querySelectorAll('#numbers table.sortable')].find(t => t.caption.textContent.includes('all lights'))"
     read = f"""[...{columns}.tBodies[0].rows].map(r => r.cells[2].dataset.value)"""
     original = browser.ask(read)
@@ -230,6 +259,41 @@ def check_tables(page):
         browser.key("Enter")
         same([float(value) for value in browser.ask(read)], values, f"RMSE {order}")
         same(browser.ask(f"{columns}.tHead.rows[0].cells[2].getAttribute('aria-sort')"), order, "said")
+
+
+def check_first_look(page):
+    """The page begins with a wipe between the worst and the best method, which a key moves and a button opens."""
+    browser = page.browser
+    browser.open(page.url)
+    browser.wait("document.getElementById('look').dataset.painted === '50'")
+    errors = [method["lights"][0]["error"]["rmse"] for method in page.metrics["methods"]]
+    same(browser.ask("[document.getElementById('look').dataset.left, document.getElementById('look').dataset.right]"),
+         [f"{2 + errors.index(max(errors))}", f"{2 + errors.index(min(errors))}"], "the worst and the best")
+    seen = browser.ask(f"""(() => {{ const c = document.querySelector('#look canvas').getContext('2d');
+        return [[10, 60], [{WIDTH} - 10, 60]].map(([x, y]) => c.getImageData(x, y, 1, 1).data[0]); }})()""")
+    for grey, entry, x in zip(seen, (2 + errors.index(max(errors)), 2 + errors.index(min(errors))), (10, WIDTH - 10)):
+        expect(abs(grey - 255 * page.v(entry, 0, 60 * WIDTH + x)) <= 0.51, f"V on the side of entry {entry}")
+    browser.ask("document.querySelector('#look input').focus()")
+    browser.key("ArrowLeft")
+    browser.wait("document.getElementById('look').dataset.painted === '49'")
+    browser.ask("document.querySelector('#look button').click()")
+    browser.wait(f"document.getElementById('viewer').open && {READY}")
+    same(browser.ask("document.getElementById('viewer-wipe').value"), "49", "the viewer goes on where the line is")
+    # What is there before one opens more: three screens at most, wide and narrow. Text is never smaller than 14 pixels.
+    for window in ({"width": 1400, "height": 900}, {"width": 390, "height": 844, "phone": True}):
+        browser.open(page.url, **window)
+        browser.wait("document.getElementById('look').dataset.painted === '50'")
+        screens = browser.ask("document.documentElement.scrollHeight / innerHeight")
+        expect(screens <= 3, f"{screens:.2f} screens of {window['width']} pixels")
+        small = browser.ask("""[...new Set([...document.querySelectorAll('body *')].filter(e => e.checkVisibility()
+            && [...e.childNodes].some(n => n.nodeType === 3 && n.textContent.trim()))
+            .filter(e => parseFloat(getComputedStyle(e).fontSize) * (e.ownerSVGElement
+                ? e.getScreenCTM().a : 1) < 13.99).map(e => e.tagName + '.' + (e.className.baseVal ?? e.className)))]""")
+        same(small, [], "smaller than 14 pixels")
+    browser.ask("document.querySelector('#numbers tbody a').click()")
+    browser.wait("document.getElementById('methods').open")
+    expect(browser.ask("document.querySelector('#methods details[open] p').textContent.includes('-based')"),
+           "a method's name leads to what it is")
 
 
 def check_budget(browser, folder, photographs):
@@ -324,10 +388,11 @@ def check_windows(page, photographs):
             if photographs:
                 browser.photograph(photographs / f"{view}-{name}.png")
     browser.open(page.url, script=False)
-    same(browser.ask("document.querySelector('input[data-entry]').type"), "checkbox", "without script")
     expect(browser.ask("[...document.querySelectorAll('[data-open]')].every(b => b.hidden)"), "no buttons that do nothing")
-    browser.ask("document.querySelector('input[data-entry]').click()")
-    expect(browser.ask("getComputedStyle(document.querySelector('input[data-entry] + img')).position === 'fixed'"),
+    expect("paints the pictures" in browser.ask("document.querySelector('#pictures noscript').textContent"),
+           "without script the page says where the pictures are")
+    browser.ask("document.querySelector('input[type=checkbox]').click()")
+    expect(browser.ask("getComputedStyle(document.querySelector('input[type=checkbox] + img')).position === 'fixed'"),
            "without script a picture is enlarged")
 
 
@@ -343,7 +408,7 @@ def main():
         with Browser() as browser:
             page = Page(browser, folder)
             same(len(page.lights), 2, "lights of the scene")
-            for check in (check_readout, check_keys, check_from_the_page, check_pictures, check_tables):
+            for check in (check_first_look, check_readout, check_keys, check_from_the_page, check_pictures, check_tables):
                 check(page)
             check_windows(page, photographs)
             budget = pathlib.Path(folder) / "budget"

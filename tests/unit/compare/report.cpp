@@ -25,8 +25,11 @@ TEST(Report, IsOneWellFormedPageWithoutNetwork) {
       EXPECT_NE(html.find("default-src 'none'; img-src data:;"), std::string::npos);
       EXPECT_EQ(occurrences(html, "url("), occurrences(html, "url(#"));
       EXPECT_EQ(occurrences(html, "src=\""), occurrences(html, "src=\"data:image/png;base64,"));
-      // Beauty and V of the reference, its beauty once more as the scene's picture, three a method.
-      EXPECT_EQ(occurrences(html, "<img "), 3 + 3 * count);
+      // Beauty and V of the reference, its beauty once more as the scene's picture, three a method. What the script has
+      // the numbers of it paints, and the wipe at the beginning.
+      const bool has_numbers = html.find("id=\"report-data\"") != std::string::npos;
+      EXPECT_EQ(occurrences(html, "<img "), has_numbers ? 1 : 3 + 3 * count);
+      EXPECT_EQ(occurrences(html, "<canvas width="), has_numbers ? 2 + 3 * count + (count > 0 ? 1 : 0) : 0);
       EXPECT_EQ(occurrences(html, "<img alt=\""), occurrences(html, "<img "));
       EXPECT_EQ(occurrences(html, "<img alt=\"\""), 0u);
       EXPECT_EQ(occurrences(html, "<th>"), 0u) << "each table header says whether it is a row's or a column's";
@@ -75,7 +78,7 @@ TEST(Report, JudgesEachLight) {
                            ">0.0375<", "each of the scene’s 2 lights is judged by itself"}) {
     EXPECT_NE(html.find(text), std::string::npos) << text;
   }
-  EXPECT_EQ(occurrences(html, "<img "), 2 + 2 + 5u) << "V of each light, and its error";
+  EXPECT_EQ(occurrences(html, "<figure>"), 2 + 2 + 5u) << "V of each light, and its error";
 }
 
 /// What looks the same is not called better.
@@ -261,6 +264,42 @@ TEST(Report, EscapesEverythingThatCameFromOutside) {
   EXPECT_EQ(data_of(html).at("lights").at(1).at("name"), evil);
   EXPECT_EQ(html.find("alert(\""), std::string::npos);
   EXPECT_EQ(unbalanced_tag(html), "");
+}
+
+/// Exact methods have the same numbers: the page carries them once.
+TEST(Report, CarriesEqualNumbersOnce) {
+  const std::string html = report_html(touchable_input(3));
+  EXPECT_EQ(occurrences(html, ">Vg==<"), 1u);
+  const auto data = data_of(html);
+  EXPECT_EQ(data["entries"][1]["lights"][0]["v"], data["entries"][3]["lights"][0]["v"]);
+}
+
+/// The page begins with the largest error beside the smallest, whichever way round the methods were asked for.
+TEST(Report, BeginsWithTheWorstBesideTheBest) {
+  ReportInput in = touchable_input(3);
+  in.metrics.methods[1].lights[0].error->rmse = 0.001;
+  in.metrics.methods[2].lights[0].error->rmse = 0.25;
+  const std::string html = report_html(in);
+  EXPECT_NE(html.find("data-left=\"3\" data-right=\"2\""), std::string::npos);
+  EXPECT_LT(html.find("id=\"look\""), html.find("id=\"numbers\""));
+  EXPECT_LT(html.find("id=\"numbers\""), html.find("id=\"pictures\""));
+  EXPECT_NE(html.find("<b>method-2</b>, RMSE 0.25"), std::string::npos);
+  // One method alone is beside the reference.
+  EXPECT_NE(report_html(touchable_input(1)).find("data-left=\"1\" data-right=\"0\""), std::string::npos);
+  EXPECT_EQ(report_html(touchable_input(0)).find("id=\"look\""), std::string::npos);
+}
+
+/// A method's name in the table of errors leads to what the method is.
+TEST(Report, TellsWhatEachMethodIs) {
+  ReportInput in = touchable_input(2);
+  in.metrics.methods[0].stats.method = in.metrics.methods[1].stats.method = "pcss";
+  in.metrics.methods[1].entry = "pcss:size=64";
+  in.methods[0].description.options = {
+      {.name = "size", .least = 1, .most = 4096, .whole = true, .default_value = "1024", .help = "texels <across>"}};
+  const std::string html = report_html(in);
+  EXPECT_EQ(occurrences(html, "id=\"method-pcss\""), 1u);
+  EXPECT_NE(html.find("<a href=\"#method-pcss\">pcss:size=64</a>"), std::string::npos);
+  EXPECT_NE(html.find("texels &lt;across&gt;"), std::string::npos);
 }
 
 TEST(Report, SaysEachWarningOnce) {
