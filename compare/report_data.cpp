@@ -81,17 +81,20 @@ Json points(std::span<const glm::dvec2> samples) {
 }
 
 /// Role of an entry. `samples`: the light's sample set of its masks; `judges_pairs`: the entry is the rays to which
-/// others on this set are compared.
+/// others on this set are compared. Masks to which no other entry is compared are left out: masks of 1,024 light samples
+/// are a tenth of a page.
 struct EntryRole {
   std::string label;
   const char* samples;
   bool judges_pairs;
+  bool has_masks = true;
 };
 
 Json entry_json(const ReportEntry& entry, const EntryRole& role, Blobs& blobs) {
   Json lights = Json::array();
   for (const ReportLightView& light : entry.lights) {
-    lights.push_back({{"v", blobs.add(light.packed_visibility)}, {"masks", blobs.add(light.packed_masks)}});
+    lights.push_back({{"v", blobs.add(light.packed_visibility)},
+                      {"masks", role.has_masks ? blobs.add(light.packed_masks) : nullptr}});
   }
   return {{"label", role.label},
           {"samples", role.samples},
@@ -169,7 +172,7 @@ std::string report_data_html(const ReportInput& in) {
   const bool same = in.same_samples;
   entries.push_back(entry_json(in.reference,
                                {in.metrics.reference.method + " (reference)", same ? "samples" : "referenceSamples",
-                                same && in.reference.description.output == visibility::Output::mask},
+                                same && in.reference.description.output == visibility::Output::mask, same || !in.rays},
                                blobs));
   if (in.rays && has_packed_numbers(*in.rays)) {
     entries.push_back(entry_json(*in.rays, {rays_label(in), "samples", true}, blobs));

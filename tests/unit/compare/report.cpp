@@ -266,6 +266,17 @@ TEST(Report, EscapesEverythingThatCameFromOutside) {
   EXPECT_EQ(unbalanced_tag(html), "");
 }
 
+/// Masks of a reference that looked at other points than the methods did are held against none.
+TEST(Report, LeavesOutTheReferencesMasksWhereRaysHaveTheMethods) {
+  ReportInput in = touchable_input(1);
+  EXPECT_FALSE(data_of(report_html(in))["entries"][0]["lights"][0]["masks"].is_null());
+  in.rays = in.reference;
+  in.metrics.same_samples.emplace().lights = in.metrics.methods[0].lights;
+  const auto data = data_of(report_html(in));
+  EXPECT_TRUE(data["entries"][0]["lights"][0]["masks"].is_null());
+  EXPECT_FALSE(data["entries"][1]["lights"][0]["masks"].is_null());
+}
+
 /// Exact methods have the same numbers: the page carries them once.
 TEST(Report, CarriesEqualNumbersOnce) {
   const std::string html = report_html(touchable_input(3));
