@@ -288,7 +288,7 @@ def check_first_look(page):
         small = browser.ask("""[...new Set([...document.querySelectorAll('body *')].filter(e => e.checkVisibility()
             && [...e.childNodes].some(n => n.nodeType === 3 && n.textContent.trim()))
             .filter(e => parseFloat(getComputedStyle(e).fontSize) * (e.ownerSVGElement
-                ? e.getScreenCTM().a : 1) < 13.99).map(e => e.tagName + '.' + (e.className.baseVal ?? e.className)))]""")
+                ? Math.hypot(e.getScreenCTM().a, e.getScreenCTM().b) : 1) < 13.99).map(e => e.tagName + '.' + (e.className.baseVal ?? e.className)))]""")
         same(small, [], "smaller than 14 pixels")
     browser.ask("document.querySelector('#numbers tbody a').click()")
     browser.wait("document.getElementById('methods').open")
