@@ -76,6 +76,8 @@ class PageServer::State {
   }
   [[nodiscard]] std::uint16_t port() const { return port_; }
   [[nodiscard]] const ServerOptions& options() const { return options_; }
+  /// As an address of a page has it.
+  [[nodiscard]] const std::string& shown_host() const { return shown_host_; }
   template <typename Function>
   void post(Function function) {
     asio::post(io_, std::move(function));
@@ -98,6 +100,7 @@ class PageServer::State {
                                  // its destructor decrement this counter
   asio::io_context io_{1};
   tcp::acceptor acceptor_{io_};
+  std::string shown_host_;
   std::uint16_t port_ = 0;
   ClientId last_client_ = 0;
   std::map<ClientId, std::shared_ptr<Socket>> sockets_;
@@ -253,7 +256,8 @@ class PageServer::State::Connection : public std::enable_shared_from_this<Connec
     const std::string_view host = view_of(request[http::field::host]);
     if (!has_token(view_of(request.target()), server_.options_.token))
       return "the token is missing or wrong: open the whole address that `penumbra view` printed";
-    if (!is_loopback_host(host)) return "the request names another host than 127.0.0.1 or localhost";
+    if (!is_loopback_host(host) && !is_host(host, server_.shown_host()))
+      return "the request names another host than 127.0.0.1, localhost, or the one that is served on";
     if (!is_own_origin(view_of(request[http::field::origin]), host)) return "the request comes from another page";
     return nullptr;
   }
@@ -323,15 +327,20 @@ class PageServer::State::Connection : public std::enable_shared_from_this<Connec
 
 PageServer::State::State(ServerOptions options, PageHandler& handler)
     : options_(std::move(options)), handler_(handler) {
-  const tcp::endpoint endpoint(asio::ip::address_v4::loopback(), options_.port);
   beast::error_code error;
+  const asio::ip::address host = asio::ip::make_address(options_.place.host, error);
+  if (error || host.is_unspecified() || host.is_multicast())
+    throw UsageError("--host {}: expected one address of this machine in numbers, such as 192.168.0.7",
+                     options_.place.host);
+  const tcp::endpoint endpoint(host, options_.place.port);
+  shown_host_ = host.is_v6() ? "[" + host.to_string() + "]" : host.to_string();
   acceptor_.open(endpoint.protocol(), error);
   if (!error) acceptor_.set_option(asio::socket_base::reuse_address(true), error);
   if (!error) acceptor_.bind(endpoint, error);
   if (!error) acceptor_.listen(16, error);
   if (error)
-    throw ResourceError("cannot serve on 127.0.0.1:{}: {}; choose another --port, or none for any that is free",
-                        options_.port, error.message());
+    throw ResourceError("cannot serve on {}:{}: {}; choose another --port, or none for any that is free", shown_host_,
+                        options_.place.port, error.message());
   port_ = acceptor_.local_endpoint().port();
   accept();
   thread_ = std::thread([this] { io_.run(); });
@@ -375,7 +384,7 @@ std::uint16_t PageServer::port() const {
   return state_->port();
 }
 std::string PageServer::address() const {
-  return "http://127.0.0.1:" + std::to_string(state_->port()) + "/?token=" + state_->options().token;
+  return "http://" + state_->shown_host() + ":" + std::to_string(state_->port()) + "/?token=" + state_->options().token;
 }
 void PageServer::stop() {
   state_->stop();

@@ -34,10 +34,16 @@ struct ServedFile {
                                       ///< message
 };
 
+/// Where a server listens.
+struct ServerPlace {
+  std::string host = "127.0.0.1";  ///< an address of this machine; of requests that name it, or the loopback
+  std::uint16_t port = 0;          ///< 0: any that is free
+};
+
 struct ServerOptions {
-  std::uint16_t port = 0;  ///< 0: any free port
-  std::string token;       ///< required in each request: make_token()
-  std::string page;        ///< HTML; @NONCE@ becomes the nonce of its script and style elements
+  ServerPlace place = {};
+  std::string token;  ///< that each request must have: make_token()
+  std::string page;   ///< HTML; @NONCE@ becomes the nonce of its script and style elements
   std::string socket_path = "/live";
   std::vector<ServedFile> files = {};
   ServerLimits limits = {};
@@ -56,12 +62,13 @@ class PageHandler {
   virtual void closed(ClientId client) = 0;
 };
 
-/// Serves a page and its WebSocket on 127.0.0.1, by a thread of its own, until destroyed. A request without the token,
-/// to a host name other than the loopback's, or from another page's origin is answered 403, whatever its target.
+/// Serves a page and its WebSocket, by a thread of its own, until it is destroyed. A request without the token, to
+/// another host than the place's or the loopback, or from another page's origin is answered 403, whatever its target.
 /// Thread-safe.
 class PageServer {
  public:
-  /// Starts the server. `handler` must outlive this object. Throws ResourceError if the port is taken.
+  /// Starts the server. `handler` must outlive this object. Throws UsageError for a host that is no single address,
+  /// ResourceError if the port is taken or the address is not this machine's.
   PageServer(ServerOptions options, PageHandler& handler);
   PageServer(const PageServer&) = delete;
   PageServer& operator=(const PageServer&) = delete;

@@ -44,14 +44,15 @@ bool has_token(std::string_view target, std::string_view token) {
   return false;
 }
 
+bool is_host(std::string_view host, std::string_view name) {
+  if (!host.starts_with(name)) return false;
+  const std::string_view port = host.substr(name.size());
+  if (port.empty()) return true;
+  return port.front() == ':' && port.find_first_not_of("0123456789", 1) == std::string_view::npos;
+}
+
 bool is_loopback_host(std::string_view host) {
-  for (const std::string_view name : {"127.0.0.1", "localhost", "[::1]"}) {
-    if (!host.starts_with(name)) continue;
-    const std::string_view port = host.substr(name.size());
-    if (port.empty()) return true;
-    return port.front() == ':' && port.find_first_not_of("0123456789", 1) == std::string_view::npos;
-  }
-  return false;
+  return is_host(host, "127.0.0.1") || is_host(host, "localhost") || is_host(host, "[::1]");
 }
 
 bool is_own_origin(std::string_view origin, std::string_view host) {

@@ -49,13 +49,18 @@ class ViewCommand : public Command {
  public:
   explicit ViewCommand(CLI::App& app)
       : Command(app, "view",
-                "see the scene in a browser, and move camera and lights there: serves one page on 127.0.0.1, and "
-                "prints its "
-                "address") {
+                "see the scene in a browser, and move camera and lights there: serves one page on this machine, and "
+                "prints its address") {
     cli_.add_option("SCENE", run_.scene,
                     "scene file: .json (penumbra-scene/1), .gltf or .glb; or a mesh file, around which a studio is put")
         ->required();
-    cli_.add_option("--port", port_, "port on 127.0.0.1; 0: any that is free")
+    cli_.add_option(
+            "--host", host_,
+            "address of this machine to serve on: others than the loopback's let in who knows the whole address, "
+            "unencrypted")
+        ->type_name("ADDRESS")
+        ->capture_default_str();
+    cli_.add_option("--port", port_, "port there; 0: any that is free")
         ->type_name("N")
         ->check(CLI::Range(0, 65535))
         ->capture_default_str();
@@ -87,7 +92,7 @@ class ViewCommand : public Command {
     scenes::Scene scene = read_session_scene(run_, {});
     progress.clear();
     for (const std::string& warning : scene.warnings) spdlog::warn("{}", warning);
-    LiveView view(run_, std::move(scene), static_cast<std::uint16_t>(port_));
+    LiveView view(run_, std::move(scene), {host_, static_cast<std::uint16_t>(port_)});
     if (!method_.empty()) view.renderer().apply({{"type", "method"}, {"slot", "a"}, {"entry", method_}}, 0);
     if (samples_ != 0) view.renderer().apply({{"type", "samples"}, {"count", samples_}}, 0);
     fmt::print("{}\n", view.address());
@@ -118,6 +123,7 @@ class ViewCommand : public Command {
   }
 
   RunOptions run_;
+  std::string host_ = network::ServerPlace().host;
   int port_ = 0;
   std::uint32_t samples_ = 0;
   bool no_browser_ = false, watch_ = false;

@@ -29,10 +29,10 @@ std::string view_page() {
       kViewStyle, kViewMarkup, kViewScript);
 }
 
-LiveView::LiveView(RunOptions options, scenes::Scene scene, std::uint16_t port)
+LiveView::LiveView(RunOptions options, scenes::Scene scene, network::ServerPlace place)
     : methods_(message_text(methods_json()["methods"])) {
   network::ServerOptions serving;
-  serving.port = port;
+  serving.place = std::move(place);
   serving.token = network::make_token();
   serving.page = view_page();
   serving.files.push_back(

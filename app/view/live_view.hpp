@@ -5,7 +5,6 @@
 #include "network/page_server.hpp"
 #include "scenes/scene.hpp"
 
-#include <cstdint>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -16,8 +15,7 @@ namespace penumbra::app {
 /// Scene in a browser: the page's server, and the renderer of its pictures. All open pages show, and change, one state.
 class LiveView final : public network::PageHandler {
  public:
-  /// `port`: 0 for any free port.
-  LiveView(RunOptions options, scenes::Scene scene, std::uint16_t port);
+  LiveView(RunOptions options, scenes::Scene scene, network::ServerPlace place);
 
   LiveView(const LiveView&) = delete;
   LiveView& operator=(const LiveView&) = delete;

@@ -37,6 +37,13 @@ TEST(Requests, HostsAreTheLoopbacksNames) {
     EXPECT_FALSE(is_loopback_host(host)) << host;
 }
 
+TEST(Requests, AnotherHostIsTheOneThatIsServedOn) {
+  for (const char* host : {"192.168.0.7", "192.168.0.7:80"}) EXPECT_TRUE(is_host(host, "192.168.0.7")) << host;
+  EXPECT_TRUE(is_host("[fe80::1]:80", "[fe80::1]"));
+  for (const char* host : {"192.168.0.77", "192.168.0.7.evil.example", "192.168.0.7:x", "fe80::1", ""})
+    EXPECT_FALSE(is_host(host, "192.168.0.7")) << host;
+}
+
 TEST(Requests, OriginsAreThePagesOwnOrMissing) {
   EXPECT_TRUE(is_own_origin("", "localhost:80"));
   EXPECT_TRUE(is_own_origin("http://localhost:80", "localhost:80"));
