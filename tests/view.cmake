@@ -1,7 +1,7 @@
 # The live view: what its server lets in, its state and messages, packets for tev; then the program from outside, by a bare
 # client (Python's standard library), and the page in headless Chromium.
 penumbra_test(view
-  SOURCES unit/view/file_watch.cpp unit/view/light_json.cpp unit/view/live_state.cpp unit/view/pace.cpp unit/view/requests.cpp unit/view/tev_packets.cpp
+  SOURCES unit/view/file_watch.cpp unit/view/light_json.cpp unit/view/light_outline.cpp unit/view/live_state.cpp unit/view/pace.cpp unit/view/requests.cpp unit/view/tev_packets.cpp
   LIBRARIES penumbra_app penumbra_network nlohmann_json::nlohmann_json)
 set(live ${CMAKE_CURRENT_SOURCE_DIR}/live)
 add_test(NAME view.protocol COMMAND ${Python3_EXECUTABLE} ${live}/live_protocol.py $<TARGET_FILE:penumbra>)

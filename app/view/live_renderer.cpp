@@ -4,6 +4,7 @@
 
 #include "app/machine.hpp"
 #include "app/process/interrupt.hpp"
+#include "app/view/light_outline.hpp"
 #include "app/view/live_steps.hpp"
 #include "base/error.hpp"
 #include "scenes/formats/writer.hpp"
@@ -128,14 +129,25 @@ ordered_json LiveRenderer::pixel(std::uint32_t x, std::uint32_t y) const {
   std::shared_ptr<const LivePicture> picture;
   std::shared_ptr<const LiveMasks> masks;
   std::shared_ptr<const scenes::Scene> whole;
+  std::optional<scenes::AreaLight> light;  // that the pixel is to say how it sees
   {
     const std::lock_guard lock(mutex_);
     picture = picture_;
     masks = masks_;
     whole = whole_;
+    const auto& lights = state_.scene.lights;
+    const auto shown = std::ranges::find(lights, state_.display.light, &scenes::AreaLight::name);
+    if (state_.masks && shown != lights.end()) light = *shown;
   }
   if (!picture || picture->triangles != whole->soup.triangles.size()) return {{"type", "pixel"}, {"x", x}, {"y", y}};
-  return pixel_json(*picture, {x, y}, *whole, masks.get());
+  ordered_json made = pixel_json(*picture, {x, y}, *whole, masks.get());
+  if (light && made["surface"]) {
+    const ordered_json& p = made["position"];
+    const auto triangle = made["id"].get<std::size_t>();
+    if (const auto outline = light_outline(*whole, *light, {{p[0], p[1], p[2]}, triangle}))
+      made["outline"] = outline_json(*outline, light->name);
+  }
+  return made;
 }
 
 std::string LiveRenderer::scene_text() const {

@@ -131,11 +131,11 @@ def check_camera(page, folder):
     expect(page.camera()["target"] != near["target"], "W walks")
     page.tick("home")
     same(page.camera(), before, "home is where the file has it")
-    page.after(lambda: page.type("#paste-camera", json.dumps(near)))
+    page.type("#paste-camera", json.dumps(near))
     same(page.camera()["eye"], near["eye"], "a camera that was pasted")
-    page.type("#paste-camera", "{")
+    page.ask("(() => { const c = document.getElementById('paste-camera'); c.value = '{'; c.dispatchEvent(new Event('change')); })()")
     expect("no JSON" in page.ask("document.getElementById('trouble').textContent"), "what is none is said")
-    page.type("#paste-camera", "")
+    page.ask("document.getElementById('paste-camera').value = ''")
     page.tick("home")
     x, y = page.place(0.5, 0.9)
 
@@ -240,6 +240,11 @@ def check_pixel(page, folder):
         found = float(text.split("V key = ")[1].split(",")[0].split("at ")[0])
         expect(abs(found - v) < 1e-5, f"V at {x},{y}: {found}, not {v}")
     page.ask("document.getElementById('show-seen').click()")
+    page.browser.wait("document.getElementById('outline').dataset.blockers !== undefined", 20)
+    lit = page.ask("""(() => { const c = document.getElementById('outline'); const p = c.getContext('2d').getImageData(0, 0, c.width, c.height).data;
+        let lit = 0, dark = 0; for (let i = 0; i < p.length; i += 4) { lit += p[i] > 200 && p[i + 1] > 180; dark += p[i] === 0x45 && p[i + 1] === 0x4a; }
+        return lit / (lit + dark); })()""")
+    expect(abs(lit - found) < 0.08, f"the outline leaves {lit} of the light, V = {found}")
     page.browser.wait("document.getElementById('seen').dataset.bits !== undefined", 20)
     bits = page.ask("document.getElementById('seen').dataset.bits")
     expect(len(bits) == 256 and abs(bits.count("1") / 256 - found) < 0.1, f"{bits.count('1')} of 256 light samples are seen, V = {found}")

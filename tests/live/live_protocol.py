@@ -168,7 +168,26 @@ def check_comparing(server, scene, folder):
         time.sleep(0.1)
         seen = client.pixel(mixed % SIZE, mixed // SIZE).get("seen")
     same(seen and seen["bits"], masks[mixed], "the light as a pixel sees it")
+    check_outline(client, a)
     client.send(type="masks", wanted=False)
+
+
+def is_inside(place, polygon):
+    """Of a convex polygon s, t, s, t …, turned either way."""
+    corners = list(zip(polygon[::2], polygon[1::2]))
+    sides = [(b[0] - a[0]) * (place[1] - a[1]) - (b[1] - a[1]) * (place[0] - a[0]) for a, b in zip(corners, corners[1:] + corners[:1])]
+    return min(sides) >= 0 or max(sides) <= 0
+
+
+def check_outline(client, exr):
+    """What an outline leaves of a light is V."""
+    for wanted in (0.3, 0.7):
+        i = min(range(SIZE * SIZE), key=lambda i: abs(exr["key.V"][i] - wanted) + (exr["id"][i] == 0xffffffff))
+        outline = client.pixel(i % SIZE, i // SIZE)["outline"]
+        same((outline["light"], outline["rim"], outline["whole"]), ("key", "square", True), "whose outline it is")
+        places = [((k + 0.5) / 20 - 1, (j + 0.5) / 20 - 1) for j in range(40) for k in range(40)]
+        seen = sum(not any(is_inside(place, blocker) for blocker in outline["blockers"]) for place in places) / len(places)
+        expect(abs(seen - exr["key.V"][i]) < 0.03, f"the outline leaves {seen}, and V is {exr['key.V'][i]}")
 
 
 def check_moving(server):
@@ -208,6 +227,20 @@ def check_moving(server):
     expect(time.monotonic() - began < 60, "nobody waits for who does not read")
     other.socket.close()  # in the middle of everything
     client.pixel(1, 1)
+
+
+def check_host(scene):
+    """Another address of this machine: of the loopback's own, which all machines have."""
+    with Server(PROGRAM, scene, "--host", "127.0.0.2") as server:
+        expect(server.url.startswith("http://127.0.0.2:"), f"the address: {server.url}")
+        same(server.get()[0], 200, "the page on another address")
+        same(server.get(token="")[0], 403, "no token there")
+        same(server.get(Host="127.0.0.3")[0], 403, "another address still")
+        same(server.get(Host="evil.example")[0], 403, "a name that was pointed there")
+        Client(server).begin()
+    for host in ("0.0.0.0", "::", "here", "127.0.0.1:80", "224.0.0.1", ""):
+        answer = subprocess.run([PROGRAM, "view", str(scene), "--no-browser", "--host", host], capture_output=True, text=True)
+        same(answer.returncode, 2, f"--host {host}")
 
 
 def check_ending(folder):
@@ -255,6 +288,7 @@ def main():
             server.process.send_signal(signal.SIGTERM)
             out, _ = server.process.communicate(timeout=10)
             same(out, "", "nothing but the address is on stdout")
+        check_host(scene)
         check_ending(folder)
     return verdict()
 

@@ -41,6 +41,54 @@ function showPixel(pixel) {
   box.replaceChildren(...lines.map((line) => Object.assign(document.createElement("p"), { textContent: line })));
   box.dataset.pixel = `${pixel.x},${pixel.y}`;
   drawSeen(pixel.seen);
+  drawOutline(pixel.outline);
+}
+/// The light as the pixel sees it, and on it what stands before it. Edges are drawn under all of that: what is left of them
+/// bounds what is seen.
+function drawOutline(outline) {
+  const sheet = byId("outline"), pen = sheet.getContext("2d"), middle = sheet.width / 2, reach = 0.9 * middle;
+  sheet.hidden = !byId("show-seen").checked;
+  pen.clearRect(0, 0, sheet.width, sheet.height);
+  byId("outline-facts").textContent = "";
+  if (!outline || sheet.hidden) return;
+  const walk = (places) => {
+    for (let i = 0; i < places.length; i += 2) pen.lineTo(middle + reach * places[i], middle - reach * places[i + 1]);
+    pen.closePath();
+  };
+  const rim = () => {
+    pen.beginPath();
+    if (outline.rim === "circle") pen.arc(middle, middle, reach, 0, 2 * Math.PI);
+    else walk(outline.rim === "square" ? [-1, -1, 1, -1, 1, 1, -1, 1] : outline.corners);
+  };
+  pen.save();
+  rim();
+  pen.fillStyle = "#ffd27a";
+  pen.fill();
+  pen.clip();
+  pen.strokeStyle = "#d0472f";
+  pen.lineWidth = 4;
+  pen.lineJoin = "round";
+  pen.beginPath();
+  outline.blockers.forEach((places) => {
+    pen.moveTo(middle + reach * places[0], middle - reach * places[1]);
+    walk(places);
+  });
+  pen.stroke();
+  pen.fillStyle = pen.strokeStyle = "#454a55";
+  pen.lineWidth = 0.7;  // no seams between neighbours
+  for (const places of outline.blockers) {
+    pen.beginPath();
+    walk(places);
+    pen.fill();
+    pen.stroke();
+  }
+  pen.restore();
+  rim();
+  pen.strokeStyle = getComputedStyle(document.documentElement).color;
+  pen.lineWidth = 1;
+  pen.stroke();
+  byId("outline-facts").textContent = `${outline.light}: ${outline.blockers.length}${outline.whole ? "" : " and more"} triangles stand before it; edges that bound what is seen are red`;
+  sheet.dataset.blockers = outline.blockers.length;
 }
 /// The light samples on the light, those that the pixel sees bright.
 function drawSeen(seen) {
@@ -58,7 +106,8 @@ function drawSeen(seen) {
 }
 byId("show-seen").addEventListener("change", () => {
   change("masks", { type: "masks", wanted: byId("show-seen").checked });
-  byId("seen").hidden = !byId("show-seen").checked;
+  byId("seen").hidden = byId("outline").hidden = !byId("show-seen").checked;
+  if (!byId("show-seen").checked) byId("outline-facts").textContent = "";
   for (const after of [400, 1500]) setTimeout(() => { if (pointed) askPixel(...pointed); }, after);
 });
 
