@@ -11,6 +11,7 @@ penumbra_test(maps FULL MapsTable.*
   analytic/maps/filters_robust.cpp
   analytic/maps/forward_map.cpp
   analytic/maps/formulas.cpp
+  analytic/maps/history.cpp
   analytic/maps/identities.cpp
   analytic/maps/layers.cpp
   analytic/maps/left_out.cpp
@@ -27,6 +28,7 @@ penumbra_test(maps FULL MapsTable.*
   analytic/maps/texel_widths.cpp
   analytic/maps/vssm_windows.cpp
   analytic/maps/pcf.cpp
+  analytic/maps/pcf_forms.cpp
   analytic/maps/predicates.cpp
   analytic/maps/prefilter.cpp
   analytic/maps/products.cpp

@@ -8,14 +8,17 @@
 #include "base/error.hpp"
 #include "maps/filters/pcf.comp.spv.hpp"
 #include "maps/filters/pcf_fitted.comp.spv.hpp"
+#include "maps/filters/pcf_ids.comp.spv.hpp"
 #include "maps/filters/pcf.shared.h"
 #include "maps/host/map_fit.hpp"
 #include "maps/host/map_method.hpp"
 #include "maps/host/mesh_verdict.hpp"
 #include "maps/filters/repairs.hpp"
+#include "maps/products/nearest_ids.hpp"
 
 #include <algorithm>
 #include <iterator>
+#include <memory>
 #include <utility>
 
 namespace penumbra::maps {
@@ -30,6 +33,20 @@ constexpr visibility::ChoiceOption kWeights{
     "what texels count: alike; as a Gaussian whose deviation is a quarter of the window; or by their part in a window "
     "that "
     "is centred on the receiver (window=1: the bilinear test of four texels)"};
+constexpr visibility::ChoiceOption kTest{
+    "test",
+    {{"depth", gpu::kByDepth}, {"object", gpu::kByObject}, {"mean", gpu::kByMeanDepth}},
+    gpu::kByDepth,
+    "what of a texel shades: its depth; the same, but no object shades itself; or no texel but the window's mean "
+    "depth, "
+    "by a test that is smooth"};
+constexpr visibility::IntegerOption kKeep{"keep", 0, 3, 0,
+                                          "2: compare the texels of the window's least and greatest depth alone; 3: "
+                                          "and the one nearest to the middle between "
+                                          "these; 0: all"};
+constexpr visibility::RealOption kSoftness{
+    "softness", 0.0001, 4, 0.1,
+    "test=mean: how far behind the mean depth it is dark, as a share of the receiver's depth"};
 constexpr visibility::IntegerOption kTaps{
     "taps", 0, 256, 0, "so many texels of the window, in a pattern that is turned at every receiver; 0: all of them"};
 constexpr visibility::IntegerOption kStages{"stages", 1, 2, 1,
@@ -37,6 +54,32 @@ constexpr visibility::IntegerOption kStages{"stages", 1, 2, 1,
 
 visibility::MeshVerdict pcf_verdict(const mesh::Diagnosis& mesh) {
   return judge_for_maps("a hard shadow of the light's centre, blurred by a window that knows no light", mesh);
+}
+
+/// Throws UsageError for options that mean nothing together.
+void refuse_together(const visibility::MethodDescription& method, const visibility::ParsedOptions& options,
+                     const gpu::PcfPush& push) {
+  if (push.weights == gpu::kBilinear && push.taps != 0) {
+    throw UsageError("method pcf: weights=bilinear counts parts of texels, and taps={} takes whole ones; take taps=0",
+                     push.taps);
+  }
+  if (push.keep == 1) throw UsageError("method pcf: keep=1 is neither end of the window's depths; take 0, 2 or 3");
+  if (push.keep != 0 && (push.taps != 0 || push.weights != gpu::kEqual || push.test == gpu::kByMeanDepth)) {
+    throw UsageError(
+        "method pcf: keep={} chooses among all texels of a window, which count alike; take taps=0, weights=equal and "
+        "test=depth or object",
+        push.keep);
+  }
+  if (push.test == gpu::kByMeanDepth && (push.taps != 0 || push.weights == gpu::kBilinear)) {
+    throw UsageError(
+        "method pcf: test=mean takes the mean over all texels of a window; take taps=0 and weights=equal "
+        "or gaussian");
+  }
+  if (push.test == gpu::kByObject && view_fit(method.options, options).has_faces()) {
+    throw UsageError(
+        "method pcf: test=object knows windows and cubes alone; take projection=window or cube with fit=receivers, or "
+        "fit=view");
+  }
 }
 
 }  // namespace
@@ -53,8 +96,8 @@ visibility::MethodDescription pcf_description() {
       .options = compared_map_option_descriptions(),
       .verdict_on = pcf_verdict,
       .repairs = pcf_repairs};
-  for (const auto& option :
-       {kWindow.description(), kWeights.description(), kTaps.description(), kStages.description()}) {
+  for (const auto& option : {kWindow.description(), kWeights.description(), kTaps.description(), kStages.description(),
+                             kTest.description(), kKeep.description(), kSoftness.description()}) {
     description.options.push_back(option);
   }
   for (const auto& option : {kOffsetFactor.description(), kOffsetUnits.description()}) {
@@ -70,10 +113,17 @@ std::unique_ptr<visibility::Method> make_pcf(const render::Device& device, const
                    .look_up = shaders::kPcfComp,
                    .fitted_look_up = shaders::kPcfFittedComp};
   const visibility::ParsedOptions parsed = visibility::parse_options(recipe.description, options);
-  const gpu::PcfPush push{parsed[kWindow], parsed[kWeights], parsed[kTaps], parsed[kStages]};
-  if (push.weights == gpu::kBilinear && push.taps != 0) {
-    throw UsageError("method pcf: weights=bilinear counts parts of texels, and taps={} takes whole ones; take taps=0",
-                     push.taps);
+  const gpu::PcfPush push{parsed[kWindow],
+                          parsed[kWeights],
+                          parsed[kTaps],
+                          parsed[kStages],
+                          parsed[kTest],
+                          parsed[kKeep],
+                          static_cast<float>(parsed[kSoftness])};
+  refuse_together(recipe.description, parsed, push);
+  if (push.test == gpu::kByObject) {
+    recipe.look_up = shaders::kPcfIdsComp;
+    recipe.products.push_back(std::make_unique<NearestIds>(device, parsed[kRasteriser], IdsOf::objects));
   }
   // The window extends half its texels beside a receiver's direction. The width of a texel depends on the extent of the
   // window of receivers, which is at most ±kWidestTangent.

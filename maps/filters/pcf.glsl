@@ -7,7 +7,12 @@
 
 #include "maps/host/neighbours.glsl"
 
-// Receiver in texels of its face, and the values common to all of its taps.
+#ifdef OBJECT_IDS
+layout(scalar, binding = FIRST_PRODUCT) readonly buffer Ids { uint ids[]; };
+layout(scalar, binding = FIRST_PRODUCT + 1) readonly buffer Objects { uint object_of[]; };
+#endif
+
+// The receiver in texels of its face, and what all of its taps share.
 struct PcfAsking {
   vec3 m;
   float h;
@@ -16,8 +21,9 @@ struct PcfAsking {
   uint number;  // index of the face, with FITTED_FACES
 };
 
-// Returns whether the texel at `offset` texels from the receiver's own does not shade the receiver.
-bool is_lit(LightView view, PcfAsking asking, vec2 offset) {
+// The texel so many texels beside the receiver's own. False behind the light's plane, where a hemicube's window may reach
+// and nothing is between light and receiver.
+bool tap_beside(LightView view, PcfAsking asking, vec2 offset, out Tap tap) {
   const Tap own_tap = asking.own_tap;
 #ifdef FITTED_FACES
   vec3 direction = face_direction(fitted_faces[asking.number], (floor(asking.at) + offset + 0.5) / float(lookup.size));
@@ -25,9 +31,20 @@ bool is_lit(LightView view, PcfAsking asking, vec2 offset) {
 #else
   const vec3 direction = neighbour(own_tap, asking.step, offset);
 #endif
-  // A hemicube's window may extend behind the light's plane, where no occluder can be between light and receiver.
-  if (!(direction.z * own_tap.mirrored > 0.0)) return true;
-  const Tap tap = fetch(view, 0, lookup.size, direction * own_tap.along);
+  tap = own_tap;
+  if (!(direction.z * own_tap.mirrored > 0.0)) return false;
+  tap = fetch(view, 0, lookup.size, direction * own_tap.along);
+  return true;
+}
+
+// Is the texel out of the receiver's way? With OBJECT_IDS no object shades itself (Brabec and Seidel 2002).
+bool is_lit(LightView view, PcfAsking asking, vec2 offset) {
+  Tap tap;
+  if (!tap_beside(view, asking, offset, tap)) return true;
+#ifdef OBJECT_IDS
+  const uint id = tap.depth < tap.far ? ids[tap.number] : kNoId;
+  if (id != kNoId && object_of[id] == receiver_object) return true;
+#endif
   return !texel_blocks(tap, asking.m, asking.h, tap.along, max(abs(offset.x), abs(offset.y)));
 }
 
@@ -58,6 +75,51 @@ float spread_taps(LightView view, PcfAsking asking, vec3 d) {
   return lit / total;
 }
 
+// Pagot et al. 2004: of a window's texels no more than those of the least and the greatest depth are compared, and of three
+// the one nearest to the middle between these.
+float of_kept(LightView view, PcfAsking asking, vec2 first) {
+  vec2 at[3] = vec2[3](first, first, first);
+  float least = 4.0 * view.far, greatest = -1.0, off = 4.0 * view.far;
+  for (uint turn = 0; turn < own.keep - 1; ++turn) {
+    for (uint k = 0; k < own.window * own.window; ++k) {
+      const vec2 offset = first + vec2(k % own.window, k / own.window);
+      Tap tap;
+      const float depth = tap_beside(view, asking, offset, tap) ? tap.depth : view.far;
+      if (turn == 0) {
+        if (depth < least) at[0] = offset;
+        if (depth > greatest) at[1] = offset;
+        least = min(least, depth);
+        greatest = max(greatest, depth);
+      } else {
+        // Where there are two depths both are as near: the lesser.
+        const float middle = 0.5 * (least + greatest);
+        const float beside = abs(depth - middle) + (depth > middle ? view.far / 1048576.0 : 0.0);
+        if (beside < off) at[2] = offset;
+        off = min(off, beside);
+      }
+    }
+  }
+  float lit = 0.0;
+  for (uint k = 0; k < own.keep; ++k) lit += is_lit(view, asking, at[k]) ? 1.0 : 0.0;
+  return lit / float(own.keep);
+}
+
+// Luft and Deussen 2006: the window's mean depth, no farther than the receiver's, and a test that is smooth. The receiver
+// is dark where it lies `softness` of its own depth behind that.
+float of_mean_depth(LightView view, PcfAsking asking, vec2 first) {
+  const float depth = asking.own_tap.along;
+  float sum = 0.0, total = 0.0;
+  for (uint k = 0; k < own.window * own.window; ++k) {
+    const vec2 place = vec2(k % own.window, k / own.window);
+    const float weight = weight_of(place - 0.5 * (float(own.window) - 1.0));
+    Tap tap;
+    total += weight;
+    sum += weight * (tap_beside(view, asking, first + place, tap) ? min(tap.depth, depth) : depth);
+  }
+  const float behind = depth - sum / total - lookup.bias * asking.own_tap.texel * depth;
+  return 1.0 - smoothstep(0.0, own.softness * depth, behind);
+}
+
 float visibility_of(LightView view, vec3 d, vec3 m) {
   PcfAsking asking;
   asking.m = m;
@@ -83,6 +145,8 @@ float visibility_of(LightView view, vec3 d, vec3 m) {
   // and texels at its border are weighted by their part inside; with one texel these are the four of a bilinear test.
   const bool bilinear = own.weights == kBilinear;
   const vec2 first = floor(asking.at - 0.5 * width + (bilinear ? 0.0 : 0.5)) - texel;
+  if (own.keep != 0) return of_kept(view, asking, first);
+  if (own.test == kByMeanDepth) return of_mean_depth(view, asking, first);
   const uint count = own.window + (bilinear ? 1 : 0);
   float lit = 0.0, total = 0.0;  // integers if all weights are equal
   for (uint j = 0; j < count; ++j) {

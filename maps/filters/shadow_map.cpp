@@ -3,6 +3,7 @@
 // five faces replace one perspective image (map_fit.cpp).
 
 #include "maps/filters/methods.hpp"
+#include "maps/filters/history.hpp"
 
 #include "base/error.hpp"
 #include "maps/host/map_method.hpp"
@@ -21,12 +22,19 @@
 namespace penumbra::maps {
 namespace {
 
+enum class HardTest : std::uint8_t { depth, plane, object };
+
 constexpr visibility::ChoiceOption kHardTest{
     "test",
-    {{"depth", false}, {"id", true}},
-    false,
-    "what of a texel says that the receiver is seen: its depth, or that it is of the receiver's plane, which needs no "
-    "bias"};
+    {{"depth", HardTest::depth}, {"id", HardTest::plane}, {"object", HardTest::object}},
+    HardTest::depth,
+    "what of a texel says that the receiver is seen: its depth, or that it is of the receiver's plane, or object, "
+    "which "
+    "needs no bias"};
+
+constexpr visibility::IntegerOption kHistory{
+    "history", 1, 1024, 1,
+    "frames of a still camera, each with a map whose texels lie elsewhere, mixed by confidence; 1: one map"};
 
 visibility::MeshVerdict shadow_map_verdict(const mesh::Diagnosis& mesh) {
   return judge_for_maps("a hard shadow of the light's centre, its edges off by up to half a texel", mesh);
@@ -47,6 +55,7 @@ visibility::MethodDescription shadow_map_description() {
       .verdict_on = shadow_map_verdict,
       .repairs = filter_repairs};
   description.options.push_back(kHardTest.description());
+  description.options.push_back(kHistory.description());
   for (const auto& option : {kOffsetFactor.description(), kOffsetUnits.description()}) {
     description.options.push_back(option);
   }
@@ -61,17 +70,30 @@ std::unique_ptr<visibility::Method> make_shadow_map(const render::Device& device
                    .look_up = shaders::kShadowMapComp,
                    .fitted_look_up = shaders::kShadowMapFittedComp};
   const visibility::ParsedOptions parsed = visibility::parse_options(recipe.description, options);
-  if (parsed[kHardTest]) {
+  if (const HardTest test = parsed[kHardTest]; test != HardTest::depth) {
     if (view_fit(recipe.description.options, parsed).has_faces()) {
       throw UsageError(
-          "method shadow-map: test=id knows windows and cubes alone; take projection=window or cube with "
+          "method shadow-map: test={} knows windows and cubes alone; take projection=window or cube with "
           "fit=receivers, or "
-          "fit=view");
+          "fit=view",
+          kHardTest.name_of(test));
     }
     recipe.look_up = shaders::kShadowMapIdsComp;
-    recipe.products.push_back(std::make_unique<NearestIds>(device, parsed[kRasteriser]));
+    recipe.constants = {test == HardTest::object ? 1U : 0U};
+    recipe.products.push_back(std::make_unique<NearestIds>(device, parsed[kRasteriser],
+                                                           test == HardTest::object ? IdsOf::objects : IdsOf::planes));
   }
-  return make_map_method(device, std::move(recipe), options);
+  const HistoryOptions history{parsed[kHistory], parsed[kMapSize]};
+  if (history.frames == 1) return make_map_method(device, std::move(recipe), options);
+  if (const ViewFit fit = view_fit(recipe.description.options, parsed); fit.fit != Fit::receivers || fit.has_faces()) {
+    throw UsageError(
+        "method shadow-map: history={} moves windows of all receivers; take fit=receivers and "
+        "projection=window or cube",
+        history.frames);
+  }
+  auto jitter = std::make_unique<glm::dvec2>(0);
+  recipe.jitter = jitter.get();
+  return with_history(make_map_method(device, std::move(recipe), options), std::move(jitter), history);
 }
 
 }  // namespace penumbra::maps

@@ -5,11 +5,11 @@
 #include "maps/host/look_up.glsl"
 
 layout(scalar, binding = 4) readonly buffer Ids { uint ids[]; };
-layout(scalar, binding = 5) readonly buffer Planes { uint plane_of[]; };
+layout(scalar, binding = 5) readonly buffer Numbers { uint number_of[]; };  // of the plane, or of the object
+layout(constant_id = 0) const uint kByObject = 0;
 
-// Returns V by identities (Hourcade and Nicolas 1985): the surface stored in the map is lit, whatever its depth.
-// Departure: identities are planes, so that the triangles of one polygon are the same surface; a surface that casts no
-// shadow is in no map: its depth is compared.
+// Hourcade and Nicolas 1985: lit is what the map has there, whatever its depth. Here it is compared by planes, so that the
+// triangles of one polygon are one, or by objects; and what casts no shadow is in no map: its depth is compared.
 float visibility_of(LightView view, vec3 d, vec3 m) {
   if (receiver_plane == kNoId) return light_point_is_seen(view, 0, d, m) ? 1.0 : 0.0;
   if (!(dot(m, d) > 0.0)) return 0.0;
@@ -19,7 +19,7 @@ float visibility_of(LightView view, vec3 d, vec3 m) {
   const vec2 cell = floor((hit.f.xy / hit.f.z - face.lower) / face.texel);
   const uvec2 at = uvec2(clamp(cell, vec2(0.0), vec2(float(lookup.size - 1))));
   const uint id = ids[(face.map * lookup.size + at.y) * lookup.size + at.x];
-  return id == kNoId || plane_of[id] == receiver_plane ? 1.0 : 0.0;
+  return id == kNoId || number_of[id] == (kByObject != 0 ? receiver_object : receiver_plane) ? 1.0 : 0.0;
 }
 
 #include "maps/host/scalar_main.glsl"

@@ -267,6 +267,9 @@ FittedViews fit_views(const visibility::SceneFloats& scene, const visibility::Li
         break;
       }
       if (options.snap) widen_to_snap(*window, options.size);
+      const glm::dvec2 moved = options.jitter * (window->upper - window->lower) / static_cast<double>(options.size);
+      window->lower += moved;
+      window->upper += moved;
       view.side[s].lower = window->lower;
       view.side[s].upper = window->upper;
     }

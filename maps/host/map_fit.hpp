@@ -43,7 +43,8 @@ struct FitOptions {
   /// `body_reach`; and `snap` keeps texels at the same positions for any body.
   glm::dvec2 body_reach{0};
   bool snap = false;
-  bool hemicube = false;  ///< five faces, even if a narrow window is sufficient
+  bool hemicube = false;  ///< five faces, however narrow a window would do
+  glm::dvec2 jitter{0};   ///< windows are moved by so many of their texels, up to a half: what they hold stays in them
 };
 
 /// Returns FitOptions::reach of a light so large that every caster shades something.

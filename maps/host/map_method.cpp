@@ -195,6 +195,7 @@ void MapMethod::fit_maps() {
   std::vector<glm::vec3> centres;
   for (const visibility::LightPart& part : parts_) centres.emplace_back(visibility::center_of(part.light));
   FitOptions fit{options_.size, recipe_.beside ? recipe_.beside(light, basis_) : glm::dvec2(0)};
+  if (recipe_.jitter != nullptr) fit.jitter = *recipe_.jitter;
   if (recipe_.whole_light) {
     for (const visibility::LightPart& part : parts_) {
       const LightBounds bounds = light_bounds(part.light, basis_of(part.light));

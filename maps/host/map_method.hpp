@@ -137,7 +137,9 @@ struct MapRecipe {
   std::uint32_t packet_width = 1, packet_height = 1;
   /// Number of parts of the light along each axis, each with a map from its own centre; V is their mean.
   std::uint32_t sub_lights = 1;
-  /// Layers in addition to the second layer requested by the option `depth`.
+  /// By how many of its texels the map's window is moved (FitOptions::jitter) whenever maps are made. Null: it stays.
+  const glm::dvec2* jitter = nullptr;
+  /// Beside the second one, which the option `depth` may ask for.
   MapLayers layers{};
   /// Push constants of the shader after LookupPush: `push_words` words, for a light.
   std::uint32_t push_words = 0;

@@ -46,8 +46,7 @@ struct Hbao {
 
   double operator()(const ScreenPicture& picture, std::size_t pixel, double radius, std::uint32_t dither) const {
     const glm::dvec3& middle = picture.point(pixel);
-    const glm::dvec2 own(static_cast<double>(pixel % picture.width()) + 0.5,
-                         static_cast<double>(pixel / picture.width()) + 0.5);
+    const glm::dvec2 own = picture.centre_of(pixel);
     const double reach = radius * picture.pixels_per_length(-middle.z);
     // The dither rotates directions and, in another order, moves the first step inward: 7 is prime to 16.
     const double turn = static_cast<double>(dither) / kDithers;

@@ -36,8 +36,7 @@ std::optional<ScreenPicture> ScreenPicture::of(const visibility::ViewSamples& sa
     picture.points_[i] = turned(glm::dvec3(samples.p[i]) - camera.eye);
     picture.normals_[i] = turned(samples.n[i]);
     const std::optional<glm::dvec2> place = picture.place_of(picture.points_[i]);
-    const glm::dvec2 centre(static_cast<double>(i % samples.width) + 0.5, static_cast<double>(i / samples.width) + 0.5);
-    if (!place || !(glm::distance(*place, centre) < kOffCentre)) return std::nullopt;
+    if (!place || !(glm::distance(*place, picture.centre_of(i)) < kOffCentre)) return std::nullopt;
   }
   return picture;
 }

@@ -22,7 +22,11 @@ class ScreenPicture {
   /// Returns the position of a point in the picture, in pixels; the centre of pixel (x, y) is (x + ½, y + ½). Returns
   /// nullopt for a point that is not in front of the eye.
   [[nodiscard]] std::optional<glm::dvec2> place_of(const glm::dvec3& point) const;
-  /// Returns the pixel at a position; nullopt outside the picture, and where the picture shows background.
+  [[nodiscard]] glm::dvec2 centre_of(std::size_t pixel) const {
+    const std::size_t column = pixel % width_, row = pixel / width_;
+    return glm::dvec2(column, row) + 0.5;
+  }
+  /// The pixel at a place; nullopt beside the picture, and where the picture shows background.
   [[nodiscard]] std::optional<std::size_t> surface_at(const glm::dvec2& place) const;
   [[nodiscard]] bool holds(const glm::dvec2& place) const {
     return place.x >= 0 && place.y >= 0 && place.x < width_ && place.y < height_;

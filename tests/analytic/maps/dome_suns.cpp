@@ -94,8 +94,8 @@ TEST_F(DomeSuns, APlaneSeesAllOfThem) {
   for (const bool half : {false, true}) {
     const Stage stage(bare_floor_under_dome({.half = half}), 12, 12, light_samples(256));
     for (const Entry& entry :
-         {Entry{"shadow-map", maps::make_shadow_map, {}, 0}, Entry{"pcss", maps::make_pcss, {}, 0.003},
-          Entry{"backproject", maps::make_backproject, {}, 0}}) {
+         {Entry{"shadow-map", maps::make_shadow_map, {}, 0}, Entry{"pcss", maps::make_pcss, {{"size", "64"}}, 0.003},
+          Entry{"backproject", maps::make_backproject, {{"size", "48"}}, 0}}) {
       const Masks all = found(entry, stage, 16);
       for (std::size_t i = 0; i < stage.samples.size(); ++i)
         EXPECT_NEAR(all.visibility[i], 1, entry.off + 1e-5) << entry.name;

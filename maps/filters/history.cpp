@@ -1,0 +1,129 @@
+// Scherzer, Jeschke and Wimmer 2007, "Pixel-correct shadow maps with temporal reprojection and shadow test confidence",
+// as the course notes of Eisemann et al. (2009, section 3.2.6) tell it: each frame has a map whose texels lie
+// elsewhere, and V of a pixel is mixed from this frame's and what it had, by the confidence 1 - 2 max |place - texel's
+// centre|. Departure: the camera is still, so a pixel finds what it had in its own place, and no frame depends on
+// another picture.
+
+#include "maps/filters/history.hpp"
+
+#include "base/assert.hpp"
+#include "maps/host/light_basis.hpp"
+#include "maps/host/map_fit.hpp"
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+namespace penumbra::maps {
+namespace {
+
+/// The digits of i in this base, mirrored at the point.
+double mirrored(std::uint32_t i, std::uint32_t base) {
+  double value = 0, digit = 1;
+  for (; i != 0; i /= base) value += (digit /= base) * (i % base);
+  return value;
+}
+
+class History final : public visibility::Method {
+ public:
+  History(std::unique_ptr<Method> method, std::unique_ptr<glm::dvec2> jitter, const HistoryOptions& options)
+      : jitter_(std::move(jitter)), method_(std::move(method)), options_(options) {}
+
+  [[nodiscard]] const visibility::MethodDescription& description() const override { return method_->description(); }
+  void want_pixels(std::span<const std::uint32_t> pixels) override { method_->want_pixels(pixels); }
+  void prepare_mesh(const visibility::SceneFloats& scene) override {
+    scene_ = &scene;
+    method_->prepare_mesh(scene);
+  }
+  void prepare_light(const visibility::Light& light) override {
+    light_ = &light;
+    *jitter_ = glm::dvec2(0);
+    method_->prepare_light(light);
+  }
+  void prepare_view(const visibility::ViewSamples& samples) override {
+    samples_ = &samples;
+    method_->prepare_view(samples);
+  }
+  [[nodiscard]] std::uint32_t max_tile_rows() const override { return method_->max_tile_rows(); }
+  void evaluate(const visibility::Tile& tile) override;
+  void read_visibility(std::span<float> visibility) override {
+    PENUMBRA_ASSERT(visibility.size() == mixed_.size(), "{} values for a tile of {}", visibility.size(), mixed_.size());
+    std::ranges::copy(mixed_, visibility.begin());
+  }
+  std::vector<visibility::PassTime> take_pass_times() override { return method_->take_pass_times(); }
+  [[nodiscard]] std::map<std::string, std::uint64_t> counters() const override {
+    auto counters = method_->counters();
+    counters["historyFrames"] = options_.frames;
+    return counters;
+  }
+  [[nodiscard]] std::uint64_t memory_bytes() const override { return method_->memory_bytes(); }
+
+ private:
+  std::unique_ptr<glm::dvec2> jitter_;
+  std::unique_ptr<Method> method_;
+  HistoryOptions options_;
+  const visibility::SceneFloats* scene_ = nullptr;
+  const visibility::Light* light_ = nullptr;
+  const visibility::ViewSamples* samples_ = nullptr;
+  std::vector<float> mixed_;  ///< of the tile last evaluated
+};
+
+/// How near to its texel's centre a point is seen: 1 in it, 0 on the texel's border and where no face looks.
+double confidence(const std::vector<Face>& faces, const glm::dvec3& d, std::uint32_t size) {
+  for (const Face& face : faces) {
+    const double w = glm::dot(d, face.w);
+    if (!(w > 0)) continue;
+    const glm::dvec2 at(glm::dot(d, face.a) / w, glm::dot(d, face.b) / w);
+    if (glm::any(glm::lessThan(at, face.lower)) || glm::any(glm::greaterThan(at, face.upper))) continue;
+    const glm::dvec2 place = (at - face.lower) / (face.upper - face.lower) * static_cast<double>(size);
+    const glm::dvec2 off = glm::abs(place - glm::floor(place) - 0.5);
+    return 1 - 2 * std::max(off.x, off.y);
+  }
+  return 0;
+}
+
+void History::evaluate(const visibility::Tile& tile) {
+  const std::size_t first = std::size_t{tile.first_row} * samples_->width;
+  const LightBasis basis = light_basis(*light_, *scene_);
+  const glm::vec3 centre(basis.center);
+  std::vector<float> now(std::size_t{tile.row_count} * samples_->width);
+  for (std::uint32_t frame = 0; frame < options_.frames; ++frame) {
+    *jitter_ = jitter_of(frame);
+    method_->prepare_light(*light_);
+    method_->prepare_view(*samples_);
+    method_->evaluate(tile);
+    method_->read_visibility(now);
+    if (frame == 0) {
+      mixed_ = now;
+      continue;
+    }
+    const FittedViews fitted =
+        fit_views(*scene_, *light_, basis, {&centre, 1}, {.size = options_.size, .jitter = *jitter_});
+    std::vector<Face> faces;
+    for (std::uint32_t i = 0; i < fitted.faces; ++i) faces.push_back(face_of(fitted.views.front(), basis, i));
+    for (std::size_t i = 0; i < now.size(); ++i) {
+      if (samples_->triangle[first + i] == visibility::ViewSamples::kBackground) continue;
+      const glm::dvec3 d = glm::dvec3(samples_->p[first + i]) - glm::dvec3(centre);
+      const auto share = static_cast<float>(confidence(faces, d, options_.size));
+      mixed_[i] = share * now[i] + (1 - share) * mixed_[i];
+    }
+  }
+}
+
+}  // namespace
+
+glm::dvec2 jitter_of(std::uint32_t frame) {
+  if (frame == 0) return glm::dvec2(0);
+  return glm::dvec2(mirrored(frame, 2), mirrored(frame, 3)) - 0.5;
+}
+
+std::unique_ptr<visibility::Method> with_history(std::unique_ptr<visibility::Method> method,
+                                                 std::unique_ptr<glm::dvec2> jitter, const HistoryOptions& options) {
+  return std::make_unique<History>(std::move(method), std::move(jitter), options);
+}
+
+}  // namespace penumbra::maps
