@@ -44,7 +44,7 @@ TEST_F(MethodTable, MakesWhatItDescribesAndKnowsWhichCountLightSamples) {
   for (const visibility::MethodDescription* described : app::all_methods()) {
     visibility::MethodOptions options = small_maps(*described);
     const bool sky_alone = is_of_domes_alone(*described);
-    if (sky_alone) options["radius"] = "0.5";
+    if (sky_alone) options["radius"] = "0.2";
     const Stage &one = sky_alone ? sky_one : ceiling_one, &many = sky_alone ? sky_many : ceiling_many;
     const auto method = app::make_method(described->name, options, device());
     EXPECT_EQ(method->description().name, described->name);

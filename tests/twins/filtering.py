@@ -121,10 +121,11 @@ def forward(map_, receiver, degree):
     """Zhang 1998: every texel throws a B-spline at what it shows; here at one receiver, all texels of the map at once."""
     if receiver.h <= 0:
         return 0.0
-    spline = [lambda a: (a <= 0.5) * 1.0, lambda a: np.maximum(1 - a, 0),
+    spline = [lambda a: (a < 0.5) * 1.0, lambda a: np.maximum(1 - a, 0),
               lambda a: np.where(a <= 0.5, 0.75 - a * a, np.where(a < 1.5, 0.5 * (1.5 - a) ** 2, 0.0))][degree]
     place, facing = map_.place(receiver.d), map_.rays @ receiver.m
-    place = np.floor(place) + 0.5 + np.round((place - np.floor(place) - 0.5) * 64) / 64
+    if degree > 0:  # places are counted in 64ths of a texel
+        place = np.floor(place) + 0.5 + np.round((place - np.floor(place) - 0.5) * 64) / 64
     weight = [spline(np.abs(place[k] - np.arange(SIZE) - 0.5)) for k in (0, 1)]
     across = np.abs(receiver.m[:2]).sum()
     slope = np.where(across < STEEPEST * facing, across / np.where(facing > 0, facing, 1), STEEPEST)
