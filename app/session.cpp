@@ -163,6 +163,11 @@ void SessionMaker::show(scenes::Scene scene, bool changed, const std::string& ca
     ++session_.mesh_version;
   }
   session_.camera = visibility::make_camera(seen_by, session_.floats.origin, session_.width, session_.height);
+  if (lens_share_ && seen_by.lens) {
+    visibility::Lens& lens = session_.camera.lens.emplace(*lens_share_);
+    lens.radius = seen_by.lens->radius;
+    lens.focus_distance = seen_by.lens->focus_distance;
+  }
   const auto casters = casters_of(session_.lights);
   session_.lights.clear();
   for (const std::size_t light : wanted) {
@@ -207,8 +212,7 @@ void SessionMaker::show(scenes::Scene scene, bool changed, const std::string& ca
   const Stopwatch receivers;
   classify();
   progress.advance();
-  session_.receiver_seconds =
-      receivers.seconds() - std::reduce(session_.filtered_seconds.begin(), session_.filtered_seconds.end());
+  session_.receiver_seconds = receivers.seconds() - session_.filtering_seconds();
   is_whole_ = true;
 }
 

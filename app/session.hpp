@@ -13,6 +13,7 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <numeric>
 #include <optional>
 #include <string>
 #include <utility>
@@ -47,6 +48,10 @@ struct Session {
   std::vector<std::optional<std::size_t>> linked_of;  ///< for each light, index of its own scene in `linked`; nullopt:
                                                       ///< `floats`
 
+  /// Of all lights.
+  [[nodiscard]] double filtering_seconds() const {
+    return std::reduce(filtered_seconds.begin(), filtered_seconds.end());
+  }
   [[nodiscard]] std::size_t pixel_count() const { return std::size_t{width} * height; }
   /// Returns the scene in which casters of this one of `lights` cast.
   [[nodiscard]] const visibility::SceneFloats& floats_for(std::size_t light) const {
@@ -77,7 +82,10 @@ class SessionMaker {
   void show_again(scenes::Scene scene, const std::string& camera, Progress& progress);
   /// Replaces the search for view samples by `finder`; to be called before the first show().
   void find_view_by(ViewFinder finder) { finder_ = std::move(finder); }
-  /// Returns whether the last show() was completed.
+  /// From the next show() on view samples look through their points of the camera's lens, if it has one: `share` has
+  /// all but its size. Nothing: through its middle.
+  void look_through_lens(std::optional<visibility::Lens> share) { lens_share_ = share; }
+  /// Whether the last show() came to its end.
   [[nodiscard]] bool is_whole() const { return is_whole_; }
   [[nodiscard]] const Session& session() const { return session_; }
   /// Replaces the session's view samples by others of the same camera. Returns the previous ones.
@@ -101,6 +109,7 @@ class SessionMaker {
   std::map<const visibility::SceneFloats*, visibility::AlphaReach> reaches_;  // of session_.floats and of the linked
                                                                               // scenes
   std::optional<engines::ViewSampler> sampler_;
+  std::optional<visibility::Lens> lens_share_;
   ViewFinder finder_;                              // empty: the camera's pixels
   bool is_whole_ = false;                          // the last show() was completed
   std::optional<visibility::PinholeCamera> seen_;  // camera of session_.samples

@@ -14,7 +14,7 @@ ViewSampler::ViewSampler(const render::Machine& machine, const visibility::Scene
 }
 
 visibility::ViewSamples ViewSampler::find(const visibility::PinholeCamera& camera) {
-  if (camera.half_height) return visibility::walk_view_samples(scene_, camera);
+  if (camera.half_height || camera.lens) return visibility::walk_view_samples(scene_, camera);
   return look_through(scene_, camera, buffer_ ? buffer_->render(camera) : vectors::scan_view_samples(scene_, camera));
 }
 

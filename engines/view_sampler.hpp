@@ -7,9 +7,9 @@
 
 namespace penumbra::engines {
 
-/// Computes view samples by the faster of two engines with equal results: the GPU's visibility buffer, or, without a
-/// GPU, scan conversion on the processor's vector units. Neither supports holes or orthographic cameras: for these a
-/// tree of boxes is used.
+/// View samples by the faster of two engines, with the same bits: the GPU's visibility buffer, or, without a GPU, scan
+/// conversion on the processor's vector units. Neither knows holes, orthographic cameras or lenses: a tree of boxes
+/// finds what is seen through and by them.
 class ViewSampler {
  public:
   /// `scene`, which must outlive this object, is uploaded if a GPU draws it.

@@ -29,6 +29,7 @@ scenes::Camera to_scene(const Camera& camera) {
   made.up = to_glm(camera.up);
   made.vertical_fov = camera.vertical_fov;
   made.height = camera.height;
+  if (camera.aperture != 0) made.lens = {camera.aperture, camera.focus_distance};
   return made;
 }
 
@@ -194,7 +195,8 @@ std::vector<Camera> Scene::cameras() const {
   std::vector<Camera> cameras;
   for (const scenes::Camera& camera : state_->scene.cameras) {
     cameras.push_back({from_glm(camera.eye), from_glm(camera.target), from_glm(camera.up), camera.vertical_fov,
-                       camera.height, camera.name});
+                       camera.height, camera.name, camera.lens ? camera.lens->radius : 0,
+                       camera.lens ? camera.lens->focus_distance : 0});
   }
   return cameras;
 }

@@ -243,8 +243,8 @@ PYBIND11_MODULE(_core, module) {
       .def("light_names", &Scene::lights)
       .def("set_camera",
            [](Scene& scene, const Vector& eye, const Vector& target, const Vector& up, double vertical_fov,
-              std::optional<double> height, std::string name) {
-             scene.set_camera({eye, target, up, vertical_fov, height, std::move(name)});
+              std::optional<double> height, std::string name, double aperture, double focus_distance) {
+             scene.set_camera({eye, target, up, vertical_fov, height, std::move(name), aperture, focus_distance});
            })
       .def("camera_names",
            [](const Scene& scene) {

@@ -56,9 +56,12 @@ auto fields_of(Is<Object> auto& object) {
 auto fields_of(Is<Picture> auto& picture) {
   return std::tie(picture.file, picture.width, picture.height, picture.texels);
 }
+auto fields_of(Is<ThinLens> auto& lens) {
+  return std::tie(lens.radius, lens.focus_distance);
+}
 auto fields_of(Is<Camera> auto& camera) {
   return std::tie(camera.name, camera.eye, camera.target, camera.up, camera.vertical_fov, camera.height, camera.aspect,
-                  camera.shift);
+                  camera.shift, camera.lens);
 }
 auto fields_of(Is<VertexLooks> auto& looks) {
   return std::tie(looks.normals, looks.colors, looks.places);

@@ -10,6 +10,7 @@ penumbra_test(cli FULL *EveryTriple* SHARDS Part/RenderTogether=2 Part/CompareTo
   cli/studio.cpp
   cli/sweep.cpp
   cli/covering_array.cpp
+  cli/depth_of_field.cpp
   cli/emitters.cpp
   cli/error_budget.cpp
   cli/explain.cpp

@@ -14,6 +14,7 @@ penumbra_test(visibility
   property/visibility/triangle_tree.cpp
   unit/bits_file.cpp
   unit/visibility/box_groups.cpp
+  unit/visibility/lens.cpp
   unit/visibility/light_kinds.cpp
   unit/visibility/light_touch.cpp
   unit/visibility/lights.cpp

@@ -18,18 +18,6 @@ std::uint32_t reverse_bits(std::uint32_t x) {
   return (x << 16) | (x >> 16);
 }
 
-/// SplitMix64's finaliser: every input bit reaches every output bit.
-std::uint32_t hash(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
-  std::uint64_t x = (static_cast<std::uint64_t>(a) << 32 | b) + 0x9e3779b97f4a7c15ull * (c + 1ull);
-  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9ull;
-  x = (x ^ (x >> 27)) * 0x94d049bb133111ebull;
-  return static_cast<std::uint32_t>((x ^ (x >> 31)) >> 32);
-}
-
-double to_unit(std::uint32_t bits) {
-  return static_cast<double>(bits) * 0x1p-32;
-}  // exact, in [0, 1)
-
 /// Owen scrambling by a hash: Laine, Karras, "Stratified sampling for stochastic transparency" (2011), section 3.1, as
 /// in Burley, "Practical hash-based Owen scrambling" (JCGT 2020): on reversed bits, x ^= x · even lets each bit depend
 /// only on the bits below it, which is what makes it a nested (Owen) scramble of the bits in their right order.

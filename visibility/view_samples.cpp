@@ -171,8 +171,12 @@ glm::dvec3 PinholeCamera::direction(std::uint32_t x, std::uint32_t y) const {
 }
 
 ViewRay PinholeCamera::ray(std::uint32_t x, std::uint32_t y) const {
-  if (!half_height) return {eye, direction(x, y)};
-  return {eye + (across(x) * right + upward(y) * up) * *half_height, forward};
+  const ViewRay sharp = half_height ? ViewRay{eye + (across(x) * right + upward(y) * up) * *half_height, forward}
+                                    : ViewRay{eye, direction(x, y)};
+  if (!lens) return sharp;
+  const glm::dvec2 at = lens->point(x, y);
+  const glm::dvec3 aside = at.x * right + at.y * up;
+  return {sharp.start + aside, sharp.direction - aside / lens->focus_distance};
 }
 
 glm::dvec3 PinholeCamera::screen_across() const {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "scenes/scene.hpp"
+#include "visibility/lens.hpp"
 #include "visibility/light_samples.hpp"
 #include "visibility/scene_floats.hpp"
 
@@ -18,21 +19,24 @@ struct ViewRay {
   glm::dvec3 start, direction;
 };
 
-/// A camera relative to the scene's origin, in double. The ray of pixel (x, y), y down, is eye + t · (middle + ((2(x +
-/// ½)/W − 1) · aspect · right + (1 − 2(y + ½)/H) · up) · tan(fov/2)). right, up and forward are orthonormal; `middle`
-/// is the ray through the picture's centre, middle · forward = 1, and equals `forward` unless the lens is shifted: t is
-/// the distance along the view axis. Orthographic: (eye + ((2(x + ½)/W − 1) · aspect · right + (1 − 2(y + ½)/H) · up) ·
-/// half_height) + t · forward; there a shift moves the eye.
+/// A camera relative to the scene's origin, in double. The ray of pixel (x, y), y down, is
+/// eye + t · (middle + ((2(x + ½)/W − 1) · aspect · right + (1 − 2(y + ½)/H) · up) · tan(fov/2)). All but `middle` are
+/// unit vectors, at right angles; that is the ray through the picture's middle, middle · forward = 1, and `forward`
+/// itself unless the lens is shifted: t is the distance along the view axis. Orthographic: (eye + ((2(x + ½)/W − 1) ·
+/// aspect · right + (1 − 2(y + ½)/H) · up) · half_height) + t · forward; there a shift has moved the eye. Through a
+/// lens the ray begins at the lens's point for that pixel, and meets the one without a lens at the focus distance; t is
+/// the distance along the view axis all the same.
 struct PinholeCamera {
   glm::dvec3 eye{0}, right{1, 0, 0}, up{0, 1, 0}, forward{0, 0, -1}, middle{0, 0, -1};
   double tan_half_fov = 1;
   std::optional<double> half_height = {};  ///< of an orthographic camera, in place of the field of view
   std::uint32_t width = 0, height = 0;
+  std::optional<Lens> lens = {};  ///< nothing: a pinhole
 
   /// Return the factors of `right` and `up` in a ray, without that of the field of view.
   [[nodiscard]] double across(std::uint32_t x) const;
   [[nodiscard]] double upward(std::uint32_t y) const;
-  /// Returns the direction of a perspective camera's ray.
+  /// Of a perspective camera; from its eye, whatever the lens.
   [[nodiscard]] glm::dvec3 direction(std::uint32_t x, std::uint32_t y) const;
   [[nodiscard]] ViewRay ray(std::uint32_t x, std::uint32_t y) const;
 

@@ -154,7 +154,7 @@ class RenderCommand : public Command {
     for (std::uint32_t i = 0; i < request_.moments; ++i) {
       const double offset = request_.shutter_frames * ((i + 0.5) / request_.moments - 0.5);
       const double time = (*frame + offset) * request_.seconds_per_frame;
-      all.emplace_back([this, time] { return read_session_scene(options_.run, time); });
+      all.emplace_back([this, time] { return scene_at(options_.run, time); });
     }
     return all;
   }
@@ -166,9 +166,15 @@ class RenderCommand : public Command {
     RunOptions run = options_.run;
     if (is_sequence_) run.scene = frame_path(run.scene, std::llround(*frame));
     ReadScene read;
-    read.scene = read_session_scene(run, time);
+    read.scene = scene_at(run, time);
     read.seconds = watch.seconds();
     return read;
+  }
+
+  [[nodiscard]] scenes::Scene scene_at(const RunOptions& run, std::optional<double> time) const {
+    scenes::Scene scene = read_session_scene(run, time);
+    set_lens(scene, request_, run.camera);
+    return scene;
   }
 
   [[nodiscard]] OutputFiles claim(const std::vector<std::string>& cameras) const {

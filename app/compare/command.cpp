@@ -187,8 +187,10 @@ class CompareCommand : public Command {
     cli_.add_option("--filter-width", filter_width_, "width of --pixel-filter; not supported by compare")
         ->type_name("PIXELS");
     cli_.add_option("--motion-samples", motion_samples_, "1 alone: errors are of one moment")->type_name("1");
-    cli_.add_option("--shutter", shutter_, "shutter of --motion-samples; not supported by compare")
-        ->type_name("FRAMES");
+    cli_.add_option("--shutter", shutter_, "of --motion-samples; not here")->type_name("FRAMES");
+    cli_.add_option("--aperture", aperture_, "0 alone: errors are of what is seen through the lens's middle")
+        ->type_name("0");
+    cli_.add_option("--focus-distance", focus_distance_, "of --aperture; not here")->type_name("D");
     cli_.add_flag("--skip-existing", skip_existing_, "not supported by compare: all methods are always measured");
   }
 
@@ -207,6 +209,8 @@ class CompareCommand : public Command {
     if (!shutter_.empty())
       throw UsageError("--shutter {}: methods are compared at one moment (--frame), not over an open shutter",
                        shutter_);
+    if (parse_number(aperture_) != 0.0 || !focus_distance_.empty())
+      throw UsageError("--aperture {}: methods are compared through the lens's middle; expected 0", aperture_);
     if (skip_existing_)
       throw UsageError("--skip-existing: a comparison is measured as a whole, so nothing of an earlier one is kept");
   }
@@ -245,7 +249,8 @@ class CompareCommand : public Command {
   std::optional<double> max_rmse_;
   std::optional<std::string> frame_;
   std::string max_rmse_text_, fps_, exposure_, shutter_, frames_, tev_;
-  std::string pixel_samples_ = "1", motion_samples_ = "1", pixel_filter_ = "box", filter_width_;
+  std::string pixel_samples_ = "1", motion_samples_ = "1", pixel_filter_ = "box", filter_width_, aperture_ = "0",
+              focus_distance_;
   bool skip_existing_ = false;
 };
 

@@ -2,6 +2,7 @@
 
 #include "app/methods.hpp"
 #include "app/pictures/frame_render.hpp"
+#include "app/pictures/lens_areas.hpp"
 #include "app/pictures/sky.hpp"
 #include "app/process/stopwatch.hpp"
 #include "app/whole_lights.hpp"
@@ -11,6 +12,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -167,11 +169,14 @@ MethodRun FrameRenderer::run_lights(BeautyAccumulator& beauty, BitsOutput* bits)
     plan.holds = &kept.prepared;
     plan.band_rows = picture_.frame.band_rows;
     plan.shades = true;
-    std::optional<InterpolatedAreas> interpolated;
-    if (picture_.frame.pixel_side > 1 && picture_.frame.pixel_tolerance > 0 && method.description.gives_area())
-      interpolated.emplace(*kept.method, lit().floats, picture_.frame.pixel_side, picture_.frame.pixel_tolerance);
+    std::unique_ptr<visibility::Method> around;  // asks it about fewer view samples, or in another order
+    if (method.description.gives_area() && lit().camera.lens)
+      around = std::make_unique<LensAreas>(*kept.method);
+    else if (method.description.gives_area() && picture_.frame.pixel_side > 1 && picture_.frame.pixel_tolerance > 0)
+      around = std::make_unique<InterpolatedAreas>(*kept.method, lit().floats, picture_.frame.pixel_side,
+                                                   picture_.frame.pixel_tolerance);
     MethodRun run = run_method(
-        interpolated ? *interpolated : *kept.method, lit(), plan,
+        around ? *around : *kept.method, lit(), plan,
         [&](const TileResult& tile) {
           beauty.add(tile);
           if (!plan.filtered_alone) keep_masks(tile);

@@ -54,11 +54,7 @@ std::string mesh_line(const std::map<std::string, std::uint64_t>& counters) {
   return line;
 }
 
-double sum_of(std::span<const double> seconds) {
-  return std::reduce(seconds.begin(), seconds.end());
-}
-
-/// Returns whether any pixel is on an emitting side of the light.
+/// Is any pixel on a side that the light shines to?
 bool lights_anything(std::span<const visibility::PixelClass> classes) {
   using visibility::PixelClass;
   return std::ranges::any_of(classes, [](PixelClass one) {
@@ -67,8 +63,9 @@ bool lights_anything(std::span<const visibility::PixelClass> classes) {
   });
 }
 
-/// Adds the times of other moments of the same lights to `to`.
-void add_times(MethodRun& to, const MethodRun& before) {
+}  // namespace
+
+void FrameRenderer::add_times(MethodRun& to, const MethodRun& before) {
   to.times.mesh += before.times.mesh;
   to.times.light += before.times.light;
   to.times.evaluate += before.times.evaluate;
@@ -81,8 +78,6 @@ void add_times(MethodRun& to, const MethodRun& before) {
   for (const auto& [name, count] : before.counters) to.counters[name] += count;
   to.memory_bytes = std::max(to.memory_bytes, before.memory_bytes);
 }
-
-}  // namespace
 
 FrameRenderer::FrameRenderer(const RunOptions& options, const MethodWish& wish, const render::Machine& machine,
                              Progress& progress)
@@ -185,7 +180,7 @@ void FrameRenderer::add_panes() {
     if (behind.size() == 0) behind = std::move(before);
     choose_methods(lit());
     say_notes();
-    spent_.view += watch.seconds() - sum_of(lit().filtered_seconds);
+    spent_.view += watch.seconds() - lit().filtering_seconds();
     watch.restart();
     mark_lights();
     mark_lamps();
@@ -226,8 +221,9 @@ void FrameRenderer::render(scenes::Scene scene, const Frame& frame, const std::f
   done_.in_part.clear();
   picture_.notes.clear();
   picture_.run = {};
-  if (frame.pixel_side == 1 && fine_) {
-    kept_.clear();  // their data refer to the previous session
+  const bool lens = has_lens(scene);
+  if (frame.pixel_side == 1 && !lens && fine_) {
+    kept_.clear();  // what they hold is of the session that goes
     fine_.reset();
   }
   if (frame.moments.empty() && frame.pixel_side == 1) {
@@ -235,79 +231,11 @@ void FrameRenderer::render(scenes::Scene scene, const Frame& frame, const std::f
     check_wanted_layers();
     run_methods(bits);
   } else {
-    render_mean(std::move(scene));
+    render_mean(std::move(scene), lens);
   }
   label_lights();
   machine_.check_validation();  // throws before a file appears: a picture computed with validation errors is not
                                 // written
-}
-
-void FrameRenderer::render_mean(scenes::Scene scene) {
-  const std::uint32_t side = picture_.frame.pixel_side;
-  if (side > 1) {
-    show(maker_, scene);
-    check_wanted_layers();
-    spent_.view += sum_of(session().filtered_seconds);
-    const std::string size = fmt::format("{}x{}", session().width * side, session().height * side);
-    RunOptions options = options_;  // may have changed since the last picture
-    options.size = size;
-    if (!fine_ || fine_->options.size != size) {
-      kept_.clear();  // their data refer to the previous session
-      fine_.emplace(options, machine_);
-    }
-    fine_->options = std::move(options);
-  }
-  std::map<std::string, LightTimes> times;
-  const auto add = [&](scenes::Scene moment) {
-    show(side > 1 ? fine_->maker : maker_, std::move(moment));
-    MethodRun before = std::exchange(picture_.run, {});
-    run_methods({});
-    const Stopwatch watch;
-    if (!picture_.mean) {
-      const std::uint32_t width = lit().width / side, height = lit().height / side;
-      picture_.mean.emplace(width, height, picture_.frame.filter);
-      picture_.mattes =
-          Mattes{MatteShares(width, height, picture_.frame.filter), MatteShares(width, height, picture_.frame.filter)};
-    }
-    const Surfaces surfaces(lit());
-    std::vector<std::uint32_t> shown(lit().samples.size());
-    const auto numbers = [&](auto number) -> std::span<const std::uint32_t> {
-      tbb::parallel_for(std::size_t{0}, shown.size(), [&](std::size_t i) { shown[i] = (surfaces.*number)(i); });
-      return shown;
-    };
-    picture_.mattes->objects.add(surfaces.objects(), numbers(&Surfaces::object), side);
-    picture_.mattes->materials.add(surfaces.materials(), numbers(&Surfaces::material), side);
-    const std::vector<std::string> names = whole_names(lit().lights);
-    picture_.mean->add(picture_.alpha, names, picture_.run.visibility, picture_.beauty, side);
-    spent_.beauty += watch.seconds();
-    for (std::size_t light = 0; light < names.size(); ++light) {
-      times[names[light]].light += picture_.run.times.lights[light].light;
-      times[names[light]].evaluate += picture_.run.times.lights[light].evaluate;
-    }
-    before.times.lights.clear();  // its lights may differ
-    add_times(picture_.run, before);
-  };
-  if (picture_.frame.moments.empty()) add(scene);
-  for (const auto& moment : picture_.frame.moments) {
-    const Stopwatch read;
-    scenes::Scene then = moment();
-    spent_.load += read.seconds();
-    add(std::move(then));
-  }
-  if (side == 1) {
-    show(maker_, std::move(scene));
-    spent_.view += sum_of(session().filtered_seconds);
-  }
-  // Numbers of lights are written for those of the frame's own time.
-  picture_.run.times.lights.clear();
-  const std::vector<std::string> own = whole_names(session().lights);
-  for (const std::string& light : own) picture_.run.times.lights.push_back(times[light]);
-  for (const std::string& light : picture_.mean->lights()) {
-    if (std::ranges::find(own, light) != own.end()) continue;
-    picture_.notes.push_back(fmt::format(
-        "light \"{}\" is not there at the frame's own time: R G B have its light, and it has no layer", light));
-    say_once({picture_.notes.back()});
-  }
 }
 
 RenderedFrame FrameRenderer::take() {
@@ -349,6 +277,7 @@ compare::Stats FrameRenderer::write(const FrameFiles& files, Exposure& exposure)
   if (exposure.kind == Exposure::Kind::first) exposure.stops = stops;
   std::map<std::string, std::string> attributes = {{kExposureAttribute, fmt::format("{}", stops)}};
   if (surface_) attributes.insert(surface_->attributes.begin(), surface_->attributes.end());
+  note_means(attributes);
   if (picture_.frame.number) attributes["penumbra.frame"] = fmt::format("{}", *picture_.frame.number);
 
   progress_.clear();

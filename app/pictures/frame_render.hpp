@@ -106,13 +106,17 @@ class FrameRenderer {
   void choose_methods(const Session& session);
   /// Adds notes about light samples used without a request: once to a picture's stats, and once to the log.
   void say_notes();
-  /// Labels the picture's lights with their methods.
+  /// How many view samples, moments and points of a lens the picture is the mean of; nothing of one alone.
+  void note_means(std::map<std::string, std::string>& attributes) const;
+  /// What the picture's lights were done with.
   void label_lights();
   /// Warns if light samples were requested, and no method used them.
   void say_unused_samples();
   void run_methods(const std::filesystem::path& bits);
   /// Runs the chosen methods at the current view samples; `bits` may be null.
   MethodRun run_lights(BeautyAccumulator& beauty, BitsOutput* bits);
+  /// What other moments of the same lights cost is added to what this one did.
+  static void add_times(MethodRun& to, const MethodRun& before);
   void keep_masks(const TileResult& tile);
   /// Composites translucent surfaces (BLEND), each shaded at its own view samples, over the surfaces behind.
   void add_panes();
@@ -120,8 +124,11 @@ class FrameRenderer {
   void show(SessionMaker& maker, scenes::Scene scene);
   /// Throws UsageError for requested layers that the current picture will not have.
   void check_wanted_layers() const;
-  void render_mean(scenes::Scene scene);
-  /// Returns the session evaluated by methods: the picture's, or the one with more view samples a pixel.
+  void render_mean(scenes::Scene scene, bool by_lens);
+  /// Does the picture's camera have a lens, and the picture several view samples a pixel to look through it? Says so
+  /// where they are too few.
+  bool has_lens(const scenes::Scene& scene);
+  /// What methods look at: the picture's session, or that of more view samples a pixel or through a lens.
   [[nodiscard]] const Session& lit() const { return fine_ ? fine_->maker.session() : maker_.session(); }
   [[nodiscard]] SessionMaker& lit_maker() { return fine_ ? fine_->maker : maker_; }
   Kept& method_for(const LightMethod& wanted);
@@ -132,7 +139,7 @@ class FrameRenderer {
   /// Warns about lights without effect; to be called after all view samples were processed.
   void say_idle_lights();
 
-  /// Session with more view samples a pixel, whose picture is several times as large.
+  /// The session of more view samples a pixel, whose picture is several times as large, or of those through a lens.
   struct Fine {
     Fine(const RunOptions& given, const render::Machine& machine) : options(given), maker(options, machine) {}
     Fine(const Fine&) = delete;
@@ -171,9 +178,9 @@ class FrameRenderer {
     bool layers = false;                            // translucent surfaces are evaluated, not the surfaces behind them
     std::vector<std::vector<std::uint32_t>> masks;  // of each light
     std::vector<float> alpha;                       // of each pixel
-    std::vector<std::uint8_t> lamps;  // of each pixel: a translucent body of a light is visible; empty: none is
-    std::optional<PictureMean> mean;  // nullopt: a picture of one moment and of pixels' centres
-    std::optional<Mattes> mattes;     // set together with `mean`
+    std::vector<std::uint8_t> lamps;    // of each pixel: a translucent body of a light is seen; empty: none is
+    std::optional<PictureMean> mean;    // nothing: the picture is that of one moment and of pixels' centres
+    std::optional<Mattes> mattes;       // there when that is
     std::optional<BitsOutput> bits;
   };
   /// Seconds of the picture. `make`: the device and methods. `beauty`: all processing of methods' results, including

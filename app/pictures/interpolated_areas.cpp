@@ -31,18 +31,6 @@ constexpr float kLeastCosine = 0.92f, kMostRise = 0.2f;
 /// Surfaces at least this many pixels apart cast wide penumbrae on one another.
 constexpr float kApart = 16;
 
-/// Engines process regions of this many pixels along each side, and their pixels in Z order.
-constexpr std::size_t kRegion = 16, kRegionPixels = kRegion * kRegion, kRegionsAcross = 64;
-
-/// Returns the bits at even positions, moved together.
-std::uint32_t even_bits(std::uint32_t bits) {
-  bits &= 0x55555555u;
-  bits = (bits | bits >> 1) & 0x33333333u;
-  bits = (bits | bits >> 2) & 0x0f0f0f0fu;
-  bits = (bits | bits >> 4) & 0x00ff00ffu;
-  return (bits | bits >> 8) & 0x0000ffffu;
-}
-
 double largest(const glm::dvec3& v) {
   return std::max({v.x, v.y, v.z});
 }
@@ -51,18 +39,17 @@ double largest(const glm::dvec3& v) {
 
 InterpolatedAreas::InterpolatedAreas(visibility::Method& method, const visibility::SceneFloats& scene,
                                      std::uint32_t side, double tolerance)
-    : method_(method), scene_(scene), side_(side), tolerance_(tolerance) {
-  PENUMBRA_ASSERT(method.description().gives_area() && side >= 2 && tolerance > 0, "{}, {} a side, tolerance {}",
-                  method.description().name, side, tolerance);
+    : AskedAreas(method), scene_(scene), side_(side), tolerance_(tolerance) {
+  PENUMBRA_ASSERT(side >= 2 && tolerance > 0, "{} a side, tolerance {}", side, tolerance);
 }
 
 void InterpolatedAreas::prepare_light(const visibility::Light& light) {
-  method_.prepare_light(light);
+  AskedAreas::prepare_light(light);
   has_corners_ = false;
-  counters_.clear();
 }
 
 void InterpolatedAreas::prepare_view(const ViewSamples& samples) {
+  AskedAreas::prepare_view(samples);
   fine_ = &samples;
   width_ = samples.width / side_;
   height_ = samples.height / side_;
@@ -72,8 +59,7 @@ void InterpolatedAreas::prepare_view(const ViewSamples& samples) {
 }
 
 std::uint32_t InterpolatedAreas::max_tile_rows() const {
-  constexpr std::uint32_t kMostSamples = 1u << 21;
-  return std::max(kMostSamples / fine_->width / side_, 1u) * side_;
+  return std::max(AskedAreas::max_tile_rows() / side_, 1u) * side_;
 }
 
 /// Returns the view sample in the middle of a pixel, or to the lower right of its middle.
@@ -94,64 +80,8 @@ bool InterpolatedAreas::on_one_surface(std::size_t one, std::size_t other) const
   return std::abs(glm::dot(fine_->n[one], step)) <= rise && std::abs(glm::dot(fine_->n[other], step)) <= rise;
 }
 
-std::vector<InterpolatedAreas::Answer> InterpolatedAreas::ask(const Part& part) {
-  method_.prepare_view(part.samples);
-  std::vector<Answer> answers(part.samples.size());
-  std::vector<float> shares;
-  std::vector<glm::dvec3> form_factors;
-  const std::uint32_t rows = std::max(method_.max_tile_rows(), 1u);
-  for (std::uint32_t row = 0; row < part.samples.height; row += rows) {
-    const Tile tile{row, std::min(rows, part.samples.height - row)};
-    const std::size_t first = std::size_t{row} * part.samples.width,
-                      count = std::size_t{tile.row_count} * part.samples.width;
-    method_.evaluate(tile);
-    shares.resize(count);
-    form_factors.resize(count);
-    method_.read_visibility(shares);
-    method_.read_form_factors(form_factors);
-    for (std::size_t i = 0; i < count; ++i) answers[first + i] = {shares[i], form_factors[i]};
-  }
-  // Counters start again only with prepare_light(), which is not called in between: the last ones are those of all
-  // parts.
-  return answers;
-}
-
-/// Returns a picture of view samples in the given order, region by region in Z order.
-InterpolatedAreas::Part InterpolatedAreas::part_of(std::span<const std::size_t> fine) const {
-  const std::size_t regions = (fine.size() + kRegionPixels - 1) / kRegionPixels,
-                    across = std::min(regions, kRegionsAcross), down = (regions + across - 1) / across;
-  Part part;
-  ViewSamples& samples = part.samples;
-  samples.width = static_cast<std::uint32_t>(across * kRegion);
-  samples.height = static_cast<std::uint32_t>(down * kRegion);
-  samples.camera = fine_->camera;
-  samples.eye = fine_->eye;
-  const std::size_t size = std::size_t{samples.width} * samples.height;
-  samples.triangle.assign(size, ViewSamples::kBackground);
-  samples.p.resize(size, glm::vec3(0));
-  samples.n.resize(size, glm::vec3(0));
-  samples.depth.resize(size, 0);
-  samples.facing.resize(size, 0);
-  part.from.resize(fine.size());
-  tbb::parallel_for(std::size_t{0}, fine.size(), [&](std::size_t i) {
-    const std::size_t region = i / kRegionPixels;
-    const auto spot = static_cast<std::uint32_t>(i % kRegionPixels);
-    const std::size_t x = region % across * kRegion + even_bits(spot),
-                      y = region / across * kRegion + even_bits(spot >> 1);
-    const std::size_t to = y * samples.width + x, from = fine[i];
-    part.from[i] = to;
-    samples.triangle[to] = fine_->triangle[from];
-    samples.p[to] = fine_->p[from];
-    samples.n[to] = fine_->n[from];
-    samples.depth[to] = fine_->depth[from];
-    samples.facing[to] = fine_->facing[from];
-  });
-  return part;
-}
-
 void InterpolatedAreas::look_at_corners() {
-  Part part;
-  ViewSamples& samples = part.samples;
+  ViewSamples samples;
   samples.width = width_;
   samples.height = height_;
   samples.camera = fine_->camera;
@@ -166,7 +96,7 @@ void InterpolatedAreas::look_at_corners() {
       samples.facing.push_back(fine_->facing[from]);
     }
   }
-  corners_ = ask(part);
+  corners_ = ask(samples);
   find_cells();
   has_corners_ = true;
 }
@@ -178,10 +108,10 @@ float InterpolatedAreas::bend(std::size_t before, std::size_t at, std::size_t af
   const std::size_t here = corner_of(x, y);
   if (!on_one_surface(here - step, here) || !on_one_surface(here, here + step))
     return std::numeric_limits<float>::quiet_NaN();
-  const Answer &a = corners_[before], &b = corners_[at], &c = corners_[after];
+  const AreaAnswer &a = corners_[before], &b = corners_[at], &c = corners_[after];
   double most = std::abs(double{a.visibility} - 2 * double{b.visibility} + double{c.visibility});
   double whole = 0;
-  for (const Answer* answer : {&a, &b, &c}) {
+  for (const AreaAnswer* answer : {&a, &b, &c}) {
     if (answer->visibility >= kLeastShare)
       whole = std::max(whole, largest(answer->form_factor) / double{answer->visibility});
   }
@@ -266,14 +196,14 @@ std::optional<InterpolatedAreas::Slope> InterpolatedAreas::slope(std::uint32_t x
     const double pixels = to.to - to.from == step ? 1 : 2;
     return (value(corners_[to.to]) - value(corners_[to.from])) / pixels;
   };
-  const auto share = [](const Answer& answer) { return double{answer.visibility}; };
-  const auto factor = [](const Answer& answer) { return answer.form_factor; };
+  const auto share = [](const AreaAnswer& answer) { return double{answer.visibility}; };
+  const auto factor = [](const AreaAnswer& answer) { return answer.form_factor; };
   return Slope{share(corners_[at]),      difference(*across, 1, share),  difference(*down, width_, share),
                factor(corners_[at]),     difference(*across, 1, factor), difference(*down, width_, factor),
                across->bend + down->bend};
 }
 
-std::optional<InterpolatedAreas::Answer> InterpolatedAreas::from_corner(std::uint32_t x, std::uint32_t y) const {
+std::optional<AreaAnswer> InterpolatedAreas::from_corner(std::uint32_t x, std::uint32_t y) const {
   const std::size_t at = std::size_t{y} * fine_->width + x;
   const std::uint32_t half = side_ / 2;  // integer, as in corner_of()
   const auto in_pixels = [&](std::uint32_t place) { return (static_cast<double>(place) - half) / side_; };
@@ -306,32 +236,30 @@ std::optional<InterpolatedAreas::Answer> InterpolatedAreas::from_corner(std::uin
   }
   if (!chosen) return std::nullopt;
   const double dx = right - chosen_column, dy = below - chosen_row;
-  return Answer{static_cast<float>(std::clamp(share_at(right, below), 0.0, 1.0)),
-                glm::max(chosen->factor + dx * chosen->factor_x + dy * chosen->factor_y, glm::dvec3(0))};
+  return AreaAnswer{static_cast<float>(std::clamp(share_at(right, below), 0.0, 1.0)),
+                    glm::max(chosen->factor + dx * chosen->factor_x + dy * chosen->factor_y, glm::dvec3(0))};
 }
 
-std::vector<std::size_t> InterpolatedAreas::interpolate(const Tile& tile) {
+std::vector<std::size_t> InterpolatedAreas::answer(const Tile& tile, std::span<AreaAnswer> answers) {
+  if (!has_corners_) look_at_corners();
   const std::uint32_t half = side_ / 2;
-  std::vector<std::uint8_t> is_open(answers_.size());
+  std::vector<std::uint8_t> is_open(answers.size());
   std::atomic<std::uint64_t> interpolated = 0;
   tbb::parallel_for(std::uint32_t{0}, tile.row_count, [&](std::uint32_t i) {
     const std::uint32_t y = tile.first_row + i;
     // Rows and columns of cells, from −1; the border around all corners has no cells.
     const std::int64_t row = (std::int64_t{y} - half + side_) / side_ - 1;
     const double down = static_cast<double>((y + side_ - half) % side_) / side_;
-    std::uint64_t count = 0;
+    std::uint64_t here = 0;
     for (std::uint32_t x = 0; x < fine_->width; ++x) {
       const std::size_t at = std::size_t{i} * fine_->width + x;
-      if (fine_->triangle[std::size_t{y} * fine_->width + x] == ViewSamples::kBackground) {
-        answers_[at] = {};
-        continue;
-      }
+      if (fine_->triangle[std::size_t{y} * fine_->width + x] == ViewSamples::kBackground) continue;
       const std::int64_t column = (std::int64_t{x} - half + side_) / side_ - 1;
       const std::uint32_t step = (x + side_ - half) % side_;
       const double across = static_cast<double>(step) / side_;
       const bool is_corner = step == 0 && (y + side_ - half) % side_ == 0;
       if (is_corner) {
-        answers_[at] = corners_[static_cast<std::size_t>(row) * width_ + static_cast<std::size_t>(column)];
+        answers[at] = corners_[static_cast<std::size_t>(row) * width_ + static_cast<std::size_t>(column)];
         continue;
       }
       const bool has_cell =
@@ -340,30 +268,31 @@ std::vector<std::size_t> InterpolatedAreas::interpolate(const Tile& tile) {
                             ? cells_[static_cast<std::size_t>(row) * (width_ - 1) + static_cast<std::size_t>(column)]
                             : Cell::touching;
       if (cell != Cell::smooth) {
-        const std::optional<Answer> answer = cell == Cell::apart ? from_corner(x, y) : std::nullopt;
+        const std::optional<AreaAnswer> answer = cell == Cell::apart ? from_corner(x, y) : std::nullopt;
         if (answer) {
-          answers_[at] = *answer;
-          ++count;
+          answers[at] = *answer;
+          ++here;
         } else {
           is_open[at] = 1;
         }
         continue;
       }
-      const Answer* const corner = &corners_[static_cast<std::size_t>(row) * width_ + static_cast<std::size_t>(column)];
+      const AreaAnswer* const corner =
+          &corners_[static_cast<std::size_t>(row) * width_ + static_cast<std::size_t>(column)];
       const auto between = [&](auto value) {
         const auto upper = value(corner[0]) + across * (value(corner[1]) - value(corner[0]));
         const auto lower = value(corner[width_]) + across * (value(corner[width_ + 1]) - value(corner[width_]));
         return upper + down * (lower - upper);
       };
-      const double share = between([](const Answer& answer) { return double{answer.visibility}; });
-      answers_[at] = {static_cast<float>(std::clamp(share, 0.0, 1.0)),
-                      between([](const Answer& answer) { return answer.form_factor; })};
-      ++count;
+      const double share = between([](const AreaAnswer& answer) { return double{answer.visibility}; });
+      answers[at] = {static_cast<float>(std::clamp(share, 0.0, 1.0)),
+                     between([](const AreaAnswer& answer) { return answer.form_factor; })};
+      ++here;
     }
-    interpolated += count;
+    interpolated += here;
   });
-  counters_["viewSamplesInterpolated"] += interpolated;
-  // Pixels in Z order, and the view samples of each consecutively.
+  count("viewSamplesInterpolated", interpolated);
+  // Pixels in Z order, and each one's view samples after one another.
   std::vector<std::size_t> open;
   const std::uint32_t rows = (tile.row_count + side_ - 1) / side_;
   std::uint32_t edge = 1;
@@ -387,38 +316,8 @@ std::vector<std::size_t> InterpolatedAreas::interpolate(const Tile& tile) {
   return open;
 }
 
-void InterpolatedAreas::evaluate(const Tile& tile) {
-  if (!has_corners_) look_at_corners();
-  tile_ = tile;
-  answers_.resize(std::size_t{tile.row_count} * fine_->width);
-  const std::vector<std::size_t> open = interpolate(tile);
-  if (open.empty()) return;
-  const std::size_t first = std::size_t{tile.first_row} * fine_->width;
-  std::vector<std::size_t> fine(open.size());
-  std::ranges::transform(open, fine.begin(), [&](std::size_t at) { return first + at; });
-  const Part part = part_of(fine);
-  const std::vector<Answer> answers = ask(part);
-  tbb::parallel_for(std::size_t{0}, open.size(), [&](std::size_t i) { answers_[open[i]] = answers[part.from[i]]; });
-}
-
-void InterpolatedAreas::read_visibility(std::span<float> visibility) {
-  PENUMBRA_ASSERT(visibility.size() == answers_.size(), "{} of {}", visibility.size(), answers_.size());
-  std::ranges::transform(answers_, visibility.begin(), &Answer::visibility);
-}
-
-void InterpolatedAreas::read_form_factors(std::span<glm::dvec3> form_factors) {
-  PENUMBRA_ASSERT(form_factors.size() == answers_.size(), "{} of {}", form_factors.size(), answers_.size());
-  std::ranges::transform(answers_, form_factors.begin(), &Answer::form_factor);
-}
-
-std::map<std::string, std::uint64_t> InterpolatedAreas::counters() const {
-  std::map<std::string, std::uint64_t> all = method_.counters();
-  for (const auto& [name, count] : counters_) all[name] += count;
-  return all;
-}
-
 std::uint64_t InterpolatedAreas::memory_bytes() const {
-  return method_.memory_bytes() + (corners_.capacity() + answers_.capacity()) * sizeof(Answer) + cells_.capacity() +
+  return AskedAreas::memory_bytes() + corners_.capacity() * sizeof(AreaAnswer) + cells_.capacity() +
          bends_.capacity() * sizeof(Bend);
 }
 

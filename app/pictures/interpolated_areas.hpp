@@ -1,15 +1,13 @@
 #pragma once
 
-#include "visibility/method.hpp"
+#include "app/pictures/asked_areas.hpp"
 
 #include <glm/vec3.hpp>
 
 #include <cstddef>
 #include <cstdint>
-#include <map>
 #include <optional>
 #include <span>
-#include <string>
 #include <vector>
 
 namespace penumbra::app {
@@ -30,40 +28,23 @@ inline constexpr double kPixelTolerance = 1.0 / 512;
 /// caster may be so thin that its shadow passes between the corners: there the bound is an estimate (measured errors:
 /// docs/pictures.md).
 ///
-/// V and form factors of view samples evaluated by the method are the method's own, bit for bit. All arguments must
-/// outlive this object. Only for methods with Output::radiance; one thread at a time.
-class InterpolatedAreas final : public visibility::Method {
+/// Everything that it is given must outlive it.
+class InterpolatedAreas final : public AskedAreas {
  public:
   /// `side`: view samples of a pixel along each axis, at least 2; prepare_view() requires a picture of whole pixels.
   /// `tolerance`: of V, above 0.
   InterpolatedAreas(visibility::Method& method, const visibility::SceneFloats& scene, std::uint32_t side,
                     double tolerance);
 
-  [[nodiscard]] const visibility::MethodDescription& description() const override { return method_.description(); }
-  void want_form_factors(bool wanted) override { method_.want_form_factors(wanted); }
-  void expect_frames() override { method_.expect_frames(); }
-  void prepare_mesh(const visibility::SceneFloats& scene) override { method_.prepare_mesh(scene); }
   void prepare_light(const visibility::Light& light) override;
   void prepare_view(const visibility::ViewSamples& samples) override;
   [[nodiscard]] std::uint32_t max_tile_rows() const override;
-  void evaluate(const visibility::Tile& tile) override;
-  void read_visibility(std::span<float> visibility) override;
-  void read_form_factors(std::span<glm::dvec3> form_factors) override;
-  std::vector<visibility::PassTime> take_pass_times() override { return method_.take_pass_times(); }
-  /// Returns the method's counters, and viewSamplesInterpolated.
-  [[nodiscard]] std::map<std::string, std::uint64_t> counters() const override;
-  std::map<std::string, std::uint64_t> take_mesh_counters() override { return method_.take_mesh_counters(); }
   [[nodiscard]] std::uint64_t memory_bytes() const override;
 
  private:
   /// `touching`: several surfaces so near to one another that a contact shadow may begin between corners.
   enum class Cell : std::uint8_t { touching, apart, bent, smooth };
-  /// Result of the method at a view sample.
-  struct Answer {
-    float visibility = 1;
-    glm::dvec3 form_factor{0};
-  };
-  /// Curvature of the results at a corner along x and y, as an error of V; NaN where a neighbour is on another surface.
+  /// How far answers bend at a corner along x and y, as an error of V; NaN where a neighbour is on another surface.
   struct Bend {
     float x, y;
   };
@@ -73,41 +54,28 @@ class InterpolatedAreas final : public visibility::Method {
     glm::dvec3 factor, factor_x, factor_y;
     float error;
   };
-  /// Picture of view samples, and the index of each in the fine picture.
-  struct Part {
-    visibility::ViewSamples samples;
-    std::vector<std::size_t> from;
-  };
-
   [[nodiscard]] std::size_t corner_of(std::uint32_t x, std::uint32_t y) const;
   [[nodiscard]] bool on_one_surface(std::size_t one, std::size_t other) const;
   [[nodiscard]] float bend(std::size_t before, std::size_t at, std::size_t after, std::uint32_t step_in_fine) const;
   [[nodiscard]] bool are_apart(std::size_t first) const;
   [[nodiscard]] Cell cell_of(std::uint32_t column, std::uint32_t row) const;
-  /// Returns the results of a picture, in its order.
-  std::vector<Answer> ask(const Part& part);
-  [[nodiscard]] Part part_of(std::span<const std::size_t> fine) const;
   [[nodiscard]] std::optional<Slope> slope(std::uint32_t x, std::uint32_t y) const;
-  /// Returns the result at a view sample of the fine picture, from the nearest suitable corner on its surface.
-  [[nodiscard]] std::optional<Answer> from_corner(std::uint32_t x, std::uint32_t y) const;
+  /// The answer at a view sample of the fine picture, by the nearest corner on its surface that allows it.
+  [[nodiscard]] std::optional<AreaAnswer> from_corner(std::uint32_t x, std::uint32_t y) const;
   void look_at_corners();
   void find_cells();
-  /// Sets the interpolated view samples of the tile; returns the others, neighbours consecutively.
-  std::vector<std::size_t> interpolate(const visibility::Tile& tile);
+  /// Interpolates, and counts it as viewSamplesInterpolated.
+  std::vector<std::size_t> answer(const visibility::Tile& tile, std::span<AreaAnswer> answers) override;
 
-  visibility::Method& method_;
   const visibility::SceneFloats& scene_;
   std::uint32_t side_;
   double tolerance_;
   const visibility::ViewSamples* fine_ = nullptr;
   std::uint32_t width_ = 0, height_ = 0;  // of corners
-  bool has_corners_ = false;              // of the current light and view
-  std::vector<Answer> corners_;
+  bool has_corners_ = false;              // of the light and view at hand
+  std::vector<AreaAnswer> corners_;
   std::vector<Bend> bends_;  // of each corner
   std::vector<Cell> cells_;  // row by row: (width_ − 1) · (height_ − 1)
-  visibility::Tile tile_;
-  std::vector<Answer> answers_;  // of tile_
-  std::map<std::string, std::uint64_t> counters_;
 };
 
 }  // namespace penumbra::app

@@ -56,7 +56,30 @@ void parse_means(const PictureOptions& options, PictureRequest& request) {
     throw UsageError("--motion-samples {}: of which frame? --frame or --frames says", options.motion_samples);
 }
 
-/// A moment between frames has no number for a file's name.
+/// --aperture and --focus-distance.
+void parse_lens(const PictureOptions& options, PictureRequest& request) {
+  const auto length = [](const std::string& text, const char* option, const char* wanted, bool may_be_0) {
+    const auto value = parse_number(text);
+    if (!value || !(*value > 0 || (may_be_0 && *value == 0)) || !std::isfinite(*value))
+      throw UsageError("{} {}: expected {}", option, text, wanted);
+    return *value;
+  };
+  if (!options.focus_distance.empty())
+    request.focus_distance =
+        length(options.focus_distance, "--focus-distance", "a distance above 0, such as 2.5", false);
+  if (options.aperture.empty()) return;
+  request.aperture =
+      length(options.aperture, "--aperture", "a lens's radius above 0, such as 0.02, or 0 for none", true);
+  if (*request.aperture > 0 && request.pixel_side == 1 && request.moments == 1)
+    throw UsageError(
+        "--aperture {}: a pixel's one view sample looks through the lens's middle, where everything is sharp; "
+        "--pixel-samples says how many there are",
+        options.aperture);
+  if (*request.aperture == 0 && request.focus_distance)
+    throw UsageError("--focus-distance {}: of which lens? --aperture 0 is none", options.focus_distance);
+}
+
+/// A moment between frames has no number that a file's name could have.
 void refuse_numbered_moments(const PictureOptions& options, const PictureRequest& request) {
   const auto& frame = request.frames.front();
   if (!frame || *frame == std::floor(*frame)) return;
@@ -129,6 +152,15 @@ void add_picture_options(CLI::App& command, PictureOptions& options) {
       .add_option("--shutter", options.shutter,
                   "how long it is open, in frames, around the frame's time (default: 0.5)")
       ->type_name("FRAMES");
+  command
+      .add_option("--aperture", options.aperture,
+                  "radius of the camera's lens in the scene's unit, which each view sample of a pixel looks through "
+                  "elsewhere: what is not at the focus distance is blurred (default: the camera's; 0: all is sharp)")
+      ->type_name("RADIUS");
+  command
+      .add_option("--focus-distance", options.focus_distance,
+                  "of the lens: how far along the view axis surfaces are sharp (default: the camera's)")
+      ->type_name("D");
   command.add_flag("--skip-existing", options.skip_existing,
                    "leave out pictures whose files are all there: resumes a sequence");
 }
@@ -144,7 +176,8 @@ PictureRequest parse_request(const PictureOptions& options) {
   request.exposure = parse_exposure(options.exposure);
   request.seconds_per_frame = 1 / parse_fps(options.fps);
   parse_means(options, request);
-  parse_format(options.run.format);  // throws now instead of later
+  parse_lens(options, request);
+  parse_format(options.run.format);  // refuses now, not later
   if (options.run.out.extension() != ".exr") {
     throw UsageError("-o {}: expected a name that ends in .exr (--png writes a PNG file beside it)",
                      options.run.out.string());
@@ -158,6 +191,27 @@ PictureRequest parse_request(const PictureOptions& options) {
       request.frames.emplace_back(static_cast<double>(frame));
   }
   return request;
+}
+
+void set_lens(scenes::Scene& scene, const PictureRequest& request, const std::string& camera) {
+  if (!request.aperture && !request.focus_distance) return;
+  for (scenes::Camera& one : scene.cameras) {
+    const bool is_looked_through =
+        camera == "all" || one.name == camera || (camera.empty() && &one == &scene.cameras.front());
+    if (!is_looked_through) continue;
+    if (request.aperture == 0) {
+      one.lens.reset();
+      continue;
+    }
+    if (!request.aperture && !one.lens)
+      throw UsageError("--focus-distance: of which lens? Camera \"{}\" has none; --aperture says how wide it is",
+                       one.name);
+    if (!request.focus_distance && !one.lens)
+      throw UsageError("--aperture: camera \"{}\" does not say at what distance it is sharp; --focus-distance does",
+                       one.name);
+    one.lens = {request.aperture ? *request.aperture : one.lens->radius,
+                request.focus_distance ? *request.focus_distance : one.lens->focus_distance};
+  }
 }
 
 FrameFiles files_of(const PictureOptions& options, std::optional<double> frame, const std::string& camera) {

@@ -22,8 +22,8 @@ namespace penumbra::app {
 struct PictureOptions {
   RunOptions run;
   std::string method, exposure, frames, fps, pixel_samples, pixel_filter, filter_width, pixel_tolerance, motion_samples,
-      shutter;
-  std::optional<std::string> frame;  ///< only `render`
+      shutter, aperture, focus_distance;
+  std::optional<std::string> frame;  ///< of `render` alone
   bool skip_existing = false;
   std::map<std::string, std::string> camera_words;  ///< --camera all: of the scene's cameras, set after the scene is
                                                     ///< read
@@ -42,7 +42,8 @@ struct PictureRequest {
   PixelFilter filter;
   double pixel_tolerance = kPixelTolerance;
   double shutter_frames = 0.5;
-  /// One entry without a number if no frame was given; a sequence's are integers.
+  std::optional<double> aperture, focus_distance;  ///< in place of the cameras' own; aperture 0: everything is sharp
+  /// One entry without a number if no frame was asked for; a sequence's are whole.
   std::vector<std::optional<double>> frames;
 };
 
@@ -50,7 +51,11 @@ struct PictureRequest {
 /// attribute.
 PictureRequest parse_request(const PictureOptions& options);
 
-/// Throws UsageError for a --png without this ending. To be called after outputs_of, whose messages are more specific.
+/// Gives the scene's cameras that are looked through the lens that was asked for. `camera`: --camera. Throws UsageError
+/// where it is not said at what distance they are sharp.
+void set_lens(scenes::Scene& scene, const PictureRequest& request, const std::string& camera);
+
+/// Throws UsageError for a --png that does not end so. After outputs_of, whose reasons say more.
 void check_png_name(const PictureOptions& options);
 
 /// Returns the files of a frame's picture: named after camera and frame, if there are several.

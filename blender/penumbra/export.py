@@ -169,13 +169,14 @@ class SceneWriter:
         lens = camera.data
         if lens.type not in ("PERSP", "ORTHO"):
             raise ValueError(f"camera '{camera.name}' is panoramic; perspective and orthographic ones are rendered")
-        if lens.dof.use_dof:
-            self.losses.mention("has a depth of field, which is left out", camera.name)
         matrix = lamps.without_scale(camera.matrix_world)
         if lamps.is_sheared(matrix):
             self.losses.refuse("is a camera that is sheared (by a parent with uneven scale)", camera.name)
         view = lamps.lens_of(lens, region)
-        self.glb.camera(camera.name, matrix, region.size[0] / region.size[1], **view)
+        focus = lamps.focus_of(camera, matrix)
+        if focus is not None and lamps.has_blades(lens.dof):
+            self.losses.mention("has an aperture with blades or a ratio, which is taken as round", camera.name)
+        self.glb.camera(camera.name, matrix, region.size[0] / region.size[1], focus=focus, **view)
         frustum = space.Frustum(matrix, region.size[0] / region.size[1], **view)
         for placed in self._placed:
             if frustum.sees(placed, 0, lens.clip_start):

@@ -95,9 +95,9 @@ class Glb:
         self._document["nodes"][0]["children"].append(number)
         return number
 
-    def camera(self, name, matrix, aspect, shift, half_angle=None, height=None):
+    def camera(self, name, matrix, aspect, shift, half_angle=None, height=None, focus=None):
         """`half_angle` (its tangent) of a perspective camera, `height` of an orthographic one; both of the picture's
-        height, `shift` in heights of the picture."""
+        height, `shift` in heights of the picture. `focus`: radius of the lens and distance at which it is sharp."""
         if height is None:
             from math import atan
             lens = {"type": "perspective",
@@ -105,8 +105,11 @@ class Glb:
         else:
             lens = {"type": "orthographic",
                     "orthographic": {"xmag": aspect * height / 2, "ymag": height / 2, "znear": 0, "zfar": 1000}}
-        if any(shift):
-            lens["extras"] = {"shift": list(shift)}
+        extras = {"shift": list(shift)} if any(shift) else {}
+        if focus is not None:
+            extras.update(aperture=focus[0], focusDistance=focus[1])
+        if extras:
+            lens["extras"] = extras
         self.node(name, matrix, camera=self._add("cameras", {"name": name, **lens}))
 
     def lamp(self, name, matrix, kind, intensity, color, sizes, casts_shadow=True, cone=None):

@@ -188,6 +188,25 @@ def lens_of(camera, region):
     return lens
 
 
+def focus_of(camera, matrix):
+    """Radius of the camera's lens and the distance at which it is sharp, as Cycles has them; None: everything is. `matrix`: of
+    the camera's object, without scale."""
+    lens, field = camera.data, camera.data.dof
+    if not field.use_dof:
+        return None
+    focal_length = 1.0 if lens.type == "ORTHO" else lens.lens / 1000
+    distance = field.focus_distance
+    if field.focus_object is not None:
+        away = [field.focus_object.matrix_world[row][3] - matrix[row][3] for row in range(3)]
+        distance = abs(sum(a * b for a, b in zip(away, _column(matrix, 2))))
+    radius = focal_length / (2 * field.aperture_fstop)
+    return (radius, max(distance, 1e-5)) if radius > 0 else None
+
+
+def has_blades(field):
+    return field.aperture_blades >= 3 or field.aperture_ratio != 1
+
+
 def without_scale(matrix):
     """The matrix with columns of length 1: cameras are not stretched."""
     lengths = [_length(matrix, column) or 1.0 for column in range(3)] + [1.0]

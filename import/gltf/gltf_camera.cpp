@@ -25,6 +25,19 @@ std::optional<glm::dvec2> shift_of(const tinygltf::Value& pair) {
   return glm::dvec2(pair.Get(0).GetNumberAsDouble(), pair.Get(1).GetNumberAsDouble());
 }
 
+/// The extras' "aperture" and "focusDistance" (ThinLens), for glTF knows no lenses; nothing where they are no two
+/// lengths above 0, and so another tool's.
+std::optional<ThinLens> lens_of(const tinygltf::Value& extras) {
+  const auto length = [&](const char* key) {
+    const tinygltf::Value& value = extras.Get(key);
+    return value.IsNumber() ? value.GetNumberAsDouble() : 0.0;
+  };
+  const ThinLens lens{length("aperture"), length("focusDistance")};
+  const auto is_length = [](double x) { return x > 0 && std::isfinite(x); };
+  if (!is_length(lens.radius) || !is_length(lens.focus_distance)) return std::nullopt;
+  return lens;
+}
+
 }  // namespace
 
 Camera camera_of(const tinygltf::Model& model, const tinygltf::Node& node, const PlacedNode& placed, Losses& losses) {
@@ -61,6 +74,12 @@ Camera camera_of(const tinygltf::Model& model, const tinygltf::Node& node, const
       camera.shift = *shift;
     else
       losses.mention("has extras \"shift\" of another tool (no two numbers), which are left out", node.name);
+  }
+  if (source.extras.IsObject() && source.extras.Has("aperture")) {
+    camera.lens = lens_of(source.extras);
+    if (!camera.lens)
+      losses.mention("has an extra \"aperture\" that is no length, or none \"focusDistance\" beside it, and is sharp",
+                     node.name);
   }
   return camera;
 }

@@ -161,9 +161,14 @@ class Scene:
         """A dict of the light: its kind, shape, radiance and two_sided."""
         return self._core.light(name)
 
-    def set_camera(self, eye, target, up=(0, 1, 0), vertical_fov=45.0, height=None, name="camera"):
-        """Adds a camera, or replaces that of the same name; it looks by default. `height` makes it orthographic."""
-        self._core.set_camera(tuple(eye), tuple(target), tuple(up), vertical_fov, height, name)
+    def set_camera(self, eye, target, up=(0, 1, 0), vertical_fov=45.0, height=None, name="camera", *,
+                   aperture=0.0, focus_distance=None):
+        """Adds a camera, or replaces that of the same name; it looks by default. `height` makes it orthographic. `aperture`:
+        radius of a thin lens, sharp at `focus_distance` along the view axis (by default the target's), of pictures of several
+        view samples a pixel; 0: everything is sharp."""
+        if focus_distance is None:
+            focus_distance = float(_np.linalg.norm(_np.subtract(eye, target)))
+        self._core.set_camera(tuple(eye), tuple(target), tuple(up), vertical_fov, height, name, aperture, focus_distance)
 
     @property
     def meshes(self):

@@ -83,6 +83,12 @@ void check_camera(const Camera& camera, const std::string& where) {
     throw InputError("{}: the shift is ({}, {}); expected up to {} heights of the picture", where, camera.shift.x,
                      camera.shift.y, kFarthestShift);
   }
+  if (!camera.lens) return;
+  const auto is_length = [](double x) { return x > 0 && x <= kLargestCoordinate; };
+  if (!is_length(camera.lens->radius))
+    throw InputError("{}: the aperture is {}; expected a lens's radius above 0", where, camera.lens->radius);
+  if (!is_length(camera.lens->focus_distance))
+    throw InputError("{}: the focus distance is {}; expected a length above 0", where, camera.lens->focus_distance);
 }
 
 void check_scene(const Scene& scene, const std::string& where, bool needs_light) {

@@ -100,11 +100,16 @@ class GlbBuilder {
       gltf.perspective.znear = 1e-3 * glm::distance(camera.eye, camera.target);
       gltf.perspective.zfar = 0;  // infinite
     }
+    tinygltf::Value::Object extras;
     if (camera.shift != glm::dvec2(0)) {
-      gltf.extras = tinygltf::Value(tinygltf::Value::Object{
-          {"shift",
-           tinygltf::Value(tinygltf::Value::Array{tinygltf::Value(camera.shift.x), tinygltf::Value(camera.shift.y)})}});
+      extras["shift"] =
+          tinygltf::Value(tinygltf::Value::Array{tinygltf::Value(camera.shift.x), tinygltf::Value(camera.shift.y)});
     }
+    if (camera.lens) {
+      extras["aperture"] = tinygltf::Value(camera.lens->radius);
+      extras["focusDistance"] = tinygltf::Value(camera.lens->focus_distance);
+    }
+    if (!extras.empty()) gltf.extras = tinygltf::Value(extras);
     // A glTF camera looks along its −Z with +Y up.
     const glm::dvec3 back = glm::normalize(camera.eye - camera.target);
     const glm::dvec3 right = glm::normalize(glm::cross(camera.up, back)), up = glm::cross(back, right);

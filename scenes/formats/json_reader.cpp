@@ -13,6 +13,7 @@
 #include "scenes/light_texture.hpp"
 
 #include <fmt/ranges.h>
+#include <glm/geometric.hpp>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -49,6 +50,13 @@ Camera read_camera(const json& value, const Place& place, std::string fallback_n
   camera.vertical_fov = value.value("verticalFov", camera.vertical_fov);
   if (value.contains("orthographicHeight")) camera.height = value["orthographicHeight"].get<double>();
   if (value.contains("shift")) camera.shift = {value["shift"][0].get<double>(), value["shift"][1].get<double>()};
+  if (value.contains("aperture")) {
+    camera.lens = {value["aperture"].get<double>(),
+                   value.value("focusDistance", glm::distance(camera.eye, camera.target))};
+  } else if (value.contains("focusDistance")) {
+    throw InputError("{}: everything is sharp without an aperture; expected \"aperture\", the lens's radius, beside it",
+                     (place / "focusDistance").str());
+  }
   check_camera(camera, place.str());
   return camera;
 }

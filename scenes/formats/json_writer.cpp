@@ -25,6 +25,10 @@ void write_camera(const Camera& camera, TextStream& text) {
     text.print(R"(, "shift": [)").number(camera.shift.x).print(", ");
     text.number(camera.shift.y).print("]");
   }
+  if (camera.lens) {
+    text.print(R"(, "aperture": )").number(camera.lens->radius);
+    text.print(R"(, "focusDistance": )").number(camera.lens->focus_distance);
+  }
   if (camera.height)
     text.print(R"(, "orthographicHeight": )").number(*camera.height).print("}}");
   else

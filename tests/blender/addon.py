@@ -116,6 +116,23 @@ class Space(unittest.TestCase):
         self.assertEqual(space.Surfaces([far, near]).nearest_to((0, 0, -3), 5), (None, 5))
         self.assertEqual(space.Surfaces([]).nearest_to((0, 0, 0), 5), (None, 5))
 
+    def test_a_camera_is_sharp_where_cycles_has_it(self):
+        """Of f/2 a lens of 50 mm has a radius of 12.5 mm; the object in focus counts along the view axis alone."""
+        def camera(type="PERSP", **field):
+            defaults = dict(use_dof=True, focus_object=None, focus_distance=3.0, aperture_fstop=2.0, aperture_blades=0,
+                            aperture_ratio=1.0)
+            return box(data=box(type=type, lens=50.0, dof=box(**{**defaults, **field})))
+        self.assertEqual(lamps.focus_of(camera(), IDENTITY), (0.0125, 3.0))
+        self.assertEqual(lamps.focus_of(camera("ORTHO"), IDENTITY), (0.25, 3.0))
+        self.assertIsNone(lamps.focus_of(camera(use_dof=False), IDENTITY))
+        target = box(matrix_world=[[1, 0, 0, 5], [0, 1, 0, -2], [0, 0, 1, -4], [0, 0, 0, 1]])
+        self.assertEqual(lamps.focus_of(camera(focus_object=target), IDENTITY), (0.0125, 4.0))
+        self.assertFalse(lamps.has_blades(camera().data.dof))
+        self.assertTrue(lamps.has_blades(camera(aperture_blades=6).data.dof) and lamps.has_blades(camera(aperture_ratio=2).data.dof))
+        file = glb.Glb()
+        file.camera("Shot", IDENTITY, 1.5, (0, 0), half_angle=0.5, focus=(0.0125, 3.0))
+        self.assertEqual(file._document["cameras"][0]["extras"], {"aperture": 0.0125, "focusDistance": 3.0})
+
     def test_what_a_camera_sees(self):
         """From the origin along −Z, half as wide as far on each side; a triangle around all of it counts, one beside it not."""
         for lens in (dict(half_angle=0.5), dict(height=4)):

@@ -185,6 +185,24 @@ def orthographic_shift():
 
 
 @scene
+def depth_of_field():
+    """Sharp at an object that is before the block; the floor runs through the focus."""
+    stage()
+    focus = add("Focus", None, (0, -2, 0.5))
+    field = bpy.data.cameras["Shot"].dof
+    field.use_dof, field.focus_object, field.aperture_fstop, field.aperture_blades = True, focus, 0.05, 0
+    lamp("AREA", (1, -1, 4), (15, 15, 0), energy=300, shape="SQUARE", size=1.2)
+
+
+@scene
+def orthographic_depth_of_field():
+    stage(type="ORTHO", ortho_scale=6)
+    field = bpy.data.cameras["Shot"].dof
+    field.use_dof, field.focus_distance, field.aperture_fstop = True, 6.5, 2.0
+    lamp("AREA", (1, -1, 4), (15, 15, 0), energy=300, shape="SQUARE", size=1.2)
+
+
+@scene
 def sensor_fit():
     """The lens by the sensor's height, half the pixels, and a camera that is scaled."""
     render = bpy.context.scene.render

@@ -149,6 +149,8 @@ TEST_F(Frames, OfComparisonsAreAtTheirTime) {
       {{"--pixel-filter", "blackman-harris"}, "which no filter weighs"},
       {{"--max-rmse", "-1"}, "--max-rmse -1: expected a number of 0 or more, such as 0.01"},
       {{"--shutter", "1"}, "not over an open shutter"},
+      {{"--aperture", "0.1"}, "through the lens's middle"},
+      {{"--focus-distance", "2"}, "through the lens's middle"},
       {{"--frames", "1-2", "--sample-pixels", "5"}, "at the same pixels"},
       {{"--skip-existing"}, "nothing of an earlier one is kept"},
       {{"--camera", "all"}, "name one"},

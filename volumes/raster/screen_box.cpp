@@ -90,10 +90,11 @@ BoxFinder::BoxFinder(const visibility::PinholeCamera& camera)
 }
 
 void require_perspective(const visibility::PinholeCamera& camera) {
-  if (!camera.half_height) return;
+  if (!camera.half_height && !camera.lens) return;
   throw InputError(
-      "the camera is orthographic; methods that draw shadow volumes look from a point. Take another camera (--camera) "
-      "or method (edge-scatter, view-sample and raytrace look from anywhere)");
+      "the camera {}; methods that draw shadow volumes look from a point. Take another camera (--camera) "
+      "or method (edge-scatter, view-sample and raytrace look from anywhere)",
+      camera.half_height ? "is orthographic" : "has a lens with an aperture");
 }
 
 glm::dvec2 BoxFinder::project(const glm::dvec3& x) const {

@@ -39,7 +39,12 @@ TEST(ViewsThroughHoles, AreOfWhatIsBehind) {
   for (const bool parallel : {false, true}) {
     if (parallel) seen.height = 2.5;
     const SceneFloats floats = make_scene_floats(card.scene);
+    PinholeCamera through_lens = make_camera(seen, floats.origin, 37, 29);
+    through_lens.lens = Lens{.radius = 0.4, .focus_distance = 3, .side = 3, .moment = 1, .moments = 2};
+    const ViewSamples blurred = brute_force_view_samples(floats, through_lens);
+    EXPECT_EQ(blurred.triangle, walk_view_samples(floats, through_lens).triangle);
     const PinholeCamera view = make_camera(seen, floats.origin, 37, 29);
+    EXPECT_NE(blurred.triangle, brute_force_view_samples(floats, view).triangle);
     const ViewSamples truth = brute_force_view_samples(floats, view);
     const ViewSamples walked = walk_view_samples(floats, view);
     EXPECT_EQ(truth.triangle, walked.triangle);

@@ -50,7 +50,8 @@ Scene full_scene() {
                             .two_sided = scene.lights.empty(),
                             .unshaded_by = {0, 1}});
   }
-  scene.cameras = {{"front", {1, 2, 3}, {4, 5, 6}, {0, 0, 1}, 33, 2.5, 1.5, {.1, .2}}, {.name = "side"}};
+  scene.cameras = {{"front", {1, 2, 3}, {4, 5, 6}, {0, 0, 1}, 33, 2.5, 1.5, {.1, .2}, ThinLens{.3, 4}},
+                   {.name = "side"}};
   scene.origin = glm::dvec3(1, 2, 4);
   scene.motion = Motion{.5, 2};
   scene.warnings = {"one", "two"};
@@ -120,7 +121,8 @@ TEST(SceneWire, LosesNothing) {
   EXPECT_EQ(front.up, glm::dvec3(0, 0, 1));
   EXPECT_TRUE(front.vertical_fov == 33 && front.height == 2.5 && front.aspect == 1.5);
   EXPECT_EQ(front.shift, glm::dvec2(.1, .2));
-  EXPECT_FALSE(got.cameras[1].height || got.cameras[1].aspect);
+  EXPECT_EQ(front.lens, (ThinLens{.3, 4}));
+  EXPECT_FALSE(got.cameras[1].lens || got.cameras[1].height || got.cameras[1].aspect);
   EXPECT_EQ(got.origin, sent.origin);
   ASSERT_TRUE(got.motion);
   EXPECT_TRUE(got.motion->first == .5 && got.motion->last == 2);
@@ -145,6 +147,7 @@ TEST(SceneWire, WhatNoSceneHasIsRefused) {
   refuses("a vector", [](Scene& s) { s.cameras[0].up.y = kNan; });
   refuses("a shift", [](Scene& s) { s.cameras[0].shift.y = kNan; });
   refuses("an optional number", [](Scene& s) { s.cameras[0].aspect = kNan; });
+  refuses("a lens", [](Scene& s) { s.cameras[0].lens->focus_distance = kNan; });
   refuses("a corner", [](Scene& s) { std::get<Polygon>(s.lights[2].shape).vertices[1].z = kNan; });
   refuses("a cone", [](Scene& s) { std::get<Sphere>(s.lights[3].shape).cone->outer = kNan; });
   refuses("a place", [](Scene& s) { s.looks.places[2].x = kNan; });

@@ -96,6 +96,7 @@ void expect_same(const Scene& a, const Scene& b) {
     EXPECT_TRUE(same_bits(a.cameras[i].up, b.cameras[i].up));
     EXPECT_TRUE(same_bits(a.cameras[i].vertical_fov, b.cameras[i].vertical_fov));
     EXPECT_EQ(a.cameras[i].shift, b.cameras[i].shift);
+    EXPECT_EQ(a.cameras[i].lens, b.cameras[i].lens);
   }
 }
 

@@ -158,6 +158,7 @@ TEST(GlbWriter, LampsReadBack) {
   for (const auto& light : again.lights)
     EXPECT_EQ(light.unshaded_by.size(), light.name == "spot" ? 4 : 0) << light.name;
   EXPECT_EQ(again.cameras.at(1).shift, scene.cameras.at(1).shift);
+  EXPECT_EQ(again.cameras.at(1).lens, (scenes::ThinLens{0.07, 2.3}));
 }
 
 /// Pictures, alpha, colours and normals, to the last bit where they are float32.

@@ -1,0 +1,122 @@
+// Of FrameRenderer: pictures that are the mean of several view samples a pixel, of moments, and of a lens's points.
+
+#include "app/pictures/frame_render.hpp"
+#include "app/pictures/surfaces.hpp"
+#include "app/process/stopwatch.hpp"
+#include "app/whole_lights.hpp"
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <utility>
+
+namespace penumbra::app {
+
+bool FrameRenderer::has_lens(const scenes::Scene& scene) {
+  const std::string& wanted = picture_.frame.camera;
+  const auto camera =
+      wanted.empty() ? scene.cameras.begin() : std::ranges::find(scene.cameras, wanted, &scenes::Camera::name);
+  if (surface_ || camera == scene.cameras.end() || !camera->lens) return false;
+  if (picture_.frame.pixel_side > 1 || !picture_.frame.moments.empty()) return true;
+  picture_.notes.push_back(fmt::format(
+      "camera \"{}\" has an aperture: a pixel's one view sample looks through the lens's middle, where everything is "
+      "sharp (--pixel-samples N)",
+      camera->name));
+  say_once({picture_.notes.back()});
+  return false;
+}
+
+void FrameRenderer::render_mean(scenes::Scene scene, bool by_lens) {
+  const std::uint32_t side = picture_.frame.pixel_side;
+  const bool is_fine = side > 1 || by_lens;
+  if (is_fine) {
+    show(maker_, scene);
+    check_wanted_layers();
+    spent_.view += session().filtering_seconds();
+    const std::string size = fmt::format("{}x{}", session().width * side, session().height * side);
+    RunOptions options = options_;  // which may have changed since the last picture
+    options.size = size;
+    if (!fine_ || fine_->options.size != size) {
+      kept_.clear();  // what they hold is of the session that goes
+      fine_.emplace(options, machine_);
+    }
+    fine_->options = std::move(options);
+    fine_->maker.look_through_lens(std::nullopt);
+  }
+  std::map<std::string, LightTimes> times;
+  const auto moments = static_cast<std::uint32_t>(std::max<std::size_t>(picture_.frame.moments.size(), 1));
+  std::uint32_t moment_number = 0;
+  const auto add = [&](scenes::Scene moment) {
+    if (by_lens)
+      fine_->maker.look_through_lens(visibility::Lens{.side = side, .moment = moment_number++, .moments = moments});
+    show(is_fine ? fine_->maker : maker_, std::move(moment));
+    MethodRun before = std::exchange(picture_.run, {});
+    run_methods({});
+    const Stopwatch watch;
+    if (!picture_.mean) {
+      const std::uint32_t width = lit().width / side, height = lit().height / side;
+      picture_.mean.emplace(width, height, picture_.frame.filter);
+      picture_.mattes =
+          Mattes{MatteShares(width, height, picture_.frame.filter), MatteShares(width, height, picture_.frame.filter)};
+    }
+    const Surfaces surfaces(lit());
+    std::vector<std::uint32_t> shown(lit().samples.size());
+    const auto numbers = [&](auto number) -> std::span<const std::uint32_t> {
+      tbb::parallel_for(std::size_t{0}, shown.size(), [&](std::size_t i) { shown[i] = (surfaces.*number)(i); });
+      return shown;
+    };
+    picture_.mattes->objects.add(surfaces.objects(), numbers(&Surfaces::object), side);
+    picture_.mattes->materials.add(surfaces.materials(), numbers(&Surfaces::material), side);
+    const std::vector<std::string> names = whole_names(lit().lights);
+    picture_.mean->add(picture_.alpha, names, picture_.run.visibility, picture_.beauty, side);
+    spent_.beauty += watch.seconds();
+    for (std::size_t light = 0; light < names.size(); ++light) {
+      times[names[light]].light += picture_.run.times.lights[light].light;
+      times[names[light]].evaluate += picture_.run.times.lights[light].evaluate;
+    }
+    before.times.lights.clear();  // its lights may be others
+    add_times(picture_.run, before);
+  };
+  if (picture_.frame.moments.empty()) add(scene);
+  for (const auto& moment : picture_.frame.moments) {
+    const Stopwatch read;
+    scenes::Scene then = moment();
+    spent_.load += read.seconds();
+    add(std::move(then));
+  }
+  if (!is_fine) {
+    show(maker_, std::move(scene));
+    spent_.view += session().filtering_seconds();
+  }
+  // What is written of lights is about those of the frame's own time.
+  picture_.run.times.lights.clear();
+  const std::vector<std::string> own = whole_names(session().lights);
+  for (const std::string& light : own) picture_.run.times.lights.push_back(times[light]);
+  for (const std::string& light : picture_.mean->lights()) {
+    if (std::ranges::find(own, light) != own.end()) continue;
+    picture_.notes.push_back(fmt::format(
+        "light \"{}\" is not there at the frame's own time: R G B have its light, and it has no layer", light));
+    say_once({picture_.notes.back()});
+  }
+}
+
+void FrameRenderer::note_means(std::map<std::string, std::string>& attributes) const {
+  const Frame& frame = picture_.frame;
+  const bool interpolates = std::ranges::any_of(
+      picture_.run.counters, [](const auto& counter) { return counter.first == "viewSamplesInterpolated"; });
+  if (frame.pixel_side > 1) {
+    attributes["penumbra.pixelSamples"] = fmt::format("{}", frame.pixel_side * frame.pixel_side);
+    attributes["penumbra.pixelFilter"] =
+        frame.filter.kind == PixelFilter::Kind::box ? "box" : fmt::format("blackman-harris {}", frame.filter.width);
+    attributes["penumbra.pixelTolerance"] = fmt::format("{}", interpolates ? frame.pixel_tolerance : 0);
+  }
+  if (!frame.moments.empty()) attributes["penumbra.motionSamples"] = fmt::format("{}", frame.moments.size());
+  if (const auto& lens = lit().camera.lens; lens)
+    attributes["penumbra.lens"] = fmt::format("aperture {}, focus distance {}", lens->radius, lens->focus_distance);
+}
+
+}  // namespace penumbra::app
