@@ -6,8 +6,11 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
+#include <cstdlib>
 #include <iterator>
+#include <system_error>
 #include <utility>
 
 namespace penumbra::render {
@@ -128,6 +131,30 @@ DeviceInfo describe(const vk::raii::PhysicalDevice& physical, std::uint32_t inde
   info.lacks = lacking(physical);
   if (!find_queue_family(physical)) info.refusals.emplace_back("no queue with graphics and compute");
   return info;
+}
+
+bool has_gpu_nodes(const std::filesystem::path& folder) {
+#ifdef __linux__
+  // Drivers of the kernel's DRM (render nodes; a card without one only shows pictures), NVIDIA's own, those of Windows
+  // below WSL, of Adreno and Mali on Android's kernels.
+  for (const char* name : {"nvidiactl", "dxg", "kgsl-3d0", "mali0"}) {
+    if (std::error_code ignored; std::filesystem::exists(folder / name, ignored)) return true;
+  }
+  std::error_code error;
+  for (std::filesystem::directory_iterator entry(folder / "dri", error), end; !error && entry != end;
+       entry.increment(error)) {
+    if (entry->path().filename().string().starts_with("renderD")) return true;
+  }
+  return false;
+#else
+  static_cast<void>(folder);
+  return true;
+#endif
+}
+
+bool names_drivers() {
+  return std::ranges::any_of(std::array{"VK_DRIVER_FILES", "VK_ICD_FILENAMES", "VK_ADD_DRIVER_FILES"},
+                             [](const char* name) { return std::getenv(name) != nullptr; });
 }
 
 ResourceError no_driver() {

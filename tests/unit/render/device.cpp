@@ -4,6 +4,14 @@
 
 #include "render/device.hpp"
 #include "render/features.hpp"
+#include "render/physical_device.hpp"
+
+#include <fmt/format.h>
+
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
 
 namespace penumbra::render {
 namespace {
@@ -20,6 +28,30 @@ TEST(DeviceChoice, SomeDeviceIsUsable) {
     EXPECT_GE(devices[i].max_storage_buffer_range, 1U << 27U) << "Vulkan guarantees as much";
     EXPECT_GT(devices[i].memory_bytes, 0U);
   }
+}
+
+/// A GPU is looked for only where a driver could talk to one: loading all drivers that are installed takes longer than
+/// a small picture.
+TEST(DeviceChoice, NoDeviceFileNoGpu) {
+#ifdef __linux__
+  const std::filesystem::path folder =
+      std::filesystem::temp_directory_path() / fmt::format("penumbra-nodes-{}", ::getpid());
+  std::filesystem::create_directories(folder / "dri");
+  const auto make = [&](const std::string& name) { std::ofstream(folder / name) << ' '; };
+  EXPECT_FALSE(has_gpu_nodes(folder / "nowhere"));
+  make("dri/card0");  // a card that only shows pictures
+  make("nvram");
+  EXPECT_FALSE(has_gpu_nodes(folder));
+  make("dri/renderD128");
+  EXPECT_TRUE(has_gpu_nodes(folder));
+  std::filesystem::remove(folder / "dri/renderD128");
+  EXPECT_FALSE(has_gpu_nodes(folder));
+  make("nvidiactl");
+  EXPECT_TRUE(has_gpu_nodes(folder));
+  std::filesystem::remove_all(folder);
+#else
+  GTEST_SKIP() << "device files are not looked at here";
+#endif
 }
 
 TEST(DeviceChoice, TakesNameIndexAndKind) {
