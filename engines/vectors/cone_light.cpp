@@ -46,6 +46,22 @@ struct Rectangle {
   }
 };
 
+/// May a triangle meet the box of half-sizes `half` around `middle`? No where a side of the box or the triangle's plane
+/// is certainly between them: a leaf of the tree, or a sphere, around a large triangle reaches far beyond it.
+bool may_meet_box(const std::array<glm::vec3, 3>& corners, const glm::vec3& middle, const glm::vec3& half) {
+  const glm::dvec3 from = middle, size = half;
+  const glm::dvec3 a = glm::dvec3(corners[0]) - from, b = glm::dvec3(corners[1]) - from,
+                   c = glm::dvec3(corners[2]) - from;
+  for (glm::length_t axis = 0; axis < 3; ++axis) {
+    if (std::min({a[axis], b[axis], c[axis]}) > size[axis] || std::max({a[axis], b[axis], c[axis]}) < -size[axis])
+      return false;
+  }
+  const glm::dvec3 to_b = b - a, to_c = c - a, normal = glm::cross(to_b, to_c);
+  // Differences, products and sums are off by a few roundings of these, 2⁻⁵³ each.
+  const double error = 0x1p-48 * size1(to_b) * size1(to_c) * (size1(a) + size1(size));
+  return !(std::abs(glm::dot(normal, a)) > glm::dot(glm::abs(normal), size) + error);
+}
+
 }  // namespace
 
 ConeLight::ConeLight(const visibility::Light& light, const visibility::SceneFloats& scene,
@@ -77,6 +93,7 @@ ConeLight::ConeLight(const visibility::Light& light, const visibility::SceneFloa
   tree.for_each_near(light.center - box, light.center + box, [&](std::uint32_t triangle) {
     if (scene.casts_shadow[triangle] == 0 || scene.emits[triangle] == light.index) return;
     const auto corners = scene.corners(triangle);
+    if (!may_meet_box(corners, light.center, box)) return;
     NearCaster& caster = near_.emplace_back();
     for (std::size_t i = 0; i < 3; ++i)  // scaled as edges are
       caster.corners[i] = glm::dvec3(corners[i] * static_cast<float>(scale_));
