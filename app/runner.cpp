@@ -132,12 +132,19 @@ class Host {
   }
   /// Returns the view samples for a light; samples that need no evaluation are background.
   [[nodiscard]] const visibility::ViewSamples& samples_for(std::size_t light) {
-    if (!filtered_alone(light)) return session_.samples;
+    const bool alone = filtered_alone(light);
+    const std::span<const std::uint8_t> dark = dark_of(light);
+    if (!alone && dark.empty()) return session_.samples;
     const std::vector<std::uint8_t>& filtered = session_.filtered[light];
     if (part_.size() == 0) part_ = session_.samples;
-    for (std::size_t i = 0; i < filtered.size(); ++i)
-      part_.triangle[i] = filtered[i] != 0 ? session_.samples.triangle[i] : visibility::ViewSamples::kBackground;
+    for (std::size_t i = 0; i < part_.size(); ++i) {
+      const bool is_asked = (!alone || filtered[i] != 0) && (dark.empty() || dark[i] == 0);
+      part_.triangle[i] = is_asked ? session_.samples.triangle[i] : visibility::ViewSamples::kBackground;
+    }
     return part_;
+  }
+  [[nodiscard]] std::span<const std::uint8_t> dark_of(std::size_t light) const {
+    return plan_.dark.empty() ? std::span<const std::uint8_t>() : plan_.dark[light];
   }
   /// Returns the lights in an order in which lights with the same casters are consecutive, so that each mesh is
   /// prepared once a run. The same order in every run: beauty is a sum over lights.
@@ -213,7 +220,9 @@ class Host {
     if (method_.description().output == Output::radiance && visibility::is_round(light.kind)) {
       for (float& v : values) v = v < kLeastRoundShare ? 0 : v;
     }
+    const std::span<const std::uint8_t> dark = dark_of(light_index);
     for (std::size_t i = 0; i < count; ++i) {
+      if (!dark.empty() && dark[first + i] != 0) values[i] = 0.0f;
       if (lies_in_light_by_rule(classes[i])) values[i] = 1.0f;
       if (classes[i] == PixelClass::unlit) values[i] = 0.0f;
     }

@@ -43,7 +43,10 @@ struct RunPlan {
   bool discard_first = false;  ///< one additional first run, as warm-up, which is not counted
   bool shades = false;         ///< form factors come with V, in the time of `evaluate` (Method::want_form_factors)
   std::optional<std::vector<std::uint32_t>> pixels = {};  ///< pixels to be evaluated (ascending); nullopt: every pixel
-  std::vector<std::size_t> only = {};                     ///< lights to be evaluated (indices); empty: all
+  /// For each light, each pixel, 1: none of the light's radiance arrives, and V is not read there. The method is not
+  /// evaluated, and V is 0. Empty, or empty for a light: nowhere.
+  std::span<const std::vector<std::uint8_t>> dark = {};
+  std::vector<std::size_t> only = {};  ///< lights to be evaluated (indices); empty: all
   /// Scene of the last run of this method, if unchanged: it is not prepared again.
   const visibility::SceneFloats* prepared = nullptr;
   /// Receives the method's scene as soon as it is prepared: also in a run that is not completed.

@@ -2,6 +2,7 @@
 penumbra_test(cli FULL *EveryTriple* SHARDS Part/RenderTogether=2 Part/CompareTogether=2
   SOURCES
   cli/alpha.cpp
+  cli/asked_samples.cpp
   cli/bake.cpp
   cli/instances.cpp
   cli/bad_input.cpp

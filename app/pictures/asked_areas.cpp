@@ -5,6 +5,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <utility>
 
 namespace penumbra::app {
 namespace {
@@ -60,6 +61,20 @@ std::vector<AreaAnswer> AskedAreas::ask(const ViewSamples& samples) {
   return answers;
 }
 
+std::vector<std::size_t> AskedAreas::in_regions(std::uint32_t width, std::uint32_t height) {
+  std::vector<std::size_t> places;
+  places.reserve(std::size_t{width} * height);
+  for (std::size_t top = 0; top < height; top += kRegion) {
+    for (std::size_t left = 0; left < width; left += kRegion) {
+      for (std::uint32_t spot = 0; spot < kRegionPixels; ++spot) {
+        const std::size_t x = left + even_bits(spot), y = top + even_bits(spot >> 1);
+        if (x < width && y < height) places.push_back(y * width + x);
+      }
+    }
+  }
+  return places;
+}
+
 AskedAreas::Packed AskedAreas::packed(std::span<const std::size_t> which) const {
   const ViewSamples& all = *samples_;
   const std::size_t regions = (which.size() + kRegionPixels - 1) / kRegionPixels,
@@ -97,7 +112,11 @@ void AskedAreas::evaluate(const Tile& tile) {
   const std::size_t first = std::size_t{tile.first_row} * samples_->width;
   answers_.assign(std::size_t{tile.row_count} * samples_->width, {});
   std::vector<std::size_t> open = answer(tile, answers_);
-  if (open.empty()) return;
+  if (!open.empty()) ask_open(std::move(open), first);
+  keep(tile, answers_);
+}
+
+void AskedAreas::ask_open(std::vector<std::size_t> open, std::size_t first) {
   for (std::size_t& at : open) at += first;
   const Packed part = packed(open);
   const std::vector<AreaAnswer> answers = ask(part.samples);

@@ -47,6 +47,11 @@ class AskedAreas : public visibility::Method {
   /// they are to be asked: near to one another after one another. Background is answered already.
   virtual std::vector<std::size_t> answer(const visibility::Tile& tile, std::span<AreaAnswer> answers) = 0;
 
+  /// Gets all answers of a tile, once it has them.
+  virtual void keep(const visibility::Tile& /*tile*/, std::span<const AreaAnswer> /*answers*/) {}
+  /// The places of a picture, region by region as engines take them, in each of which neighbours follow one another.
+  static std::vector<std::size_t> in_regions(std::uint32_t width, std::uint32_t height);
+
   /// The method's answers at all view samples of a picture, in its order.
   std::vector<AreaAnswer> ask(const visibility::ViewSamples& samples);
   /// What prepare_view() got.
@@ -60,6 +65,8 @@ class AskedAreas : public visibility::Method {
     std::vector<std::size_t> at;  ///< where in it each of them is
   };
   [[nodiscard]] Packed packed(std::span<const std::size_t> which) const;
+  /// Of the tile last evaluated, which begins with view sample `first`.
+  void ask_open(std::vector<std::size_t> open, std::size_t first);
 
   visibility::Method& method_;
   const visibility::ViewSamples* samples_ = nullptr;

@@ -54,6 +54,12 @@ void FrameRenderer::render_mean(scenes::Scene scene, bool by_lens) {
     if (by_lens)
       fine_->maker.look_through_lens(visibility::Lens{.side = side, .moment = moment_number++, .moments = moments});
     show(is_fine ? fine_->maker : maker_, std::move(moment));
+    if (!is_fine && StillMoments::are_worth(lit().samples.size(), lit().lights.size())) {
+      if (!picture_.still) picture_.still.emplace();
+      picture_.still->begin(lit().floats);
+    } else {
+      picture_.still.reset();
+    }
     MethodRun before = std::exchange(picture_.run, {});
     run_methods({});
     const Stopwatch watch;
@@ -88,6 +94,7 @@ void FrameRenderer::render_mean(scenes::Scene scene, bool by_lens) {
     spent_.load += read.seconds();
     add(std::move(then));
   }
+  picture_.still.reset();
   if (!is_fine) {
     show(maker_, std::move(scene));
     spent_.view += session().filtering_seconds();

@@ -4,6 +4,7 @@
 #include "app/pictures/frame_render.hpp"
 #include "app/pictures/lens_areas.hpp"
 #include "app/pictures/sky.hpp"
+#include "app/pictures/spot_cones.hpp"
 #include "app/process/stopwatch.hpp"
 #include "app/whole_lights.hpp"
 #include "base/assert.hpp"
@@ -14,6 +15,7 @@
 #include <cstddef>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -158,8 +160,27 @@ void FrameRenderer::run_methods(const std::filesystem::path& bits) {
   say_idle_lights();
 }
 
+std::vector<std::string> FrameRenderer::lights_without_v() const {
+  const bool is_looked_at = surface_ || tev_ != nullptr || picture_.frame.keeps_masks;
+  if (is_looked_at || !picture_.frame.moments.empty()) return {};  // other moments may have other lights
+  const std::vector<std::string> layers = layer_names(session().lights), names = whole_names(session().lights);
+  const std::set<std::string> written = wanted_channels(
+      format_, picture_channels(layers, picture_.frame.pixel_side > 1, session().floats.triangles.size()));
+  std::vector<std::string> without;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const bool is_written = written.contains(layers[i] + ".V") || written.contains(layers[i] + "_V.V");
+    if (!is_written && !(i == 0 && written.contains("V"))) without.push_back(names[i]);
+  }
+  return without;
+}
+
 MethodRun FrameRenderer::run_lights(BeautyAccumulator& beauty, BitsOutput* bits) {
   MethodRun all;
+  const Stopwatch find;
+  const std::vector<std::vector<std::uint8_t>> dark =
+      bits != nullptr ? std::vector<std::vector<std::uint8_t>>()
+                      : samples_beside_cones(lit().samples, lit().lights, lights_without_v());
+  spent_.view += find.seconds();
   const auto run_with = [&](const LightMethod& method, RunPlan plan) {
     const Stopwatch make;
     Kept& kept = method_for(method);
@@ -175,6 +196,9 @@ MethodRun FrameRenderer::run_lights(BeautyAccumulator& beauty, BitsOutput* bits)
     else if (method.description.gives_area() && picture_.frame.pixel_side > 1 && picture_.frame.pixel_tolerance > 0)
       around = std::make_unique<InterpolatedAreas>(*kept.method, lit().floats, picture_.frame.pixel_side,
                                                    picture_.frame.pixel_tolerance);
+    else if (method.description.gives_area() && picture_.still && !picture_.layers && !plan.filtered_alone)
+      around = std::make_unique<StillAreas>(*kept.method, *picture_.still, plan.lights);
+    if (!around) plan.dark = dark;  // whatever is interpolated looks at neighbours, too
     MethodRun run = run_method(
         around ? *around : *kept.method, lit(), plan,
         [&](const TileResult& tile) {
@@ -220,6 +244,8 @@ MethodRun FrameRenderer::run_lights(BeautyAccumulator& beauty, BitsOutput* bits)
     all.times.evaluate += lit().filtered_seconds[i];
     all.times.lights[i].evaluate += lit().filtered_seconds[i];
   }
+  for (const std::vector<std::uint8_t>& beside : dark)
+    all.counters["viewSamplesBesideCones"] += static_cast<std::uint64_t>(std::ranges::count(beside, std::uint8_t{1}));
   spent_.view += all.times.view;
   return of_whole_lights(std::move(all), lit());
 }

@@ -212,6 +212,7 @@ void FrameRenderer::render(scenes::Scene scene, const Frame& frame, const std::f
   spent_ = {.load = read_seconds};
   picture_.bits.reset();
   picture_.mean.reset();
+  picture_.still.reset();
   picture_.mattes.reset();
   picture_.masks.clear();
   picture_.layers = false;

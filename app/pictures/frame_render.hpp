@@ -7,6 +7,7 @@
 #include "app/pictures/interpolated_areas.hpp"
 #include "app/pictures/picture_file.hpp"
 #include "app/pictures/picture_mean.hpp"
+#include "app/pictures/still_areas.hpp"
 #include "app/pictures/tev_pictures.hpp"
 #include "app/runner.hpp"
 #include "app/session.hpp"
@@ -118,6 +119,8 @@ class FrameRenderer {
   /// What other moments of the same lights cost is added to what this one did.
   static void add_times(MethodRun& to, const MethodRun& before);
   void keep_masks(const TileResult& tile);
+  /// Returns the names of the whole lights whose V is written to no file and read by no other code.
+  [[nodiscard]] std::vector<std::string> lights_without_v() const;
   /// Composites translucent surfaces (BLEND), each shaded at its own view samples, over the surfaces behind.
   void add_panes();
   void mark_lamps();
@@ -181,6 +184,7 @@ class FrameRenderer {
     std::vector<std::uint8_t> lamps;    // of each pixel: a translucent body of a light is seen; empty: none is
     std::optional<PictureMean> mean;    // nothing: the picture is that of one moment and of pixels' centres
     std::optional<Mattes> mattes;       // there when that is
+    std::optional<StillMoments> still;  // of several moments, of pixels' centres, of areas
     std::optional<BitsOutput> bits;
   };
   /// Seconds of the picture. `make`: the device and methods. `beauty`: all processing of methods' results, including
