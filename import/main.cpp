@@ -10,6 +10,7 @@
 #include "mesh/opened_files.hpp"
 #include "import/foreign_scene.hpp"
 #include "import/gltf/gltf_import.hpp"
+#include "scenes/instances.hpp"
 #include "scenes/scene_wire.hpp"
 #include "import/texture_file.hpp"
 
@@ -44,6 +45,7 @@ struct Arguments {
   const char* file = nullptr;
   scenes::ReadOptions options;
   std::optional<double> uv;
+  bool instances = false;
 };
 
 bool parse(std::string_view text, std::uint64_t& value) {
@@ -77,6 +79,10 @@ bool parse(int argc, char** argv, Arguments& arguments) {
       arguments.options.clips.emplace_back(flag.substr(kClip.size()));
       continue;
     }
+    if (flag == "--instances") {
+      arguments.instances = true;
+      continue;
+    }
     if (flag != "--allow-outside" && flag != "--without-light" && flag != "--without-surface" && flag != "--lenient")
       return false;
     arguments.options.allow_outside |= flag == "--allow-outside";
@@ -96,10 +102,11 @@ struct Answer {
   scenes::Scene scene;
   scenes::Texture texture;
   scenes::LightmapPlaces lightmap;
+  scenes::Instances instances;
 };
 
 Answer message(mesh::HelperStatus status) {
-  return {mesh::answer_head(status), {}, {}, {}, {}, {}};
+  return {mesh::answer_head(status), {}, {}, {}, {}, {}, {}};
 }
 
 mesh::ImportedMesh read_mesh(const mesh::InputFile& input, const Arguments& arguments) {
@@ -120,10 +127,12 @@ Answer answer_for(const Arguments& arguments) {
       scenes::ReadOptions options = arguments.options;
       answer.lightmap.set = static_cast<std::uint32_t>(std::clamp(arguments.uv.value_or(0), 0.0, 1e6));
       if (arguments.uv) options.lightmap = &answer.lightmap;
+      if (arguments.instances) options.instances = &answer.instances;
       const bool foreign = scenes::is_foreign_scene(input.name);
       answer.scene = foreign ? scenes::import_foreign_scene(input, options) : scenes::import_gltf(input, options);
       scenes::put_scene(answer.payload, answer.scene);
       if (arguments.uv) answer.payload.put_array(std::span<const glm::dvec2>(answer.lightmap.places));
+      if (arguments.instances) scenes::put_instances(answer.payload, answer.instances);
     } else {
       answer.texture = arguments.kind == "sky" ? scenes::read_sky_file(input) : scenes::read_texture_file(input);
       scenes::put_texture(answer.payload, answer.texture);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "scenes/instances.hpp"
 #include "scenes/scene.hpp"
 
 #include <concepts>
@@ -72,6 +73,19 @@ auto fields_of(Is<Motion> auto& motion) {
 auto fields_of(Is<Scene> auto& scene) {
   return std::tie(scene.name, scene.width, scene.height, scene.soup, scene.looks, scene.objects, scene.pictures,
                   scene.lights, scene.cameras, scene.origin, scene.motion, scene.warnings);
+}
+
+auto fields_of(Is<SharedMesh> auto& mesh) {
+  return std::tie(mesh.soup, mesh.normals, mesh.colors, mesh.places);
+}
+auto fields_of(Is<Placement> auto& placement) {
+  return std::tie(placement.to_world, placement.offset_last);
+}
+auto fields_of(Is<Instance> auto& instance) {
+  return std::tie(instance.mesh, instance.object, instance.placement, instance.soup_before);
+}
+auto fields_of(Is<Instances> auto& instances) {
+  return std::tie(instances.meshes, instances.all);
 }
 
 template <typename T>

@@ -34,8 +34,19 @@ bool is_finite(const glm::vec<N, T>& v) {
   return true;
 }
 
+bool is_finite(const glm::dmat4& matrix) {
+  return is_finite(matrix[0]) && is_finite(matrix[1]) && is_finite(matrix[2]) && is_finite(matrix[3]);
+}
+
 template <typename T>
 void check(const T& /*part*/) {}
+
+void check(const SharedMesh& mesh) {
+  if (mesh.soup.triangles.empty()) throw WireError("a mesh of instances has no triangles");
+  for (const std::size_t looks : {mesh.normals.size(), mesh.colors.size(), mesh.places.size()}) {
+    if (looks != 0 && looks != mesh.soup.positions.size()) throw WireError("not every vertex looks like something");
+  }
+}
 
 void check(const Polygon& polygon) {
   if (polygon.vertices.size() < 3) throw WireError("a polygon has fewer than three corners");
@@ -130,6 +141,20 @@ Scene get_scene(mesh::WireReader& from) {
   Scene scene;
   Get{from}(scene);
   return scene;
+}
+
+Instances get_instances(mesh::WireReader& from, const Scene& scene) {
+  Instances instances;
+  Get{from}(instances);
+  std::uint64_t before = 0;
+  for (const Instance& instance : instances.all) {
+    if (instance.mesh >= instances.meshes.size() || instance.object >= scene.objects.size())
+      throw WireError("an instance is of nothing");
+    if (instance.soup_before < before || instance.soup_before > scene.soup.triangles.size())
+      throw WireError("instances are out of order");
+    before = instance.soup_before;
+  }
+  return instances;
 }
 
 Texture get_texture(mesh::WireReader& from) {

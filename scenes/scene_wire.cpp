@@ -49,6 +49,10 @@ void put_scene(mesh::WireWriter& to, const Scene& scene) {
   Put{to}(scene);
 }
 
+void put_instances(mesh::WireWriter& to, const Instances& instances) {
+  Put{to}(instances);
+}
+
 void put_texture(mesh::WireWriter& to, const Texture& texture) {
   to.put(texture.width), to.put(texture.height);
   to.put_array_in_place(std::span<const glm::vec3>(texture.texels));

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "mesh/import_wire.hpp"
+#include "scenes/instances.hpp"
 #include "scenes/scene.hpp"
 
 namespace penumbra::scenes {
@@ -11,6 +12,12 @@ void put_scene(mesh::WireWriter& to, const Scene& scene);
 /// Reads a scene and checks everything that Scene requires (indices in range, numbers finite, at least one light and
 /// one camera); throws mesh::WireError.
 Scene get_scene(mesh::WireReader& from);
+
+/// Writes the scene's instances, beside the scene; both must stay as they are until the writer's pieces have been used.
+void put_instances(mesh::WireWriter& to, const Instances& instances);
+/// Reads the instances of `scene`, which was read before; checks everything that Instances requires, and throws
+/// mesh::WireError.
+Instances get_instances(mesh::WireReader& from, const Scene& scene);
 
 /// Writes a picture, without its name in the scene.
 void put_texture(mesh::WireWriter& to, const Texture& texture);

@@ -136,8 +136,9 @@ const char* name_of(AddedLight::Kind kind) {
 }  // namespace
 
 void put_in_studio(Scene& scene, const Scene& rest, const StudioWish& wish) {
-  // Computed before the scene changes: `rest` may be the same object.
-  const Bounds bounds = bounds_of(rest.soup.positions);
+  // Computed before the scene changes: `rest` may be the same object. Without positions only a camera was requested, in
+  // full.
+  const Bounds bounds = rest.soup.positions.empty() ? Bounds() : bounds_of(rest.soup.positions);
   const bool on_floor = has_floor(rest, bounds);
   const glm::dvec3 middle = bounds.middle();
   const bool was_dark = scene.lights.empty(), was_unseen = scene.cameras.empty();

@@ -15,6 +15,7 @@
 #include "import/gltf/gltf_instances.hpp"
 #include "import/gltf/gltf_nodes.hpp"
 #include "import/gltf/gltf_primitive.hpp"
+#include "import/gltf/gltf_shared.hpp"
 #include "import/gltf/gltf_surface.hpp"
 #include "import/gltf/gltf_triangles.hpp"
 #include "import/gltf/punctual_lights.hpp"
@@ -70,6 +71,7 @@ class GltfScene {
         lamps_(model, request.options, losses_),
         surfaces_(model, scene_.pictures, losses_) {
     scene_.name = request.name;
+    if (purpose != Purpose::mesh) instances_ = request.options.instances;
     LightmapPlaces* const lightmap = request.options.lightmap;
     if (lightmap == nullptr || purpose == Purpose::rest || purpose == Purpose::mesh) return;
     lightmap->places.clear();
@@ -104,18 +106,20 @@ class GltfScene {
     const std::vector<PlacedNode> nodes = place_nodes(model_, scene_.warnings);
     to_world_.resize(model_.nodes.size());
     for (const PlacedNode& placed : nodes) to_world_[static_cast<std::size_t>(placed.number)] = placed.to_world;
+    if (instances_ != nullptr) purpose_ == Purpose::rest ? shared_.measure(nodes) : shared_.keep_in(*instances_, nodes);
     for (const PlacedNode& placed : nodes) add_node(placed);
     for (const std::size_t light : shadeless_) {
       scene_.lights[light].unshaded_by.resize(scene_.objects.size());
       std::iota(scene_.lights[light].unshaded_by.begin(), scene_.lights[light].unshaded_by.end(), 0U);
     }
-    if (scene_.soup.triangles.empty() && !compressed_.empty()) {
+    const bool is_empty = scene_.soup.triangles.empty() && !shared_.any();
+    if (is_empty && !compressed_.empty()) {
       throw InputError(
           "{}: its vertices are compressed with KHR_draco_mesh_compression, which is not supported; "
           "export without compression",
           compressed_.front());
     }
-    if (scene_.soup.triangles.empty() && needs_surface_) {
+    if (is_empty) {
       throw InputError(
           "there are no triangles in the scene ({} primitives of points or lines, {} without POSITION, {} with "
           "fewer than three vertices)",
@@ -227,14 +231,29 @@ class GltfScene {
     const tinygltf::Mesh& mesh = model_.meshes[static_cast<std::size_t>(node.mesh)];
     flags_ = flags_of(node, mesh, losses_);
     for (std::size_t i = 0; i < mesh.primitives.size(); ++i) {
-      const std::string place = fmt::format("/meshes/{}/primitives/{}", node.mesh, i);
-      add_primitive(mesh.primitives[i], node, placed, place,
-                    mesh.primitives.size() > 1 ? fmt::format("{}/{}", name, i) : name);
+      const std::string own_name = mesh.primitives.size() > 1 ? fmt::format("{}/{}", name, i) : name;
+      if (const SharedPrimitives::Primitive* const known = shared_.find({node.mesh, i}, node))
+        add_instance(*known, placed, object_names_.take(own_name));
+      else
+        add_primitive(mesh.primitives[i], node, placed, {node.mesh, i}, own_name);
     }
   }
 
+  void add_instance(const SharedPrimitives::Primitive& shared, const PlacedNode& placed, const std::string& name) {
+    shared_.place(shared, placed, scene_.objects.size(), scene_.soup.triangles.size());
+    add_named(shared.object, name);
+    bound(shared.local, placed);
+  }
+  void add_named(Object object, const std::string& name) {
+    object.name = name;
+    object.casts_shadow = flags_.casts_shadow;
+    object.receives_shadow = flags_.receives_shadow;
+    scene_.objects.push_back(std::move(object));
+  }
+
   void add_primitive(const tinygltf::Primitive& primitive, const tinygltf::Node& node, const PlacedNode& placed,
-                     const std::string& place, const std::string& name) {
+                     const SharedPrimitives::Number& number, const std::string& name) {
+    const std::string place = fmt::format("/meshes/{}/primitives/{}", number.first, number.second);
     std::optional<PrimitiveMesh> mesh = read_primitive(model_, primitive, place, skipped_);
     if (!mesh) return;
     std::vector<glm::dvec3>& positions = mesh->positions;
@@ -269,7 +288,11 @@ class GltfScene {
               own_name);
         break;
     }
-    add_object({positions, skinned, look, placed, place, lightmap_}, std::move(mesh->triangles), own_name);
+    const PrimitiveVertices vertices{positions, skinned, look, placed, place, lightmap_};
+    if (!shared_.may_share(primitive, node, look)) return add_object(vertices, std::move(mesh->triangles), own_name);
+    SharedMesh shared = shared_mesh(vertices, std::move(mesh->triangles));
+    left_out_ |= shared.soup.positions.size() < positions.size();
+    add_instance(shared_.add(number, std::move(shared), object_of(look), positions), placed, own_name);
   }
 
   void bound(std::span<const glm::dvec3> positions, const PlacedNode& placed) {
@@ -283,6 +306,15 @@ class GltfScene {
     }
   }
 
+  static Object object_of(const Look& look) {
+    Object object;
+    object.color = look.color;
+    object.material = look.material;
+    object.picture = look.picture;
+    object.alpha = look.alpha;
+    return object;
+  }
+
   void add_object(const PrimitiveVertices& vertices, std::vector<mesh::Triangle> triangles, const std::string& name) {
     const Look& look = vertices.look;
     const bool pictured = look.emission && !is_mesh();  // a mesh without lights has no emission
@@ -293,14 +325,7 @@ class GltfScene {
       note_refused_light(name, "its emissive picture is black where it lies on it");
     if (look.picture || !look.normals.empty() || !look.colors.empty() || look.color != glm::dvec3(1)) ++looks_left_;
     const SoupEnd before = append_triangles(scene_, vertices, std::move(triangles));
-    Object object;
-    object.name = name;
-    object.casts_shadow = flags_.casts_shadow;
-    object.receives_shadow = flags_.receives_shadow;
-    object.color = vertices.look.color;
-    object.material = vertices.look.material;
-    object.picture = vertices.look.picture;
-    object.alpha = vertices.look.alpha;
+    Object object = object_of(look);
     object.emits = add_light({radiance, vertices.look.two_sided}, name, vertices.placed, before);
     if (object.emits && !flags_.body) {  // the object only marks the place of the light
       ++bodiless_;
@@ -308,7 +333,7 @@ class GltfScene {
     }
     left_out_ |= scene_.soup.positions.size() - before.position < vertices.local.size();
     bound(vertices.local, vertices.placed);
-    scene_.objects.push_back(std::move(object));
+    add_named(std::move(object), name);
   }
 
   void note_refused_light(const std::string& name, const std::string& why_not) {
@@ -387,6 +412,8 @@ class GltfScene {
   PunctualLights lamps_;
   SurfaceReader surfaces_;
   std::vector<glm::dvec2>* lightmap_ = nullptr;
+  Instances* instances_ = nullptr;  // null: each is a copy
+  SharedPrimitives shared_{model_};
   PictureMeans means_{scene_.pictures};
   UniqueNames object_names_, camera_names_, light_names_;
   std::string refused_lights_;

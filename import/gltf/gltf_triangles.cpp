@@ -26,16 +26,21 @@ void add_look(Scene& scene, const PrimitiveVertices& vertices, std::uint32_t ind
     list.push_back(value);
   };
   if (!look.normals.empty()) {
-    const glm::dmat3 turned = glm::transpose(glm::inverse(glm::dmat3(vertices.to_world(index))));
-    const glm::dvec3 normal = turned * look.normals[index];
-    const double length = glm::length(normal);
-    const bool is_normal = length > 0 && std::isfinite(length);
-    put(scene.looks.normals, is_normal ? glm::vec3(normal / length) : glm::vec3(0), glm::vec3(0));
+    put(scene.looks.normals, world_normal(vertices.to_world(index), look.normals[index]), glm::vec3(0));
   }
   if (!look.colors.empty()) put(scene.looks.colors, look.colors[index], glm::vec4(1));
   if (!look.places.empty()) put(scene.looks.places, look.places[index], glm::dvec2(0));
   if (vertices.lightmap != nullptr && !look.lightmap.empty())
     put(*vertices.lightmap, look.lightmap[index], mesh::kNoPlace);
+}
+
+const glm::dvec3& finite_position(const PrimitiveVertices& vertices, std::uint32_t index) {
+  const glm::dvec3& local = vertices.local[index];
+  if (!std::isfinite(local.x) || !std::isfinite(local.y) || !std::isfinite(local.z)) {
+    throw InputError("{}/attributes/POSITION: vertex {} is not finite: ({}, {}, {})", vertices.place, index, local.x,
+                     local.y, local.z);
+  }
+  return local;
 }
 
 }  // namespace
@@ -55,11 +60,7 @@ SoupEnd append_triangles(Scene& scene, const PrimitiveVertices& vertices, std::v
       if (target == kUnused) {
         if (soup.positions.size() >= kUnused) throw InputError("{}: more than 4,294,967,294 vertices", vertices.place);
         target = static_cast<std::uint32_t>(soup.positions.size());
-        const glm::dvec3& local = vertices.local[index];
-        if (!std::isfinite(local.x) || !std::isfinite(local.y) || !std::isfinite(local.z)) {
-          throw InputError("{}/attributes/POSITION: vertex {} is not finite: ({}, {}, {})", vertices.place, index,
-                           local.x, local.y, local.z);
-        }
+        const glm::dvec3& local = finite_position(vertices, index);
         const glm::dvec3 p(vertices.to_world(index) * glm::dvec4(local, 1));
         if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) {
           throw InputError("{}: vertex {} is not finite after the transform of /nodes/{}", vertices.place, index,
@@ -80,6 +81,31 @@ SoupEnd append_triangles(Scene& scene, const PrimitiveVertices& vertices, std::v
   else
     soup.triangles.insert(soup.triangles.end(), triangles.begin(), triangles.end());
   return before;
+}
+
+SharedMesh shared_mesh(const PrimitiveVertices& vertices, std::vector<mesh::Triangle> triangles) {
+  constexpr auto kUnused = std::numeric_limits<std::uint32_t>::max();
+  const Look& look = vertices.look;
+  SharedMesh shared;
+  std::vector<std::uint32_t> renumbered(vertices.local.size(), kUnused);
+  for (mesh::Triangle& triangle : triangles) {
+    for (std::uint32_t& index : triangle) {
+      std::uint32_t& target = renumbered[index];
+      if (target == kUnused) {
+        target = static_cast<std::uint32_t>(shared.soup.positions.size());
+        shared.soup.positions.push_back(finite_position(vertices, index));
+        if (!look.normals.empty()) shared.normals.push_back(look.normals[index]);
+        if (!look.colors.empty()) shared.colors.push_back(look.colors[index]);
+        if (!look.places.empty()) shared.places.push_back(look.places[index]);
+      }
+      index = target;
+    }
+  }
+  shared.soup.object.assign(triangles.size(), 0);
+  shared.soup.source_face.resize(triangles.size());
+  std::iota(shared.soup.source_face.begin(), shared.soup.source_face.end(), 0U);
+  shared.soup.triangles = std::move(triangles);
+  return shared;
 }
 
 void shorten(Scene& scene, const SoupEnd& end) {

@@ -4,6 +4,7 @@
 #include "import/gltf/gltf_nodes.hpp"
 #include "import/gltf/gltf_surface.hpp"
 #include "mesh/triangle_soup.hpp"
+#include "scenes/instances.hpp"
 #include "scenes/scene.hpp"
 
 #include <glm/mat4x4.hpp>
@@ -43,6 +44,10 @@ struct SoupEnd {
 /// the lists' lengths before. Throws InputError for a vertex that is not finite in the world, and for too many
 /// vertices.
 SoupEnd append_triangles(Scene& scene, const PrimitiveVertices& vertices, std::vector<mesh::Triangle> triangles);
+
+/// Returns the triangles as they were modelled, for nodes that share them: otherwise as append_triangles adds them, so that
+/// a node's instance is what the node would add.
+SharedMesh shared_mesh(const PrimitiveVertices& vertices, std::vector<mesh::Triangle> triangles);
 
 /// Removes everything added since `end`.
 void shorten(Scene& scene, const SoupEnd& end);

@@ -11,6 +11,8 @@
 #include <cmath>
 #include <limits>
 #include <set>
+#include <utility>
+#include <vector>
 
 namespace penumbra::scenes {
 namespace {
@@ -23,6 +25,32 @@ bool is_finite(const glm::dvec3& v) {
 
 double largest(const glm::dvec3& v) {
   return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+}
+
+/// Instances whose boxes are within what coordinates may be; counts their triangles.
+void check_instances(const Scene& scene, const Instances& instances, const std::string& where,
+                     std::vector<std::size_t>& triangles_of) {
+  std::vector<std::pair<glm::dvec3, glm::dvec3>> boxes;
+  for (const SharedMesh& mesh : instances.meshes) {
+    PENUMBRA_ASSERT(!mesh.soup.positions.empty(), "mesh {} of instances is empty", boxes.size());
+    auto& [low, high] = boxes.emplace_back(mesh.soup.positions.front(), mesh.soup.positions.front());
+    for (const glm::dvec3& position : mesh.soup.positions)
+      low = glm::min(low, position), high = glm::max(high, position);
+  }
+  for (std::size_t i = 0; i < instances.all.size(); ++i) {
+    const Instance& instance = instances.all[i];
+    PENUMBRA_ASSERT(instance.mesh < boxes.size() && instance.object < scene.objects.size(), "instance {} is of mesh {}",
+                    i, instance.mesh);
+    triangles_of[instance.object] += instances.triangles_of(instance);
+    const auto& [low, high] = boxes[instance.mesh];
+    for (int corner = 0; corner < 8; ++corner) {
+      const glm::dvec3 own((corner & 1) != 0 ? high.x : low.x, (corner & 2) != 0 ? high.y : low.y,
+                           (corner & 4) != 0 ? high.z : low.z);
+      check_position(instance.placement(own),
+                     fmt::format("{}: mesh \"{}\"", where, scene.objects[instance.object].name),
+                     fmt::format("a corner of the box around instance {}", i).c_str());
+    }
+  }
 }
 
 }  // namespace
@@ -91,9 +119,10 @@ void check_camera(const Camera& camera, const std::string& where) {
     throw InputError("{}: the focus distance is {}; expected a length above 0", where, camera.lens->focus_distance);
 }
 
-void check_scene(const Scene& scene, const std::string& where, bool needs_light) {
+void check_scene(const Scene& scene, const std::string& where, bool needs_light, const Instances& instances) {
   const mesh::TriangleSoup& soup = scene.soup;
-  if (soup.triangles.empty()) throw InputError("{}: the scene has no triangles; it needs at least one mesh", where);
+  if (soup.triangles.empty() && instances.empty())
+    throw InputError("{}: the scene has no triangles; it needs at least one mesh", where);
   const bool all_near =
       std::ranges::all_of(soup.positions, [](const glm::dvec3& p) { return largest(p) <= kLargestCoordinate; });
   std::vector<std::size_t> triangles_of(scene.objects.size(), 0);
@@ -110,6 +139,7 @@ void check_scene(const Scene& scene, const std::string& where, bool needs_light)
                      fmt::format("a vertex of face {}", soup.source_face[i]).c_str());
     }
   }
+  check_instances(scene, instances, where, triangles_of);
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
     if (triangles_of[i] == 0) throw InputError("{}: mesh \"{}\" has no triangles", where, scene.objects[i].name);
   }

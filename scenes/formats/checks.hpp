@@ -1,5 +1,6 @@
 #pragma once
 
+#include "scenes/instances.hpp"
 #include "scenes/scene.hpp"
 
 #include <string>
@@ -19,8 +20,9 @@ void check_light(const AreaLight& light, const std::string& where);
 void check_camera(const Camera& camera, const std::string& where);
 
 /// Requires objects with triangles, finite positions, lights (if `needs_light`) with unique names, and cameras. Checks
-/// each light and camera, too.
-void check_scene(const Scene& scene, const std::string& where, bool needs_light = true);
+/// each light and camera, too. `instances`: what is not in the scene's soup.
+void check_scene(const Scene& scene, const std::string& where, bool needs_light = true,
+                 const Instances& instances = {});
 
 /// Requires finite coordinates within kLargestCoordinate. `what` names the position in the message.
 void check_position(const glm::dvec3& position, const std::string& where, const char* what);

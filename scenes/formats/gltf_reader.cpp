@@ -6,6 +6,7 @@
 #include "mesh/import_helper.hpp"
 #include "mesh/import_wire.hpp"
 #include "scenes/formats/json_meshes.hpp"
+#include "scenes/instances.hpp"
 #include "scenes/scene_wire.hpp"
 
 #include <cerrno>
@@ -42,6 +43,7 @@ Scene read_by_helper(const mesh::InputFile& input, const ReadOptions& options) {
   if (options.time) job.flags.push_back(fmt::format("--time={}", *options.time));
   for (const std::string& clip : options.clips) job.flags.push_back("--clip=" + clip);
   if (options.lightmap != nullptr) job.flags.push_back(fmt::format("--uv={}", options.lightmap->set));
+  if (options.instances != nullptr) job.flags.emplace_back("--instances");
   mesh::HelperAnswer answer = mesh::run_import_helper(job, {});
   try {
     mesh::WireReader from(answer.payload());
@@ -52,6 +54,7 @@ Scene read_by_helper(const mesh::InputFile& input, const ReadOptions& options) {
       if (options.lightmap->places.size() != scene.soup.positions.size())
         throw mesh::WireError("not every vertex has a place");
     }
+    if (options.instances != nullptr) *options.instances = get_instances(from, scene);
     from.expect_end();
     read_skies(input.name, options, scene);
     return scene;

@@ -7,6 +7,7 @@
 #include "mesh/soup_memory.hpp"
 #include "mesh/unused_vertices.hpp"
 #include "scenes/formats/package_files.hpp"
+#include "scenes/instances.hpp"
 #include "scenes/light_texture.hpp"
 
 #include <fcntl.h>
@@ -147,6 +148,16 @@ Affine read_affine(const json& transform, const Place& place) {
   return affine;
 }
 
+Affine read_invertible(const json& transform, const Place& place) {
+  const Affine affine = read_affine(transform, place);
+  const double determinant = glm::determinant(affine.linear);
+  if (determinant == 0 || !std::isfinite(determinant)) {
+    throw InputError("{}: the transform's determinant is {}; it would flatten the mesh or send it to infinity",
+                     place.str(), determinant);
+  }
+  return affine;
+}
+
 std::uint64_t instances_of(const json& mesh) {
   return mesh.contains("instances") ? mesh["instances"].size() : 1;
 }
@@ -158,8 +169,9 @@ mesh::ShapeSize size_of_source(const json& mesh, const Place& place) {
   return {};
 }
 
-mesh::ShapeSize size_of_mesh(const json& mesh, const Place& place) {
+mesh::ShapeSize size_of_mesh(const json& mesh, const Place& place, bool shared) {
   mesh::ShapeSize size = size_of_source(mesh, place);
+  if (shared) return size;
   size.triangles *= instances_of(mesh);
   size.vertices *= instances_of(mesh);
   return size;
@@ -214,12 +226,12 @@ std::vector<glm::dvec2> places_of_kept(std::vector<glm::dvec2> places, const std
   return result;
 }
 
-void require_room_for_meshes(const json& meshes, const Place& place) {
+void require_room_for_meshes(const json& meshes, const Place& place, bool shared) {
   mesh::ShapeSize all, largest;
   std::size_t number_of_largest = 0;
   std::uint64_t most = 0;  // bytes at the moment of highest memory use
   for (std::size_t i = 0; i < meshes.size(); ++i) {
-    const mesh::ShapeSize size = size_of_mesh(meshes[i], place / i);
+    const mesh::ShapeSize size = size_of_mesh(meshes[i], place / i, shared);
     all.triangles += size.triangles;
     all.vertices += size.vertices;
     // The first mesh becomes the scene's; of each other one, two copies exist until it has been appended.
@@ -268,20 +280,28 @@ Texture read_sky(const std::string& name, const Place& place, const ReadOptions&
   return picture;
 }
 
+void add_instances(const json& instances, const Place& place, mesh::TriangleSoup mesh, std::uint32_t object,
+                   const Scene& scene, Instances& to) {
+  const auto number = static_cast<std::uint32_t>(to.meshes.size());
+  to.meshes.push_back({std::move(mesh)});
+  for (std::size_t i = 0; i < instances.size(); ++i) {
+    const Affine affine = read_invertible(transform_of(instances[i], place / i), place / i);
+    Instance instance{.mesh = number, .object = object, .soup_before = scene.soup.triangles.size()};
+    instance.placement = {glm::dmat4(affine.linear), true};
+    instance.placement.to_world[3] = glm::dvec4(affine.offset, 1);
+    to.all.push_back(instance);
+  }
+}
+
 glm::dvec3 read_vector(const json& value) {
   return {value[0].get<double>(), value[1].get<double>(), value[2].get<double>()};
 }
 
 void apply_transform(const json& transform, const Place& place, mesh::TriangleSoup& soup) {
-  const Affine affine = read_affine(transform, place);
-  const double determinant = glm::determinant(affine.linear);
-  if (determinant == 0 || !std::isfinite(determinant)) {
-    throw InputError("{}: the transform's determinant is {}; it would flatten the mesh or send it to infinity",
-                     place.str(), determinant);
-  }
+  const Affine affine = read_invertible(transform, place);
   for (glm::dvec3& position : soup.positions) position = affine.linear * position + affine.offset;
-  // a mirroring transform turns meshes inside out; as in glTF, windings are reversed to compensate
-  if (determinant < 0) {
+  // A mirroring transform turns meshes inside out; as in glTF, windings are reversed to compensate.
+  if (glm::determinant(affine.linear) < 0) {
     for (mesh::Triangle& triangle : soup.triangles) std::swap(triangle[1], triangle[2]);
   }
 }
@@ -315,7 +335,8 @@ mesh::TriangleSoup read_mesh(const json& mesh, const Place& place, const ReadOpt
         fmt::format("{}: left out {} vertices that no triangle uses", place.str(), all - soup.positions.size()));
   if (mesh.contains("transform")) apply_transform(mesh["transform"], place / "transform", soup);
   if (mesh.contains("fit")) apply_fit(mesh["fit"], place / "fit", soup);
-  if (mesh.contains("instances")) apply_instances(mesh["instances"], place / "instances", source);
+  if (mesh.contains("instances") && options.instances == nullptr)
+    apply_instances(mesh["instances"], place / "instances", source);
   if (options.lightmap != nullptr) {
     source.places.resize(soup.positions.size(), kNoPlace);
     std::ranges::copy(source.places, std::back_inserter(options.lightmap->places));

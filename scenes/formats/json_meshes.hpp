@@ -31,7 +31,8 @@ SceneFile open_scene_file(const std::string& name, const Place& place, const Rea
 /// The picture of a dome, opened likewise; the file goes to `scene.sources`.
 Texture read_sky(const std::string& name, const Place& place, const ReadOptions& options, Scene& scene);
 
-/// Reads, generates or lists the mesh, and transforms it to world space, once for each of its instances. Changes are
+/// Reads, generates or lists the mesh, and transforms it to world space, once for each of its instances; with
+/// ReadOptions::instances, returns the mesh before any of their transforms. Changes are
 /// reported in `scene.warnings`, read files in `scene.sources`; the mesh's lightmap coordinates are appended to
 /// ReadOptions::lightmap.
 mesh::TriangleSoup read_mesh(const nlohmann::json& mesh, const Place& place, const ReadOptions& options, Scene& scene);
@@ -41,10 +42,15 @@ std::vector<glm::dvec2> from_top(std::vector<glm::dvec2> places);
 /// Returns the coordinates of the vertices that drop_unused_vertices keeps.
 std::vector<glm::dvec2> places_of_kept(std::vector<glm::dvec2> places, const std::vector<std::uint32_t>& kept);
 
+/// Adds the mesh, as read_mesh returns it with ReadOptions::instances, as one that is there several times: instances of
+/// `object` after what is in the scene.
+void add_instances(const nlohmann::json& instances, const Place& place, mesh::TriangleSoup mesh, std::uint32_t object,
+                   const Scene& scene, Instances& to);
+
 /// Checks that all entries of "meshes" whose size is known in advance fit into memory together, before the first is
-/// made. Files are not counted: their size is known only after reading. Throws ResourceError with the figures, and
+/// made. Instances that are no copies (`shared`) count once. Files are not counted: their size is known only after reading. Throws ResourceError with the figures, and
 /// InputError for an impossible shape.
-void require_room_for_meshes(const nlohmann::json& meshes, const Place& place);
+void require_room_for_meshes(const nlohmann::json& meshes, const Place& place, bool shared);
 
 /// Generates the mesh of a "shape".
 mesh::TriangleSoup read_shape(const nlohmann::json& shape);

@@ -278,12 +278,17 @@ Scene read_json_text(std::string_view text, const std::filesystem::path& file, c
   }
   scene.cameras = read_cameras(document, root, scene.warnings);
   scene.lights = read_lights(document, root, options, scene);
-  require_room_for_meshes(document["meshes"], root / "meshes");
+  require_room_for_meshes(document["meshes"], root / "meshes", options.instances != nullptr);
   for (const json& value : document["meshes"]) {
     const std::size_t index = scene.objects.size();
     const Place place = root / "meshes" / index;
     scene.objects.push_back(read_object(value, place, scene.lights, fmt::format("mesh{}", index)));
-    append(scene.soup, read_mesh(value, place, options, scene), static_cast<std::uint32_t>(index), place);
+    const auto object = static_cast<std::uint32_t>(index);
+    mesh::TriangleSoup mesh = read_mesh(value, place, options, scene);
+    if (options.instances != nullptr && value.contains("instances"))
+      add_instances(value["instances"], place / "instances", std::move(mesh), object, scene, *options.instances);
+    else
+      append(scene.soup, std::move(mesh), object, place);
   }
   read_casters(document, root, scene);
   return scene;

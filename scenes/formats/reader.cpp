@@ -7,6 +7,7 @@
 #include "mesh/unused_vertices.hpp"
 #include "scenes/formats/json_meshes.hpp"
 #include "scenes/formats/json_reader.hpp"
+#include "scenes/instances.hpp"
 #include "scenes/whole_view.hpp"
 
 #include <fmt/format.h>
@@ -66,10 +67,15 @@ Scene read_scene(const std::filesystem::path& file, const ReadOptions& options) 
   studio.never |= !options.needs_light;
   const bool wishes = studio.always || !studio.lights.empty() || studio.camera || !studio.fit_camera.empty();
   const bool lacks = !is_json && (scene.cameras.empty() || (scene.lights.empty() && !studio.never));
+  const bool is_around = lacks || studio.always || !studio.lights.empty() || !studio.fit_camera.empty();
+  if (is_around && options.instances != nullptr)  // around all there is, to the last bit
+    scene = copied(std::move(scene), std::exchange(*options.instances, {}));
+  const bool has_triangles =
+      !scene.soup.triangles.empty() || (options.instances != nullptr && !options.instances->empty());
   const bool has_room = std::ranges::all_of(scene.soup.positions, [](const glm::dvec3& p) {
     return std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) <= kLargestCoordinate;  // false for NaN
   });
-  if ((lacks || wishes) && has_room && !scene.soup.triangles.empty()) {
+  if ((lacks || wishes) && has_room && has_triangles) {
     std::optional<Scene> rest;
     if (options.rest == nullptr && options.time && scene.motion) {
       ReadOptions at_rest = options;
@@ -80,7 +86,8 @@ Scene read_scene(const std::filesystem::path& file, const ReadOptions& options) 
     put_in_studio(scene, options.rest != nullptr ? *options.rest : rest ? *rest : scene, studio);
   }
   if (options.lightmap != nullptr) options.lightmap->places.resize(scene.soup.positions.size(), kNoPlace);
-  check_scene(scene, file.string(), options.needs_light);
+  check_scene(scene, file.string(), options.needs_light,
+              options.instances != nullptr ? *options.instances : Instances());
   return scene;
 }
 

@@ -25,6 +25,8 @@ struct LightmapPlaces {
 };
 using mesh::kNoPlace;
 
+struct Instances;
+
 struct ReadOptions {
   bool allow_outside = false;  ///< may the scene name files outside its folder?
   bool needs_light = true;     ///< has a scene without a light a studio put around it (JSON: is it an error)?
@@ -44,6 +46,8 @@ struct ReadOptions {
   const Scene* rest = nullptr;
   /// Receives the lightmap coordinates of glTF files, OBJ files and quads of JSON; null: they are not read.
   LightmapPlaces* lightmap = nullptr;
+  /// Gets what is there several times (scenes/instances.hpp); none: it is copied into the scene's soup.
+  Instances* instances = nullptr;
 };
 
 /// Reads .json (penumbra-scene/1), .gltf or .glb, .fbx or .dae by the file's extension; any other file as a mesh. If a

@@ -71,6 +71,44 @@ Scene scene_of(const std::vector<std::byte>& bytes) {
   return scene;
 }
 
+TEST(SceneWire, BringsInstancesWhoseNumbersAreInRange) {
+  const Scene scene = full_scene();
+  Instances sent;
+  sent.meshes.push_back({.soup = scene.soup,
+                         .normals = {{0, 0, 1}, {0, 1, 0}, {.3, .1, .2}},
+                         .colors = {{.1F, .2F, .3F, .4F}, {0, 0, 0, 1}, {1, 1, 1, 1}},
+                         .places = {{0, 1}, {2, 3}, {4, 5}}});
+  for (std::uint32_t i = 0; i < 3; ++i)
+    sent.all.push_back({.object = i % 2, .placement = {glm::dmat4(i + .5), i == 1}, .soup_before = i / 2});
+  const auto bytes_of_instances = [](const Instances& instances) {
+    WireWriter to;
+    put_instances(to, instances);
+    return to.bytes();
+  };
+  const auto got = [&](const Instances& instances) {
+    const std::vector<std::byte> bytes = bytes_of_instances(instances);
+    WireReader from(bytes);
+    return get_instances(from, scene);
+  };
+  EXPECT_EQ(bytes_of_instances(got(sent)), bytes_of_instances(sent));
+  EXPECT_EQ(got(sent).all.at(2).soup_before, 1U);
+  EXPECT_EQ(got(sent).all.at(1).placement.to_world, sent.all[1].placement.to_world);
+  const auto refused = [&](auto change) {
+    Instances changed = sent;
+    change(changed);
+    EXPECT_THROW(got(changed), WireError);
+  };
+  refused([](Instances& all) { all.all[0].mesh = 1; });
+  refused([](Instances& all) { all.all[0].object = 2; });
+  refused([](Instances& all) { all.all[2].soup_before = 2; });
+  refused([](Instances& all) { all.all[1].soup_before = 1, all.all[2].soup_before = 0; });
+  refused([](Instances& all) { all.all[0].placement.to_world[3][1] = kNan; });
+  refused([](Instances& all) { all.meshes[0].normals.pop_back(); });
+  refused([](Instances& all) {
+    all.meshes[0].soup.triangles.clear(), all.meshes[0].soup.object.clear(), all.meshes[0].soup.source_face.clear();
+  });
+}
+
 TEST(SceneWire, LosesNothing) {
   const Scene sent = full_scene();
   const Scene got = scene_of(bytes_of(sent));

@@ -1,0 +1,50 @@
+#include "import/gltf/gltf_shared.hpp"
+
+#include "import/gltf/gltf_instances.hpp"
+
+#include <tiny_gltf.h>
+
+namespace penumbra::scenes {
+
+void SharedPrimitives::keep_in(Instances& to, std::span<const PlacedNode> nodes) {
+  to_ = &to;
+  to = {};
+  uses_.assign(model_.meshes.size(), 0);
+  for (const PlacedNode& placed : nodes) {
+    const tinygltf::Node& node = model_.nodes[static_cast<std::size_t>(placed.number)];
+    if (!placed.visible || node.mesh < 0 || static_cast<std::size_t>(node.mesh) >= uses_.size()) continue;
+    const auto instances = instances_of(model_, node, placed.number);
+    uses_[static_cast<std::size_t>(node.mesh)] += instances ? instances->size() : 1;
+  }
+}
+
+bool SharedPrimitives::may_share(const tinygltf::Primitive& primitive, const tinygltf::Node& node,
+                                 const Look& look) const {
+  return to_ != nullptr && uses_[static_cast<std::size_t>(node.mesh)] > 1 && node.skin < 0 &&
+         primitive.targets.empty() && look.radiance == glm::dvec3(0) && !look.emission;
+}
+
+const SharedPrimitives::Primitive* SharedPrimitives::find(const Number& number, const tinygltf::Node& node) const {
+  const auto found = all_.find(number);
+  return node.skin >= 0 || found == all_.end() ? nullptr : &found->second;
+}
+
+const SharedPrimitives::Primitive& SharedPrimitives::add(const Number& number, SharedMesh mesh, Object object,
+                                                         const std::vector<glm::dvec3>& local) {
+  Primitive& primitive = all_[number];
+  primitive.mesh = static_cast<std::uint32_t>(to_->meshes.size());
+  primitive.object = std::move(object);
+  if (measures_) primitive.local = local;
+  to_->meshes.push_back(std::move(mesh));
+  return primitive;
+}
+
+void SharedPrimitives::place(const Primitive& primitive, const PlacedNode& placed, std::size_t object,
+                             std::size_t soup_before) {
+  to_->all.push_back({.mesh = primitive.mesh,
+                      .object = static_cast<std::uint32_t>(object),
+                      .placement = {placed.to_world},
+                      .soup_before = soup_before});
+}
+
+}  // namespace penumbra::scenes
