@@ -21,7 +21,8 @@ set(may_visibility/tree visibility scenes mesh base)
 set(may_visibility/lights visibility/tree visibility scenes mesh base)
 set(may_visibility/masks visibility base)
 set(may_visibility/alpha visibility/tree visibility scenes mesh base)
-set(all_visibility visibility/alpha visibility/masks visibility/lights visibility/tree visibility)
+set(may_visibility/seen visibility scenes mesh base)
+set(all_visibility visibility/seen visibility/alpha visibility/masks visibility/lights visibility/tree visibility)
 set(may_areas ${all_visibility} scenes mesh base)
 set(may_render/opengl base)
 set(may_render render/opengl ${all_visibility} scenes mesh base)
@@ -78,7 +79,7 @@ set(may_python)
 set(may_bench ${may_app} app app/pictures volumes/raster volumes/edges mesh/shapes)
 set(rooms base network mesh mesh/diagnosis mesh/shapes repair scenes scenes/formats import import/gltf import/gltf/emitters visibility
     visibility/tree visibility/lights
-    visibility/masks visibility/alpha areas render/opengl render engines/device engines/vectors engines/pairs engines
+    visibility/masks visibility/alpha visibility/seen areas render/opengl render engines/device engines/vectors engines/pairs engines
     volumes/wedges volumes/edges/device volumes/edges/vectors volumes/edges volumes/raster volumes/soft volumes/counters volumes/scatter volumes vsm maps/host maps/products maps/products/lists
     maps/filters maps/sampling maps/single_shadow maps/screen maps/backprojection maps/backprojection/patches maps/backprojection/contours
     maps/backprojection/soft_shadow_map maps hybrids selftest reference compare

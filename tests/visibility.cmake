@@ -11,6 +11,7 @@ penumbra_test(visibility
   property/visibility/pair_kinds.cpp
   property/visibility/pair_truth.cpp
   property/visibility/planes.cpp
+  property/visibility/seen_part.cpp
   property/visibility/triangle_tree.cpp
   unit/bits_file.cpp
   unit/visibility/box_groups.cpp
@@ -23,4 +24,4 @@ penumbra_test(visibility
   unit/visibility/scene_floats.cpp
   unit/visibility/view_samples.cpp
   # GMP's rationals are the judge of the exact predicates: another library, another formula.
-  LIBRARIES penumbra_visibility CGAL::CGAL TBB::tbb gmpxx gmp)
+  LIBRARIES penumbra_seen penumbra_visibility CGAL::CGAL TBB::tbb gmpxx gmp)

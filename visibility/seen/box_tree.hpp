@@ -1,0 +1,73 @@
+#pragma once
+
+#include <glm/common.hpp>
+#include <glm/vec3.hpp>
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace penumbra::visibility {
+
+/// A box along the axes, by its middle and half its sides. In double: meshes lie in spaces of their own.
+struct MiddleBox {
+  glm::dvec3 middle{0}, half{0};
+};
+
+/// A hierarchy over boxes, two children a node: halves along the longest side of the boxes' middles.
+class BoxTree {
+ public:
+  struct Node {
+    MiddleBox box;
+    std::uint32_t first = 0;  ///< of a leaf: its items begin there in items(); else the second child, the first follows
+    std::uint32_t count = 0;  ///< items of a leaf; 0: no leaf
+  };
+
+  BoxTree() = default;
+  /// Leaves have up to `most` of the boxes.
+  BoxTree(std::span<const MiddleBox> boxes, std::uint32_t most);
+
+  [[nodiscard]] bool empty() const { return nodes_.empty(); }
+  [[nodiscard]] const Node& root() const { return nodes_.front(); }
+  [[nodiscard]] const Node& node(std::uint32_t number) const { return nodes_[number]; }
+  [[nodiscard]] std::span<const std::uint32_t> items(const Node& leaf) const {
+    return std::span(items_).subspan(leaf.first, leaf.count);
+  }
+  /// Half of the mean leaf's sides, added up.
+  [[nodiscard]] double leaf_size() const;
+  [[nodiscard]] std::uint64_t bytes() const {
+    return nodes_.capacity() * sizeof(Node) + items_.capacity() * sizeof(std::uint32_t);
+  }
+
+  /// Calls take(items) for each leaf that is reached: touches(box) holds for it and all nodes above it.
+  template <typename Touches, typename Take>
+  void walk(const Touches& touches, const Take& take) const;
+
+ private:
+  std::uint32_t build(std::span<const MiddleBox> boxes, std::uint32_t first, std::uint32_t count, std::uint32_t most);
+
+  std::vector<Node> nodes_;
+  std::vector<std::uint32_t> items_;
+};
+
+template <typename Touches, typename Take>
+void BoxTree::walk(const Touches& touches, const Take& take) const {
+  if (nodes_.empty()) return;
+  std::array<std::uint32_t, 64> stack;  // halves: as deep as a number of boxes has bits
+  std::uint32_t top = 0;
+  stack[top++] = 0;
+  while (top > 0) {
+    const std::uint32_t number = stack[--top];
+    const Node& node = nodes_[number];
+    if (!touches(node.box)) continue;
+    if (node.count > 0) {
+      take(items(node));
+      continue;
+    }
+    stack[top++] = node.first;
+    stack[top++] = number + 1;
+  }
+}
+
+}  // namespace penumbra::visibility

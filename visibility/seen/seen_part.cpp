@@ -1,0 +1,193 @@
+#include "visibility/seen/seen_part.hpp"
+
+#include "base/memory.hpp"
+#include "mesh/soup_memory.hpp"
+#include "visibility/seen/light_shafts.hpp"
+#include "visibility/seen/view_rays.hpp"
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+namespace penumbra::visibility {
+namespace {
+
+constexpr std::uint32_t kBlock = 16;  // pixels a side, whose points are sorted into clusters together
+
+/// Finds what lies between points and lights.
+class Shafts {
+ public:
+  Shafts(const PlacedMeshes& meshes, std::span<const Light> lights, TriangleBits& seen) : meshes_(meshes), seen_(seen) {
+    for (std::size_t first = 0; first < lights.size();) {
+      std::size_t end = first + 1;
+      while (end < lights.size() && lights[end].index == lights[first].index) ++end;
+      lights_.push_back(hull_of(lights.subspan(first, end - first)));
+      first = end;
+    }
+    reach_ = sum_of_sides(meshes.upper() - meshes.lower());
+  }
+
+  /// Of the points of one block.
+  void add(std::span<const SeenPoint> points) const {
+    std::vector<glm::vec3> places;
+    for (const LightHull& light : lights_) {
+      places.clear();
+      for (const SeenPoint& point : points) {
+        if (may_be_lit(point, light)) places.push_back(point.p);
+      }
+      divide(places, light);
+    }
+  }
+
+ private:
+  /// Some of the light above the surface?
+  static bool may_be_lit(const SeenPoint& point, const LightHull& light) {
+    const glm::dvec3 p = point.p, n = point.n;
+    // The normal is float32 here, and where it turns to is rounded: as far as 2⁻²⁰ of all that is multiplied.
+    const bool above = std::ranges::any_of(light.corners, [&](const glm::dvec3& corner) {
+      const glm::dvec3 way = light.directions ? corner : corner - p;
+      return glm::dot(n, way) >
+             -2 * light.room - 0x1p-20 * (sum_of_sides(way) + (light.directions ? 0 : sum_of_sides(p)));
+    });
+    if (!above || !light.front) return above;
+    return glm::dot(light.front->normal, p - light.front->at) >
+           -2 * light.room - 0x1p-20 * (sum_of_sides(p) + sum_of_sides(light.front->at));
+  }
+
+  void divide(std::span<glm::vec3> points, const LightHull& light) const {
+    if (points.empty()) return;
+    glm::vec3 lower = points.front(), upper = lower;
+    for (const glm::vec3& point : points) lower = glm::min(lower, point), upper = glm::max(upper, point);
+    const glm::vec3 extent = upper - lower;
+    if (points.size() == 1 || sum_of_sides(extent) <= meshes_.grain()) {
+      take(LightShaft(lower, upper, light, reach_));
+      return;
+    }
+    const int axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
+    const std::size_t half = points.size() / 2;
+    std::ranges::nth_element(points, points.begin() + static_cast<std::ptrdiff_t>(half), {},
+                             [axis](const glm::vec3& point) { return point[axis]; });
+    divide(points.first(half), light);
+    divide(points.subspan(half), light);
+  }
+
+  void take(const LightShaft& shaft) const {
+    const auto touches = [&](const MiddleBox& box) { return shaft.touches(box); };
+    meshes_.tree().walk(touches, [&](std::span<const std::uint32_t> parts) {
+      for (const std::uint32_t number : parts) {
+        const PlacedMeshes::Part& part = meshes_.parts()[number];
+        part.tree->walk([&](const MiddleBox& own) { return touches(part.box(own)); },
+                        [&](std::span<const std::uint32_t> triangles) {
+                          for (const std::uint32_t triangle : triangles) take(part, triangle, shaft);
+                        });
+      }
+    });
+  }
+
+  void take(const PlacedMeshes::Part& part, std::uint32_t triangle, const LightShaft& shaft) const {
+    const std::uint64_t bit = part.first_bit + triangle;
+    if (seen_.has(bit)) return;
+    if (shaft.touches(meshes_.corners(part, triangle))) seen_.set(bit);
+  }
+
+  const PlacedMeshes& meshes_;
+  TriangleBits& seen_;
+  std::vector<LightHull> lights_;
+  double reach_ = 0;
+};
+
+/// All that is of a scene but its triangles.
+scenes::Scene rest_of(const scenes::Scene& scene) {
+  scenes::Scene rest;
+  rest.name = scene.name;
+  rest.width = scene.width;
+  rest.height = scene.height;
+  rest.objects = scene.objects;
+  rest.pictures = scene.pictures;
+  rest.lights = scene.lights;
+  rest.cameras = scene.cameras;
+  rest.sources = scene.sources;
+  rest.motion = scene.motion;
+  rest.warnings = scene.warnings;
+  return rest;
+}
+
+/// Calls take(part, triangle) for triangles whose bits are set, in the order of their numbers, which it gets too.
+template <typename Take>
+void for_each_seen(const PlacedMeshes& meshes, const TriangleBits& seen, const Take& take) {
+  const std::span<const PlacedMeshes::Part> parts = meshes.parts();
+  const std::size_t instances = meshes.instances().all.size(), first_instance = parts.size() - instances;
+  std::uint32_t own = 0, number = 0;
+  const auto take_own = [&](std::uint64_t end) {
+    for (; own < end; ++own, ++number) {
+      if (seen.has(own)) take(parts[0], own, number);
+    }
+  };
+  for (std::size_t i = 0; i < instances; ++i) {
+    const PlacedMeshes::Part& part = parts[first_instance + i];
+    take_own(part.instance->soup_before);
+    const auto count = static_cast<std::uint32_t>(part.soup->triangles.size());
+    if (seen.any(part.first_bit, part.first_bit + count)) {
+      for (std::uint32_t triangle = 0; triangle < count; ++triangle) {
+        if (seen.has(part.first_bit + triangle)) take(part, triangle, number + triangle);
+      }
+    }
+    number += count;
+  }
+  take_own(meshes.scene().soup.triangles.size());
+}
+
+}  // namespace
+
+SeenPart seen_part(const PlacedMeshes& meshes, const PinholeCamera& camera, std::span<const Light> lights,
+                   const Tile& rows) {
+  TriangleBits seen(meshes.triangles());
+  const bool all = std::ranges::any_of(lights, [](const Light& light) { return light.dome.has_value(); });
+  if (all) {
+    for (std::uint64_t bit = 0; bit < meshes.triangles(); ++bit) seen.set(bit);
+  } else {
+    const ViewRays rays(meshes, camera);
+    const Shafts shafts(meshes, lights, seen);
+    const std::uint32_t end = rows.first_row + rows.row_count;
+    const std::uint32_t across = (camera.width + kBlock - 1) / kBlock, down = (rows.row_count + kBlock - 1) / kBlock;
+    tbb::parallel_for(std::uint32_t{0}, across * down, [&](std::uint32_t block) {
+      std::vector<SeenPoint> points;
+      const std::uint32_t left = block % across * kBlock, top = rows.first_row + block / across * kBlock;
+      for (std::uint32_t y = top; y < std::min(top + kBlock, end); ++y) {
+        for (std::uint32_t x = left; x < std::min(left + kBlock, camera.width); ++x) rays.look(x, y, seen, points);
+      }
+      shafts.add(points);
+    });
+  }
+
+  SeenPart part;
+  part.triangles = meshes.triangles();
+  part.lower = glm::vec3(meshes.lower() - meshes.origin()) + 0.0f;
+  part.upper = glm::vec3(meshes.upper() - meshes.origin()) + 0.0f;
+  part.scene = rest_of(meshes.scene());
+  part.scene.origin = meshes.origin();
+  if (seen.count() == 0) seen.set(0);  // nothing is in sight: a scene has triangles all the same
+  const std::uint64_t count = seen.count();
+  require_memory(count * sizeof(std::uint32_t) + mesh::soup_bytes(count, 2 * count),
+                 fmt::format("what is seen of a scene of {} triangles, or may shade that ({} triangles),",
+                             meshes.triangles(), count),
+                 "choose a smaller --size, or a camera that sees less");
+  part.numbers.reserve(count);
+  part.scene.soup.triangles.reserve(count);
+  part.scene.soup.object.reserve(count);
+  part.scene.soup.source_face.reserve(count);
+  scenes::SoupBuilder builder(part.scene, meshes.scene(), meshes.instances());
+  for_each_seen(meshes, seen, [&](const PlacedMeshes::Part& from, std::uint32_t triangle, std::uint32_t number) {
+    part.numbers.push_back(number);
+    from.instance != nullptr ? builder.add(*from.instance, triangle) : builder.add_own(triangle);
+  });
+  return part;
+}
+
+}  // namespace penumbra::visibility
