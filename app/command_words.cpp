@@ -28,7 +28,7 @@ const std::map<std::string_view, std::string_view>& groups() {
       for (const std::string_view name : names) map.emplace(name, group);
     };
     add("Input", {"allow-outside", "lenient", "frame", "frames", "fps", "clip", "studio", "no-studio", "floor", "mesh",
-                  "uv", "vertices", "side", "weld", "no-self-intersections", "scene"});
+                  "instances", "uv", "vertices", "side", "weld", "no-self-intersections", "scene"});
     add("Light", {"light", "add-light", "light-samples", "sample-pattern", "sample-seed", "lamp-radius", "sun-angle",
                   "lumens-per-watt"});
     add("Picture", {"size", "camera", "normals", "pixel-samples", "pixel-filter", "filter-width", "motion-samples",

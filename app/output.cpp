@@ -121,7 +121,13 @@ void check_bits(const visibility::MethodDescription& description, std::span<cons
 }
 
 void BitsOutput::add(const TileResult& result) {
-  if (!writer_) writer_.emplace(path_, session_.floats.origin, session_.samples, light_);
+  if (!writer_) {
+    if (!session_.numbers.empty()) {
+      numbered_ = session_.samples;
+      for (std::int32_t& triangle : numbered_.triangle) triangle = session_.number_of(triangle);
+    }
+    writer_.emplace(path_, session_.floats.origin, session_.numbers.empty() ? session_.samples : numbered_, light_);
+  }
   writer_->append(result.masks);
 }
 
@@ -158,6 +164,7 @@ std::map<std::string, std::uint64_t> memory_of(const Session& session, std::size
       {"method", run.memory_bytes},
       {"answers", lights * session.pixel_count() * (sizeof(float) + sizeof(glm::vec3))},
       {"peakResident", peak_resident_bytes()}};
+  if (!session.numbers.empty()) memory["numbers"] = bytes_of(session.numbers);
   for (const visibility::SceneFloats& linked : session.linked) memory["sceneFloats"] += floats_bytes(linked);
   for (const auto& classes : session.classes) memory["viewSamples"] += bytes_of(classes);
   return memory;
@@ -173,7 +180,7 @@ compare::Stats make_stats(const Session& session, const LabelledLights& lights, 
   stats.width = session.width;
   stats.height = session.height;
   stats.device = label.device;
-  stats.triangles = session.floats.triangles.size();
+  stats.triangles = session.triangle_count();
   stats.method = label.description.name;
   stats.options = label.options;
   stats.light_samples = samples_of(lights, wholes.front());

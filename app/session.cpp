@@ -104,6 +104,19 @@ void link_casters(Session& session) {
   }
 }
 
+/// What is not in these rows becomes background.
+void leave_rows(const visibility::Tile& rows, visibility::ViewSamples& samples) {
+  const std::size_t first = std::size_t{rows.first_row} * samples.width,
+                    end = first + std::size_t{rows.row_count} * samples.width;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    if (i >= first && i < end) continue;
+    samples.triangle[i] = visibility::ViewSamples::kBackground;
+    samples.p[i] = samples.n[i] = glm::vec3(0);
+    samples.depth[i] = 0;
+    samples.facing[i] = 0;
+  }
+}
+
 }  // namespace
 
 double median(std::vector<double> values) {
@@ -123,8 +136,54 @@ SessionMaker::SessionMaker(const RunOptions& options, const render::Machine& mac
 }
 
 void SessionMaker::show(scenes::Scene scene, const std::string& camera, std::uint32_t runs, Progress& progress) {
-  const bool changed = !is_whole_ || !same_mesh(session_.scene, scene);
+  const bool changed = !is_whole_ || !session_.numbers.empty() || !same_mesh(session_.scene, scene);
+  session_.numbers.clear();
+  rows_.reset();
   show(std::move(scene), changed, camera, runs, progress);
+}
+
+void SessionMaker::show_part(const visibility::Tile& rows, bool shades, const std::string& camera, Progress& progress) {
+  PENUMBRA_ASSERT(placed_, "camera {}: there is no scene to see a part of", camera);
+  progress.begin("what is seen", 1);
+  const Stopwatch watch;
+  const scenes::Scene& scene = placed_->scene();
+  const auto [width, height] = picture_size(scene, camera);
+  const std::size_t number =
+      camera.empty() ? 0 : find_named(scene.cameras, camera, "--camera", options_.scene.string());
+  std::vector<visibility::Light> lights;
+  if (shades) lights = make_lights(scene, placed_->origin(), nullptr);
+  visibility::SeenPart part = visibility::seen_part(
+      *placed_, visibility::make_camera(scene.cameras[number], placed_->origin(), width, height), lights, rows);
+  const double seconds = watch.seconds();
+  progress.advance();
+  session_.whole_triangles = part.triangles;
+  whole_ = {part.lower, part.upper};
+  const bool changed = !is_whole_ || session_.numbers != part.numbers || !same_mesh(session_.scene, part.scene);
+  session_.numbers = std::move(part.numbers);
+  rows_ = rows;
+  seen_.reset();
+  show(std::move(part.scene), changed, camera, 0, progress);
+  session_.view_seconds += seconds;
+}
+
+std::pair<std::uint32_t, std::uint32_t> SessionMaker::picture_size(const scenes::Scene& scene,
+                                                                   const std::string& camera) const {
+  if (!options_.size.empty()) return parse_size(options_.size);
+  const std::size_t number =
+      camera.empty() ? 0 : find_named(scene.cameras, camera, "--camera", options_.scene.string());
+  return scenes::picture_size(scene, scene.cameras[number]);
+}
+
+std::vector<visibility::Light> SessionMaker::make_lights(const scenes::Scene& scene, const glm::dvec3& origin,
+                                                         std::vector<std::string>* notes) const {
+  const visibility::SampleRequest request = parse_light_samples(options_);
+  std::vector<visibility::Light> lights;
+  for (const std::size_t light : wanted_lights(scene, options_.lights, options_.scene.string())) {
+    std::ranges::move(visibility::make_light_pieces(scene, static_cast<std::uint32_t>(light), origin, request,
+                                                    lights.empty() ? notes : nullptr),
+                      std::back_inserter(lights));
+  }
+  return lights;
 }
 
 void SessionMaker::show_again(scenes::Scene scene, const std::string& camera, Progress& progress) {
@@ -140,9 +199,6 @@ void SessionMaker::show(scenes::Scene scene, bool changed, const std::string& ca
                         Progress& progress) {
   is_whole_ = false;
   Stopwatch load;
-  const visibility::SampleRequest request = parse_light_samples(options_);
-  std::optional<std::pair<std::uint32_t, std::uint32_t>> size;
-  if (!options_.size.empty()) size = parse_size(options_.size);
   session_.shading_normals = parse_normals(options_.normals);
   session_.scene = std::move(scene);
   session_.warnings = session_.scene.warnings;
@@ -150,7 +206,7 @@ void SessionMaker::show(scenes::Scene scene, bool changed, const std::string& ca
   const std::vector<std::size_t> wanted = wanted_lights(session_.scene, options_.lights, scene_name);
   session_.camera_index = camera.empty() ? 0 : find_named(session_.scene.cameras, camera, "--camera", scene_name);
   const scenes::Camera& seen_by = session_.scene.cameras[session_.camera_index];
-  std::tie(session_.width, session_.height) = size.value_or(scenes::picture_size(session_.scene, seen_by));
+  std::tie(session_.width, session_.height) = picture_size(session_.scene, camera);
   std::size_t pieces = 0;
   for (const std::size_t light : wanted) {
     const auto* cut = std::get_if<scenes::Pieces>(&session_.scene.lights[light].shape);
@@ -160,6 +216,10 @@ void SessionMaker::show(scenes::Scene scene, bool changed, const std::string& ca
 
   if (changed) {
     session_.floats = visibility::make_scene_floats(session_.scene);
+    if (!session_.numbers.empty()) {  // of what the lights' sizes are told beside
+      session_.floats.lower = whole_.lower;
+      session_.floats.upper = whole_.upper;
+    }
     ++session_.mesh_version;
   }
   session_.camera = visibility::make_camera(seen_by, session_.floats.origin, session_.width, session_.height);
@@ -169,13 +229,7 @@ void SessionMaker::show(scenes::Scene scene, bool changed, const std::string& ca
     lens.focus_distance = seen_by.lens->focus_distance;
   }
   const auto casters = casters_of(session_.lights);
-  session_.lights.clear();
-  for (const std::size_t light : wanted) {
-    std::ranges::move(
-        visibility::make_light_pieces(session_.scene, static_cast<std::uint32_t>(light), session_.floats.origin,
-                                      request, light == wanted.front() ? &session_.warnings : nullptr),
-        std::back_inserter(session_.lights));
-  }
+  session_.lights = make_lights(session_.scene, session_.floats.origin, &session_.warnings);
   filters_.clear();
   for (const visibility::Light& light : session_.lights) filters_.push_back({light.filtered_by, light.dimmed_by});
   if (changed || casters != casters_of(session_.lights)) {
@@ -201,6 +255,7 @@ void SessionMaker::show(scenes::Scene scene, bool changed, const std::string& ca
   for (std::uint32_t run = is_seen ? 1 : 0; run <= runs; ++run) {
     const Stopwatch view;
     session_.samples = finder_ ? finder_(session_.floats, session_.camera) : sampler_->find(session_.camera);
+    if (rows_) leave_rows(*rows_, session_.samples);
     view_seconds.push_back(view.seconds());
     progress.advance();
   }
@@ -260,13 +315,13 @@ scenes::Scene without_meshes(const scenes::Scene& scene) {
   return rest;
 }
 
-scenes::Scene read_session_scene(const RunOptions& options, std::optional<double> time,
-                                 scenes::LightmapPlaces* lightmap) {
+scenes::Scene read_session_scene(const RunOptions& options, std::optional<double> time, const ReadBeside& beside) {
   scenes::ReadOptions reading = read_options(options.gltf, options.allow_outside);
   reading.time = time;
   reading.lenient = options.lenient;
   reading.studio = parse_studio(options.studio, options.camera);
-  reading.lightmap = lightmap;
+  reading.lightmap = beside.lightmap;
+  reading.instances = beside.instances;
   reading.rest = options.rest.get();
   if (!options.size.empty()) {
     const auto [width, height] = parse_size(options.size);

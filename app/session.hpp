@@ -4,10 +4,13 @@
 #include "app/options.hpp"
 #include "app/process/progress.hpp"
 #include "engines/view_sampler.hpp"
+#include "scenes/instances.hpp"
 #include "scenes/scene.hpp"
 #include "visibility/alpha/alpha_reach.hpp"
+#include "visibility/bounds.hpp"
 #include "visibility/light_samples.hpp"
 #include "visibility/scene_floats.hpp"
+#include "visibility/seen/seen_part.hpp"
 #include "visibility/view_samples.hpp"
 
 #include <cstdint>
@@ -44,11 +47,23 @@ struct Session {
   double receiver_seconds = 0;           ///< computing classes
   double view_seconds = 0;               ///< finding the view samples: the median of the requested runs
   std::vector<std::string> warnings;
+  /// Of a scene with instances, of which `scene` has what plays a part (visibility/seen/): each triangle's number in
+  /// the whole one, and how many that has. Empty: it is the whole one.
+  std::vector<std::uint32_t> numbers;
+  std::uint64_t whole_triangles = 0;
 
   std::vector<std::optional<std::size_t>> linked_of;  ///< for each light, index of its own scene in `linked`; nullopt:
                                                       ///< `floats`
 
-  /// Of all lights.
+  [[nodiscard]] std::uint64_t triangle_count() const {
+    return numbers.empty() ? floats.triangles.size() : whole_triangles;
+  }
+  /// Returns the number in the whole scene of a triangle of `floats`; ViewSamples::kBackground stays.
+  [[nodiscard]] std::int32_t number_of(std::int32_t triangle) const {
+    if (triangle < 0 || numbers.empty()) return triangle;
+    return static_cast<std::int32_t>(numbers[static_cast<std::size_t>(triangle)]);
+  }
+  /// Returns the time of computing `filtered`, of all lights.
   [[nodiscard]] double filtering_seconds() const {
     return std::reduce(filtered_seconds.begin(), filtered_seconds.end());
   }
@@ -85,6 +100,16 @@ class SessionMaker {
   /// From the next show() on view samples look through their points of the camera's lens, if it has one: `share` has
   /// all but its size. Nothing: through its middle.
   void look_through_lens(std::optional<visibility::Lens> share) { lens_share_ = share; }
+  /// Sets the scene, without copies of its instances, whose parts the next calls of show_part() show. `scene` and
+  /// `instances` must outlive these calls.
+  void look_into(const scenes::Scene& scene, const scenes::Instances& instances) { placed_.emplace(scene, instances); }
+  void look_away() { placed_.reset(); }
+  /// Makes the session of the part of the scene that matters to some rows of its picture (visibility/seen/); pixels of
+  /// other rows are background. `shades`: with what lies between the view samples and the lights.
+  void show_part(const visibility::Tile& rows, bool shades, const std::string& camera, Progress& progress);
+  /// Returns the size of the picture of one of a scene's cameras; empty: the first.
+  [[nodiscard]] std::pair<std::uint32_t, std::uint32_t> picture_size(const scenes::Scene& scene,
+                                                                      const std::string& camera) const;
   /// Whether the last show() came to its end.
   [[nodiscard]] bool is_whole() const { return is_whole_; }
   [[nodiscard]] const Session& session() const { return session_; }
@@ -98,6 +123,9 @@ class SessionMaker {
   void show(scenes::Scene scene, bool changed, const std::string& camera, std::uint32_t runs, Progress& progress);
   /// Computes the classes of the session's view samples for its lights.
   void classify();
+  /// The lights of a scene that are asked for, pieces one after the other.
+  [[nodiscard]] std::vector<visibility::Light> make_lights(const scenes::Scene& scene, const glm::dvec3& origin,
+                                                           std::vector<std::string>* notes) const;
 
   const RunOptions& options_;
   render::Machine machine_;
@@ -110,6 +138,9 @@ class SessionMaker {
                                                                               // scenes
   std::optional<engines::ViewSampler> sampler_;
   std::optional<visibility::Lens> lens_share_;
+  std::optional<visibility::PlacedMeshes> placed_;
+  visibility::Bounds whole_;              // box of the whole scene's floats, if session_.numbers are of one
+  std::optional<visibility::Tile> rows_;  // pixels of other rows are background
   ViewFinder finder_;                              // empty: the camera's pixels
   bool is_whole_ = false;                          // the last show() was completed
   std::optional<visibility::PinholeCamera> seen_;  // camera of session_.samples
@@ -118,9 +149,13 @@ class SessionMaker {
 /// Returns the scene without triangles, pictures and vertices' looks.
 scenes::Scene without_meshes(const scenes::Scene& scene);
 
-/// Reads the scene at a time of its animation; at rest without a time. `lightmap`: ReadOptions::lightmap.
-scenes::Scene read_session_scene(const RunOptions& options, std::optional<double> time,
-                                 scenes::LightmapPlaces* lightmap = nullptr);
+/// What reading a scene may return beside it; null: not requested.
+struct ReadBeside {
+  scenes::LightmapPlaces* lightmap = nullptr;  ///< ReadOptions::lightmap
+  scenes::Instances* instances = nullptr;      ///< ReadOptions::instances
+};
+/// Reads the scene at a time of its animation; at rest without a time.
+scenes::Scene read_session_scene(const RunOptions& options, std::optional<double> time, const ReadBeside& beside = {});
 
 /// Reads the scene and finds its view samples; once if `runs` is 0, else `runs` times after a discarded run. `time`:
 /// see read_session_scene. Throws UsageError, InputError or ResourceError.

@@ -90,7 +90,7 @@ class BakeCommand : public Command {
     progress.begin("reading " + options_.run.scene.filename().string(), 1);
     std::optional<double> time;
     if (request.frames.front()) time = *request.frames.front() * request.seconds_per_frame;
-    scenes::Scene scene = read_session_scene(options_.run, time, vertices_ ? nullptr : &lightmap_);
+    scenes::Scene scene = read_session_scene(options_.run, time, {.lightmap = vertices_ ? nullptr : &lightmap_});
     outputs.refuse_inputs(scene.sources);
     const BakedMesh mesh = find_baked(scene, mesh_);
     progress.clear();

@@ -13,6 +13,7 @@
 #include "app/process/process.hpp"
 #include "app/process/stopwatch.hpp"
 #include "base/exr.hpp"
+#include "scenes/instances.hpp"
 #include "visibility/view_samples.hpp"
 
 #include <CLI/CLI.hpp>
@@ -26,6 +27,7 @@
 #include <memory>
 #include <optional>
 #include <utility>
+#include <variant>
 
 namespace penumbra::app {
 namespace {
@@ -33,8 +35,12 @@ namespace {
 /// Scene and the time of reading it.
 struct ReadScene {
   scenes::Scene scene;
+  scenes::Instances instances = {};
   double seconds = 0;
 };
+
+/// Up to so many triangles instances are copied unless that is not wished: less than what leaving them be costs.
+constexpr std::uint64_t kFewTriangles = 500'000;
 
 class RenderCommand : public Command {
  public:
@@ -116,7 +122,7 @@ class RenderCommand : public Command {
         const bool is_last = &camera == &cameras.back() && (coming.valid() || next >= frames.size());
         renderer.render(is_last ? std::move(now.scene) : scenes::Scene(now.scene),
                         {frames[at], camera, request_.pixel_side, request_.filter, request_.pixel_tolerance,
-                         moments_of(frames[at], moves)},
+                         moments_of(frames[at], moves), &now.instances},
                         files.bits, now.seconds);
         now.seconds = 0;  // counted once
         const std::string made = summary(renderer.write(files, exposure));
@@ -166,13 +172,36 @@ class RenderCommand : public Command {
     RunOptions run = options_.run;
     if (is_sequence_) run.scene = frame_path(run.scene, std::llround(*frame));
     ReadScene read;
-    read.scene = scene_at(run, time);
+    read.scene = scene_at(run, time, &read.instances);
+    if (needs_copies(read)) read.scene = copied(std::move(read.scene), std::exchange(read.instances, {}));
     read.seconds = watch.seconds();
     return read;
   }
 
-  [[nodiscard]] scenes::Scene scene_at(const RunOptions& run, std::optional<double> time) const {
-    scenes::Scene scene = read_session_scene(run, time);
+  /// Returns whether the scene's instances become copies: where these are wanted or cheap, under a dome, to which a view
+  /// sample looks past everything, and with a lens, through whose points other triangles are seen than through its
+  /// middle.
+  [[nodiscard]] bool needs_copies(const ReadScene& read) const {
+    if (read.instances.empty()) return false;
+    const bool lens = request_.pixel_side > 1 && std::ranges::any_of(read.scene.cameras, [](const auto& camera) {
+                        return camera.lens && camera.lens->radius > 0;
+                      });
+    if (request_.instances == InstanceUse::shared) {
+      if (lens) throw UsageError("--instances shared: not through a lens; --aperture 0 makes all of the picture sharp");
+      return false;
+    }
+    const auto is_dome = [](const scenes::AreaLight& light) {
+      return std::holds_alternative<scenes::Dome>(light.shape);
+    };
+    return lens || request_.instances == InstanceUse::copies ||
+           triangle_count(read.scene, read.instances) <= kFewTriangles ||
+           std::ranges::any_of(read.scene.lights, is_dome);
+  }
+
+  /// `instances`: receives meshes that the scene has several times; null: they become copies.
+  [[nodiscard]] scenes::Scene scene_at(const RunOptions& run, std::optional<double> time,
+                                       scenes::Instances* instances = nullptr) const {
+    scenes::Scene scene = read_session_scene(run, time, {.instances = instances});
     set_lens(scene, request_, run.camera);
     return scene;
   }

@@ -135,7 +135,7 @@ void FrameRenderer::keep_masks(const TileResult& tile) {
 void FrameRenderer::run_methods(const std::filesystem::path& bits) {
   Stopwatch watch;
   say_warnings();
-  done_.lights_something.clear();
+  if (!picture_.in_bands) done_.lights_something.clear();
   mark_lights();
   choose_methods(lit());
   say_notes();
@@ -157,7 +157,7 @@ void FrameRenderer::run_methods(const std::filesystem::path& bits) {
   });
   spent_.beauty += watch.seconds();
   if (!surface_) add_panes();
-  say_idle_lights();
+  if (!picture_.in_bands) say_idle_lights();
 }
 
 std::vector<std::string> FrameRenderer::lights_without_v() const {

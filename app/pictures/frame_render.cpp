@@ -134,10 +134,21 @@ void FrameRenderer::say_idle_lights() {
 }
 
 void FrameRenderer::show(SessionMaker& maker, scenes::Scene scene) {
-  if (picture_.frame.same_meshes)
+  if (const scenes::Instances* const instances = picture_.frame.instances;
+      instances != nullptr && !instances->empty()) {
+    maker.look_into(scene, *instances);
+    maker.show_part({0, maker.picture_size(scene, picture_.frame.camera).second}, true, picture_.frame.camera,
+                    progress_);
+    maker.look_away();
+  } else if (picture_.frame.same_meshes) {
     maker.show_again(std::move(scene), picture_.frame.camera, progress_);
-  else
+  } else {
     maker.show(std::move(scene), picture_.frame.camera, 0, progress_);
+  }
+  note_seconds(maker);
+}
+
+void FrameRenderer::note_seconds(const SessionMaker& maker) {
   spent_.load += maker.session().load_seconds;
   spent_.make += maker.session().device_seconds;
   spent_.view += maker.session().view_seconds + maker.session().receiver_seconds;
@@ -215,6 +226,7 @@ void FrameRenderer::render(scenes::Scene scene, const Frame& frame, const std::f
   picture_.still.reset();
   picture_.mattes.reset();
   picture_.masks.clear();
+  picture_.in_bands = false;
   picture_.layers = false;
   picture_.lamps.clear();
   for (Kept& kept : kept_) kept.used = false;
@@ -227,7 +239,9 @@ void FrameRenderer::render(scenes::Scene scene, const Frame& frame, const std::f
     kept_.clear();  // what they hold is of the session that goes
     fine_.reset();
   }
-  if (frame.moments.empty() && frame.pixel_side == 1) {
+  if (shows_in_bands(bits)) {
+    render_in_bands(scene);
+  } else if (frame.moments.empty() && frame.pixel_side == 1) {
     show(maker_, std::move(scene));
     check_wanted_layers();
     run_methods(bits);

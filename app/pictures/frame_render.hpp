@@ -38,6 +38,8 @@ struct Frame {
   double pixel_tolerance = kPixelTolerance;
   /// Scenes at other moments, whose mean is the picture; empty: a picture of one moment. Each function is called once.
   std::vector<std::function<scenes::Scene()>> moments = {};
+  /// The scene's instances, which are not in its soup; null: none. Only for a picture of one moment.
+  const scenes::Instances* instances = nullptr;
   /// The scene is without_meshes(), with the meshes of the last picture; only for one moment and pixels' centres.
   bool same_meshes = false;
   bool keeps_masks = false;  ///< fill RenderedFrame::masks; only for a picture of one moment and pixels' centres
@@ -125,6 +127,11 @@ class FrameRenderer {
   void add_panes();
   void mark_lamps();
   void show(SessionMaker& maker, scenes::Scene scene);
+  void note_seconds(const SessionMaker& maker);
+  /// Returns whether the picture is one of a scene with instances, and its parts can be put together.
+  [[nodiscard]] bool shows_in_bands(const std::filesystem::path& bits) const;
+  /// Renders bands of rows, each with as many rows as memory allows for the part of the scene that matters to them.
+  void render_in_bands(const scenes::Scene& scene);
   /// Throws UsageError for requested layers that the current picture will not have.
   void check_wanted_layers() const;
   void render_mean(scenes::Scene scene, bool by_lens);
@@ -178,6 +185,7 @@ class FrameRenderer {
     std::vector<std::string> notes;
     MethodRun run;
     std::vector<std::vector<glm::vec3>> beauty;     // of each light
+    bool in_bands = false;                          // the current view samples are those of some rows alone
     bool layers = false;                            // translucent surfaces are evaluated, not the surfaces behind them
     std::vector<std::vector<std::uint32_t>> masks;  // of each light
     std::vector<float> alpha;                       // of each pixel

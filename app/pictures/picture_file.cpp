@@ -145,7 +145,7 @@ CameraMatrices matrices_of(const Session& session) {
 }  // namespace
 
 void check_layers(const PictureFormat& format, const Session& session, bool several) {
-  wanted_channels(format, picture_channels(layer_names(session.lights), several, session.floats.triangles.size()));
+  wanted_channels(format, picture_channels(layer_names(session.lights), several, session.triangle_count()));
 }
 
 std::vector<std::string> write_picture(const std::filesystem::path& path, const PictureContent& content,
@@ -170,7 +170,7 @@ std::vector<std::string> write_picture(AtomicFile& file, const PictureContent& c
   image.height = session.height;
   image.compression = format.compression;
   const std::vector<std::string> layers = layer_names(all.lights);
-  const std::uint64_t triangles = session.floats.triangles.size();
+  const std::uint64_t triangles = session.triangle_count();
   Channels channels(image, wanted_channels(format, picture_channels(layers, content.mattes != nullptr, triangles)),
                     format.half);
   channels.add("", "RGB", content.sum);
@@ -191,11 +191,15 @@ std::vector<std::string> write_picture(AtomicFile& file, const PictureContent& c
   channels.add("Prel.", "XYZ", samples.p);
   channels.add("N.", "XYZ", samples.n);
   channels.add_made("Z", [&, is_background](std::size_t i) { return is_background(i) ? kFar : samples.depth[i]; });
-  // The background's −1 is stored as 4294967295.
-  const auto* const id = reinterpret_cast<const std::uint32_t*>(samples.triangle.data());
+  // The background's, −1, is 4294967295 there.
+  std::vector<std::int32_t> numbers;
+  if (!session.numbers.empty())
+    for (const std::int32_t triangle : samples.triangle) numbers.push_back(session.number_of(triangle));
+  const std::span<const std::int32_t> carriers = numbers.empty() ? samples.triangle : numbers;
+  const auto* const id = reinterpret_cast<const std::uint32_t*>(carriers.data());
   channels.add({"id", std::span(id, samples.size()), 1});
-  channels.add_made("triangle.X", [&samples](std::size_t i) { return low_number(samples.triangle[i]); });
-  channels.add_made("triangle_high.X", [&samples](std::size_t i) { return high_number(samples.triangle[i]); });
+  channels.add_made("triangle.X", [carriers](std::size_t i) { return low_number(carriers[i]); });
+  channels.add_made("triangle_high.X", [carriers](std::size_t i) { return high_number(carriers[i]); });
   const Surfaces surfaces(session);
   const auto object = [&surfaces](std::size_t i) { return surfaces.object(i); };
   const auto material = [&surfaces](std::size_t i) { return surfaces.material(i); };

@@ -91,7 +91,32 @@ void refuse_numbered_moments(const PictureOptions& options, const PictureRequest
   }
 }
 
+/// --instances: what becomes of them, where the method and the picture leave a choice.
+InstanceUse parse_instances(const PictureOptions& options, const PictureRequest& request) {
+  const std::string& text = options.instances;
+  if (text == "copies") return InstanceUse::copies;
+  if (!text.empty() && text != "auto" && text != "shared")
+    throw UsageError("--instances {}: expected auto, copies or shared", text);
+  if (!request.wish.method.empty() && !answers_apart(describe_method(request.wish.method, request.wish.options))) {
+    if (text == "shared")
+      throw UsageError(
+          "--instances shared: {} looks at more than lies between a view sample and the light; choose "
+          "another --method",
+          request.wish.method);
+    return InstanceUse::copies;
+  }
+  if (request.moments > 1) {
+    if (text == "shared") throw UsageError("--instances shared: not with --motion-samples");
+    return InstanceUse::copies;
+  }
+  return text == "shared" ? InstanceUse::shared : InstanceUse::automatic;
+}
+
 }  // namespace
+
+bool answers_apart(const visibility::MethodDescription& method) {
+  return method.family != visibility::Family::image && method.output != visibility::Output::scalar;
+}
 
 void add_picture_options(CLI::App& command, PictureOptions& options) {
   add_run_options(command, options.run);
@@ -161,6 +186,13 @@ void add_picture_options(CLI::App& command, PictureOptions& options) {
       .add_option("--focus-distance", options.focus_distance,
                   "of the lens: how far along the view axis surfaces are sharp (default: the camera's)")
       ->type_name("D");
+  command
+      .add_option(
+          "--instances", options.instances,
+          "meshes that the scene has several times: copies, shared (stored once; copied is what is seen, or may "
+          "shade that), or auto (shared where copies would be more than 500000 triangles, and the method is exact "
+          "of each pair or area) (default: auto)")
+      ->type_name("NAME");
   command.add_flag("--skip-existing", options.skip_existing,
                    "leave out pictures whose files are all there: resumes a sequence");
 }
@@ -177,6 +209,7 @@ PictureRequest parse_request(const PictureOptions& options) {
   request.seconds_per_frame = 1 / parse_fps(options.fps);
   parse_means(options, request);
   parse_lens(options, request);
+  request.instances = parse_instances(options, request);
   parse_format(options.run.format);  // refuses now, not later
   if (options.run.out.extension() != ".exr") {
     throw UsageError("-o {}: expected a name that ends in .exr (--png writes a PNG file beside it)",

@@ -22,7 +22,7 @@ namespace penumbra::app {
 struct PictureOptions {
   RunOptions run;
   std::string method, exposure, frames, fps, pixel_samples, pixel_filter, filter_width, pixel_tolerance, motion_samples,
-      shutter, aperture, focus_distance;
+      shutter, aperture, focus_distance, instances;
   std::optional<std::string> frame;  ///< of `render` alone
   bool skip_existing = false;
   std::map<std::string, std::string> camera_words;  ///< --camera all: of the scene's cameras, set after the scene is
@@ -33,6 +33,10 @@ struct PictureOptions {
 /// Adds all of the options except --frame.
 void add_picture_options(CLI::App& command, PictureOptions& options);
 
+/// How render treats meshes that a scene has several times: copies of each, or none; automatic: copies where these cost
+/// little.
+enum class InstanceUse : std::uint8_t { automatic, copies, shared };
+
 /// Parsed options, as far as possible before the scene is read.
 struct PictureRequest {
   MethodWish wish;
@@ -41,11 +45,16 @@ struct PictureRequest {
   std::uint32_t pixel_side = 1, moments = 1;
   PixelFilter filter;
   double pixel_tolerance = kPixelTolerance;
+  InstanceUse instances = InstanceUse::automatic;
   double shutter_frames = 0.5;
   std::optional<double> aperture, focus_distance;  ///< in place of the cameras' own; aperture 0: everything is sharp
   /// One entry without a number if no frame was asked for; a sequence's are whole.
   std::vector<std::optional<double>> frames;
 };
+
+/// Returns whether a method's answer for a view sample depends only on what lies between the view sample and the light:
+/// true where bits are the truth of their pairs, and where areas are exact.
+bool answers_apart(const visibility::MethodDescription& method);
 
 /// Parses the options. Throws UsageError; throws InputError if --exposure names a picture without an exposure
 /// attribute.

@@ -1,5 +1,6 @@
 // A mesh with instances is the scene in which the mesh is written once for each of them, to the last bit.
 #include "tests/cli/program.hpp"
+#include "tests/unit/import/gltf_file.hpp"
 
 #include "base/exr.hpp"
 
@@ -7,6 +8,8 @@
 #include <nlohmann/json.hpp>
 
 #include <array>
+#include <cmath>
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -67,6 +70,141 @@ TEST_F(Instances, AreTheMeshOnceForEach) {
   EXPECT_EQ(lines("instances.obj", "v "), lines("copies.obj", "v "));
   EXPECT_EQ(lines("instances.obj", "f "), lines("copies.obj", "f "));
   EXPECT_EQ(lines("instances.obj", "o ").size() + 2, lines("copies.obj", "o ").size()) << "instances are one object";
+}
+
+/// What `render` writes with copies, and without, is the same to the last bit.
+TEST_F(Instances, GiveTheSamePictureWithoutCopies) {
+  std::vector<json> places;
+  for (int i = 0; i < 30; ++i) {
+    places.push_back(
+        {{"translate", {0.45 * (i % 6) - 1.1, 0.3, 0.5 * (i / 6) - 1.2}},  // NOLINT(bugprone-integer-division)
+         {"rotate", {10 * i, 37 * i, 0}},
+         {"scale", {i % 4 == 0 ? -0.5 : 0.4, 0.6, 0.5}}});
+  }
+  json trees = tree();
+  trees["instances"] = places;
+  const json pole = json::parse(
+      R"({"shape": {"type": "box", "center": [0, 0, 0], "halfSize": [0.1, 0.5, 0.1]}, "transform": {"translate": [0, 0.5, 0]}})");
+  json lights = json::parse(R"([
+    {"name": "area", "rectangle": {"center": [0.5, 3, 1], "halfU": [0.4, 0, 0], "halfV": [0, 0, 0.3]}},
+    {"name": "bulb", "sphere": {"center": [-2, 2, 1], "radius": 0.2}},
+    {"name": "day", "sun": {"direction": [0.4, -1, 0.3], "angle": 5}}])");
+  json whole = scene({trees, pole});
+  whole["lights"] = lights;
+  write("scene.json", whole.dump());
+  const std::vector<std::vector<std::string>> ways = {{},
+                                                      {"--method", "edge-scatter", "--light-samples", "64"},
+                                                      {"--method", "view-sample"},
+                                                      {"--pixel-samples", "4"},
+                                                      {"--light", "bulb", "--camera", "0.2,0.4,0.3:1,0.2,-1"}};
+  for (const std::vector<std::string>& way : ways) {
+    SCOPED_TRACE(way.empty() ? "" : way.back());
+    const bool has_bits = way.size() >= 2 && way[0] == "--method";
+    for (const std::string use : {"copies", "shared"}) {
+      std::vector<std::string> words = {
+          "render", path("scene.json"), "-o", path(use + ".exr"), "--quiet", "--instances", use, "--size", "48x36"};
+      words.insert(words.end(), way.begin(), way.end());
+      if (has_bits) words.insert(words.end(), {"--bits", path(use + ".bits")});
+      const Outcome outcome = run(words);
+      ASSERT_EQ(outcome.code, 0) << outcome.err;
+    }
+    const ExrFile one = read_exr(path("shared.exr")), other = read_exr(path("copies.exr"));
+    EXPECT_EQ(one.integers.at("id"), other.integers.at("id"));
+    ASSERT_EQ(one.floats.size(), other.floats.size());
+    for (const auto& [name, values] : other.floats) {
+      if (name.ends_with(".R") || name.ends_with(".G") || name.ends_with(".B") || name.size() == 1) {
+        ASSERT_EQ(one.floats.at(name).size(), values.size());
+        for (std::size_t i = 0; i < values.size(); ++i)
+          ASSERT_NEAR(one.floats.at(name)[i], values[i], 1e-6 * (1 + std::abs(values[i]))) << name << " " << i;
+      }
+      if (name.size() > 1 || name == "V") {
+        EXPECT_EQ(one.floats.at(name), values) << name;
+      }
+    }
+    if (has_bits) {
+      EXPECT_EQ(read("shared.bits"), read("copies.bits"));
+    }
+  }
+}
+
+/// Nodes that share a mesh, and EXT_mesh_gpu_instancing, are what the same file says in world space, copy by copy.
+TEST_F(Instances, OfGltfAreTheMeshOnceForEach) {
+  test::Gltf gltf;
+  gltf.at("/nodes/1")["rotation"] = {1, 0, 0, 0};  // its front down
+  gltf.at("/meshes/0/primitives/0/attributes")["NORMAL"] =
+      gltf.add_floats("VEC3", {0, 0, 1, 0.6F, 0, 0.8F, 0, 0.3F, 1});
+  gltf.at("/nodes/0") = {{"name", "Body"}, {"mesh", 0}, {"translation", {-1, 0.25, 0.5}}, {"scale", {1.3, 2, 1}}};
+  gltf.at("/nodes").push_back(
+      {{"name", "Mirrored"}, {"mesh", 0}, {"scale", {-1.5, 1, 1}}, {"rotation", {0.1, 0.3, 0, 0.9}}});
+  gltf.at("/nodes").push_back(
+      {{"name", "Many"},
+       {"mesh", 0},
+       {"translation", {0, 1, -1}},
+       {"extensions",
+        {{"EXT_mesh_gpu_instancing",
+          {{"attributes", {{"TRANSLATION", gltf.add_floats("VEC3", {-2, 0, 0, 0, 0.3F, 0, 1.7F, 0, -0.1F})}}}}}}}});
+  gltf.at("/extensionsUsed").push_back("EXT_mesh_gpu_instancing");
+  gltf.at("/nodes/2") = {{"name", "Camera"}, {"camera", 0}, {"translation", {0, 1, 8}}};
+  gltf.at("/scenes/0/nodes") = {0, 1, 2, 3, 4};
+  write("scene.glb", gltf.glb());
+  ASSERT_EQ(run({"convert", path("scene.glb"), "-o", path("world.json"), "--quiet"}).code, 0);
+  for (const std::vector<std::string>& way :
+       {std::vector<std::string>{"scene.glb", "shared"}, {"scene.glb", "copies"}, {"world.json", "copies"}}) {
+    const Outcome outcome = run({"render", path(way[0]), "-o", path(way[0] + way[1] + ".exr"), "--quiet", "--size",
+                                 "64x48", "--instances", way[1]});
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+  }
+  EXPECT_EQ(read("scene.glbshared.exr"), read("scene.glbcopies.exr"));
+  const ExrFile one = read_exr(path("scene.glbshared.exr")), other = read_exr(path("world.jsoncopies.exr"));
+  EXPECT_EQ(one.integers.at("id"), other.integers.at("id"));
+  for (const char* channel : {"V", "P.X", "P.Y", "P.Z", "N.X", "N.Y", "N.Z", "object.X"})
+    EXPECT_EQ(one.floats.at(channel), other.floats.at(channel)) << channel;
+}
+
+using InstancesFull = Instances;
+
+/// Eight hundred thousand triangles, which nobody must ask to leave be.
+TEST_F(InstancesFull, GiveTheSamePictureOfAForest) {
+  json trees = tree();
+  trees["shape"]["segments"] = 32;
+  for (int i = 0; i < 400; ++i) {
+    trees["instances"].push_back(
+        {{"translate",
+          {0.5 * (i % 20) - 5, 0.2 + 0.01 * (i % 7), 0.5 * (i / 20) - 8}},  // NOLINT(bugprone-integer-division)
+         {"rotate", {3 * i, 37 * i, 0}},
+         {"scale", {0.4, 0.5 + 0.01 * (i % 13), 0.5}}});
+  }
+  write("scene.json", scene({trees}).dump());
+  const std::vector<std::vector<std::string>> ways = {
+      {}, {"--bits", "FILE"}, {"--method", "view-sample", "--bits", "FILE"}};
+  for (const std::vector<std::string>& way : ways) {
+    for (const std::string use : {"copies", "auto"}) {
+      std::vector<std::string> words = {
+          "render", path("scene.json"), "-o", path(use + ".exr"), "--quiet", "--instances", use, "--size", "320x240"};
+      for (const std::string& word : way) words.push_back(word == "FILE" ? path(use + ".bits") : word);
+      const Outcome outcome = run(words);
+      ASSERT_EQ(outcome.code, 0) << outcome.err;
+    }
+    const ExrFile one = read_exr(path("auto.exr")), other = read_exr(path("copies.exr"));
+    EXPECT_EQ(one.integers.at("id"), other.integers.at("id"));
+    for (const char* channel : {"V", "P.X", "P.Y", "P.Z", "Z", "N.X"})
+      EXPECT_EQ(one.floats.at(channel), other.floats.at(channel)) << channel;
+    if (!way.empty()) {
+      EXPECT_EQ(read("auto.bits"), read("copies.bits"));
+    }
+  }
+}
+
+TEST_F(Instances, AreCopiedWhereAMethodLooksAtAllOfThem) {
+  json trees = tree();
+  trees["instances"] = {{{"translate", {-1, 0.4, 0}}}, {{"translate", {1, 0.4, 0}}}};
+  write("scene.json", scene({trees}).dump());
+  const Outcome outcome =
+      run({"render", path("scene.json"), "-o", path("out.exr"), "--instances", "shared", "--method", "alias-free"});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("--instances shared: alias-free"));
+  EXPECT_EQ(run({"render", path("scene.json"), "-o", path("out.exr"), "--instances", "some"}).code, 2);
+  EXPECT_EQ(run({"render", path("scene.json"), "-o", path("out.exr"), "--method", "alias-free", "--quiet"}).code, 0);
 }
 
 TEST_F(Instances, StandOnAFit) {

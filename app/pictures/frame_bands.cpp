@@ -1,0 +1,91 @@
+// Of FrameRenderer: pictures of scenes with instances, rows after rows.
+
+#include "app/pictures/frame_render.hpp"
+#include "app/process/stopwatch.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+namespace penumbra::app {
+namespace {
+
+/// Of what plays a part at once: some gigabyte of a method's hierarchies.
+constexpr std::uint64_t kMostTriangles = 1'500'000;
+/// The first rows say how many triangles others may need.
+constexpr std::uint32_t kFirstRows = 32;
+
+/// The values of some rows take the place of what was there.
+template <typename T>
+void put_rows(std::vector<T>& all, const std::vector<T>& some, std::size_t first, std::size_t end) {
+  if (some.empty()) return;
+  all.resize(some.size());
+  std::copy(some.begin() + static_cast<std::ptrdiff_t>(first), some.begin() + static_cast<std::ptrdiff_t>(end),
+            all.begin() + static_cast<std::ptrdiff_t>(first));
+}
+template <typename T>
+void put_rows(std::vector<std::vector<T>>& all, const std::vector<std::vector<T>>& some, std::size_t first,
+              std::size_t end) {
+  all.resize(some.size());
+  for (std::size_t light = 0; light < some.size(); ++light) put_rows(all[light], some[light], first, end);
+}
+
+}  // namespace
+
+bool FrameRenderer::shows_in_bands(const std::filesystem::path& bits) const {
+  const Frame& frame = picture_.frame;
+  return frame.instances != nullptr && !frame.instances->empty() && frame.moments.empty() && frame.pixel_side == 1 &&
+         !frame.keeps_masks && bits.empty();
+}
+
+void FrameRenderer::render_in_bands(const scenes::Scene& scene) {
+  picture_.in_bands = true;
+  done_.lights_something.clear();
+  const auto [width, height] = maker_.picture_size(scene, picture_.frame.camera);
+  Stopwatch watch;
+  maker_.look_into(scene, *picture_.frame.instances);
+  spent_.load += watch.seconds();
+  std::vector<std::vector<float>> visibility;
+  std::vector<std::vector<glm::vec3>> beauty;
+  std::vector<float> alpha;
+  MethodRun all;
+  std::uint64_t parts = 0, most = 0;
+  for (std::uint32_t row = 0, rows = kFirstRows; row < height;) {
+    const visibility::Tile band{row, std::min(rows, height - row)};
+    maker_.show_part(band, true, picture_.frame.camera, progress_);
+    note_seconds(maker_);
+    if (row == 0) check_wanted_layers();
+    run_methods({});
+    if (row > 0) add_times(picture_.run, all);
+    watch.restart();
+    const std::size_t first = std::size_t{row} * width, end = first + std::size_t{band.row_count} * width;
+    put_rows(visibility, picture_.run.visibility, first, end);
+    put_rows(beauty, picture_.beauty, first, end);
+    put_rows(alpha, picture_.alpha, first, end);
+    all = std::move(picture_.run);
+    spent_.beauty += watch.seconds();
+    const std::uint64_t triangles = std::max<std::uint64_t>(session().numbers.size(), 1);
+    ++parts;
+    most = std::max(most, triangles);
+    row += band.row_count;
+    // As many as the last would have needed, but no more than twice: what comes next may be another thing.
+    const std::uint64_t wanted = band.row_count * kMostTriangles / triangles;
+    rows = static_cast<std::uint32_t>(std::clamp<std::uint64_t>(wanted, 1, std::uint64_t{2} * band.row_count));
+  }
+  // What is written of surfaces needs what is seen, and no more.
+  maker_.show_part({0, height}, false, picture_.frame.camera, progress_);
+  note_seconds(maker_);
+  maker_.look_away();
+  all.counters["partsOfPicture"] = parts;
+  all.counters["trianglesOfLargestPart"] = most;
+  picture_.run = std::move(all);
+  picture_.run.visibility = std::move(visibility);
+  picture_.beauty = std::move(beauty);
+  picture_.alpha = std::move(alpha);
+  picture_.in_bands = false;
+  say_idle_lights();
+}
+
+}  // namespace penumbra::app
