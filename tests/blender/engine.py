@@ -246,6 +246,7 @@ class Engine(unittest.TestCase):
         scene.penumbra.world = "SEEN"
         self.assertTrue(any("whose light is left out" in text for text in self.warnings(scene)))
         scene.render.use_motion_blur = bpy.data.cameras["Shot"].dof.use_dof = True
+        bpy.data.cameras["Shot"].dof.aperture_blades = 6
         self.assertEqual(len(self.warnings(scene)), 3)
 
     def test_the_programs_own_errors_come_back(self):

@@ -76,12 +76,12 @@ TEST_F(AskedSamples, WhatIsStillIsAskedOnce) {
     arguments.insert(arguments.end(), more.begin(), more.end());
     return picture(arguments);
   };
-  const ExrFile mean = at({"--frame", "5", "--motion-samples", "3", "--shutter", "0.3"});
+  const ExrFile mean = at({"--frame", "5", "--motion-samples", "3", "--shutter", "3"});
   const std::uint64_t still = counted("viewSamplesStill");
   EXPECT_GT(still, 300u);
   EXPECT_EQ(mean.attributes.at("penumbra.motionSamples"), "3");
   std::vector<ExrFile> moments;
-  for (const char* frame : {"4.9", "5", "5.1"}) moments.push_back(at({"--frame", frame}));
+  for (const char* frame : {"4", "5", "6"}) moments.push_back(at({"--frame", frame}));
   std::size_t moving = 0;
   for (const char* channel : {"R", "G", "B", "A", "V"}) {
     for (std::size_t i = 0; i < mean.floats.at(channel).size(); ++i) {
