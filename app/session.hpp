@@ -109,7 +109,7 @@ class SessionMaker {
   void show_part(const visibility::Tile& rows, bool shades, const std::string& camera, Progress& progress);
   /// Returns the size of the picture of one of a scene's cameras; empty: the first.
   [[nodiscard]] std::pair<std::uint32_t, std::uint32_t> picture_size(const scenes::Scene& scene,
-                                                                      const std::string& camera) const;
+                                                                     const std::string& camera) const;
   /// Whether the last show() came to its end.
   [[nodiscard]] bool is_whole() const { return is_whole_; }
   [[nodiscard]] const Session& session() const { return session_; }
@@ -139,8 +139,8 @@ class SessionMaker {
   std::optional<engines::ViewSampler> sampler_;
   std::optional<visibility::Lens> lens_share_;
   std::optional<visibility::PlacedMeshes> placed_;
-  visibility::Bounds whole_;              // box of the whole scene's floats, if session_.numbers are of one
-  std::optional<visibility::Tile> rows_;  // pixels of other rows are background
+  visibility::Bounds whole_;                       // box of the whole scene's floats, if session_.numbers are of one
+  std::optional<visibility::Tile> rows_;           // pixels of other rows are background
   ViewFinder finder_;                              // empty: the camera's pixels
   bool is_whole_ = false;                          // the last show() was completed
   std::optional<visibility::PinholeCamera> seen_;  // camera of session_.samples

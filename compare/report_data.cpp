@@ -81,8 +81,8 @@ Json points(std::span<const glm::dvec2> samples) {
 }
 
 /// Role of an entry. `samples`: the light's sample set of its masks; `judges_pairs`: the entry is the rays to which
-/// others on this set are compared. Masks to which no other entry is compared are left out: masks of 1,024 light samples
-/// are a tenth of a page.
+/// others on this set are compared. Masks to which no other entry is compared are left out: masks of 1,024 light
+/// samples are a tenth of a page.
 struct EntryRole {
   std::string label;
   const char* samples;

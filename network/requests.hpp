@@ -15,8 +15,8 @@ std::string_view path_of(std::string_view target);
 /// Returns whether the target has the parameter `token` with this value, in constant time.
 bool has_token(std::string_view target, std::string_view token);
 
-/// Returns whether the header `Host` is `name`, with any port (a tunnel may have another). A page elsewhere whose name was
-/// pointed to this machine (DNS rebinding) sends its own name.
+/// Returns whether the header `Host` is `name`, with any port (a tunnel may have another). A page elsewhere whose name
+/// was pointed to this machine (DNS rebinding) sends its own name.
 bool is_host(std::string_view host, std::string_view name);
 /// Returns whether the header `Host` names this machine's loopback.
 bool is_loopback_host(std::string_view host);

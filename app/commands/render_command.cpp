@@ -178,8 +178,8 @@ class RenderCommand : public Command {
     return read;
   }
 
-  /// Returns whether the scene's instances become copies: where these are wanted or cheap, under a dome, to which a view
-  /// sample looks past everything, and with a lens, through whose points other triangles are seen than through its
+  /// Returns whether the scene's instances become copies: where these are wanted or cheap, under a dome, to which a
+  /// view sample looks past everything, and with a lens, through whose points other triangles are seen than through its
   /// middle.
   [[nodiscard]] bool needs_copies(const ReadScene& read) const {
     if (read.instances.empty()) return false;
