@@ -86,24 +86,24 @@ Json sweep_json(const Sweep& sweep) {
   for (const SweepRow& row : sweep.rows) {
     const compare::Stats& stats = row.result.stats;
     const auto& error = row.result.all_lights_error;
-    Json json = {{"method", stats.method},
-                 {"entry", row.result.entry},
-                 {"options", object_of(stats.options)},
-                 {"light", object_of(row.light)},
-                 {"lightSamples", stats.light_samples},
-                 {"seconds",
-                  {{"light", or_null(stats.seconds.light)},
-                   {"evaluate", or_null(stats.seconds.evaluate)},
-                   {"shadow", or_null(stats.seconds.shadow())}}},
-                 {"runs", stats.runs},
-                 {"peakMemoryBytes", stats.peak_memory_bytes}};
-    json["error"] = error ? Json{{"mean", error->mean}, {"rmse", error->rmse},     {"p999", error->p999},
-                                 {"max", error->max},   {"over05", error->over05}, {"bias", error->bias}}
-                          : Json();
-    json["pareto"] = row.on_hull;
+    Json entry = {{"method", stats.method},
+                  {"entry", row.result.entry},
+                  {"options", object_of(stats.options)},
+                  {"light", object_of(row.light)},
+                  {"lightSamples", stats.light_samples},
+                  {"seconds",
+                   {{"light", or_null(stats.seconds.light)},
+                    {"evaluate", or_null(stats.seconds.evaluate)},
+                    {"shadow", or_null(stats.seconds.shadow())}}},
+                  {"runs", stats.runs},
+                  {"peakMemoryBytes", stats.peak_memory_bytes}};
+    entry["error"] = error ? Json{{"mean", error->mean}, {"rmse", error->rmse},     {"p999", error->p999},
+                                  {"max", error->max},   {"over05", error->over05}, {"bias", error->bias}}
+                           : Json();
+    entry["pareto"] = row.on_hull;
     const auto& failure = row.result.failure;
-    json["failure"] = failure ? Json{{"exitCode", failure->exit_code}, {"message", failure->message}} : Json();
-    rows.push_back(std::move(json));
+    entry["failure"] = failure ? Json{{"exitCode", failure->exit_code}, {"message", failure->message}} : Json();
+    rows.push_back(std::move(entry));
   }
   for (const SweepSummary& summary : sweep.summaries) {
     Json to = Json::object();
