@@ -13,7 +13,7 @@ namespace {
 Scene three_objects() {
   Scene scene;
   for (std::uint32_t object = 0; object < 3; ++object) {
-    scene.objects.push_back({.name = std::string(1, static_cast<char>('a' + object))});
+    scene.objects.push_back({.name = std::string(1, static_cast<char>('a' + object)), .emits = {}});
     for (std::uint32_t i = 0; i <= object; ++i) {
       const auto first = static_cast<std::uint32_t>(scene.soup.positions.size());
       for (const double x : {0.0, 1.0, 2.0}) scene.soup.positions.emplace_back(x, object, i);
