@@ -40,10 +40,12 @@ constexpr visibility::ChoiceOption kTest{
     "what of a texel shades: its depth; the same, but no object shades itself; or no texel but the window's mean "
     "depth, "
     "by a test that is smooth"};
-constexpr visibility::IntegerOption kKeep{"keep", 0, 3, 0,
-                                          "2: compare the texels of the window's least and greatest depth alone; 3: "
-                                          "and the one nearest to the middle between "
-                                          "these; 0: all"};
+constexpr visibility::ChoiceOption kKeep{
+    "keep",
+    {{"0", 0U}, {"2", 2U}, {"3", 3U}},
+    0U,
+    "2: compare only the texels of the window's least and greatest depth; 3: also the texel whose depth is nearest to "
+    "the middle between these; 0: compare all texels"};
 constexpr visibility::RealOption kSoftness{
     "softness", 0.0001, 4, 0.1,
     "test=mean: how far behind the mean depth it is dark, as a share of the receiver's depth"};
@@ -63,7 +65,6 @@ void refuse_together(const visibility::MethodDescription& method, const visibili
     throw UsageError("method pcf: weights=bilinear counts parts of texels, and taps={} takes whole ones; take taps=0",
                      push.taps);
   }
-  if (push.keep == 1) throw UsageError("method pcf: keep=1 is neither end of the window's depths; take 0, 2 or 3");
   if (push.keep != 0 && (push.taps != 0 || push.weights != gpu::kEqual || push.test == gpu::kByMeanDepth)) {
     throw UsageError(
         "method pcf: keep={} chooses among all texels of a window, which count alike; take taps=0, weights=equal and "

@@ -175,9 +175,14 @@ bool options_exclude(const std::string& method, const std::map<std::string, std:
     const bool circle = is("projection", "paraboloid");
     const bool faces = circle || (options.contains("fit") && !is("fit", "receivers") && !is("fit", "view"));
     const bool offset = is_set("offsetFactor") || is_set("offsetUnits");
-    return (faces && (is("rasteriser", "opengl") || is("test", "id"))) ||
+    const bool mean = is("test", "mean"), taps = is_set("taps"), keep = is_set("keep");
+    const bool receivers = !options.contains("fit") || is("fit", "receivers");
+    return (faces && (is("rasteriser", "opengl") || is("test", "id") || is("test", "object"))) ||
+           (keep && (taps || mean || (options.contains("weights") && !is("weights", "equal")))) ||
+           (mean && (taps || is("weights", "bilinear"))) ||
+           (options.contains("history") && !is("history", "1") && (circle || !receivers)) ||
            (offset && (circle || is("fit", "logpsm") || (options.contains("depth") && !is("depth", "first")))) ||
-           (is("weights", "bilinear") && is_set("taps")) ||
+           (is("weights", "bilinear") && taps) ||
            (method == "pcf" && faces && is("size", "8") && !options.contains("window"));  // its default is wider
   }
   if (method == "bitmask") return options.contains("subsample") && !is("subsample", "1") && !row["bits"].empty();
