@@ -36,7 +36,7 @@ struct FormatOptions {
 /// Options common to `render` and `compare`, as given by the user.
 struct RunOptions {
   std::filesystem::path scene;
-  /// Of a scene that is a file a frame: the first of them, around which a studio is built; null: any other.
+  /// For a scene that is one file per frame: the first file, around which a studio is built; null: any other scene.
   std::shared_ptr<const scenes::Scene> rest = {};
   std::filesystem::path out;
   std::string light_samples, sample_pattern;  ///< empty: not requested; then 256 and rows

@@ -64,7 +64,7 @@ class BitsOutput {
   std::filesystem::path path_;
   const Session& session_;
   const visibility::Light& light_;
-  visibility::ViewSamples numbered_;  // of a session with numbers: the view samples, with those
+  visibility::ViewSamples numbered_;  // the view samples with triangle numbers, for a session that has numbers
   std::optional<visibility::BitsWriter> writer_;
 };
 

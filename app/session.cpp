@@ -104,7 +104,7 @@ void link_casters(Session& session) {
   }
 }
 
-/// What is not in these rows becomes background.
+/// Turns view samples outside these rows into background.
 void leave_rows(const visibility::Tile& rows, visibility::ViewSamples& samples) {
   const std::size_t first = std::size_t{rows.first_row} * samples.width,
                     end = first + std::size_t{rows.row_count} * samples.width;
@@ -216,7 +216,7 @@ void SessionMaker::show(scenes::Scene scene, bool changed, const std::string& ca
 
   if (changed) {
     session_.floats = visibility::make_scene_floats(session_.scene);
-    if (!session_.numbers.empty()) {  // of what the lights' sizes are told beside
+    if (!session_.numbers.empty()) {  // the whole scene's box: lights' sizes relate to it
       session_.floats.lower = whole_.lower;
       session_.floats.upper = whole_.upper;
     }

@@ -47,8 +47,8 @@ struct Session {
   double receiver_seconds = 0;           ///< computing classes
   double view_seconds = 0;               ///< finding the view samples: the median of the requested runs
   std::vector<std::string> warnings;
-  /// Of a scene with instances, of which `scene` has what plays a part (visibility/seen/): each triangle's number in
-  /// the whole one, and how many that has. Empty: it is the whole one.
+  /// For a scene with instances, of which `scene` has the part that matters (visibility/seen/): each triangle's number
+  /// in the whole scene, and the whole scene's number of triangles. Empty: `scene` is the whole one.
   std::vector<std::uint32_t> numbers;
   std::uint64_t whole_triangles = 0;
 
@@ -58,12 +58,12 @@ struct Session {
   [[nodiscard]] std::uint64_t triangle_count() const {
     return numbers.empty() ? floats.triangles.size() : whole_triangles;
   }
-  /// Returns the number in the whole scene of a triangle of `floats`; ViewSamples::kBackground stays.
+  /// Returns the number in the whole scene of a triangle of `floats`; keeps ViewSamples::kBackground.
   [[nodiscard]] std::int32_t number_of(std::int32_t triangle) const {
     if (triangle < 0 || numbers.empty()) return triangle;
     return static_cast<std::int32_t>(numbers[static_cast<std::size_t>(triangle)]);
   }
-  /// Returns the time of computing `filtered`, of all lights.
+  /// Returns the time of computing `filtered`, for all lights.
   [[nodiscard]] double filtering_seconds() const {
     return std::reduce(filtered_seconds.begin(), filtered_seconds.end());
   }
@@ -97,20 +97,20 @@ class SessionMaker {
   void show_again(scenes::Scene scene, const std::string& camera, Progress& progress);
   /// Replaces the search for view samples by `finder`; to be called before the first show().
   void find_view_by(ViewFinder finder) { finder_ = std::move(finder); }
-  /// From the next show() on view samples look through their points of the camera's lens, if it has one: `share` has
-  /// all but its size. Nothing: through its middle.
+  /// Sets the lens through which view samples look from the next show() on, if the camera has one: `share` has
+  /// everything but the lens's size. nullopt: view samples look through the lens's middle.
   void look_through_lens(std::optional<visibility::Lens> share) { lens_share_ = share; }
-  /// Sets the scene, without copies of its instances, whose parts the next calls of show_part() show. `scene` and
-  /// `instances` must outlive these calls.
+  /// Sets the scene without copies of its instances, for following calls of show_part(). `scene` and `instances` must
+  /// outlive these calls.
   void look_into(const scenes::Scene& scene, const scenes::Instances& instances) { placed_.emplace(scene, instances); }
   void look_away() { placed_.reset(); }
-  /// Makes the session of the part of the scene that matters to some rows of its picture (visibility/seen/); pixels of
-  /// other rows are background. `shades`: with what lies between the view samples and the lights.
+  /// Makes the session from the part of the scene that matters to some rows of its picture (visibility/seen/); pixels
+  /// of other rows are background. `shades`: includes the triangles between the view samples and the lights.
   void show_part(const visibility::Tile& rows, bool shades, const std::string& camera, Progress& progress);
   /// Returns the size of the picture of one of a scene's cameras; empty: the first.
   [[nodiscard]] std::pair<std::uint32_t, std::uint32_t> picture_size(const scenes::Scene& scene,
                                                                      const std::string& camera) const;
-  /// Whether the last show() came to its end.
+  /// Returns whether the last show() was completed.
   [[nodiscard]] bool is_whole() const { return is_whole_; }
   [[nodiscard]] const Session& session() const { return session_; }
   /// Replaces the session's view samples by others of the same camera. Returns the previous ones.
@@ -123,7 +123,7 @@ class SessionMaker {
   void show(scenes::Scene scene, bool changed, const std::string& camera, std::uint32_t runs, Progress& progress);
   /// Computes the classes of the session's view samples for its lights.
   void classify();
-  /// The lights of a scene that are asked for, pieces one after the other.
+  /// Returns the requested lights of a scene, pieces one after the other.
   [[nodiscard]] std::vector<visibility::Light> make_lights(const scenes::Scene& scene, const glm::dvec3& origin,
                                                            std::vector<std::string>* notes) const;
 
@@ -139,7 +139,7 @@ class SessionMaker {
   std::optional<engines::ViewSampler> sampler_;
   std::optional<visibility::Lens> lens_share_;
   std::optional<visibility::PlacedMeshes> placed_;
-  visibility::Bounds whole_;                       // box of the whole scene's floats, if session_.numbers are of one
+  visibility::Bounds whole_;                       // box of the whole scene's floats, if session_.numbers is filled
   std::optional<visibility::Tile> rows_;           // pixels of other rows are background
   ViewFinder finder_;                              // empty: the camera's pixels
   bool is_whole_ = false;                          // the last show() was completed
@@ -149,7 +149,7 @@ class SessionMaker {
 /// Returns the scene without triangles, pictures and vertices' looks.
 scenes::Scene without_meshes(const scenes::Scene& scene);
 
-/// What reading a scene may return beside it; null: not requested.
+/// Additional results of reading a scene; null: not requested.
 struct ReadBeside {
   scenes::LightmapPlaces* lightmap = nullptr;  ///< ReadOptions::lightmap
   scenes::Instances* instances = nullptr;      ///< ReadOptions::instances

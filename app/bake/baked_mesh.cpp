@@ -38,7 +38,8 @@ std::vector<glm::dvec3> positions_of(const scenes::Scene& scene, const BakedMesh
   return positions;
 }
 
-/// Is it `whole`, or one of the parts that a glTF mesh of several materials comes in: `whole`/0, `whole`/1 …?
+/// Returns whether the name is `whole`, or one of the parts of a glTF mesh with several materials: `whole`/0, `whole`/1
+/// …
 bool is_of(const std::string& name, const std::string& whole) {
   if (!name.starts_with(whole)) return false;
   const std::string_view rest = std::string_view(name).substr(whole.size());

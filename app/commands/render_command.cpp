@@ -39,7 +39,7 @@ struct ReadScene {
   double seconds = 0;
 };
 
-/// Up to so many triangles instances are copied unless that is not wished: less than what leaving them be costs.
+/// Number of triangles up to which instances are copied by default: copies cost less than rendering without them.
 constexpr std::uint64_t kFewTriangles = 500'000;
 
 class RenderCommand : public Command {
@@ -136,7 +136,8 @@ class RenderCommand : public Command {
   }
 
  private:
-  /// Of a scene that is a file a frame. Throws UsageError where none of them is meant.
+  /// Reads the first file of a scene that is one file per frame. Throws UsageError for requests other than whole
+  /// frames.
   void read_rest() {
     const std::string name = options_.run.scene.filename().string();
     const auto between = [](std::optional<double> frame) { return !frame || *frame != std::floor(*frame); };
@@ -178,9 +179,8 @@ class RenderCommand : public Command {
     return read;
   }
 
-  /// Returns whether the scene's instances become copies: where these are wanted or cheap, under a dome, to which a
-  /// view sample looks past everything, and with a lens, through whose points other triangles are seen than through its
-  /// middle.
+  /// Returns whether the scene's instances become copies: if copies are requested or cheap, under a dome, whose
+  /// directions pass all triangles, and with a lens, whose points see other triangles than its middle.
   [[nodiscard]] bool needs_copies(const ReadScene& read) const {
     if (read.instances.empty()) return false;
     const bool lens = request_.pixel_side > 1 && std::ranges::any_of(read.scene.cameras, [](const auto& camera) {
@@ -222,7 +222,7 @@ class RenderCommand : public Command {
 
   PictureOptions options_;
   PictureRequest request_;
-  bool is_sequence_ = false;  // the scene is a file a frame
+  bool is_sequence_ = false;  // the scene is one file per frame
   std::string tev_;           // HOST:PORT
 };
 

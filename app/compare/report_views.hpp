@@ -45,7 +45,7 @@ struct SeenByRun {
   const MethodRun& run;
   std::span<const glm::vec3> beauty;                 ///< empty: none is shown
   std::vector<std::string> masks;                    ///< PackedMasks::finish(), of each of the session's lights
-  std::span<const glm::vec3> reference_beauty = {};  ///< what the beauty is packed over; empty: it is the reference's
+  std::span<const glm::vec3> reference_beauty = {};  ///< base of packing the beauty; empty: the reference's
 };
 compare::ReportEntry report_entry(const Session& session, const visibility::MethodDescription& description,
                                   float exposure, SeenByRun seen);

@@ -13,10 +13,10 @@ namespace {
 using visibility::Tile;
 using visibility::ViewSamples;
 
-/// Engines take regions of so many pixels along each side, and their pixels in Z order.
+/// Size of a region: engines take regions of this many pixels along each side, with pixels in Z order.
 constexpr std::size_t kRegion = 16, kRegionPixels = kRegion * kRegion, kRegionsAcross = 64;
 
-/// The bits at even places, moved together.
+/// Compacts the bits at even places.
 std::uint32_t even_bits(std::uint32_t bits) {
   bits &= 0x55555555u;
   bits = (bits | bits >> 1) & 0x33333333u;
@@ -57,7 +57,7 @@ std::vector<AreaAnswer> AskedAreas::ask(const ViewSamples& samples) {
     method_.read_form_factors(form_factors);
     for (std::size_t i = 0; i < size; ++i) answers[first + i] = {shares[i], form_factors[i]};
   }
-  // Counters start again with prepare_light() alone, which is not called in between: the last ones are of all.
+  // Statistics are reset by prepare_light() alone, which is not called in between: the last ones cover all pictures.
   return answers;
 }
 

@@ -13,15 +13,15 @@
 
 namespace penumbra::app {
 
-/// What a method of Output::radiance says of a view sample.
+/// Answer of a method of Output::radiance for one view sample.
 struct AreaAnswer {
   float visibility = 1;
   glm::dvec3 form_factor{0};
 };
 
-/// A method of Output::radiance that has its answers from another one, which it asks about view samples in pictures of
-/// its own making; those answers are the other's own, bit for bit. The method given must outlive it; one thread at a
-/// time.
+/// A method of Output::radiance that takes its answers from another method. It asks the other method about view samples
+/// in pictures that it composes, and returns the other method's answers bit for bit. The other method must outlive this
+/// object. For one thread at a time.
 class AskedAreas : public visibility::Method {
  public:
   [[nodiscard]] const visibility::MethodDescription& description() const final { return method_.description(); }
@@ -35,7 +35,7 @@ class AskedAreas : public visibility::Method {
   void read_visibility(std::span<float> visibility) final;
   void read_form_factors(std::span<glm::dvec3> form_factors) final;
   std::vector<visibility::PassTime> take_pass_times() final { return method_.take_pass_times(); }
-  /// The method's, and those counted here.
+  /// Returns the statistics of the other method, and those counted here.
   [[nodiscard]] std::map<std::string, std::uint64_t> counters() const final;
   std::map<std::string, std::uint64_t> take_mesh_counters() final { return method_.take_mesh_counters(); }
   [[nodiscard]] std::uint64_t memory_bytes() const override;
@@ -44,33 +44,34 @@ class AskedAreas : public visibility::Method {
   explicit AskedAreas(visibility::Method& method);
 
   /// Answers some of a tile's view samples, numbered from its first one, and returns the others in the order in which
-  /// they are to be asked: near to one another after one another. Background is answered already.
+  /// to ask about them: neighbours in space follow one another. Background is answered already.
   virtual std::vector<std::size_t> answer(const visibility::Tile& tile, std::span<AreaAnswer> answers) = 0;
 
-  /// Gets all answers of a tile, once it has them.
+  /// Receives all answers of a tile once they are complete.
   virtual void keep(const visibility::Tile& /*tile*/, std::span<const AreaAnswer> /*answers*/) {}
-  /// The places of a picture, region by region as engines take them, in each of which neighbours follow one another.
+  /// Returns the pixels of a picture, region by region as engines take them; in each region neighbours follow one
+  /// another.
   static std::vector<std::size_t> in_regions(std::uint32_t width, std::uint32_t height);
 
-  /// The method's answers at all view samples of a picture, in its order.
+  /// Returns the method's answers at all view samples of a picture, in its order.
   std::vector<AreaAnswer> ask(const visibility::ViewSamples& samples);
-  /// What prepare_view() got.
+  /// Returns the view samples that prepare_view() received.
   [[nodiscard]] const visibility::ViewSamples& samples() const { return *samples_; }
   void count(const std::string& name, std::uint64_t more) { counters_[name] += more; }
 
  private:
-  /// View samples of the picture in the order given, packed into regions as engines take them.
+  /// View samples of the picture in the given order, packed into regions as engines take them.
   struct Packed {
     visibility::ViewSamples samples;
-    std::vector<std::size_t> at;  ///< where in it each of them is
+    std::vector<std::size_t> at;  ///< position of each view sample in the packed picture
   };
   [[nodiscard]] Packed packed(std::span<const std::size_t> which) const;
-  /// Of the tile last evaluated, which begins with view sample `first`.
+  /// Returns the answers for the tile last evaluated, which begins with view sample `first`.
   void ask_open(std::vector<std::size_t> open, std::size_t first);
 
   visibility::Method& method_;
   const visibility::ViewSamples* samples_ = nullptr;
-  std::vector<AreaAnswer> answers_;  // of the tile last evaluated
+  std::vector<AreaAnswer> answers_;  // for the tile last evaluated
   std::map<std::string, std::uint64_t> counters_;
 };
 

@@ -1,4 +1,4 @@
-// Of FrameRenderer: pictures of scenes with instances, rows after rows.
+// Part of FrameRenderer: pictures of scenes with instances, rendered in bands of rows.
 
 #include "app/pictures/frame_render.hpp"
 #include "app/process/stopwatch.hpp"
@@ -12,12 +12,12 @@
 namespace penumbra::app {
 namespace {
 
-/// Of what plays a part at once: some gigabyte of a method's hierarchies.
+/// Number of triangles of a part that is rendered at once: a method's hierarchies then take about a gigabyte.
 constexpr std::uint64_t kMostTriangles = 1'500'000;
-/// The first rows say how many triangles others may need.
+/// Number of rows in the first band, which shows how many triangles other bands may need.
 constexpr std::uint32_t kFirstRows = 32;
 
-/// The values of some rows take the place of what was there.
+/// Copies the values of some rows over the previous ones.
 template <typename T>
 void put_rows(std::vector<T>& all, const std::vector<T>& some, std::size_t first, std::size_t end) {
   if (some.empty()) return;
@@ -70,11 +70,11 @@ void FrameRenderer::render_in_bands(const scenes::Scene& scene) {
     ++parts;
     most = std::max(most, triangles);
     row += band.row_count;
-    // As many as the last would have needed, but no more than twice: what comes next may be another thing.
+    // Rows for which the last band would have filled the memory, but at most twice as many: the next rows may differ.
     const std::uint64_t wanted = band.row_count * kMostTriangles / triangles;
     rows = static_cast<std::uint32_t>(std::clamp<std::uint64_t>(wanted, 1, std::uint64_t{2} * band.row_count));
   }
-  // What is written of surfaces needs what is seen, and no more.
+  // Outputs of surfaces need the visible triangles alone.
   maker_.show_part({0, height}, false, picture_.frame.camera, progress_);
   note_seconds(maker_);
   maker_.look_away();

@@ -1,4 +1,5 @@
-// Of FrameRenderer: pictures that are the mean of several view samples a pixel, of moments, and of a lens's points.
+// Part of FrameRenderer: pictures that are the mean of several view samples a pixel, of moments, and of a lens's
+// points.
 
 #include "app/pictures/frame_render.hpp"
 #include "app/pictures/surfaces.hpp"
@@ -38,10 +39,10 @@ void FrameRenderer::render_mean(scenes::Scene scene, bool by_lens) {
     check_wanted_layers();
     spent_.view += session().filtering_seconds();
     const std::string size = fmt::format("{}x{}", session().width * side, session().height * side);
-    RunOptions options = options_;  // which may have changed since the last picture
+    RunOptions options = options_;  // options_ may have changed since the last picture
     options.size = size;
     if (!fine_ || fine_->options.size != size) {
-      kept_.clear();  // what they hold is of the session that goes
+      kept_.clear();  // kept methods refer to the session that is replaced
       fine_.emplace(options, machine_);
     }
     fine_->options = std::move(options);
@@ -84,7 +85,7 @@ void FrameRenderer::render_mean(scenes::Scene scene, bool by_lens) {
       times[names[light]].light += picture_.run.times.lights[light].light;
       times[names[light]].evaluate += picture_.run.times.lights[light].evaluate;
     }
-    before.times.lights.clear();  // its lights may be others
+    before.times.lights.clear();  // the lights of the other moment may differ
     add_times(picture_.run, before);
   };
   if (picture_.frame.moments.empty()) add(scene);
@@ -99,7 +100,7 @@ void FrameRenderer::render_mean(scenes::Scene scene, bool by_lens) {
     show(maker_, std::move(scene));
     spent_.view += session().filtering_seconds();
   }
-  // What is written of lights is about those of the frame's own time.
+  // Outputs of lights describe the lights at the frame's own time.
   picture_.run.times.lights.clear();
   const std::vector<std::string> own = whole_names(session().lights);
   for (const std::string& light : own) picture_.run.times.lights.push_back(times[light]);

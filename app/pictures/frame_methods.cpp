@@ -190,7 +190,7 @@ MethodRun FrameRenderer::run_lights(BeautyAccumulator& beauty, BitsOutput* bits)
     plan.holds = &kept.prepared;
     plan.band_rows = picture_.frame.band_rows;
     plan.shades = true;
-    std::unique_ptr<visibility::Method> around;  // asks it about fewer view samples, or in another order
+    std::unique_ptr<visibility::Method> around;  // asks the method about fewer view samples, or in another order
     if (method.description.gives_area() && lit().camera.lens)
       around = std::make_unique<LensAreas>(*kept.method);
     else if (method.description.gives_area() && picture_.frame.pixel_side > 1 && picture_.frame.pixel_tolerance > 0)
@@ -198,7 +198,7 @@ MethodRun FrameRenderer::run_lights(BeautyAccumulator& beauty, BitsOutput* bits)
                                                    picture_.frame.pixel_tolerance);
     else if (method.description.gives_area() && picture_.still && !picture_.layers && !plan.filtered_alone)
       around = std::make_unique<StillAreas>(*kept.method, *picture_.still, plan.lights);
-    if (!around) plan.dark = dark;  // whatever is interpolated looks at neighbours, too
+    if (!around) plan.dark = dark;  // interpolation also reads neighbours
     MethodRun run = run_method(
         around ? *around : *kept.method, lit(), plan,
         [&](const TileResult& tile) {

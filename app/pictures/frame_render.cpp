@@ -54,7 +54,7 @@ std::string mesh_line(const std::map<std::string, std::uint64_t>& counters) {
   return line;
 }
 
-/// Is any pixel on a side that the light shines to?
+/// Returns whether any pixel is on a side that receives the light.
 bool lights_anything(std::span<const visibility::PixelClass> classes) {
   using visibility::PixelClass;
   return std::ranges::any_of(classes, [](PixelClass one) {
@@ -236,7 +236,7 @@ void FrameRenderer::render(scenes::Scene scene, const Frame& frame, const std::f
   picture_.run = {};
   const bool lens = has_lens(scene);
   if (frame.pixel_side == 1 && !lens && fine_) {
-    kept_.clear();  // what they hold is of the session that goes
+    kept_.clear();  // kept methods refer to the session that is replaced
     fine_.reset();
   }
   if (shows_in_bands(bits)) {

@@ -38,7 +38,7 @@ struct Frame {
   double pixel_tolerance = kPixelTolerance;
   /// Scenes at other moments, whose mean is the picture; empty: a picture of one moment. Each function is called once.
   std::vector<std::function<scenes::Scene()>> moments = {};
-  /// The scene's instances, which are not in its soup; null: none. Only for a picture of one moment.
+  /// Instances of the scene, which are not in its soup; null: none. Only for a picture of one moment.
   const scenes::Instances* instances = nullptr;
   /// The scene is without_meshes(), with the meshes of the last picture; only for one moment and pixels' centres.
   bool same_meshes = false;
@@ -109,16 +109,16 @@ class FrameRenderer {
   void choose_methods(const Session& session);
   /// Adds notes about light samples used without a request: once to a picture's stats, and once to the log.
   void say_notes();
-  /// How many view samples, moments and points of a lens the picture is the mean of; nothing of one alone.
+  /// Describes how many view samples, moments and points of a lens the picture is averaged over; empty for one alone.
   void note_means(std::map<std::string, std::string>& attributes) const;
-  /// What the picture's lights were done with.
+  /// Describes the methods that the picture's lights were computed with.
   void label_lights();
   /// Warns if light samples were requested, and no method used them.
   void say_unused_samples();
   void run_methods(const std::filesystem::path& bits);
   /// Runs the chosen methods at the current view samples; `bits` may be null.
   MethodRun run_lights(BeautyAccumulator& beauty, BitsOutput* bits);
-  /// What other moments of the same lights cost is added to what this one did.
+  /// Adds the cost of other moments of the same lights to the cost of this one.
   static void add_times(MethodRun& to, const MethodRun& before);
   void keep_masks(const TileResult& tile);
   /// Returns the names of the whole lights whose V is written to no file and read by no other code.
@@ -128,17 +128,17 @@ class FrameRenderer {
   void mark_lamps();
   void show(SessionMaker& maker, scenes::Scene scene);
   void note_seconds(const SessionMaker& maker);
-  /// Returns whether the picture is one of a scene with instances, and its parts can be put together.
+  /// Returns whether the picture is of a scene with instances, and can be rendered in bands.
   [[nodiscard]] bool shows_in_bands(const std::filesystem::path& bits) const;
   /// Renders bands of rows, each with as many rows as memory allows for the part of the scene that matters to them.
   void render_in_bands(const scenes::Scene& scene);
   /// Throws UsageError for requested layers that the current picture will not have.
   void check_wanted_layers() const;
   void render_mean(scenes::Scene scene, bool by_lens);
-  /// Does the picture's camera have a lens, and the picture several view samples a pixel to look through it? Says so
-  /// where they are too few.
+  /// Returns whether the picture's camera has a lens and the picture several view samples a pixel to look through it.
+  /// Warns if they are too few.
   bool has_lens(const scenes::Scene& scene);
-  /// What methods look at: the picture's session, or that of more view samples a pixel or through a lens.
+  /// Session that methods evaluate: the picture's, or the one with more view samples a pixel or through a lens.
   [[nodiscard]] const Session& lit() const { return fine_ ? fine_->maker.session() : maker_.session(); }
   [[nodiscard]] SessionMaker& lit_maker() { return fine_ ? fine_->maker : maker_; }
   Kept& method_for(const LightMethod& wanted);
@@ -149,7 +149,7 @@ class FrameRenderer {
   /// Warns about lights without effect; to be called after all view samples were processed.
   void say_idle_lights();
 
-  /// The session of more view samples a pixel, whose picture is several times as large, or of those through a lens.
+  /// Session with more view samples a pixel, whose picture is several times as large, or through a lens.
   struct Fine {
     Fine(const RunOptions& given, const render::Machine& machine) : options(given), maker(options, machine) {}
     Fine(const Fine&) = delete;
@@ -189,10 +189,10 @@ class FrameRenderer {
     bool layers = false;                            // translucent surfaces are evaluated, not the surfaces behind them
     std::vector<std::vector<std::uint32_t>> masks;  // of each light
     std::vector<float> alpha;                       // of each pixel
-    std::vector<std::uint8_t> lamps;    // of each pixel: a translucent body of a light is seen; empty: none is
-    std::optional<PictureMean> mean;    // nothing: the picture is that of one moment and of pixels' centres
-    std::optional<Mattes> mattes;       // there when that is
-    std::optional<StillMoments> still;  // of several moments, of pixels' centres, of areas
+    std::vector<std::uint8_t> lamps;    // for each pixel, 1: a light's translucent body is seen; empty: nowhere
+    std::optional<PictureMean> mean;    // nullopt: the picture is of one moment and of pixels' centres
+    std::optional<Mattes> mattes;       // present if mattes are requested
+    std::optional<StillMoments> still;  // for several moments, pixels' centres and areas
     std::optional<BitsOutput> bits;
   };
   /// Seconds of the picture. `make`: the device and methods. `beauty`: all processing of methods' results, including

@@ -33,7 +33,7 @@ std::string sequence_name(const std::filesystem::path& out);
 /// Returns the name with the frame's number in its place, else before its extension: OUT.exr and frame 7 →
 /// OUT.0007.exr. Of several such places the last is used.
 std::filesystem::path frame_path(const std::filesystem::path& out, std::int64_t frame);
-/// The file of the lowest number among those that are there. Throws InputError if there is none.
+/// Returns the file with the lowest number among the existing ones. Throws InputError if there is none.
 std::filesystem::path first_frame_path(const std::filesystem::path& pattern);
 /// Returns, for each camera's name, a distinct word for names of files: letters and digits of every script are kept,
 /// other ASCII becomes '_', long names are cut, and equal results get a number ("Shot_1", "Shot_1_2").

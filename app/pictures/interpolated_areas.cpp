@@ -292,7 +292,7 @@ std::vector<std::size_t> InterpolatedAreas::answer(const Tile& tile, std::span<A
     interpolated += here;
   });
   count("viewSamplesInterpolated", interpolated);
-  // Pixels in Z order, and each one's view samples after one another.
+  // Pixels are in Z order; view samples of one pixel follow one another.
   std::vector<std::size_t> open;
   const std::uint32_t rows = (tile.row_count + side_ - 1) / side_;
   std::uint32_t edge = 1;

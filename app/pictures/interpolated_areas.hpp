@@ -28,7 +28,7 @@ inline constexpr double kPixelTolerance = 1.0 / 512;
 /// caster may be so thin that its shadow passes between the corners: there the bound is an estimate (measured errors:
 /// docs/pictures.md).
 ///
-/// Everything that it is given must outlive it.
+/// All arguments must outlive this object.
 class InterpolatedAreas final : public AskedAreas {
  public:
   /// `side`: view samples of a pixel along each axis, at least 2; prepare_view() requires a picture of whole pixels.
@@ -44,7 +44,7 @@ class InterpolatedAreas final : public AskedAreas {
  private:
   /// `touching`: several surfaces so near to one another that a contact shadow may begin between corners.
   enum class Cell : std::uint8_t { touching, apart, bent, smooth };
-  /// How far answers bend at a corner along x and y, as an error of V; NaN where a neighbour is on another surface.
+  /// Curvature of the answers at a corner along x and y, as an error of V; NaN if a neighbour is on another surface.
   struct Bend {
     float x, y;
   };
@@ -60,11 +60,11 @@ class InterpolatedAreas final : public AskedAreas {
   [[nodiscard]] bool are_apart(std::size_t first) const;
   [[nodiscard]] Cell cell_of(std::uint32_t column, std::uint32_t row) const;
   [[nodiscard]] std::optional<Slope> slope(std::uint32_t x, std::uint32_t y) const;
-  /// The answer at a view sample of the fine picture, by the nearest corner on its surface that allows it.
+  /// Returns the answer at a view sample of the fine picture, from the nearest corner on its surface that allows it.
   [[nodiscard]] std::optional<AreaAnswer> from_corner(std::uint32_t x, std::uint32_t y) const;
   void look_at_corners();
   void find_cells();
-  /// Interpolates, and counts it as viewSamplesInterpolated.
+  /// Interpolates, and counts the view sample as viewSamplesInterpolated.
   std::vector<std::size_t> answer(const visibility::Tile& tile, std::span<AreaAnswer> answers) override;
 
   const visibility::SceneFloats& scene_;
@@ -72,7 +72,7 @@ class InterpolatedAreas final : public AskedAreas {
   double tolerance_;
   const visibility::ViewSamples* fine_ = nullptr;
   std::uint32_t width_ = 0, height_ = 0;  // of corners
-  bool has_corners_ = false;              // of the light and view at hand
+  bool has_corners_ = false;              // for the current light and view
   std::vector<AreaAnswer> corners_;
   std::vector<Bend> bends_;  // of each corner
   std::vector<Cell> cells_;  // row by row: (width_ − 1) · (height_ − 1)

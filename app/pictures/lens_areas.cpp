@@ -13,7 +13,7 @@ namespace {
 
 using visibility::ViewSamples;
 
-/// 21 bits, with two zeros between each two.
+/// Spreads 21 bits, with two zeros between each two.
 std::uint64_t spread_bits(std::uint64_t bits) {
   bits = (bits | bits << 32) & 0x001f00000000ffffu;
   bits = (bits | bits << 16) & 0x001f0000ff0000ffu;
@@ -35,7 +35,7 @@ std::vector<std::size_t> LensAreas::answer(const visibility::Tile& tile, std::sp
     lower = glm::min(lower, all.p[first + i]);
     upper = glm::max(upper, all.p[first + i]);
   }
-  // Places in a cube around all of them, along a curve in Z order.
+  // Positions in a cube around all view samples, along a curve in Z order.
   const glm::dvec3 size = glm::dvec3(upper) - glm::dvec3(lower);
   const double cell = std::max({size.x, size.y, size.z, 0x1p-100}) / ((1 << 21) - 1);
   struct Placed {

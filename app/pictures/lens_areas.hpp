@@ -4,8 +4,9 @@
 
 namespace penumbra::app {
 
-/// Areas at view samples through a lens. Where surfaces are blurred those of neighbouring pixels are far apart, and
-/// engines, which share work among neighbours, share little: the method is asked in an order of places in space.
+/// Areas at view samples through a lens. On blurred surfaces the view samples of neighbouring pixels are far apart, so
+/// that engines, which share work among neighbours, share little. Therefore the method is asked in an order of
+/// positions in space.
 class LensAreas final : public AskedAreas {
  public:
   explicit LensAreas(visibility::Method& method) : AskedAreas(method) {}

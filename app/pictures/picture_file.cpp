@@ -191,7 +191,7 @@ std::vector<std::string> write_picture(AtomicFile& file, const PictureContent& c
   channels.add("Prel.", "XYZ", samples.p);
   channels.add("N.", "XYZ", samples.n);
   channels.add_made("Z", [&, is_background](std::size_t i) { return is_background(i) ? kFar : samples.depth[i]; });
-  // The background's, −1, is 4294967295 there.
+  // The background's number, −1, is stored as 4294967295.
   std::vector<std::int32_t> numbers;
   if (!session.numbers.empty())
     for (const std::int32_t triangle : samples.triangle) numbers.push_back(session.number_of(triangle));

@@ -56,7 +56,7 @@ void parse_means(const PictureOptions& options, PictureRequest& request) {
     throw UsageError("--motion-samples {}: of which frame? --frame or --frames says", options.motion_samples);
 }
 
-/// --aperture and --focus-distance.
+/// Reads --aperture and --focus-distance.
 void parse_lens(const PictureOptions& options, PictureRequest& request) {
   const auto length = [](const std::string& text, const char* option, const char* wanted, bool may_be_0) {
     const auto value = parse_number(text);
@@ -79,7 +79,7 @@ void parse_lens(const PictureOptions& options, PictureRequest& request) {
     throw UsageError("--focus-distance {}: of which lens? --aperture 0 is none", options.focus_distance);
 }
 
-/// A moment between frames has no number that a file's name could have.
+/// Throws UsageError for a moment between frames, which has no number for a file's name.
 void refuse_numbered_moments(const PictureOptions& options, const PictureRequest& request) {
   const auto& frame = request.frames.front();
   if (!frame || *frame == std::floor(*frame)) return;
@@ -91,7 +91,7 @@ void refuse_numbered_moments(const PictureOptions& options, const PictureRequest
   }
 }
 
-/// --instances: what becomes of them, where the method and the picture leave a choice.
+/// Reads --instances: how instances are treated where the method and the picture leave a choice.
 InstanceUse parse_instances(const PictureOptions& options, const PictureRequest& request) {
   const std::string& text = options.instances;
   if (text == "copies") return InstanceUse::copies;
@@ -210,7 +210,7 @@ PictureRequest parse_request(const PictureOptions& options) {
   parse_means(options, request);
   parse_lens(options, request);
   request.instances = parse_instances(options, request);
-  parse_format(options.run.format);  // refuses now, not later
+  parse_format(options.run.format);  // refuses an unknown format before rendering
   if (options.run.out.extension() != ".exr") {
     throw UsageError("-o {}: expected a name that ends in .exr (--png writes a PNG file beside it)",
                      options.run.out.string());

@@ -23,7 +23,7 @@ struct PictureOptions {
   RunOptions run;
   std::string method, exposure, frames, fps, pixel_samples, pixel_filter, filter_width, pixel_tolerance, motion_samples,
       shutter, aperture, focus_distance, instances;
-  std::optional<std::string> frame;  ///< of `render` alone
+  std::optional<std::string> frame;  ///< for `render` alone
   bool skip_existing = false;
   std::map<std::string, std::string> camera_words;  ///< --camera all: of the scene's cameras, set after the scene is
                                                     ///< read
@@ -33,7 +33,7 @@ struct PictureOptions {
 /// Adds all of the options except --frame.
 void add_picture_options(CLI::App& command, PictureOptions& options);
 
-/// How render treats meshes that a scene has several times: copies of each, or none; automatic: copies where these cost
+/// How render treats meshes that a scene has several times: copies of each, or none; automatic: copies where they cost
 /// little.
 enum class InstanceUse : std::uint8_t { automatic, copies, shared };
 
@@ -47,24 +47,24 @@ struct PictureRequest {
   double pixel_tolerance = kPixelTolerance;
   InstanceUse instances = InstanceUse::automatic;
   double shutter_frames = 0.5;
-  std::optional<double> aperture, focus_distance;  ///< in place of the cameras' own; aperture 0: everything is sharp
-  /// One entry without a number if no frame was asked for; a sequence's are whole.
+  std::optional<double> aperture, focus_distance;  ///< replace the cameras' own values; aperture 0: everything is sharp
+  /// Frame numbers: one entry without a number if no frame was requested; numbers of a sequence are whole.
   std::vector<std::optional<double>> frames;
 };
 
-/// Returns whether a method's answer for a view sample depends only on what lies between the view sample and the light:
-/// true where bits are the truth of their pairs, and where areas are exact.
+/// Returns whether a method's answer for a view sample depends only on the surfaces between the view sample and the
+/// light: true where masks are exact for every pair, and where areas are exact.
 bool answers_apart(const visibility::MethodDescription& method);
 
 /// Parses the options. Throws UsageError; throws InputError if --exposure names a picture without an exposure
 /// attribute.
 PictureRequest parse_request(const PictureOptions& options);
 
-/// Gives the scene's cameras that are looked through the lens that was asked for. `camera`: --camera. Throws UsageError
-/// where it is not said at what distance they are sharp.
+/// Sets the requested lens on the scene's cameras that the picture uses. `camera`: --camera. Throws UsageError if the
+/// focus distance is not given.
 void set_lens(scenes::Scene& scene, const PictureRequest& request, const std::string& camera);
 
-/// Throws UsageError for a --png that does not end so. After outputs_of, whose reasons say more.
+/// Throws UsageError for a --png file that does not end in .png. Call it after outputs_of, whose messages say more.
 void check_png_name(const PictureOptions& options);
 
 /// Returns the files of a frame's picture: named after camera and frame, if there are several.

@@ -16,7 +16,7 @@ std::vector<std::vector<std::uint8_t>> samples_beside_cones(const visibility::Vi
     beside.resize(lights.size());
     beside[light].resize(samples.size());
     tbb::parallel_for(std::size_t{0}, samples.size(), [&](std::size_t i) {
-      // A normal only weighs what arrives.
+      // The normal only weighs the arriving light.
       const bool is_dark = samples.triangle[i] != ViewSamples::kBackground &&
                            visibility::spot_share(lights[light], samples.p[i], glm::vec3(0)) == 0;
       beside[light][i] = is_dark ? 1 : 0;

@@ -10,8 +10,9 @@
 
 namespace penumbra::app {
 
-/// For each light, each view sample, 1: it is a spot lamp among those named, and its cone passes the view sample by, so
-/// that its light there is 0 whatever V is. Empty for other lights; empty where there is none of them.
+/// Returns for each light, for each view sample, 1 if the light is one of the named spot lamps and the view sample is
+/// outside its cone, so that its light is 0 there whatever V is. Empty for other lights; empty if there is no such
+/// lamp.
 std::vector<std::vector<std::uint8_t>> samples_beside_cones(const visibility::ViewSamples& samples,
                                                             std::span<const visibility::Light> lights,
                                                             std::span<const std::string> named);

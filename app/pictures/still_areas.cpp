@@ -20,7 +20,7 @@ using visibility::SceneFloats;
 using visibility::Tile;
 using visibility::ViewSamples;
 
-/// More boxes are not worth their tests: then one holds all.
+/// Limit above which more boxes are not worth their tests: one box then holds all.
 constexpr std::size_t kMostBoxes = 64;
 
 bool same_surfaces(const SceneFloats& a, const SceneFloats& b) {
@@ -28,7 +28,7 @@ bool same_surfaces(const SceneFloats& a, const SceneFloats& b) {
          a.receives_shadow == b.receives_shadow && a.emits == b.emits && a.alphas.empty() && b.alphas.empty();
 }
 
-/// Whether V of the two is the same question; of lights with pictures it is never known.
+/// Returns whether V of both lights is the same question; false for lights with pictures, where this is unknown.
 bool same_light(const Light& a, const Light& b) {
   const auto of = [](const Light& light) {
     return std::tie(light.index, light.piece, light.kind, light.two_sided, light.center, light.center_u, light.center_v,
@@ -51,13 +51,13 @@ Bounds box_of(const Light& light) {
   return box;
 }
 
-/// May a way from p to anywhere in a box meet another box? Along each axis the ways are, at each share t of them,
-/// between two places; all three axes' t that are within the other box have to meet.
+/// Returns whether a segment from p to any point in a box may meet another box. Along each axis, at each parameter t,
+/// the segments lie between two coordinates; the intervals of t within the other box must overlap on all three axes.
 bool may_meet(const glm::vec3& p, const Bounds& to, const Bounds& box) {
   double first = 0, last = 1;
   for (glm::length_t axis = 0; axis < 3; ++axis) {
     const double from = double{p[axis]}, low = double{to.lower[axis]} - from, high = double{to.upper[axis]} - from;
-    // from + t · high ≥ lower, and from + t · low ≤ upper.
+    // Solves from + t · high ≥ lower, and from + t · low ≤ upper.
     const double up = double{box.lower[axis]} - from, down = double{box.upper[axis]} - from;
     if (high > 0)
       first = std::max(first, up / high);
@@ -98,7 +98,7 @@ MovedParts::MovedParts(const SceneFloats& before, const SceneFloats& now) {
       }
     }
   }
-  // Methods look a little beyond where surfaces are, by their rounding: far less than this.
+  // Methods search slightly beyond surfaces because of rounding: by far less than this margin.
   const glm::vec3 size = glm::max(now.upper, before.upper) - glm::min(now.lower, before.lower);
   const glm::vec3 more(0x1p-12F * std::max({size.x, size.y, size.z}));
   for (const auto& [object, box] : of_objects) boxes_.push_back({box.lower - more, box.upper + more});

@@ -11,36 +11,36 @@
 
 namespace penumbra::app {
 
-/// What moves from one moment of a scene to the next.
+/// Differences between one moment of a scene and the next.
 class MovedParts {
  public:
-  /// Nothing is known: everything moves.
+  /// Constructs without knowledge: everything moves.
   MovedParts() = default;
   MovedParts(const visibility::SceneFloats& before, const visibility::SceneFloats& now);
 
-  /// Is it another triangle than before?
+  /// Returns whether the triangle differs from the one before.
   [[nodiscard]] bool has(std::size_t triangle) const { return !is_known_ || moved_[triangle] != 0; }
-  /// May what moves be between p and the light, before or now? No only where it certainly is not.
+  /// Returns whether a moving triangle may be between p and the light, before or now; false only if certainly not.
   [[nodiscard]] bool may_hide(const glm::vec3& p, const visibility::Light& light) const;
 
  private:
   bool is_known_ = false;
-  std::vector<std::uint8_t> moved_;        // of each triangle
-  std::vector<visibility::Bounds> boxes_;  // around those of each object, before and now, and a little more
+  std::vector<std::uint8_t> moved_;        // for each triangle
+  std::vector<visibility::Bounds> boxes_;  // around each object, before and now, slightly enlarged
 };
 
-/// The answers of a moment: of each light each view sample.
+/// Answers of a moment: for each light and each view sample.
 struct StillAnswers {
   visibility::ViewSamples samples;
   std::vector<visibility::Light> lights;
-  std::vector<std::vector<AreaAnswer>> answers;  ///< empty for a light that was not asked about
+  std::vector<std::vector<AreaAnswer>> answers;  ///< empty for a light that was not evaluated
 };
 
-/// The moments of a picture, one after the other.
+/// Moments of a picture, one after the other.
 struct StillMoments {
-  /// Answers of two moments are kept, of each light at each view sample; false: they would not be worth their memory.
+  /// Returns whether the answers of two moments, for each light at each view sample, are worth the memory to keep them.
   static bool are_worth(std::size_t view_samples, std::size_t lights);
-  /// The next moment, of a scene with these floats.
+  /// Begins the next moment, of a scene with these floats.
   void begin(const visibility::SceneFloats& floats);
 
   MovedParts moved;
@@ -50,11 +50,11 @@ struct StillMoments {
   std::optional<visibility::SceneFloats> floats_;
 };
 
-/// Areas at one of several moments. A view sample whose surface and light stay where they are, with nothing between
-/// them that moves, has the answer of the moment before: the same bits, for nothing that could change them is another.
+/// Areas at one of several moments. A view sample whose surface and light do not move, with no moving triangle between
+/// them, keeps its answer of the moment before: the bits are the same, since every input is.
 class StillAreas final : public AskedAreas {
  public:
-  /// The moment's lights are numbered as those of the moment before. All must outlive it.
+  /// The moment's lights are numbered as those of the moment before. All arguments must outlive this object.
   StillAreas(visibility::Method& method, StillMoments& moments, std::span<const visibility::Light> lights);
 
   void prepare_light(const visibility::Light& light) override;
@@ -67,8 +67,8 @@ class StillAreas final : public AskedAreas {
 
   StillMoments& moments_;
   std::span<const visibility::Light> lights_;
-  std::size_t light_ = 0;  // prepared last, among these
-  bool is_known_ = false;  // it was there before, and was asked about
+  std::size_t light_ = 0;  // index of the light prepared last
+  bool is_known_ = false;  // the light existed at the moment before, and was evaluated
 };
 
 }  // namespace penumbra::app

@@ -15,15 +15,16 @@
 namespace penumbra::app {
 namespace {
 
-/// The light's plane as the point sees it: s = dot(q − p, s_axis) / height, t alike, height = dot(q − p, height_axis),
-/// which is 1 on the light. All three are linear in q, so that triangles are cut before anything is divided.
+/// The light's plane as seen from the point: s = dot(q − p, s_axis) / height, t likewise, height = dot(q − p,
+/// height_axis), which is 1 on the light. All three are linear in q, so that triangles are clipped before any division.
 struct LightView {
   glm::dvec3 s_axis, t_axis, height_axis;
-  double farthest = 1;  // height
+  double farthest = 1;  // largest height
   LightOutline::Rim rim = LightOutline::Rim::square;
 };
 
-/// Of a plane through `center` with halves u and v; nothing for a point in it, or behind one that emits to one side.
+/// Projects on a plane through `center` with halves u and v; returns nullopt for a point in this plane, or behind a
+/// light that emits to one side.
 std::optional<LightView> view_of_plane(const glm::dvec3& center, const glm::dvec3& u, const glm::dvec3& v,
                                        const glm::dvec3& point, bool two_sided) {
   const glm::dvec3 normal = glm::cross(u, v), away = point - center;
@@ -31,15 +32,15 @@ std::optional<LightView> view_of_plane(const glm::dvec3& center, const glm::dvec
   if (!(squared > 0) || (two_sided ? side == 0 : side <= 0)) return std::nullopt;
   LightView view;
   view.height_axis = normal / -side;
-  // Of what lies in the plane, so many halves; then moved from the point's foot to the centre.
+  // Coordinates of the point's foot in the plane, in halves; then moved from the foot to the centre.
   const glm::dvec3 s = glm::cross(v, normal) / squared, t = glm::cross(normal, u) / squared;
   view.s_axis = s + glm::dot(away, s) * view.height_axis;
   view.t_axis = t + glm::dot(away, t) * view.height_axis;
   return view;
 }
 
-/// Of a cone of directions about `axis` (unit) whose half angle has this tangent; what is farther than `distance` is
-/// behind the light.
+/// Projects on a cone of directions about `axis` (unit) whose half angle has this tangent; surfaces farther than
+/// `distance` are behind the light.
 LightView view_of_cone(const glm::dvec3& axis, double tangent, double distance) {
   const glm::dvec3 aside = std::abs(axis.y) < 0.9 ? glm::dvec3(0, 1, 0) : glm::dvec3(1, 0, 0);
   const glm::dvec3 u = glm::normalize(glm::cross(aside, axis)), v = glm::cross(axis, u);
@@ -99,10 +100,10 @@ struct ViewOf {
   }
 };
 
-/// (s · height, t · height, height)
+/// Returns (s · height, t · height, height).
 using Flat = glm::dvec3;
 
-/// The part of a convex polygon where dot(plane, q) ≥ least.
+/// Clips a convex polygon to dot(plane, q) ≥ least.
 std::vector<Flat> part_above(const std::vector<Flat>& polygon, const Flat& plane, double least) {
   std::vector<Flat> kept;
   for (std::size_t i = 0; i < polygon.size(); ++i) {
@@ -114,7 +115,7 @@ std::vector<Flat> part_above(const std::vector<Flat>& polygon, const Flat& plane
   return kept;
 }
 
-/// What of a triangle is before the light, and not far beside it.
+/// Returns the part of a triangle that is in front of the light and not far outside its outline.
 std::vector<glm::dvec2> blocker_of(std::vector<Flat> polygon, double farthest) {
   constexpr double kNearest = 1e-9, kBeside = 2;
   const std::array planes = {std::pair{Flat(0, 0, 1), kNearest * std::min(farthest, 1.0)},

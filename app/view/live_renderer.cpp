@@ -129,7 +129,7 @@ ordered_json LiveRenderer::pixel(std::uint32_t x, std::uint32_t y) const {
   std::shared_ptr<const LivePicture> picture;
   std::shared_ptr<const LiveMasks> masks;
   std::shared_ptr<const scenes::Scene> whole;
-  std::optional<scenes::AreaLight> light;  // that the pixel is to say how it sees
+  std::optional<scenes::AreaLight> light;  // light whose outline at the pixel is requested
   {
     const std::lock_guard lock(mutex_);
     picture = picture_;
