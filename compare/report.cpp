@@ -40,7 +40,7 @@ std::string facts_html(const std::vector<ReportFact>& facts) {
   return html + "</tbody></table></div>\n";
 }
 
-/// The first few, and how many more there are.
+/// Lists the first few entries, and how many more there are.
 std::string names_text(const std::vector<const MethodResult*>& results) {
   constexpr std::size_t kNamed = 3;
   std::string text;
@@ -48,7 +48,7 @@ std::string names_text(const std::vector<const MethodResult*>& results) {
   return results.size() > kNamed ? fmt::format("{} and {} more", text, results.size() - kNamed) : text;
 }
 
-/// Who answers every pair as rays do, or else who comes closest to that.
+/// Finds the method that answers every pair as rays do, or else the one that comes closest.
 template <typename Card>
 std::string exactness_card(const ReportInput& in, const Card& card) {
   struct Sum {
@@ -165,7 +165,7 @@ std::string scene_html(const ReportInput& in) {
   return folded_section_html("scene", "The scene", html + "</div></div>\n");
 }
 
-/// What a method is: its place among the page's links, its options and the name of its page.
+/// Describes a method: its place among the page's links, its options and the name of its page.
 std::string method_text_html(const visibility::MethodDescription& d) {
   ReportTable options{"Options", {"Option", "Values", "Default", "What it does"}, {}};
   for (const visibility::OptionDescription& option : d.options) {

@@ -41,7 +41,7 @@ std::uint16_t radiance_code(float linear) {
   return static_cast<std::uint16_t>(std::lround(std::clamp(code, 1.0, 32767.0)));
 }
 
-/// How many steps of four codes lead from one to another, to two codes. What is black stays as dark as can be.
+/// Number of steps of four codes from one code to another, accurate to two codes. Black stays as dark as possible.
 int steps_between(int from, int to) {
   const int away = to - from;
   return away < 0 ? -((1 - away) / 4) : (away + 1) / 4;
@@ -51,7 +51,7 @@ std::uint16_t folded(int steps) {
   return static_cast<std::uint16_t>(steps < 0 ? -2 * steps - 1 : 2 * steps);
 }
 
-/// The packed numbers, each in an element that no browser runs; the JSON names them. Exact methods have the same ones.
+/// Writes the packed numbers, each in an element that no browser runs; the JSON names them. Exact methods share theirs.
 class Blobs {
  public:
   Json add(const std::string& packed) {

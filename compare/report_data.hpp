@@ -25,12 +25,12 @@ std::string pack_floats(std::span<const float> values);
 /// planes of bytes: where light fades over one colour these are nearly all zeros.
 std::string pack_radiance(std::uint32_t width, std::span<const glm::vec3> linear);
 
-/// Likewise of a picture that is much like `reference`'s: what differs, to 1/128 of a stop (0.54 %).
-/// Packed are steps of four codes: green's from the reference's green, red's and blue's from
-/// the reference's own and green's steps, as 2s for s >= 0 and −2s − 1 for s < 0, as planes of bytes.
+/// Packs a picture that is similar to `reference` as differences, to 1/128 of a stop (0.54 %). Packed are steps of four
+/// codes: green's from the reference's green, red's and blue's from the reference's own and green's steps, as 2s for s
+/// >= 0 and −2s − 1 for s < 0, as planes of bytes.
 std::string pack_radiance_over(std::span<const glm::vec3> reference, std::span<const glm::vec3> linear);
 
-/// Does the entry carry V of each pixel under every light?
+/// Returns whether the entry carries V of each pixel under every light.
 bool has_packed_numbers(const ReportEntry& entry);
 /// Returns whether there is no viewer, for lack of the reference's numbers.
 bool report_data_is_empty(const ReportInput& in);

@@ -8,7 +8,7 @@
 namespace penumbra::compare {
 
 std::string gallery_html(const ReportInput& in);
-/// V by the method with the largest error beside V by the one with the smallest, with a line between them to move.
+/// Writes V by the method with the largest error next to V by the one with the smallest, with a movable dividing line.
 std::string first_look_html(const ReportInput& in);
 
 }  // namespace penumbra::compare

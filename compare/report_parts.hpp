@@ -35,17 +35,18 @@ struct ViewerPlace {
   std::size_t light = 0;
 };
 
-/// A picture that grows to the window when clicked (a check box and CSS: no script), or, if the viewer has it, one that
-/// the page's script paints when it is looked at, and that opens the viewer there. `caption_html` is finished.
+/// Writes a picture that grows to the window when clicked (a check box and CSS: no script), or, if the viewer has the
+/// picture, one that the page's script paints when it comes into sight, and that opens the viewer. `caption_html` is
+/// complete HTML.
 std::string figure_html(const Image8& image, std::string_view alt_text, std::string_view caption_html,
                         const ViewerPlace& place = {});
 
-/// A part of the page that opens when it is asked for; nothing around nothing.
+/// Writes a part of the page that opens on request; returns an empty text for an empty part.
 std::string folded_html(std::string_view summary_html, std::string_view html);
-/// Likewise a section with a place that links lead to.
+/// Writes a section that opens on request, with an anchor for links.
 std::string folded_section_html(std::string_view id, std::string_view title, std::string_view html);
 
-/// The scale of the error pictures, with numbers.
+/// Writes the scale of the error pictures, with numbers.
 std::string error_legend_html(double limit);
 /// Returns the scale of the pictures of V.
 std::string visibility_legend_html();
@@ -68,7 +69,7 @@ struct ReportTable {
   std::vector<std::vector<ReportCell>> rows;
 };
 std::string table_html(const ReportTable& table);
-/// Where a method is described on the page: an anchor's name.
+/// Returns the anchor of a method's description on the page.
 std::string method_place(std::string_view method);
 
 /// Glossary: report_words.cpp.

@@ -31,12 +31,12 @@ void add_error_cells(std::vector<ReportCell>& row, const std::optional<Visibilit
                          {signed_text(error->bias), error->bias}});
 }
 
-/// An entry's name, which leads to what the page says of its method.
+/// Writes an entry's name, linked to the page's description of its method.
 std::string method_link_html(const MethodResult& result) {
   return fmt::format("<a href=\"#{}\">{}</a>", method_place(result.stats.method), escape_html(result.entry));
 }
 
-/// What a table of errors is of: of one light, or of all together.
+/// Scope of a table of errors: one light, or all together.
 struct ErrorRows {
   std::string caption;
   std::optional<VisibilityError> (*error_of)(const MethodResult& result, std::size_t light);
@@ -90,7 +90,7 @@ const LightResult* pixels_under(const ReportInput& in, std::size_t light) {
   return nullptr;
 }
 
-/// Errors over everything, and those of parts of the picture.
+/// Writes the errors over the whole picture, and those of parts of the picture.
 struct ErrorTables {
   std::string whole, parts;
 };
