@@ -216,7 +216,7 @@ class SceneReader {
   glm::dmat4 to_scene_;
   std::uint64_t triangles_;
   SceneParts* parts_of_scene_;
-  std::map<std::string, glm::dmat4, std::less<>> places_;  // of nodes, by name
+  std::map<std::string, glm::dmat4, std::less<>> places_;  // by node name
   ImportedMesh mesh_;
   FaceCollector faces_;
   std::vector<std::uint32_t> corners_;

@@ -15,7 +15,7 @@ std::uint64_t triangles_of_collada(std::string_view content, const std::string& 
 /// reads as a 0 in others.
 std::string without_leading_blanks(std::string_view content, const std::string& file);
 
-/// The same file with a name for each camera that has none: Assimp 5.2 reads no lens of those.
+/// Returns the same file with a name for each camera that has none: Assimp 5.2 reads no lens of nameless cameras.
 std::string with_named_cameras(std::string content);
 
 }  // namespace penumbra::mesh

@@ -30,7 +30,7 @@ namespace {
 
 class ForeignScene {
  public:
-  /// `options` must outlive it.
+  /// `options` must outlive this object.
   ForeignScene(mesh::ImportedMesh mesh, mesh::SceneParts parts, const ReadOptions& options, bool is_fbx)
       : parts_(std::move(parts)),
         options_(options),
@@ -105,7 +105,7 @@ class ForeignScene {
       }
       body.push_back(own);
     }
-    // Positions and transforms are in single precision.
+    // Assimp has positions and transforms in single precision.
     const double rounding = 4 * farthest * static_cast<double>(std::numeric_limits<float>::epsilon());
     auto found = recognise_emitter(positions, body, true, rounding);
     if (const auto* why_not = std::get_if<std::string>(&found)) {
@@ -144,7 +144,7 @@ class ForeignScene {
     } else {
       Sphere sphere{lamp.position, std::max(options_.lamp_radius.value_or(kLampRadius), 1e-4), {}};
       if (lamp.kind == Kind::spot) sphere.cone = cone_of(lamp);
-      const double candela = from_blender_ ? 1 / (4 * std::numbers::pi) : 1;  // of a watt
+      const double candela = from_blender_ ? 1 / (4 * std::numbers::pi) : 1;  // candela for each watt
       light.radiance = candela / (std::numbers::pi * sphere.radius * sphere.radius) * color;
       light.shape = sphere;
     }
@@ -153,7 +153,8 @@ class ForeignScene {
     scene_.lights.push_back(std::move(light));
   }
 
-  /// Blender writes its spots as (1 − blend) of the angle, and lets them fall over `blend` of the cosines.
+  /// Blender writes spots with an inner angle of (1 − blend) of the angle; their light falls off over `blend` of the
+  /// cosines.
   [[nodiscard]] Cone cone_of(const mesh::SceneParts::Lamp& lamp) {
     const glm::dvec3 direction = glm::normalize(lamp.direction);
     const double quarter = std::numbers::pi / 2;

@@ -8,7 +8,7 @@
 
 namespace penumbra::scenes {
 
-/// Is it one of the files that are read as scenes by Assimp: FBX and COLLADA?
+/// Returns whether Assimp reads the file as a scene: FBX and COLLADA.
 bool is_foreign_scene(const std::filesystem::path& file);
 
 /// Reads a scene: its meshes where its nodes place them, one object each, with the diffuse colour of its material and

@@ -203,7 +203,7 @@ ImportedMesh read_collada(const InputFile& input, const std::string& content, Sc
   return read_with_assimp(input, with_named_cameras(without_leading_blanks(content, file)), triangles, parts);
 }
 
-/// Formats that artists have, and that nothing on this system reads.
+/// File formats that artists use, and that no library on this system reads.
 void refuse_unknown(const std::string& extension, const std::string& file) {
   for (const auto& [known, name] :
        {std::pair(".usd", "USD"), {".usda", "USD"}, {".usdc", "USD"}, {".usdz", "USD"}, {".abc", "Alembic"}}) {

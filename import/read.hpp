@@ -11,7 +11,7 @@ namespace penumbra::mesh {
 /// libraries behind it. Throws InputError; std::bad_alloc. `with_places`: fills ImportedMesh::places for OBJ files.
 ImportedMesh read_mesh(const InputFile& input, bool with_places = false);
 
-/// Reads a file that Assimp reads, as the scene that it is: the mesh, and what there is beside it.
+/// Reads a file that Assimp reads, as a whole scene: the mesh, and the lights and cameras in the file.
 ImportedMesh read_scene_parts(const InputFile& input, SceneParts& parts);
 
 }  // namespace penumbra::mesh

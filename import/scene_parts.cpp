@@ -86,8 +86,8 @@ void add_lamps_and_lenses(const aiScene& scene, const std::map<std::string, glm:
 
 bool has_orthographic_camera(std::string_view content) {
   if (content.find("<orthographic") != std::string_view::npos) return true;  // COLLADA
-  // FBX, binary: name, type and two more texts, each with its length, then 'I' and the number. As text: the same,
-  // quoted.
+  // Binary FBX: name, type and two more texts, each preceded by its length, then 'I' and the number. FBX as text: the
+  // same values, quoted.
   constexpr std::string_view kKey = "CameraProjectionType";
   constexpr std::string_view kBinary("S\x04\0\0\0enumS\0\0\0\0S\0\0\0\0I\x01", 21);
   for (std::size_t at = content.find(kKey); at != std::string_view::npos; at = content.find(kKey, at + 1)) {

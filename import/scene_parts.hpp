@@ -24,7 +24,7 @@ struct SceneParts {
     std::string material;
     glm::dvec3 color{0.8}, emission{0};
     double opacity = 1;
-    bool has_picture = false, has_cut = false;  ///< an image of its colour, one of its opacity
+    bool has_picture = false, has_cut = false;  ///< a colour image; an opacity image
   };
   struct Lamp {
     enum class Kind { point, spot, sun, other };

@@ -14,7 +14,7 @@
 namespace penumbra::scenes {
 namespace {
 
-/// A circle, up to the rounding of a transform in single precision?
+/// Returns whether the shape is a circle, up to the rounding of a transform in single precision.
 bool is_round(const glm::dvec3& u, const glm::dvec3& v) {
   const double rounding = 8 * static_cast<double>(std::numeric_limits<float>::epsilon()) * glm::dot(u, u);
   return std::abs(glm::dot(u, v)) <= rounding && std::abs(glm::dot(u, u) - glm::dot(v, v)) <= rounding;

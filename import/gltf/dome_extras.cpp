@@ -16,7 +16,8 @@
 namespace penumbra::scenes {
 namespace {
 
-/// By how many degrees a dome is turned about `up` whose picture has +X's side at `right` (both unit, at right angles).
+/// Returns the rotation in degrees about `up` of a dome whose picture has +X's side at `right` (both unit, at right
+/// angles).
 double turn_of(const glm::dvec3& up, const glm::dvec3& right) {
   // Image of +X under the shortest rotation from +Y to `up`, as defined by scenes::Dome.
   glm::dvec3 start(1, 0, 0);

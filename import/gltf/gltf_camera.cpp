@@ -25,8 +25,8 @@ std::optional<glm::dvec2> shift_of(const tinygltf::Value& pair) {
   return glm::dvec2(pair.Get(0).GetNumberAsDouble(), pair.Get(1).GetNumberAsDouble());
 }
 
-/// The extras' "aperture" and "focusDistance" (ThinLens), for glTF knows no lenses; nothing where they are no two
-/// lengths above 0, and so another tool's.
+/// Reads the extras "aperture" and "focusDistance" (ThinLens), since glTF has no lenses; returns nullopt unless both
+/// are lengths above 0: other values belong to another tool.
 std::optional<ThinLens> lens_of(const tinygltf::Value& extras) {
   const auto length = [&](const char* key) {
     const tinygltf::Value& value = extras.Get(key);

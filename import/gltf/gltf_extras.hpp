@@ -39,8 +39,8 @@ std::optional<bool> flag_of_extras(const tinygltf::Value& extras, const char* ke
 std::optional<double> number_of_extras(const tinygltf::Value& extras, const char* key, const std::string& owner,
                                        Losses& losses);
 
-/// A list of `count` finite numbers from `least` up, under `key` of an object. Throws InputError, which begins with
-/// `place`, for anything else.
+/// Reads a list of `count` finite numbers, each at least `least`, under `key` of an object. Throws InputError, whose
+/// message begins with `place`, for anything else.
 std::vector<double> list_of_extras(const tinygltf::Value& object, const char* key, std::size_t count, double least,
                                    const std::string& place);
 

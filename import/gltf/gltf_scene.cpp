@@ -405,14 +405,14 @@ class GltfScene {
   const tinygltf::Model& model_;
   Purpose purpose_;
   bool needs_surface_, lenient_;
-  std::span<const std::optional<glm::dmat4>> unhidden_;  // empty, or of each node
+  std::span<const std::optional<glm::dmat4>> unhidden_;  // empty, or one for each node
   Scene scene_;
   std::vector<std::optional<glm::dmat4>> to_world_;  // for each node; nullopt for nodes outside of the scene
   Losses losses_;
   PunctualLights lamps_;
   SurfaceReader surfaces_;
   std::vector<glm::dvec2>* lightmap_ = nullptr;
-  Instances* instances_ = nullptr;  // null: each is a copy
+  Instances* instances_ = nullptr;  // null: each instance is a copy
   SharedPrimitives shared_{model_};
   PictureMeans means_{scene_.pictures};
   UniqueNames object_names_, camera_names_, light_names_;

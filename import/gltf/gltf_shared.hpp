@@ -27,28 +27,28 @@ class SharedPrimitives {
   using Number = std::pair<int, std::size_t>;  ///< of a mesh, and of one of its primitives
   struct Primitive {
     std::uint32_t mesh = 0;         ///< index into Instances::meshes
-    Object object;                  ///< without what a node says of it
-    std::vector<glm::dvec3> local;  ///< of what is measured alone (measures()), all of its vertices
+    Object object;                  ///< without the properties that a node sets
+    std::vector<glm::dvec3> local;  ///< if only measuring (measures()): all of its vertices
   };
 
   explicit SharedPrimitives(const tinygltf::Model& model) : model_(model) {}
 
-  /// From now on they are kept, in `to`; before, none is.
+  /// Stores primitives in `to` from now on; before this call none is stored.
   void keep_in(Instances& to, std::span<const PlacedNode> nodes);
-  /// Instances are only counted and measured.
+  /// Counts and measures instances without storing them.
   void measure(std::span<const PlacedNode> nodes) {
     measures_ = true;
     keep_in(own_, nodes);
   }
 
   [[nodiscard]] bool any() const { return to_ != nullptr && !to_->empty(); }
-  /// Nothing bends it, it shines nowhere, and it is there again.
+  /// Returns whether the primitive can be shared: not deformed, not emissive, and used again.
   [[nodiscard]] bool may_share(const tinygltf::Primitive& primitive, const tinygltf::Node& node,
                                const Look& look) const;
-  /// Nothing for one that has not come, and for a node that bends it.
+  /// Returns null for a primitive that was not added yet, and for a node that deforms it.
   [[nodiscard]] const Primitive* find(const Number& number, const tinygltf::Node& node) const;
   const Primitive& add(const Number& number, SharedMesh mesh, Object object, const std::vector<glm::dvec3>& local);
-  /// Once more, as the object of that number, after so many triangles of the scene's soup.
+  /// Adds an instance as the object of that number; `soup_before` triangles of the scene's soup come before it.
   void place(const Primitive& primitive, const PlacedNode& placed, std::size_t object, std::size_t soup_before);
 
  private:
@@ -56,7 +56,7 @@ class SharedPrimitives {
   Instances* to_ = nullptr;
   Instances own_;
   bool measures_ = false;
-  std::vector<std::uint64_t> uses_;  // of each mesh
+  std::vector<std::uint64_t> uses_;  // for each mesh
   std::map<Number, Primitive> all_;
 };
 

@@ -45,8 +45,8 @@ struct SoupEnd {
 /// vertices.
 SoupEnd append_triangles(Scene& scene, const PrimitiveVertices& vertices, std::vector<mesh::Triangle> triangles);
 
-/// Returns the triangles as they were modelled, for nodes that share them: otherwise as append_triangles adds them, so
-/// that a node's instance is what the node would add.
+/// Returns the triangles in the mesh's own space, for nodes that share them; apart from the space they are as
+/// append_triangles adds them, so that a node's instance equals the triangles that the node would add.
 SharedMesh shared_mesh(const PrimitiveVertices& vertices, std::vector<mesh::Triangle> triangles);
 
 /// Removes everything added since `end`.
