@@ -1,4 +1,4 @@
-// Meshes that a scene has several times: from instances to triangles.
+// Instances of meshes that a scene has several times: conversion to triangles.
 
 #include "scenes/instances.hpp"
 

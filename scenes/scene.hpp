@@ -134,8 +134,8 @@ struct AreaLight {
   bool visible = false;                         ///< for a dome: visible as the background of pictures
 };
 
-/// A lens that is a disk at right angles to the view axis, around the camera's eye: what is not at the focus distance
-/// along that axis is seen as a circle.
+/// A lens that is a disk at right angles to the view axis, around the camera's eye: a point that is not at the focus
+/// distance along that axis is seen as a circle.
 struct ThinLens {
   double radius = 0;          ///< above 0, in the scene's unit
   double focus_distance = 1;  ///< above 0, along the view axis
@@ -152,7 +152,7 @@ struct Camera {
   /// A shifted lens: position of the picture's centre, right of and above the point that the camera looks at, in
   /// picture heights. The view is shifted, not rotated.
   glm::dvec2 shift{0};
-  std::optional<ThinLens> lens = {};  ///< none: everything is sharp
+  std::optional<ThinLens> lens = {};  ///< nullopt: everything is sharp
 };
 
 /// Vertex attributes other than positions. Each list is empty, or as long as the soup's positions.

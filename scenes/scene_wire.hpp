@@ -13,7 +13,7 @@ void put_scene(mesh::WireWriter& to, const Scene& scene);
 /// one camera); throws mesh::WireError.
 Scene get_scene(mesh::WireReader& from);
 
-/// Writes the scene's instances, beside the scene; both must stay as they are until the writer's pieces have been used.
+/// Writes the scene's instances, after the scene; both must not change until the writer's pieces have been used.
 void put_instances(mesh::WireWriter& to, const Instances& instances);
 /// Reads the instances of `scene`, which was read before; checks everything that Instances requires, and throws
 /// mesh::WireError.

@@ -69,10 +69,10 @@ struct Camera {
   double vertical_fov = 45;           ///< degrees
   std::optional<double> height = {};  ///< of an orthographic camera: the picture's height, in place of an angle
   std::string name = "camera";
-  /// Radius of a thin lens: what is not at the focus distance along the view axis is blurred, at several view samples a
-  /// pixel. 0: everything is sharp.
+  /// Radius of a thin lens: surfaces away from the focus distance along the view axis are blurred, at several view
+  /// samples a pixel. 0: everything is sharp.
   double aperture = 0;
-  double focus_distance = 0;  ///< above 0 where there is an aperture
+  double focus_distance = 0;  ///< must be above 0 if there is an aperture
 };
 
 struct MeshOptions {

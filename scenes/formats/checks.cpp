@@ -27,7 +27,7 @@ double largest(const glm::dvec3& v) {
   return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
 }
 
-/// Instances whose boxes are within what coordinates may be; counts their triangles.
+/// Requires instances whose boxes are within the range of coordinates; counts their triangles.
 void check_instances(const Scene& scene, const Instances& instances, const std::string& where,
                      std::vector<std::size_t>& triangles_of) {
   std::vector<std::pair<glm::dvec3, glm::dvec3>> boxes;

@@ -20,7 +20,7 @@ void check_light(const AreaLight& light, const std::string& where);
 void check_camera(const Camera& camera, const std::string& where);
 
 /// Requires objects with triangles, finite positions, lights (if `needs_light`) with unique names, and cameras. Checks
-/// each light and camera, too. `instances`: what is not in the scene's soup.
+/// each light and camera, too. `instances`: triangles that are not in the scene's soup.
 void check_scene(const Scene& scene, const std::string& where, bool needs_light = true,
                  const Instances& instances = {});
 

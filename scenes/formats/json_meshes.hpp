@@ -28,7 +28,7 @@ struct SceneFile {
 /// regular file or is empty.
 SceneFile open_scene_file(const std::string& name, const Place& place, const ReadOptions& options);
 
-/// The picture of a dome, opened likewise; the file goes to `scene.sources`.
+/// Opens the picture of a dome in the same manner; the file goes to `scene.sources`.
 Texture read_sky(const std::string& name, const Place& place, const ReadOptions& options, Scene& scene);
 
 /// Reads, generates or lists the mesh, and transforms it to world space, once for each of its instances; with
@@ -42,8 +42,8 @@ std::vector<glm::dvec2> from_top(std::vector<glm::dvec2> places);
 /// Returns the coordinates of the vertices that drop_unused_vertices keeps.
 std::vector<glm::dvec2> places_of_kept(std::vector<glm::dvec2> places, const std::vector<std::uint32_t>& kept);
 
-/// Adds the mesh, as read_mesh returns it with ReadOptions::instances, as one that is there several times: instances of
-/// `object` after what is in the scene.
+/// Adds the mesh, as read_mesh returns it with ReadOptions::instances, as a shared mesh: instances of `object` after
+/// the triangles and instances already in the scene.
 void add_instances(const nlohmann::json& instances, const Place& place, mesh::TriangleSoup mesh, std::uint32_t object,
                    const Scene& scene, Instances& to);
 

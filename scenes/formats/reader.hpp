@@ -28,25 +28,26 @@ using mesh::kNoPlace;
 struct Instances;
 
 struct ReadOptions {
-  bool allow_outside = false;  ///< may the scene name files outside its folder?
-  bool needs_light = true;     ///< has a scene without a light a studio put around it (JSON: is it an error)?
-  bool needs_surface = true;   ///< read_gltf: is a file without triangles, such as one of lamps alone, an error?
-  std::optional<double> lamp_radius = {};  ///< glTF: of point and spot lamps whose file says none; above 0
-  std::optional<double> sun_angle = {};    ///< glTF: of sun lamps whose file says none, degrees; 0 ≤ angle < 180
-  /// glTF: by what lamps' intensities are divided; above 0. Nothing: 683 in files of Blender's exporter (before 3.4.36:
-  /// 4π, of suns 1), else 1.
+  bool allow_outside = false;  ///< the scene may name files outside its folder
+  bool needs_light = true;     ///< a scene without a light gets a studio (JSON: is an error)
+  bool needs_surface = true;   ///< read_gltf: a file without triangles, such as one of lamps alone, is an error
+  std::optional<double> lamp_radius = {};  ///< glTF: radius of point and spot lamps without one in the file; above 0
+  std::optional<double> sun_angle = {};  ///< glTF: angle of sun lamps without one in the file, degrees; 0 ≤ angle < 180
+  /// glTF: divisor of lamps' intensities; above 0. nullopt: 683 in files of Blender's exporter (before 3.4.36: 4π, for
+  /// suns 1), else 1.
   std::optional<double> lumens_per_watt = {};
   bool lenient = false;             ///< glTF: leaves out unsupported features that would change shadows, with a warning
   std::optional<double> time = {};  ///< glTF: time of the animations, in seconds; nullopt: at rest
   /// glTF: the animations that are played, by name or index from 0; empty: all that can be played together.
   std::vector<std::string> clips = {};
   StudioWish studio = {};  ///< studio for scenes that need a light
-  /// For a scene that is a file a frame: the first file. A studio is built around it, and the origin is its. Null: the
-  /// scene itself, or what it is at rest.
+  /// For a scene that is one file per frame: the first file. A studio is built around this file's scene, and its origin
+  /// is used. Null: the scene itself, or the scene at rest.
   const Scene* rest = nullptr;
   /// Receives the lightmap coordinates of glTF files, OBJ files and quads of JSON; null: they are not read.
   LightmapPlaces* lightmap = nullptr;
-  /// Gets what is there several times (scenes/instances.hpp); none: it is copied into the scene's soup.
+  /// Receives meshes that the scene has several times (scenes/instances.hpp); null: they are copied into the scene's
+  /// soup.
   Instances* instances = nullptr;
 };
 
