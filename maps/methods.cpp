@@ -30,13 +30,13 @@ Given given_with(Given given, const visibility::MethodOptions& options) {
   return given;
 }
 
-/// A method's own options: all but the one that says how many suns a dome is.
+/// Returns a method's own options: all except the number of suns for a dome.
 visibility::MethodOptions own_options(visibility::MethodOptions options) {
   options.erase(kDomeSuns.name());
   return options;
 }
 
-/// With all lights that a method of this family is given.
+/// Completes a description with all lights that a method of this family can evaluate.
 visibility::MethodDescription described(visibility::MethodDescription description, Given given) {
   description = for_every_light(std::move(description), given);
   description.texel_widths = texel_widths;
@@ -44,7 +44,7 @@ visibility::MethodDescription described(visibility::MethodDescription descriptio
   return given.suns ? with_dome_suns(std::move(description)) : description;
 }
 
-/// A method of this family, for every light that `kGiven` names.
+/// Row of a method of this family, for every light that `kGiven` names.
 template <auto kDescribe, auto kMake, Given kGiven = Given{}>
 engines::MethodRow row() {
   engines::MethodRow row = engines::on_device<kDescribe, kMake>();

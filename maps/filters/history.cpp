@@ -1,8 +1,8 @@
 // Scherzer, Jeschke and Wimmer 2007, "Pixel-correct shadow maps with temporal reprojection and shadow test confidence",
-// as the course notes of Eisemann et al. (2009, section 3.2.6) tell it: each frame has a map whose texels lie
-// elsewhere, and V of a pixel is mixed from this frame's and what it had, by the confidence 1 - 2 max |place - texel's
-// centre|. Departure: the camera is still, so a pixel finds what it had in its own place, and no frame depends on
-// another picture.
+// as described in the course notes of Eisemann et al. (2009, section 3.2.6): each frame has a map with displaced
+// texels, and V of a pixel is mixed from this frame's V and the V stored before, by the confidence 1 - 2 max |position
+// - texel's centre|. Departure: the camera is still, so a pixel finds its stored V in its own place, and no frame
+// depends on another picture.
 
 #include "maps/filters/history.hpp"
 
@@ -21,7 +21,7 @@
 namespace penumbra::maps {
 namespace {
 
-/// The digits of i in this base, mirrored at the point.
+/// Radical inverse: the digits of i in this base, mirrored at the point.
 double mirrored(std::uint32_t i, std::uint32_t base) {
   double value = 0, digit = 1;
   for (; i != 0; i /= base) value += (digit /= base) * (i % base);
@@ -69,10 +69,10 @@ class History final : public visibility::Method {
   const visibility::SceneFloats* scene_ = nullptr;
   const visibility::Light* light_ = nullptr;
   const visibility::ViewSamples* samples_ = nullptr;
-  std::vector<float> mixed_;  ///< of the tile last evaluated
+  std::vector<float> mixed_;  ///< for the tile last evaluated
 };
 
-/// How near to its texel's centre a point is seen: 1 in it, 0 on the texel's border and where no face looks.
+/// Confidence of a point: 1 at the centre of its texel, 0 on the texel's border and in directions without a face.
 double confidence(const std::vector<Face>& faces, const glm::dvec3& d, std::uint32_t size) {
   for (const Face& face : faces) {
     const double w = glm::dot(d, face.w);

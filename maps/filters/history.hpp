@@ -9,13 +9,12 @@
 
 namespace penumbra::maps {
 
-/// Where the texels of a sequence's frame lie: by what share of a texel they are moved, on either axis in [−½, ½).
-/// Frame 0: not at all.
+/// Displacement of the texels of a sequence's frame, in texels, on either axis in [−½, ½). Frame 0: none.
 glm::dvec2 jitter_of(std::uint32_t frame);
 
-/// Scherzer, Jeschke and Wimmer 2007: what so many pictures of a still camera make of a hard shadow. `method` has a map
-/// of `size` texels a side from the light's centre, moved by *jitter of a texel when a light is prepared; `jitter` must
-/// outlive it.
+/// Scherzer, Jeschke and Wimmer 2007: hard shadows accumulated over several pictures of a still camera. `method` has a
+/// map of `size` texels a side from the light's centre, displaced by *jitter of a texel when a light is prepared;
+/// `jitter` must outlive the method.
 struct HistoryOptions {
   std::uint32_t frames = 1, size = 0;
 };

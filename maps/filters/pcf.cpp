@@ -58,7 +58,7 @@ visibility::MeshVerdict pcf_verdict(const mesh::Diagnosis& mesh) {
   return judge_for_maps("a hard shadow of the light's centre, blurred by a window that knows no light", mesh);
 }
 
-/// Throws UsageError for options that mean nothing together.
+/// Throws UsageError for options that exclude one another.
 void refuse_together(const visibility::MethodDescription& method, const visibility::ParsedOptions& options,
                      const gpu::PcfPush& push) {
   if (push.weights == gpu::kBilinear && push.taps != 0) {

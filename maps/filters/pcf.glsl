@@ -12,7 +12,7 @@ layout(scalar, binding = FIRST_PRODUCT) readonly buffer Ids { uint ids[]; };
 layout(scalar, binding = FIRST_PRODUCT + 1) readonly buffer Objects { uint object_of[]; };
 #endif
 
-// The receiver in texels of its face, and what all of its taps share.
+// The receiver in texels of its face, and the values that all of its taps share.
 struct PcfAsking {
   vec3 m;
   float h;
@@ -21,8 +21,8 @@ struct PcfAsking {
   uint number;  // index of the face, with FITTED_FACES
 };
 
-// The texel so many texels beside the receiver's own. False behind the light's plane, where a hemicube's window may reach
-// and nothing is between light and receiver.
+// Fetches the texel at `offset` texels from the receiver's own. Returns false behind the light's plane, where a
+// hemicube's window may reach and no surface is between light and receiver.
 bool tap_beside(LightView view, PcfAsking asking, vec2 offset, out Tap tap) {
   const Tap own_tap = asking.own_tap;
 #ifdef FITTED_FACES
@@ -37,7 +37,8 @@ bool tap_beside(LightView view, PcfAsking asking, vec2 offset, out Tap tap) {
   return true;
 }
 
-// Is the texel out of the receiver's way? With OBJECT_IDS no object shades itself (Brabec and Seidel 2002).
+// Returns whether the texel does not shade the receiver. With OBJECT_IDS no object shades itself (Brabec and Seidel
+// 2002).
 bool is_lit(LightView view, PcfAsking asking, vec2 offset) {
   Tap tap;
   if (!tap_beside(view, asking, offset, tap)) return true;
@@ -75,8 +76,8 @@ float spread_taps(LightView view, PcfAsking asking, vec3 d) {
   return lit / total;
 }
 
-// Pagot et al. 2004: of a window's texels no more than those of the least and the greatest depth are compared, and of three
-// the one nearest to the middle between these.
+// Pagot et al. 2004: compares only the texels of the least and the greatest depth in a window, and as a third the texel
+// nearest to the middle between these depths.
 float of_kept(LightView view, PcfAsking asking, vec2 first) {
   vec2 at[3] = vec2[3](first, first, first);
   float least = 4.0 * view.far, greatest = -1.0, off = 4.0 * view.far;
@@ -91,7 +92,7 @@ float of_kept(LightView view, PcfAsking asking, vec2 first) {
         least = min(least, depth);
         greatest = max(greatest, depth);
       } else {
-        // Where there are two depths both are as near: the lesser.
+        // Two depths that are equally near to the middle: the lesser one counts.
         const float middle = 0.5 * (least + greatest);
         const float beside = abs(depth - middle) + (depth > middle ? view.far / 1048576.0 : 0.0);
         if (beside < off) at[2] = offset;
@@ -104,8 +105,8 @@ float of_kept(LightView view, PcfAsking asking, vec2 first) {
   return lit / float(own.keep);
 }
 
-// Luft and Deussen 2006: the window's mean depth, no farther than the receiver's, and a test that is smooth. The receiver
-// is dark where it lies `softness` of its own depth behind that.
+// Luft and Deussen 2006: the window's mean depth, no farther than the receiver's, and a smooth test. The receiver is
+// dark where it lies `softness` of its own depth behind the mean depth.
 float of_mean_depth(LightView view, PcfAsking asking, vec2 first) {
   const float depth = asking.own_tap.along;
   float sum = 0.0, total = 0.0;

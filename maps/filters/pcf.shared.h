@@ -8,17 +8,17 @@ namespace penumbra::maps::gpu {
 // PcfPush::weights.
 const uint kEqual = 0, kGaussian = 1, kBilinear = 2;
 
-// PcfPush::test.
+// Values of PcfPush::test.
 const uint kByDepth = 0, kByObject = 1, kByMeanDepth = 2;
 
 struct PcfPush {
   uint window;     // texels on a side
   uint weights;    // kEqual ...
-  uint taps;       // spread over the window, turned at every receiver; 0: all of its texels
-  uint stages;     // of taps; 2: the outermost decide if they agree
+  uint taps;       // number of taps spread over the window, rotated at every receiver; 0: all of its texels
+  uint stages;     // stages of taps; 2: the outermost taps decide if they agree
   uint test;       // kByDepth ...
-  uint keep;       // so many texels of the window, those of extreme depths, are compared; 0: all
-  float softness;  // kByMeanDepth: how far behind the mean depth it is dark, as a share of the receiver's depth
+  uint keep;       // number of texels of extreme depths in the window that are compared; 0: all
+  float softness;  // kByMeanDepth: distance behind the mean depth at which the receiver is dark, over its depth
 };
 
 #ifdef __cplusplus

@@ -5,11 +5,12 @@
 #include "maps/host/look_up.glsl"
 
 layout(scalar, binding = 4) readonly buffer Ids { uint ids[]; };
-layout(scalar, binding = 5) readonly buffer Numbers { uint number_of[]; };  // of the plane, or of the object
+layout(scalar, binding = 5) readonly buffer Numbers { uint number_of[]; };  // number of the plane, or of the object
 layout(constant_id = 0) const uint kByObject = 0;
 
-// Hourcade and Nicolas 1985: lit is what the map has there, whatever its depth. Here it is compared by planes, so that the
-// triangles of one polygon are one, or by objects; and what casts no shadow is in no map: its depth is compared.
+// Hourcade and Nicolas 1985: a surface is lit if the map has the surface's number, whatever the depth. Here numbers are
+// those of planes, so that the triangles of one polygon share one, or of objects; surfaces that cast no shadow are in
+// no map: their depth is compared.
 float visibility_of(LightView view, vec3 d, vec3 m) {
   if (receiver_plane == kNoId) return light_point_is_seen(view, 0, d, m) ? 1.0 : 0.0;
   if (!(dot(m, d) > 0.0)) return 0.0;

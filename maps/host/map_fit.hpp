@@ -43,8 +43,8 @@ struct FitOptions {
   /// `body_reach`; and `snap` keeps texels at the same positions for any body.
   glm::dvec2 body_reach{0};
   bool snap = false;
-  bool hemicube = false;  ///< five faces, however narrow a window would do
-  glm::dvec2 jitter{0};   ///< windows are moved by so many of their texels, up to a half: what they hold stays in them
+  bool hemicube = false;  ///< five faces, even if a window would suffice
+  glm::dvec2 jitter{0};   ///< displacement of windows in their texels, up to a half: the margin of their contents
 };
 
 /// Returns FitOptions::reach of a light so large that every caster shades something.

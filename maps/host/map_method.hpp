@@ -137,9 +137,9 @@ struct MapRecipe {
   std::uint32_t packet_width = 1, packet_height = 1;
   /// Number of parts of the light along each axis, each with a map from its own centre; V is their mean.
   std::uint32_t sub_lights = 1;
-  /// By how many of its texels the map's window is moved (FitOptions::jitter) whenever maps are made. Null: it stays.
+  /// Displacement of the map's window in texels (FitOptions::jitter) whenever maps are made. Null: none.
   const glm::dvec2* jitter = nullptr;
-  /// Beside the second one, which the option `depth` may ask for.
+  /// Layers of the map in addition to the second one, which the option `depth` may request.
   MapLayers layers{};
   /// Push constants of the shader after LookupPush: `push_words` words, for a light.
   std::uint32_t push_words = 0;

@@ -176,7 +176,7 @@ PlaneDepth plane_depth(Tap tap, vec3 m, float h, float limit, float bias) {
   return PlaneDepth(plane, forgiven);
 }
 
-// Is what the map has nearer to the light than the receiver's plane?
+// Returns whether the map's surface is nearer to the light than the receiver's plane.
 bool blocks(Tap tap, vec3 m, float h, float limit, float bias) {
   const PlaneDepth plane = plane_depth(tap, m, h, limit, bias);
   return is_before(tap, plane.depth, plane.forgiven);

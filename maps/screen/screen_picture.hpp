@@ -26,7 +26,7 @@ class ScreenPicture {
     const std::size_t column = pixel % width_, row = pixel / width_;
     return glm::dvec2(column, row) + 0.5;
   }
-  /// The pixel at a place; nullopt beside the picture, and where the picture shows background.
+  /// Returns the pixel at a place; nullopt outside the picture, and where the picture shows background.
   [[nodiscard]] std::optional<std::size_t> surface_at(const glm::dvec2& place) const;
   [[nodiscard]] bool holds(const glm::dvec2& place) const {
     return place.x >= 0 && place.y >= 0 && place.x < width_ && place.y < height_;
