@@ -14,8 +14,8 @@
 namespace penumbra::visibility {
 namespace {
 
-/// One of the permutations of 0 … count − 1, by its key: steps that can be undone, on as many bits as count has, until
-/// what comes out is below it.
+/// Permutes 0 … count − 1 by a key: applies invertible steps on as many bits as count has, until the result is below
+/// count.
 std::uint32_t permuted(std::uint32_t i, std::uint32_t count, std::uint32_t key) {
   const std::uint32_t mask = std::bit_ceil(count) - 1;
   const int half = std::max(static_cast<int>(std::bit_width(mask)) / 2, 1);
@@ -31,7 +31,7 @@ std::uint32_t permuted(std::uint32_t i, std::uint32_t count, std::uint32_t key) 
   return i;
 }
 
-/// From −1 … 1 along both axes; rings of the square become circles.
+/// Maps the unit square to the disk; rings of the square become circles.
 glm::dvec2 on_disk(const glm::dvec2& square) {
   const double a = 2 * square.x - 1, b = 2 * square.y - 1;
   if (a == 0 && b == 0) return glm::dvec2(0);
@@ -41,7 +41,8 @@ glm::dvec2 on_disk(const glm::dvec2& square) {
   return {radius * std::cos(angle), radius * std::sin(angle)};
 }
 
-/// The largest divisor that is no larger than the root: moments are so many columns of cells a view sample.
+/// Returns the largest divisor that is no larger than the root: the number of columns of cells into which moments
+/// divide a view sample.
 std::uint32_t columns_of(std::uint32_t moments) {
   std::uint32_t columns = 1;
   for (std::uint32_t i = 2; i * i <= moments; ++i) {

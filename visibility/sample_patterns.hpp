@@ -23,7 +23,7 @@ double row_shift_of(std::uint32_t row);
 
 inline constexpr std::uint32_t kMaxLightSamples = 4096;
 
-/// SplitMix64's finaliser: every input bit reaches every output bit.
+/// SplitMix64's finaliser: every input bit affects every output bit.
 constexpr std::uint32_t hash(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
   std::uint64_t x = (static_cast<std::uint64_t>(a) << 32 | b) + 0x9e3779b97f4a7c15ull * (c + 1ull);
   x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9ull;
@@ -31,7 +31,7 @@ constexpr std::uint32_t hash(std::uint32_t a, std::uint32_t b, std::uint32_t c) 
   return static_cast<std::uint32_t>((x ^ (x >> 31)) >> 32);
 }
 
-/// Exact, in [0, 1).
+/// Converts to double exactly, in [0, 1).
 constexpr double to_unit(std::uint32_t bits) {
   return static_cast<double>(bits) * 0x1p-32;
 }

@@ -31,12 +31,12 @@ struct PinholeCamera {
   double tan_half_fov = 1;
   std::optional<double> half_height = {};  ///< of an orthographic camera, in place of the field of view
   std::uint32_t width = 0, height = 0;
-  std::optional<Lens> lens = {};  ///< nothing: a pinhole
+  std::optional<Lens> lens = {};  ///< nullopt: a pinhole
 
   /// Return the factors of `right` and `up` in a ray, without that of the field of view.
   [[nodiscard]] double across(std::uint32_t x) const;
   [[nodiscard]] double upward(std::uint32_t y) const;
-  /// Of a perspective camera; from its eye, whatever the lens.
+  /// Returns the direction of a perspective camera's ray from its eye, whatever the lens.
   [[nodiscard]] glm::dvec3 direction(std::uint32_t x, std::uint32_t y) const;
   [[nodiscard]] ViewRay ray(std::uint32_t x, std::uint32_t y) const;
 

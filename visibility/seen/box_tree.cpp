@@ -28,7 +28,7 @@ std::uint32_t BoxTree::build(std::span<const MiddleBox> boxes, std::uint32_t fir
     lower = glm::min(lower, middle - half), upper = glm::max(upper, middle + half);
     least = glm::min(least, middle), greatest = glm::max(greatest, middle);
   }
-  // Rounded outward: a sum and a difference of two, each off by 2⁻⁵³ of itself.
+  // Half sides are rounded outward: a sum and a difference of two numbers, each with a relative error of 2⁻⁵³.
   const glm::dvec3 room = 0x1p-50 * (glm::abs(lower) + glm::abs(upper));
   nodes_[number].box = {0.5 * (lower + upper), 0.5 * (upper - lower) + room};
   if (count <= most) {

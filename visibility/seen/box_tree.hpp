@@ -10,22 +10,22 @@
 
 namespace penumbra::visibility {
 
-/// A box along the axes, by its middle and half its sides. In double: meshes lie in spaces of their own.
+/// An axis-aligned box, by its middle and half its sides; in double, since meshes lie in spaces of their own.
 struct MiddleBox {
   glm::dvec3 middle{0}, half{0};
 };
 
-/// A hierarchy over boxes, two children a node: halves along the longest side of the boxes' middles.
+/// A hierarchy over boxes, two children a node: each node is halved along the longest extent of its boxes' middles.
 class BoxTree {
  public:
   struct Node {
     MiddleBox box;
-    std::uint32_t first = 0;  ///< of a leaf: its items begin there in items(); else the second child, the first follows
-    std::uint32_t count = 0;  ///< items of a leaf; 0: no leaf
+    std::uint32_t first = 0;  ///< leaf: index into items(); inner node: second child (the first one follows the node)
+    std::uint32_t count = 0;  ///< number of items of a leaf; 0: inner node
   };
 
   BoxTree() = default;
-  /// Leaves have up to `most` of the boxes.
+  /// Builds a tree whose leaves have up to `most` boxes.
   BoxTree(std::span<const MiddleBox> boxes, std::uint32_t most);
 
   [[nodiscard]] bool empty() const { return nodes_.empty(); }
@@ -34,13 +34,13 @@ class BoxTree {
   [[nodiscard]] std::span<const std::uint32_t> items(const Node& leaf) const {
     return std::span(items_).subspan(leaf.first, leaf.count);
   }
-  /// Half of the mean leaf's sides, added up.
+  /// Returns half of the sum of the mean leaf's sides.
   [[nodiscard]] double leaf_size() const;
   [[nodiscard]] std::uint64_t bytes() const {
     return nodes_.capacity() * sizeof(Node) + items_.capacity() * sizeof(std::uint32_t);
   }
 
-  /// Calls take(items) for each leaf that is reached: touches(box) holds for it and all nodes above it.
+  /// Calls take(items) for each leaf for which touches(box) holds, for the leaf and for all nodes above it.
   template <typename Touches, typename Take>
   void walk(const Touches& touches, const Take& take) const;
 
@@ -54,7 +54,7 @@ class BoxTree {
 template <typename Touches, typename Take>
 void BoxTree::walk(const Touches& touches, const Take& take) const {
   if (nodes_.empty()) return;
-  std::array<std::uint32_t, 64> stack;  // halves: as deep as a number of boxes has bits
+  std::array<std::uint32_t, 64> stack;  // nodes are halved: depth ≤ bits of the number of boxes
   std::uint32_t top = 0;
   stack[top++] = 0;
   while (top > 0) {

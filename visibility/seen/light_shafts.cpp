@@ -16,8 +16,8 @@
 namespace penumbra::visibility {
 namespace {
 
-/// Stored light points are within this share of the largest coordinate, or of a direction's length, of a hull of what
-/// is stored (visibility/alpha/alpha_reach.cpp says why); twice that.
+/// Margin of a hull: stored light points are within this share of the largest coordinate, or of a direction's length,
+/// of the hull of the stored corners (derivation: visibility/alpha/alpha_reach.cpp), doubled.
 constexpr double kRoom = 0x1p-19;
 
 /// A point in a projection along an axis.
@@ -25,12 +25,12 @@ struct Flat {
   double a, b;
 };
 
-/// Above 0: the way from o by x to y turns left.
+/// Returns a value above 0 if the path from o over x to y turns left.
 double turn(const Flat& o, const Flat& x, const Flat& y) {
   return (x.a - o.a) * (y.b - o.b) - (x.b - o.b) * (y.a - o.a);
 }
 
-/// The hull's corners, counter-clockwise (Andrew 1979). What is on a line with others may stay.
+/// Returns the hull's corners, counter-clockwise (Andrew 1979). Collinear corners may stay.
 std::vector<Flat> convex_hull(std::vector<Flat> points) {
   std::ranges::sort(points, [](const Flat& x, const Flat& y) { return x.a != y.a ? x.a < y.a : x.b < y.b; });
   const auto same = [](const Flat& x, const Flat& y) { return x.a == y.a && x.b == y.b; };
@@ -65,7 +65,7 @@ LightHull hull_of(std::span<const Light> pieces) {
       hull.in_order = true;
       size = 1 + light.sun->tangent;
     } else if (is_body(light.kind)) {
-      // Corners of a square around the disk that a view sample sees are up to √2 radii from the middle.
+      // A square around the disk that a view sample sees has corners up to √2 radii from the middle.
       const double side = std::numbers::sqrt2 * light.radius;
       for (int corner = 0; corner < 8; ++corner) {
         hull.corners.push_back(center + side * glm::dvec3((corner & 1) != 0 ? 1 : -1, (corner & 2) != 0 ? 1 : -1,
@@ -85,7 +85,7 @@ LightHull hull_of(std::span<const Light> pieces) {
   hull.room = kRoom * size;
   if (hull.corners.size() <= 8) return hull;
   hull.in_order = false;
-  glm::dvec3 lower(hull.corners.front()), upper = lower;  // of many pieces, their box
+  glm::dvec3 lower(hull.corners.front()), upper = lower;  // bounding box of all pieces
   for (const glm::dvec3& corner : hull.corners) lower = glm::min(lower, corner), upper = glm::max(upper, corner);
   hull.corners.clear();
   for (int corner = 0; corner < 8; ++corner) {
@@ -125,7 +125,7 @@ LightShaft::LightShaft(const glm::dvec3& lower, const glm::dvec3& upper, const L
   }
 }
 
-/// As far out as any corner: so it is right whatever the normal is.
+/// Moves the plane out to the farthest corner, so that it is valid whatever the rounding of the normal.
 void LightShaft::add_plane(const glm::dvec3& normal) {
   double most = -std::numeric_limits<double>::infinity();
   for (const glm::dvec3& corner : corners_) most = std::max(most, glm::dot(normal, corner));
@@ -141,7 +141,7 @@ void LightShaft::add_planes_along(int axis) {
     const Flat &from = hull[i], &to = hull[i + 1 < hull.size() ? i + 1 : 0];
     glm::dvec3 normal(0);
     normal[a] = to.b - from.b, normal[b] = from.a - to.a;     // outward
-    if (normal[a] != 0 && normal[b] != 0) add_plane(normal);  // others are sides of the box around all
+    if (normal[a] != 0 && normal[b] != 0) add_plane(normal);  // other planes are sides of the common bounding box
   }
 }
 

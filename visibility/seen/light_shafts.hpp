@@ -12,33 +12,34 @@
 
 namespace penumbra::visibility {
 
-/// Places between which ways go: corners whose hull has all of a light's points, or directions to them.
+/// End points of segments to a light: corners whose hull has all of a light's points, or directions to them.
 struct LightHull {
-  bool directions = false;  ///< `corners` are directions, of ways without end
+  bool directions = false;  ///< `corners` are directions of rays without end
   std::vector<glm::dvec3> corners;
-  bool in_order = false;  ///< corners go around the light
-  /// Where ways end on one side of a plane alone: its normal, on that side, and a point of it.
+  bool in_order = false;  ///< corners are in order around the light
+  /// For a light that emits to one side of a plane: the plane's normal, to that side, and a point of the plane.
   struct Front {
     glm::dvec3 normal, at;
   };
   std::optional<Front> front = {};
-  double room = 0;  ///< what light points may be beside it
+  double room = 0;  ///< distance by which light points may be outside the hull
 };
-/// Of the pieces of one light, which are no domes.
+/// Returns the hull of the pieces of one light, which are no domes.
 LightHull hull_of(std::span<const Light> pieces);
 
-/// All ways from the points of a box to a light: the planes that bound these and the light's corners as seen along each
-/// axis (Haines and Wallace 1991), and those that run along the sides of the light. Errs by what is near and on no way.
+/// All segments from the points of a box to a light: bounded by the planes around the box and the light's corners as
+/// seen along each axis (Haines and Wallace 1991), and by planes along the sides of the light. Conservative: also holds
+/// surfaces that are near, and on no segment.
 class LightShaft {
  public:
-  /// `reach`: no way of a direction is followed farther, along any axis.
+  /// `reach`: length along any axis up to which rays of directions are followed.
   LightShaft(const glm::dvec3& lower, const glm::dvec3& upper, const LightHull& light, double reach);
 
   [[nodiscard]] bool touches(const MiddleBox& box) const;
   [[nodiscard]] bool touches(const std::array<glm::vec3, 3>& triangle) const;
 
  private:
-  /// Nothing of the shaft is beyond normal · x = most.
+  /// The shaft has no point with normal · x > most.
   struct Plane {
     glm::dvec3 normal{0};
     double most = 0;

@@ -25,13 +25,13 @@ BoxTree tree_of(const mesh::TriangleSoup& soup) {
   return {boxes, kTrianglesOfLeaf};
 }
 
-/// The largest coordinate along an axis, or the least (`sign` −1), of any position, if it is beyond `best`.
+/// Finds the largest coordinate along an axis, or the least (`sign` −1), of all positions beyond `best`.
 class Extreme {
  public:
   Extreme(int axis, double sign) : axis_(axis), sign_(sign) {}
 
   void add(double coordinate) { best_ = std::max(best_, sign_ * coordinate); }
-  /// Only leaves that may hold a better one are looked at.
+  /// Visits only leaves that may hold a better coordinate.
   void add(const PlacedMeshes::Part& part, const scenes::Placement& placement) {
     const auto may_be_beyond = [&](const MiddleBox& own) {
       const MiddleBox box = part.box(own);
@@ -70,7 +70,7 @@ PlacedMeshes::PlacedMeshes(const scenes::Scene& scene, const scenes::Instances& 
     parts_.push_back(part);
     triangles_ += soup.triangles.size();
   }
-  // In the world first: from there the origin is found.
+  // Measures in the world first: the origin follows from this.
   for (Part& part : parts_) {
     const MiddleBox& root = part.tree->root().box;
     part.room = 0x1p-46 * (sum_of_sides(part.wide * (glm::abs(root.middle) + root.half)) + sum_of_sides(part.offset));
@@ -91,7 +91,7 @@ void PlacedMeshes::measure() {
     lower_[axis] = least.value();
     upper_[axis] = greatest.value();
   }
-  origin_ = scene_.origin.value_or(0.5 * lower_ + 0.5 * upper_);  // as make_scene_floats has it
+  origin_ = scene_.origin.value_or(0.5 * lower_ + 0.5 * upper_);  // as in make_scene_floats
 }
 
 void PlacedMeshes::place() {
@@ -116,7 +116,7 @@ std::array<glm::vec3, 3> PlacedMeshes::corners(const Part& part, std::uint32_t t
   for (std::size_t i = 0; i < 3; ++i) {
     const glm::dvec3& own = part.soup->positions[of[i]];
     const glm::dvec3 world = part.instance != nullptr ? part.instance->placement(own) : own;
-    corners[i] = glm::vec3(world - origin_) + 0.0f;  // as make_scene_floats has it
+    corners[i] = glm::vec3(world - origin_) + 0.0f;  // as in make_scene_floats
   }
   const auto put_in_order = [](glm::vec3& a, glm::vec3& b) {
     const bool less = b.x != a.x ? b.x < a.x : b.y != a.y ? b.y < a.y : b.z < a.z;

@@ -13,25 +13,25 @@
 
 namespace penumbra::visibility {
 
-/// The sum of a vector's components without their signs.
+/// Returns the sum of the absolute values of a vector's components.
 inline double sum_of_sides(const glm::dvec3& x) {
   const glm::dvec3 wide = glm::abs(x);
   return wide.x + wide.y + wide.z;
 }
 
-/// A scene's meshes where they are, without copies of them: a tree over each mesh's triangles in its own space, and one
-/// over where instances are. All that comes out is relative to the scene's origin.
+/// A scene's meshes in the world, without copies of instances: a tree over each mesh's triangles in its own space, and
+/// one over all instances. All results are relative to the scene's origin.
 class PlacedMeshes {
  public:
-  /// An instance, or all that the scene has without instances.
+  /// An instance, or all triangles of the scene that are in no instance.
   struct Part {
     const mesh::TriangleSoup* soup = nullptr;
     const BoxTree* tree = nullptr;
-    const scenes::Instance* instance = nullptr;  ///< nothing: the scene's soup, which is in the world
-    std::uint64_t first_bit = 0;                 ///< its first triangle among all parts', one after the other
-    glm::dmat3 linear{1}, wide{1};               ///< from a box's middle and half sides to those in the world
+    const scenes::Instance* instance = nullptr;  ///< null: the scene's soup, which is in the world
+    std::uint64_t first_bit = 0;                 ///< number of its first triangle, counted over all parts in order
+    glm::dmat3 linear{1}, wide{1};               ///< transform a box's middle and half sides to the world
     glm::dvec3 offset{0};
-    /// What positions are off by in double and in float32, over what boxes are.
+    /// Largest rounding error of positions, in double and in float32, by which boxes are enlarged.
     double room = 0;
 
     [[nodiscard]] MiddleBox box(const MiddleBox& own) const {
@@ -39,7 +39,7 @@ class PlacedMeshes {
     }
   };
 
-  /// Both must outlive it.
+  /// Both arguments must outlive this object.
   PlacedMeshes(const scenes::Scene& scene, const scenes::Instances& instances);
   PlacedMeshes(const PlacedMeshes&) = delete;
   PlacedMeshes& operator=(const PlacedMeshes&) = delete;
@@ -49,19 +49,20 @@ class PlacedMeshes {
   [[nodiscard]] std::span<const Part> parts() const { return parts_; }
   [[nodiscard]] const BoxTree& tree() const { return tree_; }  ///< over parts
   [[nodiscard]] std::uint64_t triangles() const { return triangles_; }
-  /// Of all positions, in the world and relative to the origin: those of the scene in which each instance is a copy.
+  /// Origin and bounds of all positions, in the world and relative to the origin, as in the scene with instances as
+  /// copies.
   [[nodiscard]] const glm::dvec3& origin() const { return origin_; }
   [[nodiscard]] const glm::dvec3& lower() const { return lower_; }
   [[nodiscard]] const glm::dvec3& upper() const { return upper_; }
-  /// How large triangles are that meshes are made of, about.
+  /// Returns the approximate size of the meshes' triangles.
   [[nodiscard]] double grain() const { return grain_; }
 
-  /// A triangle's scene floats, in the order of SceneFloats::triangles.
+  /// Returns a triangle's scene floats, in the order of SceneFloats::triangles.
   [[nodiscard]] std::array<glm::vec3, 3> corners(const Part& part, std::uint32_t triangle) const;
   [[nodiscard]] std::uint32_t object(const Part& part, std::uint32_t triangle) const {
     return part.instance != nullptr ? part.instance->object : part.soup->object[triangle];
   }
-  /// What trees take.
+  /// Returns the memory of the trees.
   [[nodiscard]] std::uint64_t bytes() const;
 
  private:
@@ -70,8 +71,8 @@ class PlacedMeshes {
 
   const scenes::Scene& scene_;
   const scenes::Instances& instances_;
-  BoxTree own_;                 // of the scene's soup
-  std::vector<BoxTree> trees_;  // of each mesh
+  BoxTree own_;                 // over the scene's soup
+  std::vector<BoxTree> trees_;  // for each mesh
   std::vector<Part> parts_;
   BoxTree tree_;
   std::uint64_t triangles_ = 0;

@@ -18,9 +18,9 @@
 namespace penumbra::visibility {
 namespace {
 
-constexpr std::uint32_t kBlock = 16;  // pixels a side, whose points are sorted into clusters together
+constexpr std::uint32_t kBlock = 16;  // pixels a side; the points of a block are sorted into clusters together
 
-/// Finds what lies between points and lights.
+/// Finds the triangles between points and lights.
 class Shafts {
  public:
   Shafts(const PlacedMeshes& meshes, std::span<const Light> lights, TriangleBits& seen) : meshes_(meshes), seen_(seen) {
@@ -33,7 +33,7 @@ class Shafts {
     reach_ = sum_of_sides(meshes.upper() - meshes.lower());
   }
 
-  /// Of the points of one block.
+  /// Adds the triangles between the points of one block and the lights.
   void add(std::span<const SeenPoint> points) const {
     std::vector<glm::vec3> places;
     for (const LightHull& light : lights_) {
@@ -46,10 +46,11 @@ class Shafts {
   }
 
  private:
-  /// Some of the light above the surface?
+  /// Returns whether some of the light may be above the surface.
   static bool may_be_lit(const SeenPoint& point, const LightHull& light) {
     const glm::dvec3 p = point.p, n = point.n;
-    // The normal is float32 here, and where it turns to is rounded: as far as 2⁻²⁰ of all that is multiplied.
+    // The normal is float32 here, and its product with a direction is rounded: error at most 2⁻²⁰ of the factors'
+    // product.
     const bool above = std::ranges::any_of(light.corners, [&](const glm::dvec3& corner) {
       const glm::dvec3 way = light.directions ? corner : corner - p;
       return glm::dot(n, way) >
@@ -102,7 +103,7 @@ class Shafts {
   double reach_ = 0;
 };
 
-/// All that is of a scene but its triangles.
+/// Copies everything of a scene except its triangles.
 scenes::Scene rest_of(const scenes::Scene& scene) {
   scenes::Scene rest;
   rest.name = scene.name;
@@ -118,7 +119,7 @@ scenes::Scene rest_of(const scenes::Scene& scene) {
   return rest;
 }
 
-/// Calls take(part, triangle) for triangles whose bits are set, in the order of their numbers, which it gets too.
+/// Calls take(part, triangle) for triangles whose bits are set, in the order of their numbers.
 template <typename Take>
 void for_each_seen(const PlacedMeshes& meshes, const TriangleBits& seen, const Take& take) {
   const std::span<const PlacedMeshes::Part> parts = meshes.parts();
@@ -172,7 +173,7 @@ SeenPart seen_part(const PlacedMeshes& meshes, const PinholeCamera& camera, std:
   part.upper = glm::vec3(meshes.upper() - meshes.origin()) + 0.0f;
   part.scene = rest_of(meshes.scene());
   part.scene.origin = meshes.origin();
-  if (seen.count() == 0) seen.set(0);  // nothing is in sight: a scene has triangles all the same
+  if (seen.count() == 0) seen.set(0);  // nothing is in sight, but a scene needs a triangle
   const std::uint64_t count = seen.count();
   require_memory(count * sizeof(std::uint32_t) + mesh::soup_bytes(count, 2 * count),
                  fmt::format("what is seen of a scene of {} triangles, or may shade that ({} triangles),",

@@ -14,19 +14,19 @@
 
 namespace penumbra::visibility {
 
-/// What of a scene plays a part in V of a picture's view samples, with copies of instances' triangles where they do:
-/// what pixels see, and what may lie between that and the lights. View samples, V and masks of it are those of the
-/// scene, to the last bit: what is left out is nearer to no pixel, and on no way to a light.
+/// The part of a scene that affects V of a picture's view samples, with instances copied where they matter: triangles
+/// that pixels see, and triangles that may lie between these and the lights. View samples, V and masks are those of the
+/// whole scene, to the last bit: a triangle that is left out is nearest in no pixel, and on no segment to a light.
 struct SeenPart {
-  scenes::Scene scene;                 ///< with the whole one's origin, objects, lights and cameras
-  std::vector<std::uint32_t> numbers;  ///< of each of its triangles, in the whole scene
+  scenes::Scene scene;                 ///< with the whole scene's origin, objects, lights and cameras
+  std::vector<std::uint32_t> numbers;  ///< each triangle's number in the whole scene
   std::uint64_t triangles = 0;         ///< of the whole scene
   glm::vec3 lower{0}, upper{0};        ///< bounding box of the whole scene's scene floats
 };
 
-/// Of the view samples in some rows of the picture. `lights`: all that shine on these, pieces of one beside each other.
-/// A dome's ways go everywhere, so that it needs all triangles. Throws ResourceError, with the numbers, where memory
-/// does not suffice.
+/// Finds the part for the view samples in some rows of the picture. `lights`: all lights that shine on these, pieces of
+/// one light side by side. A dome's directions go everywhere, so that a dome needs all triangles. Throws ResourceError,
+/// with the figures, if memory does not suffice.
 SeenPart seen_part(const PlacedMeshes& meshes, const PinholeCamera& camera, std::span<const Light> lights,
                    const Tile& rows);
 

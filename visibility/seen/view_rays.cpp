@@ -35,12 +35,12 @@ bool TriangleBits::any(std::uint64_t first, std::uint64_t end) const {
   return false;
 }
 
-/// One pixel's ray, nearest nodes first.
+/// Traversal of one pixel's ray, nearest nodes first.
 class ViewRays::Walk {
  public:
   Walk(const ViewRays& rays, const ViewRay& ray, TriangleBits& seen, std::vector<SeenPoint>& points)
       : rays_(rays), ray_(ray), seen_(seen), points_(points) {
-    // Beside an axis, a slope that sends what is not between the planes far out.
+    // For a ray parallel to planes: a finite slope that moves all boxes beside the ray very far away.
     for (int axis = 0; axis < 3; ++axis) {
       inverse_[axis] = 1 / ray.direction[axis];
       if (!(std::abs(inverse_[axis]) < kSteep)) inverse_[axis] = std::copysign(kSteep, inverse_[axis]);
@@ -69,9 +69,10 @@ class ViewRays::Walk {
 
  private:
   static constexpr double kSteep = 1e200;
-  /// A pixel that cover() gives to a triangle by rounding is beside it by less than this part of a pixel. Of a triangle
-  /// that is not seen edge-on it is 2⁻⁴⁹ R² / s, R the distance and s the shortest edge: boxes of a pixel, as
-  /// visibility/tree/view_walk.cpp has them, are a metre wide where a forest ends, and hold a tree's every leaf.
+  /// Margin in pixels: a pixel that cover() assigns to a triangle by rounding is outside the triangle by less than
+  /// this. For a triangle that is not seen edge-on the distance is 2⁻⁴⁹ R² / s, where R is the triangle's distance and
+  /// s its shortest edge. Pixel boxes as in visibility/tree/view_walk.cpp would be a metre wide at the far end of a
+  /// forest, and hold every leaf of a tree.
   static constexpr double kPixels = 0x1p-4;
 
   struct Waiting {
@@ -79,7 +80,8 @@ class ViewRays::Walk {
     std::uint32_t node;
   };
 
-  /// Where the ray enters the box, taken larger by what rounding of cover() may need; endless: it does not.
+  /// Returns the parameter at which the ray enters the box, enlarged by the rounding of cover(); infinite if the ray
+  /// misses.
   [[nodiscard]] double enter(const MiddleBox& box) const {
     const glm::dvec3 to = box.middle - ray_.start;
     const double room = everywhere_ + pixel_ * (sum_of_sides(to) + box.half.x + box.half.y + box.half.z);
@@ -138,7 +140,7 @@ class ViewRays::Walk {
   std::vector<SeenPoint>& points_;
   glm::dvec3 inverse_{0};
   double pixel_ = 0, everywhere_ = 0;
-  double nearest_ = std::numeric_limits<double>::infinity();  // of what stops all light
+  double nearest_ = std::numeric_limits<double>::infinity();  // distance of the nearest opaque triangle
   std::vector<Met> met_;
 };
 

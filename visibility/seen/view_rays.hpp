@@ -12,7 +12,7 @@
 
 namespace penumbra::visibility {
 
-/// A bit for each triangle of all parts. Bits may be set by many threads at once.
+/// A bit for each triangle of all parts. Several threads may set bits at once.
 class TriangleBits {
  public:
   explicit TriangleBits(std::uint64_t triangles);
@@ -32,19 +32,19 @@ class TriangleBits {
   std::vector<std::atomic<std::uint64_t>> words_;
 };
 
-/// A place from which a light may be asked for.
+/// A point at which lights may be evaluated.
 struct SeenPoint {
   glm::vec3 p{0}, n{0};  ///< scene floats; the surface's normal toward the viewer, of any length
 };
 
-/// What pixels see of meshes that are placed: along each ray, the nearest triangle that stops all light, and those
-/// before it that do not.
+/// Finds what pixels see of placed meshes: along each ray, the nearest opaque triangle, and the translucent ones in
+/// front of it.
 class ViewRays {
  public:
-  /// All must outlive it.
+  /// All arguments must outlive this object.
   ViewRays(const PlacedMeshes& meshes, const PinholeCamera& camera);
 
-  /// Sets the bits of what the pixel sees, and adds where.
+  /// Sets the bits of the triangles that the pixel sees, and appends the points seen.
   void look(std::uint32_t x, std::uint32_t y, TriangleBits& seen, std::vector<SeenPoint>& points) const;
 
  private:
@@ -57,7 +57,7 @@ class ViewRays {
 
   const PlacedMeshes& meshes_;
   const PinholeCamera& camera_;
-  std::vector<std::uint8_t> is_solid_;  // each object
+  std::vector<std::uint8_t> is_solid_;  // for each object
 };
 
 }  // namespace penumbra::visibility
