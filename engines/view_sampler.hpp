@@ -7,9 +7,9 @@
 
 namespace penumbra::engines {
 
-/// View samples by the faster of two engines, with the same bits: the GPU's visibility buffer, or, without a GPU, scan
-/// conversion on the processor's vector units. Neither knows holes, orthographic cameras or lenses: a tree of boxes
-/// finds what is seen through and by them.
+/// Finds view samples by the faster of two engines, with the same bits: the GPU's visibility buffer, or, without a GPU,
+/// scan conversion on the processor's vector units. Neither supports holes, orthographic cameras or lenses: for these a
+/// tree of boxes finds the visible surfaces.
 class ViewSampler {
  public:
   /// `scene`, which must outlive this object, is uploaded if a GPU draws it.

@@ -76,7 +76,7 @@ class PageServer::State {
   }
   [[nodiscard]] std::uint16_t port() const { return port_; }
   [[nodiscard]] const ServerOptions& options() const { return options_; }
-  /// As an address of a page has it.
+  /// Returns the address as it appears in a URL.
   [[nodiscard]] const std::string& shown_host() const { return shown_host_; }
   template <typename Function>
   void post(Function function) {

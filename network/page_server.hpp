@@ -34,15 +34,15 @@ struct ServedFile {
                                       ///< message
 };
 
-/// Where a server listens.
+/// Address on which a server listens.
 struct ServerPlace {
-  std::string host = "127.0.0.1";  ///< an address of this machine; of requests that name it, or the loopback
-  std::uint16_t port = 0;          ///< 0: any that is free
+  std::string host = "127.0.0.1";  ///< an address of this machine; requests must name it or the loopback
+  std::uint16_t port = 0;          ///< 0: any free port
 };
 
 struct ServerOptions {
   ServerPlace place = {};
-  std::string token;  ///< that each request must have: make_token()
+  std::string token;  ///< token that each request must carry: make_token()
   std::string page;   ///< HTML; @NONCE@ becomes the nonce of its script and style elements
   std::string socket_path = "/live";
   std::vector<ServedFile> files = {};

@@ -263,7 +263,7 @@ Device::Device(const DeviceOptions& options)
 
 std::optional<Device> Device::find_gpu(const DeviceOptions& options) {
   if (wants_any_processor(options.wanted)) return std::nullopt;
-  // A loader opens every driver that is installed, which takes longer than a small picture.
+  // The Vulkan loader opens every installed driver, which takes longer than a small picture.
   if (options.wanted.empty() && !names_drivers() && !has_gpu_nodes("/dev")) return std::nullopt;
   return opening([&]() -> std::optional<Device> {
     Opened opened;

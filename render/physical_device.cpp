@@ -135,8 +135,8 @@ DeviceInfo describe(const vk::raii::PhysicalDevice& physical, std::uint32_t inde
 
 bool has_gpu_nodes(const std::filesystem::path& folder) {
 #ifdef __linux__
-  // Drivers of the kernel's DRM (render nodes; a card without one only shows pictures), NVIDIA's own, those of Windows
-  // below WSL, of Adreno and Mali on Android's kernels.
+  // Device files of the kernel's DRM drivers (render nodes; a card without one only shows pictures), of NVIDIA's own
+  // driver, of Windows drivers under WSL, and of Adreno and Mali on Android kernels.
   for (const char* name : {"nvidiactl", "dxg", "kgsl-3d0", "mali0"}) {
     if (std::error_code ignored; std::filesystem::exists(folder / name, ignored)) return true;
   }

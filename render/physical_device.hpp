@@ -34,8 +34,8 @@ std::optional<std::uint32_t> find_queue_family(const vk::raii::PhysicalDevice& p
 /// `timestamp_bits`: property of the queue family.
 Limits read_limits(const vk::raii::PhysicalDevice& physical, std::uint32_t timestamp_bits);
 
-/// Returns whether a folder of device files has one through which a GPU's driver works. Always true where the names of
-/// such files are not known.
+/// Returns whether a folder of device files has one through which a GPU's driver works. Always true on systems whose
+/// names of such files are not known.
 bool has_gpu_nodes(const std::filesystem::path& folder);
 
 /// Returns whether the environment names the drivers that the loader opens: then these are used, GPU or not.

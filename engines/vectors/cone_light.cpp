@@ -46,8 +46,9 @@ struct Rectangle {
   }
 };
 
-/// May a triangle meet the box of half-sizes `half` around `middle`? No where a side of the box or the triangle's plane
-/// is certainly between them: a leaf of the tree, or a sphere, around a large triangle reaches far beyond it.
+/// Returns whether a triangle may meet the box of half-sizes `half` around `middle`; false if a side of the box or the
+/// triangle's plane certainly separates them. A leaf of the tree, or a sphere, around a large triangle reaches far
+/// beyond it.
 bool may_meet_box(const std::array<glm::vec3, 3>& corners, const glm::vec3& middle, const glm::vec3& half) {
   const glm::dvec3 from = middle, size = half;
   const glm::dvec3 a = glm::dvec3(corners[0]) - from, b = glm::dvec3(corners[1]) - from,
@@ -57,7 +58,7 @@ bool may_meet_box(const std::array<glm::vec3, 3>& corners, const glm::vec3& midd
       return false;
   }
   const glm::dvec3 to_b = b - a, to_c = c - a, normal = glm::cross(to_b, to_c);
-  // Differences, products and sums are off by a few roundings of these, 2⁻⁵³ each.
+  // Differences, products and sums err by a few roundings of these magnitudes, 2⁻⁵³ each.
   const double error = 0x1p-48 * size1(to_b) * size1(to_c) * (size1(a) + size1(size));
   return !(std::abs(glm::dot(normal, a)) > glm::dot(glm::abs(normal), size) + error);
 }
