@@ -38,7 +38,7 @@ visibility::MeshVerdict alias_free_verdict(const mesh::Diagnosis& mesh) {
 }
 
 constexpr visibility::RealOption kPerPixel{"perPixel", 0.125, 64, 1,
-                                           "view samples that a light pixel has on average: a matter of time alone"};
+                                           "average number of view samples in a light pixel; affects time alone"};
 
 visibility::MethodDescription describe_alias_free() {
   return {.name = "alias-free",

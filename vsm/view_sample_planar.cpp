@@ -38,10 +38,11 @@ constexpr visibility::ChoiceOption kLookup{
     Lookup::exact,
     "exact: what a texel of the left-sample map leaves open is decided pair by pair; nearest: as published, the light "
     "samples of the texel's middle"};
-constexpr visibility::IntegerOption kMap{"map", 8, 1024, 128, "angles, and distances, of the left-sample map"};
-constexpr visibility::IntegerOption kFewest{
-    "fewest", 1, 1U << 24U, 1024,
-    "view samples that a plane needs to be a receiver of its own; those of other planes are a height field"};
+constexpr visibility::IntegerOption kMap{"map", 8, 1024, 128,
+                                         "number of angles, and of distances, of the left-sample map"};
+constexpr visibility::IntegerOption kFewest{"fewest", 1, 1U << 24U, 1024,
+                                            "smallest number of view samples for which a plane is a receiver of its "
+                                            "own; those of other planes are a height field"};
 
 visibility::MeshVerdict exact_on(const mesh::Diagnosis& mesh) {
   return {visibility::Verdict::exact,

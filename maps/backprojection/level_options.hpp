@@ -13,7 +13,7 @@ inline constexpr visibility::IntegerOption kMapLevel{"level", 0, gpu::kCoarsestL
                                                      "blocks of 2^level texels a side are one texel"};
 inline constexpr visibility::IntegerOption kTexelBudget{
     "budget", 0, 1u << 28, 0,
-    "texels of a face that a receiver may look at; where there are more, coarser levels stand for them; 0: no limit"};
+    "largest number of a face's texels that a receiver reads; beyond it, coarser levels replace them; 0: no limit"};
 inline constexpr visibility::ChoiceOption<bool, 2> kBlendLevels =
     visibility::flag_option("blend", true, "with a budget: pass from one level to the next without steps");
 

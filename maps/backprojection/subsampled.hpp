@@ -13,14 +13,14 @@ namespace penumbra::maps {
 
 inline constexpr visibility::IntegerOption kSubsample{
     "subsample", 1, 64, 1,
-    "V of no more than every so many pixels across and down, and of the others what pull-push makes of them; 1: of "
-    "every pixel"};
+    "largest step, in pixels across and down, between pixels whose V is computed; the others are filled by pull-push; "
+    "1: every pixel is computed"};
 enum class SubsampleBy : std::uint8_t { penumbra, grid };
 inline constexpr visibility::ChoiceOption kSubsampleBy{
     "subsampleBy",
     {{"penumbra", SubsampleBy::penumbra}, {"grid", SubsampleBy::grid}},
     SubsampleBy::penumbra,
-    "which pixels subsample leaves out: as many as penumbrae are wide on the screen, or the same everywhere"};
+    "step of subsample: by the width of penumbrae on the screen, or the same everywhere"};
 
 /// Smallest number of computed pixels across the narrowest penumbra, with SubsampleBy::penumbra.
 inline constexpr double kPixelsAcross = 4;

@@ -30,16 +30,14 @@ constexpr visibility::ChoiceOption kWeights{
     "weights",
     {{"equal", gpu::kEqual}, {"gaussian", gpu::kGaussian}, {"bilinear", gpu::kBilinear}},
     gpu::kEqual,
-    "what texels count: alike; as a Gaussian whose deviation is a quarter of the window; or by their part in a window "
-    "that "
-    "is centred on the receiver (window=1: the bilinear test of four texels)"};
+    "weights of texels: equal; a Gaussian whose deviation is a quarter of the window; or each texel's share of a "
+    "window that is centred on the receiver (window=1: the bilinear test of four texels)"};
 constexpr visibility::ChoiceOption kTest{
     "test",
     {{"depth", gpu::kByDepth}, {"object", gpu::kByObject}, {"mean", gpu::kByMeanDepth}},
     gpu::kByDepth,
-    "what of a texel shades: its depth; the same, but no object shades itself; or no texel but the window's mean "
-    "depth, "
-    "by a test that is smooth"};
+    "what shades the receiver: a texel's depth; the same, but no object shades itself; or only the window's mean depth, "
+    "by a smooth test"};
 constexpr visibility::ChoiceOption kKeep{
     "keep",
     {{"0", 0U}, {"2", 2U}, {"3", 3U}},
@@ -48,9 +46,10 @@ constexpr visibility::ChoiceOption kKeep{
     "the middle between these; 0: compare all texels"};
 constexpr visibility::RealOption kSoftness{
     "softness", 0.0001, 4, 0.1,
-    "test=mean: how far behind the mean depth it is dark, as a share of the receiver's depth"};
+    "test=mean: distance behind the mean depth at which the receiver is dark, over the receiver's depth"};
 constexpr visibility::IntegerOption kTaps{
-    "taps", 0, 256, 0, "so many texels of the window, in a pattern that is turned at every receiver; 0: all of them"};
+    "taps", 0, 256, 0,
+    "number of texels of the window that are compared, in a pattern that is rotated at every receiver; 0: all of them"};
 constexpr visibility::IntegerOption kStages{"stages", 1, 2, 1,
                                             "2: the outermost quarter of the taps decide where they agree"};
 

@@ -28,9 +28,8 @@ constexpr visibility::ChoiceOption kHardTest{
     "test",
     {{"depth", HardTest::depth}, {"id", HardTest::plane}, {"object", HardTest::object}},
     HardTest::depth,
-    "what of a texel says that the receiver is seen: its depth, or that it is of the receiver's plane, or object, "
-    "which "
-    "needs no bias"};
+    "test of visibility: by a texel's depth, or by its plane or object, which must be the receiver's and needs no "
+    "bias"};
 
 constexpr visibility::IntegerOption kHistory{
     "history", 1, 1024, 1,

@@ -11,7 +11,7 @@ inline constexpr visibility::ChoiceOption kSliceFilter{
     "filter",
     {{"sat", PrefilterKind::table}, {"mip", PrefilterKind::pyramid}, {"n-buffer", PrefilterKind::windows}},
     PrefilterKind::table,
-    "how means over windows are taken: summed areas in integers, mip levels, overlapping squares"};
+    "table from which means over windows are read: summed areas in integers, mip levels, overlapping squares"};
 
 /// Returns the recipe: light-space slices, each filtered by the light seen through its plane, and their product
 /// (occlusion_textures.comp).

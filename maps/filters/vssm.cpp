@@ -31,21 +31,20 @@ namespace {
 
 enum class Moments : std::uint8_t { vsm, lvsm, evsm, csm, esm };
 
-constexpr visibility::ChoiceOption kMoments{
-    "moments",
-    {{"vsm", Moments::vsm},
-     {"lvsm", Moments::lvsm},
-     {"evsm", Moments::evsm},
-     {"csm", Moments::csm},
-     {"esm", Moments::esm}},
-    Moments::vsm,
-    "what stands for a window's depths: mean and variance, these in layers or of "
-    "exponentials, a Fourier series, one exponential"};
+constexpr visibility::ChoiceOption kMoments{"moments",
+                                            {{"vsm", Moments::vsm},
+                                             {"lvsm", Moments::lvsm},
+                                             {"evsm", Moments::evsm},
+                                             {"csm", Moments::csm},
+                                             {"esm", Moments::esm}},
+                                            Moments::vsm,
+                                            "representation of a window's depths: mean and variance, these in layers "
+                                            "or of exponentials, a Fourier series, one exponential"};
 constexpr visibility::ChoiceOption kFilter{
     "filter",
     {{"sat", PrefilterKind::table}, {"mip", PrefilterKind::pyramid}, {"n-buffer", PrefilterKind::windows}},
     PrefilterKind::table,
-    "how means over windows are taken: summed areas in integers, mip levels, overlapping squares"};
+    "table from which means over windows are read: summed areas in integers, mip levels, overlapping squares"};
 constexpr visibility::IntegerOption kLayers{"layers", 1, 16, 4, "lvsm: layers of equal height"};
 constexpr visibility::IntegerOption kTerms{"terms", 1, 16, 16, "csm: terms of the series"};
 constexpr visibility::RealOption kOffset{"offset", 0, 8, 1,
@@ -53,28 +52,27 @@ constexpr visibility::RealOption kOffset{"offset", 0, 8, 1,
                                          "receiver is lit; 1: to the series' first maximum"};
 constexpr visibility::RealOption kDamping{"damping", 0, 16, 1,
                                           "csm: coefficient k of n is multiplied by exp(-damping (k/n)^2)"};
-constexpr visibility::RealOption kScale{"scale", 1, 16, 1,
-                                        "csm: the search finds nothing where the series says 1 / scale; with window "
-                                        "V is so many times the series"};
+constexpr visibility::RealOption kScale{
+    "scale", 1, 16, 1,
+    "csm: the search finds no blocker where the series is 1 / scale; with window V is scale times the series"};
 constexpr visibility::RealOption kExponent{
     "exponent", 1, 80, 80,
-    "esm: how fast the exponential falls over the scene's depth; evsm, which squares it: twice that"};
+    "esm: decay of the exponential over the scene's depth; evsm, which squares the exponential: twice the decay"};
 constexpr auto kFallback =
-    visibility::flag_option("fallback", true, "esm: compare texel by texel where the exponential says more than lit");
+    visibility::flag_option("fallback", true, "esm: compares texel by texel where the exponential exceeds 1");
 enum class Classifier : std::uint8_t { mean, farthest };
 constexpr visibility::ChoiceOption kClassifier{"classifier",
                                                {{"mean", Classifier::mean}, {"farthest", Classifier::farthest}},
                                                Classifier::mean,
-                                               "esm: where texels are compared one by one: where the exponential says "
-                                               "more than lit, or wherever a window may hold "
-                                               "a texel behind the receiver"};
+                                               "esm: condition for comparing texels one by one: the exponential "
+                                               "exceeds 1, or a window may hold a texel behind the receiver"};
 constexpr visibility::RealOption kLeak{"leak", 0, 0.99, 0,
-                                       "V below this is black, and the rest is stretched over 0 … 1"};
+                                       "limit of V below which pixels are black; V above is stretched over 0 … 1"};
 enum class LeakCut : std::uint8_t { linear, smooth };
 constexpr visibility::ChoiceOption kLeakCut{"leakCut",
                                             {{"linear", LeakCut::linear}, {"smoothstep", LeakCut::smooth}},
                                             LeakCut::linear,
-                                            "how what is left above leak is stretched"};
+                                            "function that stretches V above leak"};
 enum class Subdivision : std::uint8_t { automatic, uniform, adaptive, none };
 constexpr visibility::ChoiceOption kSubdivision{
     "subdivision",
@@ -85,12 +83,13 @@ constexpr visibility::ChoiceOption kSubdivision{
     Subdivision::automatic,
     "vsm, lvsm, evsm: windows are cut in the smallest parts, or only where their mean is behind the receiver, or not; "
     "auto: of vsm and lvsm uniform, of evsm and with window none"};
-constexpr visibility::IntegerOption kCuts{"cuts", 1, 4, 3, "how often a window is cut in four, at most"};
+constexpr visibility::IntegerOption kCuts{"cuts", 1, 4, 3, "largest number of times that a window is cut in four"};
 constexpr visibility::IntegerOption kFixedWindow{
     "window", 0, 64, 0,
-    "a fixed filter of so many texels a side, as pcf's, for any light; 0: the light's size decides"};
+    "side in texels of a fixed filter window, as in pcf, for any light; 0: the light's size decides"};
 constexpr auto kSlope = visibility::flag_option(
-    "slope", false, "vsm, lvsm: adds to each texel's square what the surface's slope makes of it within the texel");
+    "slope", false,
+    "vsm, lvsm: adds the variance of depth within a texel, from the surface's slope, to each texel's square");
 
 visibility::MeshVerdict vssm_verdict(const mesh::Diagnosis& mesh) {
   return judge_for_maps("one map, one mean height for all that shades a pixel, and a bound in place of a count", mesh);

@@ -16,14 +16,15 @@ constexpr visibility::IntegerOption map_size(std::uint32_t otherwise) {
   return {"size", 8, 16384, otherwise, "texels on a side of a map"};
 }
 inline constexpr visibility::IntegerOption kMapSize = map_size(1024);
-inline constexpr visibility::RealOption kBias{
-    "bias", 0, 1024, 0.5,
-    "how far, in texels, a surface may rise above the receiver's plane without shading it; grows with the slope"};
+inline constexpr visibility::RealOption kBias{"bias", 0, 1024, 0.5,
+                                              "largest height, in texels, of a surface above the receiver's plane that "
+                                              "does not shade the receiver; grows with the slope"};
 
-inline constexpr visibility::ChoiceOption kRasteriser{"rasteriser",
-                                                      {{"vulkan", Rasteriser::vulkan}, {"opengl", Rasteriser::opengl}},
-                                                      Rasteriser::vulkan,
-                                                      "who draws the maps: the device itself, or OpenGL beside it"};
+inline constexpr visibility::ChoiceOption kRasteriser{
+    "rasteriser",
+    {{"vulkan", Rasteriser::vulkan}, {"opengl", Rasteriser::opengl}},
+    Rasteriser::vulkan,
+    "API that draws the maps: Vulkan on the device itself, or OpenGL"};
 
 /// Surface of a texel behind which a receiver is in shadow: taps.glsl, begins_behind.
 enum class DepthUse : std::uint8_t {
@@ -34,15 +35,14 @@ enum class DepthUse : std::uint8_t {
 };
 /// Returns the option `depth` of a single-map method.
 constexpr visibility::ChoiceOption<DepthUse, 4> depth_option(DepthUse otherwise) {
-  return {
-      "depth",
-      {{"first", DepthUse::first},
-       {"second", DepthUse::second},
-       {"midpoint", DepthUse::midpoint},
-       {"dual", DepthUse::dual}},
-      otherwise,
-      "what a receiver must be behind: the nearest surface and the bias, the second surface, the middle between the "
-      "two, or the bias but no farther than the middle"};
+  return {"depth",
+          {{"first", DepthUse::first},
+           {"second", DepthUse::second},
+           {"midpoint", DepthUse::midpoint},
+           {"dual", DepthUse::dual}},
+          otherwise,
+          "depth behind which a receiver is in shadow: the nearest surface plus the bias, the second surface, the "
+          "middle between the two, or the nearest surface plus the bias, limited to the middle"};
 }
 inline constexpr auto kDepth = depth_option(DepthUse::first);
 
@@ -52,9 +52,9 @@ inline constexpr auto kReceiverPlane = visibility::flag_option(
 
 /// Polygon offset: for methods that compare depths without projecting them.
 inline constexpr visibility::RealOption kOffsetFactor{
-    "offsetFactor", 0, 64, 0, "polygon offset: stored depths grow by so many times their change across a texel"};
-inline constexpr visibility::RealOption kOffsetUnits{"offsetUnits", 0, 1048576, 0,
-                                                     "polygon offset: and by so many steps of a depth of 24 bits"};
+    "offsetFactor", 0, 64, 0, "polygon offset: factor of the depths' change across a texel, added to stored depths"};
+inline constexpr visibility::RealOption kOffsetUnits{
+    "offsetUnits", 0, 1048576, 0, "polygon offset: number of steps of a 24-bit depth added to stored depths"};
 
 /// Options of all methods in this family: texels on a side of a map, the bias in texels, and the rasteriser of the
 /// maps; `depth` and `receiverPlane`, if the method has them.

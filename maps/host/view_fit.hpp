@@ -33,30 +33,31 @@ enum class Split : std::uint8_t { logarithmic, practical, pseudo_near, uniform }
 /// Body of a fit: the receivers in the camera's frustum, or the parts of them visible at pixels.
 enum class ViewBody : std::uint8_t { frustum, visible };
 
-inline constexpr visibility::ChoiceOption kFit{"fit",
-                                               {{"receivers", Fit::receivers},
-                                                {"view", Fit::view},
-                                                {"cascades", Fit::cascades},
-                                                {"tiles", Fit::tiles},
-                                                {"lispsm", Fit::lispsm},
-                                                {"tsm", Fit::tsm},
-                                                {"psm", Fit::psm},
-                                                {"logpsm", Fit::logpsm}},
-                                               Fit::receivers,
-                                               "what texels are spread over: all receivers; what the camera sees, in "
-                                               "one window, in slices of depth or in tiles; or a perspective of it"};
+inline constexpr visibility::ChoiceOption kFit{
+    "fit",
+    {{"receivers", Fit::receivers},
+     {"view", Fit::view},
+     {"cascades", Fit::cascades},
+     {"tiles", Fit::tiles},
+     {"lispsm", Fit::lispsm},
+     {"tsm", Fit::tsm},
+     {"psm", Fit::psm},
+     {"logpsm", Fit::logpsm}},
+    Fit::receivers,
+    "region over which texels are spread: all receivers; the camera's view, in one window, in slices of depth or in "
+    "tiles; or a perspective of the view"};
 /// Option of methods whose products support windows alone.
 inline constexpr visibility::ChoiceOption kWindowFit{
     "fit",
     {{"receivers", Fit::receivers}, {"view", Fit::view}},
     Fit::receivers,
-    "what texels are spread over: all receivers, or what the camera "
-    "sees; means over windows need even texels, so there are no warps"};
+    "region over which texels are spread: all receivers, or the camera's view; means over windows need even texels, so "
+    "there are no warps"};
 inline constexpr visibility::ChoiceOption kViewBody{
     "body",
     {{"visible", ViewBody::visible}, {"frustum", ViewBody::frustum}},
     ViewBody::visible,
-    "what a fit holds: what pixels show, or what the camera's frustum holds of the receivers"};
+    "region that a map covers: the visible points, or the receivers in the camera's frustum"};
 inline constexpr auto kSnap = visibility::flag_option(
     "snap", false, "fit=view: texels stay where they are while the camera moves, at up to 1.2 of their width");
 inline constexpr visibility::IntegerOption kCascades{
@@ -67,12 +68,12 @@ inline constexpr visibility::ChoiceOption kSplit{"split",
                                                   {"pseudo-near", Split::pseudo_near},
                                                   {"uniform", Split::uniform}},
                                                  Split::logarithmic,
-                                                 "where slices end: by the logarithm of depth, between that and equal "
-                                                 "ones, by the logarithm from a pseudo-near plane on, or equal"};
-inline constexpr visibility::RealOption kSplitShare{
-    "splitShare", 0, 1, 0.5,
-    "split=practical: the logarithm's share; pseudo-near: how far off, as a share of all depths"};
-inline constexpr visibility::IntegerOption kTiles{"tiles", 1, 64, 16, "fit=tiles: maps, at most"};
+                                                 "distribution of slices over depth: logarithmic, between logarithmic "
+                                                 "and equal, logarithmic from a pseudo-near plane on, or equal"};
+inline constexpr visibility::RealOption kSplitShare{"splitShare", 0, 1, 0.5,
+                                                    "split=practical: weight of the logarithmic distribution; "
+                                                    "pseudo-near: distance of the plane, as a share of all depths"};
+inline constexpr visibility::IntegerOption kTiles{"tiles", 1, 64, 16, "fit=tiles: largest number of maps"};
 inline constexpr visibility::RealOption kFocus{
     "focus", 0.01, 0.99, 0.25, "fit=tsm: the nearest share of depths, which gets four fifths of the map"};
 
@@ -82,7 +83,7 @@ inline constexpr visibility::ChoiceOption kAliasing{
     "aliasing",
     {{"off", AliasingUse::off}, {"count", AliasingUse::count}, {"show", AliasingUse::show}},
     AliasingUse::off,
-    "count: the aliasing error m of the maps in the counters; show: V is 1/m, at most 1, in place of visibility"};
+    "count: adds the aliasing error m of the maps to the counters; show: V is 1/m, at most 1, in place of visibility"};
 
 /// Projection of a map fitted to receivers.
 enum class Projection : std::uint8_t {

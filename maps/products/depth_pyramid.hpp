@@ -44,7 +44,7 @@ constexpr visibility::ChoiceOption<Search, 4> search_option(Search otherwise) {
   return {"search",
           {{"none", Search::none}, {"hsm", Search::hsm}, {"mssm", Search::mssm}, {"ysm", Search::ysm}},
           otherwise,
-          "depths that bound where a view sample looks: the map's nearest alone, or those in its own kernel, from a "
+          "depths that bound a view sample's search: the map's nearest alone, or those in its own kernel, from a "
           "min-max pyramid (hsm), a multi-scale one (mssm), or both (ysm)"};
 }
 

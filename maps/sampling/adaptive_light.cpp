@@ -27,24 +27,25 @@ namespace {
 
 enum class CompareIn : std::uint8_t { camera, light };
 
-constexpr visibility::IntegerOption kLevels{"levels", 0, 6, 3, "how often a cell of the light can be halved"};
+constexpr visibility::IntegerOption kLevels{"levels", 0, 6, 3,
+                                            "largest number of times that a cell of the light is halved"};
 // Fraction of all pixels, so that pictures of any size are refined alike. With 0.02, 14 of 81 maps are left of the
 // paper's figure 1, and V is within 1.3 times the error of 128 fixed maps (docs/adaptive-light.md).
 constexpr visibility::RealOption kDifferingShare{
-    "epsilon", 0, 1, 0.02, "a cell is split unless fewer pixels differ than this share of what shareOf says"};
-constexpr visibility::RealOption kGamma{
-    "gamma", 0, 1, 0.02, "two maps differ at a pixel if their heights do by at least this share of what gammaOf says"};
-constexpr visibility::ChoiceOption kGammaOf{
-    "gammaOf",
-    {{"height", false}, {"range", true}},
-    false,
-    "what gamma is a share of: the heights compared (equation 7), or all depths that a map can hold (equation 3)"};
-constexpr visibility::ChoiceOption kCompare{
-    "compare",
-    {{"camera", CompareIn::camera}, {"light", CompareIn::light}},
-    CompareIn::camera,
-    "where maps are compared: at the view samples, or at the texels of a map from the "
-    "light's centre, which does not depend on the camera"};
+    "epsilon", 0, 1, 0.02, "share of differing pixels from which a cell is split; shareOf: of which number"};
+constexpr visibility::RealOption kGamma{"gamma", 0, 1, 0.02,
+                                        "relative difference in height from which two maps count as different at a "
+                                        "pixel; gammaOf: relative to which height"};
+constexpr visibility::ChoiceOption kGammaOf{"gammaOf",
+                                            {{"height", false}, {"range", true}},
+                                            false,
+                                            "quantity to which gamma relates: the compared heights (equation 7), or "
+                                            "all depths that a map can hold (equation 3)"};
+constexpr visibility::ChoiceOption kCompare{"compare",
+                                            {{"camera", CompareIn::camera}, {"light", CompareIn::light}},
+                                            CompareIn::camera,
+                                            "points at which maps are compared: the view samples, or the texels of a "
+                                            "map from the light's centre, which does not depend on the camera"};
 constexpr visibility::ChoiceOption kPcf{"pcf",
                                         {{"off", 1u},
                                          {"on", 2u},
@@ -68,12 +69,12 @@ constexpr visibility::ChoiceOption kWeights{
     {{"paper", PointWeights::paper}, {"equal", PointWeights::equal}, {"area", PointWeights::area}},
     PointWeights::paper,
     "weights of the maps: the paper's, none, or each cell's area shared by its corners"};
-constexpr visibility::ChoiceOption kShareOf{"shareOf",
-                                            {{"map", true}, {"pixels", false}},
-                                            false,
-                                            "what epsilon is a share of: texels of a map, as published, "
-                                            "or all pixels (texels) compared"};
-constexpr visibility::IntegerOption kMostMaps{"maps", 4, 4225, 512, "no more light points than this"};
+constexpr visibility::ChoiceOption kShareOf{
+    "shareOf",
+    {{"map", true}, {"pixels", false}},
+    false,
+    "quantity to which epsilon relates: texels of a map, as published, or all pixels (texels) compared"};
+constexpr visibility::IntegerOption kMostMaps{"maps", 4, 4225, 512, "largest number of light points"};
 constexpr visibility::IntegerOption kAdaptiveSize = map_size(512);
 
 visibility::MeshVerdict adaptive_light_verdict(const mesh::Diagnosis& mesh) {

@@ -18,7 +18,8 @@
 namespace penumbra::maps {
 namespace {
 
-constexpr visibility::RealOption kBound{"bound", 0, 0.5, 0.01, "how far V may be off to save steps of depth"};
+constexpr visibility::RealOption kBound{"bound", 0, 0.5, 0.01,
+                                        "largest error of V that is accepted to save steps of depth"};
 constexpr visibility::IntegerOption kDeepSize = map_size(256);
 
 visibility::MeshVerdict deep_penumbra_verdict(const mesh::Diagnosis& mesh) {

@@ -20,9 +20,10 @@ namespace penumbra::maps {
 namespace {
 
 constexpr visibility::RealOption kSameDepth{"epsilon", 0, 1, 0.02,
-                                            "depths that differ by no more than this share of them are one surface"};
+                                            "largest relative difference of depths that count as one surface"};
 constexpr visibility::ChoiceOption kNeighbours = visibility::flag_option(
-    "neighbours", true, "looks for a receiver that its own texel knows nothing of in the eight around");
+    "neighbours", true,
+    "also searches the eight texels around a receiver's own if the receiver is not in its own texel");
 constexpr visibility::IntegerOption kLayeredSize = map_size(256);
 
 /// Smallest useful epsilon: depths in maps, and of planes, are off by at most sixteen roundings to 24 binary digits.

@@ -19,7 +19,7 @@ namespace {
 
 constexpr auto kIds = visibility::flag_option(
     "ids", true,
-    "what is of a view sample's own object shades nothing of it, so that no bias is needed; off: by depth");
+    "on: surfaces of a view sample's own object do not shade it, so that no bias is needed; off: by depth");
 
 visibility::MeshVerdict brabec_seidel_verdict(const mesh::Diagnosis& mesh) {
   return judge_for_maps("penumbrae around the hard shadow of the light's centre, of the nearest texel alone", mesh);

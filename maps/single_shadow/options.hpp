@@ -12,12 +12,13 @@ constexpr visibility::ChoiceOption<std::uint32_t, 3> falloff_option(std::uint32_
   return {"falloff",
           {{"linear", gpu::kFalloffLinear}, {"cubic", gpu::kFalloffCubic}, {"sine", gpu::kFalloffSine}},
           otherwise,
-          "how V rises through a penumbra: as of a rectangle along its side, as Parker's polynomial, or as his sine"};
+          "function by which V rises through a penumbra: as for a rectangle along its side, Parker's polynomial, or "
+          "Parker's sine"};
 }
 
 /// Search radius on the map: some drivers for processors end loops after 65,535 iterations, and a circle of 140 texels
 /// has 61,529.
 inline constexpr visibility::IntegerOption kSearchRadius{
-    "radius", 1, 140, 64, "texels around a view sample's own that are searched, at most"};
+    "radius", 1, 140, 64, "largest radius of the search, in texels around the view sample's own"};
 
 }  // namespace penumbra::maps

@@ -20,7 +20,7 @@ constexpr auto kLinearFilter =
     visibility::ChoiceOption<bool, 2>{"filter",
                                       {{"nearest", false}, {"linear", true}},
                                       true,
-                                      "V by a view sample's own texel, or between the four nearest"};
+                                      "V from a view sample's own texel, or interpolated between the four nearest"};
 
 }  // namespace
 

@@ -13,10 +13,9 @@
 namespace penumbra::maps {
 namespace {
 
-constexpr visibility::RealOption kWidth{
-    "width", 0, 1e6, 0,
-    "how wide smoothies are, at distance 1 from the light's plane; 0: the light's radius over the mean height of the "
-    "silhouettes that are not the ground's"};
+constexpr visibility::RealOption kWidth{"width", 0, 1e6, 0,
+                                        "width of smoothies at distance 1 from the light's plane; 0: the light's "
+                                        "radius over the mean height of the silhouettes that are not the ground's"};
 
 }  // namespace
 

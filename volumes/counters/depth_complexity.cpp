@@ -48,15 +48,16 @@ constexpr visibility::ChoiceOption kSearch{
 constexpr auto kCrop = visibility::flag_option(
     "crop", true,
     "soup, laine: leave out edges that are no silhouettes as seen from a group of view samples; V is the same");
-constexpr visibility::ChoiceOption kCounterBits{"counter-bits",
-                                                {{"6", 6U}, {"8", 8U}, {"16", 16U}},
-                                                16U,
-                                                "forest: of a packed counter; where it overflows, pairs are exact"};
-constexpr visibility::ChoiceOption kAs{
-    "as",
-    {{"repaired", false}, {"published", true}},
-    false,
-    "forest: decide exactly where counters overflow and signs are in doubt, or let the counters say what they say"};
+constexpr visibility::ChoiceOption kCounterBits{
+    "counter-bits",
+    {{"6", 6U}, {"8", 8U}, {"16", 16U}},
+    16U,
+    "forest: bits of a packed counter; pairs whose counter overflows are decided exactly"};
+constexpr visibility::ChoiceOption kAs{"as",
+                                       {{"repaired", false}, {"published", true}},
+                                       false,
+                                       "forest: repaired: decides pairs exactly if counters overflow or signs are in "
+                                       "doubt; published: takes the counters as they are"};
 
 visibility::MeshVerdict depth_complexity_verdict(const mesh::Diagnosis& mesh) {
   return {

@@ -50,7 +50,7 @@ constexpr visibility::ChoiceOption kConstruction{"construction",
                                                  Construction::original,
                                                  "construction of the wedges, which bound the search"};
 constexpr auto kWedges =
-    wedges_option("where silhouettes and wedges are built for each light (tight ones always on the host)");
+    wedges_option("processor that builds silhouettes and wedges for each light (tight ones always the host)");
 constexpr visibility::ChoiceOption kTests{
     "tests",
     {{"none", WedgeTests::none}, {"z", WedgeTests::z}, {"both", WedgeTests::both}},
@@ -66,9 +66,9 @@ constexpr visibility::ChoiceOption kFusion{
      {"average", Combined::average},
      {"vote", Combined::vote}},
     Combined::sum,
-    "add what all occluders hide; find it for each object alone and take the "
-    "largest share, all as if independent, or the middle between largest and sum; "
-    "add, with layers by the votes of three points of the light"};
+    "sum: adds the shares hidden by all occluders; max, product, average: combine the shares of single objects by the "
+    "largest, as if independent, or by the middle between largest and sum; vote: adds, with layers by the votes of "
+    "three points of the light"};
 
 visibility::MeshVerdict soft_volume_verdict(const mesh::Diagnosis& mesh) {
   return {visibility::Verdict::approximate,

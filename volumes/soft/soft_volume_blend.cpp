@@ -31,7 +31,8 @@ using visibility::ViewSamples;
 
 constexpr std::size_t kMostOccluders = 32;  // each has its own passes; further objects share the last
 
-constexpr auto kBlendWedges = wedges_option("where silhouettes and wedges are built for each light, object by object");
+constexpr auto kBlendWedges =
+    wedges_option("processor that builds silhouettes and wedges for each light, object by object");
 
 visibility::MeshVerdict soft_volume_blend_verdict(const mesh::Diagnosis& mesh) {
   return {visibility::Verdict::approximate,

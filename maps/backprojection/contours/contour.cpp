@@ -19,8 +19,8 @@ constexpr visibility::ChoiceOption kTraversal{
     "traversal",
     {{"flat", Traversal::flat}, {"hierarchy", Traversal::hierarchy}, {"minmax", Traversal::minmax}},
     Traversal::hierarchy,
-    "how contours are found, always the same ones: in every cell of a kernel, below a node of the searched pyramid (or "
-    "of an MSSM) over it, or below a min-max pyramid's root"};
+    "search for contours, with the same result: in every cell of a kernel, below a node of the searched pyramid (or of "
+    "an MSSM) over the kernel, or below a min-max pyramid's root"};
 
 }  // namespace
 

@@ -67,14 +67,14 @@ constexpr auto kHierarchy =
     visibility::flag_option("hierarchy", true, "find contours below nodes of a multi-scale pyramid, not cell by cell");
 constexpr visibility::RealOption kDivergence{
     "divergence", 0, 1, 0.8,
-    "a packet whose pixels are more likely than this to have different contours is done pixel by pixel"};
+    "probability of different contours among a packet's pixels above which the packet is processed pixel by pixel"};
 
 // Both costs are 1 and not tuned (docs/packet.md).
 constexpr visibility::RealOption kEdgeCost{
-    "edgeCost", 0, 1024, 1, "what an edge of a contour costs, beside a node: decides which packets look together"};
+    "edgeCost", 0, 1024, 1, "cost of an edge of a contour, relative to a node: decides which packets search together"};
 constexpr visibility::RealOption kAreaCost{
     "areaCost", 0, 1024, 1,
-    "what an edge's area costs for each pixel, beside a node: decides which packets look together"};
+    "cost of an edge's area for each pixel, relative to a node: decides which packets search together"};
 
 }  // namespace
 

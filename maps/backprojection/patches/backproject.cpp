@@ -30,7 +30,8 @@ constexpr visibility::ChoiceOption kForm{
     gpu::kFormPatch,
     "rectangles on the light, or bounding spheres before the disk of the light's area or a sphere (without fill)"};
 constexpr visibility::IntegerOption kDeepestLayers{
-    "layers", 1, 16, 1, "layers of surfaces that are asked, of which the deepest that hides some of the light counts"};
+    "layers", 1, 16, 1,
+    "number of layers of surfaces that a receiver searches; the deepest layer that hides some of the light counts"};
 constexpr auto kPatchSearch = search_option(Search::hsm);
 
 visibility::MeshVerdict backproject_verdict(const mesh::Diagnosis& mesh) {

@@ -19,9 +19,11 @@
 namespace penumbra::maps {
 namespace {
 
-constexpr visibility::IntegerOption kPeeledLayers{"layers", 1, 16, 3, "layers of surfaces that are asked"};
+constexpr visibility::IntegerOption kPeeledLayers{"layers", 1, 16, 3,
+                                                  "number of layers of surfaces that a receiver searches"};
 constexpr visibility::IntegerOption kSamples{
-    "samples", 0, 1048576, 121, "texels that a receiver asks at most, evenly spread over its kernel; 0: all"};
+    "samples", 0, 1048576, 121,
+    "largest number of texels that a receiver reads, evenly spread over its kernel; 0: all"};
 constexpr visibility::ChoiceOption<std::uint32_t, 2> kSelect{
     "select",
     {{"contribution", 0u}, {"deepest", 1u}},

@@ -37,7 +37,8 @@ constexpr visibility::ChoiceOption kOccluder{"occluder",
                                              "three of them hide; of a level, the rectangle "
                                              "around what there is"};
 constexpr auto kBitmaskFill = fill_option(gpu::kFillNone);
-constexpr visibility::IntegerOption kJoinedLayers{"layers", 1, 16, 1, "layers of surfaces that are asked"};
+constexpr visibility::IntegerOption kJoinedLayers{"layers", 1, 16, 1,
+                                                  "number of layers of surfaces that a receiver searches"};
 constexpr auto kBitmaskSearch = search_option(Search::mssm);
 
 visibility::MeshVerdict bitmask_verdict(const mesh::Diagnosis& mesh) {

@@ -25,13 +25,14 @@
 namespace penumbra::maps {
 namespace {
 
-constexpr visibility::IntegerOption kRayLayers{"layers", 1, gpu::kMostLayers, 4, "layers of surfaces that rays meet"};
-constexpr visibility::RealOption kGap{"gap", 0, 1e6, 8,
-                                      "surfaces of neighbouring texels are joined by a wall if they are no farther "
-                                      "apart in depth than so many texels are "
-                                      "wide"};
+constexpr visibility::IntegerOption kRayLayers{"layers", 1, gpu::kMostLayers, 4,
+                                               "number of layers of surfaces that rays meet"};
+constexpr visibility::RealOption kGap{
+    "gap", 0, 1e6, 8,
+    "largest difference in depth, in widths of a texel, up to which a wall joins the surfaces of neighbouring texels"};
 constexpr auto kSolid = visibility::flag_option(
-    "solid", false, "what is between an odd layer and the next is full, as in closed bodies; off: surfaces alone");
+    "solid", false,
+    "on: the space between an odd layer and the next is solid, as in closed bodies; off: surfaces alone");
 
 visibility::MeshVerdict layer_rays_verdict(const mesh::Diagnosis& mesh) {
   return judge_for_maps("the first layers of surfaces behind each other as the light's centre sees them", mesh);

@@ -7,15 +7,14 @@
 namespace penumbra::maps {
 
 constexpr visibility::ChoiceOption<std::uint32_t, 4> fill_option(std::uint32_t otherwise) {
-  return {
-      "fill",
-      {{"none", gpu::kFillNone},
-       {"edges", gpu::kFillEdges},
-       {"diagonal", gpu::kFillDiagonal},
-       {"shared", gpu::kFillShared}},
-      otherwise,
-      "patches reach to those of their left and lower neighbours; of the diagonal one, too; or begin where those end, "
-      "which makes them smaller, too"};
+  return {"fill",
+          {{"none", gpu::kFillNone},
+           {"edges", gpu::kFillEdges},
+           {"diagonal", gpu::kFillDiagonal},
+           {"shared", gpu::kFillShared}},
+          otherwise,
+          "extension of patches to close gaps: to those of the left and lower neighbours; also to the diagonal one; or "
+          "shared borders, which also make patches smaller"};
 }
 
 }  // namespace penumbra::maps

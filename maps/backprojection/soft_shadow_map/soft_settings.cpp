@@ -13,16 +13,15 @@ namespace {
 
 constexpr visibility::IntegerOption kSize{"size", 8, 16384, 128, "texels on a side of the map of occluders"};
 constexpr visibility::RealOption kNoBias{
-    "bias", 0, 1024, 0, "how far, in the occluders' texels, an occluder must be in front of a receiver"};
+    "bias", 0, 1024, 0, "smallest distance, in the occluders' texels, of an occluder in front of a receiver"};
 constexpr visibility::IntegerOption kReceiverSize{"receiverSize", 8, 4096, 256,
                                                   "texels on a side of the map of receivers, which holds V"};
 constexpr visibility::ChoiceOption kPasses{
     "passes", {{"1", 1u}, {"2", 2u}}, 1u, "2: the farthest surfaces too, and the smaller V of the two"};
-constexpr visibility::ChoiceOption kPatches{
-    "patches",
-    {{"top", SoftPatches::top}, {"bottom", SoftPatches::bottom}},
-    SoftPatches::top,
-    "surfaces of one pass that texels stand for: nearest to the light, or farthest"};
+constexpr visibility::ChoiceOption kPatches{"patches",
+                                            {{"top", SoftPatches::top}, {"bottom", SoftPatches::bottom}},
+                                            SoftPatches::top,
+                                            "surfaces in one pass's texels: nearest to the light, or farthest"};
 constexpr visibility::ChoiceOption kPrecision{"precision",
                                               {{"fp32", SoftPrecision::fp32}, {"fp16", SoftPrecision::fp16}},
                                               SoftPrecision::fp32,
@@ -30,17 +29,17 @@ constexpr visibility::ChoiceOption kPrecision{"precision",
 constexpr visibility::ChoiceOption kForm{"form",
                                          {{"gather", SoftForm::gather}, {"scatter", SoftForm::scatter}},
                                          SoftForm::gather,
-                                         "which map is walked: the same sums"};
+                                         "map that the shader traverses; the sums are the same"};
 constexpr visibility::ChoiceOption kFilter{"filter",
                                            {{"linear", SoftFilter::linear}, {"nearest", SoftFilter::nearest}},
                                            SoftFilter::linear,
-                                           "how V is read from its map"};
+                                           "interpolation of V from its map"};
 
 constexpr visibility::ChoiceOption kSelf{"self",
                                          {{"none", SoftSelf::none}, {"backproject", SoftSelf::backproject}},
                                          SoftSelf::none,
                                          "V of pixels on occluders, which the paper leaves out: the light above their "
-                                         "horizon, or what backproject says with a map of this size"};
+                                         "horizon, or V by backproject with a map of this size"};
 
 visibility::MeshVerdict soft_shadow_map_verdict(const mesh::Diagnosis& mesh) {
   return judge_for_maps("a sum of texels, each projected onto the light; objects do not shade themselves", mesh);
