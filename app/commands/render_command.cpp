@@ -142,8 +142,9 @@ class RenderCommand : public Command {
     const std::string name = options_.run.scene.filename().string();
     const auto between = [](std::optional<double> frame) { return !frame || *frame != std::floor(*frame); };
     if (std::ranges::any_of(request_.frames, between))
-      throw UsageError("{} is a file a frame: --frame or --frames says which, in whole numbers", name);
-    if (request_.moments > 1) throw UsageError("--motion-samples: between the files of {} there is nothing", name);
+      throw UsageError("{} is one file per frame: --frame or --frames must select whole frames", name);
+    if (request_.moments > 1)
+      throw UsageError("--motion-samples: {} is one file per frame, without moments between the files", name);
     RunOptions first = options_.run;
     first.scene = first_frame_path(first.scene);
     first.studio = {};

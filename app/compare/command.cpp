@@ -130,7 +130,7 @@ class CompareCommand : public Command {
     cli_.add_flag("--error-budget", options_.error_budget,
                   "why is each image-based method wrong? Runs it again, often: without each cause of error alone, and "
                   "without all of them");
-    cli_.add_flag("--png", options_.png, "also write DIR/<method>.png: the beauty for eyes");
+    cli_.add_flag("--png", options_.png, "also write DIR/<method>.png: tone-mapped beauty image (sRGB)");
     cli_.add_option("--stats", options_.stats, "write metrics.json here as well")->type_name("FILE.json");
     cli_.add_option("--frame", frame_, "frame of the scene's animation, or a moment between two, such as 12.5")
         ->type_name("F");

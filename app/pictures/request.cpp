@@ -32,7 +32,8 @@ void parse_means(const PictureOptions& options, PictureRequest& request) {
     spdlog::warn("--pixel-samples {}: {}, the next square number, for they lie on a square grid", samples, square);
   request.filter = parse_filter(options.pixel_filter, options.filter_width);
   if (request.filter.kind != PixelFilter::Kind::box && samples == 1)
-    throw UsageError("--pixel-filter {}: of which view samples? --pixel-samples says how many", options.pixel_filter);
+    throw UsageError("--pixel-filter {} needs several view samples a pixel: --pixel-samples 4 or more",
+                     options.pixel_filter);
   if (!options.pixel_tolerance.empty()) {
     const auto tolerance = parse_number(options.pixel_tolerance);
     if (!tolerance || !(*tolerance >= 0 && *tolerance <= 1))
@@ -40,7 +41,7 @@ void parse_means(const PictureOptions& options, PictureRequest& request) {
           "--pixel-tolerance {}: expected a number from 0 (every view sample is evaluated) to 1, such as 0.002",
           options.pixel_tolerance);
     if (samples == 1)
-      throw UsageError("--pixel-tolerance {}: of which view samples? --pixel-samples says how many",
+      throw UsageError("--pixel-tolerance {} needs several view samples a pixel: --pixel-samples 4 or more",
                        options.pixel_tolerance);
     request.pixel_tolerance = *tolerance;
   }
@@ -53,7 +54,7 @@ void parse_means(const PictureOptions& options, PictureRequest& request) {
     throw UsageError(
         "--bits: answers are of pixels' centres at one moment; leave out --pixel-samples and --motion-samples");
   if (request.moments > 1 && options.frames.empty() && !options.frame)
-    throw UsageError("--motion-samples {}: of which frame? --frame or --frames says", options.motion_samples);
+    throw UsageError("--motion-samples {} needs a frame: --frame or --frames", options.motion_samples);
 }
 
 /// Reads --aperture and --focus-distance.
@@ -73,7 +74,7 @@ void parse_lens(const PictureOptions& options, PictureRequest& request) {
   if (*request.aperture > 0 && request.pixel_side == 1 && request.moments == 1)
     throw UsageError(
         "--aperture {}: a pixel's one view sample looks through the lens's middle, where everything is sharp; "
-        "--pixel-samples says how many there are",
+        "blur needs --pixel-samples 4 or more",
         options.aperture);
   if (*request.aperture == 0 && request.focus_distance)
     throw UsageError("--focus-distance {}: of which lens? --aperture 0 is none", options.focus_distance);
@@ -133,7 +134,7 @@ void add_picture_options(CLI::App& command, PictureOptions& options) {
       ->type_name("NAME");
   command.add_option("--stats", options.stats, "times, counters and warnings as JSON; times of one run, the first")
       ->type_name("FILE.json");
-  command.add_option("--png", options.png, "the beauty for eyes")->type_name("FILE.png");
+  command.add_option("--png", options.png, "tone-mapped beauty image (sRGB)")->type_name("FILE.png");
   command
       .add_option(
           "--exposure", options.exposure,
@@ -175,23 +176,24 @@ void add_picture_options(CLI::App& command, PictureOptions& options) {
       ->type_name("N");
   command
       .add_option("--shutter", options.shutter,
-                  "how long it is open, in frames, around the frame's time (default: 0.5)")
+                  "time for which the shutter is open, in frames, around the frame's time (default: 0.5)")
       ->type_name("FRAMES");
   command
-      .add_option("--aperture", options.aperture,
-                  "radius of the camera's lens in the scene's unit, which each view sample of a pixel looks through "
-                  "elsewhere: what is not at the focus distance is blurred (default: the camera's; 0: all is sharp)")
+      .add_option(
+          "--aperture", options.aperture,
+          "radius of the camera's lens in the scene's unit; each view sample of a pixel looks through another point "
+          "of the lens, which blurs surfaces away from the focus distance (default: the camera's; 0: all is sharp)")
       ->type_name("RADIUS");
   command
       .add_option("--focus-distance", options.focus_distance,
-                  "of the lens: how far along the view axis surfaces are sharp (default: the camera's)")
+                  "distance along the view axis at which surfaces are sharp (default: the camera's)")
       ->type_name("D");
   command
       .add_option(
           "--instances", options.instances,
-          "meshes that the scene has several times: copies, shared (stored once; copied is what is seen, or may "
-          "shade that), or auto (shared where copies would be more than 500000 triangles, and the method is exact "
-          "of each pair or area) (default: auto)")
+          "meshes that the scene has several times: copies, shared (stored once; only visible triangles and those that "
+          "may shade them are copied), or auto (shared if copies would exceed 500000 triangles, and the method is "
+          "exact for each pair or area) (default: auto)")
       ->type_name("NAME");
   command.add_flag("--skip-existing", options.skip_existing,
                    "leave out pictures whose files are all there: resumes a sequence");

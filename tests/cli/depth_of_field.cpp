@@ -179,7 +179,7 @@ TEST_F(DepthOfField, WhatCannotBeMeantIsRefused) {
     more.insert(more.end(), four.begin(), four.end());
     return more;
   };
-  refused({"--aperture", "0.1", "--focus-distance", "2"}, "--pixel-samples says how many");
+  refused({"--aperture", "0.1", "--focus-distance", "2"}, "blur needs --pixel-samples 4 or more");
   refused(with_four({"--aperture", "0.1"}), "does not say at what distance it is sharp");
   refused(with_four({"--focus-distance", "2"}), "of which lens?");
   refused(with_four({"--aperture", "-1"}), "expected a lens's radius");

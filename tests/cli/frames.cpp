@@ -328,7 +328,7 @@ TEST_F(Frames, MayBeAFileEach) {
   ASSERT_EQ(run({"render", path("m.002.obj"), "--size", "24x16", "-o", path("still.exr")}).code, 0);
   EXPECT_EQ(read_exr(path("still.exr")).floats.at("V"), first.floats.at("V"));
   EXPECT_THAT(frames({"-o", path("a.exr")}).err,
-              HasSubstr("m.###.obj is a file a frame: --frame or --frames says which"));
+              HasSubstr("m.###.obj is one file per frame: --frame or --frames must select whole frames"));
   EXPECT_EQ(frames({"--frame", "2.5", "-o", path("a.exr")}).code, 2);
   EXPECT_EQ(frames({"--frame", "2", "--motion-samples", "4", "-o", path("a.exr")}).code, 2);
   EXPECT_THAT(frames({"--frame", "9", "-o", path("a.exr")}).err, HasSubstr("m.009.obj"));

@@ -171,7 +171,8 @@ TEST(MatteShares, KnowNamesOfAllPictures) {
 
 TEST_F(FilteredPictures, AreRefusedWhereThereIsNothingToWeigh) {
   const std::vector<std::pair<std::vector<std::string>, std::string>> refused = {
-      {{"--pixel-filter", "blackman-harris"}, "--pixel-samples says how many"},
+      {{"--pixel-filter", "blackman-harris"},
+       "--pixel-filter blackman-harris needs several view samples a pixel: --pixel-samples 4"},
       {{"--pixel-samples", "4", "--pixel-filter", "gauss"}, "box or blackman-harris"},
       {{"--pixel-samples", "4", "--filter-width", "2"}, "a box is one pixel wide"},
       {{"--pixel-samples", "4", "--pixel-filter", "blackman-harris", "--filter-width", "0.5"}, "from 1 to 10"},
