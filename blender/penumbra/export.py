@@ -17,10 +17,11 @@ _UNKNOWN = {"VOLUME": f"is a volume, which is not rendered; {_MESH_OR_NOTHING} (
 
 
 class SceneWriter:
-    """Writes one frame. What is lost goes to `losses` by name (losses.py)."""
+    """Writes one frame. Reports unsupported data to `losses` by name (losses.py)."""
 
     def __init__(self, depsgraph, losses, shading_normals, baked=None):
-        """`baked`: the object that is baked (bake.py), whose own coordinates are written beside those of images; None: none."""
+        """`baked`: the object to bake (bake.py), whose lightmap coordinates are written in addition to those of images;
+        or None."""
         self.depsgraph, self.losses, self.shading_normals = depsgraph, losses, shading_normals
         self.scene, self.layer = depsgraph.scene, depsgraph.view_layer_eval
         self.glb = glb.Glb()
@@ -31,7 +32,7 @@ class SceneWriter:
                                             # distances
 
     def write(self, path, region):
-        """`region`: which pixels (frames.py); None: there is no picture."""
+        """`region`: pixels to render (frames.py); None: there is no picture."""
         for instance in self.depsgraph.object_instances:
             if instance.show_self and not (region is None and instance.object.hide_render):
                 self._object(instance)
@@ -86,7 +87,7 @@ class SceneWriter:
         self.glb.node(self._baked.name if is_baked else thing.name, instance.matrix_world, extras, mesh=number)
 
     def _materials_of(self, thing):
-        """Of its slots; the view layer's override stands for all."""
+        """Returns the materials of an object's slots; the view layer's override replaces all."""
         if self.layer.material_override is not None:
             return [self.layer.material_override]
         return [slot.material for slot in thing.material_slots]
@@ -234,7 +235,7 @@ def shared(vertices, rows):
 
 
 class Corners:
-    """A mesh's triangles, corner by corner."""
+    """Triangles of a mesh, corner by corner."""
 
     def __init__(self, data, shading_normals):
         self.data = data
@@ -260,12 +261,12 @@ class Corners:
             self.normals = self.normals.reshape(-1, 3)
 
     def forget(self):
-        """Only where triangles are is kept."""
+        """Releases all data except the positions of triangles."""
         self.data = self.loops = self.smooth = self.normals = None
 
     def of(self, chosen, look, writer, smooth, is_baked):
-        """Attributes and indices of some triangles (a mask), as numbers of accessors. `is_baked`: the active UV map is there as
-        the second set of coordinates."""
+        """Returns attributes and indices of some triangles (a mask), as numbers of accessors. `is_baked`: the active UV
+        map is written as the second set of coordinates."""
         corners = numpy.repeat(chosen, 3)
         columns = [self.positions[self.vertices[corners]]]
         names = [("POSITION", "VEC3")]
@@ -292,7 +293,7 @@ class Corners:
         return attributes, writer.glb.accessor(indices.astype("<u4").tobytes(), "SCALAR", glb.UNSIGNED)
 
     def _places(self, look):
-        """In glTF pictures begin at their top left."""
+        """Flips v: in glTF, pictures begin at their top left."""
         layers = self.data.uv_layers
         layer = layers.get(look.uv_map) if look.uv_map else next((one for one in layers if one.active_render), None)
         places = numpy.zeros(2 * len(self.data.loops), numpy.float32)

@@ -1,4 +1,4 @@
-"""Which pixels are asked for, and what a scene's settings ask for that is left out. Knows nothing of bpy."""
+"""Pixels that a render requests, and settings of a scene that are not supported. Independent of bpy."""
 
 from dataclasses import dataclass
 
@@ -16,13 +16,14 @@ class Region:
     bottom: int = 0
 
     def shift_of_middle(self):
-        """From the whole's middle to the region's, in heights of the region."""
+        """Returns the offset from the whole picture's middle to the region's, in heights of the region."""
         return tuple((start + side / 2 - all / 2) / self.size[1]
                      for start, side, all in zip((self.left, self.bottom), self.size, self.whole))
 
 
 def region_of(render, width, height):
-    """`width`, `height`: the whole's, as Blender rounds them. ValueError for pictures of another kind."""
+    """Returns the region to render. `width`, `height`: the whole picture's, as Blender rounds them. Raises ValueError
+    for pictures that are not supported."""
     if abs(render.pixel_aspect_x - render.pixel_aspect_y) > 1e-6 * render.pixel_aspect_x:
         raise ValueError("the pixels are not square (Output, Format, Aspect); Penumbra renders square pixels")
     if render.use_multiview:
@@ -49,7 +50,7 @@ _ABSENT = {
 
 
 def check_render(scene, layer, lost):
-    """What of the settings of a scene and a view layer is left out."""
+    """Reports the settings of a scene and a view layer that are left out."""
     render = scene.render
     if render.use_motion_blur:
         lost.mention("has motion blur switched on, which is left out", scene.name)
@@ -63,7 +64,8 @@ def check_render(scene, layer, lost):
 
 
 def likely_lights(scene):
-    """The lights that a render will have: lamps, objects with an emissive material, and the world."""
+    """Returns the layer names of the lights that a render will have: lamps, objects with an emissive material, and the
+    world."""
     def shines(thing):
         return any(slot.material and materials.may_shine(slot.material) for slot in thing.material_slots)
     found = [thing for thing in scene.objects if not thing.hide_render and (thing.type == "LIGHT" or shines(thing))]

@@ -14,12 +14,12 @@ _Z_UP_TO_Y_UP = [1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1]
 
 
 def by_columns(matrix):
-    """A matrix of rows, as glTF writes one."""
+    """Converts a matrix of rows to glTF's order."""
     return [float(matrix[row][column]) for column in range(4) for row in range(4)]
 
 
 class Glb:
-    """A file that grows by what is added; `encoded` is the whole of it."""
+    """A binary glTF file that grows by additions; `encoded` returns the complete file."""
 
     def __init__(self):
         self._binary = bytearray()
@@ -59,14 +59,14 @@ class Glb:
         return self._add("images", {"name": name, "bufferView": self._view(data), "mimeType": mime})
 
     def texture(self, image, wrap=10497, nearest=False):
-        """`wrap`: glTF's number."""
+        """Adds a texture. `wrap`: glTF's number."""
         filtering = 9728 if nearest else 9729
         sampler = self._add("samplers", {"wrapS": wrap, "wrapT": wrap, "magFilter": filtering})
         return self._add("textures", {"source": image, "sampler": sampler})
 
     def material(self, name, color, radiance=(0, 0, 0), alpha=1.0, cutoff=None, texture=None, texture_alpha=False):
-        """Emits to both sides, as Blender's materials do. `cutoff`: holes below it; None: alpha dims. `texture_alpha`:
-        the texture's counts."""
+        """Adds a material. It emits to both sides, as Blender's materials do. `cutoff`: holes below it; None: alpha
+        dims. `texture_alpha`: the texture's counts."""
         surface = {"baseColorFactor": [*color, alpha], "metallicFactor": 0, "roughnessFactor": 1}
         if texture is not None:
             surface["baseColorTexture"] = {"index": texture}
@@ -83,7 +83,7 @@ class Glb:
         return self._add("materials", entry)
 
     def mesh(self, name, primitives):
-        """`primitives`: dictionaries of attributes, indices and material."""
+        """Adds a mesh. `primitives`: dictionaries of attributes, indices and material."""
         return self._add("meshes", {"name": name, "primitives": primitives})
 
     def node(self, name, matrix, extras=None, **what):
@@ -96,8 +96,9 @@ class Glb:
         return number
 
     def camera(self, name, matrix, aspect, shift, half_angle=None, height=None, focus=None):
-        """`half_angle` (its tangent) of a perspective camera, `height` of an orthographic one; both of the picture's
-        height, `shift` in heights of the picture. `focus`: radius of the lens and distance at which it is sharp."""
+        """Adds a camera: perspective with `half_angle` (its tangent), or orthographic with `height`; both over the
+        picture's height, `shift` in heights of the picture. `focus`: radius of the lens and distance at which it is
+        sharp."""
         if height is None:
             from math import atan
             lens = {"type": "perspective",
@@ -126,13 +127,14 @@ class Glb:
         self.node(name, matrix, _shadow(casts_shadow), extensions={"KHR_lights_punctual": {"light": len(lamps) - 1}})
 
     def area_lamp(self, name, matrix, shape, size, radiance, casts_shadow=True):
-        """`shape`: "rectangle" or "ellipse"; shines along −Z of the matrix."""
+        """Adds an area light that shines along −Z of the matrix. `shape`: "rectangle" or "ellipse"."""
         self.has_lamps = True
         extras = {"areaLamp": {"shape": shape, "size": list(size), "radiance": list(radiance)}}
         self.node(name, matrix, {**extras, **_shadow(casts_shadow)})
 
     def dome(self, name, matrix, radiance, image=None, visible=False):
-        """The sky: +Y of the matrix is up, and -Z is where the middle column of the picture lies, a file beside this one."""
+        """Adds the sky: +Y of the matrix is up, -Z the direction of the picture's middle column; the picture is a
+        separate file."""
         self.has_lamps = True
         dome = {"radiance": list(radiance), "visible": visible}
         if image is not None:
@@ -155,7 +157,7 @@ class Glb:
 
 
 class OfThings(Glb):
-    """A file whose nodes say of which thing each is, for `penumbra serve` (docs/serve.md)."""
+    """A file whose nodes each name their Blender object, for `penumbra serve` (docs/serve.md)."""
 
     def __init__(self):
         super().__init__()

@@ -15,7 +15,7 @@ _UNSAID = 0.02
 
 
 def emission_of(lamp, losses, name):
-    """What a lamp's nodes multiply its power by."""
+    """Returns the factor by which a lamp's nodes multiply its power."""
     if not lamp.use_nodes or lamp.node_tree is None:
         return (1.0, 1.0, 1.0)
     output = lamp.node_tree.get_output_node("CYCLES")
@@ -41,13 +41,14 @@ def sun_irradiance(strength, angle):
 
 
 def cone_of(lamp):
-    """A spot lamp's inner and outer half angle in radians: it falls over `blend` of the cosines, at least 0.001."""
+    """Returns a spot lamp's inner and outer half angle in radians: its light falls off over `blend` of the cosines, at
+    least 0.001."""
     outer = min(lamp.spot_size / 2, pi / 2)
     return acos(min(cos(outer) + max((1 - cos(outer)) * lamp.spot_blend, 0.001), 1.0)), outer
 
 
 def size_of(lamp):
-    """An area lamp's shape and size across."""
+    """Returns an area lamp's shape and size across."""
     shape = "ellipse" if lamp.shape in ("DISK", "ELLIPSE") else "rectangle"
     both = lamp.shape in ("RECTANGLE", "ELLIPSE")
     return shape, (lamp.size, lamp.size_y if both else lamp.size)
@@ -70,7 +71,7 @@ def _length(matrix, column):
 
 
 def is_sheared(matrix):
-    """Are its axes not at right angles?"""
+    """Returns whether the matrix's axes are not at right angles."""
     def cosine(i, j):
         both = _length(matrix, i) * _length(matrix, j)
         return abs(sum(x * y for x, y in zip(_column(matrix, i), _column(matrix, j)))) / both if both > 0 else 0.0
@@ -173,7 +174,7 @@ def _write_area(lamp, name, matrix, power, glb, losses, shades):
 
 
 def lens_of(camera, region):
-    """What glb.camera takes of a lens for some pixels (frames.Region): shift, and half_angle or height."""
+    """Returns glb.camera's arguments of a lens for a frames.Region: shift, and half_angle or height."""
     width, height = region.whole
     wide = width >= height if camera.sensor_fit == "AUTO" else camera.sensor_fit == "HORIZONTAL"
     fitted = width if wide else height  # the side that the sensor, or the scale, applies to
@@ -189,8 +190,8 @@ def lens_of(camera, region):
 
 
 def focus_of(camera, matrix):
-    """Radius of the camera's lens and the distance at which it is sharp, as Cycles has them; None: everything is. `matrix`: of
-    the camera's object, without scale."""
+    """Returns the radius of the camera's lens and the focus distance, as in Cycles; None: everything is sharp.
+    `matrix`: the camera object's, without scale."""
     lens, field = camera.data, camera.data.dof
     if not field.use_dof:
         return None
@@ -208,6 +209,6 @@ def has_blades(field):
 
 
 def without_scale(matrix):
-    """The matrix with columns of length 1: cameras are not stretched."""
+    """Returns the matrix with columns of length 1: cameras are not stretched."""
     lengths = [_length(matrix, column) or 1.0 for column in range(3)] + [1.0]
     return [[matrix[row][column] / lengths[column] for column in range(4)] for row in range(4)]

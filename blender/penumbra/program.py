@@ -1,4 +1,4 @@
-"""Runs the command-line program. Knows nothing of Blender."""
+"""Runs the command-line program. Independent of Blender."""
 
 import os
 import queue
@@ -13,7 +13,7 @@ BOX, BLACKMAN_HARRIS = "BOX", "BLACKMAN_HARRIS"
 
 
 def find(wanted):
-    """The program's path: `wanted`, or else what PENUMBRA says, or else where the shell would find it."""
+    """Returns the program's path: `wanted`, or else the value of PENUMBRA, or else the program on the shell's PATH."""
     for name in (wanted, os.environ.get("PENUMBRA", ""), "penumbra"):
         path = shutil.which(os.path.expanduser(name)) if name else None
         if path:
@@ -28,8 +28,8 @@ _WITHOUT_LIGHTS = "beauty,V,Z,P,N,Crypto*"
 
 
 def arguments(program, scene, picture, size, settings):
-    """The command. `settings`: exactness, light_samples, method, pixel_samples, pixel_filter, filter_width,
-    shading_normals, lenient, device, light_passes."""
+    """Returns the command that renders. `settings`: exactness, light_samples, method, pixel_samples, pixel_filter,
+    filter_width, shading_normals, lenient, device, light_passes."""
     command = [program, "render", scene, "-o", picture, "--no-studio", "--size", f"{size[0]}x{size[1]}"]
     command += _of_shadows(settings)
     if int(settings.pixel_samples) > 1:
@@ -43,8 +43,8 @@ def arguments(program, scene, picture, size, settings):
 
 
 def bake_arguments(program, scene, picture, mesh, settings):
-    """The command that bakes a mesh by its second coordinates. `settings`: those of `arguments` that are not about pixels,
-    and bake_size, bake_margin."""
+    """Returns the command that bakes a mesh by its second texture coordinates. `settings`: those of `arguments` except
+    the pixel settings, and bake_size, bake_margin."""
     return [program, "bake", scene, "-o", picture, "--no-studio", "--mesh", mesh, "--uv", "1", "--size", str(settings.bake_size),
             "--margin", str(settings.bake_margin), *_of_shadows(settings), *_of_surfaces(settings)]
 
@@ -71,7 +71,8 @@ _IN_BLENDER = (
 
 
 def messages(text, scene=""):
-    """Warnings, and the error (or None), of what the program printed. `scene`: the exchange file, which they do not name."""
+    """Returns the warnings and the error (or None) in the program's output. `scene`: the exchange file, whose name the
+    messages omit."""
     warnings, errors = [], []
     for line in text.splitlines():
         kind, _, what = line.removeprefix("penumbra: ").partition(": ")
@@ -95,7 +96,7 @@ rm -rf -- "$1"
 
 
 class Workspace:
-    """A folder for one frame's files, which goes even if this process is killed."""
+    """A folder for one frame's files, which is deleted even if this process is killed."""
 
     def __init__(self):
         self.folder = tempfile.mkdtemp(prefix="penumbra-")

@@ -1,22 +1,23 @@
-"""From where a 3D view looks. Knows nothing of Blender, whose Z is up."""
+"""Camera of a 3D view. Independent of bpy; Blender's Z is up."""
 
 from math import atan, degrees, sqrt
 
 
 def _turned(x, y, z):
-    """Z up into Y up, as the exchange file's first node does."""
+    """Converts Z up to Y up, as the exchange file's first node does."""
     return (x, z, -y)
 
 
 def _unit(vector):
-    """In the order of operations of the program's reader, so that all digits are the same."""
+    """Normalizes with the same order of operations as the program's reader, so that all digits are the same."""
     x, y, z = vector
     scale = 1.0 / sqrt(x * x + y * y + z * z)
     return (x * scale, y * scale, z * scale)
 
 
 class Viewpoint:
-    """`matrix`: rows, from the view to the world, without scale; `projection`: rows, as OpenGL's; `size`: in pixels."""
+    """Viewpoint of a 3D view. `matrix`: rows, from view to world, without scale; `projection`: rows, as in OpenGL;
+    `size`: in pixels."""
 
     def __init__(self, matrix, projection, size):
         self.matrix, self.size = [[float(x) for x in row] for row in matrix], tuple(size)
@@ -35,7 +36,7 @@ class Viewpoint:
         return self.matrix, self.half_angle, self.height, self.shift, self.size
 
     def camera(self):
-        """As `show` takes it."""
+        """Returns the camera for the message `show`."""
         column = [tuple(self.matrix[row][i] for row in range(3)) for i in range(4)]
         eye = _turned(*column[3])
         forward = _unit(_turned(*(-x for x in column[2])))
@@ -48,5 +49,5 @@ class Viewpoint:
         return camera
 
     def write(self, glb):
-        """As a camera of an exchange file: the same view."""
+        """Writes the same view as a camera of an exchange file."""
         glb.camera("View", self.matrix, self.aspect, self.shift, half_angle=self.half_angle, height=self.height)
