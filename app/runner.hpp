@@ -34,7 +34,7 @@ using TileSink = std::function<void(const TileResult&)>;
 
 struct RunPlan {
   /// Lights as in Session::lights, possibly with other light samples; or without filtered_by: then V is NaN where a
-  /// translucent surface or hole may be on the way (Session::filtered). These view samples are evaluated nevertheless,
+  /// translucent surface or hole may be in between (Session::filtered). These view samples are evaluated nevertheless,
   /// so that their neighbours' digits do not depend on them.
   std::span<const visibility::Light> lights;
   bool filtered_alone = false;  ///< for a light with filtered_by, evaluate only those view samples; NaN elsewhere

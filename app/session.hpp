@@ -36,7 +36,7 @@ struct Session {
   std::vector<visibility::Light> lights;  ///< requested lights, in the order of the request, or all of the scene's;
                                           ///< pieces of one light (app/whole_lights.hpp) are consecutive
   std::vector<std::vector<visibility::PixelClass>> classes;  ///< for each light, each pixel
-  /// For each light, each pixel, 1: a translucent surface or hole may be on the way (AlphaReach). Empty: nowhere; then
+  /// For each light, each pixel, 1: a translucent surface or hole may be in between (AlphaReach). Empty: nowhere; then
   /// the light's filtered_by and dimmed_by are empty, too.
   std::vector<std::vector<std::uint8_t>> filtered;
   std::vector<double> filtered_seconds;  ///< time of computing `filtered`, of each light

@@ -13,7 +13,7 @@ namespace penumbra::compare {
 inline constexpr Color8 kBackgroundColor{96, 104, 116};
 
 /// Returns the colour of a signed error: white is 0, blue too bright, red too dark, deepest at ±limit and beyond. The
-/// depth grows with √(|error| / limit), so that small errors are visible beside large ones.
+/// depth grows with √(|error| / limit), so that small errors are visible next to large ones.
 Color8 error_color(double error, double limit);
 /// Returns the colours interpolated by error_color(), evenly spaced in depth from 0 to the limit.
 std::span<const Color8> error_colors(bool too_bright);

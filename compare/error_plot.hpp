@@ -11,7 +11,7 @@ namespace penumbra::compare {
 /// their own.
 struct ErrorPlot {
   struct Mark {
-    std::string name;    ///< written beside the mark; empty: no text
+    std::string name;    ///< written next to the mark; empty: no text
     std::string title;   ///< tooltip of the mark
     std::string family;  ///< geometry, image or reference: determines shape and colour
     double seconds = 0, rmse = 0;

@@ -48,7 +48,8 @@ std::string names_text(const std::vector<const MethodResult*>& results) {
   return results.size() > kNamed ? fmt::format("{} and {} more", text, results.size() - kNamed) : text;
 }
 
-/// Finds the method that answers every pair as rays do, or else the one that comes closest.
+/// Writes a card that names the methods that answer every pair as rays do, or else the ones with the fewest
+/// differences.
 template <typename Card>
 std::string exactness_card(const ReportInput& in, const Card& card) {
   struct Sum {

@@ -40,7 +40,7 @@ struct ReportLightView {
   std::vector<BudgetPicture> budget_pictures = {};
 };
 
-/// Part of the report about one method beside its numbers; parts that were not computed are left out.
+/// Part of the report about one method in addition to its numbers; parts that were not computed are left out.
 struct ReportEntry {
   visibility::MethodDescription description;
   std::optional<Image8> beauty;

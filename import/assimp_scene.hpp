@@ -13,7 +13,7 @@ namespace penumbra::mesh {
 struct AssimpSceneOptions {
   bool is_fbx = false;          ///< applies its unit and axes
   std::uint64_t triangles = 0;  ///< least number of triangles, if counted: a file with fewer is rejected
-  SceneParts* parts = nullptr;  ///< receives everything beside triangles
+  SceneParts* parts = nullptr;  ///< receives everything except triangles
 };
 
 /// Returns every mesh of the node tree, transformed by its nodes, in one soup.

@@ -10,7 +10,7 @@
 
 namespace penumbra::mesh {
 
-/// The way in which a polygon was triangulated.
+/// Method by which a polygon was triangulated.
 enum class PolygonKind { convex, concave, tangled };
 
 /// Appends to `triangles` the n − 2 triangles of the polygon with the corners `corners` (at least three), as indices

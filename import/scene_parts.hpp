@@ -15,7 +15,7 @@ struct aiScene;
 
 namespace penumbra::mesh {
 
-/// Contents of a scene file read by Assimp beside its triangles, in world space and the scene's unit.
+/// Contents of a scene file read by Assimp other than its triangles, in world space and the scene's unit.
 struct SceneParts {
   /// Mesh placed by a node.
   struct Part {

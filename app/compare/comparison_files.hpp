@@ -10,7 +10,7 @@
 
 namespace penumbra::app {
 
-/// Files of each entry beside its EXR and its error picture.
+/// Files of each entry in addition to its EXR and its error picture.
 struct EntryFiles {
   bool png = false, bits = false;
 };

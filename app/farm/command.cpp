@@ -131,7 +131,7 @@ class SubmitCommand : public Command {
     return words;
   }
 
-  /// Returns the folder beside the pictures, named after them: OUT.####.exr → OUT.farm.
+  /// Returns the folder next to the pictures, named after them: OUT.####.exr → OUT.farm.
   static std::filesystem::path folder_of(const std::filesystem::path& out) {
     const std::string name = sequence_name(out);
     return out.parent_path() / ((name.empty() ? "frames" : name) + ".farm");

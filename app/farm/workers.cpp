@@ -43,7 +43,7 @@ class Worker {
   }
   [[nodiscard]] const Run& run() const { return run_; }
   int exit_code() { return program_.exit_code(); }
-  /// Returns the worker's error message, or the way it ended.
+  /// Returns the worker's error message, or how the worker ended.
   std::string reason() {
     if (!reason_.empty()) return reason_;
     const int code = exit_code();

@@ -10,7 +10,7 @@
 
 namespace penumbra::app {
 
-/// Contents of a scene beside meshes.
+/// Contents of a scene other than meshes.
 struct SceneFacts {
   struct Named {
     std::string name, text;

@@ -23,7 +23,7 @@
 namespace penumbra::app {
 namespace {
 
-/// Returns whether any pixel is lit without a possible translucent surface or hole on the way (Session::filtered).
+/// Returns whether any pixel is lit without a possible translucent surface or hole in between (Session::filtered).
 bool any_seen_openly(std::span<const visibility::PixelClass> classes, std::span<const std::uint8_t> filtered) {
   using visibility::PixelClass;
   for (std::size_t i = 0; i < classes.size(); ++i) {
@@ -37,7 +37,7 @@ bool any_seen_openly(std::span<const visibility::PixelClass> classes, std::span<
 }  // namespace
 
 /// Chooses the methods. Area methods do not handle translucent surfaces and holes: their result is right only where
-/// none of these is on the way.
+/// none of these is in between.
 void FrameRenderer::choose_methods(const Session& session) {
   const std::vector<visibility::Light>& lights = session.lights;
   plan_.lights = lights;

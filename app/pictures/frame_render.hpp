@@ -28,7 +28,7 @@
 
 namespace penumbra::app {
 
-/// Content of one picture beside the options common to all pictures.
+/// Content of one picture in addition to the options common to all pictures.
 struct Frame {
   std::optional<double> number;  ///< nullopt: not requested
   std::string camera;            ///< empty: the first
@@ -166,7 +166,7 @@ class FrameRenderer {
   /// Methods of each light, for the current view samples.
   struct Plan {
     std::vector<LightMethod> chosen;
-    // Methods with light samples, used at pixels with translucent surfaces or holes on the way, for lights with areas
+    // Methods with light samples, used at pixels with translucent surfaces or holes in between, for lights with areas
     // elsewhere.
     std::vector<std::optional<LightMethod>> counting;
     std::vector<visibility::Light> lights;  // lights given to the chosen methods: for areas, without filtered_by

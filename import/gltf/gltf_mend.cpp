@@ -134,8 +134,8 @@ std::uint64_t decoded_size(std::string_view base64) {
   return base64.size() / 4 * 3 + base64.size() % 4 * 3 / 4;
 }
 
-/// Gives the `uri` of a buffer or image a media type that tinygltf knows. Returns the number of its bytes; nullopt if
-/// it is not a data URI, 0 if it is one that is not in base64.
+/// Gives the `uri` of a buffer or image a media type that tinygltf supports. Returns the number of its bytes; nullopt
+/// if it is not a data URI, 0 if it is one that is not in base64.
 std::optional<std::uint64_t> mend_uri(json& owner, bool& changed) {
   if (!owner.is_object() || !owner.contains("uri") || !owner["uri"].is_string()) return std::nullopt;
   auto& uri = owner["uri"].get_ref<std::string&>();

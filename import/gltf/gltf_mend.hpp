@@ -26,7 +26,8 @@ struct TakenOut {
 /// - animation channels without a node are removed; channels that point to a node's transform (KHR_animation_pointer)
 ///   get that node as their target;
 /// - a plus sign in a file's name stays one;
-/// - data URIs get a media type that tinygltf knows, without percent escapes or blanks within their base64, and buffers
+/// - data URIs get a media type that tinygltf supports, without percent escapes or blanks within their base64, and
+/// buffers
 ///   the length of their data URI, which may be longer than `byteLength`;
 /// - primitives compressed with Draco that have an uncompressed copy use the copy; those without are refused
 ///   (InputError with the primitive's place), or removed if `lenient`.

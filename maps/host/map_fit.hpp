@@ -44,7 +44,7 @@ struct FitOptions {
   glm::dvec2 body_reach{0};
   bool snap = false;
   bool hemicube = false;  ///< five faces, even if a window would suffice
-  glm::dvec2 jitter{0};   ///< displacement of windows in their texels, up to a half: the margin of their contents
+  glm::dvec2 jitter{0};   ///< displacement of windows in their texels, up to a half; contents stay inside them
 };
 
 /// Returns FitOptions::reach of a light so large that every caster shades something.

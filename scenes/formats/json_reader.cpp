@@ -171,7 +171,7 @@ std::uint32_t named_light(const json& value, const Place& place, const std::vect
   return static_cast<std::uint32_t>(found - lights.begin());
 }
 
-/// The light whose body is the mesh.
+/// Returns the number of the light whose body is the mesh.
 std::uint32_t named_body(const json& value, const Place& place, const std::vector<AreaLight>& lights) {
   const std::uint32_t light = named_light(value, place, lights);
   const auto kind = kind_of(lights[light].shape);

@@ -68,7 +68,7 @@ Scene read_scene(const std::filesystem::path& file, const ReadOptions& options) 
   const bool wishes = studio.always || !studio.lights.empty() || studio.camera || !studio.fit_camera.empty();
   const bool lacks = !is_json && (scene.cameras.empty() || (scene.lights.empty() && !studio.never));
   const bool is_around = lacks || studio.always || !studio.lights.empty() || !studio.fit_camera.empty();
-  if (is_around && options.instances != nullptr)  // around all instances, to the last bit
+  if (is_around && options.instances != nullptr)  // a studio encloses all instances, to the last bit
     scene = copied(std::move(scene), std::exchange(*options.instances, {}));
   const bool has_triangles =
       !scene.soup.triangles.empty() || (options.instances != nullptr && !options.instances->empty());

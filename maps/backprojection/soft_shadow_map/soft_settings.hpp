@@ -15,7 +15,7 @@ enum class SoftFilter : std::uint8_t { linear, nearest };
 enum class SoftPatches : std::uint8_t { top, bottom };
 enum class SoftSelf : std::uint8_t { none, backproject };
 
-/// Options of soft-shadow-map beside those of all methods with a map.
+/// Options of soft-shadow-map in addition to those of all methods with a map.
 struct SoftSettings {
   std::uint32_t receiver_size;  ///< on a side of the map of receivers
   std::uint32_t passes;         ///< 2: a second pass with the farthest surfaces
