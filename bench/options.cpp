@@ -162,7 +162,7 @@ void require_once(const std::vector<std::string>& names) {
   std::vector<std::string> sorted = names;
   std::ranges::sort(sorted);
   const auto twice = std::ranges::adjacent_find(sorted);
-  if (twice != sorted.end()) throw UsageError("{} is asked for twice; its results would have one name", *twice);
+  if (twice != sorted.end()) throw UsageError("{} is given twice; its results would have one name", *twice);
 }
 
 void set_defaults(Reading& reading) {

@@ -67,8 +67,8 @@ std::string errors_table_html(const ReportInput& in, const ErrorRows& rows) {
     table.rows.back().push_back(beauty ? ReportCell(percent_text(beauty->relative_rmse), beauty->relative_rmse) : "–");
   }
   if (rows.rays) {
-    add(label_html("rays on the same light samples", rays_label(in) + ": what so many light samples cost"), rows.rays,
-        false);
+    add(label_html("rays on the same light samples", rays_label(in) + ": the cost of that number of light samples"),
+        rows.rays, false);
     if (rows.with_beauty) table.rows.back().emplace_back("–");
   }
   return table_html(table);

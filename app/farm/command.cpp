@@ -38,8 +38,9 @@ class SubmitCommand : public Command {
       : Command(app, "submit", "render a sequence on a farm: as a Slurm array, or here with several workers") {
     add_picture_options(cli_, options_);
     cli_.get_option("--frames")->required();
-    auto* dry_run = cli_.add_flag("--dry-run", dry_run_, "print the batch script; renders, writes and asks nothing");
-    auto* jobs = cli_.add_option("--jobs", jobs_, "render here, without Slurm, by so many processes at a time")
+    auto* dry_run =
+        cli_.add_flag("--dry-run", dry_run_, "prints the batch script, without rendering, writing or calling Slurm");
+    auto* jobs = cli_.add_option("--jobs", jobs_, "number of processes that render here at a time, without Slurm")
                      ->type_name("N")
                      ->check(CLI::Range(1, 1024))
                      ->excludes(dry_run);
@@ -50,11 +51,11 @@ class SubmitCommand : public Command {
         "frames a task of the array (default: enough for a minute, by the first frame, which is rendered here)")
         ->type_name("N")
         ->check(CLI::Range(1, 100'000));
-    add("--rounds", rounds_, "how often frames that are missing at the end are submitted, the first time included")
+    add("--rounds", rounds_, "largest number of times that missing frames are submitted, the first time included")
         ->type_name("N")
         ->check(CLI::Range(1, 100))
         ->capture_default_str();
-    add("--round", round_, "which of them this is: what the summary says after each")
+    add("--round", round_, "number of this round, which the summary of the round before sets")
         ->type_name("N")
         ->check(CLI::Range(1, 101))
         ->capture_default_str();

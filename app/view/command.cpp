@@ -54,13 +54,12 @@ class ViewCommand : public Command {
     cli_.add_option("SCENE", run_.scene,
                     "scene file: .json (penumbra-scene/1), .gltf or .glb; or a mesh file, around which a studio is put")
         ->required();
-    cli_.add_option(
-            "--host", host_,
-            "address of this machine to serve on: others than the loopback's let in who knows the whole address, "
-            "unencrypted")
+    cli_.add_option("--host", host_,
+                    "address of this machine to serve on; other addresses than the loopback's admit, without "
+                    "encryption, every client that has the whole address")
         ->type_name("ADDRESS")
         ->capture_default_str();
-    cli_.add_option("--port", port_, "port there; 0: any that is free")
+    cli_.add_option("--port", port_, "port to serve on; 0: any free port")
         ->type_name("N")
         ->check(CLI::Range(0, 65535))
         ->capture_default_str();

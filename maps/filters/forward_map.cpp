@@ -19,9 +19,7 @@ constexpr visibility::ChoiceOption<std::uint32_t, 3> kSplat{
     "splat",
     {{"box", 0}, {"tent", 1}, {"spline", 2}},
     1,
-    "how a texel's light fades around the middle of what it lands on: a texel wide and even; over two texels, "
-    "linearly; "
-    "over three, a quadratic B-spline"};
+    "kernel of a texel's splat: constant over one texel; linear over two; a quadratic B-spline over three"};
 
 visibility::MeshVerdict forward_map_verdict(const mesh::Diagnosis& mesh) {
   return judge_for_maps("the hard shadow of the light's centre, its edges faded over a texel or two", mesh);

@@ -25,14 +25,14 @@ namespace {
 enum class Attenuation : std::uint8_t { none, linear, quadratic };
 
 constexpr visibility::IntegerOption kDirections{"directions", 1, 1024, 16, "directions around a pixel"};
-constexpr visibility::IntegerOption kSteps{"steps", 1, 1024, 8, "pixels asked along each"};
+constexpr visibility::IntegerOption kSteps{"steps", 1, 1024, 8, "pixels read along each direction"};
 constexpr visibility::RealOption kAngleBias{
     "angleBias", 0, 89, 30, "degrees above the tangent below which nothing hides: folds of a coarse mesh shade less"};
 constexpr visibility::ChoiceOption kAttenuation{
     "attenuation",
     {{"none", Attenuation::none}, {"linear", Attenuation::linear}, {"quadratic", Attenuation::quadratic}},
     Attenuation::linear,
-    "what a horizon counts whose cause is r away, of the radius R: 1, 1 - r/R, or 1 - (r/R)^2"};
+    "weight of a horizon at distance r, with the radius R: 1, 1 - r/R, or 1 - (r/R)^2"};
 
 struct Hbao {
   std::uint32_t directions, steps;

@@ -12,10 +12,10 @@ namespace penumbra::maps {
 
 /// Radius of a method's search around a view sample, as a fraction of the scene's diagonal.
 inline constexpr visibility::RealOption kRadius{
-    "radius", 0.001, 16, 0.05, "how far around a view sample the picture is asked, in diagonals of the scene's box"};
-inline constexpr auto kDither = visibility::flag_option(
-    "dither", true,
-    "turn what is asked by another angle at each of 4 x 4 pixels, and take means over as many; off: neither");
+    "radius", 0.001, 16, 0.05, "radius of the search around a view sample, in diagonals of the scene's box"};
+inline constexpr auto kDither = visibility::flag_option("dither", true,
+                                                        "on: rotates the search by another angle at each of 4 x 4 "
+                                                        "pixels, and averages V over as many pixels; off: neither");
 
 /// Pattern of the dither: pixels 4 apart have the same number.
 inline constexpr std::uint32_t kDitherWidth = 4, kDithers = kDitherWidth * kDitherWidth;

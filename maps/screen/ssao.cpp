@@ -25,14 +25,14 @@ namespace {
 enum class Around : std::uint8_t { ball, hemisphere };
 
 constexpr visibility::IntegerOption kSamples{"samples", 2, 4096, 16, "points around a view sample; an even number"};
-constexpr visibility::ChoiceOption kAround{"around",
-                                           {{"ball", Around::ball}, {"hemisphere", Around::hemisphere}},
-                                           Around::ball,
-                                           "where the points lie: in the ball, as published; or in the half of it "
-                                           "above the surface, where a plane hides none"};
+constexpr visibility::ChoiceOption kAround{
+    "around",
+    {{"ball", Around::ball}, {"hemisphere", Around::hemisphere}},
+    Around::ball,
+    "region of the points: the ball, as published; or the half above the surface, where a plane hides none"};
 constexpr auto kRange = visibility::flag_option(
     "range", false,
-    "do not let hide what is nearer to the camera by more than the radius: no dark rims behind objects");
+    "on: surfaces nearer to the camera by more than the radius hide no points, which avoids dark rims behind objects");
 
 /// Returns direction i of `count` spread evenly over the sphere (Fibonacci's spiral).
 glm::dvec3 spread(std::uint32_t i, std::uint32_t count) {

@@ -33,7 +33,7 @@ visibility::OptionDescription packet_option() {
   return {.name = kPacket,
           .choices = {"1x1", "2x1", "2x2", "3x2", "3x3", "4x2", "4x4", "5x5", "8x4", "8x8"},
           .default_value = "3x3",
-          .help = fmt::format("WxH pixels that look for contours together: these, or any others of up to {} in all",
+          .help = fmt::format("WxH pixels that search for contours together: these sizes, or others of up to {} pixels",
                               gpu::kMostPacketPixels)};
 }
 
