@@ -61,7 +61,7 @@ class EdgeLists {
 
   [[nodiscard]] std::size_t edge_count() const { return edge_count_; }  ///< number of records without cut ones
   [[nodiscard]] const visibility::LightTouch& touch() const { return touch_; }
-  // Of the last find:
+  // Results of the last find():
   [[nodiscard]] std::uint64_t words() const { return words_; }  ///< length of the lists
   [[nodiscard]] std::uint64_t retries() const { return retries_; }
   [[nodiscard]] const std::vector<visibility::PassTime>& times() const { return times_; }
