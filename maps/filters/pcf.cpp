@@ -36,8 +36,8 @@ constexpr visibility::ChoiceOption kTest{
     "test",
     {{"depth", gpu::kByDepth}, {"object", gpu::kByObject}, {"mean", gpu::kByMeanDepth}},
     gpu::kByDepth,
-    "what shades the receiver: a texel's depth; the same, but no object shades itself; or only the window's mean depth, "
-    "by a smooth test"};
+    "test of a receiver: against each texel's depth; the same, but no object shades itself; or against the window's "
+    "mean depth, by a smooth test"};
 constexpr visibility::ChoiceOption kKeep{
     "keep",
     {{"0", 0U}, {"2", 2U}, {"3", 3U}},
