@@ -21,7 +21,7 @@ mkdir -p "$stage/lib/penumbra" "$stage/share/doc/penumbra"
 
 # The C library is the machine's: it belongs to the kernel, the loader and the drivers there.
 libraries=$(for program in "$build"/penumbra{,-import,-repair}; do
-  [[ -x $program ]] && ldd "$program"
+  if [[ -x $program ]]; then ldd "$program"; fi  # a build of `penumbra` alone has no penumbra-repair
 done | awk '$2 == "=>" && $3 ~ /^\// {print $3}' | sort -u | grep -vE '/(libc|libm|libpthread|libdl|librt|ld-linux-[^/]*)\.so')
 # Nothing links to Vulkan's loader; the program opens it by name.
 libraries+=" $(ldconfig -p | awk '$1 == "libvulkan.so.1" {path = $NF} END {print path}')"
