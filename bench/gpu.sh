@@ -2,7 +2,8 @@
 # gpu.sh [FILE.json] [DEVICE] [largest side]: is every pass right on this machine's GPU, and how fast is it? Eight minutes at most. Runs
 # from the unpacked tarball (cmake/tarball.sh), where nothing needs to be installed, or from a built clone. DEVICE as for --device.
 # Three parts, in FILE.json (gpu.json): the self-test; the bits of exact methods on the device against those of the processor's vector
-# units; seconds and milliseconds a pass of exact and image-based methods from 512x512 to 4K. Exit 1 where something is wrong.
+# units; seconds and milliseconds a pass of exact and image-based methods from 512x512 to 4K. Exit 1 where something is wrong: bits that differ,
+# or a run that fails. A run that is out of time is not wrong.
 set -uo pipefail
 file=${1:-gpu.json} device=${2:-} largest=${3:-3840}
 here=$(cd -- "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")" && pwd)
@@ -22,6 +23,11 @@ trap 'rm -rf "$work"' EXIT
 on=() wrong=0
 [[ -z $device ]] || on=(--device "$device")
 say() { printf '%4d s  %s\n' "$SECONDS" "$*" >&2; }
+# failed WHAT CODE: says so, with what the program said; something is wrong unless `timeout` ended the run (124).
+failed() {
+  if (($2 == 124)); then say "$1: out of time"; else wrong=1; say "$1: exit $2"; fi
+  cat "$work/errors.txt" >&2
+}
 left() { local rest=$((${1} - SECONDS)); echo $((rest > 0 ? rest : 1)); }  # seconds until the one named, for `timeout`
 
 say "devices"
@@ -29,7 +35,7 @@ say "devices"
 say "self-test"
 timeout "$(left 150)" "$program" devices --self-test "${on[@]}" --json >"$work/self-test.json" 2>"$work/errors.txt"
 self_test=$?
-((self_test == 0)) || { wrong=1; say "self-test: exit $self_test"; cat "$work/errors.txt" >&2; }
+((self_test == 0)) || failed "self-test" $self_test
 [[ -s $work/self-test.json ]] || echo null >"$work/self-test.json"
 
 # picture NAME METHOD SIZE SAMPLES SCENE UNTIL: one run; its stats are NAME.json, and its bits NAME.bits where the method has any.
@@ -47,7 +53,7 @@ for scene in contact thin fusion; do
     if picture x-bits-device $method:engine=vulkan 512x512 256 $scene 270 && picture x-bits-vectors $method:engine=native 512x512 256 $scene 270; then
       if cmp -s "$work"/x-bits-{device,vectors}.bits; then same=true; else same=false wrong=1; fi
     else
-      say "$(tail -1 "$work/errors.txt")"
+      failed "$scene, $method" $?
     fi
     say "$scene, $method: same bits as the vector units: $same"
     bits+=("{\"scene\": \"$scene\", \"method\": \"$method\", \"size\": [512, 512], \"lightSamples\": 256, \"same\": $same}")
@@ -65,7 +71,7 @@ for size in 512x512 1920x1080 3840x2160; do
       speed+=("$(cat "$work/speed.json")")
       say "$size, $name: shadow $(sed -n 's/^ *"shadow": \([0-9.e-]*\).*/\1/p' "$work/speed.json" | head -1) s"
     else
-      say "$size, $name: $(tail -1 "$work/errors.txt")"
+      failed "$size, $name" $?
     fi
   done
 done

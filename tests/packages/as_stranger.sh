@@ -42,10 +42,12 @@ assert v.shape == (32, 32) and 0 < v.mean() < 1, v'
     python3 - <<'END' || fail "gpu.sh: exit $code, $(cat gpu.txt)"
 import json
 gpu = json.load(open("gpu.json"))
+assert gpu["selfTest"]["exitCode"] in (0, 124), gpu["selfTest"]  # 124: out of time
 assert gpu["format"] == "penumbra-gpu/1" and gpu["devices"]["devices"], gpu
 assert len(gpu["sameBitsAsVectorUnits"]) == 9 and all(one["same"] for one in gpu["sameBitsAsVectorUnits"]), gpu["sameBitsAsVectorUnits"]
 assert len(gpu["speed"]) >= 5 and all(run["seconds"]["shadow"] > 0 for run in gpu["speed"])
 END
+    ((code == 0)) || fail "gpu.sh: exit $code, $(cat gpu.txt)"
     ;;
 esac
 echo "$kind: good"
