@@ -3,7 +3,7 @@
 
   docs/option_tables.py [--program build/penumbra]            writes the page
   docs/option_tables.py [--program build/penumbra] --check    exits 1 if the page is not what this script writes, or if a method's own page
-                                                              lacks one of its options"""
+                                                              lacks one of its options, and refers to no page that owns the option"""
 
 import argparse
 import json
@@ -13,7 +13,8 @@ import sys
 from pathlib import Path
 
 DOCS = Path(__file__).resolve().parent
-SHARED = ("map-fits.md", "rasterisers.md", "shadow-map.md")  # pages that several methods refer to for options that they share
+# Options that several methods share, by the page that says what they mean.
+SHARED = {"map-fits.md": ("cascades", "split", "splitShare", "tiles", "focus")}
 HEAD = """# Options of all methods
 
 Every method with what it can do and the options that it takes. `docs/option_tables.py` generates this page from `penumbra methods --json`; do not edit it. An option is
@@ -38,14 +39,18 @@ def section(method):
     return "\n".join(lines + [""])
 
 
-def left_out(methods):
-    """Options that neither the method's page nor a page that it shares with others names."""
-    shared = "".join((DOCS / name).read_text(encoding="utf-8") for name in SHARED)
+def left_out(methods, folder=DOCS):
+    """Options that neither the method's page names nor a page that it refers to and that owns them."""
     for method in methods:
-        page = (DOCS / f"{method['name']}.md").read_text(encoding="utf-8")
+        page = (folder / f"{method['name']}.md").read_text(encoding="utf-8")
+        owned = [option for name, options in SHARED.items() if f"]({name}" in page for option in options]
         for option in method["options"]:
-            if not re.search(rf"`{re.escape(option['name'])}[`=]|{re.escape(option['name'])}=", page + shared):
-                yield f"docs/{method['name']}.md: lacks the option {option['name']}"
+            name = option["name"]
+            if name not in owned and not re.search(rf"(?<![\w-]){re.escape(name)}[=`]", page):
+                yield f"docs/{method['name']}.md: lacks the option {name}"
+    for name, options in SHARED.items():
+        page = (folder / name).read_text(encoding="utf-8")
+        yield from (f"docs/{name}: lacks the option {option}" for option in options if f"`{option}`" not in page)
 
 
 def main():
@@ -66,4 +71,5 @@ def main():
     sys.exit("\n".join(complaints) if complaints else 0)
 
 
-main()
+if __name__ == "__main__":
+    main()
