@@ -61,7 +61,9 @@ class ForeignScene {
           lamps_, options_.lamp_radius.value_or(kLampRadius), options_.sun_angle.value_or(kSunAngle),
           from_blender_ ? "in Blender" : "if their intensities were candela and lux"));
     }
-    if (!options_.lenient && options_.needs_light) losses_.throw_refused();
+    // A file without a light gets a studio, which shows its shapes: losses are named, and no picture of its own is
+    // wrong.
+    if (!options_.lenient && options_.needs_light && !scene_.lights.empty()) losses_.throw_refused();
     losses_.warn(scene_.warnings);
     return std::move(scene_);
   }

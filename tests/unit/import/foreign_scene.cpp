@@ -122,6 +122,26 @@ TEST_F(ForeignScenes, WhatCannotBeDoneIsRefusedByName) {
   EXPECT_THAT(test::input_error([&] { read_scene(orthographic); }), HasSubstr("has an orthographic camera"));
 }
 
+TEST_F(ForeignScenes, WhatCannotBeDoneIsNamedWhereAStudioLights) {
+  const std::string libraries = R"(<library_lights>
+<light id="a"><technique_common><ambient><color>1 1 1</color></ambient></technique_common></light></library_lights>
+<library_cameras><camera id="c"><optics><technique_common><orthographic><xmag>3</xmag></orthographic></technique_common></optics></camera></library_cameras>)";
+  const std::string nodes = R"(<node id="Panel" name="Panel"><instance_light url="#a"/></node>
+<node id="Shot" name="Shot"><translate>0 1 9</translate><instance_camera url="#c"/></node>)";
+  const Scene scene = read_scene(write("dark.dae", collada("<diffuse><color>1 1 1 1</color></diffuse><transparent "
+                                                           "opaque=\"A_ONE\"><color>0 0 0 0.5</color></transparent>"
+                                                           "<transparency><float>1</float></transparency>",
+                                                           libraries, nodes)));
+  ASSERT_EQ(scene.lights.size(), 1u);
+  EXPECT_TRUE(std::holds_alternative<Rectangle>(scene.lights[0].shape));
+  EXPECT_EQ(scene.objects.size(), 2u);  // the card, and the floor
+  EXPECT_EQ(scene.cameras.size(), 1u);
+  EXPECT_THAT(scene.warnings, Contains(HasSubstr("'Card' lets light through")));
+  EXPECT_THAT(scene.warnings, Contains(HasSubstr("'Panel' is an area lamp")));
+  EXPECT_THAT(scene.warnings, Contains(HasSubstr("'dark.dae' has an orthographic camera")));
+  EXPECT_THAT(scene.warnings, Contains(HasSubstr("a studio was put around it")));
+}
+
 TEST_F(ForeignScenes, UsdAndAlembicAreRefusedInOneLine) {
   for (const char* name : {"a.usd", "a.usda", "a.usdc", "a.USDZ", "a.abc"}) {
     const std::string said = test::input_error([&] { read_scene(write(name, "#usda 1.0")); });
