@@ -3,7 +3,8 @@
 
   docs/option_tables.py [--program build/penumbra]            writes the page
   docs/option_tables.py [--program build/penumbra] --check    exits 1 if the page is not what this script writes, or if a method's own page
-                                                              lacks one of its options, and refers to no page that owns the option"""
+                                                              lacks one of its options, and refers to no page that owns the option
+                                                              (domes.md is that of all methods that do domes)"""
 
 import argparse
 import json
@@ -14,7 +15,7 @@ from pathlib import Path
 
 DOCS = Path(__file__).resolve().parent
 # Options that several methods share, by the page that says what they mean.
-SHARED = {"map-fits.md": ("cascades", "split", "splitShare", "tiles", "focus")}
+SHARED = {"map-fits.md": ("cascades", "split", "splitShare", "tiles", "focus"), "domes.md": ("suns",)}
 HEAD = """# Options of all methods
 
 Every method with what it can do and the options that it takes. `docs/option_tables.py` generates this page from `penumbra methods --json`; do not edit it. An option is
@@ -43,7 +44,8 @@ def left_out(methods, folder=DOCS):
     """Options that neither the method's page names nor a page that it refers to and that owns them."""
     for method in methods:
         page = (folder / f"{method['name']}.md").read_text(encoding="utf-8")
-        owned = [option for name, options in SHARED.items() if f"]({name}" in page for option in options]
+        pages = [name for name in SHARED if f"]({name}" in page] + (["domes.md"] if "dome" in method["lights"] else [])
+        owned = {option for name in pages for option in SHARED[name]}
         for option in method["options"]:
             name = option["name"]
             if name not in owned and not re.search(rf"(?<![\w-]){re.escape(name)}[=`]", page):

@@ -11,14 +11,15 @@ import option_tables  # noqa: E402
 OWNED = option_tables.SHARED["map-fits.md"]
 
 
-def missing(page, *options):
+def missing(page, *options, lights=("sun",)):
     """Names of `options` that are missing where a method's own page is `page`."""
     with tempfile.TemporaryDirectory() as folder:
         folder = Path(folder)
         (folder / "m.md").write_text(page, encoding="utf-8")
         (folder / "shadow-map.md").write_text("| `size` | `bias` |", encoding="utf-8")
+        (folder / "domes.md").write_text("`suns`", encoding="utf-8")
         (folder / "map-fits.md").write_text(" ".join(f"`{name}`" for name in OWNED) + " `other`", encoding="utf-8")
-        method = {"name": "m", "options": [{"name": name} for name in options]}
+        method = {"name": "m", "lights": lights, "options": [{"name": name} for name in options]}
         return [line.split()[-1] for line in option_tables.left_out([method], folder)]
 
 
@@ -31,4 +32,6 @@ expect(missing("| `size` | and `m:bias=2` |", "size", "bias"), [])
 expect(missing("| `mapsize` | and `rebias=2`, `re-bias=2` |", "size", "bias"), ["size", "bias"])  # parts of other names
 expect(missing("see [shadow-map](shadow-map.md)", "size"), ["size"])  # a page that does not own the option
 expect(missing("see [fits](map-fits.md)", OWNED[0], "other"), ["other"])
+expect(missing("no page is referred to", "suns", lights=("sun", "dome")), [])
+expect(missing("no page is referred to", "suns"), ["suns"])
 expect(missing("no page is referred to", OWNED[0]), [OWNED[0]])
