@@ -15,9 +15,9 @@
 namespace penumbra::app {
 
 double PixelFilter::share(double offset) const {
-  if (!(std::abs(offset) < width / 2)) return 0;
+  if (!(std::abs(offset) < reach())) return 0;
   if (kind == Kind::box) return 1;
-  const double turn = 2 * std::numbers::pi * (std::abs(offset) / width + 0.5);  // the same on both sides
+  const double turn = 2 * std::numbers::pi * (std::abs(offset) / (2 * reach()) + 0.5);  // the same on both sides
   return 0.35875 - 0.48829 * std::cos(turn) + 0.14128 * std::cos(2 * turn) - 0.01168 * std::cos(3 * turn);
 }
 
@@ -36,7 +36,7 @@ PixelFilter parse_filter(const std::string& name, const std::string& width) {
 
 std::vector<FilterTaps> filter_taps(const PixelFilter& filter, std::size_t pixels, std::size_t side) {
   const auto samples = static_cast<std::ptrdiff_t>(pixels * side), step = static_cast<std::ptrdiff_t>(side);
-  const auto reach = static_cast<std::ptrdiff_t>(std::ceil(filter.width / 2 * static_cast<double>(side)));
+  const auto reach = static_cast<std::ptrdiff_t>(std::ceil(filter.reach() * static_cast<double>(side)));
   std::vector<FilterTaps> all(pixels);
   for (std::ptrdiff_t pixel = 0; pixel < static_cast<std::ptrdiff_t>(pixels); ++pixel) {
     FilterTaps& taps = all[static_cast<std::size_t>(pixel)];

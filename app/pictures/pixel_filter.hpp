@@ -12,8 +12,12 @@ namespace penumbra::app {
 struct PixelFilter {
   enum class Kind : std::uint8_t { box, blackman_harris };
   Kind kind = Kind::box;
-  double width = 1;  ///< total width, in pixels; a box is one pixel wide
+  /// In pixels. A box is one pixel wide; Blackman-Harris reaches this far to each side of the centre, as Cycles' filter
+  /// of that width does.
+  double width = 1;
 
+  /// Returns the distance from the centre, in pixels, from which on weights are 0.
+  [[nodiscard]] double reach() const { return kind == Kind::box ? width / 2 : width; }
   /// Returns the weight along one axis, not normalized; `offset` in pixels.
   [[nodiscard]] double share(double offset) const;
 };

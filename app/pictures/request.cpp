@@ -162,7 +162,7 @@ void add_picture_options(CLI::App& command, PictureOptions& options) {
       ->type_name("NAME");
   command
       .add_option("--filter-width", options.filter_width,
-                  "width of blackman-harris, in pixels (default: 1.5, as in Blender)")
+                  "distance in pixels to which blackman-harris reaches on each side, Cycles' width (default: 1.5)")
       ->type_name("PIXELS");
   command
       .add_option(

@@ -24,7 +24,7 @@ using testing::HasSubstr;
 
 /// Where Harris's four cosines are 1, 0 or −1.
 TEST(PixelFilters, AreTheirFormula) {
-  const PixelFilter wide{PixelFilter::Kind::blackman_harris, 1.5};
+  const PixelFilter wide{PixelFilter::Kind::blackman_harris, 0.75};
   EXPECT_NEAR(wide.share(0), 1, 1e-15);
   for (const double side : {-1.0, 1.0}) {
     EXPECT_NEAR(wide.share(side * 0.375), 0.35875 - 0.14128, 1e-15);
@@ -68,9 +68,9 @@ double share_of(std::size_t k, std::size_t i) {
   constexpr std::size_t kSide = 3, kWidth = 24;
   const auto along = [](std::size_t sample, std::size_t pixel) {
     const double off = (static_cast<double>(sample) + 0.5) / kSide - (static_cast<double>(pixel) + 0.5);
-    if (std::abs(off) >= 0.75) return 0.0;
+    if (std::abs(off) >= 1.5) return 0.0;  // the default width, to each side as in Cycles
     const auto cosine = [&](double times) {
-      return std::cos(times * (180 + 360 * off / 1.5) * std::numbers::pi / 180);
+      return std::cos(times * (180 + 360 * off / 3) * std::numbers::pi / 180);
     };
     return 0.35875 - 0.48829 * cosine(1) + 0.14128 * cosine(2) - 0.01168 * cosine(3);
   };
