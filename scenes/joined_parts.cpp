@@ -10,6 +10,7 @@
 #include <limits>
 #include <map>
 #include <numeric>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -95,15 +96,19 @@ Scene joined(std::span<const ScenePart> parts, bool with_meshes) {
   Scene whole;
   UniqueNames object_names, light_names;
   std::vector<std::size_t> shadeless;
-  std::map<const Scene*, std::uint32_t> first_picture;  // for each scene with a part
+  std::set<const Scene*> warned;
+  // For each scene with a part that has objects. Lights have pictures of their own: numbers do not depend on their
+  // parts, so that they hold for the pictures of an earlier result with the same objects.
+  std::map<const Scene*, std::uint32_t> first_picture;
   std::uint32_t pictures = 0;
   for (const ScenePart& part : parts) {
     const Scene& scene = *part.scene;
     const auto first_light = static_cast<std::uint32_t>(whole.lights.size());
-    const auto [place, is_new] = first_picture.try_emplace(&scene, pictures);
-    if (is_new) {
+    if (part.objects > 0 && first_picture.try_emplace(&scene, pictures).second) {
       pictures += static_cast<std::uint32_t>(scene.pictures.size());
       if (with_meshes) whole.pictures.insert(whole.pictures.end(), scene.pictures.begin(), scene.pictures.end());
+    }
+    if (warned.insert(&scene).second) {
       for (const std::string& warning : scene.warnings) {
         if (std::ranges::find(whole.warnings, warning) == whole.warnings.end()) whole.warnings.push_back(warning);
       }
@@ -112,7 +117,7 @@ Scene joined(std::span<const ScenePart> parts, bool with_meshes) {
     for (Object object : std::span(scene.objects).subspan(part.first_object, part.objects)) {
       object.name = object_names.take(object.name);
       if (object.emits) object.emits = *object.emits - part.first_light + first_light;
-      if (object.picture) object.picture->picture += place->second;
+      if (object.picture) object.picture->picture += first_picture.at(&scene);
       whole.objects.push_back(std::move(object));
     }
     for (AreaLight light : std::span(scene.lights).subspan(part.first_light, part.lights)) {

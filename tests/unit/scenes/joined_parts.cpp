@@ -81,5 +81,18 @@ TEST(JoinedParts, HaveNamesOfTheirOwnAndShadowsOrNone) {
   EXPECT_EQ(whole.lights[3].unshaded_by, (std::vector<std::uint32_t>{0, 1, 2, 3, 4, 5}));
 }
 
+TEST(JoinedParts, NumberPicturesByObjectsAlone) {
+  const Scene old = three_objects(), edited = three_objects();
+  const Scene lamps = three_objects();
+  const ScenePart mesh{&old, 1, 1, 0, 1}, edited_mesh{&edited, 1, 1, 0, 1};
+  // The lamp comes first, from the file of the second mesh; then it is replaced alone.
+  const std::vector<ScenePart> before = {{&old, 0, 0, 1, 1}, edited_mesh, mesh};
+  const std::vector<ScenePart> after = {{&lamps, 0, 0, 1, 1}, edited_mesh, mesh};
+  const Scene whole = joined(before, true), without = joined(after, false);
+  ASSERT_EQ(whole.pictures.size(), 2U);
+  EXPECT_EQ(whole.objects[0].picture->picture, 0U);
+  for (const std::size_t object : {0U, 1U}) EXPECT_EQ(without.objects[object].picture, whole.objects[object].picture);
+}
+
 }  // namespace
 }  // namespace penumbra::scenes
