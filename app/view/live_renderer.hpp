@@ -79,6 +79,7 @@ class LiveRenderer {
  private:
   struct Order {
     LiveState state;
+    std::shared_ptr<const scenes::Scene> whole;  // with the meshes of `state`
     std::uint64_t revision = 0;
     LiveQuality quality;
     bool is_final = false;
@@ -97,8 +98,9 @@ class LiveRenderer {
   [[nodiscard]] bool is_overtaken(std::uint64_t revision) const;
   LiveAnswer answer(const Order& order, const std::string& entry, scenes::Scene& scene);
   MethodWish wish_for(const Order& order, const std::string& entry);
-  [[nodiscard]] scenes::Scene scene_of(const LiveState& state) const;
-  void render(scenes::Scene scene, bool keeps_masks);
+  [[nodiscard]] scenes::Scene scene_of(const Order& order) const;
+  /// `scene`: scene_of(order), perhaps with other lights.
+  void render(const Order& order, scenes::Scene scene, bool keeps_masks);
   void publish(std::shared_ptr<LivePicture> picture);
   void show();
   void failed(std::uint64_t revision, const std::string& message);

@@ -68,7 +68,7 @@ void LiveRenderer::work_on(std::unique_lock<std::mutex>& lock) {
     return;
   }
   const bool has_any = picture_ && picture_->revision == revision_;
-  Order order{state_, revision_, pace_.quality(), has_any || final_milliseconds_ < kPictureTime, stamps_};
+  Order order{state_, whole_, revision_, pace_.quality(), has_any || final_milliseconds_ < kPictureTime, stamps_};
   if (failed_ == revision_ || (has_any && picture_->is_final) || wants_show_) {
     const bool shows = std::exchange(wants_show_, false);
     lock.unlock();
@@ -120,26 +120,17 @@ void LiveRenderer::read_again() {
   }
 }
 
-scenes::Scene LiveRenderer::scene_of(const LiveState& state) const {
-  std::shared_ptr<const scenes::Scene> whole;
-  {
-    const std::lock_guard lock(mutex_);
-    whole = whole_;
-  }
-  const bool same_meshes = frames_ && frames_->has_meshes() && rendered_ == whole;
-  scenes::Scene scene = same_meshes ? state.scene : *whole;
+scenes::Scene LiveRenderer::scene_of(const Order& order) const {
+  const LiveState& state = order.state;
+  const bool same_meshes = frames_ && frames_->has_meshes() && rendered_ == order.whole;
+  scenes::Scene scene = same_meshes ? state.scene : *order.whole;
   scene.objects = state.scene.objects;  // lights' bodies may have changed without the meshes
   scene.lights = state.scene.lights;
   scene.cameras = {state.camera};
   return scene;
 }
 
-void LiveRenderer::render(scenes::Scene scene, bool keeps_masks) {
-  std::shared_ptr<const scenes::Scene> whole;
-  {
-    const std::lock_guard lock(mutex_);
-    whole = whole_;
-  }
+void LiveRenderer::render(const Order& order, scenes::Scene scene, bool keeps_masks) {
   if (!frames_) {
     frames_ = std::make_unique<FrameRenderer>(run_, wish_, machine_, *steps_);
     frames_->expect_frames();
@@ -150,7 +141,7 @@ void LiveRenderer::render(scenes::Scene scene, bool keeps_masks) {
                     .same_meshes = same_meshes,
                     .keeps_masks = keeps_masks,
                     .band_rows = kBand};
-  if (!same_meshes) rendered_ = whole;
+  if (!same_meshes) rendered_ = order.whole;
   frames_->render(std::move(scene), frame, {}, 0);
 }
 
@@ -178,7 +169,7 @@ MethodWish LiveRenderer::wish_for(const Order& order, const std::string& entry) 
 
 LiveAnswer LiveRenderer::answer(const Order& order, const std::string& entry, scenes::Scene& scene) {
   wish_ = wish_for(order, entry);
-  render(std::move(scene), false);
+  render(order, std::move(scene), false);
   const compare::Stats stats = frames_->stats();
   LiveAnswer made;
   made.method = stats.method;
@@ -200,7 +191,7 @@ void LiveRenderer::make_picture(const Order& order) {
     while (divisor > 1 && std::min(width, height) / divisor < kSmallestSide) divisor /= 2;
     run_.size = fmt::format("{}x{}", (width + divisor - 1) / divisor, (height + divisor - 1) / divisor);
     run_.lights = lights_on(state);
-    scenes::Scene scene = scene_of(state);
+    scenes::Scene scene = scene_of(order);
     if (run_.lights.empty()) {  // a picture needs at least one light
       run_.lights = {scene.lights.front().name};
       scene.lights.front().radiance = glm::dvec3(0);
@@ -209,7 +200,7 @@ void LiveRenderer::make_picture(const Order& order) {
     auto picture = std::make_shared<LivePicture>();
     picture->answers.push_back(answer(order, state.method, scene));
     if (state.other) {
-      scene = scene_of(state);
+      scene = scene_of(order);
       if (lights_on(state).empty()) scene.lights.front().radiance = glm::dvec3(0);
       picture->answers.push_back(answer(order, *state.other, scene));
     }
@@ -261,7 +252,7 @@ void LiveRenderer::make_masks(const Order& order) {
     run_.light_samples = fmt::format("{}", kMaskSamples);
     wish_ = {{}, {}, true};
     steps_->set_revision(order.revision);
-    render(scene_of(state), true);
+    render(order, scene_of(order), true);
     const Session& session = frames_->session();
     auto made = std::make_shared<LiveMasks>();
     made->revision = order.revision;
