@@ -119,7 +119,7 @@ class GltfScene {
           "export without compression",
           compressed_.front());
     }
-    if (is_empty) {
+    if (is_empty && needs_surface_) {
       throw InputError(
           "there are no triangles in the scene ({} primitives of points or lines, {} without POSITION, {} with "
           "fewer than three vertices)",
