@@ -10,7 +10,9 @@ import numpy
 from . import exr, losses, program, settings
 from .export import SceneWriter
 
-_NAME = "baked"  # name of the object's mesh in the exchange file, used by no other
+# Name of the object's mesh in the exchange file: longer than any that Blender allows, so that no other has it.
+_NAME = "baked" + 256 * "_"
+_OF = "penumbra_bake_of"  # property of an image that a bake made: the object's name
 _LINEAR = ("Linear Rec.709", "Linear")
 
 
@@ -41,6 +43,10 @@ class PENUMBRA_OT_bake(bpy.types.Operator):
         thing, wanted, lost = context.object, context.scene.penumbra, losses.Losses()
         if not thing.data.uv_layers:
             raise ValueError(f"'{thing.name}' has no UV map; unwrap it first, without overlaps")
+        if thing.hide_render:
+            raise ValueError(f"'{thing.name}' is disabled in renders; enable it there (the camera in the outliner)")
+        if not thing.visible_get():
+            raise ValueError(f"'{thing.name}' is hidden in the viewport; show it first")
         binary = program.find(settings.program_path())
         with program.Workspace() as workspace:
             glb, picture = (os.path.join(workspace.folder, name) for name in ("scene.glb", "baked.exr"))
@@ -51,7 +57,7 @@ class PENUMBRA_OT_bake(bpy.types.Operator):
                 raise ValueError("; ".join(refused) + ". The image would be wrong; 'Lenient' bakes all the same")
             command = program.bake_arguments(binary, glb, picture, _NAME, wanted)
             code, printed = program.run(command, lambda: False, workspace)
-            warnings, error = program.messages(printed, glb)
+            warnings, error = program.messages(printed.replace(_NAME, thing.name), glb)
             for text in refused + losses.sentences(lost.mentioned) + warnings:
                 self.report({"WARNING"}, text)
             if code != 0:
@@ -72,11 +78,11 @@ class Baked:
 
 
 def image_for(name, size):
-    """The object's image, of this size; one that another bake made is used again."""
-    name = f"{name} light"
-    image = bpy.data.images.get(name)
-    if image is None or not image.is_float:
-        image = bpy.data.images.new(name, size, size, float_buffer=True)
+    """The object's image, of this size; one that another bake of it made is used again, and no other."""
+    image = next((image for image in bpy.data.images if image.get(_OF) == name and image.is_float), None)
+    if image is None:
+        image = bpy.data.images.new(f"{name} light", size, size, float_buffer=True)
+        image[_OF] = name
     elif tuple(image.size) != (size, size):
         image.scale(size, size)
     spaces = image.colorspace_settings.bl_rna.properties["name"].enum_items.keys()

@@ -34,7 +34,9 @@ class SceneWriter:
     def write(self, path, region):
         """`region`: pixels to render (frames.py); None: there is no picture."""
         for instance in self.depsgraph.object_instances:
-            if instance.show_self and not (region is None and instance.object.hide_render):
+            # A dependency graph of a view has what is hidden in renders alone.
+            hidden = instance.object.hide_render or (instance.is_instance and instance.parent.hide_render)
+            if instance.show_self and not (region is None and hidden):
                 self._object(instance)
         self._world(os.path.dirname(path))
         if not self._shines and not self.glb.has_lamps:

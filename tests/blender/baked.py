@@ -94,6 +94,39 @@ class Bake(unittest.TestCase):
         with self.assertRaises(RuntimeError) as caught:
             baked(scene)
         self.assertIn("'Key' is an area lamp whose light is spread", str(caught.exception))
+        for hide, words in ((lambda floor: setattr(floor, "hide_render", True), "'Floor' is disabled in renders"),
+                            (lambda floor: floor.hide_set(True), "'Floor' is hidden in the viewport")):
+            scene = inside.fresh(floor_seen_from_above)
+            hide(bpy.data.objects["Floor"])
+            with self.assertRaises(RuntimeError) as caught:
+                baked(scene)
+            self.assertIn(words, str(caught.exception))
+
+    def test_names_that_others_have(self):
+        scene = inside.fresh(floor_seen_from_above)
+        whole = baked(scene)
+        scene = inside.fresh(floor_seen_from_above)
+        scenes.add("baked", scenes.cube("baked", half=0.1), (0, 0, -3))
+        own = bpy.data.images.new("Other light", 4, 4, float_buffer=True)
+        own.name = "Floor light"
+        scene.penumbra.bake_size = SIDE
+        for _ in range(2):
+            self.assertEqual(bpy.ops.penumbra.bake(), {"FINISHED"})
+            self.assertEqual(tuple(own.size), (4, 4))
+        own.name = "Own"
+        made = [image for image in bpy.data.images if image.name.startswith("Floor light")]
+        self.assertEqual(len(made), 1)
+        made[0].name = "Floor light"
+        numpy.testing.assert_allclose(baked(scene), whole, rtol=1e-4, atol=1e-5)
+
+    def test_instances_of_what_renders_do_not_show(self):
+        scene = inside.fresh(floor_seen_from_above)
+        whole = baked(scene)
+        scene = inside.fresh(floor_seen_from_above)
+        instancer, parts = scenes.add("Instancer", None, (0, 0, 1)), bpy.data.collections.new("Parts")
+        parts.objects.link(bpy.data.objects.new("Part", scenes.cube("Part", half=0.5)))
+        instancer.instance_type, instancer.instance_collection, instancer.hide_render = "COLLECTION", parts, True
+        numpy.testing.assert_array_equal(baked(scene), whole)
 
 
 if __name__ == "__main__":
