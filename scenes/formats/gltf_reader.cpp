@@ -20,17 +20,20 @@
 namespace penumbra::scenes {
 namespace {
 
-/// Pictures of domes lie beside the file, as with JSON scenes.
-void read_skies(const std::filesystem::path& file, const ReadOptions& options, Scene& scene) {
+/// Pictures of domes lie beside the file, as with JSON scenes. `has_folder`: whether the file lies somewhere.
+void read_skies(const std::filesystem::path& file, bool has_folder, const ReadOptions& options, Scene& scene) {
   for (AreaLight& light : scene.lights) {
     const auto* const dome = std::get_if<Dome>(&light.shape);
     if (dome == nullptr || dome->image.empty()) continue;
+    if (!has_folder)
+      throw InputError("dome \"{}\" names the picture \"{}\", and no folder is given to read it from", light.name,
+                       dome->image);
     light.texture =
         read_sky(dome->image, {file.string(), fmt::format("dome \"{}\", image", light.name)}, options, scene);
   }
 }
 
-Scene read_by_helper(const mesh::InputFile& input, const ReadOptions& options) {
+Scene read_by_helper(const mesh::InputFile& input, bool has_folder, const ReadOptions& options) {
   mesh::HelperJob job{"scene", input, {}};
   if (options.allow_outside) job.flags.emplace_back("--allow-outside");
   if (options.lenient) job.flags.emplace_back("--lenient");
@@ -56,7 +59,7 @@ Scene read_by_helper(const mesh::InputFile& input, const ReadOptions& options) {
     }
     if (options.instances != nullptr) *options.instances = get_instances(from, scene);
     from.expect_end();
-    read_skies(input.name, options, scene);
+    read_skies(input.name, has_folder, options, scene);
     return scene;
   } catch (const mesh::WireError& error) {
     throw InputError("{}: the importer's answer is damaged ({}); the file is probably damaged", input.name.string(),
@@ -79,7 +82,7 @@ Descriptor file_of(std::span<const std::byte> bytes, const std::string& name) {
 }  // namespace
 
 Scene read_gltf(const std::filesystem::path& file, const ReadOptions& options) {
-  return read_by_helper(mesh::open_input(file), options);
+  return read_by_helper(mesh::open_input(file), true, options);
 }
 
 Scene read_glb(std::span<const std::byte> bytes, const std::string& name, const ReadOptions& options,
@@ -90,7 +93,7 @@ Scene read_glb(std::span<const std::byte> bytes, const std::string& name, const 
   const int flags = O_RDONLY | O_CLOEXEC | (folder.empty() ? 0 : O_DIRECTORY);
   mesh::InputFile input{folder / (name + ".glb"), file_of(bytes, name), Descriptor(::open(home.c_str(), flags))};
   if (!input.folder.is_open()) throw_file_error(errno, home.string());
-  return read_by_helper(input, options);
+  return read_by_helper(input, !folder.empty(), options);
 }
 
 }  // namespace penumbra::scenes
