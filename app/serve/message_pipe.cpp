@@ -55,25 +55,26 @@ bool MessageSource::fill(std::span<char> bytes, const char* what) {
   return true;
 }
 
+std::string MessageSource::take(std::uint64_t count, const char* what) {
+  // Grows in steps: the announced number of bytes may be wrong.
+  constexpr std::uint64_t kStep = std::uint64_t{16} << 20U;
+  std::string bytes;
+  while (bytes.size() < count) {
+    const std::size_t before = bytes.size();
+    bytes.resize(before + std::min(count - before, kStep));
+    if (!fill(std::span(bytes).subspan(before), what)) throw InputError("the input ends within {}", what);
+  }
+  return bytes;
+}
+
 std::optional<PipeMessage> MessageSource::next() {
   std::uint32_t length = 0;
   if (!fill({reinterpret_cast<char*>(&length), sizeof(length)}, "a message's length")) return std::nullopt;
   if (length > kLongestHead) throw InputError("a message's head has {} bytes; expected up to {}", length, kLongestHead);
-  std::string text(length, '\0');
-  if (!fill(text, "a message's head")) throw InputError("the input ends before a message's head");
-  PipeMessage message{parse_message(text), {}};
+  PipeMessage message{parse_message(take(length, "a message's head")), {}};
   if (!message.head.is_object() || !message.head.contains("type") || !message.head["type"].is_string())
     throw InputError("a message is an object with a \"type\"");
-  // Grows in steps: the announced number of bytes may be wrong.
-  constexpr std::uint64_t kStep = std::uint64_t{16} << 20U;
-  for (std::uint64_t left = said_bytes(message.head); left > 0;) {
-    const std::uint64_t step = std::min(left, kStep);
-    const std::size_t before = message.bytes.size();
-    message.bytes.resize(before + step);
-    if (!fill(std::span(message.bytes).subspan(before), "a message's bytes"))
-      throw InputError("the input ends within a message's bytes");
-    left -= step;
-  }
+  message.bytes = take(said_bytes(message.head), "a message's bytes");
   return message;
 }
 
@@ -104,9 +105,15 @@ MessageSink::~MessageSink() {
 }
 
 void MessageSink::send(std::string message) {
-  std::unique_lock lock(mutex_);
-  room_.wait(lock, [this] { return waiting_.size() < kMostWaiting || closed_; });
+  const std::lock_guard lock(mutex_);
   if (closed_) return;
+  waiting_.push_back(std::move(message));
+  wake_.notify_all();
+}
+
+void MessageSink::send_note(std::string message) {
+  const std::lock_guard lock(mutex_);
+  if (closed_ || waiting_.size() >= kMostWaiting) return;
   waiting_.push_back(std::move(message));
   wake_.notify_all();
 }

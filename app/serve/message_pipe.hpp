@@ -25,7 +25,7 @@ struct PipeMessage {
   std::string bytes;
 };
 
-inline constexpr std::uint32_t kLongestHead = 1U << 20U;
+inline constexpr std::uint32_t kLongestHead = 1U << 28U;  // names of millions of things
 inline constexpr std::uint64_t kMostBytes = std::uint64_t{2} << 30U;
 
 /// Returns the message in the pipe's form; `head` need not have the member "bytes".
@@ -43,6 +43,8 @@ class MessageSource {
  private:
   /// Returns false if the input ends before the first of these bytes. Throws if it ends among them.
   bool fill(std::span<char> bytes, const char* what);
+  /// Returns so many bytes of `what`. Throws if the input ends before them.
+  std::string take(std::uint64_t count, const char* what);
 
   Read read_;
 };
@@ -59,8 +61,10 @@ class MessageSink {
   /// Gives waiting messages a second to be written, and waiting pictures none. Afterwards nothing is written.
   void finish();
 
-  /// Writes messages in their order, without losses. Blocks while a thousand messages are waiting.
+  /// Writes messages in their order, without losses.
   void send(std::string message);
+  /// Like send(), but drops the message if a thousand are waiting: a reader who never reads stops nobody.
+  void send_note(std::string message);
   /// Replaces a waiting picture whose writing has not begun.
   void send_picture(std::string message);
   /// Returns whether the reader has closed the pipe.

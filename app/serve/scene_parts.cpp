@@ -18,7 +18,7 @@ std::string take_thing(std::string& name) {
   const std::size_t end = name.find(SceneParts::kThingEnds);
   if (end == std::string::npos) return "";
   std::string thing = name.substr(0, end);
-  name.erase(0, end + SceneParts::kThingEnds.size());
+  name.erase(0, name.rfind(SceneParts::kThingEnds) + SceneParts::kThingEnds.size());
   return thing;
 }
 
@@ -32,29 +32,28 @@ void add(const std::string& thing, std::uint32_t number, std::uint32_t& first, s
 
 }  // namespace
 
-void SceneParts::put(std::span<const std::byte> glb, const std::set<std::string>& shadeless,
-                     const std::filesystem::path& folder) {
+void SceneParts::put(std::span<const std::byte> glb, const Put& what) {
   auto file = std::make_shared<scenes::Scene>(
-      scenes::read_glb(glb, "the scene", {.needs_light = false, .needs_surface = false, .lenient = true}, folder));
+      scenes::read_glb(glb, "the scene", {.needs_light = false, .needs_surface = false, .lenient = true}, what.folder));
   std::vector<std::string> order;
   std::map<std::string, Thing> things;
-  const auto part_of = [&](std::string& name) {
-    const std::string thing = take_thing(name);
+  const auto part_of = [&](const std::string& thing) {
     const auto [place, is_new] = things.try_emplace(thing);
     if (is_new) order.push_back(thing);
     place->second.file = file;
     place->second.part.scene = file.get();
-    place->second.part.casts_shadows = !shadeless.contains(thing);
+    place->second.part.casts_shadows = !what.shadeless.contains(thing);
     return place;
   };
   for (std::uint32_t i = 0; i < file->objects.size(); ++i) {
-    const auto thing = part_of(file->objects[i].name);
+    const auto thing = part_of(take_thing(file->objects[i].name));
     add(thing->first, i, thing->second.part.first_object, thing->second.part.objects);
   }
   for (std::uint32_t i = 0; i < file->lights.size(); ++i) {
-    const auto thing = part_of(file->lights[i].name);
+    const auto thing = part_of(take_thing(file->lights[i].name));
     add(thing->first, i, thing->second.part.first_light, thing->second.part.lights);
   }
+  for (const std::string& thing : what.things) static_cast<void>(part_of(thing));
   for (const std::string& name : order) {
     Thing& thing = things.at(name);
     note_change_of(thing);

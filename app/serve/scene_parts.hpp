@@ -19,16 +19,22 @@ namespace penumbra::app {
 /// Scene of things, each of which can be replaced separately: only changed things are read again. Things are in the
 /// order of their arrival, or in a given order.
 ///
-/// Names of nodes in put files begin with the name of their thing, THING␟NAME (kThingEnds); nodes of one thing are
-/// contiguous. Nodes without this prefix belong to the thing "".
+/// Names of nodes in put files begin with the name of their thing, THING␟NAME or THING␟NUMBER␟NAME (kThingEnds); nodes
+/// of one thing are contiguous. With numbers all nodes of a file differ, so that equal names are told apart only where
+/// all things are joined, as in one file. Nodes without this prefix belong to the thing "".
 class SceneParts {
  public:
   static constexpr std::string_view kThingEnds = "\xe2\x90\x9f";  ///< ␟, U+241F
 
-  /// Replaces each thing by its contents in the file `glb`. `shadeless`: things whose lamps cast no shadows. `folder`:
-  /// folder of the pictures named in the file; empty: the file names none. Throws InputError for an invalid file, and
-  /// then changes nothing.
-  void put(std::span<const std::byte> glb, const std::set<std::string>& shadeless, const std::filesystem::path& folder);
+  /// File of some things.
+  struct Put {
+    std::set<std::string> things = {};     ///< replaced even if nothing of them is in the file: then they are empty
+    std::set<std::string> shadeless = {};  ///< things whose lamps cast no shadows
+    std::filesystem::path folder = {};     ///< of the pictures named in the file; empty: the file names none
+  };
+  /// Replaces each thing by its contents in the file `glb`. Throws InputError for an invalid file, and then changes
+  /// nothing.
+  void put(std::span<const std::byte> glb, const Put& what);
   /// Removes things; ignores unknown names.
   void remove(const std::vector<std::string>& things);
   /// Orders the things; things not listed follow, in their previous order. Throws InputError for an unknown name.
@@ -47,7 +53,10 @@ class SceneParts {
     std::shared_ptr<const scenes::Scene> file;  // shared by the things of one file: each may be replaced separately
     scenes::ScenePart part;
   };
-  void note_change_of(const Thing& thing) { (thing.part.objects > 0 ? meshes_changed_ : changed_) = true; }
+  void note_change_of(const Thing& thing) {
+    meshes_changed_ = meshes_changed_ || thing.part.objects > 0;
+    changed_ = changed_ || thing.part.lights > 0;
+  }
 
   std::map<std::string, Thing> things_;
   std::vector<std::string> order_;  // of all things

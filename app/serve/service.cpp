@@ -8,6 +8,7 @@
 #include <spdlog/sinks/base_sink.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <csignal>
@@ -38,7 +39,7 @@ class PipeLog final : public spdlog::sinks::base_sink<std::mutex> {
     const char* const level = message.level >= spdlog::level::err    ? "error"
                               : message.level >= spdlog::level::warn ? "warning"
                                                                      : "note";
-    out_.send(in_pipe(saying(level, text)));
+    out_.send_note(in_pipe(saying(level, text)));
   }
   void flush_() override {}
 
@@ -80,6 +81,25 @@ void add_buffer(std::string& bytes, ordered_json& listed, ordered_json line, con
 }
 
 }  // namespace
+
+/// Has a picture cancelled at the end of the input, during its lifetime.
+class Service::Renders {
+ public:
+  explicit Renders(Inbox& inbox) : inbox_(inbox) {
+    const std::lock_guard lock(inbox_.mutex);
+    if (inbox_.ended) throw InputError("the input has ended");
+    inbox_.renders = true;
+  }
+  Renders(const Renders&) = delete;
+  Renders& operator=(const Renders&) = delete;
+  ~Renders() {
+    const std::lock_guard lock(inbox_.mutex);
+    inbox_.renders = false;
+  }
+
+ private:
+  Inbox& inbox_;
+};
 
 Service::Service(RunOptions options, int input, int output)
     : options_(std::move(options)), out_(output), inbox_(std::make_shared<Inbox>()) {
@@ -144,15 +164,22 @@ void Service::run() {
 }
 
 void Service::say(std::string_view level, const std::string& text) {
-  out_.send(in_pipe(saying(level, text)));
+  out_.send_note(in_pipe(saying(level, text)));
+}
+
+void Service::refuse(const std::string& type, const std::string& text) {
+  ordered_json head = saying("error", text);
+  head["refused"] = type;
+  out_.send_note(in_pipe(std::move(head)));
 }
 
 void Service::answer(const PipeMessage& message) {
   const auto type = message.head["type"].get<std::string>();
   try {
     if (type == "put")
-      parts_.put(std::as_bytes(std::span(message.bytes)), message.head.value("shadeless", std::set<std::string>()),
-                 message.head.value("folder", std::string()));
+      parts_.put(std::as_bytes(std::span(message.bytes)), {message.head.value("things", std::set<std::string>()),
+                                                           message.head.value("shadeless", std::set<std::string>()),
+                                                           message.head.value("folder", std::string())});
     else if (type == "remove")
       parts_.remove(message.head.at("things").get<std::vector<std::string>>());
     else if (type == "order")
@@ -164,10 +191,10 @@ void Service::answer(const PipeMessage& message) {
     else
       throw InputError("no message has the type \"{}\"", type);
   } catch (const json::exception& error) {
-    say("error", fmt::format("message \"{}\": {}", type, error.what()));
+    refuse(type, fmt::format("message \"{}\": {}", type, error.what()));
   } catch (const Error& error) {
     if (error.code() == ExitCode::interrupted) throw;
-    say("error", error.what());
+    refuse(type, error.what());
   }
 }
 
@@ -207,20 +234,18 @@ void Service::show(const json& message) {
 
 void Service::render(const json& message) {
   int code = 0;
-  const auto set_renders = [this](bool renders) {
-    const std::lock_guard lock(inbox_->mutex);
-    if (renders && inbox_->ended) throw InputError("the input has ended");
-    inbox_->renders = renders;
-  };
   try {
-    set_renders(true);
-    job_.run(message.at("arguments").get<std::vector<std::string>>());
+    const auto arguments = message.find("arguments");
+    if (arguments == message.end() || !arguments->is_array() ||
+        !std::ranges::all_of(*arguments, [](const json& argument) { return argument.is_string(); }))
+      throw UsageError("message \"render\": its \"arguments\" are a list of texts");
+    const Renders renders(*inbox_);
+    job_.run(arguments->get<std::vector<std::string>>());
   } catch (const Error& error) {
     if (error.code() == ExitCode::interrupted) throw;
-    say("error", error.what());
+    refuse("render", error.what());
     code = static_cast<int>(error.code());
   }
-  set_renders(false);
   out_.send(in_pipe({{"type", "done"}, {"code", code}}));
 }
 

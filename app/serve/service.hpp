@@ -42,6 +42,7 @@ class Service {
     bool ended = false;
     bool renders = false;  // a picture is being written: cancelled at the end of the input
   };
+  class Renders;
   static void read_messages(const std::shared_ptr<Inbox>& inbox, int input);
   [[nodiscard]] std::optional<PipeMessage> next_message();
   void answer(const PipeMessage& message);
@@ -49,6 +50,8 @@ class Service {
   void render(const nlohmann::json& message);
   void send_picture(const LivePicture& picture);
   void say(std::string_view level, const std::string& text);
+  /// Says that a message of this type is refused.
+  void refuse(const std::string& type, const std::string& text);
 
   RunOptions options_;
   MessageSink out_;

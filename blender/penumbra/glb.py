@@ -162,13 +162,15 @@ class OfThings(Glb):
     def __init__(self):
         super().__init__()
         self.thing = ""  # of the following nodes
+        self._number = 0  # of the last node: equal names are told apart by the reader of all things alone
         self.things, self.shadeless = set(), set()  # things with nodes; things whose lamps cast no shadows
 
     def node(self, name, matrix, extras=None, **what):
         self.things.add(self.thing)
+        self._number += 1
         if "mesh" not in what and (extras or {}).get("castsShadow") is False:
             self.shadeless.add(self.thing)
-        return super().node(f"{self.thing}\u241f{name}", matrix, extras, **what)
+        return super().node(f"{self.thing}\u241f{self._number}\u241f{name}", matrix, extras, **what)
 
 
 def _shadow(casts_shadow):

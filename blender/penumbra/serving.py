@@ -104,15 +104,17 @@ class Child:
                 return  # reported to the reader
 
     def _read(self):
-        stream = self.process.stdout
-        while (message := read_message(stream)) is not None:
-            if message[0]["type"] == "picture":
-                picture = Picture(*message)
-                with self._wake:
-                    self._picture = picture
-            else:
-                self.messages.put(message[0])
-        self.messages.put(None)
+        try:
+            stream = self.process.stdout
+            while (message := read_message(stream)) is not None:
+                if message[0]["type"] == "picture":
+                    picture = Picture(*message)
+                    with self._wake:
+                        self._picture = picture
+                else:
+                    self.messages.put(message[0])
+        finally:  # also after bytes that are no message
+            self.messages.put(None)
 
 
 _kept = {}  # the process that renders pictures of a sequence, by its program
@@ -136,8 +138,9 @@ def run(command, cancelled, hears=lambda line: None):
                     return None, ""
                 continue
             if head is None:
-                _kept.pop(program)
-                return child.process.wait(), "".join(printed)
+                _kept.pop(program, None)  # forget() may have run meanwhile
+                child.close()
+                return child.process.returncode, "".join(printed)
             if head["type"] == "done":
                 return head["code"], "".join(printed)
             if head["type"] == "say":

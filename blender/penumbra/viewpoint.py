@@ -15,12 +15,23 @@ def _unit(vector):
     return (x * scale, y * scale, z * scale)
 
 
+_LARGEST = 4096  # pixels a side of a picture that is shown (docs/serve.md)
+
+
+def _fitting(size):
+    """Halved until `serve` shows it; what draws the picture stretches it."""
+    while max(size) > _LARGEST:
+        size = tuple((side + 1) // 2 for side in size)
+    return tuple(size)
+
+
 class Viewpoint:
     """Viewpoint of a 3D view. `matrix`: rows, from view to world, without scale; `projection`: rows, as in OpenGL;
-    `size`: in pixels."""
+    `size`: of the view, in pixels. The member `size` is the picture's: the view's if that is not too large."""
 
     def __init__(self, matrix, projection, size):
-        self.matrix, self.size = [[float(x) for x in row] for row in matrix], tuple(size)
+        self.matrix, self.size = [[float(x) for x in row] for row in matrix], _fitting(size)
+        size = self.size
         self.aspect = size[0] / size[1]
         rows = [[float(x) for x in row] for row in projection]
         self.half_angle = self.height = None

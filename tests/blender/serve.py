@@ -5,108 +5,25 @@ the whole scene, byte for byte; what is refused; how it ends.
     serve.py ADDON.zip PENUMBRA
 """
 
-import math
 import os
 import signal
 import struct
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 import unittest
 
 ZIP, PENUMBRA = sys.argv[1:3]
 sys.path.insert(0, ZIP)  # what users get is what is tested
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 
 import numpy  # noqa: E402
 
 from penumbra import exr, glb, serving  # noqa: E402
 from penumbra.viewpoint import Viewpoint  # noqa: E402
-
-SIZE = (60, 44)
-
-
-def at(x, y, z, scale=1.0, turn=0.0):
-    c, s = scale * math.cos(turn), scale * math.sin(turn)
-    return [[c, -s, 0, x], [s, c, 0, y], [0, 0, scale, z], [0, 0, 0, 1]]
-
-
-def seen_from(angle, distance=7.0, height=4.0, ortho=False):
-    """A view of the origin, Z up, as a 3D view's matrices are."""
-    eye = numpy.array([distance * math.sin(angle), -distance * math.cos(angle), height])
-    back = eye / numpy.linalg.norm(eye)
-    right = numpy.cross([0, 0, 1], back)
-    right /= numpy.linalg.norm(right)
-    up = numpy.cross(back, right)
-    matrix = numpy.eye(4)
-    matrix[:3, 0], matrix[:3, 1], matrix[:3, 2], matrix[:3, 3] = right, up, back, eye
-    aspect = SIZE[0] / SIZE[1]
-    if ortho:
-        projection = [[2 / (6 * aspect), 0, 0, 0.1], [0, 2 / 6, 0, -0.05], [0, 0, -0.01, 0], [0, 0, 0, 1]]
-    else:
-        projection = [[2 / aspect, 0, 0.1, 0], [0, 2, -0.2, 0], [0, 0, -1, -0.2], [0, 0, -1, 0]]
-    rows = matrix.astype(numpy.float32)
-    return Viewpoint(rows.tolist(), numpy.array(projection, numpy.float32).tolist(), SIZE)
-
-
-class Scene:
-    """Things by name, each a function that adds it to an exchange file, in their order."""
-
-    def __init__(self):
-        self.things = {
-            "Floor": self.mesh("Floor", [(-4, -4, 0), (4, -4, 0), (4, 4, 0), (-4, 4, 0)], [(0, 1, 2), (0, 2, 3)], at(0, 0, 0)),
-            "Block": self.block(at(0.2, 0, 1, 1, 0.4)),
-            "Key": self.area(at(1, -1, 4)),
-            "Bulb": lambda file: file.lamp("Bulb", at(-2, 1, 3), "point", 20, (1, 0.5, 0.2), {"radius": 0.2}),
-            "Fill": lambda file: file.lamp("Fill", at(0, 0, 9), "directional", 0.2, (1, 1, 1), {"angle": 4}, False),
-            "Panel": self.mesh("Panel", [(-1, 0, -1), (1, 0, -1), (1, 0, 1), (-1, 0, 1)], [(0, 1, 2), (0, 2, 3)], at(0, 3, 2), 3.0)}
-
-    @staticmethod
-    def mesh(name, corners, triangles, matrix, radiance=0.0):
-        def add(file):
-            rows = numpy.array(corners, "<f4")
-            place = file.accessor(rows.tobytes(), "VEC3", bounds=(rows.min(axis=0), rows.max(axis=0)))
-            indices = file.accessor(numpy.array(triangles, "<u4").tobytes(), "SCALAR", glb.UNSIGNED)
-            material = file.material("Plain", (0.7, 0.6, 0.5), (radiance,) * 3)
-            file.node(name, matrix, mesh=file.mesh(name, [
-                {"attributes": {"POSITION": place}, "indices": indices, "material": material}]))
-        return add
-
-    @classmethod
-    def block(cls, matrix, top=1.0):
-        corners = [(x, y, top * z) for z in (-0.5, 0.5) for y in (-0.5, 0.5) for x in (-0.5, 0.5)]
-        faces = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
-        return cls.mesh("Block", corners, [half for a, b, c, d in faces for half in ((a, b, c), (a, c, d))], matrix)
-
-    @staticmethod
-    def area(matrix):
-        return lambda file: file.area_lamp("Key", matrix, "rectangle", (1.2, 0.8), (9, 8, 7))
-
-    def put(self, child, *names):
-        file = glb.OfThings()
-        for name in names:
-            file.thing = name
-            self.things[name](file)
-        folder = {"folder": self.folder} if "Sky" in names else {}
-        child.send({"type": "put", "shadeless": sorted(file.shadeless), **folder}, file.encoded())
-
-    def add_sky(self, folder, bright):
-        """A world with a picture, half of which is `bright`."""
-        self.folder = folder
-        texels = numpy.full((8, 16), 0.1, numpy.float32)
-        texels[:, :8] = bright
-        with open(os.path.join(folder, "world.exr"), "wb") as out:
-            out.write(exr.encoded({letter: texels for letter in "RGB"}))
-        self.things["Sky"] = lambda file: file.dome("Sky", numpy.eye(4).tolist(), (1, 1, 1), "world.exr", True)
-
-    def write(self, path, viewpoint):
-        """All of it in one file, as for F12."""
-        file = glb.Glb()
-        for add in self.things.values():
-            add(file)
-        viewpoint.write(file)
-        with open(path, "wb") as out:
-            out.write(file.encoded())
+from things import Scene, at, seen_from  # noqa: E402
 
 
 class Serve(unittest.TestCase):
@@ -159,7 +76,7 @@ class Serve(unittest.TestCase):
             self.assertEqual(picture.rgba[..., number].tobytes(), whole[letter].tobytes(), letter)
         self.assertGreater(len(picture.visibility), 0)
         for light, values in picture.visibility.items():
-            self.assertEqual(values.tobytes(), whole[f"{light}.V"].tobytes(), light)
+            self.assertEqual(values.tobytes(), whole[light.replace(".", "_") + ".V"].tobytes(), light)
         self.assertGreater(len(numpy.unique(picture.rgba)), 100)
 
     def begin(self, viewpoint):
@@ -221,6 +138,86 @@ class Serve(unittest.TestCase):
             pass
         self.assertIn("none", said["text"])
 
+    def error(self, refused):
+        """The text of the next error, which refuses a message of this type."""
+        while (said := self.heard())["type"] != "say" or said["level"] != "error":
+            pass
+        self.assertEqual(said["refused"], refused)
+        return said["text"]
+
+    def test_a_picture_is_read_from_the_folder_alone(self):
+        """And not from where the program was started."""
+        self.scene.add_sky(self.folder.name, 0.4)
+        self.scene.folder = ""
+        self.child.kill()
+        before = os.getcwd()
+        os.chdir(self.folder.name)
+        try:
+            child = self.child = serving.Child(PENUMBRA)
+        finally:
+            os.chdir(before)
+        self.assertEqual(self.heard()["type"], "hello")
+        self.scene.put(child, "Sky")
+        self.assertIn("world.exr", self.error("put"))
+
+    def test_pictures_stay_with_their_meshes(self):
+        """The lamp comes first, and from the file of one mesh; then it is replaced alone."""
+        self.scene.things = {"Key": self.scene.things["Key"], "Left": self.scene.tile("Left", at(-1.2, 0, 0), (255, 40, 80, 120)),
+                             "Right": self.scene.tile("Right", at(1.2, 0, 0), (10, 200, 90, 160))}
+        viewpoint = seen_from(0.2)
+        self.begin(viewpoint)
+        self.scene.things["Left"] = self.scene.tile("Left", at(-1.2, 0, 0), (0, 255, 0, 255))
+        self.scene.put(self.child, "Left")
+        self.show()
+        self.expect_whole(self.final(), viewpoint)
+        self.scene.things["Key"] = self.scene.area(at(-1, -2, 3.5, 1.1, 0.7))
+        self.scene.put(self.child, "Key")
+        self.show()
+        self.expect_whole(self.final(), viewpoint)
+
+    def test_a_thing_of_which_nothing_is_left(self):
+        """Wholly transparent meshes are left out: at the start, and when they were there before. Names of things are many."""
+        viewpoint = seen_from(0.3)
+        shown, gone = self.scene.things["Block"], self.scene.block(at(0.2, 0, 1, 1, 0.4), alpha=0.0)
+        self.scene.things["Block"] = gone
+        self.begin(viewpoint)
+        for block in (shown, gone):
+            self.scene.things["Block"] = block
+            self.scene.put(self.child, "Block")
+            self.show()
+            picture = self.final()
+        self.expect_whole(picture, viewpoint)
+        names = [f"Object/thing of a long name, number {number}" for number in range(40000)]
+        self.child.send({"type": "put", "things": names}, glb.OfThings().encoded())
+        self.child.send({"type": "order", "things": [*names, *self.scene.things]})
+        self.child.send({"type": "remove", "things": names[1:]})
+        self.show()
+        self.assertEqual(self.final().rgba.tobytes(), picture.rgba.tobytes())
+        self.assertTrue(all(said["type"] == "say" and said["level"] != "error" for said in self.all_said()))
+
+    def all_said(self):
+        while not self.child.messages.empty():
+            yield self.child.messages.get()
+
+    def test_equal_names_are_told_apart_as_in_one_file(self):
+        viewpoint, key = seen_from(0.3), self.scene.things["Key"]
+
+        def two(file):
+            key(file)
+            self.scene.area(at(-1, -1, 3))(file)
+        self.scene.things["Lamps"] = two
+        picture = self.begin(viewpoint)
+        self.expect_whole(picture, viewpoint)
+        self.assertIn("Key.3", picture.visibility)
+
+    def test_large_views_get_smaller_pictures(self):
+        whole = seen_from(0.3)
+        viewpoint = Viewpoint(whole.matrix, numpy.eye(4).tolist(), (8193, 8))
+        self.assertEqual(viewpoint.size, (2049, 2))
+        self.begin(whole)
+        self.show(camera=viewpoint.camera(), size=viewpoint.size, lightSamples=4)
+        self.assertEqual(self.final().rgba.shape[:2], (2, 2049))
+
     def test_what_is_refused_changes_nothing(self):
         viewpoint = seen_from(0)
         before = self.begin(viewpoint)
@@ -271,6 +268,34 @@ class Serve(unittest.TestCase):
         self.assertEqual(self.child.process.returncode, 0)
         self.assertLess(time.monotonic() - began, 10)
 
+    def test_ends_though_a_render_was_refused_and_nobody_reads(self):
+        for head in ({"type": "render"}, {"type": "render", "arguments": [7]}):
+            out = self.ends(serving.packed(head), 0)[0]
+            self.assertIn(b'"refused":"render"', out)
+            self.assertIn(b'"done"', out)
+        with open(self.path("wrong"), "w+b") as messages:
+            messages.write(serving.packed({"type": 2000 * "x"}) * 3000)
+            messages.seek(0)
+            process = subprocess.Popen([PENUMBRA, "serve"], stdin=messages, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
+            try:
+                self.assertEqual(process.wait(30), 0)
+            finally:
+                process.kill()
+                process.stdout.close()
+
+    def test_a_program_that_says_what_is_no_message(self):
+        with open(self.path("program"), "w") as file:
+            file.write("#!/bin/sh\nprintf '\\002\\000\\000\\000no'; exec sleep 60\n")
+        os.chmod(self.path("program"), 0o755)
+        threading.excepthook, before = (lambda _: None), threading.excepthook
+        began = time.monotonic()
+        try:
+            code, printed = serving.run([self.path("program"), "render"], lambda: time.monotonic() > began + 20)
+        finally:
+            threading.excepthook = before
+        self.assertNotIn(code, (0, None))
+        self.assertEqual((printed, serving._kept), ("", {}))
+
     def test_ends_with_who_started_it(self):
         """However that one ends; though a picture is written meanwhile, and nobody ever reads."""
         self.scene.write(self.path("long.glb"), seen_from(0))
@@ -314,4 +339,4 @@ class Serve(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main(argv=sys.argv[:1])
+    unittest.main(argv=sys.argv[:1] + sys.argv[3:])
