@@ -7,7 +7,8 @@ add_test(NAME blender.addon
 add_test(NAME blender.nodes
          COMMAND ${PENUMBRA_SYSTEM_PYTHON} ${CMAKE_CURRENT_SOURCE_DIR}/blender/addon_nodes.py ${addon})
 add_test(NAME blender.serve COMMAND ${PENUMBRA_SYSTEM_PYTHON} ${CMAKE_CURRENT_SOURCE_DIR}/blender/serve.py ${addon} $<TARGET_FILE:penumbra>)
-set_tests_properties(blender.addon blender.nodes blender.serve PROPERTIES LABELS quick)
+add_test(NAME blender.views COMMAND ${PENUMBRA_SYSTEM_PYTHON} ${CMAKE_CURRENT_SOURCE_DIR}/blender/views.py ${addon} $<TARGET_FILE:penumbra>)
+set_tests_properties(blender.addon blender.nodes blender.serve blender.views PROPERTIES LABELS quick)
 add_test(NAME blender.farm
          COMMAND ${PENUMBRA_SYSTEM_PYTHON} ${CMAKE_CURRENT_SOURCE_DIR}/blender/farm.py ${addon} $<TARGET_FILE:penumbra>
                  ${PROJECT_BINARY_DIR}/blender_farm)

@@ -15,6 +15,16 @@ class Losses:
         self.mentioned.setdefault(what, {})[name] = None
 
 
+def together(several):
+    """One of them all."""
+    whole = Losses()
+    for one in several:
+        for into, what in ((whole.refused, one.refused), (whole.mentioned, one.mentioned)):
+            for text, names in what.items():
+                into.setdefault(text, {}).update(names)
+    return whole
+
+
 def sentences(losses):
     """One a loss, with up to four names."""
     texts = []

@@ -196,6 +196,9 @@ def _write(lights, seen, name, wanted, glb, folder, losses):
 
 
 def _save(values, folder):
-    with open(os.path.join(folder, "world.exr"), "wb") as out:
+    """A program that reads the file meanwhile gets the whole of the earlier or of this picture."""
+    path = os.path.join(folder, "world.exr")
+    with open(path + ".part", "wb") as out:
         out.write(exr.encoded({letter: values[..., number] for number, letter in enumerate("RGB")}))
+    os.replace(path + ".part", path)
     return "world.exr"

@@ -34,9 +34,9 @@ class Changes:
             elif not isinstance(block, bpy.types.Object) or update.is_updated_geometry or update.is_updated_shading:
                 self.blocks.add(_key(block))
 
-    def touch(self, thing):
-        """Has what an instance shows changed, apart from where it is?"""
-        blocks = [thing, thing.data, *(slot.material for slot in thing.material_slots)]
+    def touch(self, thing, override):
+        """Has what an instance shows changed, apart from where it is? `override`: the material of all surfaces, or None."""
+        blocks = [thing, thing.data, override, *(slot.material for slot in thing.material_slots)]
         return self.all or any(block is not None and _key(block) in self.blocks for block in blocks)
 
 
@@ -46,11 +46,14 @@ def _thing_of(instance):
     return "Object/" + owner.name_full
 
 
-def _mark(instance):
-    """What of an instance is compared with what was sent."""
-    thing = instance.object
+def _mark(instance, layer):
+    """What of an instance is compared with what was sent; no update says that the view layer's part of it has changed."""
+    thing, override = instance.object, layer.material_override
+    owner = instance.parent if instance.is_instance else thing
     return (thing.name_full, tuple(tuple(row) for row in instance.matrix_world),
-            tuple(slot.material.name_full if slot.material else "" for slot in thing.material_slots))
+            tuple(slot.material.name_full if slot.material else "" for slot in thing.material_slots),
+            override.name_full if override is not None else "", owner.holdout_get(view_layer=layer),
+            owner.indirect_only_get(view_layer=layer))
 
 
 def _world_of(depsgraph):
@@ -69,7 +72,8 @@ class View:
     def __init__(self):
         self.child, self.started_with = None, None  # the process, and its program and settings
         self._workspace = None  # for the picture of the world, made when first needed
-        self.lost = losses.Losses()
+        self._losses = {}  # by thing
+        self._is_stale = False  # things that the scene has were refused
         self.picture, self.texture, self.said = None, None, ""
         self.background = (0.0, 0.0, 0.0)
         self._marks, self._sent, self._order = {}, set(), []  # of things: data for comparison, names sent, and their
@@ -96,17 +100,18 @@ class View:
         more = ["--device", wanted.device] if wanted.device else []
         self.child = serving.Child(key[0], "--normals", "shading" if wanted.shading_normals else "geometric", *more)
         self.started_with = key
-        self._marks, self._sent, self._order, self._viewpoint, self._wanted = {}, set(), [], None, None
+        self._marks, self._sent, self._order, self._losses, self._is_stale = {}, set(), [], {}, False
+        self._viewpoint, self._wanted = None, None
 
     def update(self, depsgraph):
         """Sends the things of the scene that have changed."""
         wanted = depsgraph.scene.penumbra
         self._start(wanted)
-        self.lost = losses.Losses()
         changes, marks, touched = Changes(depsgraph), {}, set()
+        layer = depsgraph.view_layer_eval
         for thing, instance in _shown(depsgraph):
-            marks.setdefault(thing, []).append(_mark(instance))
-            if changes.touch(instance.object):
+            marks.setdefault(thing, []).append(_mark(instance, layer))
+            if changes.touch(instance.object, layer.material_override):
                 touched.add(thing)
         world = _world_of(depsgraph)
         marks[_WORLD] = (world.name_full if world is not None else "", wanted.world, depsgraph.scene.render.film_transparent)
@@ -118,6 +123,8 @@ class View:
         if gone:
             self.child.send({"type": "remove", "things": gone})
             self._sent -= set(gone)
+            for thing in gone:
+                self._losses.pop(thing, None)
         order = [thing for thing in marks if thing in self._sent]
         if order != self._order:
             self.child.send({"type": "order", "things": order})
@@ -128,51 +135,49 @@ class View:
         """Sends these things, all in one file."""
         if not touched:
             return
-        writer = SceneWriter(depsgraph, self.lost, wanted.shading_normals)
+        writer = SceneWriter(depsgraph, None, wanted.shading_normals)
+        lost = {thing: losses.Losses() for thing in touched}
         writer.glb = glb.OfThings()
         for thing, instance in _shown(depsgraph):
             if thing in touched:
-                writer.glb.thing = thing
+                writer.glb.thing, writer.losses = thing, lost[thing]
                 writer._object(instance)
         if _WORLD in touched:
-            writer.glb.thing = _WORLD
+            writer.glb.thing, writer.losses = _WORLD, lost[_WORLD]
             if self._workspace is None:
                 self._workspace = program.Workspace()
             writer._world(self._workspace.folder)
             self.background = writer.background
-        there = writer.glb.things
-        if there:
-            folder = {"folder": self._workspace.folder} if _WORLD in there else {}
-            self.child.send({"type": "put", "shadeless": sorted(writer.glb.shadeless), **folder}, writer.glb.encoded())
-        gone = sorted(self._sent & touched - there)
-        if gone:
-            self.child.send({"type": "remove", "things": gone})
-        self._sent = self._sent - touched | there
+        folder = {"folder": self._workspace.folder} if _WORLD in touched else {}
+        self.child.send({"type": "put", "things": sorted(touched), "shadeless": sorted(writer.glb.shadeless), **folder},
+                        writer.glb.encoded())
+        self._sent |= touched
+        self._is_stale = False
+        self._losses.update(lost)
 
     def _show(self, wanted, changed):
         """Sends what else the picture depends on, if it has changed."""
-        message = {}
         samples = wanted.light_samples if wanted.exactness == program.SAMPLES else 0
-        if (samples, wanted.method) != self._wanted:
-            self._wanted = samples, wanted.method
-            message["lightSamples"], message["method"] = self._wanted
-        if self._viewpoint is None:
-            return  # before the first drawing
-        if changed or message:
-            self._send_show(message)
+        changed = changed or (samples, wanted.method) != self._wanted
+        self._wanted = samples, wanted.method
+        if changed and self._viewpoint is not None:  # else: before the first drawing
+            self._send_show()
 
-    def _send_show(self, message):
+    def _send_show(self, moving=False):
+        """Sends all that a picture depends on apart from things: an earlier `show` may have been refused."""
         self._stamp += 1
-        self.child.send({"type": "show", "stamp": self._stamp, "visibility": True, **message})
+        message = {"type": "show", "stamp": self._stamp, "visibility": True, "moving": moving,
+                   "camera": self._viewpoint.camera(), "size": self._viewpoint.size}
+        if self._wanted is not None:
+            message["lightSamples"], message["method"] = self._wanted
+        self.child.send(message)
 
     def look(self, viewpoint, wanted):
         if self.child is None or (self._viewpoint is not None and self._viewpoint.key() == viewpoint.key()):
             return
-        message = {"camera": viewpoint.camera(), "size": viewpoint.size, "moving": self._viewpoint is not None}
+        moving = self._viewpoint is not None
         self._viewpoint = viewpoint
-        if self._wanted is not None:
-            message["lightSamples"], message["method"] = self._wanted
-        self._send_show(message)
+        self._send_show(moving)
 
     def is_final(self):
         """Is what is shown the final picture of all that has been sent?"""
@@ -182,13 +187,18 @@ class View:
         while not self.child.messages.empty():
             head = self.child.messages.get()
             if head is None:
-                self.said = "the program has ended"
+                self.said = self.said or "the program has ended"
             elif head["type"] == "say" and head["level"] != "note":
-                self.said = program.messages(f"penumbra: error: {head['text']}")[1]
+                refused = head.get("refused")
+                if refused == "put" or not self._is_stale:  # what is refused afterwards follows from it
+                    self.said = program.messages(f"penumbra: error: {head['text']}")[1]
+                if refused in ("put", "remove", "order"):
+                    self._is_stale = True
+                    self._marks, self._order = {}, []  # the next update sends all things again
         picture = self.child.take_picture()
         if picture is not None:
             self.picture, self.texture = picture, None
-            if picture.head["final"]:
+            if picture.head["final"] and not self._is_stale:
                 self.said = ""
 
     def draw(self, width, height, transparent):
@@ -215,7 +225,7 @@ class View:
             return "Reading the scene"
         head = self.picture.head
         what = "exact areas" if head["lightSamples"] == 0 else f"{head['lightSamples']} light samples"
-        left_out = losses.sentences(self.lost.refused)
+        left_out = losses.sentences(losses.together(self._losses.values()).refused)
         more = f"; left out: {left_out[0]}" if left_out else ""
         return f"{what if head['final'] else 'Quick: ' + what}, {head['milliseconds']:.0f} ms{more}"
 
