@@ -106,7 +106,7 @@ class WithoutAProgram(unittest.TestCase):
     def test_a_picture_of_the_world_is_replaced_whole(self):
         with tempfile.TemporaryDirectory() as folder:
             self.assertEqual(sky._save(numpy.zeros((4, 8, 3)), folder), "world.exr")
-            with open(os.path.join(folder, "world.exr"), "rb") as read:
+            with open(os.path.join(folder, "world.exr"), "rb", buffering=0) as read:
                 begin = read.read(10)
                 sky._save(numpy.ones((2, 4, 3)), folder)
                 earlier = exr.read(begin + read.read())
