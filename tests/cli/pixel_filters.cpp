@@ -69,9 +69,7 @@ double share_of(std::size_t k, std::size_t i) {
   const auto along = [](std::size_t sample, std::size_t pixel) {
     const double off = (static_cast<double>(sample) + 0.5) / kSide - (static_cast<double>(pixel) + 0.5);
     if (std::abs(off) >= 1.5) return 0.0;  // the default width, to each side as in Cycles
-    const auto cosine = [&](double times) {
-      return std::cos(times * (180 + 360 * off / 3) * std::numbers::pi / 180);
-    };
+    const auto cosine = [&](double times) { return std::cos(times * (180 + 360 * off / 3) * std::numbers::pi / 180); };
     return 0.35875 - 0.48829 * cosine(1) + 0.14128 * cosine(2) - 0.01168 * cosine(3);
   };
   return along(k % (kSide * kWidth), i % kWidth) * along(k / (kSide * kWidth), i / kWidth);
