@@ -1,0 +1,38 @@
+"""Renders one picture of an open file, for against_cycles.py. Runs inside Blender:
+
+    blender -b FILE.blend --python-exit-code 1 -P render.py -- OUT.exr ENGINE SAMPLES ANTIALIASED SEED PENUMBRA [X0 X1 Y0 Y1]
+
+`ENGINE`: CYCLES or PENUMBRA. `SAMPLES`: light samples a pixel of Cycles. `ANTIALIASED` 0: all at the pixel's centre; 1: under a
+Blackman-Harris filter of 1.5 pixels, by 16 view samples of Penumbra. X0 to Y1: the crop, as shares of the picture, Y upward.
+"""
+
+import sys
+
+import bpy
+
+OUT, ENGINE, SAMPLES, ANTIALIASED, SEED, PENUMBRA, *CROP = sys.argv[sys.argv.index("--") + 1:]
+bpy.ops.preferences.addon_enable(module="cycles" if ENGINE == "CYCLES" else "penumbra")
+scene = bpy.context.scene
+render = scene.render
+render.engine, render.film_transparent, render.use_compositing, render.use_sequencer = ENGINE, True, False, False
+settings = render.image_settings
+settings.file_format, settings.color_depth, settings.exr_codec = "OPEN_EXR_MULTILAYER", "32", "ZIP"
+render.filepath = OUT
+if CROP:
+    render.use_border, render.use_crop_to_border = True, True
+    render.border_min_x, render.border_max_x, render.border_min_y, render.border_max_y = map(float, CROP)
+if ENGINE == "CYCLES":
+    # Direct light alone, every sample a fair one.
+    cycles = scene.cycles
+    cycles.samples, cycles.seed, cycles.max_bounces = int(SAMPLES), int(SEED), 0
+    cycles.use_denoising, cycles.use_adaptive_sampling = False, False
+    cycles.sample_clamp_direct = cycles.light_sampling_threshold = 0
+    cycles.pixel_filter_type = "BLACKMAN_HARRIS" if ANTIALIASED == "1" else "GAUSSIAN"
+    cycles.filter_width = 1.5 if ANTIALIASED == "1" else 0.01
+    if CROP:
+        scene.view_layers[0].use_pass_position = scene.view_layers[0].use_pass_normal = True
+else:
+    bpy.context.preferences.addons["penumbra"].preferences.program = PENUMBRA
+    scene.penumbra.pixel_samples = "16" if ANTIALIASED == "1" else "1"
+    scene.penumbra.pixel_filter, scene.penumbra.filter_width = "BLACKMAN_HARRIS", 1.5
+bpy.ops.render.render(write_still=True)

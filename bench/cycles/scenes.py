@@ -1,0 +1,130 @@
+"""Four scenes for error against time (against_cycles.py). Runs inside Blender:
+
+    blender -b --factory-startup --python-exit-code 1 -P scenes.py -- ADDON.zip FOLDER WIDTH HEIGHT
+
+Writes FOLDER/NAME.blend, and FOLDER/NAME.glb as the add-on hands it to the program.
+"""
+
+import os
+import sys
+from math import radians, sin
+
+import bpy
+from mathutils import Vector
+
+ZIP, FOLDER, WIDTH, HEIGHT = sys.argv[sys.argv.index("--") + 1:]
+
+
+def diffuse(name, color):
+    material = bpy.data.materials.new(name)
+    material.use_nodes = True
+    tree = material.node_tree
+    tree.nodes.clear()
+    output, surface = tree.nodes.new("ShaderNodeOutputMaterial"), tree.nodes.new("ShaderNodeBsdfDiffuse")
+    surface.inputs["Color"].default_value = (*color, 1)
+    tree.links.new(surface.outputs[0], output.inputs["Surface"])
+    return material
+
+
+def place(thing, name, color):
+    thing.name = name
+    thing.data.materials.clear()
+    thing.data.materials.append(diffuse(name, color))
+    return thing
+
+
+def floor():
+    bpy.ops.mesh.primitive_plane_add(size=12)
+    place(bpy.context.object, "Floor", (0.6, 0.6, 0.6))
+
+
+def lamp(name, kind, location, target=(0, 0, 0.5), **values):
+    data = bpy.data.lights.new(name, kind)
+    for key, value in values.items():
+        setattr(data, key, value)
+    thing = bpy.data.objects.new(name, data)
+    thing.location = location
+    thing.rotation_euler = (Vector(target) - Vector(location)).to_track_quat("-Z", "Y").to_euler()
+    bpy.context.scene.collection.objects.link(thing)
+
+
+def camera(location=(4.2, -5.0, 3.4), target=(0, 0, 0.6)):
+    data = bpy.data.cameras.new("Camera")
+    data.angle = radians(40)
+    thing = bpy.data.objects.new("Camera", data)
+    thing.location = location
+    thing.rotation_euler = (Vector(target) - Vector(location)).to_track_quat("-Z", "Y").to_euler()
+    bpy.context.scene.collection.objects.link(thing)
+    bpy.context.scene.camera = thing
+
+
+def still_life():
+    """A few hundred triangles."""
+    floor()
+    bpy.ops.mesh.primitive_torus_add(location=(0.9, -0.2, 0.3), major_radius=0.6, minor_radius=0.22, major_segments=24, minor_segments=12)
+    place(bpy.context.object, "Ring", (0.8, 0.4, 0.3))
+    bpy.ops.mesh.primitive_cube_add(size=1, location=(-0.9, 0.3, 0.9), rotation=(0.4, 0.3, 0.5))
+    place(bpy.context.object, "Box", (0.4, 0.6, 0.8))
+    bpy.ops.mesh.primitive_cone_add(vertices=24, radius1=0.4, depth=1.4, location=(0.1, 1.2, 0.7))
+    place(bpy.context.object, "Cone", (0.5, 0.8, 0.4))
+
+
+def small():
+    still_life()
+    lamp("Key", "AREA", (1.5, -2, 4.5), shape="SQUARE", size=0.3, energy=300)
+
+
+def large_penumbrae():
+    still_life()
+    lamp("Key", "AREA", (1.5, -2, 4.5), shape="SQUARE", size=2.5, energy=300)
+
+
+def dense():
+    """A terrain and a bumpy ball of 504,000 triangles together, none larger than a few pixels."""
+    bpy.ops.mesh.primitive_grid_add(x_subdivisions=420, y_subdivisions=210, size=8)
+    terrain = place(bpy.context.object, "Terrain", (0.6, 0.6, 0.5))
+    for vertex in terrain.data.vertices:
+        x, y = vertex.co.x, vertex.co.y
+        vertex.co.z = 0.12 * sin(3 * x) * sin(2.6 * y) + 0.03 * sin(17 * x + 9 * y)
+    bpy.ops.mesh.primitive_ico_sphere_add(subdivisions=8, radius=0.9)
+    ball = place(bpy.context.object, "Ball", (0.7, 0.5, 0.4))
+    for vertex in ball.data.vertices:
+        x, y, z = vertex.co
+        vertex.co *= 1 + 0.04 * sin(11 * x) * sin(13 * y) * sin(12 * z)
+    ball.location = (0, 0, 1.2)
+    lamp("Key", "AREA", (1.5, -2, 4.5), shape="DISK", size=0.8, energy=300)
+
+
+def four_lamps():
+    still_life()
+    lamp("Key", "AREA", (2.5, -2, 4), shape="RECTANGLE", size=0.8, size_y=0.4, energy=150)
+    lamp("Rim", "AREA", (-3, 2, 3.5), shape="DISK", size=0.6, energy=80)
+    lamp("Bulb", "POINT", (-1.5, -2.5, 2.5), shadow_soft_size=0.15, energy=60)
+    lamp("Sun", "SUN", (0, -3, 6), angle=radians(3), energy=0.5)
+
+
+def write(name, build):
+    from penumbra.export import SceneWriter
+    from penumbra.frames import region_of
+    from penumbra.losses import Losses
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    bpy.ops.preferences.addon_enable(module="cycles")
+    bpy.ops.preferences.addon_enable(module="penumbra")
+    scene = bpy.context.scene
+    scene.render.resolution_x, scene.render.resolution_y, scene.render.resolution_percentage = int(WIDTH), int(HEIGHT), 100
+    build()
+    camera()
+    scene.render.engine = "PENUMBRA"
+    losses = Losses()
+    writer = SceneWriter(bpy.context.evaluated_depsgraph_get(), losses, True)
+    writer.write(os.path.join(FOLDER, f"{name}.glb"), region_of(scene.render, int(WIDTH), int(HEIGHT)))
+    if losses.refused or losses.mentioned:
+        raise SystemExit(f"{name}: {losses.refused} {losses.mentioned}")
+    bpy.ops.wm.save_as_mainfile(filepath=os.path.join(FOLDER, f"{name}.blend"))
+    triangles = sum(len(polygon.vertices) - 2 for thing in scene.objects if thing.type == "MESH" for polygon in thing.data.polygons)
+    print(f"scene: {name} {triangles}", flush=True)
+
+
+bpy.ops.preferences.addon_install(filepath=ZIP)
+for function in (small, large_penumbrae, dense, four_lamps):
+    write(function.__name__, function)
