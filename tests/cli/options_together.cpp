@@ -67,6 +67,11 @@ class OptionsTogether : public ProgramTest {
     return *std::ranges::find(scenes_, row["scene"], &LitScene::name);
   }
 
+  /// Returns whether a method can do any of the scenes; methods of domes alone can do none.
+  [[nodiscard]] bool does_some_scene(const json& method) const {
+    return std::ranges::any_of(scenes_, [&](const LitScene& scene) { return table_.can_do(method, scene, "rows"); });
+  }
+
   /// All lights' names, the second one first.
   [[nodiscard]] std::vector<std::string> lights_from_second(const LitScene& scene) const {
     std::vector<std::string> names;
@@ -137,13 +142,16 @@ class RenderTogether : public OptionsTogether, public testing::WithParamInterfac
       for (Factor& factor : factors_) factor.group = "command";  // met by methods, not by methods' options
     }
     Factor method{"method", {""}};
-    for (const json& one : table_.all()) method.values.push_back(one.at("name"));
+    std::vector<json> methods;
+    for (const json& one : table_.all()) {
+      if (!does_some_scene(one)) continue;
+      methods.push_back(one);
+      method.values.push_back(one.at("name"));
+    }
     factors_.push_back(method);
     const std::size_t of_method = factors_.size() - 1;
     const auto group_of = [&](const std::string& factor) { return strength == 2 ? factor : std::string(); };
-    for (std::size_t i = 0; i < table_.all().size(); ++i) {
-      add_options_of(table_.all()[i], {{of_method, i + 1}}, group_of, true);
-    }
+    for (std::size_t i = 0; i < methods.size(); ++i) add_options_of(methods[i], {{of_method, i + 1}}, group_of, true);
     const Allowed allowed = [&](const Choices& choices) { return can_be(Row(factors_, choices)); };
     static std::map<std::size_t, std::vector<Choices>> found;
     const std::vector<Choices>& rows = rows_of(found, strength, allowed);
@@ -212,6 +220,7 @@ class CompareTogether : public OptionsTogether, public testing::WithParamInterfa
     factors_.push_back({"runs", {"1", "2"}});
     factors_.push_back({"twice", {"", kOn}});
     for (const json& method : table_.all()) {
+      if (!does_some_scene(method)) continue;
       const std::string name = method.at("name");
       std::string group = strength == 2 ? name : "";
       if (!group.empty()) factors_.push_back({name, {kOn}, {}, group});
