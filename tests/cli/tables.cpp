@@ -80,8 +80,9 @@ TEST_F(Tables, MethodsSayWhatAnOptionMakesOfThem) {
   EXPECT_TRUE(variant("contour", json::object({{"subsample", "2"}})).is_null()) << "it is scalar anyway";
   EXPECT_THAT(
       run({"methods"}).out,
-      testing::AllOf(HasSubstr("with form=sphere: scalar; rectangle, disk, ellipse, polygon, sphere, sun; no textures"),
-                     HasSubstr("with sublights=2: scalar; rectangle, disk, ellipse, polygon, sphere, sun\n")));
+      testing::AllOf(
+          HasSubstr("with form=sphere: scalar; rectangle, disk, ellipse, polygon, sphere, sun, dome; no textures"),
+          HasSubstr("with sublights=2: scalar; rectangle, disk, ellipse, polygon, sphere, sun, dome\n")));
 }
 
 TEST_F(Tables, DevicesSayWhatTheyCan) {
