@@ -124,7 +124,7 @@ TEST_F(Frames, MayBeMoments) {
   EXPECT_EQ(image.attributes.at("penumbra.frame"), "5.5");
   const Outcome numbered = render({"--frame", "5.5", "-o", path("f.####.exr")});
   EXPECT_EQ(numbered.code, 2);
-  EXPECT_THAT(numbered.err, HasSubstr("whose numbers are whole"));
+  EXPECT_THAT(numbered.err, HasSubstr("lies between two frames"));
   for (const char* wrong : {"x", "1e10", "nan", ""})
     EXPECT_EQ(render({"--frame", wrong, "-o", path("g.exr")}).code, 2) << wrong;
   EXPECT_THAT(files(), ElementsAre("f.exr", "scene.glb"));
