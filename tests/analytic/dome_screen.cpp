@@ -5,6 +5,7 @@
 #include "tests/unit/dome_stage.hpp"
 
 #include <fmt/format.h>
+#include <glm/trigonometric.hpp>
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
