@@ -5,8 +5,8 @@
 #include "tests/unit/dome_stage.hpp"
 
 #include <fmt/format.h>
-#include <glm/trigonometric.hpp>
 #include <glm/geometric.hpp>
+#include <glm/trigonometric.hpp>
 #include <gtest/gtest.h>
 
 #include <cmath>
