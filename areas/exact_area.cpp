@@ -1,7 +1,7 @@
 // Computes the area of the union of back-projected triangles, by signed edges.
 //
-// As seen from p each triangle is clipped to the region between p and the light and oriented counter-clockwise; each of
-// its edges then counts +1 or −1. Where triangles share an edge their counts add up: 0 inside a surface, ±2 on the
+// Each triangle, as seen from p, is clipped to the region between p and the light and oriented counter-clockwise; each
+// of its edges then counts +1 or −1. Where triangles share an edge their counts add up: 0 inside a surface, ±2 on the
 // silhouette of a closed one, any integer in a soup (Laine et al. 2005 for closed ones; docs/signed-crossings.md for
 // any). The remaining edges bound the same depth complexity as all triangles do, and they are few; a sweep
 // (area_sweep.hpp) computes the area where this complexity is zero. No assumption is made about the mesh.

@@ -81,7 +81,7 @@ PAGES = {
 }
 LIGHTS = {"skies/knot": ["--light", "around"]}  # of scenes with several: the first
 PAGE_SIZE, PAGE_LIMIT = 144, 0.5  # pixels on a side; the error of the deepest colour
-# As compare/error_picture.cpp.
+# Colours of compare/error_picture.cpp.
 BACKGROUND = (96, 104, 116)
 TOO_BRIGHT = ((255, 255, 255), (188, 218, 236), (90, 163, 206), (33, 102, 172), (5, 40, 90))
 TOO_DARK = ((255, 255, 255), (253, 208, 180), (240, 130, 95), (190, 35, 45), (95, 0, 25))

@@ -110,8 +110,8 @@ TEST(ScreenOcclusion, AWallTakesACapOfTheBall) {
   }
 }
 
-/// What a horizon counts falls off with the distance of its cause: at the bottom of a valley the first step, a share s
-/// of the radius away, raises all of it.
+/// The weight of a horizon falls off with the distance of its cause: at the bottom of a valley the first step, at a
+/// share s of the radius, raises the whole horizon.
 TEST(ScreenOcclusion, HorizonsCountByTheirDistance) {
   const double slope = std::numbers::pi / 4;
   const Stage stage = valley(slope, slope);

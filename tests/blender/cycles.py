@@ -33,8 +33,8 @@ EDGE = 1e-2
 # Light that passes holes and panes is counted in light samples: as many as there may be.
 COUNTED = {"translucent", "cut_out", "world_color_counted", "world_and_lamp", "world_picture", "world_picture_turned",
            "world_picture_texture_mapping", "world_picture_mirrored", "world_and_translucent"}
-# Of several view samples a pixel, whose means are compared everywhere. Ours are 64, evenly spread; as many anywhere would
-# have twice the noise of Cycles' 256.
+# Scenes with several view samples a pixel: means are compared at every pixel. Penumbra takes 64, evenly spread; 64 random
+# ones would have twice the noise of Cycles' 256.
 BLURRED = {"depth_of_field", "orthographic_depth_of_field"}
 # Beside that, where another shape is meant: a point lamp of radius r at distance d is a disk to Cycles, a ball here, which
 # gives up to r² / d² more (spots' disks are in their cones); an icosphere of 1280 faces and its sphere differ by 0.25 %; under the tube Cycles is 0.15 % below

@@ -279,7 +279,7 @@ def check_first_look(page):
     browser.ask("document.querySelector('#look button').click()")
     browser.wait(f"document.getElementById('viewer').open && {READY}")
     same(browser.ask("document.getElementById('viewer-wipe').value"), "49", "the viewer goes on where the line is")
-    # What is there before one opens more: three screens at most, wide and narrow. Text is never smaller than 14 pixels.
+    # The page as opened is three screens at most, wide and narrow. Text is never smaller than 14 pixels.
     for window in ({"width": 1400, "height": 900}, {"width": 390, "height": 844, "phone": True}):
         browser.open(page.url, **window)
         browser.wait("document.getElementById('look').dataset.painted === '50'")

@@ -72,7 +72,7 @@ TEST_F(Instances, AreTheMeshOnceForEach) {
   EXPECT_EQ(lines("instances.obj", "o ").size() + 2, lines("copies.obj", "o ").size()) << "instances are one object";
 }
 
-/// What `render` writes with copies, and without, is the same to the last bit.
+/// Pictures of instances with copies and without are the same to the last bit.
 TEST_F(Instances, GiveTheSamePictureWithoutCopies) {
   std::vector<json> places;
   for (int i = 0; i < 30; ++i) {

@@ -124,7 +124,7 @@ void main() {
     const double offset = -dot(n, through), least = max(-at_a.value, -at_b.value);
     const double reach = max(largest(caster.a), largest(caster.b));
     const double d = max(offset, least) + 4.0LF * (at_a.bound + at_b.bound + kProofError * abs(offset));
-    // As in bounding_plane: a plane that would have to be rotated or moved by more is not a plane of this wedge.
+    // A plane that would have to be rotated or moved by more is not a plane of this wedge (as in bounding_plane).
     proved = proved && turn <= kMostTurn && least - offset <= kMostTurn * reach && bounds_penumbra(n, d, caster);
     wedges[i].planes[k] = BuiltPlane(n.x, n.y, n.z, d);
   }

@@ -50,8 +50,8 @@ TEST_F(ForwardMap, AnEdgeFadesAsItsSplatsDo) {
   }
 }
 
-/// What casts is lit where light lands on it: at its own outline, as the light sees it, splats end. What casts nothing
-/// is lit by all that would go on, so boxes give it the hard shadow.
+/// A caster is lit where splats land on it: splats end at its own outline, as the light sees it. A surface that casts
+/// no shadow is lit by all light that would pass it, so boxes give it the hard shadow.
 TEST_F(ForwardMap, SurfacesFadeAtTheirOwnOutline) {
   scenes::Scene scene = bare_floor(0.3);
   const double texel = 4.0 / 62, at_plate = texel * 3 / 5;

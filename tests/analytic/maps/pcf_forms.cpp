@@ -14,7 +14,7 @@ namespace {
 
 class PcfForms : public MapsTest {};
 
-/// Of a receiver on a level floor, whose plane is as deep at every texel: what a window of the map around it holds.
+/// Depths in a window of the map around a receiver on a level floor, whose plane is equally deep at every texel.
 struct Window {
   std::vector<double> depths;
   double own, forgiven;

@@ -1,5 +1,5 @@
-// What a picture needs of a scene whose meshes are there several times: the same view samples, and the same truth of
-// every pair, as the scene in which each instance is a copy. Both judged without any tree.
+// The part of a scene with instances that a picture needs gives the same view samples, and the same truth of every
+// pair, as the scene in which each instance is a copy. Both are judged without any tree.
 #include "visibility/seen/seen_part.hpp"
 
 #include "tests/unit/visibility/scenes.hpp"

@@ -1,4 +1,4 @@
-// What stands before a light, flattened on it as a point sees it, against places found by hand.
+// Outlines of occluders projected from a point onto a light, against places found by hand.
 #include "app/view/light_outline.hpp"
 
 #include <glm/geometric.hpp>

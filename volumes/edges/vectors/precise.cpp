@@ -266,7 +266,7 @@ int side_of_way(const PreciseInput& in, const glm::dvec3& l) {
   // Error bound as in visibility::certainly_meets.
   const double error = 0x1p-46 * glm::length(l) * glm::length(a) * glm::length(b);
   if (std::abs(side) <= error) return 0;
-  // As seen from above, where the light is, the grid is mirrored.
+  // The grid is mirrored as seen from above, where the light is.
   return (side > 0) == (in.of.grid.side < 0) ? 1 : -1;
 }
 
