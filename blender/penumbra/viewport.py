@@ -278,7 +278,7 @@ class ShownInViews:
 def write_whole(path, depsgraph, viewpoint):
     """The scene as a view shows it, in an exchange file: `penumbra render --lenient` makes the same picture of it."""
     class Writer(SceneWriter):
-        def _camera(self, _region):
-            viewpoint.write(self.glb)
+        def _camera(self, region):
+            region.write(self.glb)  # the viewpoint, in place of a picture's pixels
     lost = losses.Losses()
-    Writer(depsgraph, lost, depsgraph.scene.penumbra.shading_normals).write(path, None)
+    Writer(depsgraph, lost, depsgraph.scene.penumbra.shading_normals).write(path, viewpoint)
