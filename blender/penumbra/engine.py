@@ -60,7 +60,7 @@ class PenumbraEngine(viewport.ShownInViews, bpy.types.RenderEngine):
                 """What the program only warns of, and which is too bright: at once, not after the render."""
                 if _TOO_BRIGHT in line and not wanted.lenient:
                     raise Refused(f"{program.messages(line, glb)[0][0]}: it would be too bright. Close it, or tick 'Lenient'")
-            code, printed = serving.run(command, self.test_break, refuse)
+            code, printed = serving.run(command, self.test_break, workspace, refuse)
             if code is None:
                 return
             warnings, error = program.messages(printed, glb)

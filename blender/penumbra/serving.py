@@ -47,8 +47,10 @@ class Picture:
 class Child:
     """Ends with this process, however that ends: its input is closed then. Neither sending nor receiving waits for it."""
 
-    def __init__(self, program, *arguments):
+    def __init__(self, program, *arguments, started=lambda number: None):
+        """`started` is called with the process id before anything else is done."""
         self.process = subprocess.Popen([program, "serve", *arguments], stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+        started(self.process.pid)
         self.messages = queue.SimpleQueue()  # heads of all messages except pictures, in their order; None at the end
         self._picture, self._waiting, self._wake = None, collections.deque(), threading.Condition()
         self._ends = False
@@ -120,12 +122,16 @@ class Child:
 _kept = {}  # the process that renders pictures of a sequence, by its program
 
 
-def run(command, cancelled, hears=lambda line: None):
+def run(command, cancelled, workspace=None, hears=lambda line: None):
     """As program.run, by a child that is kept for the next picture. `command`: PROGRAM render ARGUMENT…"""
     program, _, *arguments = command
+    # A child that hangs does not notice that its input has ended: the workspace's keeper ends the child then.
+    note = workspace.note_program if workspace is not None else lambda number: None
     child = _kept.get(program)
     if child is None or child.process.poll() is not None:
-        child = _kept[program] = Child(program)
+        child = _kept[program] = Child(program, started=note)
+    else:
+        note(child.process.pid)
     printed = []
     child.send({"type": "render", "arguments": arguments})
     try:
@@ -149,6 +155,8 @@ def run(command, cancelled, hears=lambda line: None):
     except BaseException:
         forget(now=True)
         raise
+    finally:
+        note("")
 
 
 def forget(*_, now=False):

@@ -320,7 +320,7 @@ class Serve(unittest.TestCase):
                 self.scene.things["Block"] = self.scene.block(at(0.2 * frame, 0, 1, 1, 0.3 * frame))
                 self.scene.write(self.path("frame.glb"), viewpoint)
                 command = [PENUMBRA, "render", self.path("frame.glb"), "-o", self.path("kept.exr"), "--no-studio", "--size", "48x32"]
-                code, printed = serving.run(command, lambda: False, heard.append)
+                code, printed = serving.run(command, lambda: False, hears=heard.append)
                 self.assertEqual(code, 0, printed)
                 subprocess.run([*command[:3], "-q", "-o", self.path("alone.exr"), *command[5:]], check=True)
                 with open(self.path("kept.exr"), "rb") as kept, open(self.path("alone.exr"), "rb") as alone:
