@@ -139,10 +139,7 @@ def run(command, cancelled, workspace=None, hears=lambda line: None):
             try:
                 head = child.messages.get(timeout=0.1)
             except queue.Empty:
-                if cancelled():
-                    forget(now=True)
-                    return None, ""
-                continue
+                head = {"type": "nothing came"}
             if head is None:
                 _kept.pop(program, None)  # forget() may have run meanwhile
                 child.close()
@@ -152,6 +149,9 @@ def run(command, cancelled, workspace=None, hears=lambda line: None):
             if head["type"] == "say":
                 printed.append(f"penumbra: {_LEVELS.get(head['level'], head['level'])}: {head['text']}\n")
                 hears(printed[-1])
+            if cancelled():
+                forget(now=True)
+                return None, ""
     except BaseException:
         forget(now=True)
         raise

@@ -332,7 +332,8 @@ class Serve(unittest.TestCase):
             self.assertEqual(code, 3)
             self.assertIn("penumbra: error: ", printed)
             self.assertEqual({child.process.pid for child in serving._kept.values()}, numbers)
-            self.assertEqual(serving.run([*command, "--pixel-samples", "64"], lambda: True), (None, ""))
+            long = [*command[:-1], "2000x2000", "--pixel-samples", "64"]
+            self.assertEqual(serving.run(long, lambda: True), (None, ""))
             self.assertEqual(serving._kept, {})
         finally:
             serving.forget(now=True)
