@@ -4,7 +4,7 @@
     bench/against_cycles.py measure [BUILD]     renders and measures; writes bench/results/against-cycles.json; an hour
     bench/against_cycles.py page [--check]      docs/against-cycles.md and its chart from that file
 
-`measure` needs Blender, the built program and the add-on (targets penumbra and blender_addon).
+`measure` needs Blender, the built program and the add-on (targets penumbra and penumbra_blender_addon).
 
 Each scene (cycles/scenes.py) is rendered at its pixels' centres, and antialiased under a Blackman-Harris filter of 1.5 pixels, by
 four processes: the program from the add-on's exchange file; Blender with the add-on; and Blender with Cycles, direct light, at
