@@ -11,18 +11,18 @@ _failed = None  # the first frame that failed
 
 
 def asked_for_frames(arguments):
-    """Does Blender's command line say which frames to render? Else a script does, and is told by an exception."""
+    """Returns whether Blender's command line lists the frames to render. Otherwise a script asks for them and gets an exception."""
     own = arguments[:arguments.index("--")] if "--" in arguments else arguments
     return any(one in own for one in ("-f", "--render-frame", "-a", "--render-anim"))
 
 
 def failed_before():
-    """The frame that failed, of the frames that the command line asked for. Blender renders those after it, but saves none."""
+    """Returns the frame of the command line that failed, or None. Blender renders the frames after it, but saves none of them."""
     return _failed
 
 
 def note_failure(frame):
-    """Blender itself ends with 1 only if the last of the frames failed."""
+    """Makes the process exit with 1 after a frame of the command line failed. Blender itself does so only for the last frame."""
     global _failed
     if _failed is not None or not bpy.app.background or not asked_for_frames(sys.argv):
         return
@@ -31,7 +31,7 @@ def note_failure(frame):
 
 
 def _end(temporary):
-    """The last that Python does before Blender would leave."""
+    """Runs at exit, as the last Python code before Blender ends."""
     print(f"Penumbra: frame {_failed} failed (above); no frame after it was rendered, and this process ends with code 1",
           file=sys.stderr)
     shutil.rmtree(temporary, ignore_errors=True)  # Blender's own folder, which it would remove

@@ -1,4 +1,4 @@
-"""The Bake button: what arrives at the active object, by its active UV map, into an image of Blender."""
+"""The Bake button: writes the light or visibility at the active object into one of Blender's images, by the active UV map."""
 
 import math
 import os
@@ -67,7 +67,7 @@ class PENUMBRA_OT_bake(bpy.types.Operator):
 
 
 class Baked:
-    """Which object is baked, as SceneWriter asks."""
+    """The object to bake, in SceneWriter's form."""
     name = _NAME
 
     def __init__(self, thing):
@@ -78,7 +78,7 @@ class Baked:
 
 
 def image_for(name, size):
-    """The object's image, of this size; one that another bake of it made is used again, and no other."""
+    """Returns the object's image of this size. Reuses only an image that an earlier bake of the object made."""
     image = next((image for image in bpy.data.images if image.get(_OF) == name and image.is_float), None)
     if image is None:
         image = bpy.data.images.new(f"{name} light", size, size, float_buffer=True)

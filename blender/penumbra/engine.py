@@ -13,7 +13,7 @@ _TOO_BRIGHT = "stand in one another's light"
 
 
 class Refused(Exception):
-    """What the user can act on."""
+    """An error that the user can act on."""
 
 
 class PenumbraEngine(viewport.ShownInViews, bpy.types.RenderEngine):
@@ -24,7 +24,7 @@ class PenumbraEngine(viewport.ShownInViews, bpy.types.RenderEngine):
     bl_use_eevee_viewport = True
 
     def render(self, depsgraph):
-        """No exception leaves it: Blender would go on with an empty picture, or crash."""
+        """Renders one frame. Raises nothing: after an exception Blender continues with an empty picture, or crashes."""
         try:
             if background.failed_before() is not None:
                 raise Refused(f"not rendered, for frame {background.failed_before()} failed")
@@ -57,7 +57,7 @@ class PenumbraEngine(viewport.ShownInViews, bpy.types.RenderEngine):
             command = program.arguments(binary, glb, picture, region.size, wanted)
 
             def refuse(line):
-                """What the program only warns of, and which is too bright: at once, not after the render."""
+                """Reports the program's warnings about surfaces that are too bright at once, not after the render."""
                 if _TOO_BRIGHT in line and not wanted.lenient:
                     raise Refused(f"{program.messages(line, glb)[0][0]}: it would be too bright. Close it, or tick 'Lenient'")
             code, printed = serving.run(command, self.test_break, workspace, refuse)
@@ -104,7 +104,7 @@ class PenumbraEngine(viewport.ShownInViews, bpy.types.RenderEngine):
                 whole.stamp_data_add_field(name, f"{layer}.{text}" if name.endswith("/name") else text)
 
     def update_render_passes(self, scene=None, renderlayer=None):
-        """What the compositor's node has sockets for. As with render, no exception leaves it."""
+        """Registers the passes that the compositor's node has sockets for. Raises nothing, as render."""
         try:
             self._register_passes(scene, renderlayer)
         except Exception:

@@ -95,7 +95,7 @@ class SceneWriter:
         return [slot.material for slot in thing.material_slots]
 
     def _mesh(self, thing, is_baked):
-        """The number of an object's mesh in the file, whether it shines, and its corners; None for one without faces."""
+        """Returns the number of an object's mesh in the file, whether it emits light, and its corners; None for a mesh without faces."""
         key = (is_baked, thing.data.as_pointer(), thing.original.as_pointer() if thing.type != "MESH" else 0,
                tuple(material.name_full if material else "" for material in self._materials_of(thing)))
         if key not in self._meshes:
@@ -195,7 +195,7 @@ class SceneWriter:
 
 
 def encoded_image(image, look):
-    """An image's bytes and their type: its file's, where that is PNG or JPEG in sRGB and shown as it is."""
+    """Returns an image's bytes and their MIME type: those of its file if that is an unchanged PNG or JPEG in sRGB."""
     if look.pixels is not None:
         return texels.png(texels.bytes_of(texels.encoded_of(look.pixels))), "image/png"
     small = not look.nearest and max(image.size) <= texels.FINE // 2
@@ -222,7 +222,7 @@ def encoded_image(image, look):
 
 
 def shared(vertices, rows):
-    """What corners have, once each, and which of it is each corner's. `vertices`: the mesh's own, of each corner."""
+    """Returns the distinct corner data, and each corner's index into them. `vertices`: the mesh's vertex of each corner."""
     first = numpy.zeros(int(vertices.max()) + 1, numpy.int64)
     first[vertices[::-1]] = numpy.arange(len(vertices))[::-1]
     # fast path for the usual case: a vertex has one normal, one position in a picture

@@ -62,7 +62,7 @@ def _unzip(block, size):
 
 
 def read(data):
-    """A Picture of a file's bytes. ValueError for what is none."""
+    """Returns the Picture in a file's bytes. Raises ValueError if they are no OpenEXR file, or of a form that is not read here."""
     entries, table = _header(data)
     left, top, right, bottom = struct.unpack("<4i", entries["dataWindow"][1])
     width, height = right - left + 1, bottom - top + 1
@@ -92,7 +92,7 @@ def _entry(name, kind, value):
 
 
 def encoded(channels):
-    """A file of float channels: name to array of height x width."""
+    """Returns the bytes of a file with float channels (name to array of height x width)."""
     names = sorted(channels)
     height, width = channels[names[0]].shape
     listed = b"".join(name.encode() + b"\0" + struct.pack("<iIii", 2, 0, 1, 1) for name in names) + b"\0"

@@ -9,11 +9,11 @@ from . import spectrum, texels
 
 
 class Unknown(Exception):
-    """A node that is not evaluated; its text says which."""
+    """Raised for a node that is not evaluated; its text names the node."""
 
 
 def find_socket(sockets, *names):
-    """The first that has one of the names: identifiers first, which Blender does not rename or translate. None: there is none."""
+    """Returns the first socket with one of the names, or None. Compares identifiers first: Blender does not rename or translate them."""
     for name in names:
         for socket in sockets:
             if getattr(socket, "identifier", None) == name:
@@ -37,7 +37,7 @@ class At:
         self.socket, self.groups = socket, groups
 
     def source(self):
-        """What feeds it, as (node, its output, groups); None where its own value counts. `end`: whose value that is."""
+        """Returns the source of the socket as (node, output, groups); None if a socket's own value counts: that of `end`."""
         at = self
         while True:
             if not at.socket.is_linked:
@@ -70,7 +70,7 @@ def _group_output(node):
 
 
 def _like(sockets, socket, node):
-    """The one on the other side of a group."""
+    """Returns the matching socket on the other side of a group."""
     for one in sockets:
         if one.identifier == socket.identifier:
             return one
@@ -78,7 +78,7 @@ def _like(sockets, socket, node):
 
 
 class Value:
-    """Three channels: `factor` times the image's (linear, behind `texels` if these were computed) and the attribute's."""
+    """Colour of three channels: `factor` times the image's (linear, or the computed `texels`) and the attribute's."""
 
     def __init__(self, factor=(1.0, 1.0, 1.0), image=None, attribute=None, pixels=None):
         self.factor = numpy.broadcast_to(numpy.asarray(factor, numpy.float64), (3,))
@@ -89,7 +89,7 @@ class Value:
         return self.image is None and self.attribute is None
 
     def array(self):
-        """The three channels, alone or texel by texel."""
+        """Returns the three channels: one colour, or one for each texel."""
         if self.attribute is not None:
             raise Unknown("a colour attribute that is not multiplied")
         if self.image is None:
@@ -105,7 +105,7 @@ class Value:
 
 
 class ImageUse:
-    """An image node, and where it stands."""
+    """An image node, and the groups that it is in."""
 
     def __init__(self, node, groups):
         self.node, self.groups = node, groups
@@ -115,7 +115,7 @@ class ImageUse:
 
 
 def evaluate(at):
-    """The Value of a colour, vector or number input. Unknown where a node is not evaluated."""
+    """Returns the Value of a colour, vector or number input. Raises Unknown if a node is not evaluated."""
     source = at.source()
     if source is None:
         value = at.end.default_value
@@ -138,7 +138,7 @@ def evaluate(at):
 
 
 def constant(at):
-    """Three numbers. Unknown where they differ from place to place."""
+    """Returns three numbers. Raises Unknown if they differ from place to place."""
     value = evaluate(at)
     if not value.is_constant:
         raise Unknown("an image" if value.image else "a colour attribute")
@@ -153,7 +153,7 @@ def _in(node, groups, *names):
 
 
 def _computed(rule, *values):
-    """A rule of arrays, of values that share one image at most."""
+    """Applies a function of arrays to values that share at most one image."""
     images = [value.image for value in values if value.image is not None]
     if any(not image.is_like(images[0]) for image in images):
         raise Unknown("several images, which are mixed")
@@ -164,7 +164,7 @@ def _computed(rule, *values):
 
 
 def _number(array):
-    """A colour as a number: what Blender makes of one where a number is wanted (grey by luminance)."""
+    """Returns a colour as a number as Blender converts it: its luminance."""
     grey = array[..., 0] == array[..., 1]
     weighed = array @ numpy.array([0.2126, 0.7152, 0.0722])
     return numpy.where(grey & (array[..., 1] == array[..., 2]), array[..., 0], weighed)[..., None]

@@ -34,8 +34,8 @@ def emission_of(lamp, losses, name):
 
 
 def sun_irradiance(strength, angle):
-    """Of what faces a sun of this apparent diameter (radians). Cycles spreads its samples evenly over the disk that
-    touches the sphere of directions; each gives the cosine of what it lights."""
+    """Returns Cycles' irradiance of a surface that faces a sun of this strength and apparent diameter (radians). Cycles spreads
+    its samples evenly over the disk that touches the sphere of directions, and weights each by the surface's cosine."""
     squared = tan(angle / 2) ** 2
     return strength * (2 * (sqrt(1 + squared) - 1) / squared if squared > 1e-8 else 1.0)
 
@@ -85,7 +85,7 @@ def power_of(lamp):
 
 
 def is_linked(thing):
-    """Does an object, as Blenders from 4.0 on have it, light or shade some others alone?"""
+    """Returns whether an object lights or shades only some others (light linking, since Blender 4.0)."""
     linking = getattr(thing, "light_linking", None)
     return linking is not None and (linking.receiver_collection is not None or linking.blocker_collection is not None)
 

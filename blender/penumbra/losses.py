@@ -1,4 +1,4 @@
-"""What a scene has and a picture of it will not."""
+"""Parts of a scene that a picture will not show."""
 
 
 class Losses:
@@ -16,7 +16,7 @@ class Losses:
 
 
 def together(several):
-    """One of them all."""
+    """Returns the losses of all in one."""
     whole = Losses()
     for one in several:
         for into, what in ((whole.refused, one.refused), (whole.mentioned, one.mentioned)):
@@ -26,7 +26,7 @@ def together(several):
 
 
 def sentences(losses):
-    """One a loss, with up to four names."""
+    """Returns one message for each loss, with up to four names."""
     texts = []
     for what, names in losses.items():
         names = [f"'{name}'" for name in names]

@@ -1,4 +1,4 @@
-"""What a material's nodes make of a surface that is diffuse, shines, and lets light through.
+"""Converts a material's nodes to a surface that reflects diffusely, emits, and transmits light.
 
 Knows nodes by their names and values alone, not bpy.
 """
@@ -12,7 +12,7 @@ from .graph import At, Unknown, find_socket
 
 @dataclass
 class Look:
-    """Light is reflected by `color` (diffuse), sent by `radiance`, and passes by 1 - `alpha`."""
+    """A surface: `color` is its diffuse reflectance, `radiance` its emission, 1 - `alpha` the share of light that passes."""
     color: tuple = (0.8, 0.8, 0.8)
     radiance: tuple = (0.0, 0.0, 0.0)
     alpha: float = 1.0
@@ -47,7 +47,7 @@ _GREY = (0.8, 0.8, 0.8)  # in place of an unknown colour, if left out
 
 
 def may_shine(material):
-    """Has the material a node that sends light? Asked before a render, for names of passes."""
+    """Returns whether the material has a node that emits light. Called before a render, for names of passes."""
     if not material.use_nodes or material.node_tree is None:
         return False
     for node in material.node_tree.nodes:
@@ -62,7 +62,7 @@ def may_shine(material):
 
 
 class Reader:
-    """Reads one material. What is lost goes to `losses`, under `name`."""
+    """Reads one material. Adds unsupported parts to `losses`, under `name`."""
 
     def __init__(self, losses, name):
         self.losses, self.name = losses, name
@@ -92,7 +92,7 @@ class Reader:
         return look
 
     def _picture(self, value, look):
-        """What a colour has beside its factor."""
+        """Reads a colour's image and attribute into `look`."""
         if value.attribute is not None:
             if look.attribute not in (None, value.attribute):
                 self.losses.refuse("mixes several colour attributes", self.name)
@@ -147,7 +147,7 @@ class Reader:
             raise Unknown(f"the node '{node.name}' and not by UV maps")
 
     def _color(self, at, pictured):
-        """A colour input: its factor; what else it has is added to `pictured`."""
+        """Returns a colour input's factor; adds its image and attribute to `pictured`."""
         try:
             value = graph.evaluate(at)
         except Unknown as error:
@@ -164,7 +164,7 @@ class Reader:
         return tuple(max(float(x), 0.0) for x in value.factor)
 
     def _plain(self, at, what):
-        """A colour, or a number three times, that must be the same everywhere."""
+        """Returns a colour (or a number, three times) that must be the same everywhere."""
         try:
             return graph.constant(at)
         except Unknown as error:
@@ -181,7 +181,7 @@ class Reader:
         return tuple(x * strength for x in self._plain(color, "a light")) if strength else (0.0, 0.0, 0.0)
 
     def _input(self, at):
-        """The shader that feeds a socket."""
+        """Returns the shader that feeds a socket."""
         try:
             source = at.source()
         except Unknown as error:
@@ -284,7 +284,7 @@ class Reader:
 
 
 def _placing(node, groups):
-    """What a mapping node makes of (u, v), as two rows of three numbers."""
+    """Returns a mapping node's transform of (u, v), as two rows of three numbers."""
     def numbers(name):
         socket = find_socket(node.inputs, name)
         return graph.constant(At(socket, groups)) if socket is not None else (0.0, 0.0, 0.0)

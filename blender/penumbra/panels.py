@@ -18,7 +18,7 @@ _OF_EEVEE = {"EEVEE_MATERIAL_PT_context_material"}
 
 
 def panels_of_blender():
-    """Those that are shown with Penumbra as the engine. A panel that is left out takes with it what is within it."""
+    """Returns the panels that are shown with Penumbra as the engine. Leaving out a panel also leaves out the panels within it."""
     found = {}
     for panel in bpy.types.Panel.__subclasses__():
         engines, name = getattr(panel, "COMPAT_ENGINES", None), panel.__name__
@@ -147,7 +147,8 @@ class PENUMBRA_PT_spot(_Panel, bpy.types.Panel):
 
 
 def _draw_nodes(layout, data, socket):
-    """The tree of a material, light or world from one input of its output on; without nodes, what switches them on."""
+    """Draws the nodes of a material, light or world behind one input of its output node; without nodes, the button that enables them.
+    Returns whether there are nodes."""
     if not data.use_nodes or data.node_tree is None:
         layout.prop(data, "use_nodes", icon="NODETREE")
         return False

@@ -1,4 +1,4 @@
-"""What of a picture goes into which of Blender's passes. Knows nothing of Blender, where Z is up."""
+"""Assigns a picture's channels to Blender's passes. Independent of bpy; Blender's Z is up."""
 
 import hashlib
 import json
@@ -13,7 +13,7 @@ _CHANNELS = {  # Channels of passes known to Blender: the pictures' own names, a
 
 
 def layers(picture):
-    """The layers that the picture has of its lights, in their order."""
+    """Returns the picture's layers of lights, in the order of the lights."""
     return [light["layer"] for light in json.loads(picture.attributes.get("penumbra.lights", "[]"))]
 
 
@@ -21,13 +21,13 @@ _LONGEST_LAYER = 44  # bytes of UTF-8, as truncated by the program
 
 
 def layer_of(name):
-    """A light's layer; a second light of that name gets another."""
+    """Returns the layer name of a light; a second light of the same name gets a different one."""
     plain = "".join("_" if letter in "./" or ord(letter) < 0x20 or ord(letter) == 0x7F else letter for letter in name)
     return plain.encode()[:_LONGEST_LAYER].decode("utf-8", "ignore")
 
 
 def matte_groups(name, pixel_samples):
-    """A matte's passes: of one view sample a pixel there is one that covers it, of more there may be six."""
+    """Returns the names of a matte's passes: with one view sample a pixel there is one object a pixel, with more up to six."""
     return [f"{name}{group:02}" for group in range(1 if int(pixel_samples) == 1 else 3)]
 
 
@@ -36,7 +36,7 @@ _LONGEST = 63
 
 
 def put_before(picture, world):
-    """A colour behind all that is there: what a film that is not transparent shows."""
+    """Puts a colour behind the picture, for a film that is not transparent."""
     missing = 1 - picture.channels["A"]
     for letter, value in zip("RGB", world):
         picture.channels[letter] = picture.channels[letter] + missing * numpy.float32(value)
@@ -51,7 +51,7 @@ class Names:
         self.shortened = []
 
     def _short(self, name):
-        """Unlike that of any other name: the end is a number made of the whole."""
+        """Returns a shortened name that differs from every other: its end is a number computed from the whole name."""
         if len(name.encode()) <= self._room:
             return name
         tail = "~" + hashlib.sha256(name.encode()).hexdigest()[:6]
@@ -61,14 +61,14 @@ class Names:
         return short
 
     def own_passes(self, lights):
-        """Passes that Blender has no name for: name, letters of the channels, kind. `lights`: their layers."""
+        """Returns the passes that Blender has no name for: name, letters of the channels, kind. `lights`: layers of the lights."""
         found = [("V", "X", "VALUE")]
         for light in lights:
             found += [(self._short(f"V {light}"), "X", "VALUE"), (self._short(f"Light {light}"), "RGB", "COLOR")]
         return found
 
     def channels(self, picture):
-        """All that the picture has, by pass and channel."""
+        """Returns all of the picture's values, by pass and channel."""
         names = dict(_CHANNELS)
         names["V.X"] = "V"
         for layer in layers(picture):

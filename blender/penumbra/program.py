@@ -106,7 +106,7 @@ class Workspace:
                                             stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True)
 
     def note_program(self, number):
-        """`number`: of the process that works for this one; "" where it has ended."""
+        """Tells the keeper the process id of the running program (`number`); "" after it has ended."""
         if self._keeper is not None:
             self._keeper.stdin.write(f"{number}\n".encode())
             self._keeper.stdin.flush()
@@ -125,7 +125,7 @@ class Workspace:
 
 
 def run(command, cancelled, workspace=None, hears=lambda line: None):
-    """Returns (exit code, what it printed); the code is None if `cancelled()` came true meanwhile, which ends it, as does an
+    """Returns (exit code, printed text); the code is None if `cancelled()` became true, which ends the program, as does an
     exception of `hears`, which gets each line as soon as it is printed."""
     with subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
                           text=True, errors="replace") as process:

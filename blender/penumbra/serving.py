@@ -13,7 +13,7 @@ _LEVELS = {"note": "info"}  # other levels as on the program's stderr
 
 
 def packed(head, data=b""):
-    """A message as it passes through the pipe."""
+    """Returns a message's bytes for the pipe."""
     if data:
         head = {**head, "bytes": len(data)}
     text = json.dumps(head, separators=(",", ":")).encode()
@@ -21,7 +21,7 @@ def packed(head, data=b""):
 
 
 def read_message(stream):
-    """(head, bytes) of the next message; None at the end."""
+    """Returns (head, bytes) of the next message; None at the end of input."""
     length = stream.read(4)
     if len(length) < 4:
         return None
@@ -31,7 +31,7 @@ def read_message(stream):
 
 
 class Picture:
-    """`head`: its message; `rgba`: height x width x 4, first row at the top; `visibility`: of each light, by its name."""
+    """A picture. `head`: its message; `rgba`: height x width x 4, first row at the top; `visibility`: V of each light by name."""
 
     def __init__(self, head, data):
         self.head, self.visibility, at = head, {}, 0
@@ -45,7 +45,8 @@ class Picture:
 
 
 class Child:
-    """Ends with this process, however that ends: its input is closed then. Neither sending nor receiving waits for it."""
+    """A `penumbra serve` process. It ends when this process ends for any reason, since its input is closed then. Sending and
+    receiving never block."""
 
     def __init__(self, program, *arguments, started=lambda number: None):
         """`started` is called with the process id before anything else is done."""
@@ -58,7 +59,7 @@ class Child:
             threading.Thread(target=work, daemon=True).start()
 
     def send(self, head, data=b""):
-        """Of two `show` that wait, one behind the other, one is made."""
+        """Adds a message to the queue. Of two consecutive `show` messages that wait, only the later is sent."""
         with self._wake:
             waiting = self._waiting
             if head["type"] == "show" and waiting and waiting[-1][0]["type"] == "show":
@@ -71,13 +72,13 @@ class Child:
         return self._picture is not None or not self.messages.empty()
 
     def take_picture(self):
-        """The newest, once; None if there is none that has not been taken."""
+        """Returns the newest picture once; None if no new picture has arrived since."""
         with self._wake:
             picture, self._picture = self._picture, None
         return picture
 
     def close(self):
-        """It ends at once, unless it hangs."""
+        """Closes its input: the child then ends at once, unless it hangs."""
         with self._wake:
             self._ends = True
             self._waiting.clear()
@@ -123,7 +124,7 @@ _kept = {}  # the process that renders pictures of a sequence, by its program
 
 
 def run(command, cancelled, workspace=None, hears=lambda line: None):
-    """As program.run, by a child that is kept for the next picture. `command`: PROGRAM render ARGUMENT…"""
+    """Renders as program.run does, in a child process that is kept for the next picture. `command`: PROGRAM render ARGUMENT…"""
     program, _, *arguments = command
     # A child that hangs does not notice that its input has ended: the workspace's keeper ends the child then.
     note = workspace.note_program if workspace is not None else lambda number: None
@@ -160,7 +161,7 @@ def run(command, cancelled, workspace=None, hears=lambda line: None):
 
 
 def forget(*_, now=False):
-    """No other picture of the sequence comes."""
+    """Ends the kept children: the sequence has no further picture."""
     while _kept:
         child = _kept.popitem()[1]
         child.kill() if now else child.close()

@@ -53,7 +53,7 @@ CLASSES = (PenumbraPreferences, PenumbraSettings)
 
 
 def program_path():
-    """What the preferences say; "" where the add-on is enabled for one start alone (`blender --addons penumbra`)."""
+    """Returns the program's path in the preferences; "" if the add-on is enabled for this start only (`blender --addons penumbra`)."""
     addon = bpy.context.preferences.addons.get(__package__)
     return addon.preferences.program if addon is not None and addon.preferences is not None else ""
 

@@ -1,4 +1,4 @@
-"""Blender's world as a dome light, and as what is seen behind everything. Knows nodes and images by their names and values
+"""Blender's world as a dome light, and as the background. Knows nodes and images by their names and values
 alone, not bpy.
 
 The picture of an environment is that of Cycles: a direction d shows the place of M d, where the middle column lies along +X, the top
@@ -19,7 +19,7 @@ _LARGEST = 8192  # texels a side, limit of the program
 
 @dataclass
 class Sky:
-    """What comes from all around: `radiance` times the picture's texels, if it has one."""
+    """Light from all directions: `radiance` times the picture's texels, if there is a picture."""
     radiance: tuple = (0.0, 0.0, 0.0)
     image: object = None    # graph.ImageUse
     pixels: object = None   # linear, in place of the image's own
@@ -30,7 +30,7 @@ class Sky:
 
 
 def may_light(world):
-    """Asked before a render, for names of passes."""
+    """Returns whether the world emits light. Called before a render, for names of passes."""
     if world is None:
         return False
     if not world.use_nodes or world.node_tree is None:
@@ -44,7 +44,7 @@ def may_light(world):
 
 
 def skies_of(world):
-    """The Sky that lights, and the one that the camera sees. Unknown where nodes are not evaluated."""
+    """Returns the Sky that lights and the Sky that the camera sees. Raises Unknown if a node is not evaluated."""
     if not world.use_nodes or world.node_tree is None:
         sky = Sky(tuple(world.color))
         return sky, sky
@@ -80,7 +80,7 @@ def _background(source):
 
 
 def looked_up(sky):
-    """M of a picture, a 3 x 3 matrix of orthogonal rows."""
+    """Returns the picture's mapping M, a 3 x 3 matrix of orthogonal rows."""
     node = sky.image.node
     if node.projection != "EQUIRECTANGULAR":
         raise Unknown(f"the node '{node.name}', whose projection is not Equirectangular")
@@ -116,7 +116,7 @@ def _mapped(at):
 
 
 def _turned(angles):
-    """About X, then Y, then Z."""
+    """Returns the matrix of rotations about X, then Y, then Z."""
     (a, b, c), (sa, sb, sc) = numpy.cos(angles), numpy.sin(angles)
     about_x = numpy.array(((1, 0, 0), (0, a, -sa), (0, sa, a)))
     about_y = numpy.array(((b, 0, sb), (0, 1, 0), (-sb, 0, b)))
@@ -137,7 +137,7 @@ def placed(matrix):
 
 
 def picture(sky, mirrored):
-    """Its texels, height x width x 3, linear, first row at the top."""
+    """Returns the picture's texels: height x width x 3, linear, first row at the top."""
     values = sky.pixels if sky.pixels is not None else texels.linear(sky.image.node)
     while max(values.shape[:2]) > _LARGEST:
         rows, columns = (side // 2 * 2 for side in values.shape[:2])
@@ -196,7 +196,7 @@ def _write(lights, seen, name, wanted, glb, folder, losses):
 
 
 def _save(values, folder):
-    """A program that reads the file meanwhile gets the whole of the earlier or of this picture."""
+    """Writes a picture's file. A program that reads meanwhile gets either the complete earlier file or the complete new one."""
     path = os.path.join(folder, "world.exr")
     with open(path + ".part", "wb") as out:
         out.write(exr.encoded({letter: values[..., number] for number, letter in enumerate("RGB")}))

@@ -1,4 +1,4 @@
-"""Where surfaces are: how near to a lamp, and whether between two distances before the camera. Knows nothing of Blender."""
+"""Positions of surfaces: distance from a lamp, and whether they are between two distances in front of the camera. Independent of bpy."""
 
 import numpy
 
@@ -19,7 +19,7 @@ class Placed:
         return self.moved(self.positions.astype(float))[self.vertices].reshape(-1, 3, 3)
 
     def distance_to(self, point, enough):
-        """From a point to the nearest triangle; where it is more than `enough`, infinite."""
+        """Returns the distance from a point to the nearest triangle; infinite if it exceeds `enough`."""
         if self._bounds is None:
             triangles = self.triangles()
             self._bounds = triangles.astype(numpy.float32), triangles.min(axis=1), triangles.max(axis=1)
@@ -30,7 +30,7 @@ class Placed:
 
 
 class Surfaces:
-    """Placed objects, of which the nearest to a point is asked."""
+    """Placed objects, searched for the nearest to a point."""
 
     def __init__(self, placed):
         self._placed = placed
@@ -38,7 +38,7 @@ class Surfaces:
                                  for bound in (numpy.min, numpy.max))
 
     def nearest_to(self, point, enough):
-        """The nearest object, and how near; (None, `enough`) if all are farther than that."""
+        """Returns the nearest object and its distance; (None, `enough`) if all are farther."""
         point, found = numpy.asarray(point, float), None
         least = numpy.linalg.norm(numpy.maximum(numpy.maximum(self._low - point, point - self._high), 0), axis=1)
         for i in numpy.argsort(least, kind="stable"):
@@ -51,7 +51,7 @@ class Surfaces:
 
 
 def distances(triangles, point):
-    """From a point to each triangle (n x 3 x 3)."""
+    """Returns the distances from a point to each triangle (n x 3 x 3)."""
     corners = triangles - point
     nearest = numpy.full(len(corners), numpy.inf)
     for i in range(3):
@@ -70,7 +70,7 @@ def distances(triangles, point):
 
 
 class Frustum:
-    """What a camera sees. `matrix`: its place, along −Z; the lens as glb.camera takes it."""
+    """A camera's view. `matrix`: its pose, looking along −Z; the lens as in glb.camera."""
 
     def __init__(self, matrix, aspect, shift, half_angle=None, height=None):
         self._to_camera = numpy.linalg.inv(numpy.asarray(matrix, float))
@@ -86,7 +86,7 @@ class Frustum:
                 self._sides.append(plane)
 
     def sees(self, placed, start, end):
-        """Is any part of it in the picture, at a depth between two?"""
+        """Returns whether any part is in the picture, at a depth between the two given."""
         planes = [*self._sides, numpy.array([0, 0, 1, -start])]
         if numpy.isfinite(end):
             planes.append(numpy.array([0, 0, -1, end]))
@@ -108,7 +108,7 @@ class Frustum:
 
 
 def _is_left(polygon, planes):
-    """Is anything left of a polygon, cut by planes one after the other?"""
+    """Returns whether a polygon is not empty after it is cut by all planes."""
     corners = list(polygon)
     for plane in planes:
         heights = [float(corner @ plane) for corner in corners]

@@ -1,4 +1,4 @@
-"""The colour of what glows: Planck's law, seen by the CIE 1931 observer, in linear Rec. 709 of luminance 1."""
+"""Colour of a black body: Planck's law, seen by the CIE 1931 observer, in linear Rec. 709 of luminance 1."""
 
 from math import exp
 
@@ -14,7 +14,7 @@ _OBSERVER = (
 
 
 def blackbody(kelvin):
-    """As Blender's node: constant above 12,000 K and below 800 K; channels that would be negative are 0."""
+    """Returns the colour as Blender's node does: constant above 12,000 K and below 800 K; negative channels are 0."""
     kelvin = min(max(kelvin, 800.0), 12000.0)
     seen = [sum(weight * radiance(380 + 10 * i, kelvin) for i, weight in enumerate(weights)) for weights in _OBSERVER]
     return tuple(max(sum(a * b / seen[1] for a, b in zip(row, seen)), 0.0) for row in _TO_REC709)

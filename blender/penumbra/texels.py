@@ -20,7 +20,7 @@ def encoded_of(linear):
 
 
 def pixels(image):
-    """Height x width x 4, first row at the top, in the image's own colour space."""
+    """Returns the image's values: height x width x 4, first row at the top, in the image's own colour space."""
     width, height = image.size
     if width == 0 or height == 0:
         raise OSError("it has no pixels: its file is missing or not readable")
@@ -30,7 +30,7 @@ def pixels(image):
 
 
 def is_encoded(image):
-    """Are its texels stored in sRGB? Floats and data are linear."""
+    """Returns whether the image's texels are stored in sRGB. Floats and data are linear."""
     space = image.colorspace_settings.name
     return space == "sRGB" and not image.is_float
 
@@ -40,7 +40,7 @@ def knows_space(image):
 
 
 def linear(node):
-    """The image of a node, linear, with what Cycles sees between its texels, which it interpolates as they are stored."""
+    """Returns a node's image in linear values, with the values that Cycles interpolates between the stored texels."""
     values = pixels(node.image)[..., :3].astype(numpy.float64)
     if node.interpolation != "Closest":
         values = finer(values, node.interpolation, getattr(node, "extension", "REPEAT"))
@@ -48,14 +48,14 @@ def linear(node):
 
 
 def _weights(kind, t):
-    """Of the texels from one before on (cubic B-splines), or of two (linear)."""
+    """Returns offsets and weights of the texels around `t`: four, from the one before on (cubic B-splines), or two (linear)."""
     if kind == "Linear":
         return (0, 1), (1 - t, t)
     return (-1, 0, 1, 2), ((1 - t) ** 3 / 6, (3 * t ** 3 - 6 * t ** 2 + 4) / 6, (-3 * t ** 3 + 3 * t ** 2 + 3 * t + 1) / 6, t ** 3 / 6)
 
 
 def finer(values, kind, wrap):
-    """More texels, between the given ones."""
+    """Returns an image with more texels, interpolated between the given ones."""
     times = min(FINE // max(values.shape[:2]), _MOST)
     if times < 2:
         return values
@@ -73,7 +73,7 @@ def finer(values, kind, wrap):
 
 
 def png(bytes_by_pixel):
-    """A PNG of height x width x 3 or 4 bytes."""
+    """Returns the bytes of a PNG. `bytes_by_pixel`: height x width x 3 or 4."""
     height, width, channels = bytes_by_pixel.shape
     rows = numpy.zeros((height, 1 + width * channels), numpy.uint8)
     rows[:, 1:] = bytes_by_pixel.reshape(height, -1)

@@ -22,7 +22,7 @@ def _key(block):
 
 
 class Changes:
-    """What a depsgraph says has changed, by kind and name."""
+    """Changes that a dependency graph reports, by kind and name."""
 
     def __init__(self, depsgraph):
         self.blocks, self.all = set(), False
@@ -35,19 +35,19 @@ class Changes:
                 self.blocks.add(_key(block))
 
     def touch(self, thing, override):
-        """Has what an instance shows changed, apart from where it is? `override`: the material of all surfaces, or None."""
+        """Returns whether an object's appearance, apart from its position, has changed. `override`: material of all surfaces, or None."""
         blocks = [thing, thing.data, override, *(slot.material for slot in thing.material_slots)]
         return self.all or any(block is not None and _key(block) in self.blocks for block in blocks)
 
 
 def _thing_of(instance):
-    """An object, or all that an instancer shows."""
+    """An object, or all instances of an instancer."""
     owner = instance.parent if instance.is_instance else instance.object
     return "Object/" + owner.name_full
 
 
 def _mark(instance, layer):
-    """What of an instance is compared with what was sent; no update says that the view layer's part of it has changed."""
+    """Returns the properties of an instance that are compared with those sent: no update reports changes of the view layer."""
     thing, override = instance.object, layer.material_override
     owner = instance.parent if instance.is_instance else thing
     return (thing.name_full, tuple(tuple(row) for row in instance.matrix_world),
@@ -67,7 +67,7 @@ def _shown(depsgraph):
 
 
 class View:
-    """One 3D view: its child, what that was sent, and the picture that is shown."""
+    """One 3D view: its child process, the data sent to it, and the picture on display."""
 
     def __init__(self):
         self.child, self.started_with = None, None  # the process, and its program and settings
@@ -180,7 +180,7 @@ class View:
         self._send_show(moving)
 
     def is_final(self):
-        """Is what is shown the final picture of all that has been sent?"""
+        """Returns whether the picture on display is the final one of all data sent."""
         return self.picture is not None and self.picture.head["final"] and self.picture.head["stamp"] == self._stamp
 
     def take_news(self):
@@ -202,7 +202,7 @@ class View:
                 self.said = ""
 
     def draw(self, width, height, transparent):
-        """What there is, as large as the view."""
+        """Draws the newest picture, scaled to the view."""
         backdrop = None if transparent else self.background
         if self.picture is None:
             return
@@ -231,7 +231,7 @@ class View:
 
 
 def _tick():
-    """Views with news are drawn; the timer lives as long as they do."""
+    """Redraws views with new pictures; the timer runs while there are views."""
     if any(view.child is not None and view.child.has_news() for view in _views):
         for window in bpy.context.window_manager.windows:
             for area in window.screen.areas:
@@ -241,7 +241,7 @@ def _tick():
 
 
 class ShownInViews:
-    """Of the engine: what Blender calls for 3D views. No exception leaves it."""
+    """The engine's methods that Blender calls for 3D views. They raise nothing."""
 
     def _view(self):
         if not hasattr(self, "_shown"):
@@ -276,7 +276,7 @@ class ShownInViews:
 
 
 def write_whole(path, depsgraph, viewpoint):
-    """The scene as a view shows it, in an exchange file: `penumbra render --lenient` makes the same picture of it."""
+    """Writes the scene as a view shows it into an exchange file, of which `penumbra render --lenient` makes the same picture."""
     class Writer(SceneWriter):
         def _camera(self, region):
             region.write(self.glb)  # the viewpoint, in place of a picture's pixels

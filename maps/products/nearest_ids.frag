@@ -1,6 +1,7 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
+// Writes the ids of the nearest triangles: see nearest_ids.glsl.
 #include "maps/products/nearest_ids.shared.h"
 #include "render/both.glsl"
 

@@ -1,6 +1,7 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
+// Marks the slices that contain surfaces: see slices.glsl.
 #include "maps/products/slices.shared.h"
 #include "render/both.glsl"
 

@@ -197,7 +197,7 @@ class Scene:
 
     @property
     def warnings(self):
-        """What was skipped or changed while the scene was read."""
+        """Messages about parts of the file that were skipped or changed while the scene was read."""
         return self._core.warnings()
 
     def save(self, file):
@@ -247,7 +247,7 @@ def _transformed(transform, vertices):
 
 
 class LightPicture:
-    """What a picture shows of one light."""
+    """One light's part of a picture."""
 
     def __init__(self, core, index):
         self._core, self._index = core, index
@@ -421,7 +421,7 @@ def compare(scene, methods="default", *, reference="raytrace", reference_samples
 
 
 class Question:
-    """What the function of an own method is asked (add_method): numpy arrays, all positions relative to `origin`.
+    """Arguments of an own method's function (add_method): numpy arrays, all positions relative to `origin`.
 
     For the K pixels that receive shadow of this light: `p` (K, 3) points, `n` (K, 3) unit normals toward the camera, `face`
     (K,) the faces that carry them, `pixels` (K,) their numbers, row by row.
@@ -460,7 +460,7 @@ def add_method(name, function, *, family="image", masks=False, lights=tuple(_SHA
 
 
 def inspect(mesh, faces=None, *, weld=0.0, self_intersections=True, list_limit=100, log=None, progress=None):
-    """What is wrong with a mesh, and what each method makes of it: a dict as `penumbra inspect --json` prints it. `mesh`: a
+    """Returns a mesh's defects and each method's verdict on it, as the dict that `penumbra inspect --json` prints. `mesh`: a
     file, or vertices (V, 3) with `faces` (F, 3). `log` and `progress` as of Renderer."""
     if faces is None:
         text = _core.inspect_file(_os.fspath(mesh), weld, self_intersections, list_limit, log, progress)
