@@ -106,10 +106,16 @@ TEST_F(DepthOfField, APointIsADisk) {
   }
   const double circle = kRadius * std::abs(1 - kDepth / kFocus);
   const double spread = circle * circle / 4 + kHalf * kHalf / 3 + pixel * pixel / 12;
-  EXPECT_NEAR(sum * pixel * pixel, 4 * kHalf * kHalf, 0.04 * 4 * kHalf * kHalf);
-  EXPECT_NEAR(mean_x / sum, kMiddle, 0.02 * circle);
-  EXPECT_NEAR(square_x / sum - mean_x / sum * mean_x / sum, spread, 0.05 * spread);
-  EXPECT_NEAR(square_y / sum, spread, 0.05 * spread);
+  // A pixel of the disk sees the card with this share of its lens. Independent points (stratified ones have less noise)
+  // give the sum over all of the disk's pixels this relative standard deviation, the mean of x half the radius' part of
+  // it, and the mean of x² a quarter of the square's: the standard deviations of x and x² over a disk. Four of each.
+  const double share = 4 * kHalf * kHalf / (std::numbers::pi * circle * circle);
+  const double pixels = std::numbers::pi * circle * circle / (pixel * pixel);
+  const double noise = 4 * std::sqrt((1 - share) / (64 * share * pixels));
+  EXPECT_NEAR(sum * pixel * pixel, 4 * kHalf * kHalf, noise * 4 * kHalf * kHalf);
+  EXPECT_NEAR(mean_x / sum, kMiddle, noise * circle / 2);
+  EXPECT_NEAR(square_x / sum - mean_x / sum * mean_x / sum, spread, noise * circle * circle / 4);
+  EXPECT_NEAR(square_y / sum, spread, noise * circle * circle / 4);
 }
 
 /// At the focus distance all of the lens sees one point; what is of the pixel's centre is of the lens's, too.
