@@ -206,7 +206,9 @@ void SessionMaker::show(scenes::Scene scene, bool changed, const std::string& ca
   const std::vector<std::size_t> wanted = wanted_lights(session_.scene, options_.lights, scene_name);
   session_.camera_index = camera.empty() ? 0 : find_named(session_.scene.cameras, camera, "--camera", scene_name);
   const scenes::Camera& seen_by = session_.scene.cameras[session_.camera_index];
-  std::tie(session_.width, session_.height) = picture_size(session_.scene, camera);
+  const auto [width, height] = picture_size(session_.scene, camera);
+  session_.width = width;
+  session_.height = band_ ? band_->row_count : height;
   std::size_t pieces = 0;
   for (const std::size_t light : wanted) {
     const auto* cut = std::get_if<scenes::Pieces>(&session_.scene.lights[light].shape);
@@ -222,7 +224,12 @@ void SessionMaker::show(scenes::Scene scene, bool changed, const std::string& ca
     }
     ++session_.mesh_version;
   }
-  session_.camera = visibility::make_camera(seen_by, session_.floats.origin, session_.width, session_.height);
+  session_.camera = visibility::make_camera(seen_by, session_.floats.origin, width, height);
+  if (band_) {
+    session_.camera.first_row = band_->first_row;
+    session_.camera.rows_of_picture = height;
+    session_.camera.height = band_->row_count;
+  }
   if (lens_share_ && seen_by.lens) {
     visibility::Lens& lens = session_.camera.lens.emplace(*lens_share_);
     lens.radius = seen_by.lens->radius;

@@ -100,6 +100,9 @@ class SessionMaker {
   /// Sets the lens through which view samples look from the next show() on, if the camera has one: `share` has
   /// everything but the lens's size. nullopt: view samples look through the lens's middle.
   void look_through_lens(std::optional<visibility::Lens> share) { lens_share_ = share; }
+  /// Restricts the session to some rows of its picture from the next show() on; nullopt: all rows. Not together with
+  /// show_part().
+  void look_at_rows(std::optional<visibility::Tile> rows) { band_ = rows; }
   /// Sets the scene without copies of its instances, for following calls of show_part(). `scene` and `instances` must
   /// outlive these calls.
   void look_into(const scenes::Scene& scene, const scenes::Instances& instances) { placed_.emplace(scene, instances); }
@@ -141,6 +144,7 @@ class SessionMaker {
   std::optional<visibility::PlacedMeshes> placed_;
   visibility::Bounds whole_;                       // box of the whole scene's floats, if session_.numbers is filled
   std::optional<visibility::Tile> rows_;           // pixels of other rows are background
+  std::optional<visibility::Tile> band_;           // other rows are not there
   ViewFinder finder_;                              // empty: the camera's pixels
   bool is_whole_ = false;                          // the last show() was completed
   std::optional<visibility::PinholeCamera> seen_;  // camera of session_.samples

@@ -45,8 +45,8 @@ gpu::VisibilityBufferPush push_of(const visibility::PinholeCamera& camera, const
   }
   push.tan_half_fov = camera.tan_half_fov;
   push.width = camera.width;
-  push.height = camera.height;
-  push.first_row = band.first_row;
+  push.height = camera.picture_height();
+  push.first_row = camera.first_row + band.first_row;
   push.row_count = band.rows;
   return push;
 }

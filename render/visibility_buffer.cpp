@@ -110,14 +110,14 @@ visibility::ViewSamples VisibilityBuffer::render(const visibility::PinholeCamera
   store(push.middle, camera.middle);
   push.tan_half_fov = camera.tan_half_fov;
   push.width = camera.width;
-  push.height = camera.height;
+  push.height = camera.picture_height();
 
   std::vector<std::uint32_t> ranks(slots);
   std::vector<std::int32_t> triangles;
   triangles.reserve(std::size_t{camera.width} * camera.height);
   Commands commands(device);
   for (std::uint32_t row = 0; row < camera.height; row += band) {
-    push.first_row = row;
+    push.first_row = camera.first_row + row;
     push.row_count = std::min(band, camera.height - row);
     commands.fill(nearest, kNothing);
     commands.fill(winner, kNothing);

@@ -28,6 +28,7 @@ penumbra_test(cli FULL *EveryTriple* SHARDS Part/RenderTogether=2 Part/CompareTo
   cli/image_methods.cpp
   cli/inspect.cpp
   cli/interpolated_areas.cpp
+  cli/mean_bands.cpp
   cli/interrupt.cpp
   cli/lights.cpp
   cli/options.cpp

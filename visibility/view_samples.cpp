@@ -158,12 +158,12 @@ void for_each_pixel(const ViewSamples& samples, const Body& body) {
 }  // namespace
 
 double PinholeCamera::across(std::uint32_t x) const {
-  const double aspect = static_cast<double>(width) / height;
+  const double aspect = static_cast<double>(width) / picture_height();
   return (2 * (x + 0.5) / width - 1) * aspect;
 }
 
 double PinholeCamera::upward(std::uint32_t y) const {
-  return 1 - 2 * (y + 0.5) / height;
+  return 1 - 2 * (first_row + y + 0.5) / picture_height();
 }
 
 glm::dvec3 PinholeCamera::direction(std::uint32_t x, std::uint32_t y) const {
@@ -174,13 +174,13 @@ ViewRay PinholeCamera::ray(std::uint32_t x, std::uint32_t y) const {
   const ViewRay sharp = half_height ? ViewRay{eye + (across(x) * right + upward(y) * up) * *half_height, forward}
                                     : ViewRay{eye, direction(x, y)};
   if (!lens) return sharp;
-  const glm::dvec2 at = lens->point(x, y);
+  const glm::dvec2 at = lens->point(x, first_row + y);
   const glm::dvec3 aside = at.x * right + at.y * up;
   return {sharp.start + aside, sharp.direction - aside / lens->focus_distance};
 }
 
 glm::dvec3 PinholeCamera::screen_across() const {
-  return (right - glm::dot(right, middle) * forward) / (tan_half_fov * width / height);
+  return (right - glm::dot(right, middle) * forward) / (tan_half_fov * width / picture_height());
 }
 
 glm::dvec3 PinholeCamera::screen_upward() const {

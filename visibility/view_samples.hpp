@@ -25,13 +25,18 @@ struct ViewRay {
 /// itself unless the lens is shifted: t is the distance along the view axis. Orthographic: (eye + ((2(x + ½)/W − 1) ·
 /// aspect · right + (1 − 2(y + ½)/H) · up) · half_height) + t · forward; there a shift has moved the eye. Through a
 /// lens the ray begins at the lens's point for that pixel, and meets the one without a lens at the focus distance; t is
-/// the distance along the view axis all the same.
+/// the distance along the view axis all the same. A camera may have some rows of its picture only: y then counts from
+/// `first_row`, H is the whole picture's height, and each ray is the same to the bit.
 struct PinholeCamera {
   glm::dvec3 eye{0}, right{1, 0, 0}, up{0, 1, 0}, forward{0, 0, -1}, middle{0, 0, -1};
   double tan_half_fov = 1;
   std::optional<double> half_height = {};  ///< of an orthographic camera, in place of the field of view
   std::uint32_t width = 0, height = 0;
-  std::optional<Lens> lens = {};  ///< nullopt: a pinhole
+  std::uint32_t first_row = 0, rows_of_picture = 0;  ///< rows_of_picture 0: `height`, the whole picture
+  std::optional<Lens> lens = {};                     ///< nullopt: a pinhole
+
+  /// Returns H, the height of the whole picture.
+  [[nodiscard]] std::uint32_t picture_height() const { return rows_of_picture != 0 ? rows_of_picture : height; }
 
   /// Return the factors of `right` and `up` in a ray, without that of the field of view.
   [[nodiscard]] double across(std::uint32_t x) const;
@@ -40,8 +45,8 @@ struct PinholeCamera {
   [[nodiscard]] glm::dvec3 direction(std::uint32_t x, std::uint32_t y) const;
   [[nodiscard]] ViewRay ray(std::uint32_t x, std::uint32_t y) const;
 
-  /// Return a vector whose dot product with a direction is the direction's place across (or up) the picture, from −1 to
-  /// 1, times its depth. For a perspective camera.
+  /// Return a vector whose dot product with a direction is the direction's place across (or up) the whole picture, from
+  /// −1 to 1, times its depth. For a perspective camera.
   [[nodiscard]] glm::dvec3 screen_across() const;
   [[nodiscard]] glm::dvec3 screen_upward() const;
 

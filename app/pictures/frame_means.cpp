@@ -10,12 +10,45 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <map>
 #include <optional>
 #include <utility>
 
 namespace penumbra::app {
+namespace {
+
+constexpr std::uint32_t kFewestRows = 16;  ///< pixel rows of a band: its neighbours' rows are evaluated, too
+
+/// Pixel rows on either side of a band whose interpolated answers may differ from those of the whole picture
+/// (InterpolatedAreas): a view sample's cell has corners up to one row away, and a corner's curvature takes one more.
+constexpr std::uint32_t kRowsInterpolated = 3;
+
+}  // namespace
+
+std::vector<FrameRenderer::MeanBand> FrameRenderer::mean_bands() const {
+  const std::uint32_t side = picture_.frame.pixel_side, width = session().width, height = session().height;
+  const std::vector<LightMethod> chosen = choose_light_methods(session().lights, session().floats, wish_);
+  const bool are_areas = std::ranges::all_of(chosen, [](const auto& one) { return one.description.gives_area(); });
+  const bool has_instances = picture_.frame.instances != nullptr && !picture_.frame.instances->empty();
+  std::uint32_t count = 1;
+  if (are_areas && !has_instances && session().floats.alphas.empty()) {
+    const std::uint64_t samples = std::uint64_t{width} * side * side * height, most = picture_.frame.band_samples;
+    count = static_cast<std::uint32_t>(
+        std::clamp<std::uint64_t>((samples + most - 1) / most, 1, std::max(height / kFewestRows, 1U)));
+  }
+  const std::uint32_t more =
+      count == 1 ? 0 : static_cast<std::uint32_t>(std::ceil(picture_.frame.filter.reach())) + kRowsInterpolated;
+  std::vector<MeanBand> bands;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const auto first = static_cast<std::uint32_t>(std::uint64_t{height} * i / count),
+               end = static_cast<std::uint32_t>(std::uint64_t{height} * (i + 1) / count);
+    const std::uint32_t from = first - std::min(first, more), to = std::min(end + more, height);
+    bands.push_back({{first, end - first}, {from * side, (to - from) * side}});
+  }
+  return bands;
+}
 
 bool FrameRenderer::has_lens(const scenes::Scene& scene) {
   const std::string& wanted = picture_.frame.camera;
@@ -48,13 +81,12 @@ void FrameRenderer::render_mean(scenes::Scene scene, bool by_lens) {
     fine_->options = std::move(options);
     fine_->maker.look_through_lens(std::nullopt);
   }
+  const std::vector<MeanBand> bands = is_fine ? mean_bands() : std::vector<MeanBand>(1);
+  picture_.in_bands = bands.size() > 1;
   std::map<std::string, LightTimes> times;
   const auto moments = static_cast<std::uint32_t>(std::max<std::size_t>(picture_.frame.moments.size(), 1));
   std::uint32_t moment_number = 0;
-  const auto add = [&](scenes::Scene moment) {
-    if (by_lens)
-      fine_->maker.look_through_lens(visibility::Lens{.side = side, .moment = moment_number++, .moments = moments});
-    show(is_fine ? fine_->maker : maker_, std::move(moment));
+  const auto add_band = [&](const MeanBand& band) {
     if (!is_fine && StillMoments::are_worth(lit().samples.size(), lit().lights.size())) {
       if (!picture_.still) picture_.still.emplace();
       picture_.still->begin(lit().floats);
@@ -64,8 +96,10 @@ void FrameRenderer::render_mean(scenes::Scene scene, bool by_lens) {
     MethodRun before = std::exchange(picture_.run, {});
     run_methods({});
     const Stopwatch watch;
+    const PictureBand rows = is_fine ? PictureBand{band.pixels, band.samples.first_row}
+                                     : PictureBand{{0, session().height}, 0};
     if (!picture_.mean) {
-      const std::uint32_t width = lit().width / side, height = lit().height / side;
+      const std::uint32_t width = session().width, height = session().height;
       picture_.mean.emplace(width, height, picture_.frame.filter);
       picture_.mattes =
           Mattes{MatteShares(width, height, picture_.frame.filter), MatteShares(width, height, picture_.frame.filter)};
@@ -76,10 +110,10 @@ void FrameRenderer::render_mean(scenes::Scene scene, bool by_lens) {
       tbb::parallel_for(std::size_t{0}, shown.size(), [&](std::size_t i) { shown[i] = (surfaces.*number)(i); });
       return shown;
     };
-    picture_.mattes->objects.add(surfaces.objects(), numbers(&Surfaces::object), side);
-    picture_.mattes->materials.add(surfaces.materials(), numbers(&Surfaces::material), side);
+    picture_.mattes->objects.add(surfaces.objects(), numbers(&Surfaces::object), side, rows);
+    picture_.mattes->materials.add(surfaces.materials(), numbers(&Surfaces::material), side, rows);
     const std::vector<std::string> names = whole_names(lit().lights);
-    picture_.mean->add(picture_.alpha, names, picture_.run.visibility, picture_.beauty, side);
+    picture_.mean->add(picture_.alpha, names, picture_.run.visibility, picture_.beauty, side, rows);
     spent_.beauty += watch.seconds();
     for (std::size_t light = 0; light < names.size(); ++light) {
       times[names[light]].light += picture_.run.times.lights[light].light;
@@ -87,6 +121,21 @@ void FrameRenderer::render_mean(scenes::Scene scene, bool by_lens) {
     }
     before.times.lights.clear();  // the lights of the other moment may differ
     add_times(picture_.run, before);
+  };
+  const auto add = [&](scenes::Scene moment) {
+    if (by_lens)
+      fine_->maker.look_through_lens(visibility::Lens{.side = side, .moment = moment_number++, .moments = moments});
+    if (is_fine) fine_->maker.look_at_rows(bands.size() > 1 ? std::optional(bands.front().samples) : std::nullopt);
+    show(is_fine ? fine_->maker : maker_, std::move(moment));
+    done_.lights_something.clear();
+    add_band(bands.front());
+    for (std::size_t i = 1; i < bands.size(); ++i) {
+      fine_->maker.look_at_rows(bands[i].samples);
+      fine_->maker.show_again(without_meshes(lit().scene), picture_.frame.camera, progress_);
+      note_seconds(fine_->maker);
+      add_band(bands[i]);
+    }
+    if (picture_.in_bands) say_idle_lights();
   };
   if (picture_.frame.moments.empty()) add(scene);
   for (const auto& moment : picture_.frame.moments) {
@@ -96,6 +145,7 @@ void FrameRenderer::render_mean(scenes::Scene scene, bool by_lens) {
     add(std::move(then));
   }
   picture_.still.reset();
+  picture_.in_bands = false;
   if (!is_fine) {
     show(maker_, std::move(scene));
     spent_.view += session().filtering_seconds();

@@ -43,6 +43,8 @@ struct Frame {
   /// The scene is without_meshes(), with the meshes of the last picture; only for one moment and pixels' centres.
   bool same_meshes = false;
   bool keeps_masks = false;  ///< fill RenderedFrame::masks; only for a picture of one moment and pixels' centres
+  /// View samples of a pixel are evaluated in bands of about so many (FrameRenderer::mean_bands).
+  std::uint64_t band_samples = std::uint64_t{1} << 21;
   /// Largest number of rows that methods evaluate at once (RunPlan::band_rows).
   std::uint32_t band_rows = std::numeric_limits<std::uint32_t>::max();
 };
@@ -135,6 +137,13 @@ class FrameRenderer {
   /// Throws UsageError for requested layers that the current picture will not have.
   void check_wanted_layers() const;
   void render_mean(scenes::Scene scene, bool by_lens);
+  /// Rows of the picture whose means are computed together, and the rows of view samples that these take.
+  struct MeanBand {
+    visibility::Tile pixels, samples;
+  };
+  /// Divides a picture with several view samples a pixel into bands, so that memory holds the view samples of one at a
+  /// time; one band if a method of its lights may look at the whole picture. The means are the same bits.
+  [[nodiscard]] std::vector<MeanBand> mean_bands() const;
   /// Returns whether the picture's camera has a lens and the picture several view samples a pixel to look through it.
   /// Warns if they are too few.
   bool has_lens(const scenes::Scene& scene);

@@ -31,10 +31,8 @@ MatteShares::MatteShares(std::uint32_t width, std::uint32_t height, const PixelF
   for (Row& row : rows_) row.ends.resize(width, 0);
 }
 
-void MatteShares::add(std::span<const std::string> names, std::span<const std::uint32_t> of_sample,
-                      std::uint32_t side) {
-  PENUMBRA_ASSERT(of_sample.size() == pixel_count() * side * side, "{} view samples for {} pixels of {} squared",
-                  of_sample.size(), pixel_count(), side);
+void MatteShares::add(std::span<const std::string> names, std::span<const std::uint32_t> of_sample, std::uint32_t side,
+                      const PictureBand& band) {
   std::vector<std::uint32_t> known;
   for (const std::string& name : names) {
     const auto [number, is_new] = numbers_.try_emplace(name, static_cast<std::uint32_t>(names_.size()));
@@ -46,7 +44,15 @@ void MatteShares::add(std::span<const std::string> names, std::span<const std::u
   for (const std::uint32_t name : of_sample) numbered.push_back(name == Surfaces::kNothing ? name : known[name]);
   const std::vector<FilterTaps> across = filter_taps(filter_, width_, side),
                                 down = filter_taps(filter_, rows_.size(), side);
-  tbb::parallel_for(std::size_t{0}, rows_.size(), [&](std::size_t y) { add_row(y, numbered, side, down[y], across); });
+  const auto first = std::size_t{band.rows.first_row};
+  tbb::parallel_for(first, first + band.rows.row_count, [&](std::size_t y) {
+    FilterTaps taps = down[y];
+    PENUMBRA_ASSERT(taps.first >= band.first_sample_row &&
+                        (taps.first - band.first_sample_row + taps.shares.size()) * width_ * side <= numbered.size(),
+                    "row {} from {} view samples from row {} on", y, numbered.size(), band.first_sample_row);
+    taps.first -= band.first_sample_row;
+    add_row(y, numbered, side, taps, across);
+  });
 }
 
 void MatteShares::add_row(std::size_t y, std::span<const std::uint32_t> of_sample, std::uint32_t side,

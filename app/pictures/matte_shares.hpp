@@ -1,5 +1,6 @@
 #pragma once
 
+#include "app/pictures/picture_mean.hpp"
 #include "app/pictures/pixel_filter.hpp"
 
 #include <cstddef>
@@ -20,9 +21,10 @@ class MatteShares {
   };
 
   MatteShares(std::uint32_t width, std::uint32_t height, const PixelFilter& filter);
-  /// Adds a picture of `side` times the width and height: for each view sample an index into `names`, or
-  /// Surfaces::kNothing. Equal names are one.
-  void add(std::span<const std::string> names, std::span<const std::uint32_t> of_sample, std::uint32_t side);
+  /// Adds rows of a picture of `side` times the width and height, as PictureMean::add does: for each view sample an
+  /// index into `names`, or Surfaces::kNothing. Equal names are one.
+  void add(std::span<const std::string> names, std::span<const std::uint32_t> of_sample, std::uint32_t side,
+           const PictureBand& band);
 
   [[nodiscard]] std::span<const std::string> names() const& { return names_; }
   std::span<const std::string> names() const&& = delete;
@@ -36,6 +38,7 @@ class MatteShares {
     std::vector<std::uint32_t> ends;
     std::vector<Share> shares;
   };
+  /// `down`: taps whose `first` counts from the first given row of view samples.
   void add_row(std::size_t y, std::span<const std::uint32_t> of_sample, std::uint32_t side, const FilterTaps& down,
                std::span<const FilterTaps> across);
 

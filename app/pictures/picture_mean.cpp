@@ -28,19 +28,25 @@ std::size_t PictureMean::number_of(const std::string& light) {
 
 void PictureMean::add(std::span<const float> alpha, const std::vector<std::string>& lights,
                       std::span<const std::vector<float>> visibility, std::span<const std::vector<glm::vec3>> beauty,
-                      std::uint32_t side) {
-  const std::size_t width = std::size_t{width_} * side;
-  PENUMBRA_ASSERT(alpha.size() == width * height_ * side && visibility.size() == lights.size(),
-                  "{} view samples of {} lights for {}x{} blocks of {} of {}", alpha.size(), visibility.size(), width_,
-                  height_, side, lights.size());
+                      std::uint32_t side, const PictureBand& band) {
+  const std::size_t width = std::size_t{width_} * side, rows = alpha.size() / width;
+  PENUMBRA_ASSERT(alpha.size() == width * rows && visibility.size() == lights.size(),
+                  "{} view samples of {} lights for rows of {} blocks of {} of {}", alpha.size(), visibility.size(),
+                  width_, side, lights.size());
   std::vector<std::size_t> numbers;
   for (const std::string& light : lights) numbers.push_back(number_of(light));
   const std::vector<FilterTaps> across = filter_taps(filter_, width_, side), down = filter_taps(filter_, height_, side);
-  tbb::parallel_for(std::size_t{0}, std::size_t{height_}, [&](std::size_t y) {
+  const auto first_row = std::size_t{band.rows.first_row}, end_row = first_row + band.rows.row_count;
+  const FilterTaps &first_taps = down.at(first_row), &last_taps = down.at(end_row - 1);
+  PENUMBRA_ASSERT(first_taps.first >= band.first_sample_row &&
+                      last_taps.first + last_taps.shares.size() <= band.first_sample_row + rows,
+                  "rows {} to {} from {} rows of view samples from {} on", first_row, end_row, rows,
+                  band.first_sample_row);
+  tbb::parallel_for(first_row, end_row, [&](std::size_t y) {
     for (std::size_t x = 0; x < width_; ++x) {
       const std::size_t pixel = y * width_ + x;
       for (std::size_t row = 0; row < down[y].shares.size(); ++row) {
-        const std::size_t first = (down[y].first + row) * width + across[x].first;
+        const std::size_t first = (down[y].first + row - band.first_sample_row) * width + across[x].first;
         for (std::size_t column = 0; column < across[x].shares.size(); ++column) {
           const double share = down[y].shares[row] * across[x].shares[column];
           const std::size_t from = first + column;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "app/pictures/pixel_filter.hpp"
+#include "visibility/method.hpp"
 
 #include <glm/vec3.hpp>
 
@@ -12,16 +13,23 @@
 
 namespace penumbra::app {
 
+/// Rows of a picture, and where the rows of view samples begin that are given for them.
+struct PictureBand {
+  visibility::Tile rows;               ///< of pixels
+  std::uint32_t first_sample_row = 0;  ///< of the whole picture's view samples
+};
+
 /// Mean of several pictures, or of larger ones whose view samples are weighted by a filter.
 class PictureMean {
  public:
   /// Size in pixels.
   PictureMean(std::uint32_t width, std::uint32_t height, const PixelFilter& filter = {});
-  /// Adds a picture of `side` times the width and height, with the same `side` for all. Lights are identified by name,
-  /// not position; a missing light counts as 0.
+  /// Adds rows of a picture of `side` times the width and height, with the same `side` for all: `band.rows`, from all
+  /// view samples within the filter's reach of them, and perhaps more. Lights are identified by name, not position; a
+  /// missing light counts as 0.
   void add(std::span<const float> alpha, const std::vector<std::string>& lights,
            std::span<const std::vector<float>> visibility, std::span<const std::vector<glm::vec3>> beauty,
-           std::uint32_t side);
+           std::uint32_t side, const PictureBand& band);
 
   /// Returns all added lights, in the order of their first addition.
   [[nodiscard]] const std::vector<std::string>& lights() const { return lights_; }

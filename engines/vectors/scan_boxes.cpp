@@ -191,11 +191,11 @@ HWY_EXPORT(find_boxes_here);
 
 Screen::Screen(const visibility::PinholeCamera& camera)
     : size(camera.width, camera.height),
-      scale(size.y / 2 / camera.tan_half_fov),
+      scale(camera.picture_height() / 2.0 / camera.tan_half_fov),
       middle(0.5 * size.x - glm::dot(camera.middle, camera.right) * scale,
-             0.5 * size.y + glm::dot(camera.middle, camera.up) * scale),
+             0.5 * camera.picture_height() - camera.first_row + glm::dot(camera.middle, camera.up) * scale),
       longest_ray(size1(camera.middle) +
-                  (size.x / size.y * size1(camera.right) + size1(camera.up)) * camera.tan_half_fov) {}
+                  (size.x / camera.picture_height() * size1(camera.right) + size1(camera.up)) * camera.tan_half_fov) {}
 
 BoxCamera::BoxCamera(const visibility::SceneFloats& scene, const visibility::PinholeCamera& camera,
                      const Screen& screen) {

@@ -28,7 +28,7 @@ struct PixelBoxes {
   std::array<float, kRoom> nearest;
 };
 
-/// Mapping of directions to pixels of a camera's picture.
+/// Mapping of directions to pixels of a camera's rows.
 struct Screen {
   explicit Screen(const visibility::PinholeCamera& camera);
 

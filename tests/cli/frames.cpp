@@ -243,8 +243,8 @@ TEST(PictureMean, KnowsLightsByTheirNames) {
   app::PictureMean mean(1, 1);
   using Values = std::vector<std::vector<float>>;
   using Colors = std::vector<std::vector<glm::vec3>>;
-  mean.add(alpha, {"A", "B"}, Values{{1}, {0.5f}}, Colors{{glm::vec3(4)}, {glm::vec3(2)}}, 1);
-  mean.add(alpha, {"B", "C"}, Values{{0.25f}, {1}}, Colors{{glm::vec3(1)}, {glm::vec3(8)}}, 1);
+  mean.add(alpha, {"A", "B"}, Values{{1}, {0.5f}}, Colors{{glm::vec3(4)}, {glm::vec3(2)}}, 1, {{0, 1}, 0});
+  mean.add(alpha, {"B", "C"}, Values{{0.25f}, {1}}, Colors{{glm::vec3(1)}, {glm::vec3(8)}}, 1, {{0, 1}, 0});
   EXPECT_THAT(mean.lights(), ElementsAre("A", "B", "C"));
   const std::vector<std::string> asked = {"C", "B", "A", "D"};
   EXPECT_EQ(mean.visibility(asked), (Values{{0.5f}, {0.375f}, {0.5f}, {0}}));

@@ -155,8 +155,8 @@ TEST_F(FilteredPictures, MattesAreShares) {
 TEST(MatteShares, KnowNamesOfAllPictures) {
   const std::uint32_t nothing = app::Surfaces::kNothing;
   app::MatteShares shares(1, 1, {});
-  shares.add(std::vector<std::string>{"a", "b", "a"}, std::vector<std::uint32_t>{0, 1, 2, 1}, 2);
-  shares.add(std::vector<std::string>{"b", "c"}, std::vector<std::uint32_t>{0, 0, 1, nothing}, 2);
+  shares.add(std::vector<std::string>{"a", "b", "a"}, std::vector<std::uint32_t>{0, 1, 2, 1}, 2, {{0, 1}, 0});
+  shares.add(std::vector<std::string>{"b", "c"}, std::vector<std::uint32_t>{0, 0, 1, nothing}, 2, {{0, 1}, 0});
   EXPECT_THAT(shares.names(), testing::ElementsAre("a", "b", "c"));
   const auto here = shares.of_pixel(0);
   ASSERT_EQ(here.size(), 3u);

@@ -46,8 +46,8 @@ class ViewRays::Walk {
       if (!(std::abs(inverse_[axis]) < kSteep)) inverse_[axis] = std::copysign(kSteep, inverse_[axis]);
     }
     const PinholeCamera& camera = rays.camera_;
-    pixel_ = kPixels * 2 * (camera.half_height ? 0 : camera.tan_half_fov) / camera.height;
-    everywhere_ = kPixels * 2 * camera.half_height.value_or(0) / camera.height;
+    pixel_ = kPixels * 2 * (camera.half_height ? 0 : camera.tan_half_fov) / camera.picture_height();
+    everywhere_ = kPixels * 2 * camera.half_height.value_or(0) / camera.picture_height();
   }
 
   void run() {

@@ -1,0 +1,113 @@
+// Pictures of several view samples a pixel that are evaluated in bands of rows: the same bits as evaluated at once.
+#include "app/machine.hpp"
+#include "app/options.hpp"
+#include "app/pictures/frame_render.hpp"
+#include "app/process/progress.hpp"
+#include "app/session.hpp"
+#include "engines/vectors/scan_conversion.hpp"
+#include "visibility/view_samples.hpp"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace penumbra::tests {
+namespace {
+
+class Silence final : public app::Progress {
+ public:
+  using Progress::advance;
+  void begin(std::string /*stage*/, std::uint64_t /*steps*/) override {}
+  void advance(std::uint64_t /*steps*/) override {}
+  void clear() override {}
+  void say(Level /*level*/, const std::string& /*message*/) override {}
+};
+
+app::RunOptions options_of(const std::string& scene) {
+  app::RunOptions run;
+  run.scene = std::string(PENUMBRA_SCENES) + "/" + scene;
+  run.size = "40x70";
+  return run;
+}
+
+app::RenderedFrame rendered(const app::RunOptions& run, app::Frame frame, std::uint64_t band_samples) {
+  const render::Machine machine = app::make_machine("");
+  const app::MethodWish wish;
+  Silence silence;
+  app::FrameRenderer renderer(run, wish, machine, silence);
+  frame.band_samples = band_samples;
+  renderer.render(app::read_session_scene(run, std::nullopt), frame, {}, 0);
+  return renderer.take();
+}
+
+void expect_same_in_bands(const app::RunOptions& run, const app::Frame& frame) {
+  const app::RenderedFrame whole = rendered(run, frame, std::numeric_limits<std::uint64_t>::max());
+  // 40 times 16 view samples in a row of pixels, 20 rows of these: four bands of 17 or 18 rows.
+  const app::RenderedFrame bands = rendered(run, frame, 40 * 16 * 20);
+  EXPECT_EQ(bands.alpha, whole.alpha);
+  EXPECT_EQ(bands.visibility, whole.visibility);
+  EXPECT_EQ(bands.beauty, whole.beauty);
+  EXPECT_EQ(bands.sum, whole.sum);
+  ASSERT_FALSE(whole.visibility.empty());
+  const auto between = std::ranges::count_if(whole.visibility.front(), [](float v) { return v > 0 && v < 1; });
+  EXPECT_GT(between, 100);
+}
+
+TEST(MeanBands, AreTheWholePicture) {
+  for (const double tolerance : {app::kPixelTolerance, 0.0}) {
+    for (const app::PixelFilter& filter :
+         {app::PixelFilter{}, app::PixelFilter{app::PixelFilter::Kind::blackman_harris, 1.5}}) {
+      app::Frame frame;
+      frame.pixel_side = 4;
+      frame.filter = filter;
+      frame.pixel_tolerance = tolerance;
+      expect_same_in_bands(options_of("room.json"), frame);
+    }
+  }
+}
+
+TEST(MeanBands, AreTheWholePictureOfMoments) {
+  const app::RunOptions run = options_of("contact.json");
+  app::Frame frame;
+  frame.pixel_side = 4;
+  for (int i = 0; i < 2; ++i) {
+    frame.moments.emplace_back([run, i] {
+      scenes::Scene scene = app::read_session_scene(run, std::nullopt);
+      for (scenes::Camera& camera : scene.cameras) camera.eye.x += 0.01 * i;
+      return scene;
+    });
+  }
+  expect_same_in_bands(run, frame);
+}
+
+/// Some rows of a camera's picture have the view samples that the whole picture has there.
+TEST(MeanBands, RowsOfACameraAreThoseOfItsPicture) {
+  const scenes::Scene scene = app::read_session_scene(options_of("bunny.json"), std::nullopt);
+  const visibility::SceneFloats floats = visibility::make_scene_floats(scene);
+  const auto whole_camera = visibility::make_camera(scene.cameras.front(), floats.origin, 90, 67);
+  const visibility::ViewSamples whole = vectors::scan_view_samples(floats, whole_camera);
+  for (const auto& [first, rows] : {std::pair{0u, 20u}, {20u, 31u}, {51u, 16u}}) {
+    visibility::PinholeCamera camera = whole_camera;
+    camera.first_row = first;
+    camera.rows_of_picture = whole_camera.height;
+    camera.height = rows;
+    const visibility::ViewSamples some = vectors::scan_view_samples(floats, camera);
+    ASSERT_EQ(some.size(), std::size_t{90} * rows);
+    const auto same = [&](const auto& values, const auto& all) {
+      return std::equal(values.begin(), values.end(), all.begin() + std::ptrdiff_t{90} * first);
+    };
+    EXPECT_TRUE(same(some.triangle, whole.triangle));
+    EXPECT_TRUE(same(some.p, whole.p));
+    EXPECT_TRUE(same(some.n, whole.n));
+    EXPECT_TRUE(same(some.depth, whole.depth));
+    EXPECT_TRUE(same(some.facing, whole.facing));
+  }
+}
+
+}  // namespace
+}  // namespace penumbra::tests
