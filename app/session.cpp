@@ -73,9 +73,8 @@ bool same_mesh(const scenes::Scene& a, const scenes::Scene& b) {
       a.objects, [](const scenes::Object& object) { return object.alpha.mode != scenes::Alpha::Mode::opaque; });
   if (filters && (a.looks.places != b.looks.places || a.looks.colors != b.looks.colors || a.pictures != b.pictures))
     return false;
-  return same_casters(a, b) && mesh::equal_on_all_cores(a.soup.positions, b.soup.positions) &&
-         mesh::equal_on_all_cores(a.soup.triangles, b.soup.triangles) &&
-         mesh::equal_on_all_cores(a.soup.object, b.soup.object);
+  return same_casters(a, b) && equal_on_all_cores(a.soup.positions, b.soup.positions) &&
+         equal_on_all_cores(a.soup.triangles, b.soup.triangles) && equal_on_all_cores(a.soup.object, b.soup.object);
 }
 
 /// Returns, for each light, the objects left out of its own scene (Light::unshaded_by).

@@ -7,7 +7,7 @@
 #include <atomic>
 #include <cstddef>
 
-namespace penumbra::mesh {
+namespace penumbra {
 
 /// Calls body(i) for each i below `count`, on all cores, in no order.
 template <typename Body>
@@ -31,4 +31,4 @@ bool equal_on_all_cores(const List& a, const List& b) {
   return equal;
 }
 
-}  // namespace penumbra::mesh
+}  // namespace penumbra

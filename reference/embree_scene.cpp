@@ -82,8 +82,8 @@ EmbreeScene::EmbreeScene(const visibility::SceneFloats& scene, std::vector<std::
       parts.throw_out_of_memory();
     }
     parts.positions.back() = glm::vec3(0);
-    mesh::for_each_index(vertices, [&](std::size_t i) { parts.positions[i] = parts.range.scaled(scene.positions[i]); });
-    mesh::for_each_index(count, [&](std::size_t i) { parts.corners[i] = scene.triangles[parts.triangles[i]]; });
+    for_each_index(vertices, [&](std::size_t i) { parts.positions[i] = parts.range.scaled(scene.positions[i]); });
+    for_each_index(count, [&](std::size_t i) { parts.corners[i] = scene.triangles[parts.triangles[i]]; });
     Parts::count_memory(&parts, static_cast<ssize_t>(vertices * sizeof(glm::vec3) + count * sizeof(mesh::Triangle)),
                         false);
     RTCGeometry geometry = rtcNewGeometry(parts.device, RTC_GEOMETRY_TYPE_TRIANGLE);

@@ -221,7 +221,7 @@ std::vector<std::uint32_t> plane_ids(const SceneFloats& scene) {
   const std::vector<std::uint32_t> first = first_of_same(
       count, [&](std::size_t i) { return keys[i]; }, [&](std::size_t i, std::size_t j) { return keys[i] == keys[j]; });
   tbb::concurrent_vector<std::uint32_t> collided, keyless;
-  mesh::for_each_index(count, [&](std::size_t i) {
+  for_each_index(count, [&](std::size_t i) {
     const auto triangle = static_cast<std::uint32_t>(i);
     plane[i] = SceneFloats::kNoPlane;
     if (keys[i] == kFlat) return;

@@ -172,7 +172,7 @@ SceneFloats make_scene_floats(const scenes::Scene& scene) {
   const std::size_t count = scene.soup.triangles.size();
   resize_on_all_cores(floats.triangles, count);
   resize_on_all_cores(floats.object, count);
-  mesh::for_each_index(count, [&](std::size_t i) {
+  for_each_index(count, [&](std::size_t i) {
     floats.triangles[i] = sorted(scene.soup.triangles[i], floats.positions);
     floats.object[i] = scene.soup.object[i];
   });
@@ -182,7 +182,7 @@ SceneFloats make_scene_floats(const scenes::Scene& scene) {
   floats.casts_shadow.resize(count);
   floats.receives_shadow.resize(count);
   floats.emits.resize(count);
-  mesh::for_each_index(count, [&](std::size_t i) {
+  for_each_index(count, [&](std::size_t i) {
     const scenes::Object& object = scene.objects.at(floats.object[i]);
     floats.casts_shadow[i] =
         object.casts_shadow && floats.plane[i] != SceneFloats::kNoPlane && object.alpha.mode == kOpaque;

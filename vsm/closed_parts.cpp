@@ -159,7 +159,7 @@ std::uint32_t parts_apart_from(const ClosedParts& closed, const visibility::Ligh
 std::vector<std::uint8_t> find_dispensable(const ClosedParts& closed, const SceneFloats& scene,
                                            const visibility::DeviceLight& frame, float scale) {
   std::vector<std::uint8_t> dispensable(scene.triangles.size());
-  mesh::for_each_index(closed.part.size(), [&](std::size_t t) {
+  for_each_index(closed.part.size(), [&](std::size_t t) {
     if (closed.part[t] == 0) return;
     const int side = side_shown(scene.corners(static_cast<std::uint32_t>(t)), frame, scale);
     if (closed.turn[t] * side > 0) dispensable[t] = closed.part[t];

@@ -31,7 +31,7 @@ void arrange(const MaskLayout& layout, const visibility::Light& light, std::span
   PENUMBRA_ASSERT(masks.size() == counts.size() * words && of_kernels.size() == counts.size() * own,
                   "{} words of {} for {} pixels", masks.size(), of_kernels.size(), counts.size());
   const std::uint32_t all = light.sample_count(), last = all % 32 == 0 ? ~0U : (1U << (all % 32)) - 1;
-  mesh::for_each_index(counts.size(), [&](std::size_t pixel) {
+  for_each_index(counts.size(), [&](std::size_t pixel) {
     const auto mask = masks.subspan(pixel * words, words);
     if (counts[pixel] != 0 && counts[pixel] != all) {
       arrange_pixel(layout, of_kernels.subspan(pixel * own, own), mask);

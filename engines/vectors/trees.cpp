@@ -47,7 +47,7 @@ WideTriangleTree wide_triangle_tree(const visibility::SceneFloats& scene, const 
                                     WideTriangleTree wide) {
   if (wide.nodes.empty()) wide.nodes.resize(tree.nodes.size());
   PENUMBRA_ASSERT(wide.nodes.size() == tree.nodes.size(), "{} nodes of {}", wide.nodes.size(), tree.nodes.size());
-  mesh::for_each_index(wide.nodes.size(), [&](std::size_t node) {
+  for_each_index(wide.nodes.size(), [&](std::size_t node) {
     WideNode& at = wide.nodes[node] = {};
     for (std::size_t lane = 0; lane < kWide; ++lane)
       store(at, lane, visibility::child_texels(tree.nodes[node][lane], scale));

@@ -69,7 +69,7 @@ class WideLeaves {
   template <typename Wanted>
   void make_again(const Wanted& wanted, const Make& make) {
     PENUMBRA_ASSERT(blocks_.empty(), "{} leaves are made when somebody asks", count_);
-    mesh::for_each_index(own_.size(), [&](std::size_t number) {
+    for_each_index(own_.size(), [&](std::size_t number) {
       if (wanted(number)) make(number, own_[number] = {});
     });
   }

@@ -75,7 +75,7 @@ void ScreenMethod::evaluate(const visibility::Tile& tile) {
   if (!whole_.empty() && tile.first_row > 0) return;
   const double radius = radius_ * diagonal_;
   std::vector<float> values(picture_.size(), 1.0F);
-  mesh::for_each_index(values.size(), [&](std::size_t i) {
+  for_each_index(values.size(), [&](std::size_t i) {
     if (!picture_.shows_surface(i)) return;
     const auto x = static_cast<std::uint32_t>(i % picture_.width()),
                y = static_cast<std::uint32_t>(i / picture_.width());
@@ -84,7 +84,7 @@ void ScreenMethod::evaluate(const visibility::Tile& tile) {
   });
   whole_ = values;
   if (!dithers_) return;
-  mesh::for_each_index(values.size(), [&](std::size_t i) {
+  for_each_index(values.size(), [&](std::size_t i) {
     if (picture_.shows_surface(i)) whole_[i] = blurred(values, i);
   });
 }

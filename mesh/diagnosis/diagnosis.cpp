@@ -5,7 +5,7 @@
 #include "mesh/diagnosis/defect_list.hpp"
 #include "mesh/diagnosis/mesh_topology.hpp"
 #include "mesh/diagnosis/precision.hpp"
-#include "base/progress.hpp"
+#include "mesh/diagnosis/progress.hpp"
 #include "mesh/diagnosis/self_intersections.hpp"
 #include "mesh/diagnosis/t_junctions.hpp"
 #include "mesh/diagnosis/winding.hpp"

@@ -2,7 +2,7 @@
 
 #include "mesh/diagnosis/diagnosis.hpp"
 #include "mesh/edge_graph.hpp"
-#include "base/progress.hpp"
+#include "mesh/diagnosis/progress.hpp"
 
 namespace penumbra::mesh {
 

@@ -30,7 +30,7 @@ TEST(KnownNormals, OfNeedlesNoneIsKnown) {
   const KnownNormals normals(floats);
   std::atomic<std::uint32_t> wrong = 0;
   for (int turn = 0; turn < 2; ++turn) {  // found, and found again, on all cores
-    mesh::for_each_index(2 * std::size_t{kCount}, [&](std::size_t i) {
+    for_each_index(2 * std::size_t{kCount}, [&](std::size_t i) {
       const auto triangle = static_cast<std::uint32_t>(i % kCount);
       if (normals.is_known(triangle) != (triangle % 3 != 0)) ++wrong;
     });

@@ -48,7 +48,7 @@ TEST(WideLeaves, AreTheSameForAllThreadsThatAsk) {
     leaves.make(kMany, [&](std::size_t number, Leaf& leaf) { leaf.value += value_of(number); });
     std::vector<std::atomic<const Leaf*>> seen(kMany);
     // All threads are in the same few blocks at any time.
-    mesh::for_each_index(4 * kMany, [&](std::size_t i) {
+    for_each_index(4 * kMany, [&](std::size_t i) {
       const std::size_t number = i / 4;
       leaves.fetch((number + 40) % kMany);
       const Leaf& leaf = leaves[number];

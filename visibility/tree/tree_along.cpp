@@ -147,7 +147,7 @@ class Along {
         most = triangle < TriangleTree::kNoTriangle ? std::max(most, triangle) : most;
     }
     std::vector<std::uint32_t> leaf_of(std::size_t{most} + 1, TriangleTree::kNoTriangle);
-    mesh::for_each_index(guide.leaves.size(), [&](std::size_t leaf) {
+    for_each_index(guide.leaves.size(), [&](std::size_t leaf) {
       for (const std::uint32_t triangle : guide.leaves[leaf]) {
         if (triangle <= most) leaf_of[triangle] = static_cast<std::uint32_t>(leaf);
       }

@@ -54,7 +54,7 @@ double tree_cost(const TriangleTree& tree) {
 void refit_tree(TriangleTree& tree, const std::function<Bounds(std::uint32_t)>& box,
                 const std::function<bool(std::size_t leaf)>& has_moved) {
   std::vector<std::optional<Bounds>> of_leaf(tree.leaves.size());
-  mesh::for_each_index(tree.leaves.size(), [&](std::size_t leaf) {
+  for_each_index(tree.leaves.size(), [&](std::size_t leaf) {
     if (!has_moved(leaf)) return;
     Bounds& its = of_leaf[leaf].emplace(nowhere());
     for (const std::uint32_t number : tree.leaves[leaf]) {
@@ -88,7 +88,7 @@ void refit_tree(TriangleTree& tree, const std::function<Bounds(std::uint32_t)>& 
 
 bool holds_casters(const TriangleTree& tree, const SceneFloats& scene) {
   std::atomic<std::size_t> held = 0, wrong = 0;
-  mesh::for_each_index(tree.leaves.size(), [&](std::size_t leaf) {
+  for_each_index(tree.leaves.size(), [&](std::size_t leaf) {
     std::size_t here = 0;
     for (const std::uint32_t triangle : tree.leaves[leaf]) {
       if (triangle == TriangleTree::kNoTriangle) continue;

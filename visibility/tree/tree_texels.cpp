@@ -54,7 +54,7 @@ std::array<Texel, 2> child_texels(const TriangleTree::Child& child, float scale)
 
 std::vector<Texel> node_texels(const TriangleTree& tree, float scale) {
   std::vector<Texel> texels(tree.nodes.size() * 2 * TriangleTree::kWidth);
-  mesh::for_each_index(tree.nodes.size() * TriangleTree::kWidth, [&](std::size_t i) {
+  for_each_index(tree.nodes.size() * TriangleTree::kWidth, [&](std::size_t i) {
     const auto two = child_texels(tree.nodes[i / TriangleTree::kWidth][i % TriangleTree::kWidth], scale);
     std::ranges::copy(two, texels.begin() + static_cast<std::ptrdiff_t>(2 * i));
   });

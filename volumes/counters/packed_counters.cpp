@@ -228,7 +228,7 @@ std::vector<gpu::WedgeReceiver> PackedCounters::classify() {
   above_.assign(kinds.size(), 0);
   open_.assign(kinds.size(), 0);
   masks_.assign(kinds.size(), all_samples());
-  mesh::for_each_index(kinds.size(), [&](std::size_t i) {
+  for_each_index(kinds.size(), [&](std::size_t i) {
     if (kinds[i] == Kind::lit) return;
     masks_[i] = 0;
     const glm::vec3& p = samples_->p[first + i];
@@ -281,7 +281,7 @@ void PackedCounters::evaluate(const Tile& tile) {
   count_.count(tile);
   const std::vector<gpu::WedgeReceiver> receivers = classify();
   raster_->add(*faces_, receivers, wedge_push(*light_), tile, samples_->width);
-  mesh::for_each_index(receivers.size(), [&](std::size_t i) {
+  for_each_index(receivers.size(), [&](std::size_t i) {
     if (receivers[i].counted != 0) resolve(i);
   });
   std::uint64_t overflows = 0, at_horizon = 0, open = 0;

@@ -39,16 +39,16 @@ std::vector<std::uint32_t> largest_in_planes(const SceneFloats& scene, std::span
   constexpr std::uint32_t kNone = 0xffffffffu;
   std::vector<std::uint32_t> largest;
   resize_on_all_cores(largest, scene.triangles.size());
-  mesh::for_each_index(largest.size(), [&](std::size_t plane) { largest[plane] = kNone; });
+  for_each_index(largest.size(), [&](std::size_t plane) { largest[plane] = kNone; });
   // A plane has the index of a triangle in it, usually the only one, or else the first.
-  mesh::for_each_index(triangles.size(), [&](std::size_t i) {
+  for_each_index(triangles.size(), [&](std::size_t i) {
     if (scene.plane[triangles[i]] == triangles[i]) largest[triangles[i]] = triangles[i];
   });
   std::vector<std::uint32_t> others;
   std::ranges::copy_if(triangles, std::back_inserter(others),
                        [&](std::uint32_t triangle) { return scene.plane[triangle] != triangle; });
   std::vector<double> sizes(others.size());
-  mesh::for_each_index(others.size(), [&](std::size_t i) { sizes[i] = size_of(others[i]); });
+  for_each_index(others.size(), [&](std::size_t i) { sizes[i] = size_of(others[i]); });
   std::uint32_t known = kNone;  // the plane whose largest triangle has `size`
   double size = 0;
   for (std::size_t i = 0; i < others.size(); ++i) {
@@ -58,7 +58,7 @@ std::vector<std::uint32_t> largest_in_planes(const SceneFloats& scene, std::span
     largest[plane] = others[i];
     size = sizes[i];
   }
-  mesh::for_each_index(largest.size(), [&](std::size_t plane) {
+  for_each_index(largest.size(), [&](std::size_t plane) {
     if (largest[plane] == kNone) largest[plane] = 0;
   });
   return largest;
@@ -105,7 +105,7 @@ EdgeRecords::EdgeRecords(const SceneFloats& scene, const EdgeCasters& casters, F
   std::vector<mesh::Triangle> chosen;
   if (count < scene.triangles.size()) {
     chosen.resize(count);
-    mesh::for_each_index(count, [&](std::size_t i) { chosen[i] = scene.triangles[casters.triangle[i]]; });
+    for_each_index(count, [&](std::size_t i) { chosen[i] = scene.triangles[casters.triangle[i]]; });
   }
   find_pairs(count < scene.triangles.size() ? chosen : scene.triangles, flat);
   if (flat == Flat::kept) keep_places();
@@ -117,7 +117,7 @@ void EdgeRecords::keep_places() {
   kept_.largest.resize(planes_.size());
   kept_.corners.resize(planes_.size());
   kept_.moved.assign(planes_.size(), 1);
-  mesh::for_each_index(planes_.size(), [&](std::size_t i) {
+  for_each_index(planes_.size(), [&](std::size_t i) {
     kept_.largest[i] = casters_->largest_in_plane[planes_[i].plane];
     kept_.corners[i] = scene_->triangles[casters_->triangle[i]];
   });
@@ -128,18 +128,18 @@ void EdgeRecords::keep_places() {
 bool EdgeRecords::find_moved() {
   const SceneFloats& scene = *scene_;
   std::vector<std::uint8_t> other(scene.positions.size());
-  mesh::for_each_index(other.size(), [&](std::size_t i) {
+  for_each_index(other.size(), [&](std::size_t i) {
     other[i] = kept_.places[i] != scene.positions[i] ? 1 : 0;
     kept_.places[i] = scene.positions[i];
   });
   std::vector<std::uint8_t> itself(scene.triangles.size());
-  mesh::for_each_index(planes_.size(), [&](std::size_t i) {
+  for_each_index(planes_.size(), [&](std::size_t i) {
     const auto& corners = scene.triangles[casters_->triangle[i]];
     const bool same = kept_.corners[i] == corners && (other[corners[0]] | other[corners[1]] | other[corners[2]]) == 0;
     itself[casters_->triangle[i]] = same ? 0 : 1;
     kept_.corners[i] = corners;
   });
-  mesh::for_each_index(planes_.size(), [&](std::size_t i) {
+  for_each_index(planes_.size(), [&](std::size_t i) {
     const std::uint32_t triangle = casters_->triangle[i], plane = scene.plane[triangle];
     const std::uint32_t largest = casters_->largest_in_plane[plane];
     const bool same =
@@ -153,7 +153,7 @@ bool EdgeRecords::find_moved() {
 }
 
 void EdgeRecords::find_planes() {
-  mesh::for_each_index(planes_.size(), [&](std::size_t i) {
+  for_each_index(planes_.size(), [&](std::size_t i) {
     if (kept_.moved.empty() || kept_.moved[i] != 0) planes_[i] = plane_of(*scene_, *casters_, casters_->triangle[i]);
   });
 }
@@ -193,13 +193,12 @@ void EdgeRecords::find_pairs(std::span<const mesh::Triangle> triangles, Flat fla
   std::vector<std::uint32_t> first(vertex.size() + 1, 0);
   const auto append = [&](bool wanted_flat) {
     std::ranges::fill(first, 0U);
-    mesh::for_each_index(vertex.size(), [&](std::size_t from) {
-      for_each_pair(from, wanted_flat, [&](const Pair&) { ++first[from]; });
-    });
+    for_each_index(vertex.size(),
+                   [&](std::size_t from) { for_each_pair(from, wanted_flat, [&](const Pair&) { ++first[from]; }); });
     auto pairs = static_cast<std::uint32_t>(pairs_.size());
     for (std::uint32_t& number : first) pairs += std::exchange(number, pairs);
     pairs_.resize(pairs);
-    mesh::for_each_index(vertex.size(), [&](std::size_t from) {
+    for_each_index(vertex.size(), [&](std::size_t from) {
       std::uint32_t next = first[from];
       for_each_pair(from, wanted_flat, [&](const Pair& pair) { pairs_[next++] = pair; });
     });
@@ -238,7 +237,7 @@ EdgeRecords::Followed EdgeRecords::follow(const SceneFloats& scene, const EdgeCa
   casters_ = &casters;
   const bool same_vertices = find_moved();
   std::atomic<bool> same = true;
-  mesh::for_each_index(pairs_.size(), [&](std::size_t i) {
+  for_each_index(pairs_.size(), [&](std::size_t i) {
     if (same_vertices && !has_moved(i)) return;
     if (!follow(pairs_[i], kept_.vertex)) same.store(false, std::memory_order_relaxed);
   });
@@ -278,7 +277,7 @@ visibility::Bounds EdgeRecords::box(std::size_t record) const {
 std::vector<EdgeRecord> edge_records(const SceneFloats& scene, const EdgeCasters& casters) {
   const EdgeRecords records(scene, casters);
   std::vector<EdgeRecord> all(records.size());
-  mesh::for_each_index(all.size(), [&](std::size_t i) { all[i] = records[i]; });
+  for_each_index(all.size(), [&](std::size_t i) { all[i] = records[i]; });
   return all;
 }
 

@@ -26,7 +26,7 @@ class Cones {
     if (kept != nullptr) of_leaf_ = std::move(kept->cones);
     const bool known = !of_leaf_.empty();
     of_leaf_.resize(tree.leaves.size());
-    mesh::for_each_index(of_leaf_.size(), [&](std::size_t i) {
+    for_each_index(of_leaf_.size(), [&](std::size_t i) {
       if (!known || kept->has_moved(i)) of_leaf_[i] = cone_of(normals_of(i));
     });
     if (!tree.nodes.empty()) static_cast<void>(of_node(0, 0));
@@ -69,7 +69,7 @@ EdgeTexels texels_of(const TriangleTree& tree, const Records& records, float sca
   texels.depth = tree.depth;
   texels.records = static_cast<std::uint32_t>(records.size());
   for (auto& list : texels.slots) list.resize(tree.leaves.size() * TriangleTree::kWidth);
-  mesh::for_each_index(tree.leaves.size() * TriangleTree::kWidth, [&](std::size_t i) {
+  for_each_index(tree.leaves.size() * TriangleTree::kWidth, [&](std::size_t i) {
     const std::uint32_t number = tree.leaves[i / TriangleTree::kWidth][i % TriangleTree::kWidth];
     const bool used = number != TriangleTree::kNoTriangle;
     const EdgeRecord record = used ? records[number] : EdgeRecord{};
@@ -110,7 +110,7 @@ TriangleTree edge_tree(const EdgeRecords& records, const TriangleTree& triangles
 
 TriangleTree edge_tree(std::span<const EdgeRecord> records) {
   std::vector<visibility::Bounds> boxes(records.size());
-  mesh::for_each_index(boxes.size(), [&](std::size_t i) {
+  for_each_index(boxes.size(), [&](std::size_t i) {
     boxes[i] = {glm::min(records[i].a, records[i].b), glm::max(records[i].a, records[i].b)};
   });
   return visibility::make_tree_over(boxes);
@@ -120,7 +120,7 @@ void for_each_edge_node(const TriangleTree& tree, float scale,
                         const std::function<LeafNormals(std::size_t)>& normals_of,
                         const std::function<void(std::size_t, std::span<const EdgeChild>)>& take, LeafCones* kept) {
   Cones cones(tree, normals_of, kept);
-  mesh::for_each_index(tree.nodes.size(), [&](std::size_t node) {
+  for_each_index(tree.nodes.size(), [&](std::size_t node) {
     std::array<EdgeChild, TriangleTree::kWidth> children;
     for (std::size_t child = 0; child < children.size(); ++child) {
       const auto [middle, half] = visibility::child_texels(tree.nodes[node][child], scale);

@@ -151,7 +151,7 @@ LightVolumes ShadowCasters::seen_from(const glm::vec3& l, const visibility::Ligh
     if ((side & counted[i]) == 0) facings[i] = mesh::Side::on;
   }
   std::vector<std::int32_t> multiplicities(graph_.edges.size());
-  mesh::for_each_index(multiplicities.size(), [&](std::size_t edge) {
+  for_each_index(multiplicities.size(), [&](std::size_t edge) {
     multiplicities[edge] = mesh::signed_multiplicity(graph_, static_cast<std::uint32_t>(edge), facings);
   });
   std::vector<mesh::SilhouetteEdge> edges;

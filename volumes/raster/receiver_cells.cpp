@@ -81,7 +81,7 @@ ReceiverCells::ReceiverCells(const visibility::SceneFloats& scene, const visibil
   std::vector<Keyed> keyed(samples.size());
   const double size = std::max(1e-30, glm::length(glm::dvec3(scene.upper) - glm::dvec3(scene.lower)));
   constexpr std::uint64_t kNone = std::numeric_limits<std::uint64_t>::max();
-  mesh::for_each_index(keyed.size(), [&](std::size_t pixel) {
+  for_each_index(keyed.size(), [&](std::size_t pixel) {
     keyed[pixel] = {kNone, pixel};
     if (!visibility::is_receiver(scene, light, samples, pixel)) return;
     const auto carrier = static_cast<std::uint32_t>(samples.triangle[pixel]);

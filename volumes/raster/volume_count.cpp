@@ -183,7 +183,7 @@ void VolumeCount::State::classify(const Tile& tile) {
   kinds.assign(pixels, Kind::lit);
   doubts.assign(pixels, 0);
   const BoxFinder boxes(samples->camera);
-  mesh::for_each_index(pixels, [&](std::size_t i) {
+  for_each_index(pixels, [&](std::size_t i) {
     const std::size_t pixel = first + i;
     if (!visibility::is_receiver(*scene, *light, *samples, pixel)) return;
     const auto carrier = static_cast<std::uint32_t>(samples->triangle[pixel]);

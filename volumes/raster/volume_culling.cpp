@@ -167,7 +167,7 @@ std::vector<Caster> casters_in(const LightVolumes& volumes, const std::vector<st
   for (const VolumeCap& cap : volumes.caps) casters[components[cap.caster]].caps.push_back(&cap);
   for (const VolumeEdge& edge : volumes.edges) casters[components[edge.caster]].edges.push_back(&edge);
   std::erase_if(casters, [](const Caster& caster) { return caster.caps.empty(); });
-  mesh::for_each_index(casters.size(), [&](std::size_t i) {
+  for_each_index(casters.size(), [&](std::size_t i) {
     Caster& caster = casters[i];
     glm::dvec3 lower(kUnbounded), upper(-kUnbounded);
     for (const VolumeCap* cap : caster.caps) {
@@ -244,7 +244,7 @@ LeanVolumes culled_and_clamped(const SceneFloats& scene, const ShadowCasters& ca
     std::vector<gpu::VolumePart> parts;
   };
   std::vector<Lean> lean(groups.size());
-  mesh::for_each_index(groups.size(), [&](std::size_t i) {
+  for_each_index(groups.size(), [&](std::size_t i) {
     const Caster& caster = groups[i];
     const bool can_be_cut = caster.nearest > 0;
     Stretches stretches;
@@ -331,7 +331,7 @@ LeanVolumes culled_by_hierarchy(const SceneFloats& scene, const ShadowCasters& c
       }
     }
   }
-  mesh::for_each_index(leaves.size(), [&](std::size_t i) {
+  for_each_index(leaves.size(), [&](std::size_t i) {
     for (const std::uint32_t triangle : tree.leaves[leaves[i]]) {
       if (triangle == TriangleTree::kNoTriangle) continue;
       const VolumeCap cap{scene.corners(triangle), scene.plane[triangle], 0, 0};

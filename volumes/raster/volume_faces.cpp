@@ -64,7 +64,7 @@ class Finder {
 template <typename Item, typename Make>
 void Finder::add_faces(FaceKind kind, const std::vector<Item>& items, const Make& make) {
   std::vector<gpu::VolumeFace> faces(items.size());
-  mesh::for_each_index(items.size(), [&](std::size_t i) {
+  for_each_index(items.size(), [&](std::size_t i) {
     gpu::VolumeFace& face = faces[i];
     const auto [corners, size] = make(items[i], face);
     if (face.weight == 0) return;

@@ -43,7 +43,7 @@ std::vector<Wedge> merged(const std::vector<VolumeEdge>& edges, const std::vecto
   std::vector<std::size_t> place(edges.size() + 1);  // for each edge, its first wedge
   for (const Wedge& wedge : hosts) ++place[missing[wedge.source] + 1];
   for (std::size_t i = 0; i < edges.size(); ++i) place[i + 1] += place[i] + built[i].proved;
-  mesh::for_each_index(edges.size(), [&](std::size_t i) {
+  for_each_index(edges.size(), [&](std::size_t i) {
     if (built[i].proved != 0) wedges[place[i]] = wedge_of(built[i], edges[i], i);
   });
   for (std::size_t j = 0; j < hosts.size();) {

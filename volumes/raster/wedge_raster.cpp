@@ -48,7 +48,7 @@ std::vector<gpu::WedgeFace> faces_of(const LightWedges& wedges, const ViewSample
   std::vector<std::size_t> first(wedges.edges.size() + 1, wedges.wedges.size());
   for (std::size_t i = wedges.wedges.size(); i-- > 0;) first[wedges.wedges[i].source] = i;
   std::vector<gpu::WedgeFace> faces(wedges.edges.size());
-  mesh::for_each_index(faces.size(), [&](std::size_t i) {
+  for_each_index(faces.size(), [&](std::size_t i) {
     const std::span<const Wedge> pieces = std::span(wedges.wedges).subspan(first[i], first[i + 1] - first[i]);
     const std::optional<Footprint> footprint = finder.around(pieces);
     if (!footprint) return;

@@ -44,7 +44,7 @@ std::vector<double> coverage_table(const LightOutline& outline, const TextureWei
   std::vector<Point> points;
   for (int i = 0; i < static_cast<int>(kPoints); ++i) points.push_back(disk ? disk_point(i) : square_point(i));
   std::vector<double> table(kPoints * kPoints);
-  mesh::for_each_index(table.size(), [&](std::size_t i) {
+  for_each_index(table.size(), [&](std::size_t i) {
     const Point &from = points[i / kPoints], &to = points[i % kPoints];
     if (texture != nullptr) {
       table[i] = texture->up_to_fan(to.fan) - texture->up_to_fan(from.fan) - texture->left_of(from.at, to.at);

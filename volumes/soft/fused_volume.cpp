@@ -156,14 +156,14 @@ void FusedVolume::fuse() {
       Part& part = parts[k];
       if (!(part.weight > 0)) continue;
       const std::vector<float> visible = visible_with(parts_[k]);
-      mesh::for_each_index(visible.size(), [&](std::size_t i) {
+      for_each_index(visible.size(), [&](std::size_t i) {
         const double whole = part.whole[i];
         part.share[i].add(whole - static_cast<double>(visible[i]), whole);
       });
     }
   }
   visibility_.resize(samples_->size());
-  mesh::for_each_index(visibility_.size(), [&](std::size_t i) {
+  for_each_index(visibility_.size(), [&](std::size_t i) {
     double sum = 0;
     for (const Part& part : parts) {
       if (part.weight > 0) sum += part.weight * part.share[i].visible(options_.rule, part.whole[i]);

@@ -93,7 +93,7 @@ void Plateaus::prepare_light(const Light& light) {
   }
   wedges_ = {edges, build_wedges(asked, hull_of(penumbra_), Construction::original)};
   std::vector<double> table(1 + 3 * scene_->triangles.size(), penumbra_.radius);
-  mesh::for_each_index(scene_->triangles.size(), [&](std::size_t i) {
+  for_each_index(scene_->triangles.size(), [&](std::size_t i) {
     const glm::dvec3 n = normal_of(static_cast<std::uint32_t>(i));
     for (int k = 0; k < 3; ++k) table[1 + 3 * i + static_cast<std::size_t>(k)] = n[k];
   });
@@ -119,7 +119,7 @@ void Plateaus::evaluate(const Tile& tile) {
   const std::size_t first = std::size_t{tile.first_row} * samples_->width;
   std::vector<gpu::WedgeReceiver> receivers(kinds.size());
   std::vector<std::uint8_t> away(kinds.size());
-  mesh::for_each_index(kinds.size(), [&](std::size_t i) {
+  for_each_index(kinds.size(), [&](std::size_t i) {
     if (kinds[i] != Kind::counted || count_.counts()[i] != 0) return;
     const glm::vec3& p = samples_->p[first + i];
     away[i] = appears_in_place(samples_->camera, p, first + i) ? 0 : 1;

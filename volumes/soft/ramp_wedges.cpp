@@ -131,7 +131,7 @@ class Builder {
 LightWedges ramp_wedges_of(const LightVolumes& volumes, const visibility::Light& light) {
   const Builder builder(volumes, light);
   LightWedges result{volumes.edges, std::vector<Wedge>(volumes.edges.size())};
-  mesh::for_each_index(result.wedges.size(), [&](std::size_t i) { result.wedges[i] = builder.build(i); });
+  for_each_index(result.wedges.size(), [&](std::size_t i) { result.wedges[i] = builder.build(i); });
   return result;
 }
 

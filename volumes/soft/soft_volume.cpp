@@ -281,7 +281,7 @@ void SoftVolume::add(CountedPart& part) {
   const std::size_t first = std::size_t{tile_.first_row} * samples_->width;
   std::vector<gpu::WedgeReceiver> receivers(kinds.size());
   std::vector<std::uint8_t> away(kinds.size());
-  mesh::for_each_index(kinds.size(), [&](std::size_t i) {
+  for_each_index(kinds.size(), [&](std::size_t i) {
     if (kinds[i] != Kind::counted) return;
     const glm::vec3& p = samples_->p[first + i];
     away[i] = appears_in_place(samples_->camera, p, first + i) ? 0 : 1;
@@ -301,7 +301,7 @@ void SoftVolume::add(CountedPart& part) {
   const std::vector<std::int64_t> voted = part.voters.empty() ? std::vector<std::int64_t>() : layers_by_vote(part);
   const std::size_t words = 1 + part.voters.size();
   for (const std::size_t i : doubtful) away[i] = 1;
-  mesh::for_each_index(kinds.size(), [&](std::size_t i) {
+  for_each_index(kinds.size(), [&](std::size_t i) {
     if (kinds[i] == Kind::lit) sums_[i] += part.weight;
     if (kinds[i] != Kind::counted || away[i] != 0) return;
     const auto layers = static_cast<double>(voted.empty() ? part.count.counts()[i] : voted[i]);

@@ -208,7 +208,7 @@ void SoftVolumeBlend::evaluate(const Tile& tile) {
   on_host_.assign(pixels, 0);
   visibility_.assign(pixels, 1.0F);
   for (const auto& occluder : occluders_) add(*occluder, tile);
-  mesh::for_each_index(pixels, [&](std::size_t i) {
+  for_each_index(pixels, [&](std::size_t i) {
     double sum = 0;
     for (const Cover& cover : covers_[i]) sum += cover.share;
     visibility_[i] *= static_cast<float>(1 - sum / 4);
@@ -226,7 +226,7 @@ void SoftVolumeBlend::add(Occluder& occluder, const Tile& tile) {
   const std::span<const Kind> kinds = occluder.count.kinds();
   const std::size_t first = std::size_t{tile.first_row} * samples_->width;
   std::vector<gpu::WedgeReceiver> receivers(kinds.size());
-  mesh::for_each_index(kinds.size(), [&](std::size_t i) {
+  for_each_index(kinds.size(), [&](std::size_t i) {
     if (kinds[i] == Kind::dark) visibility_[i] = 0;
     if (kinds[i] != Kind::counted) return;
     const glm::vec3& p = samples_->p[first + i];
@@ -234,7 +234,7 @@ void SoftVolumeBlend::add(Occluder& occluder, const Tile& tile) {
     receivers[i] = {p, on_host_[i] == 0 ? 1u : 0u};
   });
   raster_.add(*occluder.faces, receivers, wedge_push(*light_), tile, samples_->width);
-  mesh::for_each_index(kinds.size(), [&](std::size_t i) {
+  for_each_index(kinds.size(), [&](std::size_t i) {
     if (kinds[i] != Kind::counted) return;
     if (raster_.doubts()[i] != 0) on_host_[i] = 1;
     const auto words = raster_.sums().subspan(i * gpu::kBlendWords, gpu::kBlendWords);
@@ -253,7 +253,7 @@ void SoftVolumeBlend::add_doubtful(const Tile& tile) {
   const Casters casters = casters_of(*scene_, *light_);
   const SoftVisibility soft(*scene_, *light_, casters);
   const std::size_t first = std::size_t{tile.first_row} * samples_->width;
-  mesh::for_each_index(on_host_.size(), [&](std::size_t i) {
+  for_each_index(on_host_.size(), [&](std::size_t i) {
     if (on_host_[i] == 0) return;
     const LitPoint point{samples_->p[first + i], static_cast<std::uint32_t>(samples_->triangle[first + i]),
                          samples_->facing[first + i]};

@@ -76,7 +76,7 @@ void WedgeRamp::evaluate(const Tile& tile) {
   const std::size_t first = std::size_t{tile.first_row} * samples_->width;
   std::vector<gpu::WedgeReceiver> receivers(kinds.size());
   std::vector<std::uint8_t> on_host(kinds.size());
-  mesh::for_each_index(kinds.size(), [&](std::size_t i) {
+  for_each_index(kinds.size(), [&](std::size_t i) {
     if (kinds[i] != Kind::counted) return;
     const glm::vec3& p = samples_->p[first + i];
     on_host[i] = appears_in_place(samples_->camera, p, first + i) ? 0 : 1;
@@ -84,7 +84,7 @@ void WedgeRamp::evaluate(const Tile& tile) {
   });
   raster_.add(*faces_, receivers, wedge_push(*light_), tile, samples_->width);
   visibility_.resize(kinds.size());
-  mesh::for_each_index(kinds.size(), [&](std::size_t i) {
+  for_each_index(kinds.size(), [&](std::size_t i) {
     visibility_[i] = kinds[i] == Kind::lit ? 1.0F : 0.0F;
     if (kinds[i] != Kind::counted) return;
     if (raster_.doubts()[i] != 0) on_host[i] = 1;

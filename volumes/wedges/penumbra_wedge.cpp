@@ -222,7 +222,7 @@ const char* name_of(WedgeOutcome outcome) {
 std::vector<Wedge> build_wedges(std::span<const WedgeEdge> edges, const LightHull& light, Construction construction) {
   const Builder builder(light, construction);
   std::vector<std::vector<Wedge>> of_edge(edges.size());
-  mesh::for_each_index(edges.size(), [&](std::size_t i) { of_edge[i] = builder.build(edges[i]); });
+  for_each_index(edges.size(), [&](std::size_t i) { of_edge[i] = builder.build(edges[i]); });
   std::vector<Wedge> wedges;
   for (std::size_t i = 0; i < of_edge.size(); ++i) {
     const auto first = static_cast<std::uint32_t>(wedges.size());

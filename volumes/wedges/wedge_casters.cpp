@@ -152,7 +152,7 @@ CastingEdges casting_edges(const Casters& casters, const LightHull& light, Silho
     }
   }
   casting.wedges.resize(casting.edges.size());
-  mesh::for_each_index(casting.edges.size(), [&](std::size_t i) {
+  for_each_index(casting.edges.size(), [&](std::size_t i) {
     const mesh::Edge& edge = casters.graph.edges[casting.edges[i]];
     WedgeEdge& wedge = casting.wedges[i];
     wedge.a = casters.positions[edge.a];

@@ -120,7 +120,7 @@ Ratios ratios_of(const Wedge& wedge, const LightHull& light, std::span<const glm
 
 Tightness tightness_of(std::span<const Wedge> wedges, const LightHull& light, std::span<const glm::dvec3> shape) {
   std::vector<Ratios> ratios(wedges.size());
-  mesh::for_each_index(wedges.size(), [&](std::size_t i) { ratios[i] = ratios_of(wedges[i], light, shape); });
+  for_each_index(wedges.size(), [&](std::size_t i) { ratios[i] = ratios_of(wedges[i], light, shape); });
   Tightness tightness;
   for (std::size_t i = 0; i < wedges.size(); ++i) {
     if (wedges[i].outcome != WedgeOutcome::wedge) continue;

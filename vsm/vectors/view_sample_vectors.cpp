@@ -43,7 +43,7 @@ class VectorViewSample final : public vectors::MaskMethod {
     MaskMethod::prepare_mesh(scene);
     closed_ = find_closed_parts(scene);
     if (closed_.parts.empty()) return;
-    mesh::for_each_index(tree().leaves.size(), [&](std::size_t number) {
+    for_each_index(tree().leaves.size(), [&](std::size_t number) {
       const visibility::TriangleTree::Leaf& leaf = tree().leaves[number];
       for (std::size_t lane = 0; lane < kWide; ++lane) {
         if (leaf[lane] == visibility::TriangleTree::kNoTriangle || closed_.part[leaf[lane]] == 0) continue;

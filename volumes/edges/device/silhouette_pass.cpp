@@ -180,7 +180,7 @@ void SilhouettePass::State::find_facings(const glm::vec3& l) {
 void SilhouettePass::State::settle(const glm::vec3& l) {
   std::vector<gpu::OpenFacing> list(open_facings);
   open->read(std::span(list), kListHead);
-  mesh::for_each_index(list.size(), [&](std::size_t i) {
+  for_each_index(list.size(), [&](std::size_t i) {
     const auto [a, b, c] = mesh.triangles[list[i].triangle];
     list[i].side = bits_of(mesh::side_of_plane(mesh.positions[a], mesh.positions[b], mesh.positions[c], l));
   });

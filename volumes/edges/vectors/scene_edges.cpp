@@ -76,7 +76,7 @@ void SceneEdges::find_bodies(const SceneMesh& mesh) {
   }
   const vectors::WideLeaves<vectors::WideEdges>& leaves = edges_.tree().leaves;
   // makes all leaves, on all cores
-  mesh::for_each_index(leaves.size(), [&](std::size_t i) { static_cast<void>(leaves[i]); });
+  for_each_index(leaves.size(), [&](std::size_t i) { static_cast<void>(leaves[i]); });
   for (std::uint32_t leaf = 0; leaf < leaves.size(); ++leaf) {
     for (std::uint32_t used = leaves[leaf].used; used != 0; used &= used - 1) {
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(used));
