@@ -16,7 +16,7 @@
 #include <set>
 #include <utility>
 
-namespace penumbra::mesh {
+namespace penumbra::import {
 namespace {
 
 /// Returns a name in the form in which packages compare names: lower case, percent escapes decoded, forward slashes,
@@ -76,7 +76,7 @@ class PackageReader {
   PackageReader(const ZipArchive& archive, const std::string& file)
       : archive_(archive), entries_(archive), file_(file) {}
 
-  ImportedMesh read() {
+  mesh::ImportedMesh read() {
     const std::string start = find_start(archive_, entries_, file_);
     want(start);
     while (!wanted_.empty()) {
@@ -98,7 +98,7 @@ class PackageReader {
       throw InputError("{}: {}: its <build> lists no <item>, so that none of its {} objects is made; list them", file_,
                        start, parts_.size());
     }
-    ImportedMesh mesh = assemble(parts_, roots_, file_);
+    mesh::ImportedMesh mesh = assemble(parts_, roots_, file_);
     mesh.notes.insert(mesh.notes.end(), notes_.begin(), notes_.end());
     if (lattices_ > 0) mesh.notes.push_back(fmt::format("{} beam lattices skipped", lattices_));
     return mesh;
@@ -199,10 +199,10 @@ class PackageReader {
 
 }  // namespace
 
-ImportedMesh read_3mf(std::string_view content, const std::string& file) {
+mesh::ImportedMesh read_3mf(std::string_view content, const std::string& file) {
   if (!ZipArchive::is_one(content)) throw InputError("{}: it is no zip archive, as 3MF packages are", file);
   const ZipArchive archive(content, file);
   return PackageReader(archive, file).read();
 }
 
-}  // namespace penumbra::mesh
+}  // namespace penumbra::import

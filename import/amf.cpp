@@ -13,14 +13,14 @@
 #include <limits>
 #include <map>
 
-namespace penumbra::mesh {
+namespace penumbra::import {
 namespace {
 
 class AmfReader {
  public:
   explicit AmfReader(const XmlText& xml) : xml_(xml) {}
 
-  ImportedMesh read() {
+  mesh::ImportedMesh read() {
     const pugi::xml_node amf = xml_.document().document_element();
     if (local_name(amf) != "amf") xml_.fail(amf, "the outermost element is <{}>; expected <amf>", amf.name());
     const auto objects = children_named(amf, "object"), constellations = children_named(amf, "constellation");
@@ -39,7 +39,7 @@ class AmfReader {
       if (!placed[i]) roots.push_back({i, glm::dmat4(1)});
     }
     if (roots.empty() && !parts_.empty()) roots.push_back({0, glm::dmat4(1)});  // every part is a child of another
-    ImportedMesh mesh = assemble(parts_, roots, xml_.file());
+    mesh::ImportedMesh mesh = assemble(parts_, roots, xml_.file());
     note_print_unit(amf, mesh.notes);
     if (curved_ > 0)
       mesh.notes.push_back(fmt::format("{} normals and curved edges ignored: triangles are flat", curved_));
@@ -65,7 +65,7 @@ class AmfReader {
       const std::size_t count = part.positions.size() - first;
       for (const pugi::xml_node& volume : children_named(mesh, "volume")) {
         for (const pugi::xml_node& triangle : children_named(volume, "triangle")) {
-          Triangle corners{};
+          mesh::Triangle corners{};
           constexpr std::array<const char*, 3> kNames{"v1", "v2", "v3"};
           for (std::size_t i = 0; i < 3; ++i) {
             const pugi::xml_node corner = triangle.child(kNames[i]);
@@ -127,7 +127,7 @@ class AmfReader {
 
 }  // namespace
 
-ImportedMesh read_amf(std::string_view content, const std::string& file) {
+mesh::ImportedMesh read_amf(std::string_view content, const std::string& file) {
   if (!ZipArchive::is_one(content)) return AmfReader(XmlText(content, file)).read();
   ZipArchive archive(content, file);
   for (const std::string& name : archive.names()) {
@@ -138,4 +138,4 @@ ImportedMesh read_amf(std::string_view content, const std::string& file) {
   throw InputError("{}: a zip archive without an .amf file in it", file);
 }
 
-}  // namespace penumbra::mesh
+}  // namespace penumbra::import

@@ -11,7 +11,7 @@
 #include <cmath>
 #include <limits>
 
-namespace penumbra::mesh {
+namespace penumbra::import {
 namespace {
 
 class Assembly {
@@ -19,7 +19,7 @@ class Assembly {
   Assembly(std::span<const AssemblyPart> parts, const std::string& file)
       : parts_(parts), file_(file), faces_(mesh_.soup), filled_(parts.size(), false), placed_(parts.size(), false) {}
 
-  ImportedMesh run(std::span<const PlacedPart> roots, const std::string& instead) {
+  mesh::ImportedMesh run(std::span<const PlacedPart> roots, const std::string& instead) {
     settle_order();
     if (std::ranges::find(filled_, true) == filled_.end()) refuse_nothing(instead);
     std::vector<PlacedPart> stack(roots.rbegin(), roots.rend());
@@ -115,7 +115,7 @@ class Assembly {
     }
     const bool mirrored = glm::determinant(glm::dmat3(placement)) < 0;
     mirrored_ += mirrored ? 1 : 0;
-    for (const Triangle& triangle : part.triangles) {
+    for (const mesh::Triangle& triangle : part.triangles) {
       std::array<std::uint32_t, 3> corners{};
       for (std::size_t i = 0; i < 3; ++i) corners[i] = static_cast<std::uint32_t>(first) + triangle[i];
       if (mirrored) std::swap(corners[1], corners[2]);
@@ -133,7 +133,7 @@ class Assembly {
 
   std::span<const AssemblyPart> parts_;
   const std::string& file_;
-  ImportedMesh mesh_;
+  mesh::ImportedMesh mesh_;
   FaceCollector faces_;
   struct Wild {
     std::uint32_t vertex = 0;          ///< of the mesh
@@ -147,9 +147,9 @@ class Assembly {
 
 }  // namespace
 
-ImportedMesh assemble(std::span<const AssemblyPart> parts, std::span<const PlacedPart> roots, const std::string& file,
-                      const std::string& instead) {
+mesh::ImportedMesh assemble(std::span<const AssemblyPart> parts, std::span<const PlacedPart> roots,
+                            const std::string& file, const std::string& instead) {
   return Assembly(parts, file).run(roots, instead);
 }
 
-}  // namespace penumbra::mesh
+}  // namespace penumbra::import

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace penumbra::mesh {
+namespace penumbra::import {
 
 /// A part placed by another part or by the file itself.
 struct PlacedPart {
@@ -23,7 +23,7 @@ struct PlacedPart {
 struct AssemblyPart {
   std::string name;  ///< name in messages: "object 3"
   std::vector<glm::dvec3> positions;
-  std::vector<Triangle> triangles;  ///< into `positions`, in range
+  std::vector<mesh::Triangle> triangles;  ///< into `positions`, in range
   std::vector<PlacedPart> children;
   std::vector<std::uint32_t> corners = {};  ///< corners of faces with any number of corners, one face after the other,
                                             ///< as `triangles`
@@ -34,7 +34,7 @@ struct AssemblyPart {
 /// are never placed are counted in a note, and so are mirrored ones, whose windings are reversed. Throws InputError if
 /// a part contains itself, if a position that a face uses is not finite after placing, or if there are no triangles;
 /// `instead` then describes the file's other content.
-ImportedMesh assemble(std::span<const AssemblyPart> parts, std::span<const PlacedPart> roots, const std::string& file,
-                      const std::string& instead = "");
+mesh::ImportedMesh assemble(std::span<const AssemblyPart> parts, std::span<const PlacedPart> roots,
+                            const std::string& file, const std::string& instead = "");
 
-}  // namespace penumbra::mesh
+}  // namespace penumbra::import

@@ -21,7 +21,7 @@
 #include <utility>
 #include <vector>
 
-namespace penumbra::mesh {
+namespace penumbra::import {
 namespace {
 
 glm::dmat4 to_glm(const aiMatrix4x4& m) {  // Assimp's letters are rows, glm's constructor takes columns
@@ -39,7 +39,7 @@ class SceneReader {
         parts_of_scene_(options.parts),
         faces_(mesh_.soup) {}
 
-  ImportedMesh read() {
+  mesh::ImportedMesh read() {
     struct Visit {
       const aiNode* node;
       glm::dmat4 to_world;
@@ -156,7 +156,7 @@ class SceneReader {
         normal = std::isfinite(length) && length > 0 ? normal / length : glm::dvec3(0);
       }
       parts_of_scene_->normals.emplace_back(normal);
-      glm::dvec2 place = kNoPlace;
+      glm::dvec2 place = mesh::kNoPlace;
       if (parts_of_scene_->uv < AI_MAX_NUMBER_OF_TEXTURECOORDS && part.HasTextureCoords(parts_of_scene_->uv)) {
         const aiVector3D& uv = part.mTextureCoords[parts_of_scene_->uv][i];
         if (std::abs(uv.x) < 1e6F && std::abs(uv.y) < 1e6F) place = {uv.x, 1 - static_cast<double>(uv.y)};
@@ -217,7 +217,7 @@ class SceneReader {
   std::uint64_t triangles_;
   SceneParts* parts_of_scene_;
   std::map<std::string, glm::dmat4, std::less<>> places_;  // by node name
-  ImportedMesh mesh_;
+  mesh::ImportedMesh mesh_;
   FaceCollector faces_;
   std::vector<std::uint32_t> corners_;
   std::vector<std::pair<std::size_t, const aiMesh*>>
@@ -274,12 +274,12 @@ class FbxFrame {
 
 }  // namespace
 
-ImportedMesh read_assimp_scene(const aiScene& scene, const std::string& file, const AssimpSceneOptions& options) {
+mesh::ImportedMesh read_assimp_scene(const aiScene& scene, const std::string& file, const AssimpSceneOptions& options) {
   if (!options.is_fbx) return SceneReader(scene, file, glm::dmat4(1), options).read();
   const FbxFrame frame(scene.mMetaData);
-  ImportedMesh mesh = SceneReader(scene, file, frame.to_scene(), options).read();
+  mesh::ImportedMesh mesh = SceneReader(scene, file, frame.to_scene(), options).read();
   mesh.notes.insert(mesh.notes.end(), frame.notes().begin(), frame.notes().end());
   return mesh;
 }
 
-}  // namespace penumbra::mesh
+}  // namespace penumbra::import

@@ -8,7 +8,7 @@
 
 struct aiScene;
 
-namespace penumbra::mesh {
+namespace penumbra::import {
 
 struct AssimpSceneOptions {
   bool is_fbx = false;          ///< applies its unit and axes
@@ -17,6 +17,6 @@ struct AssimpSceneOptions {
 };
 
 /// Returns every mesh of the node tree, transformed by its nodes, in one soup.
-ImportedMesh read_assimp_scene(const aiScene& scene, const std::string& file, const AssimpSceneOptions& options);
+mesh::ImportedMesh read_assimp_scene(const aiScene& scene, const std::string& file, const AssimpSceneOptions& options);
 
-}  // namespace penumbra::mesh
+}  // namespace penumbra::import

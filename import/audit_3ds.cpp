@@ -10,7 +10,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace penumbra::mesh {
+namespace penumbra::import {
 namespace {
 
 constexpr std::size_t kChunkHeader = 6;  // bytes of a chunk's number and of its length, which includes these six bytes
@@ -92,4 +92,4 @@ void audit_3ds(std::string_view content, const std::string& file) {
   }
 }
 
-}  // namespace penumbra::mesh
+}  // namespace penumbra::import

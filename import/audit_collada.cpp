@@ -10,7 +10,7 @@
 #include <sstream>
 #include <vector>
 
-namespace penumbra::mesh {
+namespace penumbra::import {
 namespace {
 
 std::uint64_t words_in(const pugi::xml_node& node) {
@@ -61,7 +61,7 @@ class Counter {
     const std::string_view url = node.attribute(attribute).value();
     if (!url.empty() && !url.starts_with('#')) {
       xml_.fail(node, "<{}> shows '{}' of another file, which is not read; export the scene as one file", node.name(),
-                printable(url));
+                mesh::printable(url));
     }
     const auto found = named_.find(std::string(url.substr(url.empty() ? 0 : 1)));
     return found == named_.end() ? pugi::xml_node() : found->second;
@@ -154,4 +154,4 @@ std::string with_named_cameras(std::string content) {
   return content;
 }
 
-}  // namespace penumbra::mesh
+}  // namespace penumbra::import

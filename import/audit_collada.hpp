@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-namespace penumbra::mesh {
+namespace penumbra::import {
 
 /// Returns the number of triangles of all polygons in a COLLADA file's scene, each as often as the scene shows it: the
 /// number that Assimp has to deliver. Throws InputError for content that Assimp drops silently: polygons with holes,
@@ -18,4 +18,4 @@ std::string without_leading_blanks(std::string_view content, const std::string& 
 /// Returns the same file with a name for each camera that has none: Assimp 5.2 reads no lens of nameless cameras.
 std::string with_named_cameras(std::string content);
 
-}  // namespace penumbra::mesh
+}  // namespace penumbra::import

@@ -11,7 +11,7 @@
 #include <limits>
 #include <vector>
 
-namespace penumbra::mesh {
+namespace penumbra::import {
 
 void FaceCollector::expect(std::uint64_t faces) {
   const std::size_t wanted = soup_.triangles.size() + faces;
@@ -86,7 +86,7 @@ std::string FaceCollector::instead_of_surfaces() const {
   return fmt::format("{} points, {} lines, {} faces without corners", points_, lines_, empty_);
 }
 
-void settle_unused_vertices(ImportedMesh& mesh, const std::function<void(std::uint32_t)>& refuse) {
+void settle_unused_vertices(mesh::ImportedMesh& mesh, const std::function<void(std::uint32_t)>& refuse) {
   const auto is_finite = [](const glm::dvec3& p) {
     return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
   };
@@ -96,7 +96,7 @@ void settle_unused_vertices(ImportedMesh& mesh, const std::function<void(std::ui
     if (!is_finite(positions[v])) wild.push_back(v);
   }
   if (wild.empty()) return;
-  for (const Triangle& triangle : mesh.soup.triangles) {
+  for (const mesh::Triangle& triangle : mesh.soup.triangles) {
     for (const std::uint32_t v : triangle) {
       if (!is_finite(positions[v])) refuse(v);
     }
@@ -109,4 +109,4 @@ void settle_unused_vertices(ImportedMesh& mesh, const std::function<void(std::ui
                   wild.size(), wild.front()));
 }
 
-}  // namespace penumbra::mesh
+}  // namespace penumbra::import

@@ -7,13 +7,13 @@
 #include <span>
 #include <string>
 
-namespace penumbra::mesh {
+namespace penumbra::import {
 
 /// Turns a file's faces into the triangles of a soup, and counts changed and skipped faces. Every face gets the next
 /// number as its `source_face`, skipped or not.
 class FaceCollector {
  public:
-  explicit FaceCollector(TriangleSoup& soup) : soup_(soup) {}
+  explicit FaceCollector(mesh::TriangleSoup& soup) : soup_(soup) {}
 
   /// Announces `faces` more faces, to reserve memory.
   void expect(std::uint64_t faces);
@@ -39,7 +39,7 @@ class FaceCollector {
   [[nodiscard]] std::string instead_of_surfaces() const;
 
  private:
-  TriangleSoup& soup_;
+  mesh::TriangleSoup& soup_;
   std::uint32_t next_face_ = 0;
   std::uint64_t convex_ = 0, concave_ = 0, tangled_ = 0, polygon_triangles_ = 0;
   std::uint64_t due_ = 0;  ///< triangles that the faces consist of
@@ -48,6 +48,6 @@ class FaceCollector {
 
 /// Moves positions that are not finite and that no triangle uses to a used position, and counts them in a note. Calls
 /// `refuse(vertex)`, which must throw, for the first such position that a triangle uses.
-void settle_unused_vertices(ImportedMesh& mesh, const std::function<void(std::uint32_t)>& refuse);
+void settle_unused_vertices(mesh::ImportedMesh& mesh, const std::function<void(std::uint32_t)>& refuse);
 
-}  // namespace penumbra::mesh
+}  // namespace penumbra::import

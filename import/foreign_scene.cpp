@@ -25,13 +25,13 @@
 #include <variant>
 #include <vector>
 
-namespace penumbra::scenes {
+namespace penumbra::import {
 namespace {
 
 class ForeignScene {
  public:
   /// `options` must outlive this object.
-  ForeignScene(mesh::ImportedMesh mesh, mesh::SceneParts parts, const ReadOptions& options, bool is_fbx)
+  ForeignScene(mesh::ImportedMesh mesh, SceneParts parts, const scenes::ReadOptions& options, bool is_fbx)
       : parts_(std::move(parts)),
         options_(options),
         is_fbx_(is_fbx),
@@ -42,15 +42,15 @@ class ForeignScene {
       scene_.looks.normals = std::move(parts_.normals);
   }
 
-  Scene run(const std::string& name) {
+  scenes::Scene run(const std::string& name) {
     scene_.name = name;
     for (std::size_t i = 0; i < parts_.parts.size(); ++i) {
       const std::size_t end =
           i + 1 < parts_.parts.size() ? parts_.parts[i + 1].first_triangle : scene_.soup.triangles.size();
       if (parts_.parts[i].first_triangle < end) add_object(parts_.parts[i], end);
     }
-    for (const mesh::SceneParts::Lamp& lamp : parts_.lamps) add_lamp(lamp);
-    for (const mesh::SceneParts::Lens& lens : parts_.lenses) add_camera(lens);
+    for (const SceneParts::Lamp& lamp : parts_.lamps) add_lamp(lamp);
+    for (const SceneParts::Lens& lens : parts_.lenses) add_camera(lens);
     if (parts_.has_orthographic)
       losses_.refuse("has an orthographic camera, which would be one with perspective (export glTF)", name);
     if (parts_.moves) scene_.warnings.emplace_back("the file is read at rest; its animation is ignored (export glTF)");
@@ -58,7 +58,7 @@ class ForeignScene {
       scene_.warnings.push_back(fmt::format(
           "{} lamps have no size in such files: taken as spheres of radius {} (--lamp-radius) and suns of {} degrees "
           "(--sun-angle), as bright as {}",
-          lamps_, options_.lamp_radius.value_or(kLampRadius), options_.sun_angle.value_or(kSunAngle),
+          lamps_, options_.lamp_radius.value_or(scenes::kLampRadius), options_.sun_angle.value_or(scenes::kSunAngle),
           from_blender_ ? "in Blender" : "if their intensities were candela and lux"));
     }
     // A file without a light gets a studio, which shows its shapes: losses are named, and no picture of its own is
@@ -69,8 +69,8 @@ class ForeignScene {
   }
 
  private:
-  void add_object(const mesh::SceneParts::Part& part, std::size_t end) {
-    Object object;
+  void add_object(const SceneParts::Part& part, std::size_t end) {
+    scenes::Object object;
     object.name = objects_.take(part.name.empty() ? "mesh" : part.name);
     object.color = glm::clamp(part.color, 0.0, 1.0);
     object.material = part.material;
@@ -88,8 +88,7 @@ class ForeignScene {
     scene_.objects.push_back(std::move(object));
   }
 
-  std::optional<std::uint32_t> add_emitter(const mesh::SceneParts::Part& part, std::size_t end,
-                                           const std::string& name) {
+  std::optional<std::uint32_t> add_emitter(const SceneParts::Part& part, std::size_t end, const std::string& name) {
     const glm::dvec3& radiance = part.emission;
     if (!(std::max({radiance.x, radiance.y, radiance.z}) > 0)) return std::nullopt;
     std::map<std::uint32_t, std::uint32_t> number_of;
@@ -126,8 +125,8 @@ class ForeignScene {
     return static_cast<std::uint32_t>(scene_.lights.size() - 1);
   }
 
-  void add_lamp(const mesh::SceneParts::Lamp& lamp) {
-    using Kind = mesh::SceneParts::Lamp::Kind;
+  void add_lamp(const SceneParts::Lamp& lamp) {
+    using Kind = SceneParts::Lamp::Kind;
     if (lamp.kind == Kind::other)
       return losses_.refuse(
           "is an area lamp, or one that these files do not describe; make it an emissive plane, or export glTF",
@@ -136,15 +135,15 @@ class ForeignScene {
     if (from_blender_ && parts_.white_is_grey && color.x == color.y && color.y == color.z) color /= 0.8;
     if (color == glm::dvec3(0)) return;
     if (std::min({color.x, color.y, color.z}) < 0) return losses_.refuse("is a lamp that takes light away", lamp.name);
-    AreaLight light;
+    scenes::AreaLight light;
     if (lamp.kind != Kind::point && !(glm::length(lamp.direction) > 0))
       return losses_.refuse("is a lamp whose transform leaves it no direction", lamp.name);
     if (lamp.kind == Kind::sun) {
-      const Sun sun{glm::normalize(lamp.direction), options_.sun_angle.value_or(kSunAngle)};
+      const scenes::Sun sun{glm::normalize(lamp.direction), options_.sun_angle.value_or(scenes::kSunAngle)};
       light.shape = sun;
-      light.radiance = color / (sun.angle > 0 ? irradiance_of_radiance(sun) : 1.0);
+      light.radiance = color / (sun.angle > 0 ? scenes::irradiance_of_radiance(sun) : 1.0);
     } else {
-      Sphere sphere{lamp.position, std::max(options_.lamp_radius.value_or(kLampRadius), 1e-4), {}};
+      scenes::Sphere sphere{lamp.position, std::max(options_.lamp_radius.value_or(scenes::kLampRadius), 1e-4), {}};
       if (lamp.kind == Kind::spot) sphere.cone = cone_of(lamp);
       const double candela = from_blender_ ? 1 / (4 * std::numbers::pi) : 1;  // candela for each watt
       light.radiance = candela / (std::numbers::pi * sphere.radius * sphere.radius) * color;
@@ -157,7 +156,7 @@ class ForeignScene {
 
   /// Blender writes spots with an inner angle of (1 − blend) of the angle; their light falls off over `blend` of the
   /// cosines.
-  [[nodiscard]] Cone cone_of(const mesh::SceneParts::Lamp& lamp) {
+  [[nodiscard]] scenes::Cone cone_of(const SceneParts::Lamp& lamp) {
     const glm::dvec3 direction = glm::normalize(lamp.direction);
     const double quarter = std::numbers::pi / 2;
     if (!is_fbx_) {  // COLLADA has one angle, and an exponent in place of a second
@@ -171,11 +170,11 @@ class ForeignScene {
     return {direction, glm::degrees(std::acos(std::min(edge, 1.0))), glm::degrees(outer), true};
   }
 
-  void add_camera(const mesh::SceneParts::Lens& lens) {
+  void add_camera(const SceneParts::Lens& lens) {
     if (!(glm::length(glm::cross(lens.forward, lens.up)) > 0) ||
         !(lens.horizontal_fov > 0 && lens.horizontal_fov < std::numbers::pi))
       return losses_.mention("is a camera that cannot be one, and is left out", lens.name);
-    Camera camera;
+    scenes::Camera camera;
     camera.name = cameras_.take(lens.name);
     camera.eye = lens.eye;
     camera.target = lens.eye + glm::normalize(lens.forward);
@@ -186,28 +185,28 @@ class ForeignScene {
     scene_.cameras.push_back(std::move(camera));
   }
 
-  mesh::SceneParts parts_;
-  const ReadOptions& options_;
+  SceneParts parts_;
+  const scenes::ReadOptions& options_;
   bool is_fbx_, from_blender_;
-  Scene scene_;
-  Losses losses_;
-  UniqueNames objects_, lights_, cameras_;
+  scenes::Scene scene_;
+  scenes::Losses losses_;
+  scenes::UniqueNames objects_, lights_, cameras_;
   std::uint64_t lamps_ = 0;
 };
 
 }  // namespace
 
 bool is_foreign_scene(const std::filesystem::path& file) {
-  const std::string extension = mesh::lower_extension(file);
+  const std::string extension = lower_extension(file);
   return extension == ".fbx" || extension == ".dae";
 }
 
-Scene import_foreign_scene(const mesh::InputFile& input, const ReadOptions& options) {
-  mesh::SceneParts parts;
+scenes::Scene import_foreign_scene(const mesh::InputFile& input, const scenes::ReadOptions& options) {
+  SceneParts parts;
   if (options.lightmap != nullptr) parts.uv = options.lightmap->set;
-  mesh::ImportedMesh mesh = mesh::read_scene_parts(input, parts);
+  mesh::ImportedMesh mesh = read_scene_parts(input, parts);
   if (options.lightmap != nullptr) options.lightmap->places = std::move(parts.places);
-  const bool is_fbx = mesh::lower_extension(input.name) == ".fbx";
+  const bool is_fbx = lower_extension(input.name) == ".fbx";
   try {
     return ForeignScene(std::move(mesh), std::move(parts), options, is_fbx).run(input.name.filename().string());
   } catch (const InputError& error) {
@@ -215,4 +214,4 @@ Scene import_foreign_scene(const mesh::InputFile& input, const ReadOptions& opti
   }
 }
 
-}  // namespace penumbra::scenes
+}  // namespace penumbra::import

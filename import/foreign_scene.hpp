@@ -6,7 +6,7 @@
 
 #include <filesystem>
 
-namespace penumbra::scenes {
+namespace penumbra::import {
 
 /// Returns whether Assimp reads the file as a scene: FBX and COLLADA.
 bool is_foreign_scene(const std::filesystem::path& file);
@@ -14,6 +14,6 @@ bool is_foreign_scene(const std::filesystem::path& file);
 /// Reads a scene: its meshes where its nodes place them, one object each, with the diffuse colour of its material and
 /// its normals; emissive meshes as lights, as for glTF (gltf/emitters/); point, spot and directional lamps; cameras.
 /// Lamps have no size in these files: sizes come from ReadOptions. Throws InputError and std::bad_alloc.
-Scene import_foreign_scene(const mesh::InputFile& input, const ReadOptions& options);
+scenes::Scene import_foreign_scene(const mesh::InputFile& input, const scenes::ReadOptions& options);
 
-}  // namespace penumbra::scenes
+}  // namespace penumbra::import

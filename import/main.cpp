@@ -110,8 +110,8 @@ Answer message(mesh::HelperStatus status) {
 }
 
 mesh::ImportedMesh read_mesh(const mesh::InputFile& input, const Arguments& arguments) {
-  if (scenes::is_gltf(input.name)) return scenes::import_gltf_mesh(input, arguments.options);
-  return mesh::read_mesh(input, arguments.uv.has_value());
+  if (import::is_gltf(input.name)) return import::import_gltf_mesh(input, arguments.options);
+  return import::read_mesh(input, arguments.uv.has_value());
 }
 
 Answer answer_for(const Arguments& arguments) {
@@ -128,13 +128,13 @@ Answer answer_for(const Arguments& arguments) {
       answer.lightmap.set = static_cast<std::uint32_t>(std::clamp(arguments.uv.value_or(0), 0.0, 1e6));
       if (arguments.uv) options.lightmap = &answer.lightmap;
       if (arguments.instances) options.instances = &answer.instances;
-      const bool foreign = scenes::is_foreign_scene(input.name);
-      answer.scene = foreign ? scenes::import_foreign_scene(input, options) : scenes::import_gltf(input, options);
+      const bool foreign = import::is_foreign_scene(input.name);
+      answer.scene = foreign ? import::import_foreign_scene(input, options) : import::import_gltf(input, options);
       scenes::put_scene(answer.payload, answer.scene);
       if (arguments.uv) answer.payload.put_array(std::span<const glm::dvec2>(answer.lightmap.places));
       if (arguments.instances) scenes::put_instances(answer.payload, answer.instances);
     } else {
-      answer.texture = arguments.kind == "sky" ? scenes::read_sky_file(input) : scenes::read_texture_file(input);
+      answer.texture = arguments.kind == "sky" ? import::read_sky_file(input) : import::read_texture_file(input);
       scenes::put_texture(answer.payload, answer.texture);
     }
     answer.head.put_strings(mesh::opened_files());

@@ -18,7 +18,7 @@
 #include <utility>
 #include <vector>
 
-namespace penumbra::mesh {
+namespace penumbra::import {
 namespace {
 
 /// Statements that do not affect surfaces.
@@ -33,7 +33,7 @@ class ObjReader {
  public:
   ObjReader(const std::string& file, bool with_places) : file_(file), with_places_(with_places), faces_(mesh_.soup) {}
 
-  ImportedMesh read(std::string_view text) {
+  mesh::ImportedMesh read(std::string_view text) {
     std::string_view line;
     std::string joined;  // lines joined by backslashes
     while (take_line(text, line)) {
@@ -147,7 +147,7 @@ class ObjReader {
   void place(std::string_view line) {
     const auto u = parse_real(take_word(line)), v = parse_real(take_word(line));
     const bool is_place = u && v && std::abs(*u) < 1e6 && std::abs(*v) < 1e6;
-    places_.push_back(is_place ? glm::dvec2(*u, *v) : kNoPlace);
+    places_.push_back(is_place ? glm::dvec2(*u, *v) : mesh::kNoPlace);
   }
 
   /// Returns the index, from 0, of the texture coordinates that a corner names after its first slash; or a number for
@@ -164,14 +164,14 @@ class ObjReader {
   /// Gives each position its texture coordinates; of a vertex with several coordinates, each but the first becomes a
   /// new position.
   void place_vertices() {
-    TriangleSoup& soup = mesh_.soup;
+    mesh::TriangleSoup& soup = mesh_.soup;
     constexpr std::int64_t kNotYet = -2;
     std::vector<std::int64_t> first(soup.positions.size(), kNotYet);
     std::map<std::pair<std::uint32_t, std::int64_t>, std::uint32_t> others;
-    mesh_.places.assign(soup.positions.size(), kNoPlace);
+    mesh_.places.assign(soup.positions.size(), mesh::kNoPlace);
     const auto value = [&](std::int64_t number) {
       const bool is_there = number >= 0 && static_cast<std::uint64_t>(number) < places_.size();
-      return is_there ? places_[static_cast<std::size_t>(number)] : kNoPlace;
+      return is_there ? places_[static_cast<std::size_t>(number)] : mesh::kNoPlace;
     };
     for (std::size_t i = 0; i < soup.triangles.size(); ++i) {
       const std::size_t face = soup.source_face[i], begin = face == 0 ? 0 : face_ends_[face - 1];
@@ -274,7 +274,7 @@ class ObjReader {
 
   const std::string& file_;
   bool with_places_;
-  ImportedMesh mesh_;
+  mesh::ImportedMesh mesh_;
   FaceCollector faces_;
   std::vector<std::uint32_t> corners_;                       ///< corners of all faces, one face after the other
   std::vector<std::size_t> face_ends_;                       ///< into `corners_`
@@ -294,8 +294,8 @@ class ObjReader {
 
 }  // namespace
 
-ImportedMesh read_obj_text(std::string_view text, const std::string& file, bool with_places) {
+mesh::ImportedMesh read_obj_text(std::string_view text, const std::string& file, bool with_places) {
   return ObjReader(file, with_places).read(text);
 }
 
-}  // namespace penumbra::mesh
+}  // namespace penumbra::import

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-namespace penumbra::mesh {
+namespace penumbra::import {
 
 /// Reads the surfaces of a Wavefront OBJ file in double precision; only `v` and `f` are required. Does not use Assimp,
 /// whose reader turns faces into points where they name a texture coordinate or normal that does not exist, drops
@@ -13,6 +13,6 @@ namespace penumbra::mesh {
 ///
 /// Everything but surfaces is counted in the notes. Throws InputError with the line. `with_places`: fills
 /// ImportedMesh::places, too, if faces name texture coordinates.
-ImportedMesh read_obj_text(std::string_view text, const std::string& file, bool with_places = false);
+mesh::ImportedMesh read_obj_text(std::string_view text, const std::string& file, bool with_places = false);
 
-}  // namespace penumbra::mesh
+}  // namespace penumbra::import

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-namespace penumbra::mesh {
+namespace penumbra::import {
 namespace {
 
 /// The file's words, line by line, without comments, with the number of the current line for messages.
@@ -167,7 +167,7 @@ class OffReader {
  public:
   OffReader(std::string_view text, const std::string& file) : words_(text, file), file_(file), faces_(mesh_.soup) {}
 
-  ImportedMesh read() {
+  mesh::ImportedMesh read() {
     header_ = read_header(words_);
     by_lines_ = has_line_for_each(words_, header_);
     mesh_.soup.positions.reserve(header_.vertices);
@@ -264,7 +264,7 @@ class OffReader {
   const std::string& file_;
   OffHeader header_;
   bool by_lines_ = false;
-  ImportedMesh mesh_;
+  mesh::ImportedMesh mesh_;
   FaceCollector faces_;
   std::vector<std::uint32_t> corners_;
   std::vector<std::pair<std::uint32_t, std::size_t>> wild_;  ///< vertices that are not finite, and their lines
@@ -273,8 +273,8 @@ class OffReader {
 
 }  // namespace
 
-ImportedMesh read_off_text(std::string_view text, const std::string& file) {
+mesh::ImportedMesh read_off_text(std::string_view text, const std::string& file) {
   return OffReader(text, file).read();
 }
 
-}  // namespace penumbra::mesh
+}  // namespace penumbra::import

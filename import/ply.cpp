@@ -15,7 +15,7 @@
 #include <optional>
 #include <type_traits>
 
-namespace penumbra::mesh {
+namespace penumbra::import {
 namespace {
 
 /// The numbers of a text, element by element: each element begins on a new line, and may extend over several.
@@ -75,7 +75,7 @@ class PlyReader {
       throw InputError("{}: more than 4,294,967,295 vertices", file);
   }
 
-  ImportedMesh read() {
+  mesh::ImportedMesh read() {
     for (const PlyElement& element : header_.elements) read_element(element);
     add_waiting_faces();
     faces_.require_all(held_, file_);
@@ -258,7 +258,7 @@ class PlyReader {
   const std::string& file_;
   Numbers numbers_;
   bool many_at_once_;
-  ImportedMesh mesh_;
+  mesh::ImportedMesh mesh_;
   FaceCollector faces_;
   std::uint64_t vertices_ = 0;
   std::vector<double> corners_;  ///< corners of the current element, as stored in the file
@@ -272,15 +272,15 @@ class PlyReader {
 
 }  // namespace
 
-ImportedMesh read_ply(std::string_view content, const std::string& file) {
+mesh::ImportedMesh read_ply(std::string_view content, const std::string& file) {
   const PlyHeader header = read_ply_header(content, file);
   if (header.format == PlyFormat::ascii) return PlyReader<AsciiNumbers>(header, file, false).read();
   return PlyReader<BinaryNumbers>(header, file, true).read();
 }
 
-ImportedMesh read_ply_slowly(std::string_view content, const std::string& file) {
+mesh::ImportedMesh read_ply_slowly(std::string_view content, const std::string& file) {
   const PlyHeader header = read_ply_header(content, file);
   return PlyReader<BinaryNumbers>(header, file, false).read();
 }
 
-}  // namespace penumbra::mesh
+}  // namespace penumbra::import

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-namespace penumbra::mesh {
+namespace penumbra::import {
 
 /// Reads the surfaces of a PLY file, ASCII or binary of either endianness, in double precision: positions, and the
 /// vertex lists of faces and triangle strips. Does not use Assimp, whose reader allocates the size of a list before
@@ -13,10 +13,10 @@ namespace penumbra::mesh {
 ///
 /// Everything else in the file is skipped and noted. Throws InputError with the line, or in binary files the element's
 /// number.
-ImportedMesh read_ply(std::string_view content, const std::string& file);
+mesh::ImportedMesh read_ply(std::string_view content, const std::string& file);
 
 /// Reads as read_ply does, a binary body number by number for every layout: the reference against which read_ply, which
 /// takes usual layouts in bulk, is tested.
-ImportedMesh read_ply_slowly(std::string_view content, const std::string& file);
+mesh::ImportedMesh read_ply_slowly(std::string_view content, const std::string& file);
 
-}  // namespace penumbra::mesh
+}  // namespace penumbra::import

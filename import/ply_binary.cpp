@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace penumbra::mesh {
+namespace penumbra::import {
 
 template <typename Number>
 Number BinaryNumbers::take() {
@@ -96,4 +96,4 @@ std::uint64_t BinaryNumbers::take_vertices(const PlyElement& element, std::array
   return 0;
 }
 
-}  // namespace penumbra::mesh
+}  // namespace penumbra::import

@@ -14,7 +14,7 @@
 #include <string_view>
 #include <vector>
 
-namespace penumbra::mesh {
+namespace penumbra::import {
 
 /// The numbers of a binary body, taken from its front: one by one, or in bulk for elements of usual layouts.
 class BinaryNumbers {
@@ -106,4 +106,4 @@ std::uint64_t BinaryNumbers::take_faces(const PlyElement& element, std::size_t c
   return taken;
 }
 
-}  // namespace penumbra::mesh
+}  // namespace penumbra::import

@@ -8,7 +8,7 @@
 #include <optional>
 #include <utility>
 
-namespace penumbra::mesh {
+namespace penumbra::import {
 namespace {
 
 std::optional<PlyType> type_named(std::string_view name) {
@@ -133,7 +133,7 @@ class HeaderReader {
         throw InputError(
             "{}: PLY header: it promises {} elements '{}' of {} bytes or more, but only {} bytes follow; the file is "
             "truncated or damaged",
-            file_, element.count, printable(element.name), bytes, left);
+            file_, element.count, mesh::printable(element.name), bytes, left);
       }
       left -= element.count * bytes;
     }
@@ -167,4 +167,4 @@ PlyHeader read_ply_header(std::string_view content, const std::string& file) {
   return HeaderReader(file).read(content);
 }
 
-}  // namespace penumbra::mesh
+}  // namespace penumbra::import

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-namespace penumbra::mesh {
+namespace penumbra::import {
 
 enum class PlyType : std::uint8_t { int8, uint8, int16, uint16, int32, uint32, int64, uint64, float32, float64 };
 
@@ -38,4 +38,4 @@ struct PlyHeader {
 /// follow.
 PlyHeader read_ply_header(std::string_view content, const std::string& file);
 
-}  // namespace penumbra::mesh
+}  // namespace penumbra::import

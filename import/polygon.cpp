@@ -17,7 +17,7 @@
 // convention, not a fact of its geometry, so plain double arithmetic decides here; no later step depends on these
 // signs, and the number of triangles never does.
 
-namespace penumbra::mesh {
+namespace penumbra::import {
 namespace {
 
 /// Returns Newell's normal: the sum of the edges' cross products; its length is twice the area of a flat polygon.
@@ -96,7 +96,7 @@ Shape shape_of(std::span<const glm::dvec2> outline) {
 /// Preparata and Tarjan 1978): in linear time, without cutting off straight corners, independent of the first corner.
 class Zipper {
  public:
-  Zipper(std::span<const glm::dvec2> outline, std::vector<Triangle>& triangles)
+  Zipper(std::span<const glm::dvec2> outline, std::vector<mesh::Triangle>& triangles)
       : outline_(outline), triangles_(triangles) {}
 
   void run() {
@@ -145,11 +145,11 @@ class Zipper {
     return turns_left(outline_[a], outline_[b], outline_[c], kStraight);
   }
   void cut(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
-    triangles_.push_back(below_ ? Triangle{a, b, c} : Triangle{c, b, a});
+    triangles_.push_back(below_ ? mesh::Triangle{a, b, c} : mesh::Triangle{c, b, a});
   }
 
   std::span<const glm::dvec2> outline_;
-  std::vector<Triangle>& triangles_;
+  std::vector<mesh::Triangle>& triangles_;
   std::vector<std::uint32_t> stack_;  ///< corners that still miss triangles; all but the first are on one side
   bool below_ = true;                 ///< the side of these corners
 };
@@ -212,7 +212,7 @@ bool is_ear(std::span<const glm::dvec2> outline, const CornerGrid& corners, std:
 
 }  // namespace
 
-PolygonKind triangulate_polygon(std::span<const glm::dvec3> corners, std::vector<Triangle>& triangles) {
+PolygonKind triangulate_polygon(std::span<const glm::dvec3> corners, std::vector<mesh::Triangle>& triangles) {
   PENUMBRA_ASSERT(corners.size() >= 3, "a polygon with {} corners", corners.size());
   std::vector<std::uint32_t> ring(corners.size());
   std::iota(ring.begin(), ring.end(), 0u);
@@ -254,4 +254,4 @@ PolygonKind triangulate_polygon(std::span<const glm::dvec3> corners, std::vector
   return stuck ? PolygonKind::tangled : PolygonKind::concave;
 }
 
-}  // namespace penumbra::mesh
+}  // namespace penumbra::import

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-namespace penumbra::mesh {
+namespace penumbra::import {
 
 /// Method by which a polygon was triangulated.
 enum class PolygonKind { convex, concave, tangled };
@@ -20,6 +20,6 @@ enum class PolygonKind { convex, concave, tangled };
 /// - concave: ear clipping, projected along the polygon's mean normal;
 /// - tangled: ear clipping found no ear (the outline crosses itself or has no area), so the rest became a fan.
 /// Gives n − 2 triangles with the polygon's winding for every input: nothing is dropped.
-PolygonKind triangulate_polygon(std::span<const glm::dvec3> corners, std::vector<Triangle>& triangles);
+PolygonKind triangulate_polygon(std::span<const glm::dvec3> corners, std::vector<mesh::Triangle>& triangles);
 
-}  // namespace penumbra::mesh
+}  // namespace penumbra::import

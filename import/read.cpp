@@ -32,7 +32,7 @@
 #include <optional>
 #include <utility>
 
-namespace penumbra::mesh {
+namespace penumbra::import {
 namespace {
 
 /// Folder in which Assimp believes the file to be: names below it are looked for in the file's folder and below.
@@ -42,7 +42,7 @@ constexpr std::string_view kVirtualFolder = "/mesh/";
 /// a scene's parts may name any path of the machine.
 class FolderOnly : public Assimp::IOSystem {
  public:
-  FolderOnly(const InputFile& input, const std::string& content)
+  FolderOnly(const mesh::InputFile& input, const std::string& content)
       : folder_(input.folder.get()),
         folder_name_(std::filesystem::absolute(input.name).parent_path()),
         name_(input.name.filename().string()),
@@ -55,8 +55,8 @@ class FolderOnly : public Assimp::IOSystem {
     if (is_own(name)) return stream_of(content_);
     const Descriptor file = open(name);
     if (!file.is_open()) return nullptr;
-    note_opened_file(folder_name_ / inside(name));
-    others_.push_back(std::make_unique<std::string>(read_content(file.get(), name)));
+    mesh::note_opened_file(folder_name_ / inside(name));
+    others_.push_back(std::make_unique<std::string>(mesh::read_content(file.get(), name)));
     return stream_of(*others_.back());
   }
   void Close(Assimp::IOStream* stream) override { std::unique_ptr<Assimp::IOStream>{stream}; }
@@ -71,7 +71,7 @@ class FolderOnly : public Assimp::IOSystem {
   }
   [[nodiscard]] bool is_own(std::string_view name) const { return inside(name) == name_; }
   [[nodiscard]] Descriptor open(std::string_view name) const {
-    OpenedBeneath file = open_beneath(folder_, std::string(inside(name)), O_RDONLY | O_NONBLOCK | O_NOCTTY);
+    mesh::OpenedBeneath file = mesh::open_beneath(folder_, std::string(inside(name)), O_RDONLY | O_NONBLOCK | O_NOCTTY);
     struct stat info {};
     const bool regular = file.error == 0 && ::fstat(file.descriptor.get(), &info) == 0 && S_ISREG(info.st_mode);
     return regular ? std::move(file.descriptor) : Descriptor();
@@ -137,8 +137,8 @@ void rethrow_out_of_memory(std::string_view message) {
 }
 
 /// Reads with Assimp. `triangles`: number of triangles that the file is known to contain; fewer are an error.
-ImportedMesh read_with_assimp(const InputFile& input, const std::string& content, std::uint64_t triangles = 0,
-                              SceneParts* parts = nullptr) {
+mesh::ImportedMesh read_with_assimp(const mesh::InputFile& input, const std::string& content,
+                                    std::uint64_t triangles = 0, SceneParts* parts = nullptr) {
   const std::string file = input.name.string(), extension = input.name.extension().string();
   if (lower_extension(input.name) == ".3ds") audit_3ds(content, file);
   Complaints complaints;
@@ -178,7 +178,7 @@ ImportedMesh read_with_assimp(const InputFile& input, const std::string& content
     parts->has_orthographic = has_orthographic_camera(content);
     parts->white_is_grey = has_template_of_lamps(content);
   }
-  ImportedMesh mesh = read_assimp_scene(*scene, file, options);
+  mesh::ImportedMesh mesh = read_assimp_scene(*scene, file, options);
   const auto said = complaints.notes();
   mesh.notes.insert(mesh.notes.end(), said.begin(), said.end());
   return mesh;
@@ -192,12 +192,13 @@ void note_material_libraries(std::string_view text, const std::filesystem::path&
     take_line(rest, line);
     while (!line.empty() && (line.front() == ' ' || line.front() == '\t')) line.remove_prefix(1);
     if (line.empty()) continue;
-    note_opened_file(folder / line);  // either one name with blanks or several names: files of both readings are noted
-    for (std::string_view name; !(name = take_word(line)).empty();) note_opened_file(folder / name);
+    mesh::note_opened_file(folder /
+                           line);  // either one name with blanks or several names: files of both readings are noted
+    for (std::string_view name; !(name = take_word(line)).empty();) mesh::note_opened_file(folder / name);
   }
 }
 
-ImportedMesh read_collada(const InputFile& input, const std::string& content, SceneParts* parts) {
+mesh::ImportedMesh read_collada(const mesh::InputFile& input, const std::string& content, SceneParts* parts) {
   const std::string file = input.name.string();
   const std::uint64_t triangles = triangles_of_collada(content, file);
   return read_with_assimp(input, with_named_cameras(without_leading_blanks(content, file)), triangles, parts);
@@ -211,8 +212,8 @@ void refuse_unknown(const std::string& extension, const std::string& file) {
   }
 }
 
-ImportedMesh read_as(const std::string& extension, const InputFile& input, const std::string& content,
-                     bool with_places) {
+mesh::ImportedMesh read_as(const std::string& extension, const mesh::InputFile& input, const std::string& content,
+                           bool with_places) {
   const std::string file = input.name.string();
   if (extension == ".obj") {
     note_material_libraries(content, std::filesystem::absolute(input.name).parent_path());
@@ -234,10 +235,10 @@ ImportedMesh read_as(const std::string& extension, const InputFile& input, const
 
 }  // namespace
 
-ImportedMesh read_mesh(const InputFile& input, bool with_places) {
+mesh::ImportedMesh read_mesh(const mesh::InputFile& input, bool with_places) {
   const std::string file = input.name.string(), extension = lower_extension(input.name);
   refuse_unknown(extension, file);
-  const std::string content = utf8_content(read_content(input.content.get(), file), extension, file);
+  const std::string content = utf8_content(mesh::read_content(input.content.get(), file), extension, file);
   const auto looks_like = sniff(content);
   try {
     return read_as(extension, input, content, with_places);
@@ -247,11 +248,11 @@ ImportedMesh read_mesh(const InputFile& input, bool with_places) {
   }
 }
 
-ImportedMesh read_scene_parts(const InputFile& input, SceneParts& parts) {
+mesh::ImportedMesh read_scene_parts(const mesh::InputFile& input, SceneParts& parts) {
   const std::string file = input.name.string(), extension = lower_extension(input.name);
-  const std::string content = utf8_content(read_content(input.content.get(), file), extension, file);
+  const std::string content = utf8_content(mesh::read_content(input.content.get(), file), extension, file);
   if (extension == ".dae") return read_collada(input, content, &parts);
   return read_with_assimp(input, content, 0, &parts);
 }
 
-}  // namespace penumbra::mesh
+}  // namespace penumbra::import

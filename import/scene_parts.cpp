@@ -10,7 +10,7 @@
 #include <optional>
 #include <span>
 
-namespace penumbra::mesh {
+namespace penumbra::import {
 namespace {
 
 glm::dvec3 to_glm(const aiVector3D& v) {
@@ -106,4 +106,4 @@ bool has_template_of_lamps(std::string_view content) {
   return content.find(std::string_view("PropertyTemplateS\x08\0\0\0FbxLight", 29)) != std::string_view::npos;
 }
 
-}  // namespace penumbra::mesh
+}  // namespace penumbra::import

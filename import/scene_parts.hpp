@@ -13,7 +13,7 @@
 struct aiMesh;
 struct aiScene;
 
-namespace penumbra::mesh {
+namespace penumbra::import {
 
 /// Contents of a scene file read by Assimp other than its triangles, in world space and the scene's unit.
 struct SceneParts {
@@ -64,4 +64,4 @@ bool has_orthographic_camera(std::string_view content);
 /// which white lamps are grey.
 bool has_template_of_lamps(std::string_view content);
 
-}  // namespace penumbra::mesh
+}  // namespace penumbra::import

@@ -14,7 +14,7 @@
 #include <limits>
 #include <numeric>
 
-namespace penumbra::mesh {
+namespace penumbra::import {
 namespace {
 
 constexpr std::size_t kHeader = 84, kTriangle = 50;
@@ -43,13 +43,13 @@ bool begins_with_text(std::string_view content) {
   return content.substr(0, kHeader).find('\0') == std::string_view::npos;
 }
 
-void add_corners(TriangleSoup& soup, FaceCollector& faces, std::uint32_t count) {
+void add_corners(mesh::TriangleSoup& soup, FaceCollector& faces, std::uint32_t count) {
   std::vector<std::uint32_t> corners(count);
   std::iota(corners.begin(), corners.end(), static_cast<std::uint32_t>(soup.positions.size()) - count);
   faces.add(corners);
 }
 
-ImportedMesh read_binary(std::string_view content, const std::string& file) {
+mesh::ImportedMesh read_binary(std::string_view content, const std::string& file) {
   const std::size_t told = count_of_binary(content), held = (content.size() - kHeader) / kTriangle;
   const bool whole = (content.size() - kHeader) % kTriangle == 0;
   // Writers that do not know the number in advance leave 0 or all bits set; and data after the promised triangles up to
@@ -64,7 +64,7 @@ ImportedMesh read_binary(std::string_view content, const std::string& file) {
   if (count > std::numeric_limits<std::uint32_t>::max() / 3) {
     throw InputError("{}: {} triangles; expected at most 1,431,655,765", file, count);
   }
-  ImportedMesh mesh;
+  mesh::ImportedMesh mesh;
   FaceCollector faces(mesh.soup);
   mesh.soup.positions.reserve(3 * count);
   mesh.soup.triangles.reserve(count);
@@ -96,7 +96,7 @@ class AsciiStl {
  public:
   explicit AsciiStl(const std::string& file) : file_(file), faces_(mesh_.soup) {}
 
-  ImportedMesh read(std::string_view text) {
+  mesh::ImportedMesh read(std::string_view text) {
     std::string_view line;
     while (take_line(text, line)) {
       ++line_number_;
@@ -184,7 +184,7 @@ class AsciiStl {
   }
 
   const std::string& file_;
-  ImportedMesh mesh_;
+  mesh::ImportedMesh mesh_;
   FaceCollector faces_;
   std::size_t line_number_ = 0, facet_line_ = 0;  ///< line on which the open facet begins; 0 if none is open
   std::uint32_t corners_ = 0;                     ///< corners of the current loop
@@ -197,7 +197,7 @@ class AsciiStl {
 
 }  // namespace
 
-ImportedMesh read_stl(std::string_view content, const std::string& file) {
+mesh::ImportedMesh read_stl(std::string_view content, const std::string& file) {
   const bool solid = begins_with_solid(content);
   const bool long_enough = content.size() >= kHeader;
   if (!solid && !long_enough) {
@@ -206,9 +206,9 @@ ImportedMesh read_stl(std::string_view content, const std::string& file) {
   // An exactly fitting length means binary; otherwise a header of text means ASCII.
   const bool fits = long_enough && content.size() == kHeader + kTriangle * std::size_t{count_of_binary(content)};
   const bool ascii = solid && (!long_enough || (!fits && begins_with_text(content)));
-  ImportedMesh mesh = ascii ? AsciiStl(file).read(content) : read_binary(content, file);
+  mesh::ImportedMesh mesh = ascii ? AsciiStl(file).read(content) : read_binary(content, file);
   if (mesh.soup.triangles.empty()) throw InputError("{}: there are no triangles in it", file);
   return mesh;
 }
 
-}  // namespace penumbra::mesh
+}  // namespace penumbra::import

@@ -3,7 +3,7 @@
 #include <cctype>
 #include <limits>
 
-namespace penumbra::mesh {
+namespace penumbra::import {
 
 std::string lower_extension(const std::filesystem::path& file) {
   std::string extension = file.extension().string();
@@ -56,4 +56,4 @@ std::optional<double> parse_real(std::string_view word) {
   return std::nullopt;
 }
 
-}  // namespace penumbra::mesh
+}  // namespace penumbra::import

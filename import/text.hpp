@@ -12,7 +12,7 @@
 #include <string_view>
 #include <utility>
 
-namespace penumbra::mesh {
+namespace penumbra::import {
 
 /// Returns the file name's extension in lower case (".obj"); empty if it has none.
 std::string lower_extension(const std::filesystem::path& file);
@@ -29,7 +29,7 @@ std::string_view without_comment(std::string_view line);
 /// Formats a message that contains words of the file, and makes it printable: a zero byte would end the message.
 template <typename... Args>
 std::string text_for_people(fmt::format_string<Args...> format, Args&&... args) {
-  return printable(fmt::format(format, std::forward<Args>(args)...));
+  return mesh::printable(fmt::format(format, std::forward<Args>(args)...));
 }
 
 /// Parses the whole of `word` as a number; returns nullopt if it is not one (or an integer is too large for its type).
@@ -51,4 +51,4 @@ std::optional<Number> parse_number(std::string_view word) {
 /// non-numbers.
 std::optional<double> parse_real(std::string_view word);
 
-}  // namespace penumbra::mesh
+}  // namespace penumbra::import

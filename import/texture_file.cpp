@@ -16,7 +16,7 @@
 #include <string>
 #include <vector>
 
-namespace penumbra::scenes {
+namespace penumbra::import {
 namespace {
 
 constexpr std::array kPngMark = {std::byte{0x89}, std::byte{'P'}, std::byte{'N'}, std::byte{'G'}};
@@ -68,28 +68,28 @@ LinearImage read_exr_picture(std::span<const std::byte> bytes, const std::string
 
 }  // namespace
 
-Texture read_texture_file(const mesh::InputFile& input) {
+scenes::Texture read_texture_file(const mesh::InputFile& input) {
   const std::string content = read_bytes(input, kMostBytes);
   const std::span<const std::byte> bytes = std::as_bytes(std::span(content));
   const bool is_png = begins_with(bytes, kPngMark);
   if (!is_png && !begins_with(bytes, kExrMark)) {
     throw InputError("it is neither a PNG nor an OpenEXR picture; a texture is one of the two");
   }
-  LinearImage image = is_png ? decode_linear_png(bytes, kLargestTextureSide)
-                             : read_exr_picture(bytes, input.name.string(), kLargestTextureSide);
+  LinearImage image = is_png ? decode_linear_png(bytes, scenes::kLargestTextureSide)
+                             : read_exr_picture(bytes, input.name.string(), scenes::kLargestTextureSide);
   return {{}, image.width, image.height, std::move(image.pixels)};
 }
 
-Texture read_sky_file(const mesh::InputFile& input) {
+scenes::Texture read_sky_file(const mesh::InputFile& input) {
   const std::string content = read_bytes(input, kMostSkyBytes);
   const std::span<const std::byte> bytes = std::as_bytes(std::span(content));
   const bool is_png = begins_with(bytes, kPngMark), is_exr = begins_with(bytes, kExrMark);
   if (!is_png && !is_exr && !is_rgbe(bytes))
     throw InputError("it is no Radiance (.hdr), OpenEXR or PNG picture; the picture of a dome is one of these");
-  LinearImage image = is_png   ? decode_linear_png(bytes, kLargestSkySide)
-                      : is_exr ? read_exr_picture(bytes, input.name.string(), kLargestSkySide)
-                               : decode_rgbe(bytes, kLargestSkySide);
+  LinearImage image = is_png   ? decode_linear_png(bytes, scenes::kLargestSkySide)
+                      : is_exr ? read_exr_picture(bytes, input.name.string(), scenes::kLargestSkySide)
+                               : decode_rgbe(bytes, scenes::kLargestSkySide);
   return {{}, image.width, image.height, std::move(image.pixels)};
 }
 
-}  // namespace penumbra::scenes
+}  // namespace penumbra::import

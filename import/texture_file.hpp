@@ -4,13 +4,13 @@
 #include "scenes/light_texture.hpp"
 
 /// Runs inside the import helper only: pictures are foreign files, too.
-namespace penumbra::scenes {
+namespace penumbra::import {
 
 /// Reads a texture as described at read_texture (scenes/light_texture.hpp), without the file's name in messages and
 /// without check_texture.
-Texture read_texture_file(const mesh::InputFile& input);
+scenes::Texture read_texture_file(const mesh::InputFile& input);
 
 /// Reads a sky as described at read_sky_picture, without the file's name in messages.
-Texture read_sky_file(const mesh::InputFile& input);
+scenes::Texture read_sky_file(const mesh::InputFile& input);
 
-}  // namespace penumbra::scenes
+}  // namespace penumbra::import

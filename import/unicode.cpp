@@ -9,7 +9,7 @@
 #include <optional>
 #include <string_view>
 
-namespace penumbra::mesh {
+namespace penumbra::import {
 namespace {
 
 /// Extensions of formats that are text, or are text unless they begin with something else than a byte order mark.
@@ -89,4 +89,4 @@ std::string utf8_content(std::string content, const std::string& extension, cons
   return content;
 }
 
-}  // namespace penumbra::mesh
+}  // namespace penumbra::import

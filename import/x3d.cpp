@@ -16,7 +16,7 @@
 #include <string>
 #include <vector>
 
-namespace penumbra::mesh {
+namespace penumbra::import {
 namespace {
 
 /// Nodes whose children are shown unchanged, regardless of other effects (Collision and Billboard for a moving camera).
@@ -41,7 +41,7 @@ class X3dReader {
   explicit X3dReader(const XmlText& xml)
       : xml_(xml), resolve_([this](const pugi::xml_node& node) { return resolved(node); }) {}
 
-  ImportedMesh read() {
+  mesh::ImportedMesh read() {
     const pugi::xml_node x3d = xml_.document().document_element();
     if (local_name(x3d) != "X3D") xml_.fail(x3d, "the outermost element is <{}>; expected <X3D>", x3d.name());
     const pugi::xml_node scene = x3d.child("Scene");
@@ -56,7 +56,7 @@ class X3dReader {
     }
     require_all_shapes();
     const glm::dmat4 placement = glm::scale(glm::dmat4(1), glm::dvec3(metres_));
-    ImportedMesh mesh = assemble(parts_, std::array{PlacedPart{root, placement}}, xml_.file(), listed(lines_));
+    mesh::ImportedMesh mesh = assemble(parts_, std::array{PlacedPart{root, placement}}, xml_.file(), listed(lines_));
     if (metres_ != 1) mesh.notes.push_back(fmt::format("a unit of {} m; positions times {}", metres_, metres_));
     if (curved_ > 0) {
       mesh.notes.push_back(
@@ -120,7 +120,7 @@ class X3dReader {
       if (found != named.end()) {
         uses_.emplace(node.hash_value(), found->second);
       } else if (missing_.insert(node.hash_value()).second && first_missing_.empty()) {
-        first_missing_ = fmt::format("the first is '{}' of a <{}>", printable(use.value()), local_name(node));
+        first_missing_ = fmt::format("the first is '{}' of a <{}>", mesh::printable(use.value()), local_name(node));
       }
       return;
     }
@@ -144,7 +144,7 @@ class X3dReader {
   /// Resolves the USE of a node that shows or contains surfaces; throws if it refers to none.
   [[nodiscard]] pugi::xml_node resolved(const pugi::xml_node& node) const {
     if (missing_.contains(node.hash_value()))
-      xml_.fail(node, "USE: there is no node '{}' before it", printable(node.attribute("USE").value()));
+      xml_.fail(node, "USE: there is no node '{}' before it", mesh::printable(node.attribute("USE").value()));
     const auto found = uses_.find(node.hash_value());
     return found == uses_.end() ? node : found->second;
   }
@@ -153,7 +153,7 @@ class X3dReader {
     const auto [known, is_new] = numbers_.emplace(node.hash_value(), parts_.size());
     if (is_new) {
       const char* name = node.attribute("DEF").value();
-      parts_.push_back({*name == '\0' ? fmt::format("a <{}>", node.name()) : fmt::format("'{}'", printable(name)),
+      parts_.push_back({*name == '\0' ? fmt::format("a <{}>", node.name()) : fmt::format("'{}'", mesh::printable(name)),
                         {},
                         {},
                         {},
@@ -291,7 +291,7 @@ class X3dReader {
   static std::string listed(const Counts& counts) {
     std::string list;
     for (const auto& [name, count] : counts)
-      list += fmt::format("{}{} {}", list.empty() ? "" : ", ", count, printable(name));
+      list += fmt::format("{}{} {}", list.empty() ? "" : ", ", count, mesh::printable(name));
     return list;
   }
 
@@ -311,8 +311,8 @@ class X3dReader {
 
 }  // namespace
 
-ImportedMesh read_x3d(std::string_view content, const std::string& file) {
+mesh::ImportedMesh read_x3d(std::string_view content, const std::string& file) {
   return X3dReader(XmlText(content, file)).read();
 }
 
-}  // namespace penumbra::mesh
+}  // namespace penumbra::import

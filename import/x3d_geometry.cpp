@@ -13,7 +13,7 @@
 #include <numbers>
 #include <span>
 
-namespace penumbra::mesh {
+namespace penumbra::import {
 namespace {
 
 /// Returns the next word between blanks and commas; empty at the end.
@@ -38,7 +38,7 @@ std::vector<std::int32_t> integers(const XmlText& xml, const pugi::xml_node& nod
   std::string_view text = node.attribute(name).value();
   for (std::string_view word; !(word = take_value(text)).empty();) {
     const auto value = parse_number<std::int32_t>(word);
-    if (!value) xml.fail(node, "{}: '{}' is no integer of 32 bits", name, printable(word));
+    if (!value) xml.fail(node, "{}: '{}' is no integer of 32 bits", name, mesh::printable(word));
     values.push_back(*value);
   }
   return values;
@@ -380,4 +380,4 @@ X3dGeometry add_x3d_geometry(const XmlText& xml, const pugi::xml_node& node, con
   return kind->kind;
 }
 
-}  // namespace penumbra::mesh
+}  // namespace penumbra::import

@@ -6,7 +6,7 @@
 #include <functional>
 #include <string_view>
 
-namespace penumbra::mesh {
+namespace penumbra::import {
 
 /// Kind of an X3D geometry node.
 enum class X3dGeometry {
@@ -31,4 +31,4 @@ std::vector<double> x3d_reals(const XmlText& xml, const pugi::xml_node& node, co
 std::vector<double> x3d_reals(const XmlText& xml, const pugi::xml_node& node, const char* name,
                               std::vector<double> fallback);
 
-}  // namespace penumbra::mesh
+}  // namespace penumbra::import

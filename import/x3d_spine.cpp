@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cstddef>
 
-namespace penumbra::mesh {
+namespace penumbra::import {
 
 std::vector<glm::dmat3> x3d_planes_across(const std::vector<glm::dvec3>& spine) {
   const std::size_t count = spine.size();
@@ -48,4 +48,4 @@ std::vector<glm::dmat3> x3d_planes_across(const std::vector<glm::dvec3>& spine) 
   return planes;
 }
 
-}  // namespace penumbra::mesh
+}  // namespace penumbra::import

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace penumbra::mesh {
+namespace penumbra::import {
 namespace {
 
 std::string_view without_prefix(std::string_view name) {
@@ -65,7 +65,8 @@ std::vector<pugi::xml_node> children_named(const pugi::xml_node& node, std::stri
 void note_print_unit(const pugi::xml_node& root, std::vector<std::string>& notes) {
   const std::string_view unit = root.attribute("unit").value();
   if (unit.empty() || unit == "millimeter") return;
-  std::string note = fmt::format("the file's unit is '{}': positions are its numbers as they stand", printable(unit));
+  std::string note =
+      fmt::format("the file's unit is '{}': positions are its numbers as they stand", mesh::printable(unit));
   if (std::ranges::find(notes, note) == notes.end()) notes.push_back(std::move(note));
 }
 
@@ -76,4 +77,4 @@ pugi::xml_attribute attribute_named(const pugi::xml_node& node, std::string_view
   return {};
 }
 
-}  // namespace penumbra::mesh
+}  // namespace penumbra::import

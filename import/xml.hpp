@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-namespace penumbra::mesh {
+namespace penumbra::import {
 
 /// An XML text with places for messages; used by the AMF, 3MF and X3D readers. Internal to this room. pugixml expands
 /// no entities that a file defines and opens no files.
@@ -58,4 +58,4 @@ void note_print_unit(const pugi::xml_node& root, std::vector<std::string>& notes
 /// Returns the attribute of that name, regardless of its prefix.
 pugi::xml_attribute attribute_named(const pugi::xml_node& node, std::string_view name);
 
-}  // namespace penumbra::mesh
+}  // namespace penumbra::import

@@ -12,7 +12,7 @@
 #include <cstddef>
 #include <optional>
 
-namespace penumbra::mesh {
+namespace penumbra::import {
 namespace {
 
 /// Deflate reduces data by a factor of 1032 at most: an entry that claims more is invalid, and must not be allocated.
@@ -148,4 +148,4 @@ std::string ZipArchive::inflated(std::string_view packed, std::uint64_t size) {
   return content;
 }
 
-}  // namespace penumbra::mesh
+}  // namespace penumbra::import

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-namespace penumbra::mesh {
+namespace penumbra::import {
 
 /// A zip archive in memory. Every failure is an InputError with the names of the archive and the entry.
 class ZipArchive {
@@ -37,4 +37,4 @@ class ZipArchive {
   std::vector<Entry> entries_;  ///< in the order of `names_`
 };
 
-}  // namespace penumbra::mesh
+}  // namespace penumbra::import

@@ -11,7 +11,7 @@
 #include <limits>
 #include <string>
 
-namespace penumbra::scenes {
+namespace penumbra::import {
 namespace {
 
 /// Returns whether the shape is a circle, up to the rounding of a transform in single precision.
@@ -22,7 +22,7 @@ bool is_round(const glm::dvec3& u, const glm::dvec3& v) {
 
 }  // namespace
 
-std::optional<AreaLight> area_lamp_of(const tinygltf::Node& node, const PlacedNode& placed, Losses& losses) {
+std::optional<scenes::AreaLight> area_lamp_of(const tinygltf::Node& node, const PlacedNode& placed, scenes::Losses& losses) {
   if (!node.extras.IsObject() || !node.extras.Has("areaLamp")) return std::nullopt;
   const std::string place = fmt::format("/nodes/{}/extras/areaLamp", placed.number);
   const tinygltf::Value& lamp = node.extras.Get("areaLamp");
@@ -39,21 +39,21 @@ std::optional<AreaLight> area_lamp_of(const tinygltf::Node& node, const PlacedNo
   const glm::dvec3 along = -glm::dvec3(placed.to_world[2]);
   if (!(glm::length(glm::cross(u, v)) > 0)) throw InputError("{}: it has no area in the world", place);
   if (glm::dot(glm::cross(u, v), along) < 0) v = -v;  // the light must shine along u × v
-  AreaLight light;
+  scenes::AreaLight light;
   light.radiance = {radiance[0], radiance[1], radiance[2]};
   const tinygltf::Value& shape = lamp.Get("shape");
   const std::string kind = shape.IsString() ? shape.Get<std::string>() : "";
   if (kind == "rectangle") {
-    light.shape = Rectangle{center, u, v};
+    light.shape = scenes::Rectangle{center, u, v};
   } else if (kind == "ellipse") {
     if (is_round(u, v))
-      light.shape = Disk{center, glm::normalize(glm::cross(u, v)), glm::length(u)};
+      light.shape = scenes::Disk{center, glm::normalize(glm::cross(u, v)), glm::length(u)};
     else
-      light.shape = Ellipse{center, u, v};
+      light.shape = scenes::Ellipse{center, u, v};
   } else {
     throw InputError("{}/shape: expected \"rectangle\" or \"ellipse\"", place);
   }
   return light;
 }
 
-}  // namespace penumbra::scenes
+}  // namespace penumbra::import

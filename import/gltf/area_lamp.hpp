@@ -10,13 +10,14 @@ namespace tinygltf {
 class Node;
 }
 
-namespace penumbra::scenes {
+namespace penumbra::import {
 
 /// Returns the area lamp that a node's extras describe (glTF has none), without a name. "areaLamp": {"shape":
 /// "rectangle" or "ellipse", "size": [width, height] along the node's X and Y, "radiance": [red, green, blue]}. The
 /// lamp lies in the node's XY plane around its origin, rotated and scaled by the node's transform, and shines along −Z;
 /// it is invisible and occludes nothing. Extras that lack one of the three keys belong to another tool, and are added
 /// to the losses. Throws InputError for invalid values, and for a lamp without area after the transform.
-std::optional<AreaLight> area_lamp_of(const tinygltf::Node& node, const PlacedNode& placed, Losses& losses);
+std::optional<scenes::AreaLight> area_lamp_of(const tinygltf::Node& node, const PlacedNode& placed,
+                                              scenes::Losses& losses);
 
-}  // namespace penumbra::scenes
+}  // namespace penumbra::import

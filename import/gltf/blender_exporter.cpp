@@ -7,7 +7,7 @@
 #include <optional>
 #include <string_view>
 
-namespace penumbra::scenes {
+namespace penumbra::import {
 namespace {
 
 constexpr std::string_view kGenerator = "Khronos glTF Blender I/O";
@@ -40,4 +40,4 @@ bool writes_watts(const tinygltf::Model& model) {
   return version && *version < std::array{3, 4, 36};
 }
 
-}  // namespace penumbra::scenes
+}  // namespace penumbra::import

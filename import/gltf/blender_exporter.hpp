@@ -4,7 +4,7 @@ namespace tinygltf {
 class Model;
 }
 
-namespace penumbra::scenes {
+namespace penumbra::import {
 
 /// Returns whether Blender's exporter wrote the file, which uses some features in its own sense.
 bool is_from_blender(const tinygltf::Model& model);
@@ -14,4 +14,4 @@ bool is_from_blender(const tinygltf::Model& model);
 /// lux, 683 lumens to a watt.
 bool writes_watts(const tinygltf::Model& model);
 
-}  // namespace penumbra::scenes
+}  // namespace penumbra::import

@@ -13,7 +13,7 @@
 #include <string>
 #include <utility>
 
-namespace penumbra::scenes {
+namespace penumbra::import {
 namespace {
 
 /// Returns the rotation in degrees about `up` of a dome whose picture has +X's side at `right` (both unit, at right
@@ -33,7 +33,7 @@ bool is_true(const tinygltf::Value& dome, const char* key, const std::string& pl
 
 }  // namespace
 
-std::optional<AreaLight> dome_of(const tinygltf::Node& node, const PlacedNode& placed, Losses& losses) {
+std::optional<scenes::AreaLight> dome_of(const tinygltf::Node& node, const PlacedNode& placed, scenes::Losses& losses) {
   if (!node.extras.IsObject() || !node.extras.Has("dome")) return std::nullopt;
   const std::string place = fmt::format("/nodes/{}/extras/dome", placed.number);
   const tinygltf::Value& value = node.extras.Get("dome");
@@ -44,7 +44,7 @@ std::optional<AreaLight> dome_of(const tinygltf::Node& node, const PlacedNode& p
   const auto radiance = list_of_extras(value, "radiance", 3, 0, place);
   const glm::dmat3 axes(placed.to_world);
   if (!(glm::determinant(axes) > 0)) throw InputError("{}: its transform is a mirror, or leaves it no axes", place);
-  Dome dome;
+  scenes::Dome dome;
   dome.up = glm::normalize(axes[1]);
   dome.rotate = turn_of(dome.up, glm::normalize(axes[0] - glm::dot(axes[0], dome.up) * dome.up));
   dome.half = is_true(value, "half", place);
@@ -52,11 +52,11 @@ std::optional<AreaLight> dome_of(const tinygltf::Node& node, const PlacedNode& p
     if (!value.Get("image").IsString()) throw InputError("{}/image: expected the name of a file", place);
     dome.image = value.Get("image").Get<std::string>();
   }
-  AreaLight light;
+  scenes::AreaLight light;
   light.radiance = {radiance[0], radiance[1], radiance[2]};
   light.visible = is_true(value, "visible", place);
   light.shape = std::move(dome);
   return light;
 }
 
-}  // namespace penumbra::scenes
+}  // namespace penumbra::import

@@ -11,7 +11,7 @@
 #include <cstddef>
 #include <limits>
 
-namespace penumbra::scenes {
+namespace penumbra::import {
 namespace {
 
 /// A convex outline with few corners.
@@ -73,7 +73,7 @@ Range cells_of(const Outline& outline, glm::length_t axis) {
 
 class Texels {
  public:
-  Texels(const Picture& picture, const PictureUse& use) : picture_(picture), use_(use) {}
+  Texels(const scenes::Picture& picture, const scenes::PictureUse& use) : picture_(picture), use_(use) {}
   /// Returns the colour of the cell that begins at (x, y), in whole texels from the picture's top left.
   [[nodiscard]] glm::dvec3 at(double x, double y) const {
     static const std::array<double, 256> linear = [] {
@@ -81,14 +81,14 @@ class Texels {
       for (std::size_t i = 0; i < values.size(); ++i) values[i] = linear_of_srgb(static_cast<double>(i) / 255);
       return values;
     }();
-    const auto& texel = picture_.texels[texel_number(y, picture_.height, use_.wrap_t) * picture_.width +
-                                        texel_number(x, picture_.width, use_.wrap_s)];
+    const auto& texel = picture_.texels[scenes::texel_number(y, picture_.height, use_.wrap_t) * picture_.width +
+                                        scenes::texel_number(x, picture_.width, use_.wrap_s)];
     return {linear[texel[0]], linear[texel[1]], linear[texel[2]]};
   }
 
  private:
-  const Picture& picture_;
-  const PictureUse& use_;
+  const scenes::Picture& picture_;
+  const scenes::PictureUse& use_;
 };
 
 /// Samples at the centres of steps² equal parts.
@@ -144,7 +144,7 @@ void add_row(const Texels& texels, Outline row, double y, Sum& sum) {
 
 }  // namespace
 
-glm::dvec3 PictureMeans::over(const PictureUse& use, std::span<const PicturedTriangle> triangles) {
+glm::dvec3 PictureMeans::over(const scenes::PictureUse& use, std::span<const PicturedTriangle> triangles) {
   glm::dvec3 sum(0);
   double area = 0;
   for (const PicturedTriangle& triangle : triangles) {
@@ -162,8 +162,8 @@ glm::dvec3 PictureMeans::over(const PictureUse& use, std::span<const PicturedTri
   return area > 0 ? sum / area : glm::dvec3(0);
 }
 
-glm::dvec3 PictureMeans::of_triangle(const PictureUse& use, const std::array<glm::dvec2, 3>& places) {
-  const Picture& picture = pictures_[use.picture];
+glm::dvec3 PictureMeans::of_triangle(const scenes::PictureUse& use, const std::array<glm::dvec2, 3>& places) {
+  const scenes::Picture& picture = pictures_[use.picture];
   const Texels texels(picture, use);
   const glm::dvec2 size(picture.width, picture.height);
   Outline triangle;
@@ -179,7 +179,7 @@ glm::dvec3 PictureMeans::of_triangle(const PictureUse& use, const std::array<glm
   }
   // A repeating picture, mirrored or not, is unchanged by a shift of whole periods.
   for (glm::length_t axis = 0; axis < 2; ++axis) {
-    if ((axis == 0 ? use.wrap_s : use.wrap_t) == PictureUse::Wrap::clamp) continue;
+    if ((axis == 0 ? use.wrap_s : use.wrap_t) == scenes::PictureUse::Wrap::clamp) continue;
     const double periods = 2 * size[axis] * std::floor(range_of(triangle, axis).first / (2 * size[axis]));
     for (std::size_t k = 0; k < 3; ++k) triangle.corners[k][axis] -= periods;
   }
@@ -205,4 +205,4 @@ glm::dvec3 PictureMeans::of_triangle(const PictureUse& use, const std::array<glm
   return sum.area > 0 ? sum.color / sum.area : at_middle;
 }
 
-}  // namespace penumbra::scenes
+}  // namespace penumbra::import

@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-namespace penumbra::scenes {
+namespace penumbra::import {
 
 /// A triangle with its place in a picture.
 struct PicturedTriangle {
@@ -26,20 +26,20 @@ struct PicturedTriangle {
 class PictureMeans {
  public:
   /// `pictures` must outlive this object, and may grow.
-  explicit PictureMeans(const std::vector<Picture>& pictures) : pictures_(pictures) {}
+  explicit PictureMeans(const std::vector<scenes::Picture>& pictures) : pictures_(pictures) {}
 
   /// Returns the mean of the texels (linear red green blue) that the triangles cover, each weighted by its area in the
   /// world. Black for triangles without area.
-  glm::dvec3 over(const PictureUse& use, std::span<const PicturedTriangle> triangles);
+  glm::dvec3 over(const scenes::PictureUse& use, std::span<const PicturedTriangle> triangles);
 
  private:
-  glm::dvec3 of_triangle(const PictureUse& use, const std::array<glm::dvec2, 3>& places);
+  glm::dvec3 of_triangle(const scenes::PictureUse& use, const std::array<glm::dvec2, 3>& places);
 
-  const std::vector<Picture>& pictures_;
+  const std::vector<scenes::Picture>& pictures_;
   double cells_left_ = 1 << 27;
   /// Means of triangles computed before, by picture, wrap modes and coordinates: many lamps share one picture and the
   /// places in it.
   std::map<std::array<double, 9>, glm::dvec3> known_;
 };
 
-}  // namespace penumbra::scenes
+}  // namespace penumbra::import

@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <limits>
 
-namespace penumbra::scenes {
+namespace penumbra::import {
 namespace {
 
 constexpr std::size_t kHeader = 12, kChunkHeader = 8;
@@ -100,4 +100,4 @@ std::string glb_of(std::string_view json, std::string_view binary) {
   return bytes;
 }
 
-}  // namespace penumbra::scenes
+}  // namespace penumbra::import

@@ -3,7 +3,7 @@
 #include <string>
 #include <string_view>
 
-namespace penumbra::scenes {
+namespace penumbra::import {
 
 /// Content of a GLB file, as views into its bytes.
 struct GlbChunks {
@@ -22,4 +22,4 @@ GlbChunks glb_chunks(std::string_view bytes, const std::string& file);
 /// Returns a strict GLB of these chunks.
 std::string glb_of(std::string_view json, std::string_view binary);
 
-}  // namespace penumbra::scenes
+}  // namespace penumbra::import

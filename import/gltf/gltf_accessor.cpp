@@ -14,7 +14,7 @@
 
 // Checks, in 64 bits, every property of an accessor that refers to its buffer: tinygltf checks almost none.
 
-namespace penumbra::scenes {
+namespace penumbra::import {
 namespace {
 
 /// Equally spaced elements inside a buffer, all in range.
@@ -257,4 +257,4 @@ std::vector<std::uint32_t> read_indices(const tinygltf::Model& model, int number
   return indices;
 }
 
-}  // namespace penumbra::scenes
+}  // namespace penumbra::import

@@ -13,7 +13,7 @@ namespace tinygltf {
 class Model;
 }
 
-namespace penumbra::scenes {
+namespace penumbra::import {
 
 /// All components of all elements of an accessor, one element after the other.
 struct Numbers {
@@ -40,4 +40,4 @@ std::span<const unsigned char> read_view(const tinygltf::Model& model, int view,
 /// Reads an index accessor: unsigned integers of 1, 2 or 4 bytes.
 std::vector<std::uint32_t> read_indices(const tinygltf::Model& model, int accessor);
 
-}  // namespace penumbra::scenes
+}  // namespace penumbra::import

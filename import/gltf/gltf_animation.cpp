@@ -14,7 +14,7 @@
 #include <span>
 #include <utility>
 
-namespace penumbra::scenes {
+namespace penumbra::import {
 namespace {
 
 enum class Interpolation { linear, step, cubic };
@@ -131,16 +131,16 @@ std::vector<double> value_at(const Channel& channel, double seconds) {
 
 }  // namespace
 
-std::optional<Motion> motion_of(const tinygltf::Model& model, const std::vector<std::size_t>& played) {
-  std::optional<Motion> motion;
+std::optional<scenes::Motion> motion_of(const tinygltf::Model& model, const std::vector<std::size_t>& played) {
+  std::optional<scenes::Motion> motion;
   for (const std::size_t a : played) {
     const tinygltf::Animation& animation = model.animations[a];
     for (const tinygltf::AnimationChannel& channel : animation.channels) {
       const std::string place = fmt::format("/animations/{}/samplers/{}", a, channel.sampler);
       const auto& sampler = element(animation.samplers, channel.sampler, place, "sampler");
       const std::vector<double> times = key_times(model, sampler.input, place);
-      if (!motion) motion = Motion{times.front(), times.back()};
-      motion = Motion{std::min(motion->first, times.front()), std::max(motion->last, times.back())};
+      if (!motion) motion = scenes::Motion{times.front(), times.back()};
+      motion = scenes::Motion{std::min(motion->first, times.front()), std::max(motion->last, times.back())};
     }
   }
   return motion;
@@ -176,4 +176,4 @@ void pose_model(tinygltf::Model& model, double seconds, const std::vector<std::s
   }
 }
 
-}  // namespace penumbra::scenes
+}  // namespace penumbra::import

@@ -10,11 +10,11 @@ namespace tinygltf {
 class Model;
 }
 
-namespace penumbra::scenes {
+namespace penumbra::import {
 
 /// Returns begin and end of the animations `played`; nullopt if nothing in them moves. Throws InputError for key times
 /// that glTF does not allow.
-std::optional<Motion> motion_of(const tinygltf::Model& model, const std::vector<std::size_t>& played);
+std::optional<scenes::Motion> motion_of(const tinygltf::Model& model, const std::vector<std::size_t>& played);
 
 /// Moves the model's nodes to their places at `seconds` in the animations `played` (ascending indices,
 /// ClipChoice::played): all together, as in the program that wrote the file. A channel holds its value before its first
@@ -23,4 +23,4 @@ std::optional<Motion> motion_of(const tinygltf::Model& model, const std::vector<
 /// the later in the file wins. Throws InputError for files that glTF does not allow.
 void pose_model(tinygltf::Model& model, double seconds, const std::vector<std::size_t>& played);
 
-}  // namespace penumbra::scenes
+}  // namespace penumbra::import

@@ -13,7 +13,7 @@
 #include <limits>
 #include <optional>
 
-namespace penumbra::scenes {
+namespace penumbra::import {
 
 namespace {
 
@@ -27,12 +27,12 @@ std::optional<glm::dvec2> shift_of(const tinygltf::Value& pair) {
 
 /// Reads the extras "aperture" and "focusDistance" (ThinLens), since glTF has no lenses; returns nullopt unless both
 /// are lengths above 0: other values belong to another tool.
-std::optional<ThinLens> lens_of(const tinygltf::Value& extras) {
+std::optional<scenes::ThinLens> lens_of(const tinygltf::Value& extras) {
   const auto length = [&](const char* key) {
     const tinygltf::Value& value = extras.Get(key);
     return value.IsNumber() ? value.GetNumberAsDouble() : 0.0;
   };
-  const ThinLens lens{length("aperture"), length("focusDistance")};
+  const scenes::ThinLens lens{length("aperture"), length("focusDistance")};
   const auto is_length = [](double x) { return x > 0 && std::isfinite(x); };
   if (!is_length(lens.radius) || !is_length(lens.focus_distance)) return std::nullopt;
   return lens;
@@ -40,7 +40,8 @@ std::optional<ThinLens> lens_of(const tinygltf::Value& extras) {
 
 }  // namespace
 
-Camera camera_of(const tinygltf::Model& model, const tinygltf::Node& node, const PlacedNode& placed, Losses& losses) {
+scenes::Camera camera_of(const tinygltf::Model& model, const tinygltf::Node& node, const PlacedNode& placed,
+                         scenes::Losses& losses) {
   if (static_cast<std::size_t>(node.camera) >= model.cameras.size()) {
     throw InputError("/nodes/{}/camera: camera {} does not exist; there are {}", placed.number, node.camera,
                      model.cameras.size());
@@ -59,7 +60,7 @@ Camera camera_of(const tinygltf::Model& model, const tinygltf::Node& node, const
   if (!(glm::length(glm::cross(forward, up)) > 0)) {
     throw InputError("/nodes/{}: its transform squashes the camera flat", placed.number);
   }
-  Camera camera;
+  scenes::Camera camera;
   camera.eye = glm::dvec3(placed.to_world[3]);
   camera.target = camera.eye + glm::normalize(forward);
   camera.up = glm::normalize(up);
@@ -84,4 +85,4 @@ Camera camera_of(const tinygltf::Model& model, const tinygltf::Node& node, const
   return camera;
 }
 
-}  // namespace penumbra::scenes
+}  // namespace penumbra::import

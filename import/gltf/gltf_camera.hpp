@@ -12,10 +12,11 @@ namespace tinygltf {
 class Node;
 }
 
-namespace penumbra::scenes {
+namespace penumbra::import {
 
 /// Returns a node's camera, perspective or orthographic, without a name. Throws InputError for a camera that does not
 /// exist, or that shows nothing.
-Camera camera_of(const tinygltf::Model& model, const tinygltf::Node& node, const PlacedNode& placed, Losses& losses);
+scenes::Camera camera_of(const tinygltf::Model& model, const tinygltf::Node& node, const PlacedNode& placed,
+                         scenes::Losses& losses);
 
-}  // namespace penumbra::scenes
+}  // namespace penumbra::import

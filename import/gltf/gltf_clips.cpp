@@ -12,7 +12,7 @@
 #include <span>
 #include <utility>
 
-namespace penumbra::scenes {
+namespace penumbra::import {
 namespace {
 
 using Moved = std::set<std::pair<int, std::string>>;
@@ -77,4 +77,4 @@ std::string names_of_clips(const tinygltf::Model& model, const std::vector<std::
   return names;
 }
 
-}  // namespace penumbra::scenes
+}  // namespace penumbra::import

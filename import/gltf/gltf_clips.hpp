@@ -8,7 +8,7 @@ namespace tinygltf {
 class Model;
 }
 
-namespace penumbra::scenes {
+namespace penumbra::import {
 
 /// Selection of the model's animations.
 struct ClipChoice {
@@ -30,4 +30,4 @@ std::vector<std::size_t> all_clips(const tinygltf::Model& model);
 /// Returns "0 'Walk', 1 'Run'": indices and names of these animations.
 std::string names_of_clips(const tinygltf::Model& model, const std::vector<std::size_t>& clips);
 
-}  // namespace penumbra::scenes
+}  // namespace penumbra::import

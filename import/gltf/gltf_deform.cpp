@@ -11,7 +11,7 @@
 #include <cmath>
 #include <cstddef>
 
-namespace penumbra::scenes {
+namespace penumbra::import {
 namespace {
 
 std::vector<double> weights_of(const tinygltf::Model& model, const tinygltf::Node& node) {
@@ -110,4 +110,4 @@ std::optional<Skinned> skin(const tinygltf::Model& model, const MeshNode& owner,
   return skinned;
 }
 
-}  // namespace penumbra::scenes
+}  // namespace penumbra::import

@@ -15,7 +15,7 @@ class Node;
 struct Primitive;
 }  // namespace tinygltf
 
-namespace penumbra::scenes {
+namespace penumbra::import {
 
 /// Adds a primitive's morph targets to its vertices (glTF 2.0, 3.7.2.2), each by its weight: the node's, or else the
 /// mesh's, or else 0. `attribute` is the attribute's name ("POSITION"). Throws InputError for targets that do not fit.
@@ -42,4 +42,4 @@ struct MeshNode {
 std::optional<Skinned> skin(const tinygltf::Model& model, const MeshNode& owner, const tinygltf::Primitive& primitive,
                             const std::string& place, std::span<const std::optional<glm::dmat4>> to_world);
 
-}  // namespace penumbra::scenes
+}  // namespace penumbra::import

@@ -9,7 +9,7 @@
 #include <limits>
 #include <vector>
 
-namespace penumbra::scenes {
+namespace penumbra::import {
 
 glm::dvec3 radiance_of(const PrimitiveVertices& vertices, std::span<const mesh::Triangle> triangles,
                        PictureMeans& means) {
@@ -29,8 +29,8 @@ glm::dvec3 radiance_of(const PrimitiveVertices& vertices, std::span<const mesh::
   return look.radiance * means.over(*look.emission, pictured);
 }
 
-std::variant<Emitter, std::string> emitter_since(const Scene& scene, const SoupEnd& before, const PlacedNode& placed,
-                                                 bool two_sided) {
+std::variant<Emitter, std::string> emitter_since(const scenes::Scene& scene, const SoupEnd& before,
+                                                 const PlacedNode& placed, bool two_sided) {
   // Files store single precision: a position is rounded by half the spacing of floats at its distance from the node's
   // origin, and so is each coordinate; the rounding of the transform in double is negligible.
   const auto positions = std::span(scene.soup.positions).subspan(before.position);
@@ -46,4 +46,4 @@ std::variant<Emitter, std::string> emitter_since(const Scene& scene, const SoupE
   return recognise_emitter(positions, body, two_sided, rounding);
 }
 
-}  // namespace penumbra::scenes
+}  // namespace penumbra::import

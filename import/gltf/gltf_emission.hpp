@@ -11,7 +11,7 @@
 #include <string>
 #include <variant>
 
-namespace penumbra::scenes {
+namespace penumbra::import {
 
 /// Returns the uniform radiance that a primitive emits: its material's radiance times the mean of its emissive picture
 /// over the texels under its triangles (emissive_picture.hpp). `triangles` are those of the file, indices into its
@@ -21,7 +21,7 @@ glm::dvec3 radiance_of(const PrimitiveVertices& vertices, std::span<const mesh::
 
 /// Returns the light whose body is the scene's triangles since `before`, placed by `placed`; or the reason why there is
 /// none.
-std::variant<Emitter, std::string> emitter_since(const Scene& scene, const SoupEnd& before, const PlacedNode& placed,
-                                                 bool two_sided);
+std::variant<Emitter, std::string> emitter_since(const scenes::Scene& scene, const SoupEnd& before,
+                                                 const PlacedNode& placed, bool two_sided);
 
-}  // namespace penumbra::scenes
+}  // namespace penumbra::import

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <utility>
 
-namespace penumbra::scenes {
+namespace penumbra::import {
 namespace {
 
 constexpr std::array<std::string_view, 12> kUnderstood{
@@ -87,7 +87,8 @@ bool is_known(const std::string& extension) {
 
 }  // namespace
 
-void judge_extensions(const tinygltf::Model& model, bool as_mesh, Losses& losses, std::vector<std::string>& warnings) {
+void judge_extensions(const tinygltf::Model& model, bool as_mesh, scenes::Losses& losses,
+                      std::vector<std::string>& warnings) {
   for (const std::string& extension : model.extensionsRequired) {
     if (!is_known(extension))
       losses.refuse("is an extension that the file requires (extensionsRequired) and that is not supported", extension);
@@ -103,4 +104,4 @@ void judge_extensions(const tinygltf::Model& model, bool as_mesh, Losses& losses
   if (!ignored.empty()) warnings.push_back("extensions ignored: " + ignored);
 }
 
-}  // namespace penumbra::scenes
+}  // namespace penumbra::import

@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-namespace penumbra::scenes {
+namespace penumbra::import {
 namespace {
 
 /// Returns the entry; null if there is none.
@@ -21,11 +21,11 @@ const tinygltf::Value* entry(const tinygltf::Value& extras, const char* key) {
   return extras.IsObject() && extras.Has(key) ? &extras.Get(key) : nullptr;
 }
 
-void mention_foreign(const char* key, const char* expected, const std::string& owner, Losses& losses) {
+void mention_foreign(const char* key, const char* expected, const std::string& owner, scenes::Losses& losses) {
   losses.mention(fmt::format("has extras \"{}\" of another tool (no {}), which are left out", key, expected), owner);
 }
 
-std::string text(const tinygltf::Value& extras, const char* key, const std::string& owner, Losses& losses) {
+std::string text(const tinygltf::Value& extras, const char* key, const std::string& owner, scenes::Losses& losses) {
   const tinygltf::Value* const value = entry(extras, key);
   if (value == nullptr) return {};
   if (value->IsString()) return value->Get<std::string>();
@@ -36,7 +36,7 @@ std::string text(const tinygltf::Value& extras, const char* key, const std::stri
 }  // namespace
 
 std::optional<bool> flag_of_extras(const tinygltf::Value& extras, const char* key, const std::string& owner,
-                                   Losses& losses) {
+                                   scenes::Losses& losses) {
   const tinygltf::Value* const value = entry(extras, key);
   if (value == nullptr) return std::nullopt;
   if (value->IsBool()) return value->Get<bool>();
@@ -46,7 +46,7 @@ std::optional<bool> flag_of_extras(const tinygltf::Value& extras, const char* ke
   return std::nullopt;
 }
 
-ObjectFlags flags_of(const tinygltf::Node& node, const tinygltf::Mesh& mesh, Losses& losses) {
+ObjectFlags flags_of(const tinygltf::Node& node, const tinygltf::Mesh& mesh, scenes::Losses& losses) {
   const auto read = [&](const char* key) {
     const auto own = flag_of_extras(node.extras, key, node.name, losses);
     return own ? *own : flag_of_extras(mesh.extras, key, mesh.name, losses).value_or(true);
@@ -56,12 +56,12 @@ ObjectFlags flags_of(const tinygltf::Node& node, const tinygltf::Mesh& mesh, Los
   return {read("castsShadow"), read("receivesShadow"), read("body"), std::move(light)};
 }
 
-bool lamp_casts_shadows(const tinygltf::Node& node, Losses& losses) {
+bool lamp_casts_shadows(const tinygltf::Node& node, scenes::Losses& losses) {
   return flag_of_extras(node.extras, "castsShadow", node.name, losses).value_or(true);
 }
 
 std::optional<double> number_of_extras(const tinygltf::Value& extras, const char* key, const std::string& owner,
-                                       Losses& losses) {
+                                       scenes::Losses& losses) {
   const tinygltf::Value* const value = entry(extras, key);
   if (value == nullptr) return std::nullopt;
   if (value->IsNumber()) return value->GetNumberAsDouble();
@@ -83,4 +83,4 @@ std::vector<double> list_of_extras(const tinygltf::Value& object, const char* ke
   return all;
 }
 
-}  // namespace penumbra::scenes
+}  // namespace penumbra::import

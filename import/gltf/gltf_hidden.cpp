@@ -18,7 +18,7 @@
 #include <string>
 #include <utility>
 
-namespace penumbra::scenes {
+namespace penumbra::import {
 namespace {
 
 bool is_emissive(const tinygltf::Model& model, const tinygltf::Primitive& primitive) {
@@ -102,4 +102,4 @@ std::optional<glm::dvec3> hidden_light(const tinygltf::Model& model, int number,
   return point;
 }
 
-}  // namespace penumbra::scenes
+}  // namespace penumbra::import

@@ -11,7 +11,7 @@ namespace tinygltf {
 class Model;
 }  // namespace tinygltf
 
-namespace penumbra::scenes {
+namespace penumbra::import {
 
 /// Returns each node's scale as stored in the file, before any animation.
 std::vector<std::vector<double>> rest_scales(const tinygltf::Model& model);
@@ -29,4 +29,4 @@ using Places = std::span<const std::optional<glm::dmat4>>;
 /// keying their scale to 0. All joints of a skinned mesh must be squashed.
 std::optional<glm::dvec3> hidden_light(const tinygltf::Model& model, int node, Places shown, Places unhidden);
 
-}  // namespace penumbra::scenes
+}  // namespace penumbra::import

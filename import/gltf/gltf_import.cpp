@@ -15,7 +15,7 @@
 #include <utility>
 #include <vector>
 
-namespace penumbra::scenes {
+namespace penumbra::import {
 namespace {
 
 /// Returns whether anything but nodes moves vertices.
@@ -28,8 +28,8 @@ bool bends(const tinygltf::Model& model) {
 
 /// Returns the time span of the played animations. A scene at rest does not show them, so that their faults are only
 /// warned of.
-std::optional<Motion> motion_for(const tinygltf::Model& model, const ClipChoice& clips, const ReadOptions& options,
-                                 std::vector<std::string>& warnings) {
+std::optional<scenes::Motion> motion_for(const tinygltf::Model& model, const ClipChoice& clips,
+                                         const scenes::ReadOptions& options, std::vector<std::string>& warnings) {
   if (options.time && !clips.others.empty()) {
     warnings.push_back(fmt::format("the clips {} move what {} moves, too, and are not played (--clip chooses)",
                                    names_of_clips(model, clips.others), names_of_clips(model, clips.played)));
@@ -43,14 +43,14 @@ std::optional<Motion> motion_for(const tinygltf::Model& model, const ClipChoice&
   }
 }
 
-Scene import_for(Purpose purpose, const mesh::InputFile& input, const ReadOptions& options) {
+scenes::Scene import_for(Purpose purpose, const mesh::InputFile& input, const scenes::ReadOptions& options) {
   tinygltf::Model model;
   const TakenOut taken_out = load_gltf_model(input, options, model);
   const std::string name = input.name.filename().string();
   try {
     std::vector<std::string> warnings;
     const ClipChoice clips = choose_clips(model, options.clips);
-    const std::optional<Motion> motion = motion_for(model, clips, options, warnings);
+    const std::optional<scenes::Motion> motion = motion_for(model, clips, options, warnings);
     std::optional<glm::dvec3> origin;
     if (bends(model) || (motion && options.time)) origin = middle_at_rest(model, {name, options});
     const auto scales = rest_scales(model);
@@ -74,12 +74,12 @@ Scene import_for(Purpose purpose, const mesh::InputFile& input, const ReadOption
 
 }  // namespace
 
-Scene import_gltf(const mesh::InputFile& input, const ReadOptions& options) {
+scenes::Scene import_gltf(const mesh::InputFile& input, const scenes::ReadOptions& options) {
   return import_for(options.needs_light ? Purpose::lit_scene : Purpose::any_scene, input, options);
 }
 
-mesh::ImportedMesh import_gltf_mesh(const mesh::InputFile& input, const ReadOptions& options) {
-  Scene scene = import_for(Purpose::mesh, input, options);
+mesh::ImportedMesh import_gltf_mesh(const mesh::InputFile& input, const scenes::ReadOptions& options) {
+  scenes::Scene scene = import_for(Purpose::mesh, input, options);
   mesh::ImportedMesh mesh{std::move(scene.soup), std::move(scene.warnings), {}};
   // Makes one object, whose faces are numbered consecutively.
   std::uint32_t number = 0;
@@ -95,4 +95,4 @@ bool is_gltf(const std::filesystem::path& file) {
   return extension == ".gltf" || extension == ".glb";
 }
 
-}  // namespace penumbra::scenes
+}  // namespace penumbra::import

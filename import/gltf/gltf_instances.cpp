@@ -13,7 +13,7 @@
 #include <span>
 #include <string>
 
-namespace penumbra::scenes {
+namespace penumbra::import {
 namespace {
 
 constexpr const char* kInstancing = "EXT_mesh_gpu_instancing";
@@ -64,4 +64,4 @@ std::optional<std::vector<glm::dmat4>> instances_of(const tinygltf::Model& model
   return instances;
 }
 
-}  // namespace penumbra::scenes
+}  // namespace penumbra::import

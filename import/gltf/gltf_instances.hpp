@@ -10,7 +10,7 @@ class Model;
 class Node;
 }  // namespace tinygltf
 
-namespace penumbra::scenes {
+namespace penumbra::import {
 
 /// EXT_mesh_gpu_instancing: returns the transforms from each instance of the node's mesh to the node. Returns nullopt
 /// for a node without the extension; an empty list if the extension has no attributes, which means no instance at all.
@@ -18,4 +18,4 @@ namespace penumbra::scenes {
 std::optional<std::vector<glm::dmat4>> instances_of(const tinygltf::Model& model, const tinygltf::Node& node,
                                                     int number);
 
-}  // namespace penumbra::scenes
+}  // namespace penumbra::import

@@ -22,7 +22,7 @@
 #include <string_view>
 #include <vector>
 
-namespace penumbra::scenes {
+namespace penumbra::import {
 namespace {
 
 /// Files that tinygltf may open, through the callbacks below.
@@ -177,7 +177,7 @@ nlohmann::json document_of(std::string_view text, const std::string& file, bool&
 
 }  // namespace
 
-TakenOut load_gltf_model(const mesh::InputFile& input, const ReadOptions& options, tinygltf::Model& model) {
+TakenOut load_gltf_model(const mesh::InputFile& input, const scenes::ReadOptions& options, tinygltf::Model& model) {
   const std::string name = input.name.string();
   std::string bytes = mesh::read_content(input.content.get(), name);
   if (bytes.size() > std::numeric_limits<std::uint32_t>::max()) throw InputError("{}: more than 4 GiB", name);
@@ -242,4 +242,4 @@ TakenOut load_gltf_model(const mesh::InputFile& input, const ReadOptions& option
   return taken_out;
 }
 
-}  // namespace penumbra::scenes
+}  // namespace penumbra::import

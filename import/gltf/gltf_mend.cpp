@@ -11,7 +11,7 @@
 #include <optional>
 #include <string_view>
 
-namespace penumbra::scenes {
+namespace penumbra::import {
 namespace {
 
 using nlohmann::json;
@@ -249,4 +249,4 @@ bool mend_gltf(json& document, const std::string& file, bool lenient, TakenOut& 
   return changed;
 }
 
-}  // namespace penumbra::scenes
+}  // namespace penumbra::import

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace penumbra::scenes {
+namespace penumbra::import {
 
 /// Parts of a file that were removed from its document before parsing; the scene reports them as warnings and errors.
 struct TakenOut {
@@ -35,4 +35,4 @@ struct TakenOut {
 /// document changed. `file` is its name, for messages.
 bool mend_gltf(nlohmann::json& document, const std::string& file, bool lenient, TakenOut& taken_out);
 
-}  // namespace penumbra::scenes
+}  // namespace penumbra::import

@@ -11,7 +11,7 @@
 #include <cmath>
 #include <limits>
 
-namespace penumbra::scenes {
+namespace penumbra::import {
 namespace {
 
 /// Returns whether a property exists; throws unless it has `wanted` finite numbers or none.
@@ -126,4 +126,4 @@ std::vector<PlacedNode> place_nodes(const tinygltf::Model& model, std::vector<st
   return placed;
 }
 
-}  // namespace penumbra::scenes
+}  // namespace penumbra::import

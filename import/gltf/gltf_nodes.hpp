@@ -9,7 +9,7 @@ namespace tinygltf {
 class Model;
 }
 
-namespace penumbra::scenes {
+namespace penumbra::import {
 
 struct PlacedNode {
   int number;  ///< index into the model's nodes
@@ -33,4 +33,4 @@ glm::dmat4 transform_of(const TransformParts& parts, const std::string& place);
 /// Throws InputError for a node that does not exist, has two parents or has an invalid transform.
 std::vector<PlacedNode> place_nodes(const tinygltf::Model& model, std::vector<std::string>& warnings);
 
-}  // namespace penumbra::scenes
+}  // namespace penumbra::import

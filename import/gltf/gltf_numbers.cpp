@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <limits>
 
-namespace penumbra::scenes {
+namespace penumbra::import {
 namespace {
 
 using nlohmann::json;
@@ -110,4 +110,4 @@ void check_gltf_numbers(const json& document, const std::string& file) {
   for (const std::string_view place : kSizes) check_place(document, place, "", {file, kAny});
 }
 
-}  // namespace penumbra::scenes
+}  // namespace penumbra::import

@@ -9,7 +9,7 @@
 #include <span>
 #include <utility>
 
-namespace penumbra::scenes {
+namespace penumbra::import {
 namespace {
 
 /// Returns the triangles of a primitive as indices into its vertices, with the windings of glTF 2.0, 3.7.2.1;
@@ -72,4 +72,4 @@ std::optional<PrimitiveMesh> read_primitive(const tinygltf::Model& model, const 
   return PrimitiveMesh{std::move(positions), std::move(triangles)};
 }
 
-}  // namespace penumbra::scenes
+}  // namespace penumbra::import

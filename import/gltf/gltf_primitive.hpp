@@ -14,7 +14,7 @@ class Model;
 struct Primitive;
 }  // namespace tinygltf
 
-namespace penumbra::scenes {
+namespace penumbra::import {
 
 /// Parts of a file's primitives that form no triangles.
 struct SkippedPrimitives {
@@ -33,4 +33,4 @@ struct PrimitiveMesh {
 std::optional<PrimitiveMesh> read_primitive(const tinygltf::Model& model, const tinygltf::Primitive& primitive,
                                             const std::string& place, SkippedPrimitives& skipped);
 
-}  // namespace penumbra::scenes
+}  // namespace penumbra::import

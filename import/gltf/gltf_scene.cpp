@@ -36,7 +36,7 @@
 #include <string_view>
 #include <utility>
 
-namespace penumbra::scenes {
+namespace penumbra::import {
 namespace {
 
 /// Returns whether a diffuse picture may change with the property at this JSON pointer. Metalness, gloss and relief of
@@ -72,7 +72,7 @@ class GltfScene {
         surfaces_(model, scene_.pictures, losses_) {
     scene_.name = request.name;
     if (purpose != Purpose::mesh) instances_ = request.options.instances;
-    LightmapPlaces* const lightmap = request.options.lightmap;
+    scenes::LightmapPlaces* const lightmap = request.options.lightmap;
     if (lightmap == nullptr || purpose == Purpose::rest || purpose == Purpose::mesh) return;
     lightmap->places.clear();
     lightmap_ = &lightmap->places;
@@ -102,7 +102,7 @@ class GltfScene {
   /// Purpose::rest.
   [[nodiscard]] glm::dvec3 middle() const { return 0.5 * lower_ + 0.5 * upper_; }
 
-  Scene run() {
+  scenes::Scene run() {
     const std::vector<PlacedNode> nodes = place_nodes(model_, scene_.warnings);
     to_world_.resize(model_.nodes.size());
     for (const PlacedNode& placed : nodes) to_world_[static_cast<std::size_t>(placed.number)] = placed.to_world;
@@ -217,7 +217,7 @@ class GltfScene {
     const glm::dmat4 back = glm::inverse(whole.to_world);
     for (glm::dvec3& p : std::span(scene_.soup.positions).subspan(first_position))
       p = node.skin >= 0 ? *hidden_at : glm::dvec3(placed.to_world * (back * glm::dvec4(p, 1)));
-    for (AreaLight& light : std::span(scene_.lights).subspan(first_light)) {
+    for (scenes::AreaLight& light : std::span(scene_.lights).subspan(first_light)) {
       light.radiance = glm::dvec3(0);
       losses_.mention("is scaled to nothing: a light that is dark", light.name);
     }
@@ -244,7 +244,7 @@ class GltfScene {
     add_named(shared.object, name);
     bound(shared.local, placed);
   }
-  void add_named(Object object, const std::string& name) {
+  void add_named(scenes::Object object, const std::string& name) {
     object.name = name;
     object.casts_shadow = flags_.casts_shadow;
     object.receives_shadow = flags_.receives_shadow;
@@ -290,7 +290,7 @@ class GltfScene {
     }
     const PrimitiveVertices vertices{positions, skinned, look, placed, place, lightmap_};
     if (!shared_.may_share(primitive, node, look)) return add_object(vertices, std::move(mesh->triangles), own_name);
-    SharedMesh shared = shared_mesh(vertices, std::move(mesh->triangles));
+    scenes::SharedMesh shared = shared_mesh(vertices, std::move(mesh->triangles));
     left_out_ |= shared.soup.positions.size() < positions.size();
     add_instance(shared_.add(number, std::move(shared), object_of(look), positions), placed, own_name);
   }
@@ -306,8 +306,8 @@ class GltfScene {
     }
   }
 
-  static Object object_of(const Look& look) {
-    Object object;
+  static scenes::Object object_of(const Look& look) {
+    scenes::Object object;
     object.color = look.color;
     object.material = look.material;
     object.picture = look.picture;
@@ -325,7 +325,7 @@ class GltfScene {
       note_refused_light(name, "its emissive picture is black where it lies on it");
     if (look.picture || !look.normals.empty() || !look.colors.empty() || look.color != glm::dvec3(1)) ++looks_left_;
     const SoupEnd before = append_triangles(scene_, vertices, std::move(triangles));
-    Object object = object_of(look);
+    scenes::Object object = object_of(look);
     object.emits = add_light({radiance, vertices.look.two_sided}, name, vertices.placed, before);
     if (object.emits && !flags_.body) {  // the object only marks the place of the light
       ++bodiless_;
@@ -371,7 +371,7 @@ class GltfScene {
     return static_cast<std::uint32_t>(scene_.lights.size() - 1);
   }
 
-  void add_lamp(AreaLight light, const tinygltf::Node& node, const std::string& name) {
+  void add_lamp(scenes::AreaLight light, const tinygltf::Node& node, const std::string& name) {
     if (light.radiance == glm::dvec3(0)) return;  // the lamp is off
     light.name = light_names_.take(name);
     if (!lamp_casts_shadows(node, losses_)) shadeless_.push_back(scene_.lights.size());
@@ -379,7 +379,7 @@ class GltfScene {
   }
 
   void add_camera(const tinygltf::Node& node, const PlacedNode& placed, const std::string& name) {
-    Camera camera = camera_of(model_, node, placed, losses_);
+    scenes::Camera camera = camera_of(model_, node, placed, losses_);
     camera.name = camera_names_.take(name);
     scene_.cameras.push_back(std::move(camera));
   }
@@ -406,16 +406,16 @@ class GltfScene {
   Purpose purpose_;
   bool needs_surface_, lenient_;
   std::span<const std::optional<glm::dmat4>> unhidden_;  // empty, or one for each node
-  Scene scene_;
+  scenes::Scene scene_;
   std::vector<std::optional<glm::dmat4>> to_world_;  // for each node; nullopt for nodes outside of the scene
-  Losses losses_;
+  scenes::Losses losses_;
   PunctualLights lamps_;
   SurfaceReader surfaces_;
   std::vector<glm::dvec2>* lightmap_ = nullptr;
-  Instances* instances_ = nullptr;  // null: each instance is a copy
+  scenes::Instances* instances_ = nullptr;  // null: each instance is a copy
   SharedPrimitives shared_{model_};
   PictureMeans means_{scene_.pictures};
-  UniqueNames object_names_, camera_names_, light_names_;
+  scenes::UniqueNames object_names_, camera_names_, light_names_;
   std::string refused_lights_;
   SkippedPrimitives skipped_;
   std::vector<std::string> compressed_;    // primitives that were left out
@@ -446,4 +446,4 @@ glm::dvec3 middle_at_rest(const tinygltf::Model& model, const SceneRequest& requ
   return rest.middle();
 }
 
-}  // namespace penumbra::scenes
+}  // namespace penumbra::import

@@ -17,20 +17,20 @@ namespace tinygltf {
 class Model;
 }
 
-namespace penumbra::scenes {
+namespace penumbra::import {
 
 /// Purpose of reading a file; `rest`: a mesh as modelled, without skins and morph targets.
 enum class Purpose : std::uint8_t { lit_scene, any_scene, mesh, rest };
 
 struct SceneRequest {
   const std::string& name;  ///< the scene's
-  const ReadOptions& options;
+  const scenes::ReadOptions& options;
   std::span<const std::optional<glm::dmat4>> unhidden = {};  ///< see unhidden_places; empty if nothing moves
   std::span<const std::size_t> played = {};                  ///< indices of the animations that move the scene
 };
 
 struct BuiltScene {
-  Scene scene;
+  scenes::Scene scene;
   bool left_vertices_out = false;  ///< some of the file's vertices are not in the scene
 };
 
@@ -42,4 +42,4 @@ BuiltScene build_scene(const tinygltf::Model& model, const SceneRequest& request
 /// Returns the centre of the bounds of all vertices of the model's meshes, visible or not, as modelled.
 glm::dvec3 middle_at_rest(const tinygltf::Model& model, const SceneRequest& request);
 
-}  // namespace penumbra::scenes
+}  // namespace penumbra::import

@@ -4,9 +4,9 @@
 
 #include <tiny_gltf.h>
 
-namespace penumbra::scenes {
+namespace penumbra::import {
 
-void SharedPrimitives::keep_in(Instances& to, std::span<const PlacedNode> nodes) {
+void SharedPrimitives::keep_in(scenes::Instances& to, std::span<const PlacedNode> nodes) {
   to_ = &to;
   to = {};
   uses_.assign(model_.meshes.size(), 0);
@@ -29,8 +29,8 @@ const SharedPrimitives::Primitive* SharedPrimitives::find(const Number& number, 
   return node.skin >= 0 || found == all_.end() ? nullptr : &found->second;
 }
 
-const SharedPrimitives::Primitive& SharedPrimitives::add(const Number& number, SharedMesh mesh, Object object,
-                                                         const std::vector<glm::dvec3>& local) {
+const SharedPrimitives::Primitive& SharedPrimitives::add(const Number& number, scenes::SharedMesh mesh,
+                                                         scenes::Object object, const std::vector<glm::dvec3>& local) {
   Primitive& primitive = all_[number];
   primitive.mesh = static_cast<std::uint32_t>(to_->meshes.size());
   primitive.object = std::move(object);
@@ -47,4 +47,4 @@ void SharedPrimitives::place(const Primitive& primitive, const PlacedNode& place
                       .soup_before = soup_before});
 }
 
-}  // namespace penumbra::scenes
+}  // namespace penumbra::import

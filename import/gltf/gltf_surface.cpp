@@ -22,7 +22,7 @@
 #include <string_view>
 #include <utility>
 
-namespace penumbra::scenes {
+namespace penumbra::import {
 namespace {
 
 constexpr std::uint32_t kLargestPictureSide = 8192;
@@ -89,11 +89,11 @@ BaseColor base_color_of(const tinygltf::Material& material) {
   return base;
 }
 
-Alpha alpha_of(const tinygltf::Material& material, const BaseColor& base, const std::string& place) {
-  Alpha alpha;
-  if (material.alphaMode == "MASK") alpha.mode = Alpha::Mode::mask;
-  if (material.alphaMode == "BLEND") alpha.mode = Alpha::Mode::blend;
-  if (alpha.mode == Alpha::Mode::opaque && !material.alphaMode.empty() && material.alphaMode != "OPAQUE")
+scenes::Alpha alpha_of(const tinygltf::Material& material, const BaseColor& base, const std::string& place) {
+  scenes::Alpha alpha;
+  if (material.alphaMode == "MASK") alpha.mode = scenes::Alpha::Mode::mask;
+  if (material.alphaMode == "BLEND") alpha.mode = scenes::Alpha::Mode::blend;
+  if (alpha.mode == scenes::Alpha::Mode::opaque && !material.alphaMode.empty() && material.alphaMode != "OPAQUE")
     throw InputError("{}/alphaMode: \"{}\"; expected OPAQUE, MASK or BLEND", place, material.alphaMode);
   alpha.factor = base.factor.size() >= 4 ? base.factor[3] : 1;
   alpha.cutoff = material.alphaCutoff;
@@ -105,9 +105,10 @@ Alpha alpha_of(const tinygltf::Material& material, const BaseColor& base, const 
   return alpha;
 }
 
-PictureUse::Wrap wrap_of(int mode) {
-  if (mode == TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE) return PictureUse::Wrap::clamp;
-  return mode == TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT ? PictureUse::Wrap::mirror : PictureUse::Wrap::repeat;
+scenes::PictureUse::Wrap wrap_of(int mode) {
+  if (mode == TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE) return scenes::PictureUse::Wrap::clamp;
+  return mode == TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT ? scenes::PictureUse::Wrap::mirror
+                                                       : scenes::PictureUse::Wrap::repeat;
 }
 
 /// The transform of coordinates by KHR_texture_transform.
@@ -251,7 +252,7 @@ void SurfaceReader::read_material(const Owner& owner, Look& look) {
                   number_of(material.extensions, "KHR_materials_emissive_strength", "emissiveStrength", 1, here);
   if (base.texture.index >= 0) {
     // A picture may have an alpha that cuts holes.
-    const bool decides = look.alpha.mode != Alpha::Mode::opaque;
+    const bool decides = look.alpha.mode != scenes::Alpha::Mode::opaque;
     std::string why_not;
     look.picture = picture_use(base.texture.index, here + base.texture_place, why_not);
     if (look.picture)
@@ -298,10 +299,11 @@ void SurfaceReader::read_emission(const Owner& owner, const std::string& place, 
   look.emission_places = places_of(owner, info, false);
 }
 
-std::optional<PictureUse> SurfaceReader::picture_use(int texture, const std::string& place, std::string& why_not) {
+std::optional<scenes::PictureUse> SurfaceReader::picture_use(int texture, const std::string& place,
+                                                             std::string& why_not) {
   const auto picture = picture_of(texture, place, why_not);
   if (!picture) return std::nullopt;
-  PictureUse use{*picture};
+  scenes::PictureUse use{*picture};
   const int sampler = model_.textures[static_cast<std::size_t>(texture)].sampler;
   if (sampler < 0) return use;
   if (static_cast<std::size_t>(sampler) >= model_.samplers.size()) {
@@ -372,12 +374,12 @@ SurfaceReader::AlphaRange SurfaceReader::alpha_range(const Look& look) {
 }
 
 Opacity SurfaceReader::opacity_of(const Look& look) {
-  if (look.alpha.mode == Alpha::Mode::opaque) return Opacity::solid;
+  if (look.alpha.mode == scenes::Alpha::Mode::opaque) return Opacity::solid;
   const AlphaRange range = alpha_range(look);
-  const bool mask = look.alpha.mode == Alpha::Mode::mask;
+  const bool mask = look.alpha.mode == scenes::Alpha::Mode::mask;
   if (range.least >= (mask ? look.alpha.cutoff : 1.0)) return Opacity::solid;
   if (mask ? range.greatest < look.alpha.cutoff : range.greatest <= 0) return Opacity::gone;
   return Opacity::neither;
 }
 
-}  // namespace penumbra::scenes
+}  // namespace penumbra::import

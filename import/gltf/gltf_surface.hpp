@@ -20,7 +20,7 @@ struct Primitive;
 struct TextureInfo;
 }  // namespace tinygltf
 
-namespace penumbra::scenes {
+namespace penumbra::import {
 
 /// Appearance of a primitive, from its material and vertices.
 struct Look {
@@ -28,9 +28,9 @@ struct Look {
   glm::dvec3 radiance{0};  ///< emitted radiance
   bool two_sided = false;
   std::string material;  ///< name of the material
-  std::optional<PictureUse> picture = {};
-  std::optional<PictureUse> emission = {};  ///< picture that multiplies the radiance
-  Alpha alpha = {};
+  std::optional<scenes::PictureUse> picture = {};
+  std::optional<scenes::PictureUse> emission = {};  ///< picture that multiplies the radiance
+  scenes::Alpha alpha = {};
   /// Attributes of the primitive's vertices; empty: none.
   std::vector<glm::dvec3> normals = {};  ///< in the coordinates in which the primitive was modelled
   std::vector<glm::vec4> colors = {};
@@ -47,7 +47,7 @@ enum class Opacity { solid, gone, neither };
 class SurfaceReader {
  public:
   /// All arguments must outlive this object. Pictures are added to `pictures` when they are used.
-  SurfaceReader(const tinygltf::Model& model, std::vector<Picture>& pictures, Losses& losses)
+  SurfaceReader(const tinygltf::Model& model, std::vector<scenes::Picture>& pictures, scenes::Losses& losses)
       : model_(model), pictures_(pictures), losses_(losses) {}
 
   /// `place` and `object` identify the primitive in messages; `vertices` is its number of vertices. Throws InputError.
@@ -78,16 +78,16 @@ class SurfaceReader {
   void mention_unlike(const Owner& owner, const std::string& place, const Look& look);
   /// Returns the picture coordinates of each vertex. `decides`: the picture affects light, so that losses are refused.
   std::vector<glm::dvec2> places_of(const Owner& owner, const tinygltf::TextureInfo& info, bool decides);
-  std::optional<PictureUse> picture_use(int texture, const std::string& place, std::string& why_not);
+  std::optional<scenes::PictureUse> picture_use(int texture, const std::string& place, std::string& why_not);
   std::optional<std::uint32_t> picture_of(int texture, const std::string& place, std::string& why_not);
 
   const tinygltf::Model& model_;
-  std::vector<Picture>& pictures_;
-  Losses& losses_;
+  std::vector<scenes::Picture>& pictures_;
+  scenes::Losses& losses_;
   std::optional<std::uint32_t> lightmap_;
   std::map<int, std::optional<std::uint32_t>> known_;  // index of each image's picture
   std::map<int, std::string> unreadable_;
   std::map<std::uint32_t, AlphaRange> ranges_;  // for each picture: thousands of leaves share one
 };
 
-}  // namespace penumbra::scenes
+}  // namespace penumbra::import

@@ -14,11 +14,11 @@
 #include <numeric>
 #include <utility>
 
-namespace penumbra::scenes {
+namespace penumbra::import {
 namespace {
 
 /// Adds the appearance of the vertex that was added last.
-void add_look(Scene& scene, const PrimitiveVertices& vertices, std::uint32_t index) {
+void add_look(scenes::Scene& scene, const PrimitiveVertices& vertices, std::uint32_t index) {
   const Look& look = vertices.look;
   const std::size_t count = scene.soup.positions.size();
   const auto put = [count](auto& list, const auto& value, const auto& otherwise) {
@@ -26,7 +26,7 @@ void add_look(Scene& scene, const PrimitiveVertices& vertices, std::uint32_t ind
     list.push_back(value);
   };
   if (!look.normals.empty()) {
-    put(scene.looks.normals, world_normal(vertices.to_world(index), look.normals[index]), glm::vec3(0));
+    put(scene.looks.normals, scenes::world_normal(vertices.to_world(index), look.normals[index]), glm::vec3(0));
   }
   if (!look.colors.empty()) put(scene.looks.colors, look.colors[index], glm::vec4(1));
   if (!look.places.empty()) put(scene.looks.places, look.places[index], glm::dvec2(0));
@@ -45,7 +45,8 @@ const glm::dvec3& finite_position(const PrimitiveVertices& vertices, std::uint32
 
 }  // namespace
 
-SoupEnd append_triangles(Scene& scene, const PrimitiveVertices& vertices, std::vector<mesh::Triangle> triangles) {
+SoupEnd append_triangles(scenes::Scene& scene, const PrimitiveVertices& vertices,
+                         std::vector<mesh::Triangle> triangles) {
   auto& soup = scene.soup;
   const auto number = static_cast<std::uint32_t>(scene.objects.size());
   const SoupEnd before{soup.positions.size(), soup.triangles.size()};
@@ -83,10 +84,10 @@ SoupEnd append_triangles(Scene& scene, const PrimitiveVertices& vertices, std::v
   return before;
 }
 
-SharedMesh shared_mesh(const PrimitiveVertices& vertices, std::vector<mesh::Triangle> triangles) {
+scenes::SharedMesh shared_mesh(const PrimitiveVertices& vertices, std::vector<mesh::Triangle> triangles) {
   constexpr auto kUnused = std::numeric_limits<std::uint32_t>::max();
   const Look& look = vertices.look;
-  SharedMesh shared;
+  scenes::SharedMesh shared;
   std::vector<std::uint32_t> renumbered(vertices.local.size(), kUnused);
   for (mesh::Triangle& triangle : triangles) {
     for (std::uint32_t& index : triangle) {
@@ -108,7 +109,7 @@ SharedMesh shared_mesh(const PrimitiveVertices& vertices, std::vector<mesh::Tria
   return shared;
 }
 
-void shorten(Scene& scene, const SoupEnd& end) {
+void shorten(scenes::Scene& scene, const SoupEnd& end) {
   mesh::TriangleSoup& soup = scene.soup;
   soup.positions.resize(end.position);
   soup.triangles.resize(end.triangle);
@@ -118,11 +119,11 @@ void shorten(Scene& scene, const SoupEnd& end) {
   cut(scene.looks.normals), cut(scene.looks.colors), cut(scene.looks.places);
 }
 
-void complete_looks(Scene& scene) {
+void complete_looks(scenes::Scene& scene) {
   const std::size_t count = scene.soup.positions.size();
   if (!scene.looks.normals.empty()) scene.looks.normals.resize(count, glm::vec3(0));
   if (!scene.looks.colors.empty()) scene.looks.colors.resize(count, glm::vec4(1));
   if (!scene.looks.places.empty()) scene.looks.places.resize(count, glm::dvec2(0));
 }
 
-}  // namespace penumbra::scenes
+}  // namespace penumbra::import

@@ -18,7 +18,7 @@
 #include <string>
 #include <vector>
 
-namespace penumbra::scenes {
+namespace penumbra::import {
 
 /// A primitive's vertices as modelled, and their transforms into the world. All members must outlive this object.
 struct PrimitiveVertices {
@@ -43,16 +43,17 @@ struct SoupEnd {
 /// among many primitives) and the appearance of these, under the number that the scene's next object will have. Returns
 /// the lists' lengths before. Throws InputError for a vertex that is not finite in the world, and for too many
 /// vertices.
-SoupEnd append_triangles(Scene& scene, const PrimitiveVertices& vertices, std::vector<mesh::Triangle> triangles);
+SoupEnd append_triangles(scenes::Scene& scene, const PrimitiveVertices& vertices,
+                         std::vector<mesh::Triangle> triangles);
 
 /// Returns the triangles in the mesh's own space, for nodes that share them; apart from the space they are as
 /// append_triangles adds them, so that a node's instance equals the triangles that the node would add.
-SharedMesh shared_mesh(const PrimitiveVertices& vertices, std::vector<mesh::Triangle> triangles);
+scenes::SharedMesh shared_mesh(const PrimitiveVertices& vertices, std::vector<mesh::Triangle> triangles);
 
 /// Removes everything added since `end`.
-void shorten(Scene& scene, const SoupEnd& end);
+void shorten(scenes::Scene& scene, const SoupEnd& end);
 
 /// Gives the vertices after the last one with an appearance a default one.
-void complete_looks(Scene& scene);
+void complete_looks(scenes::Scene& scene);
 
-}  // namespace penumbra::scenes
+}  // namespace penumbra::import

@@ -17,7 +17,7 @@
 #include <numbers>
 #include <optional>
 
-namespace penumbra::scenes {
+namespace penumbra::import {
 namespace {
 
 constexpr const char* kExtension = "KHR_lights_punctual";
@@ -33,8 +33,8 @@ double checked(double value, double least, const std::string& place) {
 }
 
 /// `smooth`: whether the file says that the cone falls off as Blender's cones do.
-Cone cone_of(const tinygltf::Light& lamp, const glm::dvec3& direction, bool from_blender, std::optional<bool> smooth,
-             const std::string& place) {
+scenes::Cone cone_of(const tinygltf::Light& lamp, const glm::dvec3& direction, bool from_blender,
+                     std::optional<bool> smooth, const std::string& place) {
   const double outer = lamp.spot.outerConeAngle;
   // Equal angles are a hard edge. A slightly larger inner angle is a result of an exporter's rounding, and viewers
   // treat it as equal.
@@ -57,8 +57,8 @@ Cone cone_of(const tinygltf::Light& lamp, const glm::dvec3& direction, bool from
 
 }  // namespace
 
-std::optional<AreaLight> PunctualLights::light_of(const tinygltf::Node& node, const PlacedNode& placed,
-                                                  const std::string& name) {
+std::optional<scenes::AreaLight> PunctualLights::light_of(const tinygltf::Node& node, const PlacedNode& placed,
+                                                          const std::string& name) {
   const auto extension = node.extensions.find(kExtension);
   PENUMBRA_ASSERT(extension != node.extensions.end(), "node {} has no lamp", placed.number);
   const std::string node_place = fmt::format("/nodes/{}", placed.number);
@@ -86,15 +86,15 @@ std::optional<AreaLight> PunctualLights::light_of(const tinygltf::Node& node, co
   for (glm::length_t i = 0; i < 3; ++i) checked(color[i], 0, place + "/color");
   const double intensity = checked(lamp.intensity, 0, place + "/intensity") / divisor_of(lamp.type);
 
-  AreaLight light;
+  scenes::AreaLight light;
   if (lamp.type == "directional") {
     if (!(glm::length(along) > 0)) throw InputError("{}: its transform leaves the lamp no direction", node_place);
-    const Sun sun{glm::normalize(along), size("angle", options_.sun_angle, kSunAngle, without_angle_)};
+    const scenes::Sun sun{glm::normalize(along), size("angle", options_.sun_angle, scenes::kSunAngle, without_angle_)};
     if (!(sun.angle >= 0 && sun.angle < 180)) {
       throw InputError("{}: the sun's angle is {} degrees; expected 0 to less than 180", node_place, sun.angle);
     }
     light.shape = sun;
-    light.radiance = intensity * color / (sun.angle > 0 ? irradiance_of_radiance(sun) : 1.0);
+    light.radiance = intensity * color / (sun.angle > 0 ? scenes::irradiance_of_radiance(sun) : 1.0);
     return light;
   }
   if (lamp.type != "point" && lamp.type != "spot") {
@@ -103,7 +103,8 @@ std::optional<AreaLight> PunctualLights::light_of(const tinygltf::Node& node, co
     return std::nullopt;
   }
   if (lamp.range > 0) ++ranges_;
-  Sphere sphere{glm::dvec3(placed.to_world[3]), size("radius", options_.lamp_radius, kLampRadius, without_radius_), {}};
+  scenes::Sphere sphere{
+      glm::dvec3(placed.to_world[3]), size("radius", options_.lamp_radius, scenes::kLampRadius, without_radius_), {}};
   if (lamp.type == "spot") {
     if (!(glm::length(along) > 0)) throw InputError("{}: its transform leaves the lamp no direction", node_place);
     sphere.cone = cone_of(lamp, glm::normalize(along), is_from_blender(model_),
@@ -153,14 +154,14 @@ void PunctualLights::add_warnings(std::vector<std::string>& warnings) const {
     warnings.push_back(
         fmt::format("{} point or spot lamps have no size in the file (extras \"radius\"); taken as spheres of "
                     "radius {} (--lamp-radius)",
-                    without_radius_, kLampRadius));
+                    without_radius_, scenes::kLampRadius));
   }
   if (without_angle_ > 0) {
     warnings.push_back(
         fmt::format("{} sun lamps have no size in the file (extras \"angle\"); taken as {} degrees wide (--sun-angle)",
-                    without_angle_, kSunAngle));
+                    without_angle_, scenes::kSunAngle));
   }
   if (ranges_ > 0) warnings.push_back(fmt::format("the range of {} lamps ignored: light has no end", ranges_));
 }
 
-}  // namespace penumbra::scenes
+}  // namespace penumbra::import

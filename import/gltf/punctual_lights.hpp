@@ -15,7 +15,7 @@ class Model;
 class Node;
 }  // namespace tinygltf
 
-namespace penumbra::scenes {
+namespace penumbra::import {
 
 /// Converts the lamps of KHR_lights_punctual: a directional lamp becomes a sun, a point lamp a sphere, a spot lamp a
 /// sphere with a cone. That extension has no sizes; `extras` of the lamp, or else of its node, may have `radius` or
@@ -29,13 +29,14 @@ namespace penumbra::scenes {
 class PunctualLights {
  public:
   /// `model` and `losses` must outlive this object.
-  PunctualLights(const tinygltf::Model& model, const ReadOptions& options, Losses& losses)
+  PunctualLights(const tinygltf::Model& model, const scenes::ReadOptions& options, scenes::Losses& losses)
       : model_(model), options_(options), losses_(losses) {}
 
   /// Returns the node's lamp, without a name; the node must have a lamp in the extension (asserted). Returns nullopt
   /// for a lamp of a type that the extension does not have, which is refused by `name`. Throws InputError for values
   /// that the extension does not allow, and for invalid sizes.
-  std::optional<AreaLight> light_of(const tinygltf::Node& node, const PlacedNode& placed, const std::string& name);
+  std::optional<scenes::AreaLight> light_of(const tinygltf::Node& node, const PlacedNode& placed,
+                                            const std::string& name);
 
   /// Adds warnings about assumptions, with their counts.
   void add_warnings(std::vector<std::string>& warnings) const;
@@ -45,9 +46,9 @@ class PunctualLights {
   double divisor_of(const std::string& type);
 
   const tinygltf::Model& model_;
-  ReadOptions options_;
-  Losses& losses_;
+  scenes::ReadOptions options_;
+  scenes::Losses& losses_;
   std::uint64_t without_radius_ = 0, without_angle_ = 0, ranges_ = 0, in_lumens_ = 0, in_watts_ = 0, hard_ = 0;
 };
 
-}  // namespace penumbra::scenes
+}  // namespace penumbra::import

@@ -35,7 +35,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   static const fuzz::Folder folder;
   if (size == 0) return 0;
   const mesh::InputFile input = mesh::open_input(folder.write("scene.glb", {data, size}));
-  const auto scene = attempt([&] { return scenes::import_gltf(input, {.needs_light = false}); });
+  const auto scene = attempt([&] { return penumbra::import::import_gltf(input, {.needs_light = false}); });
   if (scene) {
     mesh::WireWriter writer;
     scenes::put_scene(writer, *scene);
@@ -45,7 +45,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     PENUMBRA_ASSERT(again.soup.triangles == scene->soup.triangles, "{} triangles became {}",
                     scene->soup.triangles.size(), again.soup.triangles.size());
   }
-  const auto mesh = attempt([&] { return scenes::import_gltf_mesh(input, {.lenient = true}); });
+  const auto mesh = attempt([&] { return penumbra::import::import_gltf_mesh(input, {.lenient = true}); });
   if (mesh) fuzz::check_imported(*mesh);
   // A scene may be refused for its cameras and lights alone, but what can be read as a scene can be read as a mesh.
   PENUMBRA_ASSERT(mesh || !scene, "read as a scene, but not as a mesh");

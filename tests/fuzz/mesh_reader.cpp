@@ -21,8 +21,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (format + 1 == kFormats.size()) {
     const std::string_view content(reinterpret_cast<const char*>(data) + 1, size - 1);
     try {
-      penumbra::mesh::triangles_of_collada(content, "mesh.dae");
-      penumbra::mesh::without_leading_blanks(content, "mesh.dae");
+      penumbra::import::triangles_of_collada(content, "mesh.dae");
+      penumbra::import::without_leading_blanks(content, "mesh.dae");
     } catch (const penumbra::InputError&) {
     } catch (const std::bad_alloc&) {
     }
@@ -30,7 +30,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   }
   const auto file = folder.write(std::string("mesh") + kFormats[format], {data + 1, size - 1});
   try {
-    penumbra::fuzz::check_imported(penumbra::mesh::read_mesh(penumbra::mesh::open_input(file)));
+    penumbra::fuzz::check_imported(penumbra::import::read_mesh(penumbra::mesh::open_input(file)));
   } catch (const penumbra::InputError&) {
   } catch (const std::bad_alloc&) {  // the helper answers with these, too
   } catch (const std::length_error&) {

@@ -7,7 +7,7 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   try {
     penumbra::fuzz::check_imported(
-        penumbra::mesh::read_off_text({reinterpret_cast<const char*>(data), size}, "fuzz.off"));
+        penumbra::import::read_off_text({reinterpret_cast<const char*>(data), size}, "fuzz.off"));
   } catch (const penumbra::InputError&) {
   }
   return 0;

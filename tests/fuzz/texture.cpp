@@ -9,7 +9,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   static const penumbra::fuzz::Folder folder;
   const auto file = folder.write("texture", {data, size});
   try {
-    const penumbra::scenes::Texture texture = penumbra::scenes::read_texture_file(penumbra::mesh::open_input(file));
+    const penumbra::scenes::Texture texture = penumbra::import::read_texture_file(penumbra::mesh::open_input(file));
     PENUMBRA_ASSERT(texture.texels.size() == std::size_t{texture.width} * texture.height, "{} texels of {}x{}",
                     texture.texels.size(), texture.width, texture.height);
   } catch (const penumbra::Error&) {

@@ -14,7 +14,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (size == 0) return 0;
   const auto file = folder.write("mesh.3ds", {data, size});
   try {
-    penumbra::fuzz::check_imported(penumbra::mesh::read_mesh(penumbra::mesh::open_input(file)));
+    penumbra::fuzz::check_imported(penumbra::import::read_mesh(penumbra::mesh::open_input(file)));
   } catch (const penumbra::InputError&) {
   } catch (const std::bad_alloc&) {  // the helper answers with these, too
   } catch (const std::length_error&) {

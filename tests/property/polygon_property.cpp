@@ -22,7 +22,7 @@ std::vector<glm::dvec3> lattice_polygon() {
 RC_GTEST_PROP(Polygon, AlwaysNMinusTwoTrianglesWithTheSameBoundary, ()) {
   const std::vector<glm::dvec3> corners = lattice_polygon();
   std::vector<Triangle> triangles;
-  triangulate_polygon(corners, triangles);
+  import::triangulate_polygon(corners, triangles);
   RC_ASSERT(triangles.size() == corners.size() - 2);
   // The vector area is an integral over the boundary alone (Stokes), so every triangulation has the same; on the
   // lattice it is exact.
@@ -44,7 +44,7 @@ TEST(Polygon, EarsOfASimplePolygonAllLieInside) {
       corners.emplace_back(i + 0.25, i > 0 ? 0.5 : 2, 3);
     }
     std::vector<Triangle> triangles;
-    EXPECT_NE(triangulate_polygon(corners, triangles), PolygonKind::tangled) << teeth;
+    EXPECT_NE(import::triangulate_polygon(corners, triangles), import::PolygonKind::tangled) << teeth;
     for (const auto& [a, b, c] : triangles)
       EXPECT_GT(glm::cross(corners[b] - corners[a], corners[c] - corners[a]).z, 0);
   }
@@ -69,7 +69,7 @@ TEST(Polygon, StraightCornersMakeNoSlivers) {
         area += glm::cross(outline[i], outline[(i + 1) % outline.size()]).z;
       for (std::size_t start = 0; start < outline.size(); ++start) {
         std::vector<Triangle> triangles;
-        EXPECT_NE(triangulate_polygon(outline, triangles), PolygonKind::tangled);
+        EXPECT_NE(import::triangulate_polygon(outline, triangles), import::PolygonKind::tangled);
         double sum = 0;
         for (const auto& [a, b, c] : triangles) {
           const double twice = glm::cross(outline[b] - outline[a], outline[c] - outline[a]).z;
@@ -90,7 +90,7 @@ TEST(Polygon, ManyStraightCorners) {
   outline.emplace_back(99'999, 5, 0);
   outline.emplace_back(0, 5, 0);
   std::vector<Triangle> triangles;
-  EXPECT_EQ(triangulate_polygon(outline, triangles), PolygonKind::convex);
+  EXPECT_EQ(import::triangulate_polygon(outline, triangles), import::PolygonKind::convex);
   ASSERT_EQ(triangles.size(), 100'000u);
   double sum = 0;
   for (const auto& [a, b, c] : triangles) {
@@ -110,7 +110,7 @@ TEST(Polygon, ManyConcaveCorners) {
     outline.emplace_back(radius * std::cos(angle), radius * std::sin(angle), 0);
   }
   std::vector<Triangle> triangles;
-  EXPECT_EQ(triangulate_polygon(outline, triangles), PolygonKind::concave);
+  EXPECT_EQ(import::triangulate_polygon(outline, triangles), import::PolygonKind::concave);
   ASSERT_EQ(triangles.size(), outline.size() - 2);
   for (const auto& [a, b, c] : triangles) {
     ASSERT_GT(glm::cross(outline[b] - outline[a], outline[c] - outline[a]).z, 0);
@@ -120,7 +120,8 @@ TEST(Polygon, ManyConcaveCorners) {
 TEST(Polygon, ACrossedOutlineIsSaidToBeTangled) {
   const std::vector<glm::dvec3> bow{{0, 0, 0}, {1, 1, 0}, {1, 0, 0}, {0, 1, 0}};
   std::vector<Triangle> triangles;
-  EXPECT_EQ(triangulate_polygon(bow, triangles), PolygonKind::convex) << "without area every corner is straight";
+  EXPECT_EQ(import::triangulate_polygon(bow, triangles), import::PolygonKind::convex)
+      << "without area every corner is straight";
 }
 
 }  // namespace

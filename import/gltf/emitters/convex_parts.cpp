@@ -14,7 +14,7 @@
 #include <span>
 #include <utility>
 
-namespace penumbra::scenes {
+namespace penumbra::import {
 namespace {
 
 using Loop = std::vector<std::uint32_t>;
@@ -212,4 +212,4 @@ std::vector<std::vector<std::size_t>> flat_regions(const Welded& mesh, double ro
   return regions;
 }
 
-}  // namespace penumbra::scenes
+}  // namespace penumbra::import

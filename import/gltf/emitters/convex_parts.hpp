@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace penumbra::scenes {
+namespace penumbra::import {
 
 /// A flat convex part of a mesh.
 struct ConvexPart {
@@ -27,4 +27,4 @@ std::vector<ConvexPart> convex_parts(const Welded& mesh, double rounding);
 /// together. Many such steps may bend: a region need not be flat.
 std::vector<std::vector<std::size_t>> flat_regions(const Welded& mesh, double rounding);
 
-}  // namespace penumbra::scenes
+}  // namespace penumbra::import

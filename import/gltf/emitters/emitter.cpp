@@ -20,10 +20,10 @@
 #include <utility>
 #include <vector>
 
-namespace penumbra::scenes {
+namespace penumbra::import {
 namespace {
 
-using Piece = Pieces::Piece;
+using Piece = scenes::Pieces::Piece;
 
 /// A connected mesh.
 struct Component {
@@ -147,8 +147,8 @@ Welded without_backs(const Welded& mesh) {
 }
 
 Piece piece_of(FlatLight&& shape) {
-  if (auto* rectangle = std::get_if<Rectangle>(&shape)) return *rectangle;
-  return std::get<Polygon>(std::move(shape));
+  if (auto* rectangle = std::get_if<scenes::Rectangle>(&shape)) return *rectangle;
+  return std::get<scenes::Polygon>(std::move(shape));
 }
 
 void add_flat_pieces(const Welded& mesh, double rounding, std::vector<Piece>& pieces) {
@@ -165,25 +165,25 @@ void add_flat_pieces(const Welded& mesh, double rounding, std::vector<Piece>& pi
       for (const std::uint32_t point : part.outline) corners.push_back(region.points[point]);
       FlatLight shape = light_of_outline(corners, part.normal, rounding);
       // Convex only within the rounding: the polygon is kept unchanged.
-      pieces.push_back(std::holds_alternative<std::string>(shape) ? Piece(Polygon{std::move(corners)})
+      pieces.push_back(std::holds_alternative<std::string>(shape) ? Piece(scenes::Polygon{std::move(corners)})
                                                                   : piece_of(std::move(shape)));
     }
   }
 }
 
 std::vector<glm::dvec3> corners_of(const Piece& piece) {
-  if (const auto* r = std::get_if<Rectangle>(&piece)) {
+  if (const auto* r = std::get_if<scenes::Rectangle>(&piece)) {
     return {r->center - r->half_u - r->half_v, r->center + r->half_u - r->half_v, r->center + r->half_u + r->half_v,
             r->center - r->half_u + r->half_v};
   }
-  if (const auto* polygon = std::get_if<Polygon>(&piece)) return polygon->vertices;
+  if (const auto* polygon = std::get_if<scenes::Polygon>(&piece)) return polygon->vertices;
   return {};
 }
 
 Piece back_of(const Piece& piece) {
-  if (const auto* r = std::get_if<Rectangle>(&piece)) return Rectangle{r->center, r->half_v, r->half_u};
-  if (const auto* polygon = std::get_if<Polygon>(&piece))
-    return Polygon{{polygon->vertices.rbegin(), polygon->vertices.rend()}};
+  if (const auto* r = std::get_if<scenes::Rectangle>(&piece)) return scenes::Rectangle{r->center, r->half_v, r->half_u};
+  if (const auto* polygon = std::get_if<scenes::Polygon>(&piece))
+    return scenes::Polygon{{polygon->vertices.rbegin(), polygon->vertices.rend()}};
   return piece;
 }
 
@@ -247,11 +247,11 @@ std::variant<Emitter, std::string> recognise_emitter(std::span<const glm::dvec3>
   }
   emitter.hides_itself = hides_itself(pieces, emitter.two_sided, rounding);
   if (pieces.size() == 1) {
-    emitter.shape = std::visit([](const auto& one) { return LightShape(one); }, pieces.front());
+    emitter.shape = std::visit([](const auto& one) { return scenes::LightShape(one); }, pieces.front());
   } else {
-    emitter.shape = Pieces{std::move(pieces)};
+    emitter.shape = scenes::Pieces{std::move(pieces)};
   }
   return emitter;
 }
 
-}  // namespace penumbra::scenes
+}  // namespace penumbra::import

@@ -10,11 +10,11 @@
 #include <string>
 #include <variant>
 
-namespace penumbra::scenes {
+namespace penumbra::import {
 
 /// An emissive mesh as a light.
 struct Emitter {
-  LightShape shape;
+  scenes::LightShape shape;
   bool two_sided = false;
   /// True if a part of the mesh lies in front of another that emits toward it. A light's own mesh hides none of its
   /// light here, so the light emits more than a real emitter of this shape.
@@ -36,4 +36,4 @@ std::variant<Emitter, std::string> recognise_emitter(std::span<const glm::dvec3>
                                                      std::span<const mesh::Triangle> triangles, bool two_sided,
                                                      double rounding);
 
-}  // namespace penumbra::scenes
+}  // namespace penumbra::import

@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-namespace penumbra::scenes {
+namespace penumbra::import {
 namespace {
 
 /// Returns the edges that have a triangle on one side only, joined into one loop; nullopt if they do not form exactly
@@ -86,9 +86,9 @@ FlatLight light_of_outline(std::vector<glm::dvec3> corners, const glm::dvec3& no
     // Each half side is off by at most the rounding, so their dot product is off by at most this.
     const bool right_angled =
         std::abs(glm::dot(half_u, half_v)) <= 2 * rounding * (glm::length(half_u) + glm::length(half_v));
-    if (parallelogram && right_angled) return Rectangle{(a + b + c + d) / 4.0, half_u, half_v};
+    if (parallelogram && right_angled) return scenes::Rectangle{(a + b + c + d) / 4.0, half_u, half_v};
   }
-  return Polygon{std::move(corners)};
+  return scenes::Polygon{std::move(corners)};
 }
 
 FlatLight recognise_flat_light(const Welded& mesh, double rounding) {
@@ -121,4 +121,4 @@ FlatLight recognise_flat_light(const Welded& mesh, double rounding) {
   return light_of_outline(std::move(corners), normal, rounding);
 }
 
-}  // namespace penumbra::scenes
+}  // namespace penumbra::import

@@ -9,10 +9,10 @@
 #include <variant>
 #include <vector>
 
-namespace penumbra::scenes {
+namespace penumbra::import {
 
 /// The light of an emissive mesh, or the reason why there is none ("it is not flat").
-using FlatLight = std::variant<Rectangle, Polygon, std::string>;
+using FlatLight = std::variant<scenes::Rectangle, scenes::Polygon, std::string>;
 
 /// Recognises the area light whose body is the given mesh. Its triangles must lie in one plane, have consistent
 /// windings, and cover one convex outline once: a rectangle if it has four corners, all right-angled, else a polygon.
@@ -24,4 +24,4 @@ FlatLight recognise_flat_light(const Welded& mesh, double rounding);
 /// −`normal`; corners on a line between their neighbours are dropped.
 FlatLight light_of_outline(std::vector<glm::dvec3> corners, const glm::dvec3& normal, double rounding);
 
-}  // namespace penumbra::scenes
+}  // namespace penumbra::import

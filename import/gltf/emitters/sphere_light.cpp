@@ -10,7 +10,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace penumbra::scenes {
+namespace penumbra::import {
 namespace {
 
 constexpr double kNearest = 0.98;  // least distance of a triangle's plane from the centre, relative to the radius
@@ -42,7 +42,7 @@ std::optional<glm::dvec3> center_of(std::span<const glm::dvec3> points) {
 
 }  // namespace
 
-std::optional<Sphere> recognise_sphere(const Welded& mesh, double rounding) {
+std::optional<scenes::Sphere> recognise_sphere(const Welded& mesh, double rounding) {
   const std::vector<glm::dvec3>& positions = mesh.points;
   const auto center = center_of(positions);
   if (!center) return std::nullopt;
@@ -69,7 +69,7 @@ std::optional<Sphere> recognise_sphere(const Welded& mesh, double rounding) {
   // The sum must be once around, up to the rounding of a sum of that many angles.
   if (std::abs(solid_angle - 4 * std::numbers::pi) > 1e-9 * static_cast<double>(mesh.triangles.size()) + 1e-6)
     return std::nullopt;
-  return Sphere{*center, std::sqrt(area / (4 * std::numbers::pi)), {}};
+  return scenes::Sphere{*center, std::sqrt(area / (4 * std::numbers::pi)), {}};
 }
 
-}  // namespace penumbra::scenes
+}  // namespace penumbra::import

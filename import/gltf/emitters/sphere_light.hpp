@@ -5,7 +5,7 @@
 
 #include <optional>
 
-namespace penumbra::scenes {
+namespace penumbra::import {
 
 /// Recognises the sphere that the mesh approximates: its corners lie on the sphere (`rounding` is the distance of each
 /// from its intended place), its triangles close around the centre once, facing outward, and no triangle is nearer to
@@ -13,6 +13,6 @@ namespace penumbra::scenes {
 /// for an icosphere of 320 faces, whose nearest is 0.982, and a UV sphere of 32 × 16, 0.990; unshadowed, facing it from
 /// 1.5, 3 and 10 radii); one of 80 faces (0.934) would be off by up to 1.4 %, 16 × 8 (0.963) by 0.8 %. The resulting
 /// sphere has the triangles' surface area, so that it emits the same power: 4 π r² = Σ areas.
-std::optional<Sphere> recognise_sphere(const Welded& mesh, double rounding);
+std::optional<scenes::Sphere> recognise_sphere(const Welded& mesh, double rounding);
 
-}  // namespace penumbra::scenes
+}  // namespace penumbra::import

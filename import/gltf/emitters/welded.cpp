@@ -9,7 +9,7 @@
 #include <set>
 #include <tuple>
 
-namespace penumbra::scenes {
+namespace penumbra::import {
 namespace {
 
 /// Returns the triangle with the same winding, beginning at its lowest corner.
@@ -76,4 +76,4 @@ std::vector<Welded> components_of(const Welded& mesh) {
   return components;
 }
 
-}  // namespace penumbra::scenes
+}  // namespace penumbra::import

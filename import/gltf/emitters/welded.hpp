@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-namespace penumbra::scenes {
+namespace penumbra::import {
 
 /// A mesh whose vertices are distinct positions: exporters split vertices where normals or texture coordinates differ.
 struct Welded {
@@ -24,4 +24,4 @@ Welded part_of(const Welded& mesh, std::span<const std::size_t> triangles);
 /// Returns the parts connected by common points, each as a mesh.
 std::vector<Welded> components_of(const Welded& mesh);
 
-}  // namespace penumbra::scenes
+}  // namespace penumbra::import

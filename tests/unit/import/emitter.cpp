@@ -19,11 +19,11 @@ using test::LampMesh;
 
 constexpr double kRounding = 1e-6;
 
-Emitter emitter_of(const LampMesh& lamp, bool two_sided = false) {
-  auto found = recognise_emitter(lamp.points, lamp.triangles, two_sided, kRounding);
-  EXPECT_TRUE(std::holds_alternative<Emitter>(found)) << std::get<std::string>(found);
-  return std::holds_alternative<Emitter>(found) ? std::get<Emitter>(std::move(found)) : Emitter{};
-}
+import::Emitter emitter_of(const LampMesh& lamp, bool two_sided = false){
+    auto found = import::recognise_emitter(lamp.points, lamp.triangles, two_sided, kRounding);
+EXPECT_TRUE(std::holds_alternative<import::Emitter>(found)) << std::get<std::string>(found);
+return std::holds_alternative<import::Emitter>(found) ? std::get<import::Emitter>(std::move(found)) : import::Emitter{};
+}  // namespace
 
 struct AddCorners {
   std::vector<std::vector<glm::dvec3>>& all;
@@ -39,7 +39,7 @@ struct AddCorners {
 };
 
 /// Its pieces' corners, counter-clockwise; of a light in one piece that one's. None of a sphere.
-std::vector<std::vector<glm::dvec3>> outlines_of(const Emitter& emitter) {
+std::vector<std::vector<glm::dvec3>> outlines_of(const import::Emitter& emitter) {
   std::vector<std::vector<glm::dvec3>> all;
   std::visit(AddCorners{all}, emitter.shape);
   return all;
@@ -52,14 +52,14 @@ glm::dvec3 vector_area(const std::vector<glm::dvec3>& corners) {
   return sum;
 }
 
-std::size_t rectangles_in(const Emitter& emitter) {
+std::size_t rectangles_in(const import::Emitter& emitter) {
   const auto& pieces = std::get<Pieces>(emitter.shape).pieces;
   return static_cast<std::size_t>(
       std::ranges::count_if(pieces, [](const auto& piece) { return std::holds_alternative<Rectangle>(piece); }));
 }
 
 /// Each triangle's middle is in exactly one piece, which faces as it does; areas add up; pieces are convex.
-void expect_covered(const LampMesh& lamp, const Emitter& emitter) {
+void expect_covered(const LampMesh& lamp, const import::Emitter& emitter) {
   const auto outlines = outlines_of(emitter);
   double area = 0;
   for (const auto& corners : outlines) {
@@ -93,7 +93,7 @@ TEST(Emitter, ACubeIsSixRectanglesThatShineOutward) {
     LampMesh cube = test::cube_lamp({1, 2, 3}, 0.5, side);
     for (const bool inward : {false, true}) {
       if (inward) cube.turn();
-      const Emitter emitter = emitter_of(cube, true);
+      const import::Emitter emitter = emitter_of(cube, true);
       EXPECT_EQ(rectangles_in(emitter), 6U);
       EXPECT_EQ(std::get<Pieces>(emitter.shape).pieces.size(), 6U);
       EXPECT_FALSE(emitter.two_sided) << "nobody sees its inside";
@@ -101,7 +101,7 @@ TEST(Emitter, ACubeIsSixRectanglesThatShineOutward) {
       for (const auto& corners : outlines_of(emitter))
         EXPECT_GT(glm::dot(vector_area(corners), corners[0] - glm::dvec3(1, 2, 3)), 0) << "outward";
     }
-    const Emitter room = emitter_of(cube);  // turned inward, and one-sided
+    const import::Emitter room = emitter_of(cube);  // turned inward, and one-sided
     EXPECT_TRUE(room.hides_itself);
     for (const auto& corners : outlines_of(room))
       EXPECT_LT(glm::dot(vector_area(corners), corners[0] - glm::dvec3(1, 2, 3)), 0);
@@ -112,7 +112,7 @@ TEST(Emitter, ACubeIsSixRectanglesThatShineOutward) {
 TEST(Emitter, FlatOutlinesThatAreNotConvexAreCut) {
   for (const double size : {2.0, 0.002}) {  // its dents are far deeper than rounding
     const LampMesh star = test::star_lamp({0, 5, 0}, size, 0.4 * size, 5);
-    const Emitter emitter = emitter_of(star, true);
+    const import::Emitter emitter = emitter_of(star, true);
     expect_covered(star, emitter);
     EXPECT_LE(outlines_of(emitter).size(), 6U);
     EXPECT_TRUE(emitter.two_sided);
@@ -201,14 +201,15 @@ TEST(Emitter, WhatIsThereTwiceShinesOnce) {
 
 TEST(Emitter, WhatIsNoneSaysWhy) {
   const auto why_not = [](const LampMesh& lamp) {
-    const auto found = recognise_emitter(lamp.points, lamp.triangles, false, kRounding);
+    const auto found = import::recognise_emitter(lamp.points, lamp.triangles, false, kRounding);
     return std::holds_alternative<std::string>(found) ? std::get<std::string>(found) : "it is a light";
   };
   LampMesh line;
   line.add({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}});
   EXPECT_EQ(why_not(line), "it has no area");
   LampMesh many;
-  for (int i = 0; i <= static_cast<int>(kMostPieces); ++i) many.add({{3 * i, 0, 0}, {3 * i + 1, 0, 0}, {3 * i, 1, i}});
+  for (int i = 0; i <= static_cast<int>(import::kMostPieces); ++i)
+    many.add({{3 * i, 0, 0}, {3 * i + 1, 0, 0}, {3 * i, 1, i}});
   EXPECT_NE(why_not(many).find("cut into more than 1024 flat pieces"), std::string::npos) << why_not(many);
 }
 
@@ -240,5 +241,5 @@ TEST(Emitter, RandomStairsAreCoveredOnce) {
   }
 }
 
-}  // namespace
+}  // namespace penumbra::scenes
 }  // namespace penumbra::scenes

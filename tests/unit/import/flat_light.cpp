@@ -18,11 +18,11 @@ using Triangles = std::vector<mesh::Triangle>;
 const Points kQuad{{-1, 3, -1}, {3, 3, -1}, {3, 3, 1}, {-1, 3, 1}};
 constexpr double kFlatRounding = 1e-6;
 
-FlatLight recognise(const Points& points, const Triangles& triangles) {
-  return recognise_flat_light(weld(points, triangles), kFlatRounding);
-}
+import::FlatLight recognise(const Points& points, const Triangles& triangles){
+    return recognise_flat_light(import::weld(points, triangles), kFlatRounding);
+}  // namespace
 
-void expect_quad(const FlatLight& light, double side) {
+void expect_quad(const import::FlatLight& light, double side) {
   const auto* rectangle = std::get_if<Rectangle>(&light);
   ASSERT_NE(rectangle, nullptr) << (std::holds_alternative<std::string>(light) ? std::get<std::string>(light)
                                                                                : "a polygon");
@@ -64,7 +64,7 @@ TEST(FlatLight, SplitVerticesAndSubdivisionChangeNothing) {
       triangles.push_back({i, i + 7, i + 6});
     }
   }
-  const FlatLight light = recognise(grid, triangles);
+  const import::FlatLight light = recognise(grid, triangles);
   ASSERT_TRUE(std::holds_alternative<Rectangle>(light));
   EXPECT_NEAR(glm::length(glm::cross(std::get<Rectangle>(light).half_u, std::get<Rectangle>(light).half_v)), 2, 1e-9);
   triangles.push_back({0, 0, 5});  // no area, no harm
@@ -72,10 +72,10 @@ TEST(FlatLight, SplitVerticesAndSubdivisionChangeNothing) {
 }
 
 TEST(FlatLight, OtherConvexOutlinesArePolygons) {
-  const FlatLight triangle = recognise(kQuad, {{0, 1, 2}});
+  const import::FlatLight triangle = recognise(kQuad, {{0, 1, 2}});
   ASSERT_TRUE(std::holds_alternative<Polygon>(triangle));
   EXPECT_EQ(std::get<Polygon>(triangle).vertices, (Points{kQuad[0], kQuad[1], kQuad[2]}));
-  const FlatLight leaning = recognise({{0, 0, 0}, {2, 0, 0}, {3, 1, 0}, {1, 1, 0}}, {{0, 1, 2}, {0, 2, 3}});
+  const import::FlatLight leaning = recognise({{0, 0, 0}, {2, 0, 0}, {3, 1, 0}, {1, 1, 0}}, {{0, 1, 2}, {0, 2, 3}});
   ASSERT_TRUE(std::holds_alternative<Polygon>(leaning));  // a parallelogram without right angles
   EXPECT_EQ(std::get<Polygon>(leaning).vertices.size(), 4u);
   Points disk{{0, 0, 0}};
@@ -84,14 +84,14 @@ TEST(FlatLight, OtherConvexOutlinesArePolygons) {
     disk.emplace_back(std::cos(i * M_PI / 16), std::sin(i * M_PI / 16), 0);
     fan.push_back({0, 1 + i, 1 + (i + 1) % 32});
   }
-  const FlatLight round = recognise(disk, fan);
+  const import::FlatLight round = recognise(disk, fan);
   ASSERT_TRUE(std::holds_alternative<Polygon>(round));
   EXPECT_EQ(std::get<Polygon>(round).vertices.size(), 32u);
 }
 
 TEST(FlatLight, OthersSayWhyNot) {
   const auto why_not = [](const Points& points, const Triangles& triangles) {
-    const FlatLight light = recognise(points, triangles);
+    const import::FlatLight light = recognise(points, triangles);
     return std::holds_alternative<std::string>(light) ? std::get<std::string>(light) : "it is a light";
   };
   const Points bent{{0, 0, 0}, {1, 0, 0}, {1, 1, 0.01}, {0, 1, 0}};
@@ -117,5 +117,5 @@ TEST(FlatLight, ToleratesTheRoundingAndNoMore) {
   EXPECT_TRUE(std::holds_alternative<Polygon>(recognise(skewed, {{0, 1, 2}, {0, 2, 3}})));
 }
 
-}  // namespace
+}  // namespace penumbra::scenes
 }  // namespace penumbra::scenes

@@ -63,7 +63,7 @@ std::string told(Read read, const std::string& content) {
 }
 
 void expect_alike(const std::string& content, const std::string& what) {
-  EXPECT_EQ(told(read_ply, content), told(read_ply_slowly, content)) << what;
+  EXPECT_EQ(told(import::read_ply, content), told(import::read_ply_slowly, content)) << what;
 }
 
 std::vector<std::string> files() {
@@ -127,8 +127,9 @@ std::vector<std::string> files() {
 TEST(PlyBinary, WholeFilesAreReadAsNumberByNumber) {
   const std::vector<std::string> all = files();
   for (std::size_t i = 0; i < all.size(); ++i) expect_alike(all[i], fmt::format("file {}", i));
-  EXPECT_EQ(told(read_ply, all[0]), "v 0 0 0\nv 1 -0 0\nv 1 1 0.5\nv 0 1 0\nf 0 1 2 of 0, 0\nf 0 2 3 of 0, 1\n");
-  EXPECT_EQ(told(read_ply, all[2]),
+  EXPECT_EQ(told(import::read_ply, all[0]),
+            "v 0 0 0\nv 1 -0 0\nv 1 1 0.5\nv 0 1 0\nf 0 1 2 of 0, 0\nf 0 2 3 of 0, 1\n");
+  EXPECT_EQ(told(import::read_ply, all[2]),
             "mesh.ply: byte 74 after the header: face 1 names vertex -1, but there are only 4 (numbered from 0)");
 }
 

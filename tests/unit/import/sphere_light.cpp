@@ -44,7 +44,7 @@ Ball uv_sphere(std::uint32_t segments, std::uint32_t rings, double stretch = 1) 
 TEST(SphereLight, HasTheAreaOfItsMesh) {
   for (const std::uint32_t segments : {32u, 64u}) {
     const Ball ball = uv_sphere(segments, segments / 2);
-    const auto sphere = recognise_sphere(weld(ball.points, ball.triangles), 1e-6);
+    const auto sphere = recognise_sphere(import::weld(ball.points, ball.triangles), 1e-6);
     ASSERT_TRUE(sphere) << segments;
     EXPECT_LT(glm::distance(sphere->center, glm::dvec3(5, -3, 2)), 1e-6);
     EXPECT_NEAR(4 * kPi * sphere->radius * sphere->radius, ball.area(), 1e-12);
@@ -56,7 +56,7 @@ TEST(SphereLight, HasTheAreaOfItsMesh) {
 /// Blender's own spheres have corners from sines and cosines in single precision: up to 2e-6 of the radius off.
 TEST(SphereLight, IsWhatSinglePrecisionMakesOfIt) {
   const Ball ball = uv_sphere(48, 24);
-  Welded mesh = weld(ball.points, ball.triangles);
+  import::Welded mesh = import::weld(ball.points, ball.triangles);
   std::size_t number = 0;
   for (glm::dvec3& p : mesh.points) p *= 1 + (++number % 2 == 0 ? 2e-6 : -2e-6);
   EXPECT_TRUE(recognise_sphere(mesh, 1.2e-7));
@@ -64,7 +64,7 @@ TEST(SphereLight, IsWhatSinglePrecisionMakesOfIt) {
 
 TEST(SphereLight, IsNothingElse) {
   const auto is_sphere = [](const Ball& ball) {
-    return recognise_sphere(weld(ball.points, ball.triangles), 1e-6).has_value();
+    return recognise_sphere(import::weld(ball.points, ball.triangles), 1e-6).has_value();
   };
   EXPECT_FALSE(is_sphere(uv_sphere(32, 16, 1.001))) << "an ellipsoid";
   EXPECT_FALSE(is_sphere(uv_sphere(4, 2))) << "an octahedron: its corners are on a sphere";
