@@ -1,6 +1,4 @@
 #include "app/machine.hpp"
-#include "app/process/output_files.hpp"
-#include "base/atomic_file.hpp"
 #include "base/error.hpp"
 #include "base/memory.hpp"
 #include "bench/cpu.hpp"
@@ -8,7 +6,6 @@
 #include "bench/frames.hpp"
 #include "bench/lines.hpp"
 #include "bench/options.hpp"
-#include "bench/picture.hpp"
 #include "bench/question.hpp"
 #include "bench/sequence.hpp"
 #include "bench/whole_frame.hpp"
@@ -87,19 +84,13 @@ void run_sequences(const bench::Options& options, Output& output) {
 }
 
 void run_methods(const bench::Options& options, Output& output) {
-  app::OutputFiles outputs;
-  outputs.add("--picture", options.picture);
-  outputs.require_writable();
   const render::Machine machine = app::make_machine(options.device);
   print_head(options, machine);
   output.write(bench::table_head(bench::takes_area(options)), "");
-  std::vector<bench::Entry> entries;
   for (const bench::Subject& subject : options.subjects) {
     bench::measure(subject, options, machine, [&](const bench::Entry& entry) {
       output.write(bench::table_rows(entry), bench::json_lines(entry, options));
-      entries.push_back(entry);
     });
-    if (!options.picture.empty()) write_file_atomically(options.picture, bench::svg_picture(entries));
   }
   machine.check_validation();
 }

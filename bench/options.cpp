@@ -55,8 +55,7 @@ const char* const kHelp =
                        100000, 1000000); may be given again
   --edges N            of --cpu's wedges (default 1000000)
   --device NAME|INDEX|cpu
-  --json FILE          append one JSON line a contestant
-  --picture FILE.svg   error against time, a curve a contestant; needs --reference
+  --json FILE          append one JSON line a contestant; bench/error_chart.py draws error against time from them
   --commit TEXT        instead of the commit that this was configured at
   --help
 
@@ -153,7 +152,6 @@ const std::map<std::string, Take>& options_with_value() {
                       auto& value) { r.options.sequence_frames = parse_number<std::uint32_t>(option, value, 9999); }},
       {"--device", [](Reading& r, auto&, auto& value) { r.options.device = value; }},
       {"--json", [](Reading& r, auto&, auto& value) { r.options.json = value; }},
-      {"--picture", [](Reading& r, auto&, auto& value) { r.options.picture = value; }},
       {"--commit", [](Reading& r, auto&, auto& value) { r.options.commit = value; }}};
   return takes;
 }
@@ -190,8 +188,6 @@ void set_defaults(Reading& reading) {
   if (options.triangles.empty() && options.frames) options.triangles = {10'000, 100'000, 1'000'000};
   if (options.triangles.empty()) options.triangles = {5'000, 50'000, 500'000};
   if (methods) options.subjects = make_subjects(reading.subjects);
-  if (!options.picture.empty() && (!methods || options.whole_frames || options.sequence || options.reference.empty()))
-    throw UsageError("--picture needs --reference: against their own light samples, right methods have no error");
   // contestants that always run
   std::vector<std::string> rivals = {name_of(RayWork::all), app::ray_judge().name}, subjects, samples;
   for (const app::MethodEntry& method : options.methods) rivals.push_back(method.label);

@@ -37,7 +37,7 @@ struct Options {
   double budget = 0;   ///< seconds; a contestant whose timed runs have used this budget gets no further run; 0: no
                        ///< limit
   std::string device;  ///< in the form of `penumbra --device`
-  std::filesystem::path json, picture;
+  std::filesystem::path json;
   std::string commit;
   bool cpu = false;                      ///< time the parts that run on the processor, not methods
   bool whole_frames = false;             ///< time whole pictures in comparison with a plain program on Embree

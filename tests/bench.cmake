@@ -1,4 +1,4 @@
-# penumbra-bench as its user meets it: lines that parse, names that stay, a picture that is well-formed. No times.
+# penumbra-bench as its user meets it: lines that parse, names that stay. No times.
 if(NOT PENUMBRA_BENCH)
   return()
 endif()

@@ -1,4 +1,4 @@
-// penumbra-bench: JSON lines, stable names, the picture. Sizes are tiny, and no time is looked at.
+// penumbra-bench: JSON lines, stable names. Sizes are tiny, and no time is looked at.
 #include "tests/cli/program.hpp"
 
 #include <gmock/gmock.h>
@@ -43,44 +43,9 @@ const json& line_of(const std::vector<json>& lines, const std::string& name) {
   return *found;
 }
 
-/// What is wrong with the XML, or nothing: tags in pairs, attributes quoted, no bare & or <. Knows no more than the
-/// picture uses.
-std::string fault_of_xml(const std::string& text) {
-  std::vector<std::string> open;
-  for (std::size_t at = text.find("?>") + 2; (at = text.find_first_of("<&", at)) != std::string::npos; ++at) {
-    if (text[at] == '&') {
-      const std::string entity = text.substr(at, text.find(';', at) + 1 - at);
-      if (entity != "&amp;" && entity != "&lt;" && entity != "&gt;") return "bare &";
-      continue;
-    }
-    const std::size_t end = text.find('>', at);
-    const std::string tag = text.substr(at + 1, end - at - 1);
-    if (end == std::string::npos || tag.find('<') != std::string::npos) return "open tag " + tag;
-    if (std::ranges::count(tag, '"') % 2 != 0) return "open quote in " + tag;
-    const std::string name = tag.substr(0, tag.find(' '));
-    if (tag.front() != '/') {
-      if (tag.back() != '/') open.push_back(name);
-    } else if (open.empty() || "/" + open.back() != name) {
-      return "unexpected " + tag;
-    } else {
-      open.pop_back();
-    }
-  }
-  return open.empty() ? "" : "no end of " + open.back();
-}
-
-TEST(BenchXml, FaultsAreFound) {
-  EXPECT_EQ(fault_of_xml("<?xml?><a b=\"1\"><c/>&amp;</a>"), "");
-  for (const char* wrong : {"<?xml?><a>", "<?xml?><a></b></a>", "<?xml?></a>", "<?xml?><a b=\"></a>", "<?xml?><a>&</a>",
-                            "<?xml?><a><</a>"}) {
-    EXPECT_NE(fault_of_xml(wrong), "") << wrong;
-  }
-}
-
 TEST_F(Bench, NamesStayAndLinesParse) {
-  const Outcome outcome =
-      run_tiny({"--light-half", "0.3", "--light-samples", "64", "--light-samples", "100", "--reference", "raytrace",
-                "--reference-samples", "5000", "--picture", path("picture.svg")});
+  const Outcome outcome = run_tiny({"--light-half", "0.3", "--light-samples", "64", "--light-samples", "100",
+                                    "--reference", "raytrace", "--reference-samples", "5000"});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   const std::vector<json> all = lines("lines");
   const std::string few = "scene/half=0.3/size=16/n=64/", many = "scene/half=0.3/size=16/n=100/";
@@ -100,8 +65,6 @@ TEST_F(Bench, NamesStayAndLinesParse) {
     EXPECT_GT(line.at("errorToReference").at("rmse"), 0) << line;
     EXPECT_EQ(line.contains("error"), line.at("method") != "raytrace") << line;
   }
-  EXPECT_EQ(fault_of_xml(read("picture.svg")), "");
-  EXPECT_THAT(read("picture.svg"), testing::AllOf(HasSubstr("scene/half=0.3/size=16"), HasSubstr("adaptive-rays")));
 }
 
 TEST_F(Bench, PeersAskWhatTheySay) {
@@ -216,7 +179,6 @@ TEST_F(Bench, AMovingLight) {
 TEST_F(Bench, WrongUseIsTold) {
   const std::string scene = tiny_scene();
   const std::vector<std::vector<std::string>> wrong = {
-      {"--scene", scene, "--picture", path("a.svg")},  // needs a reference
       {"--scene", scene, "--peer", "rays"},
       {"--scene", scene, "--reference", "photograph"},
       {"--scene", scene, "--light-samples", "5000"},
