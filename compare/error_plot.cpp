@@ -2,7 +2,7 @@
 
 #include "compare/error_plot.hpp"
 
-#include "compare/report_parts.hpp"
+#include "compare/report_text.hpp"
 
 #include <fmt/format.h>
 

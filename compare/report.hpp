@@ -30,11 +30,9 @@ struct BudgetPicture {
 
 inline constexpr const char *kAllButView = "all but the view", *kAllAtOnce = "all at once";
 
-/// Part of the report about one method under one light. The pictures are for browsers without script; data for the
-/// page's script are packed (compare/report_data.hpp), empty if not kept.
+/// Part of the report about one method under one light. Numbers are packed (compare/report_data.hpp), empty if not
+/// kept.
 struct ReportLightView {
-  std::optional<Image8> visibility = {};
-  std::optional<Image8> error = {};  ///< empty for the reference
   std::string packed_visibility = {};
   std::string packed_masks = {};
   std::vector<BudgetPicture> budget_pictures = {};
@@ -43,7 +41,6 @@ struct ReportLightView {
 /// Part of the report about one method in addition to its numbers; parts that were not computed are left out.
 struct ReportEntry {
   visibility::MethodDescription description;
-  std::optional<Image8> beauty;
   std::string packed_beauty;
   std::vector<ReportLightView> lights;  ///< in the order of ReportInput::lights
 };
@@ -60,11 +57,11 @@ struct ReportLight {
 
 /// Contents of the report. Every string may come from a user: the report escapes it.
 struct ReportInput {
-  std::string version;                 ///< of the program
-  std::vector<std::string> arguments;  ///< arguments of the program, for "how to reproduce"
-  std::vector<ReportFact> scene;       ///< describe_scene() and further facts
-  Metrics metrics;                     ///< the same numbers as metrics.json
-  std::vector<ReportLight> lights;     ///< the chosen one first; at least one
+  std::string version;                           ///< of the program
+  std::vector<std::string> arguments;            ///< arguments of the program, for "how to reproduce"
+  std::vector<ReportFact> scene;                 ///< describe_scene() and further facts
+  Metrics metrics;                               ///< the same numbers as metrics.json
+  std::vector<ReportLight> lights;               ///< the chosen one first; at least one
   ReportEntry reference;
   std::optional<ReportEntry> rays;   ///< on the methods' light samples, if the reference used others
   std::vector<ReportEntry> methods;  ///< in the order of metrics.methods
@@ -79,9 +76,9 @@ struct ReportInput {
 /// Returns the scene in words: triangles, objects, each light, the camera.
 std::vector<ReportFact> describe_scene(const scenes::Scene& scene, std::size_t camera);
 
-/// Returns one self-contained HTML page: no network access, pictures embedded. Understandable without knowledge of the
-/// program, in light and dark mode, on a phone and on paper, and without script. The page's script (compare/page/) adds
-/// a viewer, a read-out of each pixel, and sortable tables.
+/// Returns one self-contained HTML page: no network access. Understandable without knowledge of the program, in light
+/// and dark mode, on a phone and on paper. The page's script (compare/page/) draws tables, plots and pictures from the
+/// page's JSON, which has everything in metrics.json; without script the page says where the numbers are.
 std::string report_html(const ReportInput& input);
 
 /// Writes the report's file, whole or not at all.

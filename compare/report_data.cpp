@@ -3,24 +3,15 @@
 #include "compare/report_data.hpp"
 
 #include "base/packed.hpp"
-#include "compare/error_picture.hpp"
-#include "compare/report_tables.hpp"
-#include "visibility/view_samples.hpp"
-
-#include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
-#include <map>
 #include <vector>
 
 namespace penumbra::compare {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 template <typename Number>
 std::string pack_planes(std::span<const Number> numbers) {
@@ -51,69 +42,7 @@ std::uint16_t folded(int steps) {
   return static_cast<std::uint16_t>(steps < 0 ? -2 * steps - 1 : 2 * steps);
 }
 
-/// Writes the packed numbers, each in an element that no browser runs; the JSON names them. Exact methods share theirs.
-class Blobs {
- public:
-  Json add(const std::string& packed) {
-    if (packed.empty()) return nullptr;
-    const auto [known, is_new] = names_.try_emplace(packed, fmt::format("packed-{}", names_.size()));
-    if (is_new) html_ += fmt::format("<script type=\"text/plain\" id=\"{}\">{}</script>\n", known->second, packed);
-    return known->second;
-  }
-  [[nodiscard]] const std::string& html() const { return html_; }
-
- private:
-  std::string html_;
-  std::map<std::string, std::string> names_;
-};
-
-Json colors(std::span<const Color8> colors) {
-  Json json = Json::array();
-  for (const Color8& color : colors) json.push_back(color);
-  return json;
-}
-
-Json points(std::span<const glm::dvec2> samples) {
-  const auto short_number = [](double x) { return std::round(x * 1e4) / 1e4; };
-  Json json = Json::array();
-  for (const glm::dvec2& at : samples) json.push_back({short_number(at.x), short_number(at.y)});
-  return json;
-}
-
-/// Role of an entry. `samples`: the light's sample set of its masks; `judges_pairs`: the entry is the rays to which
-/// others on this set are compared. Masks to which no other entry is compared are left out: masks of 1,024 light
-/// samples are a tenth of a page.
-struct EntryRole {
-  std::string label;
-  const char* samples;
-  bool judges_pairs;
-  bool has_masks = true;
-};
-
-Json entry_json(const ReportEntry& entry, const EntryRole& role, Blobs& blobs) {
-  Json lights = Json::array();
-  for (const ReportLightView& light : entry.lights) {
-    lights.push_back({{"v", blobs.add(light.packed_visibility)},
-                      {"masks", role.has_masks ? blobs.add(light.packed_masks) : nullptr}});
-  }
-  return {{"label", role.label},
-          {"samples", role.samples},
-          {"judgesPairs", role.judges_pairs},
-          {"beauty", blobs.add(entry.packed_beauty)},
-          {"lights", lights}};
-}
-
 }  // namespace
-
-bool has_packed_numbers(const ReportEntry& entry) {
-  return !entry.lights.empty() && std::ranges::none_of(entry.lights, [](const ReportLightView& light) {
-    return light.packed_visibility.empty();
-  });
-}
-
-bool report_data_is_empty(const ReportInput& in) {
-  return !has_packed_numbers(in.reference);
-}
 
 std::string pack_bytes(std::span<const std::byte> bytes) {
   Deflated deflated;
@@ -154,49 +83,6 @@ std::string pack_radiance_over(std::span<const glm::vec3> reference, std::span<c
     steps[2 * linear.size() + i] = folded(blue);
   }
   return pack_planes<std::uint16_t>(steps);
-}
-
-std::string report_data_html(const ReportInput& in) {
-  if (report_data_is_empty(in)) return {};
-  Blobs blobs;
-  Json lights = Json::array(), entries = Json::array();
-  for (const ReportLight& light : in.lights) {
-    Json samples = points(light.samples);
-    lights.push_back({{"name", light.name},
-                      {"classes", blobs.add(light.packed_classes)},
-                      {"round", light.round},
-                      {"aspect", light.aspect},
-                      {"samples", samples}});
-    if (!light.reference_samples.empty()) lights.back()["referenceSamples"] = points(light.reference_samples);
-  }
-  const bool same = in.same_samples;
-  entries.push_back(entry_json(in.reference,
-                               {in.metrics.reference.method + " (reference)", same ? "samples" : "referenceSamples",
-                                same && in.reference.description.output == visibility::Output::mask, same || !in.rays},
-                               blobs));
-  if (in.rays && has_packed_numbers(*in.rays)) {
-    entries.push_back(entry_json(*in.rays, {rays_label(in), "samples", true}, blobs));
-  }
-  for (std::size_t i = 0; i < in.methods.size(); ++i) {
-    if (!has_packed_numbers(in.methods[i])) continue;
-    entries.push_back(entry_json(in.methods[i], {in.metrics.methods[i].entry, "samples", false}, blobs));
-  }
-  const Json data{{"width", in.metrics.reference.width},
-                  {"height", in.metrics.reference.height},
-                  {"exposure", in.exposure},
-                  {"errorLimit", in.error_limit},
-                  {"background", kBackgroundColor},
-                  {"tooBright", colors(error_colors(true))},
-                  {"tooDark", colors(error_colors(false))},
-                  {"classNames",
-                   {"background", "a light’s body", "receives no shadow", "judged", "at the horizon",
-                    "behind the light", "not lit by this light", "another light’s body"}},
-                  {"lights", lights},
-                  {"entries", entries}};
-  // A name may contain "</script": the only text that could end the element.
-  std::string text = data.dump(-1, ' ', false, Json::error_handler_t::replace), safe;
-  for (const char c : text) safe += c == '<' ? std::string("\\u003c") : std::string(1, c);
-  return "<script type=\"application/json\" id=\"report-data\">" + safe + "</script>\n" + blobs.html();
 }
 
 }  // namespace penumbra::compare

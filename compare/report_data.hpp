@@ -1,7 +1,5 @@
 #pragma once
 
-#include "compare/report.hpp"
-
 #include <glm/vec3.hpp>
 
 #include <cstddef>
@@ -29,14 +27,5 @@ std::string pack_radiance(std::uint32_t width, std::span<const glm::vec3> linear
 /// codes: green's from the reference's green, red's and blue's from the reference's own and green's steps, as 2s for s
 /// >= 0 and −2s − 1 for s < 0, as planes of bytes.
 std::string pack_radiance_over(std::span<const glm::vec3> reference, std::span<const glm::vec3> linear);
-
-/// Returns whether the entry carries V of each pixel under every light.
-bool has_packed_numbers(const ReportEntry& entry);
-/// Returns whether there is no viewer, for lack of the reference's numbers.
-bool report_data_is_empty(const ReportInput& in);
-
-/// Returns the script's input as elements of the page: a JSON object `report-data` and the packed numbers named in it.
-/// Its `entries` are the reference, the rays, and the methods for which has_packed_numbers() is true.
-std::string report_data_html(const ReportInput& in);
 
 }  // namespace penumbra::compare

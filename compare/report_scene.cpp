@@ -1,6 +1,6 @@
 // Describes the scene in words.
 #include "compare/report.hpp"
-#include "compare/report_parts.hpp"
+#include "compare/report_text.hpp"
 #include "compare/scene_words.hpp"
 
 #include <fmt/format.h>

@@ -2,10 +2,8 @@
 """The picture and the table of docs/map-fits.md: map_fits_pictures.py PROGRAM. A long floor with plates over it, a camera
 near its end, a light so small that its shadows are hard: for each fit V's error, and 1/m, the inverse of the aliasing error.
 Python's standard library is all that it needs."""
-import base64
 import json
 import pathlib
-import re
 import subprocess
 import sys
 import tempfile
@@ -13,7 +11,8 @@ import tempfile
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(ROOT / "docs/figures"))
-from png import read_png, write_png  # noqa: E402
+from compared import error_rows, visibility_rows  # noqa: E402
+from png import write_png  # noqa: E402
 
 # Texels a side, and what there is of each fit at about as many texels in all.
 ROWS = [("receivers", 256), ("view", 256), ("cascades", 128), ("lispsm", 256), ("tsm", 256), ("psm", 256), ("logpsm", 256),
@@ -36,16 +35,14 @@ def scene():
 
 
 def run(program, folder, aliasing):
-    """Metrics of every fit, and the pictures beside them."""
+    """Metrics of every fit, and a picture of each: V's error, or V."""
     entries = [f"shadow-map:size={size}:fit={fit}:aliasing={aliasing}" for fit, size in ROWS]
     (folder / "scene.json").write_text(json.dumps(scene()))
     out = folder / aliasing
     subprocess.run([program, "-q", "compare", folder / "scene.json", "-o", out, "--methods", ",".join(entries), "--runs", "1",
                     "--light-samples", "16"], check=True, stdout=subprocess.DEVNULL)
-    pictures = {}
-    for alt, data in re.findall(r'<img alt="([^"]*)"[^>]*src="data:image/png;base64,([^"]*)"', (out / "report.html").read_text()):
-        pictures[alt.partition(": ")[0]] = read_png(base64.b64decode(data))
-    return json.loads((out / "metrics.json").read_text())["methods"], pictures
+    rows_of = error_rows if aliasing == "count" else visibility_rows
+    return json.loads((out / "metrics.json").read_text())["methods"], {entry: rows_of(out, entry) for entry in entries}
 
 
 def main():
@@ -62,7 +59,7 @@ def main():
         pictures = []
         for (fit, size) in ROWS:
             entry = f"shadow-map:size={size}:fit={fit}:aliasing="
-            error, inverse = errors[f"Signed error of V by {entry}count"], shown[f"V by {entry}show"]
+            error, inverse = errors[f"{entry}count"], shown[f"{entry}show"]
             pictures.append(error + [b"\xff" * len(error[0])] * 3 + inverse)
         rows = []
         for first in range(0, len(pictures), COLUMNS):

@@ -1,15 +1,13 @@
 #!/usr/bin/env python3
 """What methods get wrong, in PNGs. The strips of README.md (geometry, image): for each method V, and below it how far V is
-off, in docs/images/methods/, out of one report a strip. And the error maps of the methods' pages (pages): V, and beside it how
+off, in docs/images/methods/, out of one comparison a strip. And the error maps of the methods' pages (pages): V, and beside it how
 far it is off where errors are judged, on a scene where that can be seen, in docs/images/errors/. Exact areas judge. Python's standard library is all
 that it needs.
 
   docs/method_pictures.py [--program build/penumbra] [geometry] [image] [pages | PAGE…]          minutes each"""
 
 import argparse
-import base64
 import json
-import re
 import subprocess
 import sys
 import tempfile
@@ -21,8 +19,9 @@ sys.dont_write_bytecode = True
 sys.path.insert(0, str(ROOT / "docs" / "figures"))
 sys.path.insert(0, str(ROOT / "docs" / "figures" / "papers"))
 
+from compared import error_rows, visibility_rows  # noqa: E402
 from experiment import TRUTH, Runner, measures  # noqa: E402
-from png import read_png, write_png  # noqa: E402
+from png import write_png  # noqa: E402
 
 SCENE = "scenes/fusion.json"
 # Pixels on a side; how many of them, squared, become one; light samples; what is rendered.
@@ -106,18 +105,15 @@ def render(program, size, factor, samples, methods):
         out = Path(folder) / "out"
         subprocess.run([program, "-q", "compare", ROOT / SCENE, "-o", out, "--methods", ",".join(methods), "--reference",
                         "exact", "--runs", "1", "--light-samples", str(samples), "--size", f"{size}x{size}"], check=True, stdout=subprocess.DEVNULL)
-        report = (out / "report.html").read_text(encoding="utf-8")
         metrics = json.loads((out / "metrics.json").read_text(encoding="utf-8"))
-    pictures = {}
-    for alt, data in re.findall(r'<img alt="([^"]*)"[^>]*src="data:image/png;base64,([^"]*)"', report):
-        pictures[alt.partition(": ")[0]] = read_png(base64.b64decode(data))
+        pictures = {name: (visibility_rows(out, name), error_rows(out, name)) for name in methods}
     images = ROOT / "docs" / "images" / "methods"
     images.mkdir(exist_ok=True)
     for name, result in zip(methods, metrics["methods"]):
-        error = part(pictures[f"Signed error of V by {name}"], factor)
+        visibility, error = (part(rows, factor) for rows in pictures[name])
         gap = [b"\xff" * len(error[0])] * 4
         path = images / (file_name(name) + ".png")
-        write_png(path, part(pictures[f"V by {name}"], factor) + gap + error)
+        write_png(path, visibility + gap + error)
         e = result["error"]
         print(f"{name}: RMSE {e['rmse']:.4f}, largest {e['max']:.2f}, {path.stat().st_size} bytes")
 

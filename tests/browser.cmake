@@ -4,3 +4,7 @@ add_test(NAME browser.report
          COMMAND ${Python3_EXECUTABLE} ${CMAKE_CURRENT_SOURCE_DIR}/browser/report_page.py $<TARGET_FILE:penumbra>
                  ${PROJECT_SOURCE_DIR}/scenes/room.json ${PROJECT_BINARY_DIR}/report_photographs)
 set_tests_properties(browser.report PROPERTIES LABELS full TIMEOUT 900)
+add_test(NAME browser.report_numbers
+         COMMAND ${Python3_EXECUTABLE} ${CMAKE_CURRENT_SOURCE_DIR}/browser/report_numbers.py $<TARGET_FILE:penumbra>
+                 ${PROJECT_SOURCE_DIR}/scenes/room.json ${PROJECT_BINARY_DIR}/report_photographs)
+set_tests_properties(browser.report_numbers PROPERTIES LABELS full TIMEOUT 900)

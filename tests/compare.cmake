@@ -8,6 +8,7 @@ penumbra_test(compare
   analytic/whole_form_factors.cpp
   unit/compare/beauty.cpp
   unit/compare/error_budget.cpp
+  unit/compare/error_plot.cpp
   unit/compare/eye.cpp
   unit/compare/metrics.cpp
   unit/compare/picture.cpp

@@ -47,6 +47,7 @@ struct Finished {
   MethodRun run;
   std::vector<glm::vec3> beauty;
   std::vector<std::string> masks;  ///< PackedMasks::finish()
+  Image8 picture = {};             ///< the beauty in sRGB
 };
 
 class Comparison {
@@ -159,7 +160,8 @@ class Comparison {
     report_.metrics.reference = stats_of(reference_, reference_lights_, done.run);
     report_.metrics.judged_pixels = truths_.front().judged.size();
     report_.metrics.horizon_pixels = truths_.front().horizon.size();
-    report_.reference = pictures_of(reference_, done);
+    report_.reference = seen_by(reference_, done);
+    reference_picture_ = std::move(done.picture);
     for (std::size_t light = 0; light < truths_.size(); ++light) {
       if (rays) truths_[light].rays = done.run.visibility[light];
       truths_[light].reference = std::move(done.run.visibility[light]);
@@ -207,7 +209,7 @@ class Comparison {
     cost.stats.seconds = {};  // one run without warm-up
     cost.all_lights_error = error_of_all_lights(done.run, truths_);
     cost.lights = LightJudge(session_, truths_, 0).judge(done.run, progress_);
-    report_.rays = report_entry(session_, rays.description, report_.exposure, {done.run, {}, masks.finish()});
+    report_.rays = report_entry(session_, rays.description, {done.run, {}, masks.finish()});
     report_.metrics.same_samples = std::move(cost);
     for (std::size_t light = 0; light < truths_.size(); ++light)
       truths_[light].rays = std::move(done.run.visibility[light]);
@@ -264,10 +266,10 @@ class Comparison {
     if (entry.description.output == Output::scalar && !separated_.empty()) {
       result.separation = compare::separation({done.beauty, separated_, reference_beauty_}, truths_.front().judged);
     }
-    compare::ReportEntry pictures = pictures_of(entry, done);
-    if (options_.sample_pixels == "all") result.flip = compare::flip_of(*report_.reference.beauty, *pictures.beauty);
+    compare::ReportEntry seen = seen_by(entry, done);
+    if (options_.sample_pixels == "all") result.flip = compare::flip_of(reference_picture_, done.picture);
     report_.metrics.methods.push_back(std::move(result));
-    report_.methods.push_back(std::move(pictures));
+    report_.methods.push_back(std::move(seen));
     visibility_.push_back(std::move(done.run.visibility));
   }
 
@@ -315,11 +317,11 @@ class Comparison {
     return make_stats(session_, {lights, labels}, run);
   }
 
-  compare::ReportEntry pictures_of(const Entry& entry, Finished& done) {
-    compare::ReportEntry pictures = report_entry(session_, entry.description, report_.exposure,
-                                                 {done.run, done.beauty, std::move(done.masks), reference_beauty_});
-    if (options_.png && options_.writes) write_png(files_.of(entry.label, ".png"), *pictures.beauty);
-    return pictures;
+  /// Returns the report's numbers of a run, and keeps its beauty as a picture in `done`.
+  compare::ReportEntry seen_by(const Entry& entry, Finished& done) {
+    done.picture = to_srgb(session_.width, session_.height, done.beauty, report_.exposure);
+    if (options_.png && options_.writes) write_png(files_.of(entry.label, ".png"), done.picture);
+    return report_entry(session_, entry.description, {done.run, done.beauty, std::move(done.masks), reference_beauty_});
   }
 
   /// Runs last, because all pictures share one scale.
@@ -329,17 +331,11 @@ class Comparison {
       if (result.all_lights_error) largest = std::max(largest, result.all_lights_error->max);
     }
     report_.error_limit = compare::error_scale_limit(largest);
-    const auto picture = [&](std::size_t light, std::span<const float> v) {
-      return compare::error_picture(session_.samples, v, truths_[light].reference, report_.error_limit);
-    };
-    for (std::size_t light = 0; light < truths_.size(); ++light) {
-      if (report_.rays) report_.rays->lights[light].error = picture(light, truths_[light].rays);
-      for (std::size_t i = 0; i < visibility_.size(); ++i) {
-        if (visibility_[i].empty()) continue;  // the entry failed
-        report_.methods[i].lights[light].error = picture(light, visibility_[i][light]);
-        if (light == 0)
-          write_png(files_.of(report_.metrics.methods[i].entry, "-error.png"), *report_.methods[i].lights[0].error);
-      }
+    for (std::size_t i = 0; i < visibility_.size(); ++i) {
+      if (visibility_[i].empty()) continue;  // the entry failed
+      write_png(files_.of(report_.metrics.methods[i].entry, "-error.png"),
+                compare::error_picture(session_.samples, visibility_[i].front(), truths_.front().reference,
+                                       report_.error_limit));
     }
   }
 
@@ -402,6 +398,7 @@ class Comparison {
   std::optional<std::vector<std::uint32_t>>
       wanted_;  ///< all their pixels, if --sample-pixels chose some; nullopt: every pixel
   std::vector<glm::vec3> reference_beauty_;
+  Image8 reference_picture_;
   std::vector<glm::vec3> separated_;  ///< V of the reference · ∫G; empty: not requested, or unknown
   std::vector<std::vector<std::vector<float>>> visibility_;  ///< of each entry, of each light; empty: the entry failed
   std::vector<std::string> warnings_;

@@ -1,9 +1,8 @@
-// Prepares pictures and packed numbers for the report.
+// Prepares packed numbers for the report.
 
 #include "app/compare/report_views.hpp"
 
 #include "app/whole_lights.hpp"
-#include "compare/error_picture.hpp"
 #include "compare/report_data.hpp"
 
 #include <glm/geometric.hpp>
@@ -81,11 +80,10 @@ std::vector<compare::ReportLight> report_lights(const Session& session, std::spa
 }
 
 compare::ReportEntry report_entry(const Session& session, const visibility::MethodDescription& description,
-                                  float exposure, SeenByRun seen) {
+                                  SeenByRun seen) {
   compare::ReportEntry entry;
   entry.description = description;
   if (!seen.beauty.empty()) {
-    entry.beauty = to_srgb(session.width, session.height, seen.beauty, exposure);
     entry.packed_beauty = seen.reference_beauty.empty()
                               ? compare::pack_radiance(session.width, seen.beauty)
                               : compare::pack_radiance_over(seen.reference_beauty, seen.beauty);
@@ -93,7 +91,6 @@ compare::ReportEntry report_entry(const Session& session, const visibility::Meth
   const std::vector<WholeLight> wholes = whole_lights(session.lights);
   for (std::size_t light = 0; light < seen.run.visibility.size(); ++light) {
     compare::ReportLightView& view = entry.lights.emplace_back();
-    view.visibility = compare::visibility_picture(session.samples, seen.run.visibility[light]);
     view.packed_visibility = compare::pack_floats(seen.run.visibility[light]);
     if (wholes[light].count == 1) view.packed_masks = std::move(seen.masks[wholes[light].first]);
   }

@@ -40,7 +40,7 @@ class PackedMasks {
 std::vector<compare::ReportLight> report_lights(const Session& session, std::span<const visibility::Light> reference,
                                                 bool same_samples);
 
-/// Pictures and packed numbers of a run of whole lights, without errors.
+/// Numbers of a run of whole lights.
 struct SeenByRun {
   const MethodRun& run;
   std::span<const glm::vec3> beauty;                 ///< empty: none is shown
@@ -48,6 +48,6 @@ struct SeenByRun {
   std::span<const glm::vec3> reference_beauty = {};  ///< base of packing the beauty; empty: the reference's
 };
 compare::ReportEntry report_entry(const Session& session, const visibility::MethodDescription& description,
-                                  float exposure, SeenByRun seen);
+                                  SeenByRun seen);
 
 }  // namespace penumbra::app

@@ -5,7 +5,7 @@
 #include "base/csv.hpp"
 #include "app/methods.hpp"
 #include "compare/error_plot.hpp"
-#include "compare/report_parts.hpp"
+#include "compare/report_text.hpp"
 
 #include <fmt/format.h>
 

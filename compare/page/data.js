@@ -1,7 +1,8 @@
-// The numbers behind the pictures. The page carries them deflated (zlib) as base64, each in an element that no browser
+// All that the page shows: `report`, whose `metrics` is metrics.json (compare/report.cpp writes both), and the numbers behind
+// the pictures. The page carries these deflated (zlib) as base64, each in an element that no browser
 // runs; nothing is unpacked before somebody looks at it. compare/report_data.hpp packs what is unpacked here.
 
-const report = JSON.parse(document.getElementById("report-data")?.textContent ?? "null");
+const report = JSON.parse(document.getElementById("report-data").textContent);
 
 // Each thing is made once, at first use: `keep("v0", make)` gives the promise of what make() made.
 const kept = new Map();

@@ -23,8 +23,7 @@ function paintWhenSeen() {
 
 async function lookFirst() {
   const look = document.getElementById("look");
-  if (!look) return;
-  look.hidden = false;
+  if (look.hidden) return;
   const canvas = look.querySelector("canvas"), line = look.querySelector("input");
   const left = Number(look.dataset.left), right = Number(look.dataset.right);
   look.querySelector("button").addEventListener("click", () => open({
@@ -55,7 +54,7 @@ async function lookFirst() {
 
 // A link to what is folded away opens it, and whatever it lies in.
 function unfold() {
-  let element = document.getElementById(location.hash.slice(1));
+  let element = document.getElementById(decodeURIComponent(location.hash.slice(1).replace(/%(?![0-9A-Fa-f]{2})/g, "%25")));
   if (!element) return;
   const target = element;
   for (; element; element = element.parentElement) {

@@ -140,16 +140,18 @@ function openFromPage() {
       layer: box.dataset.layer, light: Number(box.dataset.light), a: Number(box.dataset.entry), view: "one" }));
   }
   for (const button of document.querySelectorAll("#pictures [data-open]")) {
-    button.hidden = false;
     button.addEventListener("click", () => open({ view: button.dataset.open, a: 1, b: 0, bLayer: "" }));
   }
 }
 
+showAbout();
+showFirstLook();
+showNumbers();
+showGallery();
 addEventListener("hashchange", unfold);
 unfold();
 
-// An old browser that cannot unpack keeps the page as it is without script.
-if (report && typeof DecompressionStream === "function" && typeof viewer.showModal === "function") {
+if (canPaint) {
   listenToPointers();
   listenToControls();
   openFromPage();

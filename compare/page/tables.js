@@ -1,4 +1,29 @@
-// Tables can be taken along as comma-separated values (RFC 4180): numbers as exact as they are known.
+// Tables: built from numbers, sorted by a click on a column's header, and saved as comma-separated values.
+
+// A cell is a text, or {text, value, small, href, best, picture}: `value` is what the column is sorted by and what is
+// saved, `small` a second, paler line, `picture` an element below the text.
+function cellOf(cell, isFirst) {
+  const { text, value, small, href, best, picture } = typeof cell === "object" ? cell : { text: cell };
+  const label = href ? make("a", { href }, text) : best ? make("span", { class: "best" }, text) : text;
+  return make(isFirst ? "th" : "td", { scope: isFirst ? "row" : null, "data-value": value }, label,
+    small ? make("small", {}, small) : null, picture);
+}
+
+let captions = 0;
+
+// Nothing if there are no rows; the first cell of a row is its header.
+function tableOf(caption, headers, rows) {
+  if (rows.length === 0) return null;
+  const id = `caption-${++captions}`;
+  const table = make("table", { class: "sortable" }, make("caption", {}, make("span", { id }, caption)),
+    make("thead", {}, make("tr", {}, headers.map((header) => make("th", { scope: "col" }, header)))),
+    make("tbody", {}, rows.map((row) => make("tr", {}, row.map((cell, i) => cellOf(cell, i === 0))))));
+  makeSortable(table);
+  offerCsv(table);
+  return make("div", { class: "scroll", tabindex: 0, role: "region", "aria-labelledby": id }, table);
+}
+
+// Numbers as exact as they are known (RFC 4180).
 function csvOf(table) {
   const quoted = (text) => (/[",\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text);
   const textOf = (cell) => cell.dataset.value ?? cell.textContent.trim().replaceAll(/\s+/g, " ");
@@ -6,11 +31,7 @@ function csvOf(table) {
 }
 
 function offerCsv(table) {
-  const button = document.createElement("button");
-  button.type = "button";
-  button.className = "csv";
-  button.textContent = "CSV";
-  button.title = "Save this table as comma-separated values";
+  const button = make("button", { type: "button", class: "csv", title: "Save this table as comma-separated values" }, "CSV");
   button.addEventListener("click", () => {
     const link = document.createElement("a");
     link.href = URL.createObjectURL(new Blob([csvOf(table)], { type: "text/csv" }));
@@ -21,9 +42,7 @@ function offerCsv(table) {
   table.caption.append(" ", button);
 }
 
-// Tables sort by a click on a column's header: rising, falling, and back as they were. Rows without a value stay last,
-// and equal rows in their order.
-
+// Rising, falling, and back as they were. Rows without a value stay last, and equal rows in their order.
 function makeSortable(table) {
   const body = table.tBodies[0];
   const original = [...body.rows];
@@ -32,13 +51,11 @@ function makeSortable(table) {
     const cell = row.cells[column];
     if (cell.dataset.value !== undefined) return Number(cell.dataset.value);
     const text = cell.textContent.trim();
-    return text === "–" || text === "" ? NaN : text;
+    return text === kNotThere || text === "" ? NaN : text;
   };
   const compare = (a, b) => (typeof a === "number" && typeof b === "number" ? a - b : String(a).localeCompare(String(b)));
   [...table.tHead.rows[0].cells].forEach((header, column) => {
-    const button = document.createElement("button");
-    button.type = "button";
-    button.append(...header.childNodes);
+    const button = make("button", { type: "button" }, ...header.childNodes);
     header.append(button);
     button.addEventListener("click", () => {
       const before = header.getAttribute("aria-sort");
@@ -55,8 +72,3 @@ function makeSortable(table) {
     });
   });
 }
-
-document.querySelectorAll("table.sortable").forEach((table) => {
-  makeSortable(table);
-  offerCsv(table);
-});

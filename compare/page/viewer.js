@@ -2,7 +2,7 @@
 // `state` alone; every control and key changes it and calls update(). The address keeps it (#look?…), as a link to it.
 
 const find = (id) => document.getElementById(id);
-const viewer = find("viewer"), stage = find("viewer-stage"), canvas = stage?.querySelector("canvas");
+const viewer = find("viewer"), stage = find("viewer-stage"), canvas = stage.querySelector("canvas");
 const kLayers = ["beauty", "v", "error"], kLayerNames = { beauty: "Beauty", v: "V", error: "Error" };
 const kLimits = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1];
 const kMostZoom = 64;
@@ -10,8 +10,8 @@ const kMostZoom = 64;
 const state = {
   layer: "v", light: 0, view: "one",
   a: 0, b: 0, bLayer: "",  // entries; bLayer empty: as a
-  wipe: 0.5, stops: 0, limit: report?.errorLimit ?? 1,
-  zoom: 1, x: (report?.width ?? 0) / 2, y: (report?.height ?? 0) / 2,  // what is in the middle, in pixels
+  wipe: 0.5, stops: 0, limit: report.errorLimit,
+  zoom: 1, x: report.width / 2, y: report.height / 2,  // what is in the middle, in pixels
   pixel: null, held: false,  // [column, row] that is read out; held: a click chose it, moving over others does not
 };
 

@@ -2,6 +2,7 @@
 // way these look, refusals.
 
 #include "tests/cli/program.hpp"
+#include "tests/report_json.hpp"
 
 #include "base/exr.hpp"
 
@@ -123,9 +124,7 @@ TEST_F(DomeCommands, ReportsDrawLightSamples) {
                  "--light-samples", "64", "--reference-samples", "same"})
                 .code,
             0);
-  const std::string html = read("dir/report.html"), key = R"(id="report-data">)";
-  const std::size_t begin = html.find(key) + key.size();
-  const json light = json::parse(html.substr(begin, html.find("</script>", begin) - begin)).at("lights").at(0);
+  const json light = report_json(read("dir/report.html")).at("lights").at(0);
   EXPECT_TRUE(light.at("round").get<bool>());
   ASSERT_EQ(light.at("samples").size(), 64u);
   double within = 0;

@@ -4,8 +4,6 @@
 
 #include "compare/report.hpp"
 
-#include <nlohmann/json.hpp>
-
 #include <algorithm>
 #include <string>
 #include <vector>
@@ -51,14 +49,12 @@ inline ReportInput input_with(std::size_t method_count) {
   in.metrics.judged_pixels = 200000;
   in.reference.description.name = "raytrace";
   in.lights.push_back({.name = "key"});
-  in.reference.beauty = picture(10);
-  in.reference.lights.push_back({.visibility = picture(10)});
+  in.reference.lights.emplace_back();
   for (std::size_t i = 0; i < method_count; ++i) {
     in.metrics.methods.push_back(result_of("method-" + std::to_string(i)));
     ReportEntry entry;
     entry.description.name = "method-" + std::to_string(i);
-    entry.beauty = picture(static_cast<std::uint8_t>(20 + i));
-    entry.lights.push_back({.visibility = entry.beauty, .error = entry.beauty});
+    entry.lights.emplace_back();
     in.methods.push_back(entry);
   }
   in.error_limit = 0.5;
@@ -106,29 +102,21 @@ inline ReportInput touchable_input(std::size_t method_count, std::size_t light_c
     light.packed_classes = "Q0xBU1M=";
     light.samples = {{-0.5, -0.5}, {0.5, -0.5}, {-0.5, 0.5}, {0.5, 0.5}};
   }
-  const auto fill = [&](ReportEntry& entry, bool has_error) {
+  const auto fill = [&](ReportEntry& entry) {
     entry.packed_beauty = "QkVBVVRZ";
     entry.lights.resize(light_count);
     for (ReportLightView& view : entry.lights) {
-      view.visibility = picture(10);
-      if (has_error) view.error = picture(20);
       view.packed_visibility = "Vg==";
       view.packed_masks = "TQ==";
     }
   };
-  fill(in.reference, false);
-  for (ReportEntry& entry : in.methods) fill(entry, true);
+  fill(in.reference);
+  for (ReportEntry& entry : in.methods) fill(entry);
   for (MethodResult& result : in.metrics.methods) {
     result.lights.resize(light_count, result.lights.front());
     for (std::size_t i = 0; i < light_count; ++i) result.lights[i].name = in.lights[i].name;
   }
   return in;
-}
-
-inline nlohmann::json data_of(const std::string& html) {
-  const std::string begin = "<script type=\"application/json\" id=\"report-data\">";
-  const std::size_t first = html.find(begin) + begin.size();
-  return nlohmann::json::parse(html.substr(first, html.find("</script>", first) - first));
 }
 
 }  // namespace penumbra::compare
