@@ -157,6 +157,7 @@ Json report_json(const ReportInput& in, Blobs& blobs) {
     methods.push_back(method_json(in, in.methods[i], in.metrics.methods[i].stats));
   return {{"version", in.version},
           {"command", shell_text(in.arguments)},
+          {"view", shell_text(in.view_arguments)},
           {"metrics", to_json(in.metrics)},
           {"scene", scene},
           {"reference", method_json(in, in.reference, in.metrics.reference)},

@@ -59,6 +59,7 @@ struct ReportLight {
 struct ReportInput {
   std::string version;                           ///< of the program
   std::vector<std::string> arguments;            ///< arguments of the program, for "how to reproduce"
+  std::vector<std::string> view_arguments = {};  ///< arguments that show the scene in the live view; empty: unknown
   std::vector<ReportFact> scene;                 ///< describe_scene() and further facts
   Metrics metrics;                               ///< the same numbers as metrics.json
   std::vector<ReportLight> lights;               ///< the chosen one first; at least one

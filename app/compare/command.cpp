@@ -11,6 +11,7 @@
 #include "app/pictures/frame_render.hpp"
 #include "app/pictures/frames.hpp"
 #include "app/pictures/tev_pictures.hpp"
+#include "app/reading_options.hpp"
 #include "base/error.hpp"
 
 #include <CLI/CLI.hpp>
@@ -91,6 +92,29 @@ void print_budgets(const compare::Metrics& metrics) {
   }
 }
 
+/// Returns the arguments that show the compared scene in the live view: `given` are those of `compare`, of which the
+/// two commands share some.
+std::vector<std::string> view_arguments(const CLI::App& given, const std::filesystem::path& scene) {
+  CLI::App view;
+  RunOptions shared;
+  for (const char* name : {"--size", "--camera", "--device"}) view.add_option(name);
+  add_allow_outside(view, shared.allow_outside);
+  add_lenient(view, shared.lenient);
+  add_gltf_options(view, shared.gltf);
+  add_studio_options(view, shared.studio);
+  std::vector<std::string> arguments = {"view", scene.string()};
+  for (const CLI::Option* option : view.get_options()) {
+    const CLI::Option* const asked = given.get_option_no_throw(option->get_name());
+    if (asked == nullptr || asked->count() == 0) continue;
+    if (option->get_expected_max() == 0) {  // a flag
+      arguments.push_back(option->get_name());
+      continue;
+    }
+    for (const std::string& value : asked->results()) arguments.insert(arguments.end(), {option->get_name(), value});
+  }
+  return arguments;
+}
+
 class CompareCommand : public Command {
  public:
   explicit CompareCommand(CLI::App& app)
@@ -150,6 +174,7 @@ class CompareCommand : public Command {
   int run(const GlobalOptions& global) override {
     options_.methods = parse_methods(methods_);
     options_.method_options = parse_method_options(run_.method_options);
+    options_.view_arguments = view_arguments(cli_, run_.scene);
     refuse_means();
     if (!max_rmse_text_.empty()) {
       max_rmse_ = parse_number(max_rmse_text_);

@@ -368,6 +368,7 @@ class Comparison {
   void finish_report(const std::vector<std::string>& arguments) {
     report_.version = PENUMBRA_VERSION;
     report_.arguments = arguments;
+    report_.view_arguments = options_.view_arguments;
     report_.scene = compare::describe_scene(session_.scene, session_.camera_index);
     report_.lights = report_lights(session_, reference_lights_, same_samples_);
     report_.same_samples = same_samples_;

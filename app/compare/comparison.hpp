@@ -29,6 +29,7 @@ struct ComparisonOptions {
   bool writes = true;             ///< writes all of DIR; false: writes nothing and only returns the result
   std::optional<double> time;     ///< time of the scene in seconds; nullopt: at rest
   std::optional<float> exposure;  ///< of displayed pictures, in stops; nullopt: from the reference's brightness
+  std::vector<std::string> view_arguments = {};  ///< of the program, to see the scene in the live view; for the report
 };
 
 /// e = V − V of the reference at each pixel under the first light, for each entry; NaN for pixels that are not judged.

@@ -67,6 +67,7 @@ class ViewCommand : public Command {
     cli_.add_flag("--watch", watch_, "read the scene again when its file, or one that it names, changes");
     cli_.add_option("--method", method_, "method to begin with, NAME:key=value:... (default: exact areas)")
         ->type_name("NAME");
+    cli_.add_option("--method-b", other_, "method beside it, NAME:key=value:... (default: none)")->type_name("NAME");
     cli_.add_option("--light-samples", samples_, "light samples to begin with, 1 to 4096 (default: exact areas)")
         ->type_name("N")
         ->check(CLI::Range(1, 4096));
@@ -93,6 +94,7 @@ class ViewCommand : public Command {
     for (const std::string& warning : scene.warnings) spdlog::warn("{}", warning);
     LiveView view(run_, std::move(scene), {host_, static_cast<std::uint16_t>(port_)});
     if (!method_.empty()) view.renderer().apply({{"type", "method"}, {"slot", "a"}, {"entry", method_}}, 0);
+    if (!other_.empty()) view.renderer().apply({{"type", "method"}, {"slot", "b"}, {"entry", other_}}, 0);
     if (samples_ != 0) view.renderer().apply({{"type", "samples"}, {"count", samples_}}, 0);
     fmt::print("{}\n", view.address());
     std::fflush(stdout);
@@ -126,7 +128,7 @@ class ViewCommand : public Command {
   int port_ = 0;
   std::uint32_t samples_ = 0;
   bool no_browser_ = false, watch_ = false;
-  std::string method_;
+  std::string method_, other_;
 };
 
 }  // namespace

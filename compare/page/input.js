@@ -148,6 +148,7 @@ showAbout();
 showFirstLook();
 showNumbers();
 showGallery();
+showLive();
 addEventListener("hashchange", unfold);
 unfold();
 

@@ -6,6 +6,7 @@ import pathlib
 import subprocess
 import sys
 import tempfile
+import urllib.parse
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
 from browser import Browser  # noqa: E402
@@ -267,6 +268,41 @@ def check_first_look(page):
            "a method's name leads to what it is")
 
 
+def check_live(page, scene):
+    """"Open live": the command of the live view with two methods, to copy by a key, and the address of a view that is running."""
+    browser = page.browser
+    say = "document.getElementById('live-say').textContent"
+    browser.open(page.url)
+    browser.wait("document.getElementById('look').dataset.painted === '50'")
+    browser.ask("document.querySelector('#look a').click()")
+    browser.wait("document.getElementById('live').open")
+    errors = {method["entry"]: method["lights"][0]["error"]["rmse"] for method in page.metrics["methods"]}
+    worst, best = max(errors, key=errors.get), min(errors, key=errors.get)
+    command = f"./run.sh view {scene} --size {WIDTH}x{HEIGHT} --light-samples {SAMPLES} --method {worst} --method-b "
+    same(browser.ask("document.getElementById('live-command').textContent"), command + best, "the command of the live view")
+    browser.ask("""(() => { const b = document.getElementById('live-b'); b.value = '1'; b.dispatchEvent(new Event('change'));
+        document.addEventListener('copy', () => { window.copied = getSelection().toString(); });
+        document.getElementById('live-copy').focus(); })()""")
+    browser.key("Enter")
+    same(browser.ask("window.copied"), command + METHODS[1], "what is copied")
+    expect("Copied" in browser.ask(say), browser.ask(say))
+
+    def submit(address):
+        browser.ask(f"""(() => {{ window.opened = null; window.open = (url) => {{ window.opened = `${{url}}`; }};
+            const field = document.getElementById('live-address'); field.value = {json.dumps(address)}; field.focus(); }})()""")
+        browser.key("Enter")
+        return browser.ask("window.opened")
+
+    for wrong in ("", "127.0.0.1:8080", "http://127.0.0.1:8080/", "javascript:alert(1)//?token=1", "file:///etc/passwd?token=1"):
+        same(submit(wrong), None, f"no address of a view: {wrong}")
+        expect("no address of a view" in browser.ask(say), f"said of {wrong}: {browser.ask(say)}")
+    opened = submit(" http://127.0.0.1:8080/?token=ab ")
+    address, _, wanted = (opened or "").partition("#")
+    same(address, "http://127.0.0.1:8080/?token=ab", "the view that is opened")
+    same(urllib.parse.parse_qs(wanted), {"scene": ["room.json"], "a": [worst], "b": [METHODS[1]], "samples": [str(SAMPLES)]}, "what it is to show")
+    expect("token=" not in (page.folder / "report.html").read_text(encoding="utf-8").replace("?token=…", ""), "the file holds no token")
+
+
 def check_windows(page, photographs):
     """Nothing is wider than the window; what people should look at is photographed."""
     browser = page.browser
@@ -302,6 +338,7 @@ def main():
             same(len(page.lights), 2, "lights of the scene")
             for check in (check_first_look, check_readout, check_keys, check_from_the_page, check_pictures):
                 check(page)
+            check_live(page, scene)
             check_windows(page, photographs)
             same(browser.problems, [], "the page complains, or asks for what is not in it")
     return verdict()

@@ -322,6 +322,7 @@ TEST_F(Compare, ReportIsOneFileWithoutNetwork) {
   EXPECT_THAT(html, HasSubstr("default-src 'none'"));
   const json report = report_json(read("dir/report.html"));
   EXPECT_EQ(report.at("metrics"), json::parse(read("dir/metrics.json")));
+  EXPECT_EQ(report.at("view"), "view " + tiny_scene() + " --size 9x8 --lenient");
 }
 
 TEST_F(Compare, GroupsLeaveOutWhatCannotDoTheLight) {

@@ -8,6 +8,7 @@ import subprocess
 import sys
 import tempfile
 import time
+import urllib.parse
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
 sys.path.insert(0, str(pathlib.Path(__file__).parent.parent / "browser"))
@@ -251,6 +252,23 @@ def check_pixel(page, folder):
     page.ask("document.getElementById('show-seen').click()")
 
 
+def check_report(page):
+    """A report names what is to be seen in the address: methods and light samples, for the same scene alone."""
+    url = page.server.url + "#" + urllib.parse.urlencode({"scene": "scene.json", "a": "view-sample", "b": "edge-scatter", "samples": 16})
+    page.browser.open(url)
+    page.browser.wait(f"{ROOT}.exact === 'true' && {ROOT}.method?.includes('edge-scatter')")
+    same(page.state()["method"], "view-sample", "A of the report")
+    same(page.state()["other"], "edge-scatter", "B of the report")
+    same(page.state()["lightSamples"], 16, "light samples of the report")
+    same(page.ask("location.hash"), "", "taken once")
+    page.browser.open(url.replace("scene.json", "another.json").replace("view-sample", "depth-complexity"))
+    page.browser.wait("document.getElementById('trouble').textContent.includes('another.json')")
+    same(page.state()["method"], "view-sample", "a report about another scene changes nothing")
+    page.choose("method-b", "")
+    page.choose("method", "")
+    page.choose("light-samples", "0")
+
+
 def check_reach(page):
     """Tab reaches every control, and each has a name."""
     page.ask("document.activeElement.blur()")
@@ -278,6 +296,7 @@ def main():
             check_methods(page, folder)
             check_pixel(page, folder)
             check_reach(page)
+            check_report(page)
             browser.call("Page.navigate", url="about:blank")  # a page whose server ends looks for it, and complains
         if PHOTOGRAPHS:
             with Server(PROGRAM, SCENES / "room.json") as server:

@@ -243,6 +243,15 @@ def check_host(scene):
         same(answer.returncode, 2, f"--host {host}")
 
 
+def check_beginning(scene):
+    """The view begins with two methods, as a report's command asks."""
+    with Server(PROGRAM, scene, "--method", "view-sample", "--method-b", "depth-complexity", "--light-samples", 16) as server:
+        frame = Client(server).begin().final()
+        same([(answer["method"], answer["lightSamples"]) for answer in frame["answers"]], [("view-sample", 16), ("depth-complexity", 16)], "the two methods")
+    wrong = subprocess.run([PROGRAM, "view", str(scene), "--no-browser", "--method-b", "nothing"], capture_output=True, text=True)
+    same((wrong.returncode, wrong.stdout), (2, ""), f"no such method: {wrong.stderr}")
+
+
 def check_ending(folder):
     scene = folder / "watched.json"
     scene.write_text(LIGHTS)
@@ -289,6 +298,7 @@ def main():
             out, _ = server.process.communicate(timeout=10)
             same(out, "", "nothing but the address is on stdout")
         check_host(scene)
+        check_beginning(scene)
         check_ending(folder)
     return verdict()
 

@@ -43,6 +43,7 @@ on("state", (state) => {
     solo = state.solo;
     if (firstState) lightsBefore = snapshot();
   }
+  if (firstState) takeReport(state);
   firstState = false;
   byId("channel").value = state.display.channel;
   byId("auto-stops").checked = state.display.stops === null;

@@ -58,6 +58,7 @@ TEST(Report, DescribesSceneMethodsAndMachine) {
   const auto data = tests::report_json(report_html(in));
   EXPECT_EQ(data.at("version"), "1.2.3");
   EXPECT_EQ(data.at("command"), "compare 'scenes/my scene.json' -o out");
+  EXPECT_EQ(data.at("view"), "view 'scenes/my scene.json'");
   EXPECT_EQ(data.at("scene").dump(), R"([["Triangles","69 666"]])");
   EXPECT_EQ(data.at("machine").dump(),
             R"({"memoryBytes":1073741824,"processor":"a processor","system":"a system","threads":2})");

@@ -43,6 +43,7 @@ inline ReportInput input_with(std::size_t method_count) {
   ReportInput in;
   in.version = "1.2.3";
   in.arguments = {"compare", "scenes/my scene.json", "-o", "out"};
+  in.view_arguments = {"view", "scenes/my scene.json"};
   in.scene = {{"Triangles", "69 666"}};
   in.metrics.reference = result_of("raytrace").stats;
   in.metrics.reference.seconds.evaluate = 3.5;

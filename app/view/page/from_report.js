@@ -1,0 +1,16 @@
+// A comparison's report opens this page with what it wants to see in the address: #scene=…&a=…&b=…&samples=….
+
+function takeReport(state) {
+  const wanted = new URLSearchParams(location.hash.slice(1));
+  if (!wanted.has("scene")) return;
+  history.replaceState(null, "", location.pathname + location.search);  // once: what is changed here stays
+  if (wanted.get("scene") !== state.scene) {
+    trouble(`The report is about ${wanted.get("scene")}; this is ${state.scene}. Nothing is changed.`);
+    return;
+  }
+  const samples = Number(wanted.get("samples"));
+  if (Number.isInteger(samples)) change("samples", { type: "samples", count: samples });
+  for (const slot of ["a", "b"]) {
+    if (wanted.has(slot)) change(`method ${slot}`, { type: "method", slot, entry: wanted.get(slot), none: false });
+  }
+}
