@@ -141,19 +141,34 @@ void SessionMaker::show(scenes::Scene scene, const std::string& camera, std::uin
   show(std::move(scene), changed, camera, runs, progress);
 }
 
-void SessionMaker::show_part(const visibility::Tile& rows, bool shades, const std::string& camera, Progress& progress) {
-  PENUMBRA_ASSERT(placed_, "camera {}: there is no scene to see a part of", camera);
+void SessionMaker::look_into(const scenes::Scene& scene, const scenes::Instances& instances) {
+  viewed_.clear();
+  placed_.place(scene, instances);
+}
+
+void SessionMaker::show_part(const visibility::Tile& rows, const std::string& camera, Progress& progress) {
   progress.begin("what is seen", 1);
   const Stopwatch watch;
-  const scenes::Scene& scene = placed_->scene();
+  const scenes::Scene& scene = placed_.scene();
   const auto [width, height] = picture_size(scene, camera);
   const std::size_t number =
       camera.empty() ? 0 : find_named(scene.cameras, camera, "--camera", options_.scene.string());
-  std::vector<visibility::Light> lights;
-  if (shades) lights = make_lights(scene, placed_->origin(), nullptr);
   visibility::SeenPart part = visibility::seen_part(
-      *placed_, visibility::make_camera(scene.cameras[number], placed_->origin(), width, height), lights, rows);
-  const double seconds = watch.seconds();
+      placed_, visibility::make_camera(scene.cameras[number], placed_.origin(), width, height),
+      make_lights(scene, placed_.origin(), nullptr), rows, rows.row_count < height ? &viewed_ : nullptr);
+  show_part(std::move(part), rows, camera, watch.seconds(), progress);
+}
+
+void SessionMaker::show_viewed(const std::string& camera, Progress& progress) {
+  progress.begin("what is seen", 1);
+  const Stopwatch watch;
+  visibility::SeenPart part = visibility::viewed_part(placed_, viewed_);
+  const std::uint32_t height = picture_size(placed_.scene(), camera).second;
+  show_part(std::move(part), {0, height}, camera, watch.seconds(), progress);
+}
+
+void SessionMaker::show_part(visibility::SeenPart part, const visibility::Tile& rows, const std::string& camera,
+                             double seconds, Progress& progress) {
   progress.advance();
   session_.whole_triangles = part.triangles;
   whole_ = {part.lower, part.upper};

@@ -103,13 +103,17 @@ class SessionMaker {
   /// Restricts the session to some rows of its picture from the next show() on; nullopt: all rows. Not together with
   /// show_part().
   void look_at_rows(std::optional<visibility::Tile> rows) { band_ = rows; }
-  /// Sets the scene without copies of its instances, for following calls of show_part(). `scene` and `instances` must
-  /// outlive these calls.
-  void look_into(const scenes::Scene& scene, const scenes::Instances& instances) { placed_.emplace(scene, instances); }
-  void look_away() { placed_.reset(); }
-  /// Makes the session from the part of the scene that matters to some rows of its picture (visibility/seen/); pixels
-  /// of other rows are background. `shades`: includes the triangles between the view samples and the lights.
-  void show_part(const visibility::Tile& rows, bool shades, const std::string& camera, Progress& progress);
+  /// Sets the scene without copies of its instances, for following calls of show_part() and show_viewed(). `scene` and
+  /// `instances` must outlive these calls. Trees over meshes are kept from one scene to the next.
+  void look_into(const scenes::Scene& scene, const scenes::Instances& instances);
+  void look_away() { placed_.leave(); }
+  /// Makes the session from the part of the scene that matters to some rows of its picture (visibility/seen/): what is
+  /// seen, and what may lie between that and the lights. Pixels of other rows are background.
+  void show_part(const visibility::Tile& rows, const std::string& camera, Progress& progress);
+  /// Makes the session from what the pixels of all shown parts see, without what shades that.
+  void show_viewed(const std::string& camera, Progress& progress);
+  /// Returns the number of trees over shared meshes that look_into() built.
+  [[nodiscard]] std::size_t mesh_trees_built() const { return placed_.trees_built(); }
   /// Returns the size of the picture of one of a scene's cameras; empty: the first.
   [[nodiscard]] std::pair<std::uint32_t, std::uint32_t> picture_size(const scenes::Scene& scene,
                                                                      const std::string& camera) const;
@@ -124,6 +128,8 @@ class SessionMaker {
  private:
   /// `changed`: triangles, or whether they cast, differ from the last scene.
   void show(scenes::Scene scene, bool changed, const std::string& camera, std::uint32_t runs, Progress& progress);
+  void show_part(visibility::SeenPart part, const visibility::Tile& rows, const std::string& camera, double seconds,
+                 Progress& progress);
   /// Computes the classes of the session's view samples for its lights.
   void classify();
   /// Returns the requested lights of a scene, pieces one after the other.
@@ -141,7 +147,8 @@ class SessionMaker {
                                                                               // scenes
   std::optional<engines::ViewSampler> sampler_;
   std::optional<visibility::Lens> lens_share_;
-  std::optional<visibility::PlacedMeshes> placed_;
+  visibility::PlacedMeshes placed_;
+  std::vector<std::uint64_t> viewed_;              // triangles of placed_ that pixels of shown parts see
   visibility::Bounds whole_;                       // box of the whole scene's floats, if session_.numbers is filled
   std::optional<visibility::Tile> rows_;           // pixels of other rows are background
   std::optional<visibility::Tile> band_;           // other rows are not there

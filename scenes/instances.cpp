@@ -26,7 +26,7 @@ std::uint64_t triangle_count(const Scene& scene, const Instances& instances) {
 SoupBuilder::SoupBuilder(Scene& to, const Scene& from, const Instances& instances)
     : to_(to), from_(from), instances_(instances) {
   const auto any = [&](auto list) {
-    return std::ranges::any_of(instances.meshes, [&](const SharedMesh& mesh) { return !(mesh.*list).empty(); });
+    return std::ranges::any_of(instances.meshes, [&](const auto& mesh) { return !((*mesh).*list).empty(); });
   };
   normals_ = !from.looks.normals.empty() || any(&SharedMesh::normals);
   colors_ = !from.looks.colors.empty() || any(&SharedMesh::colors);
@@ -62,7 +62,7 @@ void SoupBuilder::add_own(std::uint32_t triangle) {
 }
 
 void SoupBuilder::add_position(std::uint32_t position) {
-  const SharedMesh& mesh = instances_.meshes[at_hand_->mesh];
+  const SharedMesh& mesh = *instances_.meshes[at_hand_->mesh];
   to_.soup.positions.push_back(at_hand_->placement(mesh.soup.positions[position]));
   if (normals_) {
     to_.looks.normals.push_back(
@@ -75,14 +75,14 @@ void SoupBuilder::add_position(std::uint32_t position) {
 void SoupBuilder::begin(const Instance& instance) {
   for (const std::uint32_t position : numbered_) number_[position] = kNone;
   numbered_.clear();
-  number_.resize(std::max(number_.size(), instances_.meshes[instance.mesh].soup.positions.size()), kNone);
+  number_.resize(std::max(number_.size(), instances_.meshes[instance.mesh]->soup.positions.size()), kNone);
   at_hand_ = &instance;
   mirrors_ = instance.placement.mirrors();
 }
 
 void SoupBuilder::add(const Instance& instance, std::uint32_t triangle) {
   if (at_hand_ != &instance) begin(instance);
-  const mesh::TriangleSoup& soup = instances_.meshes[instance.mesh].soup;
+  const mesh::TriangleSoup& soup = instances_.meshes[instance.mesh]->soup;
   add_corners(soup.triangles[triangle], [&](std::uint32_t position) {
     std::uint32_t& number = number_[position];
     if (number == kNone) {
@@ -101,7 +101,7 @@ Scene copied(Scene scene, const Instances& instances) {
   if (instances.empty()) return scene;
   const std::uint64_t triangles = triangle_count(scene, instances);
   std::uint64_t positions = scene.soup.positions.size();
-  for (const Instance& instance : instances.all) positions += instances.meshes[instance.mesh].soup.positions.size();
+  for (const Instance& instance : instances.all) positions += instances.meshes[instance.mesh]->soup.positions.size();
   const auto what = fmt::format("a scene of {} triangles, {} instances of meshes among them, each as a copy", triangles,
                                 instances.all.size());
   constexpr std::string_view kRemedy = "make its meshes smaller or fewer, or render it by a method that leaves them be";

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 namespace penumbra::scenes {
@@ -55,12 +56,13 @@ struct Instance {
 /// Triangles of a scene that are not in its soup, because their meshes are shared. Their numbers are those that they
 /// would have in the soup.
 struct Instances {
-  std::vector<SharedMesh> meshes;
+  /// Never null. Never changed, so that whoever holds one knows what it is (visibility/seen/ keeps trees over them).
+  std::vector<std::shared_ptr<const SharedMesh>> meshes;
   std::vector<Instance> all;  ///< in the order of their triangles' numbers
 
   [[nodiscard]] bool empty() const { return all.empty(); }
   [[nodiscard]] std::size_t triangles_of(const Instance& instance) const {
-    return meshes[instance.mesh].soup.triangles.size();
+    return meshes[instance.mesh]->soup.triangles.size();
   }
 };
 

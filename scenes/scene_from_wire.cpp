@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <utility>
 
@@ -108,6 +109,12 @@ struct Get {
   template <typename T>
   void operator()(std::optional<T>& value) const {
     if (from.get_bool()) (*this)(value.emplace());
+  }
+  template <typename T>
+  void operator()(std::shared_ptr<const T>& part) const {
+    const auto made = std::make_shared<T>();
+    (*this)(*made);
+    part = made;
   }
   template <IsNumber T>
   void operator()(std::vector<T>& numbers) const {

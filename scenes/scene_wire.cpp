@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 
@@ -25,6 +26,10 @@ struct Put {
   void operator()(const std::optional<T>& value) const {
     (*this)(value.has_value());
     if (value) (*this)(*value);
+  }
+  template <typename T>
+  void operator()(const std::shared_ptr<const T>& part) const {
+    (*this)(*part);
   }
   template <IsNumber T>
   void operator()(const std::vector<T>& numbers) const {

@@ -37,7 +37,7 @@ void put_rows(std::vector<std::vector<T>>& all, const std::vector<std::vector<T>
 bool FrameRenderer::shows_in_bands(const std::filesystem::path& bits) const {
   const Frame& frame = picture_.frame;
   return frame.instances != nullptr && !frame.instances->empty() && frame.moments.empty() && frame.pixel_side == 1 &&
-         !frame.keeps_masks && bits.empty();
+         bits.empty();
 }
 
 void FrameRenderer::render_in_bands(const scenes::Scene& scene) {
@@ -50,13 +50,15 @@ void FrameRenderer::render_in_bands(const scenes::Scene& scene) {
   std::vector<std::vector<float>> visibility;
   std::vector<std::vector<glm::vec3>> beauty;
   std::vector<float> alpha;
+  std::vector<std::vector<std::uint32_t>> masks;
   MethodRun all;
   std::uint64_t parts = 0, most = 0;
   for (std::uint32_t row = 0, rows = kFirstRows; row < height;) {
     const visibility::Tile band{row, std::min(rows, height - row)};
-    maker_.show_part(band, true, picture_.frame.camera, progress_);
+    maker_.show_part(band, picture_.frame.camera, progress_);
     note_seconds(maker_);
     if (row == 0) check_wanted_layers();
+    picture_.masks.clear();
     run_methods({});
     if (row > 0) add_times(picture_.run, all);
     watch.restart();
@@ -64,6 +66,11 @@ void FrameRenderer::render_in_bands(const scenes::Scene& scene) {
     put_rows(visibility, picture_.run.visibility, first, end);
     put_rows(beauty, picture_.beauty, first, end);
     put_rows(alpha, picture_.alpha, first, end);
+    masks.resize(picture_.masks.size());
+    for (std::size_t light = 0; light < masks.size(); ++light) {
+      const std::size_t words = picture_.masks[light].size() / picture_.alpha.size();
+      put_rows(masks[light], picture_.masks[light], first * words, end * words);
+    }
     all = std::move(picture_.run);
     spent_.beauty += watch.seconds();
     const std::uint64_t triangles = std::max<std::uint64_t>(session().numbers.size(), 1);
@@ -75,15 +82,19 @@ void FrameRenderer::render_in_bands(const scenes::Scene& scene) {
     rows = static_cast<std::uint32_t>(std::clamp<std::uint64_t>(wanted, 1, std::uint64_t{2} * band.row_count));
   }
   // Outputs of surfaces need the visible triangles alone.
-  maker_.show_part({0, height}, false, picture_.frame.camera, progress_);
-  note_seconds(maker_);
+  if (parts > 1) {
+    maker_.show_viewed(picture_.frame.camera, progress_);
+    note_seconds(maker_);
+  }
   maker_.look_away();
   all.counters["partsOfPicture"] = parts;
   all.counters["trianglesOfLargestPart"] = most;
+  all.counters["meshTreesBuilt"] = maker_.mesh_trees_built();
   picture_.run = std::move(all);
   picture_.run.visibility = std::move(visibility);
   picture_.beauty = std::move(beauty);
   picture_.alpha = std::move(alpha);
+  picture_.masks = std::move(masks);
   picture_.in_bands = false;
   say_idle_lights();
 }

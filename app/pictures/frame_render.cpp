@@ -137,8 +137,7 @@ void FrameRenderer::show(SessionMaker& maker, scenes::Scene scene) {
   if (const scenes::Instances* const instances = picture_.frame.instances;
       instances != nullptr && !instances->empty()) {
     maker.look_into(scene, *instances);
-    maker.show_part({0, maker.picture_size(scene, picture_.frame.camera).second}, true, picture_.frame.camera,
-                    progress_);
+    maker.show_part({0, maker.picture_size(scene, picture_.frame.camera).second}, picture_.frame.camera, progress_);
     maker.look_away();
   } else if (picture_.frame.same_meshes) {
     maker.show_again(std::move(scene), picture_.frame.camera, progress_);

@@ -4,6 +4,9 @@
 
 #include <tiny_gltf.h>
 
+#include <memory>
+#include <utility>
+
 namespace penumbra::import {
 
 void SharedPrimitives::keep_in(scenes::Instances& to, std::span<const PlacedNode> nodes) {
@@ -35,7 +38,7 @@ const SharedPrimitives::Primitive& SharedPrimitives::add(const Number& number, s
   primitive.mesh = static_cast<std::uint32_t>(to_->meshes.size());
   primitive.object = std::move(object);
   if (measures_) primitive.local = local;
-  to_->meshes.push_back(std::move(mesh));
+  to_->meshes.push_back(std::make_shared<const SharedMesh>(std::move(mesh)));
   return primitive;
 }
 

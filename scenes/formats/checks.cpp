@@ -31,11 +31,11 @@ double largest(const glm::dvec3& v) {
 void check_instances(const Scene& scene, const Instances& instances, const std::string& where,
                      std::vector<std::size_t>& triangles_of) {
   std::vector<std::pair<glm::dvec3, glm::dvec3>> boxes;
-  for (const SharedMesh& mesh : instances.meshes) {
-    PENUMBRA_ASSERT(!mesh.soup.positions.empty(), "mesh {} of instances is empty", boxes.size());
-    auto& [low, high] = boxes.emplace_back(mesh.soup.positions.front(), mesh.soup.positions.front());
-    for (const glm::dvec3& position : mesh.soup.positions)
-      low = glm::min(low, position), high = glm::max(high, position);
+  for (const auto& mesh : instances.meshes) {
+    const std::vector<glm::dvec3>& positions = mesh->soup.positions;
+    PENUMBRA_ASSERT(!positions.empty(), "mesh {} of instances is empty", boxes.size());
+    auto& [low, high] = boxes.emplace_back(positions.front(), positions.front());
+    for (const glm::dvec3& position : positions) low = glm::min(low, position), high = glm::max(high, position);
   }
   for (std::size_t i = 0; i < instances.all.size(); ++i) {
     const Instance& instance = instances.all[i];

@@ -22,6 +22,7 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <memory>
 #include <numbers>
 #include <system_error>
 #include <utility>
@@ -283,7 +284,7 @@ Texture read_sky(const std::string& name, const Place& place, const ReadOptions&
 void add_instances(const json& instances, const Place& place, mesh::TriangleSoup mesh, std::uint32_t object,
                    const Scene& scene, Instances& to) {
   const auto number = static_cast<std::uint32_t>(to.meshes.size());
-  to.meshes.push_back({std::move(mesh)});
+  to.meshes.push_back(std::make_shared<const SharedMesh>(SharedMesh{std::move(mesh)}));
   for (std::size_t i = 0; i < instances.size(); ++i) {
     const Affine affine = read_invertible(transform_of(instances[i], place / i), place / i);
     Instance instance{.mesh = number, .object = object, .soup_before = scene.soup.triangles.size()};

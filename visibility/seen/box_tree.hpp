@@ -15,7 +15,8 @@ struct MiddleBox {
   glm::dvec3 middle{0}, half{0};
 };
 
-/// A hierarchy over boxes, two children a node: each node is halved along the longest extent of its boxes' middles.
+/// A hierarchy over boxes, two children a node: each node is divided between two of sixteen slices, by the surface area
+/// heuristic; far down, or where all middles are the same, in halves.
 class BoxTree {
  public:
   struct Node {
@@ -23,6 +24,8 @@ class BoxTree {
     std::uint32_t first = 0;  ///< leaf: index into items(); inner node: second child (the first one follows the node)
     std::uint32_t count = 0;  ///< number of items of a leaf; 0: inner node
   };
+  /// No way from the root to a leaf has more nodes.
+  static constexpr std::uint32_t kDepth = 64;
 
   BoxTree() = default;
   /// Builds a tree whose leaves have up to `most` boxes.
@@ -34,8 +37,6 @@ class BoxTree {
   [[nodiscard]] std::span<const std::uint32_t> items(const Node& leaf) const {
     return std::span(items_).subspan(leaf.first, leaf.count);
   }
-  /// Returns half of the sum of the mean leaf's sides.
-  [[nodiscard]] double leaf_size() const;
   [[nodiscard]] std::uint64_t bytes() const {
     return nodes_.capacity() * sizeof(Node) + items_.capacity() * sizeof(std::uint32_t);
   }
@@ -45,7 +46,12 @@ class BoxTree {
   void walk(const Touches& touches, const Take& take) const;
 
  private:
-  std::uint32_t build(std::span<const MiddleBox> boxes, std::uint32_t first, std::uint32_t count, std::uint32_t most);
+  struct Range {
+    std::uint32_t first = 0, count = 0, depth = 0;
+  };
+  std::uint32_t build(std::span<const MiddleBox> boxes, const Range& range, std::uint32_t most);
+  std::uint32_t divide(std::span<const MiddleBox> boxes, const Range& range, const glm::dvec3& least,
+                       const glm::dvec3& greatest);
 
   std::vector<Node> nodes_;
   std::vector<std::uint32_t> items_;
@@ -54,7 +60,7 @@ class BoxTree {
 template <typename Touches, typename Take>
 void BoxTree::walk(const Touches& touches, const Take& take) const {
   if (nodes_.empty()) return;
-  std::array<std::uint32_t, 64> stack;  // nodes are halved: depth ≤ bits of the number of boxes
+  std::array<std::uint32_t, kDepth> stack;
   std::uint32_t top = 0;
   stack[top++] = 0;
   while (top > 0) {

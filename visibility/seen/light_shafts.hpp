@@ -2,10 +2,12 @@
 
 #include "visibility/light_samples.hpp"
 #include "visibility/seen/box_tree.hpp"
+#include "visibility/seen/placed_meshes.hpp"
 
 #include <glm/vec3.hpp>
 
 #include <array>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
@@ -35,15 +37,18 @@ class LightShaft {
   /// `reach`: length along any axis up to which rays of directions are followed.
   LightShaft(const glm::dvec3& lower, const glm::dvec3& upper, const LightHull& light, double reach);
 
-  [[nodiscard]] bool touches(const MiddleBox& box) const;
-  [[nodiscard]] bool touches(const std::array<glm::vec3, 3>& triangle) const;
-
- private:
   /// The shaft has no point with normal · x > most.
   struct Plane {
-    glm::dvec3 normal{0};
-    double most = 0;
+    glm::dvec3 normal;
+    double most;
   };
+
+  [[nodiscard]] bool touches(const MiddleBox& box) const;
+  /// Calls take(plane) for each plane of the shaft, the sides of the box around it among them.
+  template <typename Take>
+  void for_each_plane(const Take& take) const;
+
+ private:
   void add_planes_along(int axis);
   void add_plane(const glm::dvec3& normal);
   [[nodiscard]] bool is_around(const MiddleBox& box) const;
@@ -53,5 +58,66 @@ class LightShaft {
   std::vector<glm::dvec3> corners_;
   std::vector<Plane> planes_;
 };
+
+template <typename Take>
+void LightShaft::for_each_plane(const Take& take) const {
+  for (const Plane& plane : planes_) take(plane);
+  for (int axis = 0; axis < 3; ++axis) {
+    glm::dvec3 normal(0);
+    normal[axis] = 1;
+    take({normal, around_.middle[axis] + around_.half[axis]});
+    take({-normal, around_.half[axis] - around_.middle[axis]});
+  }
+}
+
+/// A shaft in the own space of a part of the placed meshes, for the part's boxes and triangles.
+class ShaftOfPart {
+ public:
+  ShaftOfPart(const LightShaft& shaft, const PlacedMeshes::Part& part);
+
+  /// Calls take(triangle) for the part's triangles that may reach into the shaft.
+  template <typename Take>
+  void walk(const Take& take) const;
+
+ private:
+  /// A set of planes: those that cut a box, and must be compared with what is in it.
+  using Planes = std::uint64_t;
+  static constexpr std::uint32_t kMost = 64;  // more are left out, which makes the shaft larger
+
+  /// Returns whether the box reaches into the shaft, as far as `planes` tell; removes those it is inside of.
+  [[nodiscard]] bool touches(const MiddleBox& box, Planes& planes) const;
+  [[nodiscard]] bool touches(std::uint32_t triangle, Planes planes) const;
+
+  const PlacedMeshes::Part& part_;
+  std::array<LightShaft::Plane, kMost> planes_;
+  std::uint32_t count_ = 0;
+  bool misses_ = false;  // the part is outside of the shaft
+};
+
+template <typename Take>
+void ShaftOfPart::walk(const Take& take) const {
+  struct Waiting {
+    std::uint32_t node;
+    Planes planes;
+  };
+  if (misses_) return;
+  const BoxTree& tree = *part_.tree;
+  std::array<Waiting, BoxTree::kDepth> stack;
+  std::uint32_t top = 0;
+  stack[top++] = {0, count_ == kMost ? ~Planes{0} : (Planes{1} << count_) - 1};
+  while (top > 0) {
+    Waiting waiting = stack[--top];
+    const BoxTree::Node& node = tree.node(waiting.node);
+    if (!touches(node.box, waiting.planes)) continue;
+    if (node.count > 0) {
+      for (const std::uint32_t triangle : tree.items(node)) {
+        if (touches(triangle, waiting.planes)) take(triangle);
+      }
+      continue;
+    }
+    stack[top++] = {node.first, waiting.planes};
+    stack[top++] = {waiting.node + 1, waiting.planes};
+  }
+}
 
 }  // namespace penumbra::visibility

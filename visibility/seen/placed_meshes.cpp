@@ -12,17 +12,21 @@
 namespace penumbra::visibility {
 namespace {
 
-constexpr std::uint32_t kTrianglesOfLeaf = 4, kPartsOfLeaf = 1;
+constexpr std::uint32_t kTrianglesOfLeaf = 2, kPartsOfLeaf = 1;
 
-BoxTree tree_of(const mesh::TriangleSoup& soup) {
-  std::vector<MiddleBox> boxes;
-  boxes.reserve(soup.triangles.size());
-  for (const auto& [a, b, c] : soup.triangles) {
-    const glm::dvec3 &x = soup.positions[a], &y = soup.positions[b], &z = soup.positions[c];
-    const glm::dvec3 lower = glm::min(x, glm::min(y, z)), upper = glm::max(x, glm::max(y, z));
-    boxes.push_back({0.5 * (lower + upper), 0.5 * (upper - lower)});
-  }
-  return {boxes, kTrianglesOfLeaf};
+bool same_triangles(const mesh::TriangleSoup& one, const mesh::TriangleSoup& other) {
+  return one.triangles == other.triangles && one.positions == other.positions;
+}
+
+/// Sets the inverse of the part's matrix, if that is precise enough.
+void invert(PlacedMeshes::Part& part) {
+  part.to_own = glm::inverse(part.linear);
+  const glm::dmat3 rest = part.to_own * part.linear - glm::dmat3(1);
+  const auto rows = [](const glm::dmat3& m) { return glm::abs(m[0]) + glm::abs(m[1]) + glm::abs(m[2]); };
+  const auto largest = [](const glm::dvec3& v) { return std::max({v.x, v.y, v.z}); };
+  part.own_reach = rows(part.to_own);
+  // The residual itself is rounded, by less than 2⁻⁵⁰ of the product of both matrices. False for NaN.
+  part.has_own = largest(rows(rest)) <= 0x1p-34 && largest(part.own_reach) * largest(rows(part.linear)) <= 0x1p14;
 }
 
 /// Finds the largest coordinate along an axis, or the least (`sign` −1), of all positions beyond `best`.
@@ -53,17 +57,56 @@ class Extreme {
 
 }  // namespace
 
-PlacedMeshes::PlacedMeshes(const scenes::Scene& scene, const scenes::Instances& instances)
-    : scene_(scene), instances_(instances), own_(tree_of(scene.soup)) {
-  trees_.reserve(instances.meshes.size());
-  for (const scenes::SharedMesh& mesh : instances.meshes) trees_.push_back(tree_of(mesh.soup));
-  if (!own_.empty()) {
-    parts_.push_back({.soup = &scene.soup, .tree = &own_});
+PlacedMeshes::MeshTree PlacedMeshes::tree_of(const mesh::TriangleSoup& soup) {
+  std::vector<MiddleBox> boxes;
+  boxes.reserve(soup.triangles.size());
+  double sides = 0;
+  for (const auto& [a, b, c] : soup.triangles) {
+    const glm::dvec3 &x = soup.positions[a], &y = soup.positions[b], &z = soup.positions[c];
+    const glm::dvec3 lower = glm::min(x, glm::min(y, z)), upper = glm::max(x, glm::max(y, z));
+    boxes.push_back({0.5 * (lower + upper), 0.5 * (upper - lower)});
+    sides += sum_of_sides(boxes.back().half);
+  }
+  // Four neighbours cover an area four times as large.
+  return {nullptr, {boxes, kTrianglesOfLeaf}, 2 * sides / static_cast<double>(std::max<std::size_t>(boxes.size(), 1))};
+}
+
+/// Keeps the trees over meshes that were there before, at any place: readers give a frame's meshes anew.
+void PlacedMeshes::find_trees() {
+  std::vector<MeshTree> before = std::exchange(trees_, {});
+  trees_.reserve(instances_->meshes.size());
+  trees_built_ = 0;
+  for (std::size_t i = 0; i < instances_->meshes.size(); ++i) {
+    const auto& mesh = instances_->meshes[i];
+    const auto is_same = [&](const MeshTree& tree) {
+      return tree.mesh && (tree.mesh == mesh || same_triangles(tree.mesh->soup, mesh->soup));
+    };
+    const auto at_hand = before.begin() + static_cast<std::ptrdiff_t>(std::min(i, before.size()));
+    const bool stayed = at_hand != before.end() && is_same(*at_hand);
+    const auto same = stayed ? at_hand : std::ranges::find(before, mesh, &MeshTree::mesh);
+    if (same != before.end()) {
+      trees_.push_back(std::move(*same));
+    } else {
+      trees_.push_back(tree_of(mesh->soup));
+      ++trees_built_;
+    }
+    trees_.back().mesh = mesh;
+  }
+}
+
+void PlacedMeshes::place(const scenes::Scene& scene, const scenes::Instances& instances) {
+  leave();
+  scene_ = &scene;
+  instances_ = &instances;
+  own_ = tree_of(scene.soup);
+  find_trees();
+  if (!own_.tree.empty()) {
+    parts_.push_back({.soup = &scene.soup, .tree = &own_.tree});
     triangles_ = scene.soup.triangles.size();
   }
   for (const scenes::Instance& instance : instances.all) {
-    const mesh::TriangleSoup& soup = instances.meshes[instance.mesh].soup;
-    Part part{.soup = &soup, .tree = &trees_[instance.mesh], .instance = &instance, .first_bit = triangles_};
+    const mesh::TriangleSoup& soup = instances.meshes[instance.mesh]->soup;
+    Part part{.soup = &soup, .tree = &trees_[instance.mesh].tree, .instance = &instance, .first_bit = triangles_};
     part.linear = glm::dmat3(instance.placement.to_world);
     part.wide = glm::dmat3(glm::abs(part.linear[0]), glm::abs(part.linear[1]), glm::abs(part.linear[2]));
     part.offset = glm::dvec3(instance.placement.to_world[3]);
@@ -74,15 +117,25 @@ PlacedMeshes::PlacedMeshes(const scenes::Scene& scene, const scenes::Instances& 
   for (Part& part : parts_) {
     const MiddleBox& root = part.tree->root().box;
     part.room = 0x1p-46 * (sum_of_sides(part.wide * (glm::abs(root.middle) + root.half)) + sum_of_sides(part.offset));
+    invert(part);
   }
   measure();
-  place();
+  put_in_world();
+}
+
+void PlacedMeshes::leave() {
+  scene_ = nullptr;
+  instances_ = nullptr;
+  own_ = {};
+  parts_.clear();
+  tree_ = {};
+  triangles_ = 0;
 }
 
 void PlacedMeshes::measure() {
   for (int axis = 0; axis < 3; ++axis) {
     Extreme least(axis, -1), greatest(axis, 1);
-    for (const glm::dvec3& position : scene_.soup.positions) least.add(position[axis]), greatest.add(position[axis]);
+    for (const glm::dvec3& position : scene_->soup.positions) least.add(position[axis]), greatest.add(position[axis]);
     for (const Part& part : parts_) {
       if (part.instance == nullptr) continue;
       least.add(part, part.instance->placement);
@@ -91,10 +144,10 @@ void PlacedMeshes::measure() {
     lower_[axis] = least.value();
     upper_[axis] = greatest.value();
   }
-  origin_ = scene_.origin.value_or(0.5 * lower_ + 0.5 * upper_);  // as in make_scene_floats
+  origin_ = scene_->origin.value_or(0.5 * lower_ + 0.5 * upper_);  // as in make_scene_floats
 }
 
-void PlacedMeshes::place() {
+void PlacedMeshes::put_in_world() {
   std::vector<MiddleBox> boxes;
   double grains = 0;
   for (Part& part : parts_) {
@@ -102,11 +155,13 @@ void PlacedMeshes::place() {
     // Positions relative to the origin are rounded to float32 once.
     const MiddleBox world = part.box(part.tree->root().box);
     part.room += 0x1p-46 * sum_of_sides(origin_) + 0x1p-22 * sum_of_sides(glm::abs(world.middle) + world.half);
-    boxes.push_back(part.box(part.tree->root().box));
+    part.in_world = part.box(part.tree->root().box);
+    boxes.push_back(part.in_world);
+    const double grain = part.instance != nullptr ? trees_[part.instance->mesh].grain : own_.grain;
     if (part.instance != nullptr || parts_.size() == 1)
-      grains += part.tree->leaf_size() * std::cbrt(std::abs(glm::determinant(part.linear)));
+      grains += grain * std::cbrt(std::abs(glm::determinant(part.linear)));
   }
-  grain_ = grains / static_cast<double>(std::max<std::size_t>(instances_.all.size(), 1));
+  grain_ = grains / static_cast<double>(std::max<std::size_t>(instances_->all.size(), 1));
   tree_ = BoxTree(boxes, kPartsOfLeaf);
 }
 
@@ -129,8 +184,8 @@ std::array<glm::vec3, 3> PlacedMeshes::corners(const Part& part, std::uint32_t t
 }
 
 std::uint64_t PlacedMeshes::bytes() const {
-  std::uint64_t bytes = own_.bytes() + tree_.bytes() + parts_.capacity() * sizeof(Part);
-  for (const BoxTree& tree : trees_) bytes += tree.bytes();
+  std::uint64_t bytes = own_.tree.bytes() + tree_.bytes() + parts_.capacity() * sizeof(Part);
+  for (const MeshTree& mesh : trees_) bytes += mesh.tree.bytes();
   return bytes;
 }
 

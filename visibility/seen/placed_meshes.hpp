@@ -7,7 +7,9 @@
 #include <glm/vec3.hpp>
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -33,19 +35,32 @@ class PlacedMeshes {
     glm::dvec3 offset{0};
     /// Largest rounding error of positions, in double and in float32, by which boxes are enlarged.
     double room = 0;
+    MiddleBox in_world = {};  ///< of all its triangles
+    /// Inverse of `linear`, if it has one with relative errors below 2⁻³²; then rays may walk in the part's own space.
+    glm::dmat3 to_own{0};
+    bool has_own = false;
+    glm::dvec3 own_reach{0};  ///< sums of the absolute values in each row of `to_own`
 
     [[nodiscard]] MiddleBox box(const MiddleBox& own) const {
       return {linear * own.middle + offset, wide * own.half + room};
     }
   };
 
-  /// Both arguments must outlive this object.
-  PlacedMeshes(const scenes::Scene& scene, const scenes::Instances& instances);
+  PlacedMeshes() = default;
+  PlacedMeshes(const scenes::Scene& scene, const scenes::Instances& instances) { place(scene, instances); }
   PlacedMeshes(const PlacedMeshes&) = delete;
   PlacedMeshes& operator=(const PlacedMeshes&) = delete;
 
-  [[nodiscard]] const scenes::Scene& scene() const { return scene_; }
-  [[nodiscard]] const scenes::Instances& instances() const { return instances_; }
+  /// Places the meshes, as another scene has them or the same one after a change. Trees over meshes that the last scene
+  /// had are kept. Both arguments must outlive all calls until the next place() or leave().
+  void place(const scenes::Scene& scene, const scenes::Instances& instances);
+  /// Lets go of the scene, and keeps the trees over its shared meshes.
+  void leave();
+  /// Returns the number of trees over shared meshes that the last place() built.
+  [[nodiscard]] std::size_t trees_built() const { return trees_built_; }
+
+  [[nodiscard]] const scenes::Scene& scene() const { return *scene_; }
+  [[nodiscard]] const scenes::Instances& instances() const { return *instances_; }
   [[nodiscard]] std::span<const Part> parts() const { return parts_; }
   [[nodiscard]] const BoxTree& tree() const { return tree_; }  ///< over parts
   [[nodiscard]] std::uint64_t triangles() const { return triangles_; }
@@ -54,7 +69,7 @@ class PlacedMeshes {
   [[nodiscard]] const glm::dvec3& origin() const { return origin_; }
   [[nodiscard]] const glm::dvec3& lower() const { return lower_; }
   [[nodiscard]] const glm::dvec3& upper() const { return upper_; }
-  /// Returns the approximate size of the meshes' triangles.
+  /// Returns the approximate size of four neighbouring triangles of the meshes.
   [[nodiscard]] double grain() const { return grain_; }
 
   /// Returns a triangle's scene floats, in the order of SceneFloats::triangles.
@@ -66,13 +81,22 @@ class PlacedMeshes {
   [[nodiscard]] std::uint64_t bytes() const;
 
  private:
+  /// Tree over a mesh's triangles.
+  struct MeshTree {
+    std::shared_ptr<const scenes::SharedMesh> mesh;  // null: the scene's soup
+    BoxTree tree;
+    double grain = 0;  // size of four neighbouring triangles, in the mesh's own space
+  };
+  [[nodiscard]] static MeshTree tree_of(const mesh::TriangleSoup& soup);
+  void find_trees();
   void measure();
-  void place();
+  void put_in_world();
 
-  const scenes::Scene& scene_;
-  const scenes::Instances& instances_;
-  BoxTree own_;                 // over the scene's soup
-  std::vector<BoxTree> trees_;  // for each mesh
+  const scenes::Scene* scene_ = nullptr;
+  const scenes::Instances* instances_ = nullptr;
+  MeshTree own_;                 // over the scene's soup
+  std::vector<MeshTree> trees_;  // for each mesh
+  std::size_t trees_built_ = 0;
   std::vector<Part> parts_;
   BoxTree tree_;
   std::uint64_t triangles_ = 0;

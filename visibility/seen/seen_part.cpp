@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <mutex>
 #include <vector>
 
 namespace penumbra::visibility {
@@ -83,18 +84,9 @@ class Shafts {
     meshes_.tree().walk(touches, [&](std::span<const std::uint32_t> parts) {
       for (const std::uint32_t number : parts) {
         const PlacedMeshes::Part& part = meshes_.parts()[number];
-        part.tree->walk([&](const MiddleBox& own) { return touches(part.box(own)); },
-                        [&](std::span<const std::uint32_t> triangles) {
-                          for (const std::uint32_t triangle : triangles) take(part, triangle, shaft);
-                        });
+        ShaftOfPart(shaft, part).walk([&](std::uint32_t triangle) { seen_.set(part.first_bit + triangle); });
       }
     });
-  }
-
-  void take(const PlacedMeshes::Part& part, std::uint32_t triangle, const LightShaft& shaft) const {
-    const std::uint64_t bit = part.first_bit + triangle;
-    if (seen_.has(bit)) return;
-    if (shaft.touches(meshes_.corners(part, triangle))) seen_.set(bit);
   }
 
   const PlacedMeshes& meshes_;
@@ -144,29 +136,7 @@ void for_each_seen(const PlacedMeshes& meshes, const TriangleBits& seen, const T
   take_own(meshes.scene().soup.triangles.size());
 }
 
-}  // namespace
-
-SeenPart seen_part(const PlacedMeshes& meshes, const PinholeCamera& camera, std::span<const Light> lights,
-                   const Tile& rows) {
-  TriangleBits seen(meshes.triangles());
-  const bool all = std::ranges::any_of(lights, [](const Light& light) { return light.dome.has_value(); });
-  if (all) {
-    for (std::uint64_t bit = 0; bit < meshes.triangles(); ++bit) seen.set(bit);
-  } else {
-    const ViewRays rays(meshes, camera);
-    const Shafts shafts(meshes, lights, seen);
-    const std::uint32_t end = rows.first_row + rows.row_count;
-    const std::uint32_t across = (camera.width + kBlock - 1) / kBlock, down = (rows.row_count + kBlock - 1) / kBlock;
-    tbb::parallel_for(std::uint32_t{0}, across * down, [&](std::uint32_t block) {
-      std::vector<SeenPoint> points;
-      const std::uint32_t left = block % across * kBlock, top = rows.first_row + block / across * kBlock;
-      for (std::uint32_t y = top; y < std::min(top + kBlock, end); ++y) {
-        for (std::uint32_t x = left; x < std::min(left + kBlock, camera.width); ++x) rays.look(x, y, seen, points);
-      }
-      shafts.add(points);
-    });
-  }
-
+SeenPart part_of(const PlacedMeshes& meshes, TriangleBits& seen) {
   SeenPart part;
   part.triangles = meshes.triangles();
   part.lower = glm::vec3(meshes.lower() - meshes.origin()) + 0.0f;
@@ -189,6 +159,45 @@ SeenPart seen_part(const PlacedMeshes& meshes, const PinholeCamera& camera, std:
     from.instance != nullptr ? builder.add(*from.instance, triangle) : builder.add_own(triangle);
   });
   return part;
+}
+
+}  // namespace
+
+SeenPart seen_part(const PlacedMeshes& meshes, const PinholeCamera& camera, std::span<const Light> lights,
+                   const Tile& rows, std::vector<std::uint64_t>* viewed) {
+  TriangleBits seen(meshes.triangles());
+  const bool all = std::ranges::any_of(lights, [](const Light& light) { return light.dome.has_value(); });
+  if (all) {
+    for (std::uint64_t bit = 0; bit < meshes.triangles(); ++bit) seen.set(bit);
+  }
+  if (!all || viewed != nullptr) {
+    const ViewRays rays(meshes, camera);
+    const Shafts shafts(meshes, all ? std::span<const Light>() : lights, seen);
+    const std::uint32_t end = rows.first_row + rows.row_count;
+    const std::uint32_t across = (camera.width + kBlock - 1) / kBlock, down = (rows.row_count + kBlock - 1) / kBlock;
+    std::mutex adding;
+    tbb::parallel_for(std::uint32_t{0}, across * down, [&](std::uint32_t block) {
+      std::vector<std::uint64_t> bits;
+      std::vector<SeenPoint> points;
+      const std::uint32_t left = block % across * kBlock, top = rows.first_row + block / across * kBlock;
+      for (std::uint32_t y = top; y < std::min(top + kBlock, end); ++y) {
+        for (std::uint32_t x = left; x < std::min(left + kBlock, camera.width); ++x) rays.look(x, y, bits, points);
+      }
+      for (const std::uint64_t bit : bits) seen.set(bit);
+      if (viewed != nullptr) {
+        const std::lock_guard lock(adding);
+        viewed->insert(viewed->end(), bits.begin(), bits.end());
+      }
+      shafts.add(points);
+    });
+  }
+  return part_of(meshes, seen);
+}
+
+SeenPart viewed_part(const PlacedMeshes& meshes, std::span<const std::uint64_t> viewed) {
+  TriangleBits seen(meshes.triangles());
+  for (const std::uint64_t bit : viewed) seen.set(bit);
+  return part_of(meshes, seen);
 }
 
 }  // namespace penumbra::visibility

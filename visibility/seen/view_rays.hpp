@@ -44,8 +44,8 @@ class ViewRays {
   /// All arguments must outlive this object.
   ViewRays(const PlacedMeshes& meshes, const PinholeCamera& camera);
 
-  /// Sets the bits of the triangles that the pixel sees, and appends the points seen.
-  void look(std::uint32_t x, std::uint32_t y, TriangleBits& seen, std::vector<SeenPoint>& points) const;
+  /// Appends the bits of the triangles that the pixel sees, and the points seen.
+  void look(std::uint32_t x, std::uint32_t y, std::vector<std::uint64_t>& bits, std::vector<SeenPoint>& points) const;
 
  private:
   struct Met {

@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <iterator>
+#include <memory>
 #include <random>
 #include <span>
 #include <utility>
@@ -39,7 +40,7 @@ Forest forest(std::mt19937& random, const scenes::LightShape& shape) {
   }
   shards.push_back({glm::dvec3(0), glm::dvec3(0.1), glm::dvec3(0.2)});  // of no area
   tests::add_object(one, "shards", shards);
-  forest.instances.meshes.push_back({one.soup});
+  forest.instances.meshes.push_back(std::make_shared<const scenes::SharedMesh>(scenes::SharedMesh{one.soup}));
   for (std::uint32_t i = 0; i < 12; ++i) {
     scenes::Instance instance{.object = static_cast<std::uint32_t>(forest.scene.objects.size()), .soup_before = 2};
     instance.placement.offset_last = i % 2 == 0;
@@ -143,6 +144,44 @@ TEST(SeenPart, OfSomeRowsIsNoMoreThanTheWhole) {
   const std::vector<std::uint32_t> seen = numbers({}, {0, 15});
   EXPECT_TRUE(std::ranges::includes(together, seen));
   EXPECT_LT(seen.size(), all.size());
+  // What is seen needs no second search when its parts are known.
+  std::vector<std::uint64_t> viewed;
+  for (const Tile& rows : {Tile{0, 4}, Tile{4, 7}, Tile{11, 4}}) {
+    const SeenPart part = seen_part(meshes, camera, {&light, 1}, rows, &viewed);
+    EXPECT_GT(part.numbers.size(), viewed_part(meshes, viewed).numbers.size());
+  }
+  EXPECT_EQ(viewed_part(meshes, viewed).numbers, seen);
+}
+
+TEST(PlacedMeshes, KeepTheTreesOfMeshesThatStay) {
+  std::mt19937 random(5);
+  Forest forest = visibility::forest(random, shapes()[0]);
+  forest.instances.meshes.push_back(forest.instances.meshes[0]);
+  PlacedMeshes kept(forest.scene, forest.instances);
+  EXPECT_EQ(kept.trees_built(), 2U);
+  const auto expect_as_anew = [&] {
+    const PlacedMeshes anew(forest.scene, forest.instances);
+    const Light light = make_light(forest.scene, 0, anew.origin(), {});
+    const PinholeCamera camera = make_camera(forest.scene.cameras[0], anew.origin(), 20, 15);
+    EXPECT_EQ(kept.origin(), anew.origin());
+    EXPECT_EQ(seen_part(kept, camera, {&light, 1}, {0, 15}).numbers,
+              seen_part(anew, camera, {&light, 1}, {0, 15}).numbers);
+  };
+  // An instance moves; the meshes are what they were, also if they are read anew.
+  forest.instances.all[3].placement.to_world[3] += glm::dvec4(0.7, 0.2, -3, 0);
+  forest.instances.meshes[1] = std::make_shared<const scenes::SharedMesh>(*forest.instances.meshes[1]);
+  kept.place(forest.scene, forest.instances);
+  EXPECT_EQ(kept.trees_built(), 0U);
+  expect_as_anew();
+  kept.leave();
+  // One mesh changes, and both change places.
+  scenes::SharedMesh changed = *forest.instances.meshes[1];
+  changed.soup.positions[0] *= 3;
+  forest.instances.meshes[1] = forest.instances.meshes[0];
+  forest.instances.meshes[0] = std::make_shared<const scenes::SharedMesh>(changed);
+  kept.place(forest.scene, forest.instances);
+  EXPECT_EQ(kept.trees_built(), 1U);
+  expect_as_anew();
 }
 
 TEST(SeenPart, OfADomeIsEverything) {

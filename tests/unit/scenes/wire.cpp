@@ -6,6 +6,7 @@
 
 #include <cstring>
 #include <limits>
+#include <memory>
 
 namespace penumbra::scenes {
 namespace {
@@ -74,10 +75,11 @@ Scene scene_of(const std::vector<std::byte>& bytes) {
 TEST(SceneWire, BringsInstancesWhoseNumbersAreInRange) {
   const Scene scene = full_scene();
   Instances sent;
-  sent.meshes.push_back({.soup = scene.soup,
-                         .normals = {{0, 0, 1}, {0, 1, 0}, {.3, .1, .2}},
-                         .colors = {{.1F, .2F, .3F, .4F}, {0, 0, 0, 1}, {1, 1, 1, 1}},
-                         .places = {{0, 1}, {2, 3}, {4, 5}}});
+  const SharedMesh mesh{.soup = scene.soup,
+                        .normals = {{0, 0, 1}, {0, 1, 0}, {.3, .1, .2}},
+                        .colors = {{.1F, .2F, .3F, .4F}, {0, 0, 0, 1}, {1, 1, 1, 1}},
+                        .places = {{0, 1}, {2, 3}, {4, 5}}};
+  sent.meshes.push_back(std::make_shared<const SharedMesh>(mesh));
   for (std::uint32_t i = 0; i < 3; ++i)
     sent.all.push_back({.object = i % 2, .placement = {glm::dmat4(i + .5), i == 1}, .soup_before = i / 2});
   const auto bytes_of_instances = [](const Instances& instances) {
@@ -103,10 +105,14 @@ TEST(SceneWire, BringsInstancesWhoseNumbersAreInRange) {
   refused([](Instances& all) { all.all[2].soup_before = 2; });
   refused([](Instances& all) { all.all[1].soup_before = 1, all.all[2].soup_before = 0; });
   refused([](Instances& all) { all.all[0].placement.to_world[3][1] = kNan; });
-  refused([](Instances& all) { all.meshes[0].normals.pop_back(); });
-  refused([](Instances& all) {
-    all.meshes[0].soup.triangles.clear(), all.meshes[0].soup.object.clear(), all.meshes[0].soup.source_face.clear();
-  });
+  const auto refused_mesh = [&](auto change) {
+    SharedMesh changed = mesh;
+    change(changed);
+    refused([&](Instances& all) { all.meshes[0] = std::make_shared<const SharedMesh>(changed); });
+  };
+  refused_mesh([](SharedMesh& all) { all.normals.pop_back(); });
+  refused_mesh(
+      [](SharedMesh& all) { all.soup.triangles.clear(), all.soup.object.clear(), all.soup.source_face.clear(); });
 }
 
 TEST(SceneWire, LosesNothing) {
