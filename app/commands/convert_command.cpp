@@ -5,6 +5,7 @@
 #include "base/error.hpp"
 #include "scenes/formats/reader.hpp"
 #include "scenes/formats/writer.hpp"
+#include "scenes/instances.hpp"
 
 #include <CLI/CLI.hpp>
 #include <spdlog/spdlog.h>
@@ -12,6 +13,7 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <string>
 
 namespace penumbra::app {
 namespace {
@@ -26,6 +28,12 @@ class ConvertCommand : public Command {
                     "(no textures of lights) or FILE.obj (geometry alone)")
         ->required()
         ->type_name("FILE");
+    cli_.add_option(
+            "--instances", instances_,
+            "meshes that the scene has several times: copies (each a mesh of its own, in the world), shared (one "
+            "mesh, once for each; not in .obj), or auto (shared in .glb, and in .json where it reads back as the "
+            "same scene or copies would exceed 500000 triangles) (default: auto)")
+        ->type_name("NAME");
     add_allow_outside(cli_, allow_outside_);
     add_lenient(cli_, lenient_);
     add_gltf_options(cli_, gltf_);
@@ -46,6 +54,9 @@ class ConvertCommand : public Command {
     if (!camera_.empty() && reading.studio.fit_camera.empty() && !reading.studio.camera)
       throw UsageError("--camera {}: expected fit, or EX,EY,EZ:TX,TY,TZ[:FOV]", camera_);
     reading.needs_light = out_.extension() != ".obj";  // which contains none
+    const scenes::WriteOptions writing{.lenient = lenient_, .instances = parse_instances()};
+    scenes::Instances instances;
+    reading.instances = &instances;
     OutputFiles outputs;
     outputs.add("-o", out_);
     outputs.refuse_inputs({&scene_, 1});
@@ -55,17 +66,27 @@ class ConvertCommand : public Command {
     scene.sources.push_back(scene_);
     outputs.refuse_inputs(scene.sources);
     for (const std::string& warning : scene.warnings) spdlog::warn("{}", warning);
-    for (const std::string& loss : scenes::write_scene(scene, out_, {.lenient = lenient_})) spdlog::warn("{}", loss);
-    spdlog::info("{}: {} triangles, {} lights", out_.string(), scene.soup.triangles.size(), scene.lights.size());
+    for (const std::string& loss : scenes::write_scene(scene, out_, writing, instances)) spdlog::warn("{}", loss);
+    spdlog::info("{}: {} triangles, {} lights", out_.string(), scenes::triangle_count(scene, instances),
+                 scene.lights.size());
     return 0;
   }
 
  private:
+  [[nodiscard]] scenes::WriteInstances parse_instances() const {
+    using scenes::WriteInstances;
+    if (instances_ == "copies") return WriteInstances::copies;
+    if (instances_.empty() || instances_ == "auto") return WriteInstances::automatic;
+    if (instances_ != "shared") throw UsageError("--instances {}: expected auto, copies or shared", instances_);
+    if (out_.extension() == ".obj") throw UsageError("--instances shared: .obj has none; write .json or .glb");
+    return WriteInstances::shared;
+  }
+
   std::filesystem::path scene_, out_;
   bool allow_outside_ = false, lenient_ = false;
   GltfOptions gltf_;
   StudioOptions studio_;
-  std::string camera_;
+  std::string camera_, instances_;
 };
 
 }  // namespace

@@ -48,10 +48,14 @@ void GlbModel::add_root(int node) {
   model_.scenes[0].nodes.push_back(node);
 }
 
+int GlbModel::add_mesh(tinygltf::Mesh mesh) {
+  return push(model_.meshes, std::move(mesh));
+}
+
 int GlbModel::add_mesh_node(tinygltf::Mesh mesh) {
   tinygltf::Node node;
   node.name = mesh.name;
-  node.mesh = push(model_.meshes, std::move(mesh));
+  node.mesh = add_mesh(std::move(mesh));
   return add_node(std::move(node));
 }
 

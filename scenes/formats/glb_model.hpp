@@ -33,6 +33,7 @@ class GlbModel {
   int add_texture(int image, tinygltf::Sampler sampler);
   /// Returns a primitive. `mode`: TINYGLTF_MODE_…; `indices` are into the accessor `positions`.
   tinygltf::Primitive primitive(int mode, int positions, const std::vector<std::uint32_t>& indices, int material);
+  int add_mesh(tinygltf::Mesh mesh);
   /// Adds the mesh, and a node of the same name that shows it.
   int add_mesh_node(tinygltf::Mesh mesh);
   int add_node(tinygltf::Node node);

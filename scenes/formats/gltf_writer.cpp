@@ -68,9 +68,9 @@ class GlbBuilder {
     return glb_.add_material(std::move(material));
   }
 
-  /// Adds a node with its own mesh; `extras` as import/gltf/gltf_extras.hpp reads them.
-  void add_mesh(const std::string& name, const GlbVertices& vertices, const std::vector<std::uint32_t>& indices,
-                int material, tinygltf::Value::Object extras = {}) {
+  /// Returns the number of a mesh that no node shows yet; `extras` as import/gltf/gltf_extras.hpp reads them.
+  int add_mesh(const std::string& name, const GlbVertices& vertices, const std::vector<std::uint32_t>& indices,
+               int material, tinygltf::Value::Object extras = {}) {
     PENUMBRA_ASSERT(!vertices.positions.empty() && !indices.empty(), "mesh \"{}\" is empty", name);
     tinygltf::Mesh mesh;
     mesh.name = name;
@@ -81,7 +81,18 @@ class GlbBuilder {
     add("NORMAL", vertices.normals), add("COLOR_0", vertices.colors), add("TEXCOORD_0", vertices.places);
     mesh.primitives.push_back(std::move(primitive));
     if (!extras.empty()) mesh.extras = tinygltf::Value(std::move(extras));
-    glb_.add_root(glb_.add_mesh_node(std::move(mesh)));
+    return glb_.add_mesh(std::move(mesh));
+  }
+
+  /// Adds a node that shows a mesh; null: where the mesh's own space is the world.
+  void show_mesh(const std::string& name, int mesh, const glm::dmat4* to_world = nullptr) {
+    tinygltf::Node node;
+    node.name = name;
+    node.mesh = mesh;
+    for (glm::length_t column = 0; to_world != nullptr && column < 4; ++column) {
+      for (glm::length_t row = 0; row < 4; ++row) node.matrix.push_back((*to_world)[column][row]);
+    }
+    glb_.add_root(glb_.add_node(std::move(node)));
   }
 
   void add_camera(const Camera& camera, double aspect) {
@@ -204,23 +215,25 @@ class GlbBuilder {
   bool uses_emissive_strength_ = false;
 };
 
-void add_object(const Scene& scene, const ObjectRange& range, GlbBuilder& glb) {
+/// Returns the number of a mesh of some of the soup's triangles, with an object's surface. `looks` are the vertices'.
+int add_object(const Scene& scene, const mesh::TriangleSoup& soup, const VertexLooks& looks, const ObjectRange& range,
+               GlbBuilder& glb) {
   const Object& object = scene.objects[range.object];
   GlbVertices vertices;
   std::vector<std::uint32_t> indices;
-  std::unordered_map<std::uint32_t, std::uint32_t> local;  // maps the scene's vertices to those of this mesh
+  std::unordered_map<std::uint32_t, std::uint32_t> local;  // maps the soup's vertices to those of this mesh
   const auto add = [](auto& to, const auto& from, std::uint32_t vertex) {
     if (!from.empty()) to.emplace_back(from[vertex]);
   };
   for (std::size_t i = range.first; i < range.first + range.count; ++i) {
-    for (const std::uint32_t vertex : scene.soup.triangles[i]) {
+    for (const std::uint32_t vertex : soup.triangles[i]) {
       const auto [entry, is_new] = local.try_emplace(vertex, static_cast<std::uint32_t>(vertices.positions.size()));
       indices.push_back(entry->second);
       if (!is_new) continue;
-      vertices.positions.emplace_back(scene.soup.positions[vertex]);
-      add(vertices.normals, scene.looks.normals, vertex);
-      add(vertices.colors, scene.looks.colors, vertex);
-      if (object.picture) add(vertices.places, scene.looks.places, vertex);
+      vertices.positions.emplace_back(soup.positions[vertex]);
+      add(vertices.normals, looks.normals, vertex);
+      add(vertices.colors, looks.colors, vertex);
+      if (object.picture) add(vertices.places, looks.places, vertex);
     }
   }
   const auto drop_plain = [](auto& values, const auto& plain) {
@@ -233,8 +246,41 @@ void add_object(const Scene& scene, const ObjectRange& range, GlbBuilder& glb) {
   if (!object.casts_shadow) extras["castsShadow"] = tinygltf::Value(false);
   if (!object.receives_shadow) extras["receivesShadow"] = tinygltf::Value(false);
   if (light != nullptr && light->name != object.name) extras["lightName"] = tinygltf::Value(light->name);
-  glb.add_mesh(object.name, vertices, indices, glb.add_material(scene, object), std::move(extras));
+  return glb.add_mesh(object.name, vertices, indices, glb.add_material(scene, object), std::move(extras));
 }
+
+/// Adds meshes of instances, each once for each surface that it has.
+class SharedGlbMeshes {
+ public:
+  SharedGlbMeshes(const Scene& scene, const Instances& instances, GlbBuilder& glb)
+      : scene_(scene), instances_(instances), glb_(glb) {}
+
+  void add(const Instance& instance) {
+    const Object& object = scene_.objects[instance.object];
+    const auto [begin, end] = added_.equal_range(instance.mesh);
+    auto same = std::find_if(
+        begin, end, [&](const auto& entry) { return same_surface(scene_.objects[entry.second.object], object); });
+    if (same == end) same = added_.emplace(instance.mesh, Added{instance.object, add_mesh(instance)});
+    glb_.show_mesh(object.name, same->second.mesh, &instance.placement.to_world);
+  }
+
+ private:
+  struct Added {
+    std::uint32_t object;
+    int mesh;
+  };
+
+  int add_mesh(const Instance& instance) {
+    const SharedMesh& mesh = *instances_.meshes[instance.mesh];
+    const VertexLooks looks{{mesh.normals.begin(), mesh.normals.end()}, mesh.colors, mesh.places};
+    return add_object(scene_, mesh.soup, looks, {instance.object, 0, mesh.soup.triangles.size()}, glb_);
+  }
+
+  const Scene& scene_;
+  const Instances& instances_;
+  GlbBuilder& glb_;
+  std::multimap<std::uint32_t, Added> added_;
+};
 
 /// Adds all pieces as one mesh; spheres become polyhedra of the same area.
 void add_pieces(const AreaLight& light, const Pieces& shape, GlbBuilder& glb, Notes& notes) {
@@ -268,8 +314,9 @@ void add_pieces(const AreaLight& light, const Pieces& shape, GlbBuilder& glb, No
   if (round)
     notes.push_back(fmt::format("light \"{}\": its spheres are written with {} flat sides", light.name,
                                 mesh::icosphere_size(kSubdivisions).triangles));
-  glb.add_mesh(light.name, {.positions = std::move(positions)}, indices,
-               glb.add_material(light.name, glm::dvec3(0.8), &light), {{"body", tinygltf::Value(false)}});
+  glb.show_mesh(light.name, glb.add_mesh(light.name, {.positions = std::move(positions)}, indices,
+                                         glb.add_material(light.name, glm::dvec3(0.8), &light),
+                                         {{"body", tinygltf::Value(false)}}));
 }
 
 void add_light(const Scene& scene, const AreaLight& light, GlbBuilder& glb, Notes& notes) {
@@ -282,19 +329,30 @@ void add_light(const Scene& scene, const AreaLight& light, GlbBuilder& glb, Note
   }
   std::vector<std::uint32_t> fan;
   for (std::uint32_t i = 1; i + 1 < points.size(); ++i) fan.insert(fan.end(), {0, i, i + 1});
-  glb.add_mesh(light.name, {.positions = {points.begin(), points.end()}}, fan,
-               glb.add_material(light.name, glm::dvec3(0.8), &light), {{"body", tinygltf::Value(false)}});
+  glb.show_mesh(light.name, glb.add_mesh(light.name, {.positions = {points.begin(), points.end()}}, fan,
+                                         glb.add_material(light.name, glm::dvec3(0.8), &light),
+                                         {{"body", tinygltf::Value(false)}}));
 }
 
 }  // namespace
 
-void write_glb(const Scene& scene, AtomicFile& file, Losses& losses, Notes& notes) {
+void write_glb(const Scene& scene, const Instances& instances, AtomicFile& file, Losses& losses, Notes& notes) {
   GlbBuilder glb;
+  SharedGlbMeshes shared(scene, instances, glb);
   std::vector<int> bodies(scene.lights.size());
-  for (const ObjectRange& range : object_ranges(scene.soup)) {
-    add_object(scene, range, glb);
-    if (const auto light = scene.objects[range.object].emits) ++bodies[*light];
-  }
+  const auto count_body = [&](std::uint32_t object) {
+    if (const auto light = scene.objects[object].emits) ++bodies[*light];
+  };
+  for_each_mesh(
+      scene, instances,
+      [&](const ObjectRange& range) {
+        glb.show_mesh(scene.objects[range.object].name, add_object(scene, scene.soup, scene.looks, range, glb));
+        count_body(range.object);
+      },
+      [&](const Instance& instance) {
+        shared.add(instance);
+        count_body(instance.object);
+      });
   for (std::size_t i = 0; i < scene.lights.size(); ++i) {
     if (bodies[i] > 1)
       notes.push_back(fmt::format("light \"{}\": each of the {} meshes that are its body is a light of its own in glTF",

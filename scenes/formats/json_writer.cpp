@@ -4,10 +4,16 @@
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <map>
 #include <set>
+#include <span>
 #include <string>
 #include <utility>
 #include <variant>
+#include <vector>
 
 namespace penumbra::scenes {
 namespace {
@@ -68,8 +74,76 @@ void write_light(const Scene& scene, const AreaLight& light, const std::string& 
   text.print("}}");
 }
 
-void write_mesh(const Scene& scene, const ObjectRange& range, TextStream& text) {
-  const Object& object = scene.objects[range.object];
+/// A mesh of the file.
+struct Entry {
+  const mesh::TriangleSoup* soup = nullptr;
+  ObjectRange range = {};
+  std::vector<const Instance*> instances = {};  // empty: the triangles are in the world
+};
+
+/// Returns the file's meshes: instances of one mesh, with the same surface, are in one entry, in the place of the
+/// first.
+std::vector<Entry> entries_of(const Scene& scene, const Instances& instances) {
+  std::vector<Entry> entries;
+  std::multimap<std::uint32_t, std::size_t> entries_of_mesh;
+  for_each_mesh(
+      scene, instances,
+      [&](const ObjectRange& range) {
+        entries.push_back({&scene.soup, range});
+      },
+      [&](const Instance& instance) {
+        const auto [begin, end] = entries_of_mesh.equal_range(instance.mesh);
+        const auto same = std::find_if(begin, end, [&](const auto& entry) {
+          return same_surface(scene.objects[entries[entry.second].range.object], scene.objects[instance.object]);
+        });
+        if (same != end) {
+          entries[same->second].instances.push_back(&instance);
+          return;
+        }
+        entries_of_mesh.emplace(instance.mesh, entries.size());
+        const mesh::TriangleSoup& soup = instances.meshes[instance.mesh]->soup;
+        entries.push_back({&soup, {instance.object, 0, soup.triangles.size()}, {&instance}});
+      });
+  return entries;
+}
+
+/// Says what became of objects and of triangles' numbers.
+void note_entries(const Scene& scene, std::span<const Entry> entries, Notes& notes) {
+  std::size_t ranges = 0, merged = 0;
+  bool in_order = true, precise = true;
+  const Instance* last = nullptr;
+  for (const Entry& entry : entries) {
+    if (entry.instances.empty()) ++ranges;
+    std::set<std::uint32_t> objects;
+    for (const Instance* instance : entry.instances) {
+      objects.insert(instance->object);
+      in_order &= last == nullptr || last < instance;
+      precise &= instance->placement.offset_last;
+      last = instance;
+    }
+    if (objects.size() > 1) merged += objects.size();
+  }
+  if (ranges > scene.objects.size())
+    notes.push_back(fmt::format("{} objects became {} meshes, because their triangles do not stand together",
+                                scene.objects.size(), ranges));
+  if (merged > 0)
+    notes.push_back(fmt::format("{} objects that share meshes became instances, which have no names of their own{}",
+                                merged, in_order ? "" : "; their triangles are numbered in another order"));
+  if (!precise)
+    notes.push_back("positions of instances are sums in another order, and may differ in the last bit of a double");
+}
+
+/// Writes the matrix by rows.
+void write_matrix(const glm::dmat4& matrix, TextStream& text) {
+  text.print("[");
+  for (glm::length_t row = 0; row < 3; ++row) {
+    for (glm::length_t column = 0; column < 4; ++column) text.number(matrix[column][row]).print(",");
+  }
+  text.print("0,0,0,1]");
+}
+
+void write_mesh(const Scene& scene, const Entry& entry, TextStream& text) {
+  const Object& object = scene.objects[entry.range.object];
   text.print(R"({{"name": {}, "color": )", quoted(object.name)).array(object.color);
   if (!object.casts_shadow) text.print(R"(, "castsShadow": false)");
   if (!object.receives_shadow) text.print(R"(, "receivesShadow": false)");
@@ -81,18 +155,27 @@ void write_mesh(const Scene& scene, const ObjectRange& range, TextStream& text) 
   }
   if (object.emits) text.print(R"(, "emits": {})", quoted(scene.lights[*object.emits].name));
   text.print(R"(, "triangles": [)");
-  for (std::size_t i = 0; i < range.count; ++i) {
-    const auto& [a, b, c] = scene.soup.triangles[range.first + i];
-    text.print("{}\n      [", i > 0 ? "," : "").numbers(scene.soup.positions[a], ",");
-    text.print(", ").numbers(scene.soup.positions[b], ",");
-    text.print(", ").numbers(scene.soup.positions[c], ",").print("]");
+  for (std::size_t i = 0; i < entry.range.count; ++i) {
+    const auto& [a, b, c] = entry.soup->triangles[entry.range.first + i];
+    text.print("{}\n      [", i > 0 ? "," : "").numbers(entry.soup->positions[a], ",");
+    text.print(", ").numbers(entry.soup->positions[b], ",");
+    text.print(", ").numbers(entry.soup->positions[c], ",").print("]");
   }
-  text.print("]}}");
+  text.print("]");
+  for (std::size_t i = 0; i < entry.instances.size(); ++i) {
+    if (i == 0)
+      text.print(R"(, "instances": [)");
+    else
+      text.print(",\n      ");
+    write_matrix(entry.instances[i]->placement.to_world, text);
+  }
+  if (!entry.instances.empty()) text.print("]");
+  text.print("}}");
 }
 
 }  // namespace
 
-void write_json(const Scene& scene, AtomicFile& file, Losses&, Notes& notes) {
+void write_json(const Scene& scene, const Instances& instances, AtomicFile& file, Losses&, Notes& notes) {
   TextStream text(file);
   const auto size = picture_size(scene, scene.cameras.front());
   for (const Camera& camera : scene.cameras) {
@@ -115,10 +198,10 @@ void write_json(const Scene& scene, AtomicFile& file, Losses&, Notes& notes) {
     text.print("\n  ]");
   }
   text.print(",\n  \"meshes\": [");
-  const std::vector<ObjectRange> ranges = object_ranges(scene.soup);
-  for (std::size_t i = 0; i < ranges.size(); ++i) {
+  const std::vector<Entry> entries = entries_of(scene, instances);
+  for (std::size_t i = 0; i < entries.size(); ++i) {
     text.print("{}\n    ", i > 0 ? "," : "");
-    write_mesh(scene, ranges[i], text);
+    write_mesh(scene, entries[i], text);
   }
   text.print("\n  ],\n  \"lights\": [");
   for (std::size_t i = 0; i < scene.lights.size(); ++i) {
@@ -127,10 +210,7 @@ void write_json(const Scene& scene, AtomicFile& file, Losses&, Notes& notes) {
   }
   text.print("\n  ]\n}}\n");
   text.flush();
-  if (ranges.size() > scene.objects.size()) {
-    notes.push_back(fmt::format("{} objects became {} meshes, because their triangles do not stand together",
-                                scene.objects.size(), ranges.size()));
-  }
+  note_entries(scene, entries, notes);
 }
 
 }  // namespace penumbra::scenes

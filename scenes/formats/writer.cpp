@@ -4,7 +4,9 @@
 #include "scenes/light_texture.hpp"
 #include "scenes/formats/writers.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <span>
 
 namespace penumbra::scenes {
 
@@ -60,48 +62,85 @@ void TextStream::flush() {
   buffer_.clear();
 }
 
-/// Returns for each object whether one of its vertices has a value other than `plain` in `looks`.
+/// Sets the objects of which a vertex has a value other than `plain`.
 template <typename Vector>
-std::vector<bool> objects_with(const Scene& scene, const std::vector<Vector>& looks, const Vector& plain) {
-  std::vector<bool> with(scene.objects.size());
-  for (std::size_t i = 0; !looks.empty() && i < scene.soup.triangles.size(); ++i) {
-    for (const std::uint32_t vertex : scene.soup.triangles[i]) {
-      if (looks[vertex] != plain) with[scene.soup.object[i]] = true;
+void find_objects_with(const mesh::TriangleSoup& soup, std::span<const Vector> looks, const Vector& plain,
+                       std::vector<bool>& with) {
+  for (std::size_t i = 0; !looks.empty() && i < soup.triangles.size(); ++i) {
+    for (const std::uint32_t vertex : soup.triangles[i]) {
+      if (looks[vertex] != plain) with[soup.object[i]] = true;
     }
+  }
+}
+
+/// Objects with colours and with normals of vertices, whether in the soup or as instances.
+struct ObjectsWith {
+  std::vector<bool> colors, normals;
+};
+ObjectsWith objects_with(const Scene& scene, const Instances& instances) {
+  const std::size_t count = scene.objects.size();
+  ObjectsWith with{std::vector<bool>(count), std::vector<bool>(count)};
+  find_objects_with<glm::vec4>(scene.soup, scene.looks.colors, glm::vec4(1), with.colors);
+  find_objects_with<glm::vec3>(scene.soup, scene.looks.normals, glm::vec3(0), with.normals);
+  std::vector<ObjectsWith> of_meshes;  // each has one object
+  for (const auto& mesh : instances.meshes) {
+    ObjectsWith& own = of_meshes.emplace_back(std::vector<bool>(1), std::vector<bool>(1));
+    find_objects_with<glm::vec4>(mesh->soup, mesh->colors, glm::vec4(1), own.colors);
+    find_objects_with<glm::dvec3>(mesh->soup, mesh->normals, glm::dvec3(0), own.normals);
+  }
+  for (const Instance& instance : instances.all) {
+    if (of_meshes[instance.mesh].colors[0]) with.colors[instance.object] = true;
+    if (of_meshes[instance.mesh].normals[0]) with.normals[instance.object] = true;
   }
   return with;
 }
 
 /// Reports appearances that a format without surfaces cannot store.
-void lose_looks(const Scene& scene, const std::string& extension, Losses& losses) {
-  const std::vector<bool> colored = objects_with(scene, scene.looks.colors, glm::vec4(1));
-  const std::vector<bool> smooth = objects_with(scene, scene.looks.normals, glm::vec3(0));
+void lose_looks(const Scene& scene, const Instances& instances, const std::string& extension, Losses& losses) {
+  const ObjectsWith with = objects_with(scene, instances);
   const std::string solid =
       fmt::format("lets light through, for which {} has no place (.glb has): it would be solid", extension);
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
     const Object& object = scene.objects[i];
     if (object.alpha.mode != Alpha::Mode::opaque) losses.refuse(solid, object.name);
     if (object.picture) losses.mention("has a picture, which is left out", object.name);
-    if (colored[i]) losses.mention("has colours of vertices, which are left out", object.name);
-    if (smooth[i])
+    if (with.colors[i]) losses.mention("has colours of vertices, which are left out", object.name);
+    if (with.normals[i])
       losses.mention("has normals of vertices, which are left out: its shading will be by facets", object.name);
   }
 }
 
-std::vector<std::string> write_scene(const Scene& scene, const std::filesystem::path& file,
-                                     const WriteOptions& options) {
+namespace {
+
+/// Returns whether the file has each mesh once, and not a copy for each instance.
+bool is_shared(const Scene& scene, const Instances& instances, const std::string& extension, WriteInstances use) {
+  if (extension == ".obj" || use == WriteInstances::copies) return false;
+  if (extension == ".glb" || use == WriteInstances::shared) return true;
+  // JSON adds the offset last, as its readers do; other sums may differ in the last bit.
+  return std::ranges::all_of(instances.all, [](const Instance& one) { return one.placement.offset_last; }) ||
+         triangle_count(scene, instances) > kFewCopies;
+}
+
+}  // namespace
+
+std::vector<std::string> write_scene(const Scene& scene, const std::filesystem::path& file, const WriteOptions& options,
+                                     const Instances& instances) {
   const std::string extension = file.extension().string();
-  void (*write)(const Scene&, AtomicFile&, Losses&, Notes&) = extension == ".json"  ? write_json
-                                                              : extension == ".glb" ? write_glb
-                                                              : extension == ".obj" ? write_obj
-                                                                                    : nullptr;
-  if (write == nullptr) throw UsageError("{}: a scene is written as .json, .glb or .obj", file.string());
+  if (extension != ".json" && extension != ".glb" && extension != ".obj")
+    throw UsageError("{}: a scene is written as .json, .glb or .obj", file.string());
+  if (!instances.empty() && !is_shared(scene, instances, extension, options.instances))
+    return write_scene(copied(scene, instances), file, options);
   AtomicFile output(file);
   Losses losses;
   Notes notes;
-  if (extension != ".glb") lose_looks(scene, extension, losses);
+  if (extension != ".glb") lose_looks(scene, instances, extension, losses);
   if (!options.lenient) losses.throw_refused("writes");  // checked before much is written
-  write(scene, output, losses, notes);
+  if (extension == ".json")
+    write_json(scene, instances, output, losses, notes);
+  else if (extension == ".glb")
+    write_glb(scene, instances, output, losses, notes);
+  else
+    write_obj(scene, output, losses, notes);
   if (!options.lenient) losses.throw_refused("writes");
   // The scene is written last: once it exists, the files that it refers to exist.
   for (std::size_t i = 0; extension == ".json" && i < scene.lights.size(); ++i) {

@@ -1,15 +1,25 @@
 #pragma once
 
+#include "scenes/instances.hpp"
 #include "scenes/scene.hpp"
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
 
 namespace penumbra::scenes {
 
+/// How instances are written. copies: each as a mesh of its own, in the world. shared: one mesh, once for each instance
+/// (.json, .glb). automatic: shared where reading the file back gives the same scene, in .glb always, else copies, but
+/// shared where copies would be many (kFewCopies).
+enum class WriteInstances : std::uint8_t { automatic, copies, shared };
+/// Number of triangles, in all, up to which copies are few.
+constexpr std::uint64_t kFewCopies = 500'000;
+
 struct WriteOptions {
   bool lenient = false;  ///< leaves out parts that the format cannot hold and that change shadows, with a warning
+  WriteInstances instances = WriteInstances::automatic;
 };
 
 /// Writes the scene in world space, triangles in the scene's order, in the format of the file's extension:
@@ -20,11 +30,14 @@ struct WriteOptions {
 ///   mesh of the scene is its body already. A light's texture is replaced by its mean colour.
 /// - .obj: an object for each object, geometry only.
 ///
+/// Shared instances are "instances" of a mesh in .json, in which objects with the same mesh and surface become one, and
+/// nodes of one mesh in .glb.
+///
 /// Returns descriptions of the parts that the format could not hold. The file appears whole or not at all. Throws
 /// UsageError for another extension, InputError for losses that would change shadows (unless lenient), ResourceError if
 /// the file cannot be written.
 std::vector<std::string> write_scene(const Scene& scene, const std::filesystem::path& file,
-                                     const WriteOptions& options = {});
+                                     const WriteOptions& options = {}, const Instances& instances = {});
 
 /// Returns the files that write_scene writes in addition to `file`: textures.
 std::vector<std::filesystem::path> texture_files(const Scene& scene, const std::filesystem::path& file);

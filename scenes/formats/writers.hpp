@@ -1,6 +1,7 @@
 #pragma once
 
 #include "base/atomic_file.hpp"
+#include "scenes/instances.hpp"
 #include "scenes/losses.hpp"
 #include "scenes/scene.hpp"
 
@@ -20,8 +21,8 @@ namespace penumbra::scenes {
 using Notes = std::vector<std::string>;
 
 /// Write a scene. Parts that the format cannot hold are added to `losses` for objects and lights, to `notes` otherwise.
-void write_json(const Scene& scene, AtomicFile& file, Losses& losses, Notes& notes);
-void write_glb(const Scene& scene, AtomicFile& file, Losses& losses, Notes& notes);
+void write_json(const Scene& scene, const Instances& instances, AtomicFile& file, Losses& losses, Notes& notes);
+void write_glb(const Scene& scene, const Instances& instances, AtomicFile& file, Losses& losses, Notes& notes);
 void write_obj(const Scene& scene, AtomicFile& file, Losses& losses, Notes& notes);
 
 /// Returns the path that write_scene gives the texture of a light of the scene in `file`: "room.json" →
@@ -37,6 +38,26 @@ struct ObjectRange {
 /// Returns the objects' runs of triangles, in the soup's order. An object whose triangles are not contiguous has
 /// several.
 std::vector<ObjectRange> object_ranges(const mesh::TriangleSoup& soup);
+
+/// Calls take_range(range) for each of the soup's runs of triangles and take_instance(instance) for each instance, in
+/// the order of their triangles' numbers.
+template <typename TakeRange, typename TakeInstance>
+void for_each_mesh(const Scene& scene, const Instances& instances, const TakeRange& take_range,
+                   const TakeInstance& take_instance) {
+  auto next = instances.all.begin();
+  for (const ObjectRange& range : object_ranges(scene.soup)) {
+    for (; next != instances.all.end() && next->soup_before <= range.first; ++next) take_instance(*next);
+    take_range(range);
+  }
+  for (; next != instances.all.end(); ++next) take_instance(*next);
+}
+
+/// Returns whether two objects are the same to a format, but for their names.
+inline bool same_surface(const Object& one, const Object& other) {
+  return one.color == other.color && one.casts_shadow == other.casts_shadow &&
+         one.receives_shadow == other.receives_shadow && one.emits == other.emits && one.lit_by == other.lit_by &&
+         one.material == other.material && one.picture == other.picture && one.alpha == other.alpha;
+}
 
 /// Appends the shortest digits that read back as the same double, in a form that JSON readers keep as a double
 /// ("-0.0").

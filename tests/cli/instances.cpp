@@ -161,6 +161,73 @@ TEST_F(Instances, OfGltfAreTheMeshOnceForEach) {
     EXPECT_EQ(one.floats.at(channel), other.floats.at(channel)) << channel;
 }
 
+/// Converted scenes keep their instances, and the numbers of their triangles.
+TEST_F(Instances, StayInstancesWhenTheyAreConverted) {
+  std::vector<json> places;
+  for (int i = 0; i < 9; ++i) {
+    places.push_back({{"translate", {0.7 * (i % 3) - 1, 0.3, 0.6 * (i / 3)}},  // NOLINT(bugprone-integer-division)
+                      {"rotate", {10 * i, 37 * i, 0}},
+                      {"scale", {i % 4 == 0 ? -0.5 : 0.4, 0.6, 0.5}}});
+  }
+  json trees = tree();
+  trees["instances"] = places;
+  const json pole = json::parse(
+      R"({"shape": {"type": "box", "center": [0, 0, 0], "halfSize": [0.1, 0.5, 0.1]}, "transform": {"translate": [0, 0.5, 0]}})");
+  write("scene.json", scene({trees, pole}).dump());
+  const auto convert = [&](const std::string& from, const std::string& to, const std::string& how) {
+    const Outcome outcome = run({"convert", path(from), "-o", path(to), "--quiet", "--instances", how});
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+  };
+  const auto shown = [&](const std::string& file) {
+    EXPECT_EQ(
+        run({"render", path(file), "-o", path("out.exr"), "--quiet", "--size", "48x36", "--instances", "shared"}).code,
+        0);
+    return read_exr(path("out.exr"));
+  };
+  const auto expect_same = [](const ExrFile& one, const ExrFile& other) {
+    EXPECT_EQ(one.integers.at("id"), other.integers.at("id"));
+    for (const char* channel : {"V", "P.X", "P.Y", "P.Z", "Z", "N.X"})
+      EXPECT_EQ(one.floats.at(channel), other.floats.at(channel)) << channel;
+  };
+  convert("scene.json", "again.json", "auto");
+  const json again = json::parse(read("again.json"));
+  EXPECT_EQ(again.at("meshes").size(), 3U);
+  EXPECT_EQ(again.at("meshes").at(1).at("instances").size(), 9U);
+  convert("scene.json", "copies.json", "copies");
+  EXPECT_FALSE(json::parse(read("copies.json")).at("meshes").at(1).contains("instances"));
+  const ExrFile first = shown("scene.json");
+  expect_same(shown("again.json"), first);
+  expect_same(shown("copies.json"), first);
+
+  // glTF has positions in float32, so that the first file may round; what is read from it is written again as it is.
+  convert("scene.json", "scene.glb", "auto");
+  convert("scene.glb", "again.glb", "shared");
+  const auto document = [&](const std::string& file) {
+    const std::string bytes = read(file);
+    const auto byte = [&](std::size_t i) { return static_cast<std::size_t>(static_cast<unsigned char>(bytes.at(i))); };
+    return json::parse(bytes.substr(20, byte(12) + (byte(13) << 8) + (byte(14) << 16)));
+  };
+  for (const char* file : {"scene.glb", "again.glb"}) {
+    std::size_t nodes = 0;
+    const json gltf = document(file);
+    for (const json& node : gltf.at("nodes")) nodes += node.contains("mesh") && node.at("mesh") == 1 ? 1 : 0;
+    EXPECT_EQ(nodes, 9U) << file;
+    EXPECT_EQ(gltf.at("meshes").at(1).at("name"), "tree");
+  }
+  const ExrFile glb = shown("scene.glb");
+  EXPECT_EQ(glb.integers.at("id"), first.integers.at("id"));
+  const ExrFile again_glb = shown("again.glb");
+  EXPECT_EQ(again_glb.integers.at("id"), glb.integers.at("id"));
+  // Nodes are objects of their own: JSON merges them where it is asked to.
+  convert("again.glb", "merged.json", "shared");
+  EXPECT_EQ(json::parse(read("merged.json")).at("meshes").at(1).at("instances").size(), 9U);
+  convert("again.glb", "apart.json", "auto");
+  EXPECT_GE(json::parse(read("apart.json")).at("meshes").size(), 11U);
+  EXPECT_EQ(shown("merged.json").integers.at("id"), glb.integers.at("id"));
+  EXPECT_EQ(run({"convert", path("scene.json"), "-o", path("no.obj"), "--instances", "shared"}).code, 2);
+  EXPECT_EQ(run({"convert", path("scene.json"), "-o", path("no.json"), "--instances", "some"}).code, 2);
+}
+
 using InstancesFull = Instances;
 
 /// Eight hundred thousand triangles, which nobody must ask to leave be.
