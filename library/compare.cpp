@@ -14,7 +14,7 @@ namespace penumbra {
 
 std::string compare_json(const Scene& scene, const CompareOptions& options, const RendererOptions& renderer) {
   const Scene::State& state = scene.state();
-  scenes::check_scene(state.scene, "the scene");
+  scenes::check_scene(state.scene, "the scene", true, state.instances);
   app::RunOptions run;
   run.scene = "the scene";
   run.out = options.out;
@@ -35,7 +35,7 @@ std::string compare_json(const Scene& scene, const CompareOptions& options, cons
   LibraryProgress progress(renderer);
   const compare::Metrics metrics = [&] {
     try {
-      return app::compare_methods(state.scene, run, comparison, progress);
+      return app::compare_methods(scenes::copied(state.scene, state.instances), run, comparison, progress);
     } catch (...) {
       progress.rethrow();
       throw_as_error();

@@ -5,6 +5,7 @@
 #include "app/methods.hpp"
 #include "app/options.hpp"
 #include "app/pictures/frame_render.hpp"
+#include "app/pictures/request.hpp"
 #include "app/process/stopwatch.hpp"
 #include "app/whole_lights.hpp"
 #include "base/error.hpp"
@@ -16,6 +17,7 @@
 #include "render/device.hpp"
 #include "render/machine.hpp"
 #include "scenes/formats/checks.hpp"
+#include "scenes/instances.hpp"
 
 #include <penumbra/renderer.hpp>
 
@@ -105,7 +107,7 @@ std::shared_ptr<const Picture::State> picture_of(app::FrameRenderer& frames, dou
     const bool is_background = samples.triangle[i] == visibility::ViewSamples::kBackground;
     picture->positions[i] = is_background ? glm::vec3(0) : glm::vec3(glm::dvec3(samples.p[i]) + session.floats.origin);
     picture->depth[i] = is_background ? kFar : samples.depth[i];
-    picture->ids[i] = static_cast<std::uint32_t>(samples.triangle[i]);
+    picture->ids[i] = static_cast<std::uint32_t>(session.number_of(samples.triangle[i]));
   });
   return picture;
 }
@@ -184,6 +186,7 @@ struct Renderer::State {
   app::RunOptions run;
   app::MethodWish wish;
   std::uint64_t rendered = 0;                  // Scene::State::meshes of the most recent picture
+  bool shared = false;                         // the most recent picture was of instances without copies
   std::unique_ptr<app::FrameRenderer> frames;  // refers to run, wish and progress
 };
 
@@ -208,38 +211,48 @@ Picture Renderer::render(const RenderOptions& options) {
   const State::Working working(state);
   const Scene::State& scene = state.scene.state();
   const std::uint64_t meshes = scene.meshes;
-  const bool same_meshes = options.pixel_samples == 1 && state.frames && state.frames->has_meshes() &&
-                           state.rendered == meshes && !scene.scene.lights.empty();
-  if (same_meshes)
-    check_lights_and_cameras(scene.scene);
-  else
-    scenes::check_scene(scene.scene, "the scene");
-  app::RunOptions run = run_options(options);
-  run.camera = camera_of(scene, options);
-  const app::Frame frame{.number = {},
-                         .camera = run.camera,
-                         .pixel_side = pixel_side(options.pixel_samples),
-                         .pixel_tolerance = pixel_tolerance(options.pixel_tolerance),
-                         .same_meshes = same_meshes,
-                         .keeps_masks = options.masks && options.pixel_samples == 1};
   // Invalid options are rejected before any change, so that the kept data stay valid.
-  static_cast<void>(app::parse_light_samples(run));
   app::NamedMethod method = app::parse_method(options.method);
   for (const auto& [key, value] : options.options) {
     if (!method.options.emplace(key, value).second)
       throw UsageError("method {}: option {} is given twice", method.name, key);
   }
   if (!method.name.empty()) static_cast<void>(app::describe_method(method.name, method.options));
+  app::MethodWish wish{std::move(method.name), std::move(method.options),
+                       options.light_samples != 0 || !options.sample_pattern.empty()};
+  const std::uint32_t side = pixel_side(options.pixel_samples);
+  const bool copies =
+      app::needs_copies(scene.scene, scene.instances, app::parse_instances(options.instances, wish), side);
+  const bool shares = !copies && !scene.instances.empty();
+  const bool same_meshes = options.pixel_samples == 1 && state.frames && state.frames->has_meshes() &&
+                           state.rendered == meshes && !scene.scene.lights.empty() && !shares && !state.shared;
+  if (same_meshes)
+    check_lights_and_cameras(scene.scene);
+  else
+    scenes::check_scene(scene.scene, "the scene", true, scene.instances);
+  app::RunOptions run = run_options(options);
+  run.camera = camera_of(scene, options);
+  const app::Frame frame{.number = {},
+                         .camera = run.camera,
+                         .pixel_side = side,
+                         .pixel_tolerance = pixel_tolerance(options.pixel_tolerance),
+                         .instances = shares ? &scene.instances : nullptr,
+                         .same_meshes = same_meshes,
+                         .keeps_masks = options.masks && options.pixel_samples == 1};
+  static_cast<void>(app::parse_light_samples(run));
   state.run = std::move(run);
-  state.wish = {std::move(method.name), std::move(method.options),
-                options.light_samples != 0 || !options.sample_pattern.empty()};
+  state.wish = std::move(wish);
   if (!state.frames) {
     state.frames = std::make_unique<app::FrameRenderer>(state.run, state.wish, state.machine, state.progress);
     state.frames->expect_frames();
   }
   try {
-    state.frames->render(same_meshes ? app::without_meshes(scene.scene) : scene.scene, frame, {}, 0);
+    state.frames->render(same_meshes ? app::without_meshes(scene.scene)
+                         : copies    ? scenes::copied(scene.scene, scene.instances)
+                                     : scene.scene,
+                         frame, {}, 0);
     state.rendered = meshes;
+    state.shared = shares;
     Picture picture(picture_of(*state.frames, total.seconds()));
     state.progress.rethrow();
     return picture;

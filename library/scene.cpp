@@ -4,6 +4,7 @@
 #include "library/as_error.hpp"
 #include "library/light_shape.hpp"
 #include "library/named.hpp"
+#include "library/scene_objects.hpp"
 #include "library/scene_state.hpp"
 #include "mesh/input_file.hpp"
 #include "scenes/formats/checks.hpp"
@@ -65,7 +66,12 @@ Scene::~Scene() = default;
 
 Scene Scene::load(const std::filesystem::path& file, const LoadOptions& options) {
   Scene scene;
-  with_errors([&] { scene.state_->scene = scenes::read_scene(file, reading(options)); });
+  with_errors([&] {
+    scenes::ReadOptions wished = reading(options);
+    wished.instances = &scene.state_->instances;
+    scene.state_->scene = scenes::read_scene(file, wished);
+    adopt_instances(*scene.state_);
+  });
   scene.state_->file_origin = scene.state_->scene.origin;
   return scene;
 }
@@ -74,8 +80,11 @@ Scene Scene::parse(std::string_view json, const std::filesystem::path& folder, c
   Scene scene;
   const std::filesystem::path file = folder / "scene";
   with_errors([&] {
-    scene.state_->scene = scenes::read_json_text(json, file, reading(options));
-    scenes::check_scene(scene.state_->scene, "scene");
+    scenes::ReadOptions wished = reading(options);
+    wished.instances = &scene.state_->instances;
+    scene.state_->scene = scenes::read_json_text(json, file, wished);
+    scenes::check_scene(scene.state_->scene, "scene", true, scene.state_->instances);
+    adopt_instances(*scene.state_);
   });
   return scene;
 }
@@ -216,7 +225,7 @@ const std::vector<std::string>& Scene::warnings() const {
 }
 
 std::vector<std::string> Scene::save(const std::filesystem::path& file) const {
-  return with_errors([&] { return scenes::write_scene(state_->scene, file); });
+  return with_errors([&] { return scenes::write_scene(state_->scene, file, {}, state_->instances); });
 }
 
 }  // namespace penumbra

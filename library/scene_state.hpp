@@ -1,5 +1,6 @@
 #pragma once
 
+#include "scenes/instances.hpp"
 #include "scenes/scene.hpp"
 
 #include <penumbra/scene.hpp>
@@ -7,6 +8,7 @@
 #include <glm/vec3.hpp>
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <vector>
 
@@ -28,8 +30,21 @@ struct GivenVertices {
 /// Returns a number that no scene has had before.
 std::uint64_t next_meshes();
 
+/// Box around a mesh with instances, in its own space.
+struct ObjectBox {
+  glm::dvec3 lower{0}, upper{0};
+};
+
 struct Scene::State {
   scenes::Scene scene;
+  /// Meshes with instances, whose triangles are not in scene.soup; in the order of their objects.
+  scenes::Instances instances = {};
+  std::vector<ObjectBox> boxes = {};  ///< of instances.meshes
+  /// For each of instances.all, where add_instance(), set_transform() or the file put it: before `moved`.
+  std::vector<scenes::Placement> placed = {};
+  /// Objects whose instances were moved together, and by what.
+  std::map<std::uint32_t, scenes::Placement> moved = {};
+  bool instances_moved = false;  ///< any instance was moved since the scene was made
   /// For each object, set by its first set_transform().
   std::vector<std::optional<RestMesh>> rest = {};
   /// For each object, or a prefix of the objects: the others keep all their vertices.

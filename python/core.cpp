@@ -128,6 +128,13 @@ LightShape shape_of(const std::string& kind, const py::dict& d) {
   throw UsageError("light of kind \"" + kind + "\": expected rectangle, disk, ellipse, polygon, sphere, sun or dome");
 }
 
+Matrix matrix_of(const Doubles& matrix) {
+  if (matrix.size() != 16) throw UsageError("matrix: expected 4x4 numbers");
+  Matrix m{};
+  std::memcpy(m.data(), matrix.data(), sizeof(m));
+  return m;
+}
+
 /// Returns options that call the calling program's functions with the interpreter's lock held; Ctrl-C ends the call.
 RendererOptions options_of(std::string device, py::object log, py::object progress) {
   RendererOptions options;
@@ -205,13 +212,15 @@ PYBIND11_MODULE(_core, module) {
                           const Indices& faces) { scene.set_mesh({mesh}, rows_of(vertices), faces_of(faces)); })
       .def("set_positions", [](Scene& scene, std::uint32_t mesh,
                                const Doubles& vertices) { scene.set_positions({mesh}, rows_of(vertices)); })
-      .def("set_transform",
-           [](Scene& scene, std::uint32_t mesh, const Doubles& matrix) {
-             if (matrix.size() != 16) throw UsageError("matrix: expected 4x4 numbers");
-             Matrix m{};
-             std::memcpy(m.data(), matrix.data(), sizeof(m));
-             scene.set_transform({mesh}, m);
+      .def("set_transform", [](Scene& scene, std::uint32_t mesh,
+                               const Doubles& matrix) { scene.set_transform(MeshId{mesh}, matrix_of(matrix)); })
+      .def("add_instance", [](Scene& scene, std::uint32_t mesh,
+                              const Doubles& matrix) { return scene.add_instance({mesh}, matrix_of(matrix)).number; })
+      .def("set_instance_transform",
+           [](Scene& scene, std::uint32_t mesh, std::uint32_t number, const Doubles& matrix) {
+             scene.set_transform(InstanceId{{mesh}, number}, matrix_of(matrix));
            })
+      .def("instance_count", [](const Scene& scene, std::uint32_t mesh) { return scene.instance_count({mesh}); })
       .def("mesh", [](const Scene& scene, const std::string& name) { return scene.mesh(name).index; })
       .def("mesh_names",
            [](const Scene& scene) {
@@ -292,10 +301,11 @@ PYBIND11_MODULE(_core, module) {
           [](Renderer& renderer, std::uint32_t width, std::uint32_t height, std::string method,
              std::map<std::string, std::string> options, std::uint32_t light_samples, std::string sample_pattern,
              std::uint32_t sample_seed, std::vector<std::string> lights, std::string camera,
-             std::uint32_t pixel_samples, double pixel_tolerance, bool shading_normals, bool masks) {
+             std::uint32_t pixel_samples, double pixel_tolerance, bool shading_normals, bool masks,
+             std::string instances) {
             return renderer.render({width, height, std::move(method), std::move(options), light_samples,
                                     std::move(sample_pattern), sample_seed, std::move(lights), std::move(camera),
-                                    pixel_samples, pixel_tolerance, shading_normals, masks});
+                                    pixel_samples, pixel_tolerance, shading_normals, masks, std::move(instances)});
           },
           Unlocked());
 

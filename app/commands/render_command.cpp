@@ -27,7 +27,6 @@
 #include <memory>
 #include <optional>
 #include <utility>
-#include <variant>
 
 namespace penumbra::app {
 namespace {
@@ -38,9 +37,6 @@ struct ReadScene {
   scenes::Instances instances = {};
   double seconds = 0;
 };
-
-/// Number of triangles up to which instances are copied by default: copies cost less than rendering without them.
-constexpr std::uint64_t kFewTriangles = 500'000;
 
 class RenderCommand : public Command {
  public:
@@ -175,28 +171,10 @@ class RenderCommand : public Command {
     if (is_sequence_) run.scene = frame_path(run.scene, std::llround(*frame));
     ReadScene read;
     read.scene = scene_at(run, time, &read.instances);
-    if (needs_copies(read)) read.scene = copied(std::move(read.scene), std::exchange(read.instances, {}));
+    if (needs_copies(read.scene, read.instances, request_.instances, request_.pixel_side))
+      read.scene = copied(std::move(read.scene), std::exchange(read.instances, {}));
     read.seconds = watch.seconds();
     return read;
-  }
-
-  /// Returns whether the scene's instances become copies: if copies are requested or cheap, under a dome, whose
-  /// directions pass all triangles, and with a lens, whose points see other triangles than its middle.
-  [[nodiscard]] bool needs_copies(const ReadScene& read) const {
-    if (read.instances.empty()) return false;
-    const bool lens = request_.pixel_side > 1 && std::ranges::any_of(read.scene.cameras, [](const auto& camera) {
-                        return camera.lens && camera.lens->radius > 0;
-                      });
-    if (request_.instances == InstanceUse::shared) {
-      if (lens) throw UsageError("--instances shared: not through a lens; --aperture 0 makes all of the picture sharp");
-      return false;
-    }
-    const auto is_dome = [](const scenes::AreaLight& light) {
-      return std::holds_alternative<scenes::Dome>(light.shape);
-    };
-    return lens || request_.instances == InstanceUse::copies ||
-           triangle_count(read.scene, read.instances) <= kFewTriangles ||
-           std::ranges::any_of(read.scene.lights, is_dome);
   }
 
   /// `instances`: receives meshes that the scene has several times; null: they become copies.

@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cmath>
 #include <utility>
+#include <variant>
 
 namespace penumbra::app {
 namespace {
@@ -92,28 +93,39 @@ void refuse_numbered_moments(const PictureOptions& options, const PictureRequest
   }
 }
 
-/// Reads --instances: how instances are treated where the method and the picture leave a choice.
-InstanceUse parse_instances(const PictureOptions& options, const PictureRequest& request) {
-  const std::string& text = options.instances;
+/// Number of triangles up to which instances are copied by default: copies cost less than rendering without them.
+constexpr std::uint64_t kFewTriangles = 500'000;
+
+}  // namespace
+
+InstanceUse parse_instances(const std::string& text, const MethodWish& wish) {
   if (text == "copies") return InstanceUse::copies;
   if (!text.empty() && text != "auto" && text != "shared")
     throw UsageError("--instances {}: expected auto, copies or shared", text);
-  if (!request.wish.method.empty() && !answers_apart(describe_method(request.wish.method, request.wish.options))) {
-    if (text == "shared")
-      throw UsageError(
-          "--instances shared: {} looks at more than lies between a view sample and the light; choose "
-          "another --method",
-          request.wish.method);
-    return InstanceUse::copies;
-  }
-  if (request.moments > 1) {
-    if (text == "shared") throw UsageError("--instances shared: not with --motion-samples");
-    return InstanceUse::copies;
-  }
-  return text == "shared" ? InstanceUse::shared : InstanceUse::automatic;
+  if (wish.method.empty() || answers_apart(describe_method(wish.method, wish.options)))
+    return text == "shared" ? InstanceUse::shared : InstanceUse::automatic;
+  if (text == "shared")
+    throw UsageError(
+        "--instances shared: {} looks at more than lies between a view sample and the light; choose "
+        "another --method",
+        wish.method);
+  return InstanceUse::copies;
 }
 
-}  // namespace
+bool needs_copies(const scenes::Scene& scene, const scenes::Instances& instances, InstanceUse use,
+                  std::uint32_t pixel_side) {
+  if (instances.empty()) return false;
+  const bool lens = pixel_side > 1 && std::ranges::any_of(scene.cameras, [](const auto& camera) {
+                      return camera.lens && camera.lens->radius > 0;
+                    });
+  if (use == InstanceUse::shared) {
+    if (lens) throw UsageError("--instances shared: not through a lens; --aperture 0 makes all of the picture sharp");
+    return false;
+  }
+  const auto is_dome = [](const scenes::AreaLight& light) { return std::holds_alternative<scenes::Dome>(light.shape); };
+  return lens || use == InstanceUse::copies || triangle_count(scene, instances) <= kFewTriangles ||
+         std::ranges::any_of(scene.lights, is_dome);
+}
 
 bool answers_apart(const visibility::MethodDescription& method) {
   return method.family != visibility::Family::image && method.output != visibility::Output::scalar;
@@ -211,7 +223,11 @@ PictureRequest parse_request(const PictureOptions& options) {
   request.seconds_per_frame = 1 / parse_fps(options.fps);
   parse_means(options, request);
   parse_lens(options, request);
-  request.instances = parse_instances(options, request);
+  request.instances = parse_instances(options.instances, request.wish);
+  if (request.moments > 1) {
+    if (options.instances == "shared") throw UsageError("--instances shared: not with --motion-samples");
+    request.instances = InstanceUse::copies;
+  }
   parse_format(options.run.format);  // refuses an unknown format before rendering
   if (options.run.out.extension() != ".exr") {
     throw UsageError("-o {}: expected a name that ends in .exr (--png writes a PNG file beside it)",

@@ -4,6 +4,8 @@
 #include "app/options.hpp"
 #include "app/pictures/frame_render.hpp"
 #include "app/process/output_files.hpp"
+#include "scenes/instances.hpp"
+#include "scenes/scene.hpp"
 
 #include <cstdint>
 #include <filesystem>
@@ -55,6 +57,15 @@ struct PictureRequest {
 /// Returns whether a method's answer for a view sample depends only on the surfaces between the view sample and the
 /// light: true where masks are exact for every pair, and where areas are exact.
 bool answers_apart(const visibility::MethodDescription& method);
+
+/// Parses --instances, for a method. Throws UsageError for "shared" with a method that needs all triangles.
+InstanceUse parse_instances(const std::string& text, const MethodWish& wish);
+
+/// Returns whether the scene's instances become copies: if copies are requested or cheap, under a dome, whose
+/// directions pass all triangles, and with a lens, whose points see other triangles than its middle. Throws UsageError
+/// if `use` is shared and cannot be.
+bool needs_copies(const scenes::Scene& scene, const scenes::Instances& instances, InstanceUse use,
+                  std::uint32_t pixel_side);
 
 /// Parses the options. Throws UsageError; throws InputError if --exposure names a picture without an exposure
 /// attribute.

@@ -47,6 +47,10 @@ struct RenderOptions {
   double pixel_tolerance = 1.0 / 512;
   bool shading_normals = true;  ///< for the beauty: use vertices' normals where present
   bool masks = true;            ///< keep Picture::masks of methods with masks
+  /// How instances are rendered: copies, shared (without copies), or auto, also if empty: shared if copies would exceed
+  /// 500000 triangles, and the method's answers do not depend on more than lies between a view sample and the light.
+  /// All give the same numbers.
+  std::string instances = {};
 };
 
 /// Thrown if the calling program's progress function ended a call.
@@ -59,7 +63,8 @@ class PENUMBRA_API Cancelled : public Error {
 };
 
 /// Renders pictures of one scene, and keeps unchanged data from call to call: hierarchies over a mesh while it is not
-/// moved (and refits them when it is), view samples while camera, size and meshes are unchanged, the Vulkan device
+/// moved (and refits them when it is), trees over meshes with instances also while
+/// instances move, view samples while camera, size and meshes are unchanged, the Vulkan device
 /// always. Renderers on different threads are independent; one renderer is for one thread at a time. A call that throws
 /// leaves the renderer usable.
 class PENUMBRA_API Renderer {

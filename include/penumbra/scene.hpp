@@ -96,6 +96,14 @@ struct MeshId {
   std::uint32_t index = 0;
 };
 
+/// Identifies one instance of a mesh: the first that was added has number 0.
+struct InstanceId {
+  InstanceId(MeshId of, std::uint32_t which) : mesh(of), number(which) {}
+
+  MeshId mesh;
+  std::uint32_t number;
+};
+
 /// Triangles, area lights and cameras. Value type: copies are independent of each other. A call that throws leaves the
 /// scene unchanged. Scenes on different threads are independent; one scene is for one thread at a time.
 class PENUMBRA_API Scene {
@@ -123,6 +131,16 @@ class PENUMBRA_API Scene {
   /// colours and pictures are removed. Throws as add_mesh().
   void set_mesh(MeshId mesh, std::span<const Vector> positions,
                 std::span<const std::array<std::uint32_t, 3>> triangles);
+  /// Adds an instance of a mesh, which is stored once. From its first instance on, a mesh is in the scene only once for
+  /// each of them: its vertices, as they are then, are in the mesh's own space, and `matrix` takes them to the world.
+  /// set_mesh() and set_positions() then are for all instances, and set_transform() of the mesh moves them all. Files
+  /// have instances, too: JSON's "instances", nodes of a glTF file that share a mesh (set_mesh() and set_positions()
+  /// give such a node a mesh of its own, in the world), and EXT_mesh_gpu_instancing. Throws as set_transform().
+  InstanceId add_instance(MeshId mesh, const Matrix& matrix);
+  /// Moves an instance: replaces its matrix. Throws as for a mesh.
+  void set_transform(InstanceId instance, const Matrix& matrix);
+  /// Returns the number of a mesh's instances; 0: the mesh itself is in the scene.
+  [[nodiscard]] std::size_t instance_count(MeshId mesh) const;
   /// Returns the mesh with this name. Throws UsageError if there is none.
   [[nodiscard]] MeshId mesh(std::string_view name) const;
   [[nodiscard]] std::size_t mesh_count() const;
@@ -153,6 +171,7 @@ class PENUMBRA_API Scene {
   void set_camera(const Camera& camera);
   [[nodiscard]] std::vector<Camera> cameras() const;
 
+  /// Returns the number of triangles, counted once for each instance.
   [[nodiscard]] std::size_t triangle_count() const;
   /// Returns the default width and height of pictures in pixels.
   [[nodiscard]] std::array<std::uint32_t, 2> size() const;

@@ -16,6 +16,7 @@ from __future__ import annotations
 import copy as _copy
 import json as _json
 import os as _os
+import typing as _typing
 
 import numpy as _np
 
@@ -26,7 +27,7 @@ __version__ = _core.version()
 for _error in (Cancelled, Error, InputError, ResourceError, UsageError):
     _error.__module__ = __name__  # so that messages name the class as programs do
 __all__ = [
-    "Cancelled", "Error", "InputError", "LightPicture", "Picture", "Renderer", "ResourceError", "Scene", "UsageError",
+    "Cancelled", "Error", "InputError", "Instance", "LightPicture", "Picture", "Renderer", "ResourceError", "Scene", "UsageError",
     "add_method", "compare", "inspect", "load", "methods", "render", "wedges",
 ]
 
@@ -60,6 +61,13 @@ def _size(size):
     if not (int(width) == width >= 1 and int(height) == height >= 1):
         raise UsageError(f"size {width}x{height}: expected two whole numbers of pixels, at least 1")
     return int(width), int(height)
+
+
+class Instance(_typing.NamedTuple):
+    """One instance of a mesh: the first has number 0. Also `Instance(mesh, number)` for those of a file."""
+
+    mesh: int
+    number: int
 
 
 class Scene:
@@ -108,8 +116,6 @@ class Scene:
             vertices = _np.asarray(vertices, float)
             if "transform" in meshes[index]:
                 vertices = _transformed(meshes[index]["transform"], vertices)
-            if "instances" in meshes[index]:
-                vertices, faces = _instanced(meshes[index]["instances"], vertices, _np.asarray(faces))
             core.set_mesh(index, vertices, faces)
         return cls(core)
 
@@ -117,14 +123,29 @@ class Scene:
         """Adds a mesh: vertices (V, 3), faces (F, 3). Returns its number."""
         return self._core.add_mesh(name, vertices, faces, color, casts_shadow, receives_shadow)
 
+    def add_instance(self, mesh, matrix):
+        """Adds an instance of a mesh, by its name or number, which is stored once: `matrix` (4, 4), for column vectors, takes
+        its vertices to the world. From its first instance on a mesh is there once for each of them, and no longer by itself.
+        Returns an Instance, for set_transform."""
+        mesh = self._mesh(mesh)
+        return Instance(mesh, self._core.add_instance(mesh, _np.asarray(matrix, float)))
+
+    def instance_count(self, mesh):
+        """How many instances a mesh has, by its name or number; 0: the mesh itself is in the scene."""
+        return self._core.instance_count(self._mesh(mesh))
+
     def set_positions(self, mesh, vertices):
         """Other positions (V, 3) for the vertices of a mesh, by its name or number."""
         self._core.set_positions(self._mesh(mesh), vertices)
 
     def set_transform(self, mesh, matrix):
         """Moves a mesh, by its name or number: `matrix` (4, 4), for column vectors, takes the positions that the mesh was
-        added or read with to where they are."""
-        self._core.set_transform(self._mesh(mesh), _np.asarray(matrix, float))
+        added or read with to where they are; with instances, it moves them all. Of an Instance, it replaces the matrix."""
+        matrix = _np.asarray(matrix, float)
+        if isinstance(mesh, Instance):
+            self._core.set_instance_transform(mesh.mesh, mesh.number, matrix)
+        else:
+            self._core.set_transform(self._mesh(mesh), matrix)
 
     def _mesh(self, mesh):
         return self._core.mesh(mesh) if isinstance(mesh, str) else int(mesh)
@@ -219,14 +240,6 @@ def _shape(kind, given):
         shape["image"] = _os.fspath(shape["image"])
     as_tuple = lambda value: value if _np.isscalar(value) else _np.asarray(value, float).tolist()
     return {key: as_tuple(value) for key, value in shape.items()}
-
-
-def _instanced(instances, vertices, faces):
-    """The mesh once for each instance: {"transform": ...}, a transform itself, or 16 numbers."""
-    transforms = [i["transform"] if isinstance(i, dict) and "transform" in i else i for i in instances]
-    copies = [_transformed(transform, vertices) for transform in transforms]
-    moved = [faces + number * len(vertices) for number in range(len(copies))]
-    return _np.concatenate(copies), _np.concatenate(moved)
 
 
 def _transformed(transform, vertices):
@@ -365,19 +378,20 @@ class Renderer:
         self.scene.set_transform(mesh, matrix)
 
     def render(self, size=None, method="", light_samples=0, options=None, light=None, camera="", *, sample_pattern="",
-               sample_seed=0, pixel_samples=1, pixel_tolerance=1 / 512, normals="shading", masks=True):
+               sample_seed=0, pixel_samples=1, pixel_tolerance=1 / 512, normals="shading", masks=True, instances="auto"):
         """A Picture. `size`: (width, height), or None for the scene's. Without `method` each light gets the best one that
         gives its exact area; with `light_samples` (1 to 4096) the best one with samples. `options`: a dict of the method's.
         `light`: a name or names, for these lights alone. `normals`: "shading" or "geometric", of the beauty.
         `pixel_samples`: view samples a pixel, a square number; of exact areas those are interpolated whose error is estimated
-        to be at most `pixel_tolerance` (0: none)."""
+        to be at most `pixel_tolerance` (0: none). `instances`: "copies", "shared" (without copies), or "auto": what costs less.
+        All give the same picture."""
         if normals not in ("shading", "geometric"):
             raise UsageError(f'normals "{normals}": expected shading or geometric')
         width, height = _size(size)
         texts = {str(key): _text(value) for key, value in (options or {}).items()}
         return Picture(self._core.render(width, height, method or "", texts, int(light_samples or 0), sample_pattern,
                                          sample_seed, _names(light), camera or "", pixel_samples, pixel_tolerance,
-                                         normals == "shading", masks))
+                                         normals == "shading", masks, instances))
 
 
 def _text(value):

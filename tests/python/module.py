@@ -37,6 +37,18 @@ def board_over_floor():
     }
 
 
+def camp(instances):
+    """Tents on the floor: by add_instance, or as a file says it, with arrays."""
+    room = board_over_floor()
+    tent = np.array([[-0.3, 0, -0.2], [0.3, 0, -0.3], [0, 0, 0.3], [0, 0.5, 0]])
+    faces = np.array([[0, 1, 3], [1, 2, 3], [2, 0, 3]])
+    if instances is None:
+        scene = penumbra.Scene.from_dict(room)
+        return scene, scene.add_mesh("tent", tent, faces)
+    room["meshes"].append({"name": "tent", "vertices": tent, "faces": faces, "instances": [list(m.ravel()) for m in instances]})
+    return penumbra.Scene.from_dict(room), 2
+
+
 def crossed_segments(question):
     """Which segments from p to the light's points no triangle meets, in double: (K, N)."""
     ends = question.points_of_pixel if question.points_of_pixel is not None else question.light["points"][None]
@@ -57,6 +69,35 @@ def crossed_segments(question):
                 inside &= np.cross(end - start, hit - start) @ normal >= 0
             free &= ~(inside & (t > 1e-6) & ((t < 1) | (question.light["kind"] == "sun")))
     return free
+
+
+class Instances(unittest.TestCase):
+    """Meshes that are there many times."""
+
+    def test_instances_are_those_of_a_file_and_move(self):
+        places = []
+        for i in range(6):
+            place = np.diag([1.0 if i % 2 else -1.0, 1 + 0.1 * i, 0.9, 1])
+            place[:3, 3] = [0.8 * (i % 3) - 1, 0.01, 0.7 * (i // 3) - 0.5]
+            places.append(place)
+        scene, mesh = camp(None)
+        added = [scene.add_instance("tent", place) for place in places]
+        self.assertEqual(added[4], penumbra.Instance(mesh, 4))
+        self.assertEqual((scene.instance_count(mesh), scene.triangle_count), (6, 4 + 18))
+        read, _ = camp(places)
+        self.assertEqual(read.instance_count("tent"), 6)
+        renderer = penumbra.Renderer(scene)
+        first = renderer.render((30, 50), instances="shared")
+        for other in (penumbra.render(read, (30, 50), instances="shared"), renderer.render((30, 50), instances="copies")):
+            for name in ("V", "P", "N", "Z", "id"):
+                np.testing.assert_array_equal(getattr(first, name), getattr(other, name), name)
+        renderer.set_transform(added[5], np.diag([1.0, 2, 1, 1]))
+        moved = renderer.render((30, 50), instances="shared")
+        self.assertFalse(np.array_equal(moved.V, first.V))
+        self.assertEqual(moved.stats["counters"]["meshTreesBuilt"], 0)
+        np.testing.assert_array_equal(moved.V, renderer.render((30, 50), instances="copies").V)
+        with self.assertRaisesRegex(penumbra.UsageError, "has 6 instances, and none 6"):
+            scene.set_transform(penumbra.Instance(mesh, 6), np.eye(4))
 
 
 class OwnMethod(unittest.TestCase):
