@@ -392,6 +392,24 @@ def particles():
     lamp("AREA", (1, -1, 4), (15, 15, 0), energy=300, shape="SQUARE", size=1.2)
 
 
+def scattered():
+    """Objects that geometry nodes put on the corners of a mesh; Blender's own glTF exporter leaves them out."""
+    add("Floor", quad("Floor", half=4))
+    camera()
+    crumb = add("Crumb", cube("Crumb", half=0.2), (0, 0, -5))
+    sower = add("Sower", quad("Sower", half=1.2), (0, 0, 0.5))
+    nodes = bpy.data.node_groups.new("Scatter", "GeometryNodeTree")
+    nodes.inputs.new("NodeSocketGeometry", "Geometry"), nodes.outputs.new("NodeSocketGeometry", "Geometry")
+    begin, end = nodes.nodes.new("NodeGroupInput"), nodes.nodes.new("NodeGroupOutput")
+    what, put = nodes.nodes.new("GeometryNodeObjectInfo"), nodes.nodes.new("GeometryNodeInstanceOnPoints")
+    what.inputs["Object"].default_value, what.inputs["As Instance"].default_value = crumb, True
+    nodes.links.new(begin.outputs[0], put.inputs["Points"])
+    nodes.links.new(what.outputs["Geometry"], put.inputs["Instance"])
+    nodes.links.new(put.outputs["Instances"], end.inputs[0])
+    sower.modifiers.new("Scatter", "NODES").node_group = nodes
+    lamp("AREA", (1, -1, 4), (15, 15, 0), energy=300, shape="SQUARE", size=1.2)
+
+
 def world(color=(1, 1, 1), strength=1.0):
     """A world of a Background node, whose tree comes back with that node."""
     made = bpy.data.worlds.new("Sky")

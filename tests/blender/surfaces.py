@@ -3,6 +3,7 @@
     run.sh surfaces.py ADDON.zip PENUMBRA WORK
 """
 
+import json
 import os
 import sys
 import unittest
@@ -235,6 +236,22 @@ class Refusals(unittest.TestCase):
         found = inside.read(out("layers.exr")).channels
         numpy.testing.assert_array_equal(found["ViewLayer.Combined.R"], alone["Combined.R"])
         self.assertFalse(numpy.array_equal(found["Clay.Combined.R"], alone["Combined.R"]))
+
+    def test_instances_share_a_mesh_in_the_file(self):
+        """What a collection, particles and geometry nodes show many times, and once by itself, is in the file once."""
+        from penumbra import export, losses
+        for build, name, count in ((scenes.instances, "Stone", 3), (scenes.particles, "Crumb", 21), (scenes.scattered, "Crumb", 5)):
+            scene = inside.fresh(build)
+            lost = losses.Losses()
+            writer = export.SceneWriter(bpy.context.evaluated_depsgraph_get(), lost, True)
+            writer.write(out("shared.glb"), None)
+            self.assertEqual(lost.refused, {})
+            with open(out("shared.glb"), "rb") as file:
+                data = file.read()
+            gltf = json.loads(data[20:20 + int.from_bytes(data[12:16], "little")])
+            meshes = [node["mesh"] for node in gltf["nodes"] if node.get("name") == name and "mesh" in node]
+            self.assertEqual(len(meshes), count, scene.name)
+            self.assertEqual(len(set(meshes)), 1, name)
 
     def test_collections_of_a_view_layer(self):
         for key, wanted in (("holdout", "'Block' is a holdout"), ("indirect_only", "'Block' is in a collection that is indirect")):
