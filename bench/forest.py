@@ -1,10 +1,13 @@
 #!/usr/bin/env python3
-"""A forest of copies of one tree, and what a picture of it costs: python3 bench/forest.py PROGRAM FOLDER [TREES ...]
+"""A forest of copies of one tree, and what a picture of it costs:
+python3 bench/forest.py PROGRAM FOLDER [TREES ...] [--size PIXELS] [--results FILE.json --machine TEXT --conditions TEXT]
 
 Writes FOLDER/tree.ply (20,000 triangles: a trunk, branches and leaves of two triangles), and for each number of trees
 FOLDER/forest-N.json, in which it stands N times. Renders each and prints triangles, processor seconds, seconds and the
-largest resident set of the program and what it starts. Uses Python's standard library alone; the same bytes each time.
+largest resident set of the program and what it starts; --results writes them for bench/tables.py. Uses Python's standard
+library alone; the same bytes each time.
 """
+import argparse
 import json
 import math
 import os
@@ -12,7 +15,6 @@ import pathlib
 import random
 import struct
 import subprocess
-import sys
 import time
 
 TRIANGLES = 20_000
@@ -118,18 +120,47 @@ def measure(command):
     return usage.ru_utime + usage.ru_stime, time.monotonic() - begin, usage.ru_maxrss * 1024
 
 
+def write_results(path, rows, given):
+    commit = subprocess.run(["git", "rev-parse", "--short=8", "HEAD"], cwd=pathlib.Path(__file__).parent, check=True,
+                            capture_output=True, text=True).stdout.strip()
+    sizes = " ".join(str(row[0]) for row in rows)
+    path.write_text(json.dumps({
+        "title": "memory and processor seconds of forests of one tree, stored once",
+        "commit": commit,
+        "machine": given.machine,
+        "command": f"bench/forest.py build/penumbra FOLDER {sizes}",
+        "conditions": given.conditions,
+        "columns": ["trees", "triangles", "processor seconds", "resident, GiB", "parts", "triangles of the largest"],
+        "rows": rows,
+    }, indent=1) + "\n", encoding="utf-8")
+
+
 def main():
-    program, folder = sys.argv[1], pathlib.Path(sys.argv[2])
+    parser = argparse.ArgumentParser()
+    parser.add_argument("program")
+    parser.add_argument("folder", type=pathlib.Path)
+    parser.add_argument("trees", type=int, nargs="*", default=[100, 1000, 10000])
+    parser.add_argument("--size", type=int, default=512)
+    parser.add_argument("--results", type=pathlib.Path)
+    parser.add_argument("--machine", default="")
+    parser.add_argument("--conditions", default="")
+    given = parser.parse_args()
+    folder = given.folder
     folder.mkdir(parents=True, exist_ok=True)
     write_ply(folder / "tree.ply", *tree())
     print("trees triangles processor_s wall_s resident_MiB")
-    for trees in map(int, sys.argv[3:] or ["100", "1000", "10000"]):
-        scene = folder / f"forest-{trees}.json"
-        scene.write_text(json.dumps(forest(trees)), encoding="utf-8")
-        busy, wall, resident = measure([program, "render", scene, "-o", folder / f"forest-{trees}.exr", "--png",
-                                        folder / f"forest-{trees}.png", "--stats", folder / f"forest-{trees}.stats.json",
-                                        "--quiet"])
+    rows = []
+    for trees in given.trees:
+        scene, stats = folder / f"forest-{trees}.json", folder / f"forest-{trees}.stats.json"
+        scene.write_text(json.dumps(forest(trees, size=given.size)), encoding="utf-8")
+        busy, wall, resident = measure([given.program, "render", scene, "-o", folder / f"forest-{trees}.exr", "--png",
+                                        folder / f"forest-{trees}.png", "--stats", stats, "--quiet"])
         print(trees, TRIANGLES * trees + 2, f"{busy:.1f} {wall:.1f} {resident / 2**20:.0f}", flush=True)
+        counters = json.loads(stats.read_text(encoding="utf-8"))["counters"]
+        rows.append([trees, TRIANGLES * trees + 2, round(busy, 1), round(resident / 2**30, 2), counters.get("partsOfPicture", 1),
+                     counters.get("trianglesOfLargestPart", TRIANGLES * trees + 2)])
+        if given.results:
+            write_results(given.results, rows, given)
 
 
 if __name__ == "__main__":

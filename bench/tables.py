@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes the tables of bench/README.md and docs/devices.md from bench/results/*.json, and the list of these files in bench/results/README.md.
+"""Writes the tables of bench/README.md, docs/devices.md and docs/instances.md from bench/results/*.json, and the list of these files in bench/results/README.md.
 
   bench/tables.py            writes them
   bench/tables.py --check    exits 1 if a page is not what this script writes, or if a file of results lacks commit, machine or command
@@ -22,7 +22,7 @@ import times  # noqa: E402
 RESULTS = ROOT / "bench" / "results"
 BLOCK = re.compile(r"(<!-- results/([\w-]+)\.json -->\n).*?(<!-- end -->)", re.S)
 GPU = "nvidia-h100"  # docs/devices.md has its table
-PAGES = [ROOT / "bench" / "README.md", ROOT / "docs" / "devices.md"]
+PAGES = [ROOT / "bench" / "README.md", ROOT / "docs" / "devices.md", ROOT / "docs" / "instances.md"]
 
 
 def read(path):
