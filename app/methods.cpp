@@ -163,7 +163,7 @@ bool needs_device(std::string_view name, const MethodOptions& options) {
 bool can_do(const MethodDescription& method, const std::vector<Light>& lights) {
   return std::ranges::all_of(lights, [&](const Light& light) {
     return method.lights.contains(light.kind) && (method.textures || !light.texture) &&
-           (method.any_pattern || light.rows != 0) && (!light.dome || light.dome->even || !method.gives_area()) &&
+           (method.any_pattern || light.rows != 0) &&
            (left_to_host(method, light).empty() || method.output == visibility::Output::mask);
   });
 }

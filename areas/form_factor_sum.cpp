@@ -99,6 +99,7 @@ void FormFactorSum::finish() {
   add_ended();
   std::swap(before_, parts_);
   add_ended();
+  if (sky_) sum_ += sky_->take_form_factor(seen_.normal());
 }
 
 void FormFactorSum::add_ended() {
@@ -115,7 +116,9 @@ bool FormFactorSum::between_columns(double s) const {
 void FormFactorSum::add(const Trapezoid& shape) {
   const std::array<glm::dvec2, 4> corners{
       glm::dvec2(shape.s0, shape.low0), {shape.s1, shape.low1}, {shape.s1, shape.high1}, {shape.s0, shape.high0}};
-  if (texture_ == nullptr) {
+  if (sky_) {
+    sky_->add(corners, visibility::SkyPart::Level::s);
+  } else if (texture_ == nullptr) {
     sum_ += seen_.part(corners);
   } else {
     add_blocks(texture_->column_at((corners[0].x + corners[1].x) / 2), corners);
@@ -141,6 +144,11 @@ void FormFactorSum::add_polygon(std::span<const glm::dvec2> corners) {
 }
 
 void FormFactorSum::add_whole() {
+  if (sky_) {
+    sky_->add_above(seen_.normal());
+    sum_ += sky_->take_form_factor(seen_.normal());
+    return;
+  }
   if (texture_ == nullptr) {
     sum_ += seen_.whole();
     return;

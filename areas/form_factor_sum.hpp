@@ -2,6 +2,7 @@
 
 #include "visibility/light_texture.hpp"
 #include "visibility/lights/unshadowed_light.hpp"
+#include "visibility/skies/sky_part.hpp"
 
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
@@ -51,13 +52,16 @@ class TextureBlocks {
   std::vector<glm::dvec3> colors_;
 };
 
-/// Adds form factors of parts of a light, times the colours of the parts. The sweep cuts its slabs wherever any edge
-/// ends; trapezoids between the same two edges in neighbouring slabs are joined again, which leaves few.
+/// Adds form factors of parts of a light, times the colours of the parts (a texture's, or a sky's). The sweep cuts its
+/// slabs wherever any edge ends; trapezoids between the same two edges in neighbouring slabs are joined again, which
+/// leaves few.
 class FormFactorSum {
  public:
   /// Both arguments must outlive this object. Without a texture the colour is 1.
   FormFactorSum(const visibility::UnshadowedLight& seen, const std::optional<TextureBlocks>& texture)
-      : seen_(seen), texture_(texture ? &*texture : nullptr) {}
+      : seen_(seen), texture_(texture ? &*texture : nullptr) {
+    if (seen.light().dome && seen.light().dome->sky) sky_.emplace(seen.light());
+  }
 
   /// Begins a slab, from left to right; add_between then adds the parts between two edges, with the edges' heights at
   /// the slab's ends. With a texture a slab lies within one column of blocks.
@@ -90,8 +94,9 @@ class FormFactorSum {
 
   const visibility::UnshadowedLight& seen_;
   const TextureBlocks* texture_;
-  double from_ = 0, to_ = 0;          // the slab
-  std::vector<Part> before_, parts_;  // parts of the last slab that have not been continued; parts of this slab
+  std::optional<visibility::SkyPart> sky_;  // for a face of a dome with a picture
+  double from_ = 0, to_ = 0;                // the slab
+  std::vector<Part> before_, parts_;        // parts of the last slab that have not been continued; parts of this slab
   glm::dvec3 sum_{0};
 };
 

@@ -37,7 +37,7 @@ glm::dvec3 form_factor_of(const LitPoint& at, const VisibleLight& light, const L
     return light.visible(at, seen.masks.subspan(pixel * words, words),
                          dimmed ? seen.transmittances.subspan(pixel * pairs, pairs) : std::span<const float>());
   }
-  return double{seen.visibility[pixel]} * light.unshadowed(at);
+  return double{seen.visibility[pixel]} * light.whole(at);
 }
 
 /// Returns the factor of the whole form factor at a pixel with V and possibly the form factor of its facet: with the
@@ -55,7 +55,7 @@ double share_of(const visibility::Light& light, const BeautyScene& in, std::size
 
 /// Returns whether the light has uniform radiance, so that its form factor has a closed form.
 bool is_plain(const visibility::Light& light) {
-  return !light.texture && (!light.dome || light.dome->even);
+  return !light.texture && (!light.dome || light.dome->sky == nullptr);
 }
 
 /// Returns whether the pixel needs only the form factor of the whole light (all of a plain light is visible, or V
@@ -107,7 +107,10 @@ void add_light(const BeautyScene& in, const VisibleLight& visible, const LightVi
     const visibility::UnshadowedLight view(light, in.samples.p[i], bent ? in.normals[i] : in.samples.n[i]);
     if (!view.shines()) continue;
     const LitPoint at{view, in.samples.p[i]};
-    add(i, shadowed ? form_factor_of(at, visible, seen, asked, words) : visible.unshadowed(at));
+    if (shadowed)
+      add(i, form_factor_of(at, visible, seen, asked, words));
+    else
+      add(i, seen.masks.empty() ? visible.whole(at) : visible.unshadowed(at));
   }
   std::vector<double> form_factors(wholes.size());
   visibility::whole_form_factors(light, {in.samples.p, in.normals.empty() ? in.samples.n : in.normals, wholes},

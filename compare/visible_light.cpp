@@ -6,7 +6,9 @@
 
 #include "base/assert.hpp"
 #include "visibility/lights/part_form_factors.hpp"
+#include "visibility/skies/sky.hpp"
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include <algorithm>
@@ -132,18 +134,25 @@ glm::dvec3 VisibleLight::of_dome(const LitPoint& at, Mask mask, std::span<const 
     all += cosine;
     if ((mask[j / 32] >> j % 32 & 1u) == 0) continue;
     const double left = transmittances.empty() ? cosine : cosine * double{transmittances[j]};
-    some += light_->dome->even ? glm::dvec3(left) : left * glm::dvec3(light_->sample_colors[j]);
+    some += light_->dome->sky == nullptr ? glm::dvec3(left) : left * glm::dvec3(light_->sample_colors[j]);
   }
   // For a picture, only its light samples are known; for uniform radiance, the whole is.
-  if (!light_->dome->even) return light_->dome->power / static_cast<double>(light_->sample_count()) * some;
+  if (light_->dome->sky) return light_->dome->power / static_cast<double>(light_->sample_count()) * some;
   return all > 0 ? at.seen.whole() * (some / all) : glm::dvec3(0);
 }
 
 glm::dvec3 VisibleLight::unshadowed(const LitPoint& at) const {
-  if (light_->dome && !light_->dome->even) return of_dome(at, all_);
+  if (light_->dome && light_->dome->sky) return of_dome(at, all_);
   const double whole = at.seen.whole();
   if (!light_->texture || whole == 0) return glm::dvec3(whole);
   return of_samples(at, whole, all_);
+}
+
+glm::dvec3 VisibleLight::whole(const LitPoint& at) const {
+  if (!light_->dome || !light_->dome->sky) return unshadowed(at);
+  const visibility::Sky& sky = *light_->dome->sky;
+  const glm::dvec3& n = at.seen.normal();
+  return glm::max(sky.form_factor(sky.above(n), n), glm::dvec3(0));
 }
 
 glm::dvec3 VisibleLight::visible(const LitPoint& at, Mask mask, std::span<const float> transmittances) const {

@@ -45,7 +45,10 @@ class VisibleLight {
   explicit VisibleLight(const visibility::Light& light);
 
   [[nodiscard]] const visibility::Light& light() const { return *light_; }
+  /// Returns the form factor of the whole light; of a texture or picture that of all light samples.
   [[nodiscard]] glm::dvec3 unshadowed(const LitPoint& at) const;
+  /// Returns the same without light samples where it is known: for a dome with a picture.
+  [[nodiscard]] glm::dvec3 whole(const LitPoint& at) const;
   /// Returns the form factor of the visible part. `mask`: words_per_mask() words; bits beyond the last sample are
   /// ignored. `transmittances`: factor of each light sample (applied as `texel` above; cells with a common factor keep
   /// their closed form); empty: 1.

@@ -88,7 +88,7 @@ Exact::Exact(const visibility::MethodOptions& options) {
   description_.output = visibility::Output::radiance;
   description_.exact_for =
       "any light, textured or not, and any triangle soup, up to float32 of V, and for the beauty under constant "
-      "radiance and textures of up to 64 x 64 texels";
+      "radiance, pictures of domes and textures of up to 64 x 64 texels";
   description_.lights = visibility::kEveryLight;
   description_.exact_area = visibility::ExactArea{description_.lights};
   description_.verdict_on = exact_method_verdict;

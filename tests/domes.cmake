@@ -5,6 +5,7 @@ penumbra_test(domes
   agreement/domes.cpp
   analytic/dome_closed_forms.cpp
   analytic/dome_screen.cpp
+  analytic/sky_exact.cpp
   cli/domes.cpp
   cli/program.cpp
   unit/dome_samples.cpp

@@ -18,11 +18,12 @@ set(may_import/gltf import/gltf/emitters scenes/formats scenes mesh base)
 set(may_import import/gltf import/gltf/emitters scenes/formats scenes mesh base)
 set(may_visibility scenes mesh/diagnosis mesh base)
 set(may_visibility/tree visibility scenes mesh base)
-set(may_visibility/lights visibility/tree visibility scenes mesh base)
-set(may_visibility/masks visibility base)
+set(may_visibility/skies visibility scenes base)
+set(may_visibility/lights visibility/skies visibility/tree visibility scenes mesh base)
+set(may_visibility/masks visibility/skies visibility base)
 set(may_visibility/alpha visibility/tree visibility scenes mesh base)
 set(may_visibility/seen visibility scenes mesh base)
-set(all_visibility visibility/seen visibility/alpha visibility/masks visibility/lights visibility/tree visibility)
+set(all_visibility visibility/seen visibility/alpha visibility/masks visibility/lights visibility/skies visibility/tree visibility)
 set(may_areas ${all_visibility} scenes mesh base)
 set(may_render/opengl base)
 set(may_render render/opengl ${all_visibility} scenes mesh base)
@@ -78,7 +79,7 @@ set(may_library app app/compare app/inspect app/pictures app/process app/wedges 
 set(may_python)
 set(may_bench ${may_app} app app/pictures volumes/raster volumes/edges mesh/shapes)
 set(rooms base network mesh mesh/diagnosis mesh/shapes repair scenes scenes/formats import import/gltf import/gltf/emitters visibility
-    visibility/tree visibility/lights
+    visibility/tree visibility/skies visibility/lights
     visibility/masks visibility/alpha visibility/seen areas render/opengl render engines/device engines/vectors engines/pairs engines
     volumes/wedges volumes/edges/device volumes/edges/vectors volumes/edges volumes/raster volumes/soft volumes/counters volumes/scatter volumes vsm maps/host maps/products maps/products/lists
     maps/filters maps/sampling maps/single_shadow maps/screen maps/backprojection maps/backprojection/patches maps/backprojection/contours

@@ -13,11 +13,6 @@
 namespace penumbra::visibility {
 namespace {
 
-double luminance_of(const glm::vec3& color) {
-  const glm::dvec3 c(color);
-  return 0.2126 * c.r + 0.7152 * c.g + 0.0722 * c.b;
-}
-
 /// The step of a growing list of sums `up_to` that contains the fraction `share` of the last sum, and the position
 /// within that step.
 struct Step {
@@ -50,6 +45,10 @@ Heights heights_of(std::size_t row, std::size_t count, bool half) {
 
 }  // namespace
 
+double luminance_of(const glm::dvec3& color) {
+  return 0.2126 * color.r + 0.7152 * color.g + 0.0722 * color.b;
+}
+
 glm::dvec3 DomeFrame::direction(const SkyPlace& place) const {
   const double angle = 2 * std::numbers::pi * (place.turn - 0.5);
   const double flat = std::sqrt(std::max(0.0, (1 - place.height) * (1 + place.height)));
@@ -76,12 +75,12 @@ DomeFrame dome_frame(const glm::dvec3& up, double degrees) {
     frame.right = {1, 0, 0};
     frame.ahead = {0, 0, 1};
   }
-  if (degrees == 0) return frame;
+  return degrees == 0 ? frame : frame.turned(degrees);
+}
+
+DomeFrame DomeFrame::turned(double degrees) const {
   const double turn = glm::radians(std::remainder(degrees, 360.0)), cosine = std::cos(turn), sine = std::sin(turn);
-  const glm::dvec3 right = frame.right, ahead = frame.ahead;
-  frame.right = cosine * right + sine * ahead;
-  frame.ahead = cosine * ahead - sine * right;
-  return frame;
+  return {cosine * right + sine * ahead, cosine * ahead - sine * right, up};
 }
 
 std::size_t sky_texel(const scenes::Texture& picture, const SkyPlace& place) {
@@ -95,7 +94,7 @@ std::size_t sky_texel(const scenes::Texture& picture, const SkyPlace& place) {
 DomeSamples dome_samples(const scenes::Texture* picture, bool half, const std::vector<glm::dvec2>& unit) {
   const std::size_t height = picture != nullptr ? picture->height : 1, width = picture != nullptr ? picture->width : 1;
   const auto luminance = [&](std::size_t row, std::size_t x) {
-    return picture != nullptr ? luminance_of(picture->texels[row * width + x]) : 1.0;
+    return picture != nullptr ? luminance_of(glm::dvec3(picture->texels[row * width + x])) : 1.0;
   };
   DomeSamples samples;
   std::vector<double> rows;  // for each row, ∫ luminance dω up to its end
@@ -121,7 +120,7 @@ DomeSamples dome_samples(const scenes::Texture* picture, bool half, const std::v
         {upper + down * (lower - upper), (static_cast<double>(x) + across) / static_cast<double>(width)});
     if (picture == nullptr) continue;
     const glm::vec3& texel = picture->texels[row * width + x];
-    samples.colors.emplace_back(glm::dvec3(texel) / luminance_of(texel));
+    samples.colors.emplace_back(glm::dvec3(texel) / luminance_of(glm::dvec3(texel)));
   }
   return samples;
 }

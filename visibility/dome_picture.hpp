@@ -10,6 +10,9 @@
 /// Directions of the texels of a dome's picture, and light samples in proportion to their light.
 namespace penumbra::visibility {
 
+/// Returns Rec. 709's luminance.
+double luminance_of(const glm::dvec3& color);
+
 /// A direction by its height, the cosine of the angle to `up`, and the azimuth, in turns from the picture's left: 1/2
 /// is its middle.
 struct SkyPlace {
@@ -23,6 +26,8 @@ struct DomeFrame {
 
   [[nodiscard]] glm::dvec3 direction(const SkyPlace& place) const;
   [[nodiscard]] SkyPlace place(const glm::dvec3& direction) const;
+  /// Returns the axes rotated by `degrees`, right-handed, about `up`.
+  [[nodiscard]] DomeFrame turned(double degrees) const;
 };
 /// Returns a dome's axes. The smallest rotation takes +Y to `up`, and −Z and +X to `ahead` and `right`; then these are
 /// rotated by `degrees`, right-handed, about `up`. For −Y the rotation is about X.

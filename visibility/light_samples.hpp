@@ -11,12 +11,15 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 namespace penumbra::visibility {
+
+class Sky;
 
 // Properties of the kinds of light are defined in scenes/light_kind.hpp.
 using scenes::is_body;
@@ -85,8 +88,8 @@ struct Light {
   struct Dome {
     std::array<glm::vec3, 3> axes{};  ///< stored; faces look along ± these, the third is `up`. Faces share corners: all
                                       ///< directions are covered once, without gaps
-    bool half = false;       ///< only the part above the plane of the first two axes
-    bool even = true;        ///< constant radiance
+    bool half = false;                    ///< only the part above the plane of the first two axes
+    std::shared_ptr<const Sky> sky = {};  ///< the picture, of this light, its copies and its faces; null: one radiance
     double power = 1;        ///< for radiance 1, 1/π ∫ luminance dω: that of all samples, which have equal parts
     std::int32_t face = -1;  ///< −1: the whole dome
     std::array<std::uint32_t, 7> first{};  ///< for the whole dome: face i has the samples from first[i] to first[i + 1]

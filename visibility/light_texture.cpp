@@ -4,6 +4,7 @@
 
 #include "base/assert.hpp"
 #include "base/error.hpp"
+#include "visibility/dome_picture.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -11,10 +12,6 @@
 
 namespace penumbra::visibility {
 namespace {
-
-double luminance_of(const glm::dvec3& color) {
-  return 0.2126 * color.r + 0.7152 * color.g + 0.0722 * color.b;
-}
 
 /// Returns the one of `count` cells of [0, 1] that contains `share`.
 std::uint32_t cell_at(double share, std::uint32_t count) {

@@ -44,13 +44,6 @@ const std::string& left_to_host(const MethodDescription& description, const Ligh
 }
 
 void check_light(const MethodDescription& description, const Light& light) {
-  if (light.dome && !light.dome->even && description.gives_area()) {
-    throw InputError(
-        "light \"{}\" is a dome with a picture; method {}, as asked for, gives the areas of domes of one radiance. Ask "
-        "for "
-        "light samples (--light-samples, --method edge-scatter, view-sample or raytrace)",
-        light.name, description.name);
-  }
   if (light.texture && !description.textures) {
     throw InputError(
         "light \"{}\" has a texture; method {}, as asked for, does not weigh V by it. Take another light (--light) or "

@@ -4,8 +4,11 @@
 
 #include "base/assert.hpp"
 #include "visibility/dome_faces.hpp"
+#include "visibility/dome_picture.hpp"
 #include "visibility/masks/visible_share.hpp"
+#include "visibility/skies/sky.hpp"
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include <tbb/blocked_range.h>
@@ -14,6 +17,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <numeric>
+#include <tuple>
 #include <utility>
 
 namespace penumbra::visibility {
@@ -45,7 +50,7 @@ class DomeMethod final : public Method {
   std::map<std::string, std::uint64_t> take_mesh_counters() override { return method_->take_mesh_counters(); }
   [[nodiscard]] std::uint64_t memory_bytes() const override {
     return method_->memory_bytes() + masks_.capacity() * sizeof(std::uint32_t) +
-           form_factors_.capacity() * sizeof(double);
+           form_factors_.capacity() * sizeof(glm::dvec3);
   }
 
  private:
@@ -53,7 +58,8 @@ class DomeMethod final : public Method {
     return std::span(samples_->n).subspan(std::size_t{tile_.first_row} * samples_->width, pixels_);
   }
   void add_masks(const Light& face, std::size_t first_pixel, std::size_t count);
-  void add_form_factors(std::size_t first_pixel, std::size_t count);
+  void add_form_factors(const Light& face, std::size_t first_pixel, std::size_t count);
+  [[nodiscard]] std::vector<double> whole_form_factors() const;
 
   std::unique_ptr<Method> method_;
   bool wants_form_factors_ = false;
@@ -64,7 +70,7 @@ class DomeMethod final : public Method {
   std::size_t pixels_ = 0;  // pixels of the tile
   std::vector<std::uint32_t> masks_, part_;
   std::vector<std::uint8_t> sees_all_;  // for each face so far, whether all of it is visible
-  std::vector<double> form_factors_;
+  std::vector<glm::dvec3> form_factors_;
   std::vector<float> part_visibility_;
   std::vector<glm::dvec3> part_form_factors_;
   std::map<std::string, std::uint64_t> counters_;
@@ -76,6 +82,7 @@ void DomeMethod::prepare_light(const Light& light) {
   faces_.clear();
   counters_.clear();
   method_->want_form_factors(wants_form_factors_ || dome_ != nullptr);
+  if (dome_ != nullptr && dome_->dome->sky && description().gives_area()) dome_->dome->sky->prepare();
   if (dome_ == nullptr) return method_->prepare_light(light);
   faces_ = light_faces(light, description().gives_area());
   std::erase_if(faces_, [](const Light& face) { return face.points.empty(); });
@@ -96,7 +103,7 @@ void DomeMethod::evaluate(const Tile& tile) {
   pixels_ = std::size_t{tile.row_count} * samples_->width;
   const bool areas = description().gives_area();
   masks_.assign(areas ? 0 : pixels_ * dome_->words_per_mask(), 0U);
-  form_factors_.assign(areas ? pixels_ : 0, 0.0);
+  form_factors_.assign(areas ? pixels_ : 0, glm::dvec3(0));
   sees_all_.assign(areas ? pixels_ : 0, 1);
   for (const Light& face : faces_) {
     method_->prepare_light(face);
@@ -106,7 +113,7 @@ void DomeMethod::evaluate(const Tile& tile) {
       const std::size_t first = std::size_t{row} * samples_->width,
                         count = std::size_t{band.row_count} * samples_->width;
       if (areas)
-        add_form_factors(first, count);
+        add_form_factors(face, first, count);
       else
         add_masks(face, first, count);
       row += band.row_count;
@@ -133,16 +140,57 @@ void DomeMethod::add_masks(const Light& face, std::size_t first_pixel, std::size
   });
 }
 
-void DomeMethod::add_form_factors(std::size_t first_pixel, std::size_t count) {
+void DomeMethod::add_form_factors(const Light& face, std::size_t first_pixel, std::size_t count) {
   part_visibility_.resize(count);
   part_form_factors_.resize(count);
   method_->read_visibility(part_visibility_);
   method_->read_form_factors(part_form_factors_);
+  const Sky* const sky = dome_->dome->sky.get();
+  const std::span<const glm::vec3> n = normals();
   for (std::size_t i = 0; i < count; ++i) {
-    if (part_visibility_[i] != 1) sees_all_[first_pixel + i] = 0;
+    const std::size_t pixel = first_pixel + i;
+    glm::dvec3 seen = part_form_factors_[i];
+    if (part_visibility_[i] != 1)
+      sees_all_[pixel] = 0;
+    else if (sky != nullptr && seen != glm::dvec3(0))  // 0: background
+      seen = sky->form_factor(sky->of_face(static_cast<std::size_t>(face.dome->face)),
+                              glm::normalize(glm::dvec3(n[pixel])));
     // NaN: the pixel is not wanted
-    if (part_visibility_[i] != 0) form_factors_[first_pixel + i] += part_form_factors_[i].x;
+    if (part_visibility_[i] != 0) form_factors_[pixel] += glm::max(seen, glm::dvec3(0));
   }
+}
+
+/// Returns for each pixel of the tile the dome's form factor without occluders, for a picture its luminance, 0 where
+/// that is rounding: once for all pixels of the same normal.
+std::vector<double> DomeMethod::whole_form_factors() const {
+  const std::span<const glm::vec3> n = normals();
+  std::vector<double> whole(n.size());
+  const Sky* const sky = dome_->dome->sky.get();
+  if (sky == nullptr) {
+    std::ranges::transform(n, whole.begin(), [&](const glm::vec3& normal) {
+      return dome_form_factor(*dome_, glm::normalize(glm::dvec3(normal)));
+    });
+    return whole;
+  }
+  const auto less = [&](std::uint32_t a, std::uint32_t b) {
+    return std::tie(n[a].x, n[a].y, n[a].z) < std::tie(n[b].x, n[b].y, n[b].z);
+  };
+  std::vector<std::uint32_t> order(n.size());
+  std::iota(order.begin(), order.end(), 0U);
+  std::sort(order.begin(), order.end(), less);
+  std::vector<std::size_t> first;  // of the pixels of each normal
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    if (i == 0 || less(order[i - 1], order[i])) first.push_back(i);
+  }
+  first.push_back(order.size());
+  tbb::parallel_for(std::size_t{0}, first.size() - 1, [&](std::size_t group) {
+    const glm::dvec3 normal(n[order[first[group]]]);
+    if (!(glm::length(normal) > 0)) return;  // background
+    const glm::dvec3 unit = glm::normalize(normal);
+    const double value = luminance_of(sky->form_factor(sky->above(unit), unit));
+    for (std::size_t i = first[group]; i < first[group + 1]; ++i) whole[order[i]] = value > sky->rounding() ? value : 0;
+  });
+  return whole;
 }
 
 void DomeMethod::read_masks(std::span<std::uint32_t> masks) {
@@ -153,19 +201,22 @@ void DomeMethod::read_masks(std::span<std::uint32_t> masks) {
 
 void DomeMethod::read_form_factors(std::span<glm::dvec3> form_factors) {
   if (dome_ == nullptr) return method_->read_form_factors(form_factors);
-  std::ranges::transform(form_factors_, form_factors.begin(), [](double f) { return glm::dvec3(f); });
+  std::ranges::copy(form_factors_, form_factors.begin());
 }
 
 void DomeMethod::read_visibility(std::span<float> visibility) {
   if (dome_ == nullptr) return method_->read_visibility(visibility);
   if (!description().gives_area()) return visible_shares(*dome_, masks_, normals(), visibility);
-  const std::span<const glm::vec3> n = normals();
+  const bool has_sky = dome_->dome->sky != nullptr;
+  const std::vector<double> wholes = whole_form_factors();
+  const std::span<const std::int32_t> triangles =
+      std::span(samples_->triangle).subspan(std::size_t{tile_.first_row} * samples_->width, pixels_);
   for (std::size_t i = 0; i < visibility.size(); ++i) {
-    if (sees_all_[i] != 0) {
+    const double whole = wholes[i], seen = has_sky ? luminance_of(form_factors_[i]) : form_factors_[i].x;
+    if (sees_all_[i] != 0 && (!has_sky || whole > 0 || triangles[i] == ViewSamples::kBackground)) {
       visibility[i] = 1;
       continue;
     }
-    const double whole = dome_form_factor(*dome_, glm::normalize(glm::dvec3(n[i]))), seen = form_factors_[i];
     if (std::isnan(seen))
       visibility[i] = static_cast<float>(seen);
     else

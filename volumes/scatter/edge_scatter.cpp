@@ -286,7 +286,7 @@ visibility::MethodDescription edge_scatter_description(const visibility::MethodO
   description.output = visibility::Output::radiance;
   description.exact_for =
       "the visible share of any light, textured or not, to float32, for any triangle soup; the beauty under "
-      "constant radiance and textures of up to 64 x 64 texels";
+      "constant radiance, pictures of domes and textures of up to 64 x 64 texels";
   return description;
 }
 

@@ -8,6 +8,7 @@
 #include "visibility/dome_faces.hpp"
 #include "visibility/dome_picture.hpp"
 #include "visibility/lights/kinds/light_kinds.hpp"
+#include "visibility/skies/sky.hpp"
 
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
@@ -16,6 +17,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <memory>
 #include <numbers>
 #include <variant>
 #include <vector>
@@ -39,6 +41,13 @@ void add_samples(Light& light, const std::vector<glm::vec3>& directions, const s
   light.dome->first.back() = static_cast<std::uint32_t>(light.points.size());
 }
 
+/// Returns orthonormal axes along the stored ones, so that half a dome's faces end where its picture does.
+DomeFrame stored_frame(const Light::Dome& dome) {
+  const glm::dvec3 right = glm::normalize(glm::dvec3(dome.axes[0]));
+  const glm::dvec3 up = glm::normalize(glm::cross(right, glm::dvec3(dome.axes[1])));
+  return {right, glm::cross(up, right), up};
+}
+
 void make_dome(const scenes::LightShape& shape, const LightBuilder& to) {
   const auto& dome = std::get<scenes::Dome>(shape);
   Light& light = to.light;
@@ -51,7 +60,9 @@ void make_dome(const scenes::LightShape& shape, const LightBuilder& to) {
   // right-handed: right × ahead is up
   light.dome->axes = {glm::vec3(frame.right) + 0.0f, glm::vec3(frame.ahead) + 0.0f, glm::vec3(frame.up) + 0.0f};
   light.dome->half = dome.half;
-  light.dome->even = to.picture == nullptr;
+  if (to.picture != nullptr)
+    light.dome->sky =
+        std::make_shared<const Sky>(*to.picture, stored_frame(*light.dome).turned(dome.rotate), *light.dome);
   light.sun = Light::Directions{light.dome->axes[0], light.dome->axes[1], 1};
   light.center = light.center_u = light.center_v = light.dome->axes[2];
   light.area = (dome.half ? 2 : 4) * std::numbers::pi;

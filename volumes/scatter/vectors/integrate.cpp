@@ -5,6 +5,8 @@
 #include "areas/form_factor_sum.hpp"
 #include "visibility/lights/part_form_factors.hpp"
 #include "visibility/lights/unshadowed_light.hpp"
+#include "visibility/skies/sky.hpp"
+#include "visibility/skies/sky_part.hpp"
 #include "volumes/edges/vectors/corner.hpp"
 #include "volumes/scatter/vectors/rows.hpp"
 
@@ -122,8 +124,19 @@ class PartlyLit {
         cells_(2.0 * glm::dvec2(in.cluster.grid.half_cells)),
         is_plain_(!in.texture && !visibility::is_round(in.light.kind)) {}
 
-  glm::dvec3 form_factor(const GridSample& at, const std::vector<Trapezoid>& parts) {
+  /// Returns the form factor; nullopt if double cannot prove it, of a sky whose edges pass in front of what is bright.
+  std::optional<glm::dvec3> form_factor(const GridSample& at, const Rows& rows) {
+    const std::vector<Trapezoid>& parts = rows.parts;
     const visibility::UnshadowedLight unshadowed(in_.light, in_.samples.p[at.pixel], in_.samples.n[at.pixel]);
+    if (in_.light.dome && in_.light.dome->sky) {
+      visibility::SkyPart sky(in_.light);
+      for (const Trapezoid& part : parts) sky.add(corners_of(part), visibility::SkyPart::Level::t);
+      const glm::dvec3 form_factor = sky.take_form_factor(unshadowed.normal());
+      // Sides are off by less than this angle, and whole faces have 4 times the mean or less.
+      const double off = rows.sum.side_error() * 2 / std::min(cells_.x, cells_.y);
+      if (!(off * sky.exposure() <= 4 * kProven * in_.light.dome->sky->mean_luminance())) return std::nullopt;
+      return glm::max(form_factor, glm::dvec3(0));
+    }
     if (is_plain_) {
       corners_.resize(parts.size());
       for (std::size_t i = 0; i < parts.size(); ++i) corners_.set(i, corners_of(parts[i]));
@@ -153,19 +166,24 @@ std::size_t integrate_here(const IntegralInput& input, EdgeScratch& scratch, Ope
   Rows rows{RowSum(in.grid, input.region, input.scene, input.scale), input.region.window, {}, !out.radiance.empty()};
   PartlyLit partly_lit(input);
   std::size_t unproven = 0;
+  const auto use_exact = [&](std::size_t i) {
+    ++unproven;
+    const areas::ExactView exact = input.areas.view(input.samples, in.samples[i].pixel);
+    out.shares[i] = static_cast<float>(exact.visibility);
+    if (!out.radiance.empty()) out.radiance[i] = exact.form_factor;
+  };
   for_each_sample(in, scratch.lists, [&](std::size_t i) {
     const ClusterSample& at = in.samples[i];
     const std::optional<double> share = share_of(input, scratch, at, rows, judge);
-    if (!share) {
-      ++unproven;
-      const areas::ExactView exact = input.areas.view(input.samples, at.pixel);
-      out.shares[i] = static_cast<float>(exact.visibility);
-      if (!out.radiance.empty()) out.radiance[i] = exact.form_factor;
-      return;
-    }
+    if (!share) return use_exact(i);
     out.shares[i] = static_cast<float>(*share);
     const bool is_partial = out.shares[i] != 0 && out.shares[i] != 1;
-    if (!out.radiance.empty() && is_partial) out.radiance[i] = partly_lit.form_factor(at, rows.parts);
+    if (out.radiance.empty() || !is_partial) return;
+    const std::optional<glm::dvec3> form_factor = partly_lit.form_factor(at, rows);
+    if (form_factor)
+      out.radiance[i] = *form_factor;
+    else
+      use_exact(i);
   });
   return unproven;
 }
