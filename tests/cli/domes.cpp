@@ -162,7 +162,10 @@ TEST_F(DomeCommands, APictureLooksWhereItIsTurned) {
   constexpr double kTurn = 2 * 3.14159265358979;
   const double irradiance = kTurn / 8 * 0.25;  // ∫ h dh dφ, h from 0 to cos 45°, φ over an eighth of a turn
   const ExrFile exr = image();
-  EXPECT_NEAR(*std::ranges::max_element(exr.floats.at("B")), 10 * 0.75 * irradiance / (kTurn / 2), 1e-6);
+  for (std::size_t i = 0; i < exr.floats.at("V").size(); ++i) {
+    if (exr.floats.at("A")[i] == 0 || exr.floats.at("P.Y")[i] > 0) continue;
+    EXPECT_NEAR(exr.floats.at("B")[i], exr.floats.at("V")[i] * 10 * 0.75 * irradiance / (kTurn / 2), 1e-6);
+  }
 }
 
 TEST_F(DomeCommands, AVisibleOneIsTheBackground) {
