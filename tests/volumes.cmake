@@ -7,6 +7,7 @@ penumbra_test(wedges
   agreement/volumes/coverage_lights.cpp
   agreement/volumes/coverage_meshes.cpp
   analytic/coverage_closed_forms.cpp
+  analytic/wedge_bodies.cpp
   property/volumes/coverage_properties.cpp
   property/volumes/coverage_textures.cpp
   property/volumes/penumbra_wedges.cpp

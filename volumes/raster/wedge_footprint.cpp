@@ -95,22 +95,6 @@ std::vector<Loop> faces_of(const Box& box) {
 
 using Points = std::vector<glm::dvec2>;
 
-/// Returns the convex hull, counter-clockwise with y upward (A. M. Andrew 1979).
-Points hull_of(Points points) {
-  std::ranges::sort(points, [](const auto& p, const auto& q) { return p.x != q.x ? p.x < q.x : p.y < q.y; });
-  Points hull;
-  for (const int way : {1, -1}) {
-    const std::size_t floor = hull.size() + 1;
-    for (const glm::dvec2& p : points) {
-      while (hull.size() > floor && cross(hull.back() - hull[hull.size() - 2], p - hull.back()) <= 0) hull.pop_back();
-      hull.push_back(p);
-    }
-    hull.pop_back();
-    if (way == 1) std::ranges::reverse(points);
-  }
-  return hull;
-}
-
 /// Returns the intersection of two convex polygons.
 Points clip(Points polygon, const Points& by) {
   for (std::size_t side = 0; side < by.size(); ++side) {

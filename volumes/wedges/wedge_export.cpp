@@ -3,13 +3,12 @@
 #include "volumes/wedges/wedge_export.hpp"
 
 #include "scenes/formats/parts_writer.hpp"
-#include "volumes/wedges/wedge_polyhedron.hpp"
+#include "volumes/wedges/wedge_body.hpp"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <set>
 
 namespace penumbra::volumes {
@@ -21,18 +20,10 @@ constexpr std::size_t kMostNames = 1000;  // names of wedges; further wedges sha
 const glm::dvec4 kSound{0.25, 0.5, 0.9, 0.35}, kWrong{0.9, 0.15, 0.1, 0.5};
 const glm::dvec4 kEdge{0.05, 0.05, 0.05, 1}, kLight{1, 0.85, 0.3, 1}, kPoint{1, 0, 0.8, 1};
 
-bool is_finite(const Wedge& wedge) {
-  return std::ranges::all_of(wedge.planes, [](const Plane& p) { return std::isfinite(p.a + p.b + p.c + p.d); });
-}
-
-void add_faces(Part& part, const Polyhedron& polyhedron) {
+void add_body(Part& part, const WedgeBody& body) {
   const auto first = static_cast<std::uint32_t>(part.positions.size());
-  for (const ExactPoint& corner : polyhedron.corners) part.positions.push_back(corner.near);
-  for (const PolyhedronFace& face : polyhedron.faces) {
-    for (std::size_t i = 1; i + 1 < face.loop.size(); ++i) {
-      part.triangles.push_back({first + face.loop[0], first + face.loop[i], first + face.loop[i + 1]});
-    }
-  }
+  part.positions.insert(part.positions.end(), body.corners.begin(), body.corners.end());
+  for (const auto& [a, b, c] : body.triangles) part.triangles.push_back({first + a, first + b, first + c});
 }
 
 void add_edge(Part& part, const Wedge& wedge) {
@@ -52,30 +43,6 @@ Part octahedron(std::string name, const glm::dvec3& center, double radius) {
   return part;
 }
 
-/// Returns a flat hull as a fan, a solid hull as the polyhedron bounded by its faces: all planes through three corners
-/// are tried.
-Part light_part(const LightHull& light) {
-  Part part{"light", kLight, light.corners, {}, {}};
-  const auto count = static_cast<std::uint32_t>(light.corners.size());
-  const auto volume = [&](std::uint32_t i, std::uint32_t j, std::uint32_t k, std::uint32_t l) {
-    const auto& c = light.corners;
-    return glm::dot(glm::cross(c[j] - c[i], c[k] - c[i]), c[l] - c[i]);
-  };
-  for (std::uint32_t i = 0; light.is_solid && i < count; ++i) {
-    for (std::uint32_t j = i + 1; j < count; ++j) {
-      for (std::uint32_t k = i + 1; k < count; ++k) {
-        bool outermost = k != j;
-        for (std::uint32_t l = 0; l < count && outermost; ++l) {
-          outermost = l == i || l == j || l == k || volume(i, j, k, l) < 0;
-        }
-        if (outermost) part.triangles.push_back({i, j, k});
-      }
-    }
-  }
-  for (std::uint32_t i = 1; !light.is_solid && i + 1 < count; ++i) part.triangles.push_back({0, i, i + 1});
-  return part;
-}
-
 /// Adds both parts of the wedges first … last: their bodies and their edges.
 void add_wedges(std::vector<Part>& parts, const WedgesToExport& what, const std::set<std::uint32_t>& wrong,
                 std::uint32_t first, std::uint32_t last) {
@@ -85,8 +52,7 @@ void add_wedges(std::vector<Part>& parts, const WedgesToExport& what, const std:
   for (std::uint32_t i = first; i <= last; ++i) {
     const Wedge& wedge = what.wedges[i];
     add_edge(edges, wedge);
-    if (wedge.outcome != WedgeOutcome::wedge || !is_finite(wedge)) continue;
-    add_faces(wrong.contains(i) ? bad : sound, cut_box(what.box, wedge.planes));
+    add_body(wrong.contains(i) ? bad : sound, wedge_body(wedge, what.box));
   }
   for (Part* part : {&sound, &bad, &edges}) parts.push_back(std::move(*part));
 }
@@ -94,7 +60,7 @@ void add_wedges(std::vector<Part>& parts, const WedgesToExport& what, const std:
 }  // namespace
 
 void export_wedges(const std::filesystem::path& file, const WedgesToExport& what) {
-  std::vector<Part> parts{light_part(what.light)};
+  std::vector<Part> parts{{"light", kLight, what.light.corners, hull_triangles(what.light), {}}};
   std::set<std::uint32_t> wrong;
   for (const Violation& violation : what.violations) {
     if (violation.wedge) wrong.insert(*violation.wedge);

@@ -1,5 +1,5 @@
 // Measures the area of wedges against the area of the penumbra on receiver planes (wedge_tightness.hpp derives the
-// penumbra's cross-section; hulls by Andrew's monotone chain). Not from a paper.
+// penumbra's cross-section). Not from a paper.
 
 #include "volumes/wedges/wedge_tightness.hpp"
 
@@ -20,22 +20,6 @@ namespace {
 
 constexpr double kReach = 16;  // times the penumbra's extent: limit beyond which a cross-section counts as unbounded
 constexpr std::array kDepths = {0.5, 1.0, 2.0};
-
-Polygon hull_of(Polygon points) {
-  std::ranges::sort(points, [](const auto& a, const auto& b) { return a.x != b.x ? a.x < b.x : a.y < b.y; });
-  Polygon hull;
-  const auto extend = [&](const glm::dvec2& p, std::size_t floor) {
-    while (hull.size() >= floor + 2 && cross2(hull.back() - hull[hull.size() - 2], p - hull.back()) <= 0) {
-      hull.pop_back();
-    }
-    hull.push_back(p);
-  };
-  for (const glm::dvec2& p : points) extend(p, 0);
-  const std::size_t lower = hull.size() - 1;
-  for (std::size_t i = points.size() - 1; i-- > 0;) extend(points[i], lower);
-  hull.pop_back();
-  return hull;
-}
 
 /// Returns the part of a polygon where n · q + d ≥ 0.
 Polygon clipped(const Polygon& polygon, const glm::dvec2& n, double d) {
