@@ -21,6 +21,8 @@
 namespace penumbra::app {
 namespace {
 
+constexpr std::uint32_t kUnusedPosition = std::numeric_limits<std::uint32_t>::max();
+
 InspectedMesh read_scene(const std::filesystem::path& file, bool allow_outside) {
   scenes::Scene scene = scenes::read_scene(file, {.allow_outside = allow_outside, .needs_light = false});
   InspectedMesh mesh;
@@ -33,29 +35,6 @@ InspectedMesh read_scene(const std::filesystem::path& file, bool allow_outside) 
     for (const scenes::LightKind kind : scenes::kinds_of(light.shape).list()) mesh.lights.push_back({light.name, kind});
   }
   return mesh;
-}
-
-/// Returns one object's triangles, with only the positions used by them.
-mesh::TriangleSoup part_of(const mesh::TriangleSoup& soup, const std::vector<std::uint32_t>& triangles,
-                           std::vector<std::uint32_t>& new_index) {
-  constexpr std::uint32_t kUnused = std::numeric_limits<std::uint32_t>::max();
-  mesh::TriangleSoup part;
-  std::vector<std::uint32_t> touched;
-  for (const std::uint32_t number : triangles) {
-    mesh::Triangle triangle = soup.triangles[number];
-    for (std::uint32_t& corner : triangle) {
-      std::uint32_t& index = new_index[corner];
-      if (index == kUnused) {
-        index = static_cast<std::uint32_t>(part.positions.size());
-        part.positions.push_back(soup.positions[corner]);
-        touched.push_back(corner);
-      }
-      corner = index;
-    }
-    part.triangles.push_back(triangle);
-  }
-  for (const std::uint32_t corner : touched) new_index[corner] = kUnused;  // reset for the next object
-  return part;
 }
 
 std::optional<SilhouetteCounts> count_silhouettes(const mesh::MeshView& mesh, const mesh::Diagnosis& diagnosis,
@@ -121,6 +100,31 @@ ObjectReport examine_part(std::string name, const mesh::TriangleSoup& soup, cons
 
 }  // namespace
 
+ObjectParts::ObjectParts(const mesh::TriangleSoup& soup, std::size_t objects)
+    : soup_(soup), triangles_(objects), new_index_(soup.positions.size(), kUnusedPosition) {
+  for (std::uint32_t i = 0; i < soup.triangles.size(); ++i) triangles_[soup.object[i]].push_back(i);
+}
+
+mesh::TriangleSoup ObjectParts::soup_of(std::size_t object) {
+  mesh::TriangleSoup part;
+  std::vector<std::uint32_t> touched;
+  for (const std::uint32_t number : triangles_[object]) {
+    mesh::Triangle triangle = soup_.triangles[number];
+    for (std::uint32_t& corner : triangle) {
+      std::uint32_t& index = new_index_[corner];
+      if (index == kUnusedPosition) {
+        index = static_cast<std::uint32_t>(part.positions.size());
+        part.positions.push_back(soup_.positions[corner]);
+        touched.push_back(corner);
+      }
+      corner = index;
+    }
+    part.triangles.push_back(triangle);
+  }
+  for (const std::uint32_t corner : touched) new_index_[corner] = kUnusedPosition;  // reset for the next object
+  return part;
+}
+
 InspectedMesh read_inspected(const std::filesystem::path& file, bool allow_outside) {
   std::string extension = file.extension().string();
   std::ranges::transform(extension, extension.begin(),
@@ -162,13 +166,10 @@ FileReport examine(const std::filesystem::path& file, const InspectedMesh& mesh,
     report.objects.push_back(report.total);
     report.objects.front().name = mesh.objects.front();
   } else {
-    std::vector<std::vector<std::uint32_t>> triangles(mesh.objects.size());
-    for (std::uint32_t i = 0; i < mesh.soup.triangles.size(); ++i) triangles[mesh.soup.object[i]].push_back(i);
-    std::vector<std::uint32_t> new_index(mesh.soup.positions.size(), std::numeric_limits<std::uint32_t>::max());
+    ObjectParts parts(mesh.soup, mesh.objects.size());
     for (std::size_t object = 0; object < mesh.objects.size(); ++object) {
-      const mesh::TriangleSoup part = part_of(mesh.soup, triangles[object], new_index);
-      report.objects.push_back(examine_part(mesh.objects[object], part, mesh, options, progress));
-      report.objects.back().triangles = std::move(triangles[object]);
+      report.objects.push_back(examine_part(mesh.objects[object], parts.soup_of(object), mesh, options, progress));
+      report.objects.back().triangles = parts.triangles_of(object);
     }
   }
   progress.clear();

@@ -7,6 +7,7 @@
 #include "visibility/light_samples.hpp"
 #include "visibility/mesh_verdict.hpp"
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -31,6 +32,22 @@ struct InspectedMesh {
 
 /// Reads .json, .gltf and .glb as scenes (glTF: with or without a light), any other file as a mesh. Throws InputError.
 InspectedMesh read_inspected(const std::filesystem::path& file, bool allow_outside);
+
+/// Objects of a soup, each as a soup of its own. Borrows the soup.
+class ObjectParts {
+ public:
+  ObjectParts(const mesh::TriangleSoup& soup, std::size_t objects);
+
+  /// Returns the indices of an object's triangles in the whole soup.
+  [[nodiscard]] const std::vector<std::uint32_t>& triangles_of(std::size_t object) const { return triangles_[object]; }
+  /// Returns one object's triangles, with only the positions used by them.
+  mesh::TriangleSoup soup_of(std::size_t object);
+
+ private:
+  const mesh::TriangleSoup& soup_;
+  std::vector<std::vector<std::uint32_t>> triangles_;
+  std::vector<std::uint32_t> new_index_;
+};
 
 /// Returns a soup as a scene of one object, without light and camera.
 scenes::Scene scene_of(const mesh::TriangleSoup& soup, const std::string& name);

@@ -16,7 +16,6 @@ namespace {
 using mesh::Color;
 using mesh::Diagnosis;
 
-constexpr Color kClean = {200, 200, 200};
 constexpr Color kIntersection = {150, 0, 0};
 
 struct Legend {
@@ -70,7 +69,7 @@ MarkedMesh mark_defects(const mesh::TriangleSoup& soup, const ObjectReport& repo
   mesh::PlyMesh& ply = marked.ply;
   ply.positions = soup.positions;
   ply.triangles = soup.triangles;
-  ply.triangle_colors.assign(soup.triangles.size(), kClean);
+  ply.triangle_colors.assign(soup.triangles.size(), kSoundColor);
   if (report.diagnosis.self_intersections) {
     for (const mesh::DefectPlace& place : report.diagnosis.self_intersections->first) {
       for (const std::uint32_t triangle : place.triangles) ply.triangle_colors[triangle] = kIntersection;
@@ -89,6 +88,13 @@ MarkedMesh mark_defects(const mesh::TriangleSoup& soup, const ObjectReport& repo
 
 void export_defects(const std::filesystem::path& file, const mesh::TriangleSoup& soup, const ObjectReport& report) {
   mesh::write_ply(file, mark_defects(soup, report).ply);
+}
+
+std::vector<DefectKind> kinds_of_defects(const mesh::Diagnosis& diagnosis) {
+  std::vector<DefectKind> kinds;
+  for (const Legend& legend : kLegend)
+    kinds.push_back({legend.what.substr(0, legend.what.find(':')), legend.color, (diagnosis.*legend.counted).count});
+  return kinds;
 }
 
 std::string defect_legend() {

@@ -3,11 +3,25 @@
 #include "app/inspect/examine.hpp"
 #include "mesh/soup_ply.hpp"
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace penumbra::app {
+
+/// Colour of triangles without a defect.
+inline constexpr mesh::Color kSoundColor = {200, 200, 200};
+
+/// Kind of defect that has a colour, and the number found.
+struct DefectKind {
+  std::string_view what;
+  mesh::Color color;
+  std::uint64_t count = 0;
+};
+/// Returns all kinds but intersections, in increasing order of severity.
+std::vector<DefectKind> kinds_of_defects(const mesh::Diagnosis& diagnosis);
 
 /// All triangles of a soup with defective ones coloured, defective edges as coloured edges, and defective vertices.
 struct MarkedMesh {
