@@ -12,6 +12,7 @@
 #include <cmath>
 #include <numbers>
 #include <string_view>
+#include <utility>
 
 namespace penumbra::app {
 namespace {
@@ -64,26 +65,40 @@ std::vector<glm::dvec3> shape_of(const visibility::Light& light, const volumes::
 
 }  // namespace
 
-BuiltWedges::BuiltWedges(const scenes::Scene& scene, const WedgeRequest& asked) : request(asked) {
+void require_wedges(const visibility::Light& light) {
+  if (!light.sun) return;
+  throw InputError("light \"{}\" is a {}; wedges are of lights in the scene: take another (--light)", light.name,
+                   visibility::name_of(light.kind));
+}
+
+LightWedges wedges_of(const volumes::Casters& casters, const visibility::Light& light, const WedgeRequest& request) {
   const ChosenConstruction chosen = parse_construction(request.construction);
   const volumes::SilhouettesFrom from = parse_from(request.from);
+  const bool crop = chosen.construction == volumes::Construction::tight && from == volumes::SilhouettesFrom::anywhere;
+  LightWedges made;
+  made.hull = volumes::light_hull(light);
+  made.casting = volumes::casting_edges(casters, made.hull, from, crop);
+  const std::vector<volumes::WedgeEdge>& edges = made.casting.wedges;
+  made.wedges = chosen.fault ? volumes::build_faulty_wedges(edges, made.hull, *chosen.fault)
+                             : volumes::build_wedges(edges, made.hull, chosen.construction);
+  return made;
+}
+
+BuiltWedges::BuiltWedges(const scenes::Scene& scene, const WedgeRequest& asked) : request(asked) {
+  const bool tight = parse_construction(request.construction).construction == volumes::Construction::tight;
+  static_cast<void>(parse_from(request.from));
   floats = visibility::make_scene_floats(scene);
   light = visibility::make_light(scene, find_light(scene, request.light), floats.origin, {});
   if (!light.unshaded_by.empty()) floats = cast_for(floats, light);
   if (!light.filtered_by.empty())
     warnings.push_back(fmt::format(
         "\"{}\" lets light through (alphaMode MASK or BLEND): wedges are of what stops all light", light.filtered_by));
-  if (light.sun) {
-    throw InputError("light \"{}\" is a {}; wedges are of lights in the scene: take another (--light)", light.name,
-                     visibility::name_of(light.kind));
-  }
-  hull = volumes::light_hull(light);
+  require_wedges(light);
   casters = volumes::casters_of(floats, light);
-  const bool tight = chosen.construction == volumes::Construction::tight;
-  const bool crop = tight && from == volumes::SilhouettesFrom::anywhere;
-  casting = volumes::casting_edges(casters, hull, from, crop);
-  wedges = chosen.fault ? volumes::build_faulty_wedges(casting.wedges, hull, *chosen.fault)
-                        : volumes::build_wedges(casting.wedges, hull, chosen.construction);
+  LightWedges made = wedges_of(casters, light, request);
+  hull = std::move(made.hull);
+  casting = std::move(made.casting);
+  wedges = std::move(made.wedges);
   if (!request.validate) return;
   report = volumes::validate({casters, casting, hull, wedges, tight});
   tightness = volumes::tightness_of(wedges, hull, shape_of(light, hull));

@@ -22,6 +22,18 @@ struct WedgeRequest {
   bool validate = false;                  ///< prove every invariant
 };
 
+/// Wedges of the edges that cast penumbrae of one light.
+struct LightWedges {
+  volumes::LightHull hull;
+  volumes::CastingEdges casting;
+  std::vector<volumes::Wedge> wedges;
+};
+
+/// Throws InputError for a light that is infinitely far away: it has no wedges.
+void require_wedges(const visibility::Light& light);
+/// Builds the wedges of `light` by the request's `construction` and `from`. Throws UsageError if these are invalid.
+LightWedges wedges_of(const volumes::Casters& casters, const visibility::Light& light, const WedgeRequest& request);
+
 /// Wedges of one light of a scene, and the results of their proofs. Not movable, because its result refers to it.
 class BuiltWedges {
  public:
