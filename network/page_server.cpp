@@ -299,8 +299,13 @@ class PageServer::State::Connection : public std::enable_shared_from_this<Connec
     asio::post(server_.makers_, [this, self = this->shared_from_this(), &file]() mutable {
       Response response;
       try {
-        response = respond(parser_.get(), http::status::ok, file.type, file.make());
-        response.set(http::field::content_disposition, "attachment; filename=\"" + file.name + "\"");
+        response = respond(parser_.get(), http::status::ok, file.type, file.make(view_of(parser_.get().target())));
+        if (!file.name.empty())
+          response.set(http::field::content_disposition, "attachment; filename=\"" + file.name + "\"");
+      } catch (const penumbra::Error& error) {
+        const bool is_request = error.code() == ExitCode::usage || error.code() == ExitCode::input;
+        response = say(parser_.get(), is_request ? http::status::bad_request : http::status::internal_server_error,
+                       error.what());
       } catch (const std::exception& error) {
         response = say(parser_.get(), http::status::internal_server_error, error.what());
       }

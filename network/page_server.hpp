@@ -27,11 +27,12 @@ struct ServerLimits {
 
 /// File made on request.
 struct ServedFile {
-  std::string path;                   ///< beginning with a slash
-  std::string type;                   ///< MIME
-  std::string name;                   ///< default name when a browser saves the file
-  std::function<std::string()> make;  ///< runs on a thread of its own; an exception becomes a response 500 with its
-                                      ///< message
+  std::string path;  ///< beginning with a slash
+  std::string type;  ///< MIME
+  std::string name;  ///< default name when a browser saves the file; empty: a part of the page
+  /// Makes the content from the request's target (parameter_of()). Runs on a thread of its own, one request after the
+  /// other. UsageError and InputError become a response 400 with the message, other exceptions a response 500.
+  std::function<std::string(std::string_view target)> make;
 };
 
 /// Address on which a server listens.

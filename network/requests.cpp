@@ -12,6 +12,30 @@
 #include <sys/random.h>
 
 namespace penumbra::network {
+namespace {
+
+/// Returns the value of the first parameter with this name, as it stands in the target.
+std::optional<std::string_view> raw_parameter(std::string_view target, std::string_view name) {
+  const std::size_t question = target.find('?');
+  if (question == std::string_view::npos) return std::nullopt;
+  std::string_view rest = target.substr(question + 1);
+  while (!rest.empty()) {
+    const std::string_view part = rest.substr(0, rest.find('&'));
+    rest.remove_prefix(part.size() < rest.size() ? part.size() + 1 : rest.size());
+    if (part.starts_with(name) && part.substr(name.size()).starts_with('=')) return part.substr(name.size() + 1);
+  }
+  return std::nullopt;
+}
+
+/// Returns the value of a hexadecimal digit; −1: none.
+int digit_of(char c) {
+  if (c >= '0' && c <= '9') return c - '0';
+  if (c >= 'a' && c <= 'f') return c - 'a' + 10;
+  if (c >= 'A' && c <= 'F') return c - 'A' + 10;
+  return -1;
+}
+
+}  // namespace
 
 std::string make_token() {
   std::array<std::uint8_t, 16> bytes{};
@@ -26,22 +50,32 @@ std::string_view path_of(std::string_view target) {
   return target.substr(0, target.find('?'));
 }
 
-bool has_token(std::string_view target, std::string_view token) {
-  const std::size_t question = target.find('?');
-  if (question == std::string_view::npos) return false;
-  std::string_view rest = target.substr(question + 1);
-  constexpr std::string_view kKey = "token=";
-  while (!rest.empty()) {
-    const std::string_view part = rest.substr(0, rest.find('&'));
-    rest.remove_prefix(part.size() < rest.size() ? part.size() + 1 : rest.size());
-    if (!part.starts_with(kKey)) continue;
-    const std::string_view given = part.substr(kKey.size());
-    if (given.size() != token.size()) return false;
-    int differing = 0;
-    for (std::size_t i = 0; i < token.size(); ++i) differing |= given[i] ^ token[i];
-    return differing == 0;
+std::optional<std::string> parameter_of(std::string_view target, std::string_view name) {
+  const std::optional<std::string_view> text = raw_parameter(target, name);
+  if (!text) return std::nullopt;
+  std::string value;
+  for (std::size_t i = 0; i < text->size(); ++i) {
+    const char c = (*text)[i];
+    if (c != '%') {
+      value += c == '+' ? ' ' : c;
+      continue;
+    }
+    const bool is_whole = i + 2 < text->size();
+    const int high = is_whole ? digit_of((*text)[i + 1]) : -1;
+    const int low = is_whole ? digit_of((*text)[i + 2]) : -1;
+    if (high < 0 || low < 0) return std::nullopt;
+    value += static_cast<char>(16 * high + low);
+    i += 2;
   }
-  return false;
+  return value;
+}
+
+bool has_token(std::string_view target, std::string_view token) {
+  const std::optional<std::string_view> given = raw_parameter(target, "token");
+  if (!given || given->size() != token.size()) return false;
+  int differing = 0;
+  for (std::size_t i = 0; i < token.size(); ++i) differing |= (*given)[i] ^ token[i];
+  return differing == 0;
 }
 
 bool is_host(std::string_view host, std::string_view name) {

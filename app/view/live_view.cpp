@@ -36,7 +36,7 @@ LiveView::LiveView(RunOptions options, scenes::Scene scene, network::ServerPlace
   serving.token = network::make_token();
   serving.page = view_page();
   serving.files.push_back(
-      {"/scene.json", "application/json", "scene.json", [this] { return renderer_->scene_text(); }});
+      {"/scene.json", "application/json", "scene.json", [this](std::string_view) { return renderer_->scene_text(); }});
   server_ = std::make_unique<network::PageServer>(std::move(serving), *this);
   renderer_ = std::make_unique<LiveRenderer>(
       std::move(options), std::move(scene),

@@ -29,6 +29,18 @@ TEST(Requests, TheTokenIsAParameterOfItsOwn) {
   EXPECT_EQ(path_of("/"), "/");
 }
 
+TEST(Requests, ParametersAreDecoded) {
+  constexpr const char* kTarget = "/space/shadows?light=a+b%20%26%C3%A4&s=-0.5&s=1&token=x&empty=";
+  EXPECT_EQ(parameter_of(kTarget, "light"), "a b &\u00e4");
+  EXPECT_EQ(parameter_of(kTarget, "s"), "-0.5");  // the first
+  EXPECT_EQ(parameter_of(kTarget, "empty"), "");
+  for (const char* const none : {"t", "lig", "ight", "light=a+b%20%26%C3%A4", ""})
+    EXPECT_EQ(parameter_of(kTarget, none), std::nullopt) << none;
+  for (const char* const wrong : {"/?a=%", "/?a=%4", "/?a=%4g", "/?a=%zz", "/a=1", "/", ""})
+    EXPECT_EQ(parameter_of(wrong, "a"), std::nullopt) << wrong;
+  EXPECT_EQ(parameter_of("/?a=%41", "a"), "A");
+}
+
 TEST(Requests, HostsAreTheLoopbacksNames) {
   for (const char* host : {"127.0.0.1", "127.0.0.1:80", "localhost:8080", "[::1]:1", "localhost"})
     EXPECT_TRUE(is_loopback_host(host)) << host;
