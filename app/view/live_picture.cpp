@@ -2,6 +2,7 @@
 
 #include "app/view/live_picture.hpp"
 
+#include "app/view/message_text.hpp"
 #include "base/error.hpp"
 #include "base/jpeg.hpp"
 #include "base/png.hpp"
@@ -12,9 +13,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <cstring>
 #include <span>
 #include <utility>
 
@@ -177,12 +176,7 @@ std::string frame_message(const LivePicture& picture, const LiveDisplay& display
   if (const auto found = difference(picture, display.light))
     header["difference"] = {{"rmse", found->rmse}, {"bias", found->bias}, {"largest", found->largest}};
   header.update(more);
-  const std::string text = header.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
-  const auto length = static_cast<std::uint32_t>(text.size());
-  static_assert(std::endian::native == std::endian::little);
-  std::string message(sizeof(length), '\0');
-  std::memcpy(message.data(), &length, sizeof(length));
-  message += text;
+  std::string message = message_start(header);
   for (const std::vector<std::byte>& image : bytes)
     message.append(reinterpret_cast<const char*>(image.data()), image.size());
   return message;

@@ -94,8 +94,10 @@ void LiveRenderer::update(LiveUpdate update, std::uint64_t client) {
   for (const json& change : update.changes) static_cast<void>(app::apply(state, change));
   state.moving = update.moving;
   state_ = std::move(state);
-  if (update.scene && !update.scene->same_meshes)
+  if (update.scene && !update.scene->same_meshes) {
     whole_ = std::make_shared<const scenes::Scene>(std::move(update.scene->scene));
+    ++meshes_;
+  }
   if (update.stamp) stamps_[client] = *update.stamp;
   ++revision_;
   wake_.notify_all();
@@ -103,7 +105,9 @@ void LiveRenderer::update(LiveUpdate update, std::uint64_t client) {
 
 ordered_json LiveRenderer::state() const {
   const std::lock_guard lock(mutex_);
-  return to_json(state_);
+  ordered_json state = to_json(state_);
+  state["meshes"] = meshes_;
+  return state;
 }
 
 void LiveRenderer::show_again() {
@@ -123,6 +127,11 @@ std::vector<std::filesystem::path> LiveRenderer::sources() const {
   std::vector<std::filesystem::path> files = file_->sources;
   files.push_back(options_.scene);  // for a JSON scene, the list only contains files named in it
   return files;
+}
+
+LiveScenery LiveRenderer::scenery() const {
+  const std::lock_guard lock(mutex_);
+  return {whole_, state_.scene, picture_};
 }
 
 ordered_json LiveRenderer::pixel(std::uint32_t x, std::uint32_t y) const {

@@ -47,6 +47,13 @@ struct LiveUpdate {
   bool moving = false;                       ///< further changes will follow soon
 };
 
+/// Scene as displayed.
+struct LiveScenery {
+  std::shared_ptr<const scenes::Scene> whole;  ///< with meshes; lights and cameras as in the file
+  scenes::Scene lights;                        ///< without meshes; lights as changed
+  std::shared_ptr<const LivePicture> picture;  ///< may be null, or of an earlier state
+};
+
 /// Renders a state that changes during rendering, on a thread of its own: quick pictures while it changes, then a final
 /// one, which is cancelled if the state changes again. Meshes, view samples and methods are kept from picture to
 /// picture. Thread-safe.
@@ -70,6 +77,7 @@ class LiveRenderer {
   void reload();
   /// Returns all files that the scene was read from.
   [[nodiscard]] std::vector<std::filesystem::path> sources() const;
+  [[nodiscard]] LiveScenery scenery() const;
   [[nodiscard]] nlohmann::ordered_json pixel(std::uint32_t x, std::uint32_t y) const;
   /// Returns the changed scene, in the form of `convert`; lights that are off have no radiance.
   [[nodiscard]] std::string scene_text() const;
@@ -116,6 +124,7 @@ class LiveRenderer {
   std::uint64_t revision_ = 1;                         // of state_; a different number requires another picture
   std::map<std::uint64_t, double> stamps_;             // of each client, of its last change
   std::shared_ptr<const scenes::Scene> whole_, file_;  // with meshes, as read; without meshes
+  std::uint64_t meshes_ = 1;                           // of whole_; a different number: other meshes
   std::shared_ptr<const LivePicture> picture_;
   std::shared_ptr<const LiveMasks> masks_;
   std::uint64_t failed_ = 0, masks_failed_ = 0;  // revision that could not be shown

@@ -110,6 +110,7 @@ void LiveRenderer::read_again() {
       state_ = reloaded(state_, *file_, without_meshes(scene));
       file_ = std::move(file);
       whole_ = std::make_shared<const scenes::Scene>(std::move(scene));
+      ++meshes_;
       ++revision_;
     }
     events_.reloaded();

@@ -35,8 +35,13 @@ LiveView::LiveView(RunOptions options, scenes::Scene scene, network::ServerPlace
   serving.place = std::move(place);
   serving.token = network::make_token();
   serving.page = view_page();
-  serving.files.push_back(
-      {"/scene.json", "application/json", "scene.json", [this](std::string_view) { return renderer_->scene_text(); }});
+  constexpr const char* kNumbers = "application/octet-stream";
+  serving.files = {
+      {"/scene.json", "application/json", "scene.json", [this](std::string_view) { return renderer_->scene_text(); }},
+      {"/three.js", "text/javascript", "", [](std::string_view) { return std::string(kThreeScript); }},
+      {"/space/meshes", kNumbers, "", [this](std::string_view) { return space_->meshes(); }},
+      {"/space/defects", kNumbers, "", [this](std::string_view) { return space_->defects(); }},
+      {"/space/shadows", kNumbers, "", [this](std::string_view target) { return space_->shadows(target); }}};
   server_ = std::make_unique<network::PageServer>(std::move(serving), *this);
   renderer_ = std::make_unique<LiveRenderer>(
       std::move(options), std::move(scene),
@@ -44,6 +49,7 @@ LiveView::LiveView(RunOptions options, scenes::Scene scene, network::ServerPlace
                  .say = [this](std::string_view level,
                                const std::string& text) { server_->send_to_all(message_text(saying(level, text))); },
                  .reloaded = [this] { send_state(0); }});
+  space_ = std::make_unique<SpaceView>(*renderer_);
 }
 
 /// Only a reader of the address knows the token, and the address is printed after renderer_ is set.

@@ -2,6 +2,7 @@
 
 #include "app/options.hpp"
 #include "app/view/live_renderer.hpp"
+#include "app/view/space_view.hpp"
 #include "network/page_server.hpp"
 #include "scenes/scene.hpp"
 
@@ -36,6 +37,7 @@ class LiveView final : public network::PageHandler {
   std::mutex sending_;   // a state is sent before the next is taken: otherwise an old one could be sent last
   std::unique_ptr<network::PageServer> server_;
   std::unique_ptr<LiveRenderer> renderer_;  // calls the server, therefore destroyed first
+  std::unique_ptr<SpaceView> space_;
 };
 
 /// Returns the page as served.

@@ -4,6 +4,10 @@
 
 #include <nlohmann/json.hpp>
 
+#include <bit>
+#include <cstdint>
+#include <cstring>
+
 namespace penumbra::app {
 
 using nlohmann::json;
@@ -34,6 +38,16 @@ json parse_message(std::string_view text) {
 
 std::string message_text(const ordered_json& message) {
   return message.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+}
+
+std::string message_start(const ordered_json& header) {
+  std::string text = message_text(header);
+  text.resize((text.size() + 3) / 4 * 4, ' ');
+  const auto length = static_cast<std::uint32_t>(text.size());
+  static_assert(std::endian::native == std::endian::little);
+  std::string message(sizeof(length), '\0');
+  std::memcpy(message.data(), &length, sizeof(length));
+  return message + text;
 }
 
 ordered_json saying(std::string_view level, const std::string& text) {

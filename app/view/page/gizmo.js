@@ -91,7 +91,7 @@ function onBall({ start, direction }, middle, radius) {
 
 function drawLights() {
   overlay.replaceChildren();
-  if (!byId("show-lights").checked || !lights.length || !shown) return;
+  if (byId("frame").hidden || !byId("show-lights").checked || !lights.length || !shown) return;
   const chosen = chosenLight();
   for (const light of lights) {
     const rim = rimOf(light).map(onStage);

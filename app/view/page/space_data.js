@@ -1,0 +1,46 @@
+// What the 3D view draws, from the server: meshes, their defects, and the shadows of the chosen light, each a header and
+// arrays of numbers. One question at a time, of the newest state.
+const spaceArrays = { float32: Float32Array, uint32: Uint32Array, int32: Int32Array };
+
+/// Header of an answer, with its arrays by name.
+async function fetchSpace(what, parameters = {}) {
+  const answer = await fetch(`/space/${what}?${new URLSearchParams({ ...parameters, token })}`);
+  if (!answer.ok) throw new Error((await answer.text()).trim());
+  const buffer = await answer.arrayBuffer(), size = new DataView(buffer).getUint32(0, true);
+  const header = JSON.parse(new TextDecoder().decode(new Uint8Array(buffer, 4, size)));
+  let at = 4 + size;
+  for (const { name, type, count } of header.buffers) {
+    header[name + "Array"] = new spaceArrays[type](buffer, at, count);
+    at += 4 * count;
+  }
+  return header;
+}
+
+/// Three.js, when it is first needed; null: the program was built without it.
+const pageNonce = document.currentScript.nonce;
+let threeComing = null;
+function loadThree() {
+  return threeComing ||= new Promise((resolve) => {
+    const script = document.createElement("script");
+    script.nonce = pageNonce;
+    script.src = `/three.js?${new URLSearchParams({ token })}`;
+    script.onload = script.onerror = () => resolve(window.THREE || null);
+    document.head.append(script);
+  });
+}
+
+const spaceNumber = (id, otherwise) => (byId(id).value.trim() === "" || !Number.isFinite(Number(byId(id).value)) ? otherwise : Number(byId(id).value));
+
+/// What is asked of the shadows: the light as it is now, and the controls.
+function shadowsWanted() {
+  const light = chosenLight(), wanted = { light: light.name, construction: byId("space-construction").value, from: byId("space-from").value,
+    s: byId("space-s").value, t: byId("space-t").value };
+  const floor = spaceNumber("space-floor", null);
+  if (floor !== null) wanted.floor = floor;
+  if (!byId("space-all").checked) wanted.wedge = Math.max(0, Math.floor(spaceNumber("space-wedge", 0)));
+  if (byId("space-pixel").checked && pointed) {
+    wanted.x = Math.floor(pointed[0] * pictureSize[0]);
+    wanted.y = Math.floor(pointed[1] * pictureSize[1]);
+  }
+  return { parameters: wanted, key: JSON.stringify([wanted, light, meshesNumber]) };
+}

@@ -1,0 +1,53 @@
+#pragma once
+
+#include "app/wedges/built_wedges.hpp"
+#include "visibility/light_samples.hpp"
+#include "volumes/wedges/wedge_casters.hpp"
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace penumbra::app {
+
+/// Largest number of wedges whose bodies are sent at once, and of silhouette edges whose shadow volume is.
+inline constexpr std::size_t kMostShownBodies = 2'000, kMostShownSides = 50'000;
+/// Largest number of wedges that are named of one point.
+inline constexpr std::size_t kMostNamedWedges = 1'000;
+
+/// What the 3D view wants to see of a light's shadows.
+struct SpaceShadows {
+  WedgeRequest wedges = {};                 ///< light, construction and from
+  glm::dvec2 place{0};                      ///< point of the light, from which silhouettes are: light_point()
+  std::optional<double> floor = {};         ///< height of the plane that bodies are cut by; nullopt: the lowest point
+  std::optional<std::uint32_t> wedge = {};  ///< only this wedge's body; nullopt: all
+  std::optional<glm::dvec3> point = {};     ///< point whose wedges are named, relative to the origin
+};
+
+/// Returns a point of the light: center + s u + t v, s and t in [−1, 1], u and v half the light's extents (of a sphere
+/// along x and z; of a polygon across its bounding rectangle), moved toward the light's centre if it is not on the
+/// light.
+glm::dvec3 light_point(const visibility::Light& light, const glm::dvec2& place);
+
+/// Returns the part in the box of the shadow volume's side of an edge a b: all a + t (a − l) and b + t (b − l), t ≥ 0,
+/// and what is between; a convex polygon, empty if the edge's ends and l are on a line.
+std::vector<glm::dvec3> volume_side(const std::array<glm::dvec3, 2>& edge, const glm::dvec3& l,
+                                    const volumes::Box& box);
+
+/// Returns the line, in the box, in which such a side meets the plane y = `height`; nullopt: it does not, or lies in
+/// it.
+std::optional<std::array<glm::dvec3, 2>> side_at(const std::array<glm::dvec3, 2>& edge, const glm::dvec3& l,
+                                                 const volumes::Box& box, double height);
+
+/// Returns the message of a light's silhouettes, shadow volume and wedges (docs/view.md), relative to `origin`. The
+/// light must have wedges (require_wedges). Throws UsageError for an invalid request.
+std::string shadows_message(const volumes::Casters& casters, const visibility::Light& light, const glm::dvec3& origin,
+                            const SpaceShadows& request);
+
+}  // namespace penumbra::app

@@ -1,0 +1,44 @@
+#pragma once
+
+#include "app/view/live_renderer.hpp"
+#include "app/view/space_shadows.hpp"
+#include "visibility/scene_floats.hpp"
+#include "volumes/wedges/wedge_casters.hpp"
+
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <string_view>
+
+namespace penumbra::app {
+
+/// Answers the requests of the page's 3D view (docs/view.md), of the renderer's scene and lights as they are. Scene
+/// floats and the casters of the last light are kept, for as long as the scene's meshes are the same. Thread-safe.
+class SpaceView {
+ public:
+  explicit SpaceView(const LiveRenderer& renderer) : renderer_(renderer) {}
+
+  std::string meshes();
+  std::string defects();
+  /// `target`: of the request, with the parameters light, construction, from, s, t, floor, wedge, and x and y of a
+  /// pixel. A light without wedges has none: the header says so in `refused`. Throws UsageError for an invalid
+  /// parameter.
+  std::string shadows(std::string_view target);
+
+ private:
+  const visibility::SceneFloats& floats_of(const LiveScenery& scenery);
+  const volumes::Casters& casters_of(const LiveScenery& scenery, const visibility::Light& light);
+
+  const LiveRenderer& renderer_;
+  std::mutex mutex_;  // of what follows
+  std::shared_ptr<const scenes::Scene> scene_;
+  visibility::SceneFloats floats_;  // of scene_
+  std::string light_;               // empty: casters_ is of none
+  volumes::Casters casters_;
+};
+
+/// Returns the request in a target's parameters; `point` is not set. Throws UsageError.
+SpaceShadows parse_space_shadows(std::string_view target);
+
+}  // namespace penumbra::app
