@@ -1,77 +1,205 @@
 #!/usr/bin/env python3
-"""How fast `penumbra view` answers: a bare client drags the camera, or a light, and notes when pictures come.
-  live_latency.py PROGRAM SCENE [SECONDS]"""
+"""How fast `penumbra view` answers: bare clients drag the camera and a light, one after the other and both at once, and note
+when pictures come, what they cost, and whether each is whole.
+  live_latency.py PROGRAM SCENE… [--seconds S] [--minutes M] [--out FILE.json]
+--minutes: the first scene's camera and light are then dragged for so long, and memory is noted each ten seconds. Without --out
+a table is printed; FILE.json is one of bench/results/."""
+import argparse
+import json
 import math
 import os
 import pathlib
 import statistics
+import struct
+import subprocess
 import sys
+import threading
 import time
+import zlib
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "tests" / "live"))
 from live_client import Client, Server  # noqa: E402
 
-
-def drag(client, seconds, message):
-    """Sends a change each sixtieth of a second; returns when pictures came and what each took from its input, in seconds."""
-    sent, came, delays, number = {}, [], [], 0
-    end = time.monotonic() + seconds
-    while time.monotonic() < end:
-        number += 1
-        sent[number] = time.monotonic()
-        client.send(**message(number / 60), moving=True, stamp=number)
-        for answer in client.wait(1 / 60):
-            stamp = answer.get("stamps", {}).get(str(client.number)) if answer["type"] == "frame" else None
-            if stamp in sent:
-                came.append(time.monotonic())
-                delays.append(came[-1] - sent[stamp])
-    last = time.monotonic()
-    client.send(type="still")
-    client.final(number)
-    return came, delays, time.monotonic() - last, time.monotonic() - sent[number]
+COLUMNS = ["scene, and what is dragged", "pictures a second (median)", "from input to picture: median, ms", "95 % within, ms",
+           "from the last move to the exact picture, s", "processor ms a picture", "memory, MiB", "torn"]
+FORMATS = [None, ".1f", ".0f", ".0f", ".2f", ".0f", ".0f", None]
 
 
-def report(name, came, delays, after_still, after_move):
-    ordered = sorted(delays)
-    rate = (len(came) - 1) / (came[-1] - came[0])
-    print(f"{name}: {rate:.1f} pictures a second, {1000 * statistics.median(delays):.0f} ms from input to picture (median), "
-          f"95 % within {1000 * ordered[int(0.95 * (len(ordered) - 1))]:.0f} ms; final picture {after_move:.2f} s after the last move")
+def is_whole(frame):
+    """Whether each image of a picture is complete: a JPEG from its first to its last marker, a PNG with all checksums right."""
+    for image, data in zip(frame["images"], frame["files"]):
+        if image["type"] == "image/jpeg":
+            if data[:2] != b"\xff\xd8" or data[-2:] != b"\xff\xd9":
+                return False
+            continue
+        at = 8
+        while at < len(data):
+            size, = struct.unpack_from(">I", data, at)
+            if struct.unpack_from(">I", data, at + 8 + size)[0] != zlib.crc32(data[at + 4:at + 8 + size]):
+                return False
+            at += size + 12
+        if data[-8:-4] != b"IEND" or at != len(data):
+            return False
+    return True
 
 
-def memory(process):
-    with open(f"/proc/{process.pid}/status") as file:
-        return next(int(line.split()[1]) / 1024 for line in file if line.startswith("VmRSS"))
+class Use:
+    """Processor seconds and memory of a process."""
+
+    def __init__(self, process):
+        self.folder = pathlib.Path(f"/proc/{process.pid}")
+        self.began = self.processor()
+
+    def processor(self):
+        fields = (self.folder / "stat").read_text().rpartition(")")[2].split()
+        return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+    def memory(self):
+        return next(int(line.split()[1]) / 1024 for line in (self.folder / "status").read_text().splitlines() if line.startswith("VmRSS"))
+
+    def since(self):
+        return self.processor() - self.began
+
+
+class Drag:
+    """Sends a change each sixtieth of a second, and notes what comes: times of pictures, and what each took from its input."""
+
+    def __init__(self, client, seconds, message, each=lambda: None):
+        sent, self.came, self.delays, self.torn, number = {}, [], [], 0, 0
+        end = time.monotonic() + seconds
+        while time.monotonic() < end:
+            number += 1
+            sent[number] = time.monotonic()
+            client.send(**message(number / 60), moving=True, stamp=number)
+            for answer in client.wait(1 / 60):
+                if answer["type"] != "frame":
+                    continue
+                self.torn += not is_whole(answer)
+                stamp = answer["stamps"].get(str(client.number))
+                if stamp in sent:
+                    self.came.append(time.monotonic())
+                    self.delays.append(self.came[-1] - sent[stamp])
+                    sent = {later: when for later, when in sent.items() if later >= stamp}
+            each()
+        client.send(type="still")
+        client.final(number)
+        self.exact = time.monotonic() - sent[number]
+
+    def row(self, name, processor, memory):
+        ordered, first = sorted(self.delays), self.came[0]
+        seconds = [0] * max(1, int(self.came[-1] - first))
+        for when in self.came:
+            if when - first < len(seconds):
+                seconds[int(when - first)] += 1
+        return [name, float(statistics.median(seconds)), 1000 * statistics.median(ordered), 1000 * ordered[int(0.95 * (len(ordered) - 1))], self.exact,
+                None if processor is None else 1000 * processor / len(self.came), memory, self.torn]
+
+
+def orbit(state):
+    camera = state["camera"]
+    away = [a - b for a, b in zip(camera["eye"], camera["target"])]
+
+    def message(t):
+        c, s = math.cos(0.5 * math.sin(t)), math.sin(0.5 * math.sin(t))
+        eye = [c * away[0] + s * away[2], away[1], c * away[2] - s * away[0]]
+        return {"type": "camera", "camera": {**{key: camera[key] for key in ("target", "up", "verticalFov") if key in camera},
+                                             "eye": [a + b for a, b in zip(eye, camera["target"])]}}
+    return message
+
+
+def moved_light(state):
+    light = state["lights"][0]
+    kind = next(key for key in light if key not in ("name", "radiance", "irradiance", "twoSided", "fixed", "textured"))
+    bright = "irradiance" if "irradiance" in light else "radiance"
+
+    def message(t):
+        x, y, z = light[kind]["center"]
+        return {"type": "light", "name": light["name"], "light": {kind: {**light[kind], "center": [x + 0.3 * math.sin(t), y, z]}, bright: light[bright]}}
+    return message
+
+
+def measure(program, scene, seconds):
+    name, rows = pathlib.Path(scene).name, []
+    with Server(program, scene, "--size", "512x512") as server:
+        client = Client(server).begin()
+        triangles = client.final()["triangles"]
+        for what, message in (("camera", orbit(client.state)), ("light", moved_light(client.state))):
+            use = Use(server.process)
+            drag = Drag(client, seconds, message)
+            rows.append(drag.row(f"`{name}` ({triangles:,} triangles), {what}", use.since(), use.memory()))
+    return rows
+
+
+def measure_two(program, scene, seconds):
+    """Two clients at once, one with the camera and one with a light: what each sees of its own moves."""
+    with Server(program, scene, "--size", "512x512") as server:
+        clients = [Client(server).begin() for _ in range(2)]
+        clients[0].final()
+        drags, use = {}, Use(server.process)
+        kinds = {"camera": (clients[0], orbit(clients[0].state)), "light": (clients[1], moved_light(clients[0].state))}
+        threads = [threading.Thread(target=lambda kind=kind, client=client, message=message: drags.update({kind: Drag(client, seconds, message)}))
+                   for kind, (client, message) in kinds.items()]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        each = use.since()
+        return [drags[kind].row(f"`{pathlib.Path(scene).name}`, two clients: the one with the {kind}", each if kind == "camera" else None, use.memory()) for kind in kinds]
+
+
+def measure_long(program, scene, minutes):
+    """Memory, each ten seconds after the first minute."""
+    with Server(program, scene, "--size", "512x512") as server:
+        client = Client(server).begin()
+        client.final()
+        camera, light, use, notes, began = orbit(client.state), moved_light(client.state), Use(server.process), [], time.monotonic()
+
+        def note():
+            if time.monotonic() - began > 60 + 10 * len(notes):
+                notes.append(use.memory())
+
+        drag = Drag(client, 60 * minutes, lambda t: light(t) if int(t / 5) % 2 else camera(t), note)
+        row = drag.row(f"`{pathlib.Path(scene).name}`, {minutes:g} minutes, camera and light by turns", use.since(), use.memory())
+        return row, notes, len(drag.came)
 
 
 def main():
-    seconds = float(sys.argv[3]) if len(sys.argv) > 3 else 10
-    print(f"{os.cpu_count()} cores, load {os.getloadavg()[0]:.1f}")
-    with Server(sys.argv[1], sys.argv[2]) as server:
-        client = Client(server).begin()
-        client.final()
-        camera = client.state["camera"]
-        away = [a - b for a, b in zip(camera["eye"], camera["target"])]
-
-        def orbit(t):
-            c, s = math.cos(0.5 * math.sin(t)), math.sin(0.5 * math.sin(t))
-            eye = [c * away[0] + s * away[2], away[1], c * away[2] - s * away[0]]
-            return {"type": "camera", "camera": {**{key: camera[key] for key in ("target", "up", "verticalFov") if key in camera},
-                                                 "eye": [a + b for a, b in zip(eye, camera["target"])]}}
-
-        report("camera", *drag(client, seconds, orbit))
-        before = memory(server.process)
-        light = client.state["lights"][0]
-        kind = next(key for key in light if key not in ("name", "radiance", "irradiance", "twoSided", "fixed", "textured"))
-        if "center" in light[kind]:
-            bright = "irradiance" if "irradiance" in light else "radiance"
-
-            def move(t):
-                x, y, z = light[kind]["center"]
-                return {"type": "light", "name": light["name"],
-                        "light": {kind: {**light[kind], "center": [x + 0.3 * math.sin(t), y, z]}, bright: light[bright]}}
-
-            report("light", *drag(client, seconds, move))
-        print(f"memory: {before:.0f} MiB after the first drag, {memory(server.process):.0f} MiB in the end")
+    parser = argparse.ArgumentParser()
+    parser.add_argument("program")
+    parser.add_argument("scenes", nargs="+")
+    parser.add_argument("--seconds", type=float, default=10)
+    parser.add_argument("--minutes", type=float, default=0)
+    parser.add_argument("--out", type=pathlib.Path)
+    arguments = parser.parse_args()
+    loads, rows, said = [os.getloadavg()[0]], [], ""
+    for scene in arguments.scenes:
+        rows += measure(arguments.program, scene, arguments.seconds)
+        loads.append(os.getloadavg()[0])
+    rows += measure_two(arguments.program, arguments.scenes[0], arguments.seconds)
+    if arguments.minutes:
+        row, notes, count = measure_long(arguments.program, arguments.scenes[0], arguments.minutes)
+        rows.append(row)
+        middle = len(notes) // 2
+        said = (f" In the long drag {count:,} pictures came; memory after a minute {notes[0]:.0f} MiB, then {min(notes):.0f} to {max(notes):.0f} MiB"
+                f" (median of the first half {statistics.median(notes[:middle]):.0f}, of the second {statistics.median(notes[middle:]):.0f}).") if len(notes) > 1 else ""
+    loads.append(os.getloadavg()[0])
+    load = f"{min(loads):.0f} to {max(loads):.0f}"
+    if not arguments.out:
+        for row in rows:
+            print(" | ".join("" if value is None else f"{value:{form or ''}}" for value, form in zip(row, FORMATS)))
+        return print(f"{os.cpu_count()} threads, load {load}.{said}")
+    root = pathlib.Path(__file__).resolve().parent.parent
+    commit = subprocess.run(["git", "-C", str(root), "rev-parse", "--short=8", "HEAD"], capture_output=True, text=True, check=True).stdout.strip()
+    model = next((line.partition(":")[2].strip() for line in open("/proc/cpuinfo") if line.startswith("model name")), "a processor")
+    result = {"title": "answers of the live view to a drag", "commit": commit, "machine": f"{model}, {os.cpu_count()} threads, load {load}",
+              "command": f"bench/live_latency.py build/penumbra {' '.join(f'scenes/{pathlib.Path(scene).name}' for scene in arguments.scenes)} "
+                         f"--seconds {arguments.seconds:g} --minutes {arguments.minutes:g}",
+              "conditions": "A bare client sends 60 changes a second, at 512 × 512 pixels. Other programs were at work on the same threads: an idle machine does better, and of these "
+                            "figures only the processor's milliseconds of a picture (of all pictures, quick and exact) do not depend on them. Memory is that of the whole process at the end." + said,
+              "columns": COLUMNS, "formats": FORMATS, "rows": rows}
+    parts = [f' "{key}": {json.dumps(value, ensure_ascii=False)}' for key, value in result.items() if key != "rows"]
+    listed = ",\n".join("  " + json.dumps([round(cell, 2) if isinstance(cell, float) else cell for cell in row], ensure_ascii=False) for row in rows)
+    arguments.out.write_text("{\n" + ",\n".join(parts) + ',\n "rows": [\n' + listed + "\n ]\n}\n", encoding="utf-8")
 
 
 if __name__ == "__main__":
