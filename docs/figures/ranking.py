@@ -50,12 +50,12 @@ def short(number):
 
 
 def entries(program):
-    """Every method but the two judges, and the variants; with maps of TEXELS a side."""
+    """Every method of planar lights but the two judges, and the variants; with maps of TEXELS a side."""
     table = json.loads(subprocess.run([program, "methods", "--json"], check=True, capture_output=True, text=True).stdout)
     table = table["methods"] if isinstance(table, dict) else table
     found = {}
     for method in table:
-        if method["family"] == "reference":
+        if method["family"] == "reference" or "rectangle" not in method["lights"]:
             continue
         sized = any(option["name"] == "size" for option in method["options"])
         for entry in [method["name"], *(v for v in VARIANTS if v.split(":")[0] == method["name"])]:
