@@ -110,9 +110,10 @@ class SceneWriter:
         if count == 0:
             return None
         corners = Corners(data, self.shading_normals)
-        material_of = numpy.empty(count, numpy.int32)
-        data.loop_triangles.foreach_get("material_index", material_of)
+        material_of = numpy.zeros(count, numpy.int32)
         slots = self._materials_of(thing)
+        if len(slots) > 1:
+            data.loop_triangles.foreach_get("material_index", material_of)
         material_of = numpy.clip(material_of, 0, max(len(slots) - 1, 0))
         primitives, emits = [], False
         for slot in numpy.unique(material_of):
@@ -221,16 +222,24 @@ def encoded_image(image, look):
     return texels.png(texels.bytes_of(values)), "image/png"
 
 
+def numbered(vertices, count):
+    """Which of `count` vertices are used, in their order, and the number of each of `vertices` among these."""
+    is_used = numpy.zeros(count, bool)
+    is_used[vertices] = True
+    used = numpy.flatnonzero(is_used)
+    number = numpy.empty(count, numpy.uint32)
+    number[used] = numpy.arange(len(used), dtype=numpy.uint32)
+    return used, number[vertices]
+
+
 def shared(vertices, rows):
     """Returns the distinct corner data, and each corner's index into them. `vertices`: the mesh's vertex of each corner."""
     first = numpy.zeros(int(vertices.max()) + 1, numpy.int64)
     first[vertices[::-1]] = numpy.arange(len(vertices))[::-1]
     # fast path for the usual case: a vertex has one normal, one position in a picture
     if numpy.array_equal(rows, rows[first[vertices]]):
-        used = numpy.unique(vertices)
-        number = numpy.zeros(len(first), numpy.int64)
-        number[used] = numpy.arange(len(used))
-        return rows[first[used]], number[vertices]
+        used, indices = numbered(vertices, len(first))
+        return rows[first[used]], indices
     rows = numpy.ascontiguousarray(rows)
     _, first, indices = numpy.unique(rows.view([("", f"V{rows.shape[1] * 4}")]).ravel(), return_index=True, return_inverse=True)
     return rows[first], indices
@@ -244,14 +253,18 @@ class Corners:
         count = len(data.loop_triangles)
         self.vertices = numpy.empty(3 * count, numpy.int32)
         data.loop_triangles.foreach_get("vertices", self.vertices)
-        self.loops = numpy.empty(3 * count, numpy.int32)
-        data.loop_triangles.foreach_get("loops", self.loops)
+        self.loops = None  # read when asked for: Blender takes as long for them as for all else
         self.positions = numpy.empty(3 * len(data.vertices), numpy.float32)
         data.vertices.foreach_get("co", self.positions)
         self.positions = self.positions.reshape(-1, 3)
         self.smooth = numpy.zeros(count, bool)
         if shading_normals:
-            data.loop_triangles.foreach_get("use_smooth", self.smooth)
+            faces = numpy.zeros(len(data.polygons), bool)  # fewer than triangles, and mostly all alike
+            data.polygons.foreach_get("use_smooth", faces)
+            if faces.all():
+                self.smooth[:] = True
+            elif faces.any():
+                data.loop_triangles.foreach_get("use_smooth", self.smooth)
             # Normals at corners are needed for flat faces, too.
             if getattr(data, "use_auto_smooth", False) or getattr(data, "normals_domain", "FACE") == "CORNER":
                 self.smooth[:] = True
@@ -262,6 +275,12 @@ class Corners:
             data.loop_triangles.foreach_get("split_normals", self.normals)
             self.normals = self.normals.reshape(-1, 3)
 
+    def _loops(self):
+        if self.loops is None:
+            self.loops = numpy.empty(len(self.vertices), numpy.int32)
+            self.data.loop_triangles.foreach_get("loops", self.loops)
+        return self.loops
+
     def forget(self):
         """Releases all data except the positions of triangles."""
         self.data = self.loops = self.smooth = self.normals = None
@@ -269,23 +288,29 @@ class Corners:
     def of(self, chosen, look, writer, smooth, is_baked):
         """Returns attributes and indices of some triangles (a mask), as numbers of accessors. `is_baked`: the active UV
         map is written as the second set of coordinates."""
-        corners = numpy.repeat(chosen, 3)
-        columns = [self.positions[self.vertices[corners]]]
-        names = [("POSITION", "VEC3")]
+        corners = slice(None) if chosen.all() else numpy.repeat(chosen, 3)
+        vertices = self.vertices[corners]
+        columns, names = [], [("POSITION", "VEC3")]
         if smooth:
             columns.append(self.normals[corners])
             names.append(("NORMAL", "VEC3"))
         if look.image is not None or is_baked:
-            columns.append(self._places(look)[self.loops[corners]])
+            columns.append(self._places(look)[self._loops()[corners]])
             names.append(("TEXCOORD_0", "VEC2"))
         if is_baked:
             active = self.data.uv_layers.active
-            columns.append(self._places(materials.Look(uv_map=active.name if active else ""))[self.loops[corners]])
+            columns.append(self._places(materials.Look(uv_map=active.name if active else ""))[self._loops()[corners]])
             names.append(("TEXCOORD_1", "VEC2"))
         if look.attribute is not None:
             columns.append(self._colors(look, corners))
             names.append(("COLOR_0", "VEC4"))
-        rows, indices = shared(self.vertices[corners], numpy.hstack(columns))
+        if columns:
+            columns.insert(0, self.positions[vertices])
+            rows, indices = shared(vertices, numpy.hstack(columns))
+        else:  # nothing differs from corner to corner
+            used, indices = numbered(vertices, len(self.positions))
+            rows = self.positions[used]
+            columns = [rows]
         at, attributes = 0, {}
         for (name, shape), column in zip(names, columns):
             part = numpy.ascontiguousarray(rows[:, at:at + column.shape[1]], "<f4")
@@ -312,8 +337,8 @@ class Corners:
         attributes = self.data.color_attributes
         layer = attributes.get(look.attribute) if look.attribute else attributes.active_color
         if layer is None:
-            return numpy.ones((int(corners.sum()), 4), numpy.float32)
+            return numpy.ones((len(self.vertices[corners]), 4), numpy.float32)
         values = numpy.empty(4 * len(layer.data), numpy.float32)
         layer.data.foreach_get("color", values)  # linear
-        numbers = self.vertices if layer.domain == "POINT" else self.loops
+        numbers = self.vertices if layer.domain == "POINT" else self._loops()
         return values.reshape(-1, 4)[numbers[corners]]

@@ -39,7 +39,7 @@ def arguments(program, scene, picture, size, settings):
     command += _of_surfaces(settings)
     if not settings.light_passes:
         command += ["--layers", _WITHOUT_LIGHTS]
-    return command
+    return command + ["--compression", "none"]  # the add-on alone reads the file, once
 
 
 def bake_arguments(program, scene, picture, mesh, settings):

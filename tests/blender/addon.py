@@ -264,22 +264,23 @@ class Programs(unittest.TestCase):
 
     def test_arguments(self):
         plain = program.arguments("p", "s.glb", "o.exr", (3, 2), self.settings())
-        self.assertEqual(plain, ["p", "render", "s.glb", "-o", "o.exr", "--no-studio", "--size", "3x2", "--normals", "geometric"])
+        self.assertEqual(plain, ["p", "render", "s.glb", "-o", "o.exr", "--no-studio", "--size", "3x2", "--normals", "geometric",
+                                 "--compression", "none"])
         much = program.arguments("p", "s", "o", (3, 2), self.settings(
             method="raytrace", exactness=program.SAMPLES, pixel_samples="16", shading_normals=True, lenient=True, device="cpu"))
         self.assertEqual(much[8:], ["--method", "raytrace", "--light-samples", "64", "--pixel-samples", "16", "--normals",
-                                    "shading", "--lenient", "--device", "cpu"])
+                                    "shading", "--lenient", "--device", "cpu", "--compression", "none"])
         filtered = program.arguments("p", "s", "o", (3, 2), self.settings(
             pixel_samples="4", pixel_filter=program.BLACKMAN_HARRIS, filter_width=1.6000000238))
         self.assertEqual(filtered[8:], ["--pixel-samples", "4", "--pixel-filter", "blackman-harris", "--filter-width", "1.6",
-                                        "--normals", "geometric"])
+                                        "--normals", "geometric", "--compression", "none"])
 
         baking = self.settings(bake_size=64, bake_margin=3, lenient=True, method="exact")
         self.assertEqual(program.bake_arguments("p", "s.glb", "o.exr", "It", baking), [
             "p", "bake", "s.glb", "-o", "o.exr", "--no-studio", "--mesh", "It", "--uv", "1", "--size", "64", "--margin", "3",
             "--method", "exact", "--normals", "geometric", "--lenient"])
         alone = program.arguments("p", "s", "o", (3, 2), self.settings(light_passes=False))
-        self.assertEqual(alone[10:], ["--layers", "beauty,V,Z,P,N,Crypto*"])
+        self.assertEqual(alone[10:], ["--layers", "beauty,V,Z,P,N,Crypto*", "--compression", "none"])
 
     def test_matte_groups(self):
         self.assertEqual(passes.matte_groups("CryptoObject", "1"), ["CryptoObject00"])
