@@ -170,7 +170,7 @@ def measure(build):
         triangles = {line.split()[1]: int(line.split()[2]) for line in (work / "log").read_text().splitlines() if line.startswith("scene: ")}
         rows = [Scene(name, work, program, environment).measure(antialiased) for name in NAMES for antialiased in (False, True)]
     RESULT.write_text(json.dumps({
-        "command": "bench/against_cycles.py measure", "commit": git("rev-parse", "--short", "HEAD"),
+        "title": "error against processor seconds, beside Cycles", "command": "bench/against_cycles.py measure", "commit": git("rev-parse", "--short", "HEAD"),
         "machine": processor(), "threads": os.cpu_count(), "load": [round(x, 1) for x in os.getloadavg()], "blender": blender,
         "size": [WIDTH, HEIGHT], "judgeSamples": 2 * JUDGE_SAMPLES, "triangles": triangles, "rows": rows}, indent=1) + "\n")
 

@@ -22,6 +22,7 @@ import times  # noqa: E402
 RESULTS = ROOT / "bench" / "results"
 BLOCK = re.compile(r"(<!-- results/([\w-]+)\.json -->\n).*?(<!-- end -->)", re.S)
 GPU = "nvidia-h100"  # docs/devices.md has its table
+OWN_PAGE = {"against-cycles"}  # another script writes the page
 PAGES = [ROOT / "bench" / "README.md", ROOT / "docs" / "devices.md", ROOT / "docs" / "instances.md"]
 
 
@@ -95,8 +96,11 @@ def main():
     for path in files:
         data = read(path)
         if path.stem != GPU:
-            complaints += [f"{path.name}: lacks {key}" for key in ("title", "machine", "command", "conditions", "columns", "rows") if key not in data]
+            keys = ("title", "machine", "command") if path.stem in OWN_PAGE else ("title", "machine", "command", "conditions", "columns", "rows")
+            complaints += [f"{path.name}: lacks {key}" for key in keys if key not in data]
             complaints += [] if {"commit", "recordedAt"} & data.keys() else [f"{path.name}: lacks commit"]
+        if path.stem in OWN_PAGE:
+            continue
         complaints += [] if any(f"<!-- results/{path.name} -->" in text for text in before.values()) else [f"{path.name}: no page shows it"]
     if complaints:
         sys.exit("\n".join(complaints))

@@ -9,7 +9,8 @@ add_test(NAME docs.results COMMAND ${Python3_EXECUTABLE} ${PROJECT_SOURCE_DIR}/b
 add_test(NAME docs.error_chart COMMAND ${Python3_EXECUTABLE} ${CMAKE_CURRENT_SOURCE_DIR}/docs/error_chart.py)
 add_test(NAME docs.methods_have_rows COMMAND ${Python3_EXECUTABLE} ${CMAKE_CURRENT_SOURCE_DIR}/docs/every_method_has_rows.py $<TARGET_FILE:penumbra>
                                              ${PROJECT_SOURCE_DIR})
-set_tests_properties(docs.figures docs.options docs.options_missing docs.results docs.error_chart docs.methods_have_rows PROPERTIES LABELS quick)
+add_test(NAME docs.against_cycles COMMAND ${PENUMBRA_SYSTEM_PYTHON} ${PROJECT_SOURCE_DIR}/bench/against_cycles.py page --check)
+set_tests_properties(docs.against_cycles docs.figures docs.options docs.options_missing docs.results docs.error_chart docs.methods_have_rows PROPERTIES LABELS quick)
 foreach(page IN ITEMS README docs/start/artist docs/start/researcher docs/start/mesh-tester docs/start/wedge-validator docs/scenes)
   cmake_path(GET page FILENAME name)
   string(TOLOWER ${name} name)

@@ -72,7 +72,7 @@ list(APPEND may_app/bake app/pictures)
 list(APPEND may_app/compare app/pictures)
 list(APPEND may_app/farm app/pictures)
 list(APPEND may_app/sweep app/pictures app/compare)
-list(APPEND may_app/view app/pictures)
+list(APPEND may_app/view app/pictures app/inspect app/wedges)
 list(APPEND may_app/serve app/pictures app/view)
 set(may_library app app/compare app/inspect app/pictures app/process app/wedges compare render ${all_visibility}
     scenes/formats scenes mesh base)

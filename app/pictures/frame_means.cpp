@@ -96,8 +96,8 @@ void FrameRenderer::render_mean(scenes::Scene scene, bool by_lens) {
     MethodRun before = std::exchange(picture_.run, {});
     run_methods({});
     const Stopwatch watch;
-    const PictureBand rows = is_fine ? PictureBand{band.pixels, band.samples.first_row}
-                                     : PictureBand{{0, session().height}, 0};
+    const PictureBand rows =
+        is_fine ? PictureBand{band.pixels, band.samples.first_row} : PictureBand{{0, session().height}, 0};
     if (!picture_.mean) {
       const std::uint32_t width = session().width, height = session().height;
       picture_.mean.emplace(width, height, picture_.frame.filter);

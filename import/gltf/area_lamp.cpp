@@ -22,7 +22,8 @@ bool is_round(const glm::dvec3& u, const glm::dvec3& v) {
 
 }  // namespace
 
-std::optional<scenes::AreaLight> area_lamp_of(const tinygltf::Node& node, const PlacedNode& placed, scenes::Losses& losses) {
+std::optional<scenes::AreaLight> area_lamp_of(const tinygltf::Node& node, const PlacedNode& placed,
+                                              scenes::Losses& losses) {
   if (!node.extras.IsObject() || !node.extras.Has("areaLamp")) return std::nullopt;
   const std::string place = fmt::format("/nodes/{}/extras/areaLamp", placed.number);
   const tinygltf::Value& lamp = node.extras.Get("areaLamp");
