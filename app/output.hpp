@@ -29,6 +29,10 @@ class BeautyAccumulator {
   /// Returns, for each of whole_lights, each pixel; empty for a light without results.
   [[nodiscard]] const std::vector<std::vector<glm::vec3>>& parts() const& { return parts_; }
   [[nodiscard]] std::vector<std::vector<glm::vec3>> parts() && { return std::move(parts_); }
+  /// Returns the normals that light is received with.
+  [[nodiscard]] std::span<const glm::vec3> normals() const {
+    return looks_.normals.empty() ? std::span(session_.samples.n) : std::span(looks_.normals);
+  }
   /// Returns all lights together, added in their order: independent of the order of the runs.
   [[nodiscard]] std::vector<glm::vec3> sum() const;
 

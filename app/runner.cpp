@@ -228,7 +228,8 @@ class Host {
     }
     require_shares(light, first, values);
     leave_out(light_index, first, values);
-    if (method_.description().output == Output::mask) read_masks(light_index, classes);
+    if (method_.description().output == Output::mask)
+      read_masks(light_index, classes, dark.empty() ? dark : dark.subspan(first, count));
     form_factors_.resize(sink_ && method_.description().output == Output::radiance ? count : 0);
     if (!form_factors_.empty()) {
       method_.read_form_factors(form_factors_);
@@ -277,7 +278,8 @@ class Host {
     }
   }
 
-  void read_masks(std::size_t light_index, std::span<const PixelClass> classes) {
+  /// `dark`: of these pixels; may be empty.
+  void read_masks(std::size_t light_index, std::span<const PixelClass> classes, std::span<const std::uint8_t> dark) {
     const Light& light = plan_.lights[light_index];
     const std::size_t words = light.words_per_mask();
     if (!filters(light_index)) {
@@ -288,7 +290,7 @@ class Host {
     const std::uint32_t last_word = rest == 0 ? 0xffffffffu : (1u << rest) - 1;
     for (std::size_t i = 0; i < classes.size(); ++i) {
       const std::span<std::uint32_t> mask = std::span(masks_).subspan(i * words, words);
-      if (classes[i] == PixelClass::unlit) std::ranges::fill(mask, 0u);
+      if (classes[i] == PixelClass::unlit || (!dark.empty() && dark[i] != 0)) std::ranges::fill(mask, 0u);
       if (!lies_in_light_by_rule(classes[i])) continue;
       std::ranges::fill(mask, 0xffffffffu);
       mask.back() = last_word;

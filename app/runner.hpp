@@ -44,7 +44,7 @@ struct RunPlan {
   bool shades = false;         ///< form factors come with V, in the time of `evaluate` (Method::want_form_factors)
   std::optional<std::vector<std::uint32_t>> pixels = {};  ///< pixels to be evaluated (ascending); nullopt: every pixel
   /// For each light, each pixel, 1: none of the light's radiance arrives, and V is not read there. The method is not
-  /// evaluated there, and V is 0. Empty, or empty for a light: every pixel is evaluated.
+  /// evaluated there, and V and masks are 0. Empty, or empty for a light: every pixel is evaluated.
   std::span<const std::vector<std::uint8_t>> dark = {};
   std::vector<std::size_t> only = {};  ///< lights to be evaluated (indices); empty: all
   /// Scene of the last run of this method, if unchanged: it is not prepared again.

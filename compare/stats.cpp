@@ -182,22 +182,25 @@ Json to_json(const Stats& stats) {
   for (const auto& [name, bytes] : stats.memory) memory[name] = bytes;
   for (const auto& [name, count] : stats.counters) counters[name] = count;
   for (const LightStats& light : stats.lights) lights.push_back(to_json(light));
-  return {{"scene", stats.scene},
-          {"size", Json::array({stats.width, stats.height})},
-          {"device", stats.device},
-          {"triangles", stats.triangles},
-          {"method", stats.method},
-          {"options", options_json(stats.options)},
-          {"lightSamples", stats.light_samples},
-          {"samplePattern", pattern_json(stats.sample_pattern)},
-          {"runs", stats.runs},
-          {"seconds", to_json(stats.seconds)},
-          {"passes", passes},
-          {"peakMemoryBytes", stats.peak_memory_bytes},
-          {"memory", memory},
-          {"counters", counters},
-          {"warnings", stats.warnings},
-          {"lights", lights}};
+  Json json = {{"scene", stats.scene},
+               {"size", Json::array({stats.width, stats.height})},
+               {"device", stats.device},
+               {"triangles", stats.triangles},
+               {"method", stats.method},
+               {"options", options_json(stats.options)},
+               {"lightSamples", stats.light_samples},
+               {"samplePattern", pattern_json(stats.sample_pattern)},
+               {"runs", stats.runs},
+               {"seconds", to_json(stats.seconds)},
+               {"passes", passes},
+               {"peakMemoryBytes", stats.peak_memory_bytes},
+               {"memory", memory},
+               {"counters", counters},
+               {"warnings", stats.warnings},
+               {"lights", lights}};
+  if (const auto& cutoff = stats.light_cutoff)
+    json["lightCutoff"] = {{"below", cutoff->below}, {"pairs", cutoff->pairs}, {"largestShare", cutoff->largest_share}};
+  return json;
 }
 
 Json to_json(const Metrics& metrics) {

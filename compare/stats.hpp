@@ -45,6 +45,13 @@ struct LightStats {
   std::optional<double> light = {}, evaluate = {};  ///< seconds
 };
 
+/// Lights left out of view samples where they are faint.
+struct LightCutoff {
+  double below = 0;          ///< share of a view sample's unshadowed light that was asked for
+  std::uint64_t pairs = 0;   ///< of a view sample and a light that is left out
+  double largest_share = 0;  ///< of a view sample's unshadowed light: what is left out, all lights together
+};
+
 /// stats.json: request and cost of one run of one method.
 struct Stats {
   std::string scene;
@@ -63,6 +70,7 @@ struct Stats {
   std::map<std::string, std::uint64_t> memory;  ///< bytes of each structure of the run, and their total
   std::map<std::string, std::uint64_t> counters;
   std::vector<std::string> warnings;
+  std::optional<LightCutoff> light_cutoff = {};  ///< empty: no light may be left out
 };
 
 /// Reason why a method has no result.

@@ -47,6 +47,11 @@ double pixel_tolerance(double tolerance) {
   throw UsageError("pixel_tolerance {}: expected a number from 0 (every view sample is evaluated) to 1", tolerance);
 }
 
+double light_cutoff(double share) {
+  if (share >= 0 && share <= 1) return share;
+  throw UsageError("light_cutoff {}: expected a share of a pixel's light from 0 (no light is left out) to 1", share);
+}
+
 void check_lights_and_cameras(const scenes::Scene& scene) {
   for (const scenes::AreaLight& light : scene.lights)
     scenes::check_light(light, fmt::format("light \"{}\"", light.name));
@@ -238,6 +243,7 @@ Picture Renderer::render(const RenderOptions& options) {
                          .pixel_tolerance = pixel_tolerance(options.pixel_tolerance),
                          .instances = shares ? &scene.instances : nullptr,
                          .same_meshes = same_meshes,
+                         .light_cutoff = light_cutoff(options.light_cutoff),
                          .keeps_masks = options.masks && options.pixel_samples == 1};
   static_cast<void>(app::parse_light_samples(run));
   state.run = std::move(run);

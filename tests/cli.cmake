@@ -30,6 +30,7 @@ penumbra_test(cli FULL *EveryTriple* SHARDS Part/RenderTogether=2 Part/CompareTo
   cli/interpolated_areas.cpp
   cli/mean_bands.cpp
   cli/interrupt.cpp
+  cli/light_cutoff.cpp
   cli/lights.cpp
   cli/options.cpp
   cli/options_together.cpp

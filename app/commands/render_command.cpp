@@ -118,7 +118,7 @@ class RenderCommand : public Command {
         const bool is_last = &camera == &cameras.back() && (coming.valid() || next >= frames.size());
         renderer.render(is_last ? std::move(now.scene) : scenes::Scene(now.scene),
                         {frames[at], camera, request_.pixel_side, request_.filter, request_.pixel_tolerance,
-                         moments_of(frames[at], moves), &now.instances},
+                         moments_of(frames[at], moves), &now.instances, false, request_.light_cutoff},
                         files.bits, now.seconds);
         now.seconds = 0;  // counted once
         const std::string made = summary(renderer.write(files, exposure));

@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <set>
@@ -22,6 +23,19 @@
 
 namespace penumbra::app {
 namespace {
+
+/// Returns the view samples that are marked in one of both (RunPlan::dark).
+std::vector<std::vector<std::uint8_t>> either(const std::vector<std::vector<std::uint8_t>>& one,
+                                              const std::vector<std::vector<std::uint8_t>>& other) {
+  if (one.empty() || other.empty()) return one.empty() ? other : one;
+  std::vector<std::vector<std::uint8_t>> both = one;
+  for (std::size_t light = 0; light < both.size(); ++light) {
+    if (both[light].empty()) both[light] = other[light];
+    if (other[light].empty()) continue;
+    std::ranges::transform(both[light], other[light], both[light].begin(), std::bit_or());
+  }
+  return both;
+}
 
 /// Returns whether any pixel is lit without a possible translucent surface or hole in between (Session::filtered).
 bool any_seen_openly(std::span<const visibility::PixelClass> classes, std::span<const std::uint8_t> filtered) {
@@ -174,12 +188,24 @@ std::vector<std::string> FrameRenderer::lights_without_v() const {
   return without;
 }
 
+FaintLights FrameRenderer::leave_out_faint(const BeautyAccumulator& beauty) {
+  const double below = picture_.frame.light_cutoff;
+  if (below == 0) return {};
+  FaintLights faint = find_faint_lights(lit(), beauty.normals(), below);
+  if (!picture_.cutoff) picture_.cutoff = compare::LightCutoff{below};
+  picture_.cutoff->pairs += faint.pairs;
+  picture_.cutoff->largest_share = std::max(picture_.cutoff->largest_share, faint.largest_share);
+  return faint;
+}
+
 MethodRun FrameRenderer::run_lights(BeautyAccumulator& beauty, BitsOutput* bits) {
   MethodRun all;
   const Stopwatch find;
-  const std::vector<std::vector<std::uint8_t>> dark =
+  const std::vector<std::vector<std::uint8_t>> beside =
       bits != nullptr ? std::vector<std::vector<std::uint8_t>>()
                       : samples_beside_cones(lit().samples, lit().lights, lights_without_v());
+  const FaintLights faint = leave_out_faint(beauty);
+  const std::vector<std::vector<std::uint8_t>> dark = either(beside, faint.dark);
   spent_.view += find.seconds();
   const auto run_with = [&](const LightMethod& method, RunPlan plan) {
     const Stopwatch make;
@@ -196,9 +222,10 @@ MethodRun FrameRenderer::run_lights(BeautyAccumulator& beauty, BitsOutput* bits)
     else if (method.description.gives_area() && picture_.frame.pixel_side > 1 && picture_.frame.pixel_tolerance > 0)
       around = std::make_unique<InterpolatedAreas>(*kept.method, lit().floats, picture_.frame.pixel_side,
                                                    picture_.frame.pixel_tolerance);
-    else if (method.description.gives_area() && picture_.still && !picture_.layers && !plan.filtered_alone)
+    else if (method.description.gives_area() && picture_.still && !picture_.layers && !plan.filtered_alone &&
+             faint.dark.empty())
       around = std::make_unique<StillAreas>(*kept.method, *picture_.still, plan.lights);
-    if (!around) plan.dark = dark;  // interpolation also reads neighbours
+    plan.dark = around ? faint.dark : dark;  // beside a cone, interpolation reads V
     MethodRun run = run_method(
         around ? *around : *kept.method, lit(), plan,
         [&](const TileResult& tile) {
@@ -244,8 +271,8 @@ MethodRun FrameRenderer::run_lights(BeautyAccumulator& beauty, BitsOutput* bits)
     all.times.evaluate += lit().filtered_seconds[i];
     all.times.lights[i].evaluate += lit().filtered_seconds[i];
   }
-  for (const std::vector<std::uint8_t>& beside : dark)
-    all.counters["viewSamplesBesideCones"] += static_cast<std::uint64_t>(std::ranges::count(beside, std::uint8_t{1}));
+  for (const std::vector<std::uint8_t>& one : beside)
+    all.counters["viewSamplesBesideCones"] += static_cast<std::uint64_t>(std::ranges::count(one, std::uint8_t{1}));
   spent_.view += all.times.view;
   return of_whole_lights(std::move(all), lit());
 }

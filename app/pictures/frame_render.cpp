@@ -232,6 +232,7 @@ void FrameRenderer::render(scenes::Scene scene, const Frame& frame, const std::f
   done_.with.clear();
   done_.in_part.clear();
   picture_.notes.clear();
+  picture_.cutoff.reset();
   picture_.run = {};
   const bool lens = has_lens(scene);
   if (frame.pixel_side == 1 && !lens && fine_) {
@@ -272,6 +273,7 @@ compare::Stats FrameRenderer::stats() {
   compare::Stats stats = make_stats(session(), {session().lights, done_.labels}, picture_.run);
   say_once(stats.warnings);
   stats.warnings.insert(stats.warnings.end(), picture_.notes.begin(), picture_.notes.end());
+  stats.light_cutoff = picture_.cutoff;
   compare::Seconds& seconds = stats.seconds;
   seconds.load = spent_.load;
   seconds.mesh = *seconds.mesh + spent_.make;
@@ -292,6 +294,7 @@ compare::Stats FrameRenderer::write(const FrameFiles& files, Exposure& exposure)
   std::map<std::string, std::string> attributes = {{kExposureAttribute, fmt::format("{}", stops)}};
   if (surface_) attributes.insert(surface_->attributes.begin(), surface_->attributes.end());
   note_means(attributes);
+  if (picture_.cutoff) attributes["penumbra.lightCutoff"] = fmt::format("{}", picture_.cutoff->below);
   if (picture_.frame.number) attributes["penumbra.frame"] = fmt::format("{}", *picture_.frame.number);
 
   progress_.clear();

@@ -2,6 +2,7 @@
 
 #include "app/light_methods.hpp"
 #include "app/output.hpp"
+#include "app/pictures/faint_lights.hpp"
 #include "app/pictures/exposure.hpp"
 #include "app/pictures/frame_files.hpp"
 #include "app/pictures/interpolated_areas.hpp"
@@ -42,6 +43,9 @@ struct Frame {
   const scenes::Instances* instances = nullptr;
   /// The scene is without_meshes(), with the meshes of the last picture; only for one moment and pixels' centres.
   bool same_meshes = false;
+  /// A light is left out of view samples where its unshadowed light is at most this share of all lights' (FaintLights);
+  /// 0: nowhere.
+  double light_cutoff = 0;
   bool keeps_masks = false;  ///< fill RenderedFrame::masks; only for a picture of one moment and pixels' centres
   /// View samples of a pixel are evaluated in bands of about so many (FrameRenderer::mean_bands).
   std::uint64_t band_samples = std::uint64_t{1} << 21;
@@ -120,6 +124,8 @@ class FrameRenderer {
   void run_methods(const std::filesystem::path& bits);
   /// Runs the chosen methods at the current view samples; `bits` may be null.
   MethodRun run_lights(BeautyAccumulator& beauty, BitsOutput* bits);
+  /// Finds the lights that are left out of the current view samples; counts them once a picture.
+  FaintLights leave_out_faint(const BeautyAccumulator& beauty);
   /// Adds the cost of other moments of the same lights to the cost of this one.
   static void add_times(MethodRun& to, const MethodRun& before);
   void keep_masks(const TileResult& tile);
@@ -192,6 +198,7 @@ class FrameRenderer {
   struct Picture {
     Frame frame;
     std::vector<std::string> notes;
+    std::optional<compare::LightCutoff> cutoff;  // present if lights may be left out
     MethodRun run;
     std::vector<std::vector<glm::vec3>> beauty;     // of each light
     bool in_bands = false;                          // the current view samples are those of some rows alone

@@ -46,6 +46,17 @@ void parse_means(const PictureOptions& options, PictureRequest& request) {
                        options.pixel_tolerance);
     request.pixel_tolerance = *tolerance;
   }
+  if (!options.light_cutoff.empty()) {
+    const auto cutoff = parse_number(options.light_cutoff);
+    if (!cutoff || !(*cutoff >= 0 && *cutoff <= 1))
+      throw UsageError(
+          "--light-cutoff {}: expected a share of a pixel's light from 0 (no light is left out) to 1, such as "
+          "0.001",
+          options.light_cutoff);
+    if (*cutoff > 0 && !options.bits.empty())
+      throw UsageError("--bits: every pair's answer is wanted; leave out --light-cutoff");
+    request.light_cutoff = *cutoff;
+  }
   request.moments = parse_count(options.motion_samples, "--motion-samples", 256, "a number from 1 to 256");
   const auto shutter = parse_number(options.shutter.empty() ? "0.5" : options.shutter);
   if (!shutter || !(*shutter >= 0 && *shutter <= 100))
@@ -182,6 +193,12 @@ void add_picture_options(CLI::App& command, PictureOptions& options) {
           "largest estimated error of V where exact areas at several view samples a pixel are interpolated between "
           "neighbouring pixels (default: 1/512; 0: every view sample is evaluated)")
       ->type_name("V");
+  command
+      .add_option(
+          "--light-cutoff", options.light_cutoff,
+          "leaves a light out of pixels where, with nothing in between, it would be at most this share of all "
+          "lights together, in each of R, G and B; V of the light is 0 there (default: 0, no light is left out)")
+      ->type_name("E");
   command
       .add_option("--motion-samples", options.motion_samples,
                   "moments of an open shutter, of which R G B A and V are the mean: 1 to 256 (default: 1, the frame's)")

@@ -23,8 +23,8 @@ namespace penumbra::app {
 /// Options of `render` and `submit` as given by the user; empty members were not given.
 struct PictureOptions {
   RunOptions run;
-  std::string method, exposure, frames, fps, pixel_samples, pixel_filter, filter_width, pixel_tolerance, motion_samples,
-      shutter, aperture, focus_distance, instances;
+  std::string method, exposure, frames, fps, pixel_samples, pixel_filter, filter_width, pixel_tolerance, light_cutoff,
+      motion_samples, shutter, aperture, focus_distance, instances;
   std::optional<std::string> frame;  ///< for `render` alone
   bool skip_existing = false;
   std::map<std::string, std::string> camera_words;  ///< --camera all: of the scene's cameras, set after the scene is
@@ -47,6 +47,7 @@ struct PictureRequest {
   std::uint32_t pixel_side = 1, moments = 1;
   PixelFilter filter;
   double pixel_tolerance = kPixelTolerance;
+  double light_cutoff = 0;
   InstanceUse instances = InstanceUse::automatic;
   double shutter_frames = 0.5;
   std::optional<double> aperture, focus_distance;  ///< replace the cameras' own values; aperture 0: everything is sharp

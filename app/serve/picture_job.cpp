@@ -60,10 +60,17 @@ void PictureJob::run(const std::vector<std::string>& arguments) {
     scenes::Scene scene = read_session_scene(kept_->options.run, std::nullopt);
     outputs.refuse_inputs(scene.sources);
     const FrameFiles files = files_of(kept_->options, now.frames.front(), kept_->options.run.camera);
-    kept_->renderer->render(
-        std::move(scene),
-        {now.frames.front(), kept_->options.run.camera, now.pixel_side, now.filter, now.pixel_tolerance, {}},
-        files.bits, watch.seconds());
+    kept_->renderer->render(std::move(scene),
+                            {now.frames.front(),
+                             kept_->options.run.camera,
+                             now.pixel_side,
+                             now.filter,
+                             now.pixel_tolerance,
+                             {},
+                             nullptr,
+                             false,
+                             now.light_cutoff},
+                            files.bits, watch.seconds());
     Exposure exposure = now.exposure;
     progress_.info(summary(kept_->renderer->write(files, exposure)));
   } catch (...) {

@@ -59,7 +59,7 @@ class PENUMBRA_PT_shadows(_Panel, bpy.types.Panel):
         layout.prop(settings, "exactness")
         if settings.exactness == program.SAMPLES:
             layout.prop(settings, "light_samples")
-        for name in ("method", "shading_normals", "lenient", "device"):
+        for name in ("method", "light_cutoff", "shading_normals", "lenient", "device"):
             layout.prop(settings, name)
 
 

@@ -29,13 +29,15 @@ _WITHOUT_LIGHTS = "beauty,V,Z,P,N,Crypto*"
 
 def arguments(program, scene, picture, size, settings):
     """Returns the command that renders. `settings`: exactness, light_samples, method, pixel_samples, pixel_filter,
-    filter_width, shading_normals, lenient, device, light_passes."""
+    filter_width, light_cutoff, shading_normals, lenient, device, light_passes."""
     command = [program, "render", scene, "-o", picture, "--no-studio", "--size", f"{size[0]}x{size[1]}"]
     command += _of_shadows(settings)
     if int(settings.pixel_samples) > 1:
         command += ["--pixel-samples", str(settings.pixel_samples)]
         if settings.pixel_filter == BLACKMAN_HARRIS:
             command += ["--pixel-filter", "blackman-harris", "--filter-width", f"{settings.filter_width:.6g}"]
+    if settings.light_cutoff > 0:
+        command += ["--light-cutoff", f"{settings.light_cutoff:.6g}"]
     command += _of_surfaces(settings)
     if not settings.light_passes:
         command += ["--layers", _WITHOUT_LIGHTS]

@@ -45,6 +45,9 @@ struct RenderOptions {
   /// For exact areas with several view samples a pixel: V is interpolated between neighbouring pixels where the
   /// estimated error is at most this; 0: every view sample is evaluated.
   double pixel_tolerance = 1.0 / 512;
+  /// A light is left out of view samples where, with nothing in between, it would be at most this share of all lights
+  /// together, in each of red, green and blue; its V is 0 there. 0: no light is left out.
+  double light_cutoff = 0;
   bool shading_normals = true;  ///< for the beauty: use vertices' normals where present
   bool masks = true;            ///< keep Picture::masks of methods with masks
   /// How instances are rendered: copies, shared (without copies), or auto, also if empty: shared if copies would exceed

@@ -378,20 +378,22 @@ class Renderer:
         self.scene.set_transform(mesh, matrix)
 
     def render(self, size=None, method="", light_samples=0, options=None, light=None, camera="", *, sample_pattern="",
-               sample_seed=0, pixel_samples=1, pixel_tolerance=1 / 512, normals="shading", masks=True, instances="auto"):
+               sample_seed=0, pixel_samples=1, pixel_tolerance=1 / 512, light_cutoff=0.0, normals="shading",
+               masks=True, instances="auto"):
         """A Picture. `size`: (width, height), or None for the scene's. Without `method` each light gets the best one that
         gives its exact area; with `light_samples` (1 to 4096) the best one with samples. `options`: a dict of the method's.
         `light`: a name or names, for these lights alone. `normals`: "shading" or "geometric", of the beauty.
         `pixel_samples`: view samples a pixel, a square number; of exact areas those are interpolated whose error is estimated
-        to be at most `pixel_tolerance` (0: none). `instances`: "copies", "shared" (without copies), or "auto": what costs less.
-        All give the same picture."""
+        to be at most `pixel_tolerance` (0: none). A light is left out, with V = 0, where with nothing in between it would be at
+        most the share `light_cutoff` of all lights together, in each of red, green and blue. `instances`: "copies", "shared"
+        (without copies), or "auto": what costs less. All give the same picture."""
         if normals not in ("shading", "geometric"):
             raise UsageError(f'normals "{normals}": expected shading or geometric')
         width, height = _size(size)
         texts = {str(key): _text(value) for key, value in (options or {}).items()}
         return Picture(self._core.render(width, height, method or "", texts, int(light_samples or 0), sample_pattern,
                                          sample_seed, _names(light), camera or "", pixel_samples, pixel_tolerance,
-                                         normals == "shading", masks, instances))
+                                         light_cutoff, normals == "shading", masks, instances))
 
 
 def _text(value):

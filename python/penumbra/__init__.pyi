@@ -105,7 +105,7 @@ class Renderer:
     def render(self, size: Optional[Sequence[int]] = ..., method: str = ..., light_samples: int = ...,
                options: Optional[Mapping[str, Any]] = ..., light: Union[None, str, Sequence[str]] = ...,
                camera: str = ..., *, sample_pattern: str = ..., sample_seed: int = ..., pixel_samples: int = ...,
-               pixel_tolerance: float = ..., normals: str = ..., masks: bool = ...,
+               pixel_tolerance: float = ..., light_cutoff: float = ..., normals: str = ..., masks: bool = ...,
                instances: str = ...) -> Picture: ...
 
 def load(file: _Path, **options: Any) -> Scene: ...

@@ -181,7 +181,7 @@ class Pictures(unittest.TestCase):
         with open(scene, "wb") as out:
             out.write(file.encoded())
         settings = box(method="", exactness=program.EXACT, light_samples=1, pixel_samples=1, pixel_filter=program.BOX, filter_width=1.5,
-                       shading_normals=False, lenient=False, device="", light_passes=True)
+                       light_cutoff=0, shading_normals=False, lenient=False, device="", light_passes=True)
         command = program.arguments(PENUMBRA, scene, picture, (40, 20), settings)
         code, cls.printed = program.run(command, lambda: False)
         assert code == 0, cls.printed
@@ -259,7 +259,7 @@ class Pictures(unittest.TestCase):
 class Programs(unittest.TestCase):
     def settings(self, **values):
         defaults = dict(method="", exactness=program.EXACT, light_samples=64, pixel_samples="1", pixel_filter=program.BOX,
-                        filter_width=1.5, shading_normals=False, lenient=False, device="", light_passes=True)
+                        filter_width=1.5, light_cutoff=0, shading_normals=False, lenient=False, device="", light_passes=True)
         return box(**{**defaults, **values})
 
     def test_arguments(self):
@@ -267,8 +267,8 @@ class Programs(unittest.TestCase):
         self.assertEqual(plain, ["p", "render", "s.glb", "-o", "o.exr", "--no-studio", "--size", "3x2", "--normals", "geometric",
                                  "--compression", "none"])
         much = program.arguments("p", "s", "o", (3, 2), self.settings(
-            method="raytrace", exactness=program.SAMPLES, pixel_samples="16", shading_normals=True, lenient=True, device="cpu"))
-        self.assertEqual(much[8:], ["--method", "raytrace", "--light-samples", "64", "--pixel-samples", "16", "--normals",
+            method="raytrace", exactness=program.SAMPLES, pixel_samples="16", light_cutoff=0.0010000000475, shading_normals=True, lenient=True, device="cpu"))
+        self.assertEqual(much[8:], ["--method", "raytrace", "--light-samples", "64", "--pixel-samples", "16", "--light-cutoff", "0.001", "--normals",
                                     "shading", "--lenient", "--device", "cpu", "--compression", "none"])
         filtered = program.arguments("p", "s", "o", (3, 2), self.settings(
             pixel_samples="4", pixel_filter=program.BLACKMAN_HARRIS, filter_width=1.6000000238))

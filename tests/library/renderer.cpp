@@ -149,6 +149,7 @@ TEST_F(Library, KeepsNothingThatChanged) {
   renderer.scene().set_transform(wedge, {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1});
   expect_fresh({.width = 24, .height = 16, .method = "view-sample", .light_samples = 64}, "moved back");
   expect_fresh({.width = 12, .height = 8, .pixel_samples = 4}, "four view samples a pixel");
+  expect_fresh({.width = 12, .height = 8, .light_cutoff = 1}, "no light");
   expect_fresh({.width = 12, .height = 8, .light_samples = 16, .pixel_samples = 4}, "with light samples");
   expect_fresh({.width = 12, .height = 8, .light_samples = 64, .sample_pattern = "sobol", .pixel_samples = 4},
                "others");
@@ -169,6 +170,7 @@ TEST_F(Library, StaysUsableAfterErrors) {
   EXPECT_THROW(renderer.render({.lights = {"moon"}}), UsageError);
   EXPECT_THROW(renderer.render({.camera = "side"}), UsageError);
   EXPECT_THROW(renderer.render({.pixel_samples = 3}), UsageError);
+  EXPECT_THROW(renderer.render({.light_cutoff = 1.5}), UsageError);
   EXPECT_THROW(renderer.render({.width = 10}), UsageError);
   EXPECT_EQ(all_bytes(renderer.render()), before);
   Scene& scene = renderer.scene();
