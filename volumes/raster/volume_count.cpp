@@ -17,6 +17,7 @@
 #include "visibility/tree/triangle_tree.hpp"
 #include "volumes/raster/light_volumes.hpp"
 #include "volumes/raster/screen_box.hpp"
+#include "volumes/raster/shadow_tiles.hpp"
 #include "volumes/raster/small_vectors.hpp"
 #include "volumes/raster/volume_count.frag.spv.hpp"
 #include "volumes/raster/volume_count.shared.h"
@@ -73,6 +74,7 @@ struct VolumeCount::State {
   const render::Device* device;
   CountVariant variant;
   Layers layers;
+  bool whole_tiles = false;                                  // decide_whole_tiles
   std::array<std::optional<render::RasterPass>, 20> passes;  // made when first needed
 
   const SceneFloats* scene = nullptr;
@@ -87,6 +89,7 @@ struct VolumeCount::State {
   std::unique_ptr<render::Buffer> face_buffer, receiver_buffer, count_buffer, doubt_buffer, part_buffer;
   std::vector<gpu::VolumeReceiver> receivers;
   std::vector<std::uint32_t> doubts;
+  std::vector<std::uint32_t> stand_ins;  // with whole_tiles: TilePlan::stand_ins
   std::vector<std::int32_t> counts;
   std::vector<Kind> kinds;
   Totals totals;
@@ -95,6 +98,8 @@ struct VolumeCount::State {
   const render::RasterPass& pass_of(FaceKind kind, bool before, bool parts);
   void find_faces();
   void classify(const Tile& tile);
+  void leave_out_whole_tiles();
+  void copy_in_whole_tiles();
   void rasterise(const Tile& tile);
   void count_doubtful(const Tile& tile);
   [[nodiscard]] std::int32_t count_exactly(std::size_t pixel) const;
@@ -109,6 +114,10 @@ VolumeCount& VolumeCount::operator=(VolumeCount&&) noexcept = default;
 void VolumeCount::prepare_mesh(const SceneFloats& scene) {
   prepare_scene(scene);
   state_->casters.emplace(scene, state_->layers);
+}
+
+void VolumeCount::decide_whole_tiles() {
+  state_->whole_tiles = true;
 }
 
 void VolumeCount::prepare_scene(const SceneFloats& scene) {
@@ -195,12 +204,34 @@ void VolumeCount::State::classify(const Tile& tile) {
     if (!faces_light) return;
     const std::size_t column = pixel % samples->width, row = pixel / samples->width;
     const glm::dvec2 center(static_cast<double>(column) + 0.5, static_cast<double>(row) + 0.5);
-    if (appears_in_place(boxes, corners, p, volumes.l, center)) {
-      receivers[i] = {p, scene->plane[carrier]};
-    } else {
-      doubts[i] = gpu::kDoubtBit;
-    }
+    receivers[i] = {p, scene->plane[carrier]};
+    if (!appears_in_place(boxes, corners, p, volumes.l, center)) doubts[i] = gpu::kDoubtBit;
   });
+  if (whole_tiles) leave_out_whole_tiles();
+  for (std::size_t i = 0; i < pixels; ++i) {
+    totals.counted_pixels += receivers[i].plane != gpu::kNotCounted ? 1 : 0;
+    if (doubts[i] != 0) receivers[i].plane = gpu::kNotCounted;  // left to the host
+  }
+}
+
+/// Leaves one view sample of each whole tile.
+void VolumeCount::State::leave_out_whole_tiles() {
+  PENUMBRA_ASSERT(volumes.parts.empty(), "tiles of volumes in {} parts", volumes.parts.size());
+  TilePlan plan = plan_tiles(volumes, receivers, samples->width);
+  stand_ins = std::move(plan.stand_ins);
+  totals.tiles += plan.tiles;
+  totals.whole_tiles += plan.whole;
+  for (std::size_t i = 0; i < receivers.size(); ++i) {
+    if (stand_ins[i] == i) continue;
+    receivers[i].plane = gpu::kNotCounted;
+    doubts[i] = 0;
+  }
+}
+
+void VolumeCount::State::copy_in_whole_tiles() {
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    if (stand_ins[i] != kNoPixel) counts[i] = counts[stand_ins[i]];
+  }
 }
 
 void VolumeCount::State::rasterise(const Tile& tile) {
@@ -286,6 +317,7 @@ void VolumeCount::count(const Tile& tile) {
   s.classify(tile);
   s.rasterise(tile);
   s.count_doubtful(tile);
+  if (s.whole_tiles) s.copy_in_whole_tiles();
   for (const std::int32_t count : s.counts) {
     s.totals.largest_count = std::max(s.totals.largest_count, static_cast<std::uint64_t>(std::max(count, 0)));
   }

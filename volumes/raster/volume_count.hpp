@@ -29,6 +29,9 @@ class VolumeCount {
   /// `in_parts`: volumes will come in parts; passes for them are made immediately.
   VolumeCount(const render::Device& device, CountVariant variant, Layers layers = Layers::every_triangle,
               bool in_parts = false);
+  /// Counts one view sample of each tile that is wholly inside or outside each volume (shadow_tiles.hpp). The counts
+  /// stay the same. Only for volumes without parts.
+  void decide_whole_tiles();
   ~VolumeCount();
   VolumeCount(VolumeCount&&) noexcept;
   VolumeCount& operator=(VolumeCount&&) noexcept;
@@ -72,11 +75,13 @@ class VolumeCount {
     std::uint64_t silhouette_edges = 0, caps = 0;
     std::uint64_t faces_on_screen = 0;  ///< sides, fans and caps that were rasterised
     std::uint64_t far_ends_on_screen = 0;
-    std::uint64_t fragments = 0;        ///< approximate number of proposed fragments: the areas of the screen boxes
-    std::uint64_t updates = 0;          ///< updates of counts: stencil writes in other implementations
-    std::uint64_t toggling_parts = 0;   ///< parts that toggle
-    bool from_eye = false;              ///< z_pass_from_eye was used as such
-    std::uint64_t doubtful_pixels = 0;  ///< counted on the host, because a sign was within its error bound
+    std::uint64_t fragments = 0;       ///< approximate number of proposed fragments: the areas of the screen boxes
+    std::uint64_t updates = 0;         ///< updates of counts: stencil writes in other implementations
+    std::uint64_t toggling_parts = 0;  ///< parts that toggle
+    std::uint64_t tiles = 0, whole_tiles = 0;  ///< of decide_whole_tiles
+    std::uint64_t counted_pixels = 0;          ///< view samples that were counted
+    bool from_eye = false;                     ///< z_pass_from_eye was used as such
+    std::uint64_t doubtful_pixels = 0;         ///< counted on the host, because a sign was within its error bound
     std::uint64_t largest_count = 0;
   };
   [[nodiscard]] const Totals& totals() const;

@@ -1,7 +1,8 @@
 // Crow 1977, Heidmann 1991, Everitt and Kilgard 2002: V is 1 where no shadow volume of the light's centre is counted.
 // volume_count.cpp documents the count and its departures. ZP+ is S. Hornus, J. Hoberock, S. Lefebvre, J. Hart, ZP+:
 // correct z-pass stencil shadows, I3D 2005: there the counts on the near plane are drawn from the light; here the near
-// plane is at the eye, and the host computes the one count. volume_culling.cpp names the other variants' papers.
+// plane is at the eye, and the host computes the one count. volume_culling.cpp and shadow_tiles.cpp name the other
+// variants' papers.
 
 #include "volumes/soft/methods.hpp"
 
@@ -22,7 +23,7 @@ visibility::MeshVerdict hard_volume_verdict(const mesh::Diagnosis& mesh) {
                               mesh, {{mesh.zero_area_triangles.count, "triangles without area, which cast nothing"}})};
 }
 
-enum class Variant { z_fail, z_pass, zp_plus, cc, split, hierarchical };
+enum class Variant { z_fail, z_pass, zp_plus, cc, split, hierarchical, tiles };
 
 constexpr visibility::ChoiceOption kVariant{
     "variant",
@@ -31,13 +32,16 @@ constexpr visibility::ChoiceOption kVariant{
      {"zp+", Variant::zp_plus},
      {"cc", Variant::cc},
      {"split", Variant::split},
-     {"hierarchical", Variant::hierarchical}},
+     {"hierarchical", Variant::hierarchical},
+     {"tiles", Variant::tiles}},
     Variant::z_fail,
     "count volumes beyond the surface; between it and the camera, wrong when the camera is in shadow, or (zp+) from "
     "the "
     "count at the camera; without volumes that hide nothing new, cut to where surfaces are (cc); on the side that "
     "costs "
-    "less (split); without triangles that hide nothing from any pixel (hierarchical)"};
+    "less (split); without triangles that hide nothing from any pixel (hierarchical); at one pixel of each tile that "
+    "no "
+    "volume's face touches (tiles)"};
 
 CountVariant count_variant(Variant variant) {
   return variant == Variant::z_pass    ? CountVariant::z_pass
@@ -66,7 +70,9 @@ class HardVolume final : public visibility::Method {
       : description_(hard_volume_description()),
         variant_(visibility::parse_options(description_, options)[kVariant]),
         count_(device, count_variant(variant_), Layers::every_triangle,
-               variant_ == Variant::cc || variant_ == Variant::split) {}
+               variant_ == Variant::cc || variant_ == Variant::split) {
+    if (variant_ == Variant::tiles) count_.decide_whole_tiles();
+  }
 
   [[nodiscard]] const visibility::MethodDescription& description() const override { return description_; }
   void prepare_mesh(const visibility::SceneFloats& scene) override {
@@ -116,6 +122,11 @@ class HardVolume final : public visibility::Method {
                                              {"largestCount", totals.largest_count}};
     all.insert(left_out_.begin(), left_out_.end());
     if (variant_ == Variant::split) all["togglingVolumes"] = totals.toggling_parts;
+    if (variant_ == Variant::tiles) {
+      all["tiles"] = totals.tiles;
+      all["wholeTiles"] = totals.whole_tiles;
+      all["pixelsDrawn"] = totals.counted_pixels;
+    }
     if (variant_ == Variant::zp_plus) all["countedFromEye"] = totals.from_eye ? 1 : 0;
     return all;
   }

@@ -15,7 +15,7 @@ namespace {
 
 using tests::SoftStage;
 
-constexpr std::array kVariants{"zp+", "cc", "split", "hierarchical"};
+constexpr std::array kVariants{"zp+", "cc", "split", "hierarchical", "tiles"};
 
 class HardVolumeVariants : public tests::DeviceTest {
  protected:
@@ -125,6 +125,45 @@ TEST_F(HardVolumeVariants, CullCastersInShadow) {
   EXPECT_EQ(cc.at("silhouetteEdges"), 8U * cc.at("stretches") / 2);
   // By the view samples alone the hidden board still hides something: floor below it.
   EXPECT_EQ(answers.at("hierarchical").counters.at("culledVolumes"), 2U);  // the floor's two triangles
+}
+
+/// A board's shadow on a floor is a square, here of half-width 5/3. Tiles whose view samples are all on one of both
+/// surfaces are whole but where their box meets the square's outline.
+TEST_F(HardVolumeVariants, DecideWholeTiles) {
+  scenes::Scene scene = tests::floor_and_light(0.5);
+  tests::add_object(scene, "board", tests::quad({0, 2, 0}, {1, 0, 0}, {0, 0, -1}));
+  const SoftStage stage(scene, device(), 200, 152);
+  const auto answers = expect_same("a board", stage);
+  const double half = 5.0 / 3;
+  std::uint64_t tiles = 0, whole = 0, drawn = 0;
+  for (std::uint32_t y = 0; y < 152; y += 8) {
+    for (std::uint32_t x = 0; x < 200; x += 8) {
+      glm::dvec3 lower(1e30), upper(-1e30);
+      std::uint64_t pixels = 0;
+      for (std::size_t i = 0; i < 64; ++i) {
+        const std::size_t pixel = (y + i / 8) * 200 + x + i % 8;
+        if (stage.samples.triangle[pixel] == visibility::ViewSamples::kBackground) continue;
+        const glm::dvec3 p = glm::dvec3(stage.samples.p[pixel]) + stage.floats.origin;
+        lower = glm::min(lower, p);
+        upper = glm::max(upper, p);
+        ++pixels;
+      }
+      if (pixels == 0) continue;
+      ++tiles;
+      const bool on_board = lower.y > 1, on_floor = upper.y < 1;
+      const bool reaches = std::max({lower.x, -upper.x, lower.z, -upper.z}) <= half;
+      const bool within = std::min({lower.x, -upper.x, lower.z, -upper.z}) > -half;
+      const bool is_whole = on_board || (on_floor && (!reaches || within));
+      whole += is_whole ? 1 : 0;
+      drawn += is_whole ? 1 : pixels;
+    }
+  }
+  const auto& counters = answers.at("tiles").counters;
+  EXPECT_EQ(counters.at("tiles"), tiles);
+  EXPECT_EQ(counters.at("wholeTiles"), whole);
+  EXPECT_EQ(counters.at("pixelsDrawn"), drawn);
+  EXPECT_GT(2 * whole, tiles);
+  EXPECT_LT(counters.at("countUpdates"), answers.at("z-fail").counters.at("countUpdates"));
 }
 
 /// What the papers promise, in sums over scenes: fewer changes of counts between the eye and p than beyond it, or on
