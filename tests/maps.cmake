@@ -21,6 +21,7 @@ penumbra_test(maps FULL MapsTable.*
   analytic/maps/list_geometry.cpp
   analytic/maps/layered_attenuation.cpp
   analytic/maps/lists.cpp
+  analytic/maps/map_fit_forms.cpp
   analytic/maps/map_fits.cpp
   analytic/maps/method.cpp
   analytic/maps/moments.cpp

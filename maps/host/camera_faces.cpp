@@ -7,17 +7,24 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <utility>
 
 namespace penumbra::maps {
 
 std::uint32_t CameraFaces::fit(const render::Device& device, const Source& source, const FaceFitOptions& options,
                                gpu::LightView& view) {
-  faces_ = fit_faces(source.scene, source.light, source.basis, source.samples, options);
+  return take(device, source, fit_faces(source.scene, source.light, source.basis, source.samples, options),
+              options.size, view);
+}
+
+std::uint32_t CameraFaces::take(const render::Device& device, const Source& source, std::vector<FittedFace> faces,
+                                std::uint32_t size, gpu::LightView& view) {
+  faces_ = std::move(faces);
   const visibility::PinholeCamera& camera = source.samples.camera;
   return make(
       device,
       {.forward = camera.forward, .offset = static_cast<float>(-glm::dot(camera.forward, camera.eye)), .count = 0},
-      source.basis, options.size, view);
+      source.basis, size, view);
 }
 
 std::uint32_t CameraFaces::take_paraboloids(const render::Device& device, const LightBasis& basis, std::uint32_t size,

@@ -6,6 +6,7 @@
 #include "maps/host/holes.hpp"
 #include "maps/host/lamp_disks.hpp"
 #include "maps/host/sun_space.hpp"
+#include "visibility/frame_memory.hpp"
 #include "visibility/receivers.hpp"
 
 #include <algorithm>
@@ -22,7 +23,7 @@ using visibility::SceneFloats;
 using visibility::Tile;
 using visibility::ViewSamples;
 
-class EveryLight final : public visibility::Method {
+class EveryLight final : public visibility::Method, public visibility::RemembersFrames {
  public:
   EveryLight(std::unique_ptr<Method> method, Given given)
       : method_(std::move(method)), given_(given), description_(for_every_light(method_->description(), given)) {}
@@ -31,6 +32,7 @@ class EveryLight final : public visibility::Method {
   void want_pixels(std::span<const std::uint32_t> pixels) override { method_->want_pixels(pixels); }
   void want_form_factors(bool wanted) override { method_->want_form_factors(wanted); }
   void expect_frames() override { method_->expect_frames(); }
+  void remember(visibility::FrameMemory* memory) override { visibility::remember(*method_, memory); }
   void prepare_mesh(const SceneFloats& scene) override;
   void prepare_light(const Light& light) override;
   void prepare_view(const ViewSamples& samples) override;

@@ -14,6 +14,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <span>
 #include <utility>
 
 namespace penumbra::maps {
@@ -74,6 +76,7 @@ class FaceFitter {
   }
 
  private:
+  static constexpr std::size_t kSeenPerPoint = 5;
   /// Directions e of the receivers on the side, and of look-ups' taps beside them.
   struct Seen {
     std::vector<glm::dvec3> points;
@@ -161,7 +164,14 @@ class FaceFitter {
         }
       }
       if (points.empty()) continue;
-      fit_face(face, base, points, all);
+      const SeenBody body_here = seen_body(base, points, all);
+      if (options_.fit.fit == Fit::faces) {
+        add_frustum_faces(face, base, body_here, faces);
+        continue;
+      }
+      const Fit fit = options_.fit.fit;
+      const bool warps = fit != Fit::cascades && fit != Fit::tiles;
+      fit_face(face, base, points, warps ? warp_of(fit, body_here, options_.fit.focus) : Warp());
       if (options_.fit.fit == Fit::tiles) {
         add_tiles(face, window ? 1 : kHemicube.size(), faces);
       } else {
@@ -170,24 +180,59 @@ class FaceFitter {
     }
   }
 
-  void fit_face(FittedFace& face, const BaseFace& base, const std::vector<glm::dvec3>& points, const Seen& all) const {
-    Warp warp;
-    const Fit fit = options_.fit.fit;
-    if (fit != Fit::cascades && fit != Fit::tiles) {
-      const visibility::PinholeCamera& camera = samples_.camera;
-      const bool perspective = !camera.half_height;
-      const glm::dmat3 matrix = base.matrix();
-      warp = warp_of(fit,
-                     {.points = points,
-                      .near = std::max(all.near, 1e-6 * all.far),
-                      .far = all.far,
-                      .eye = matrix * turned(camera.eye - basis_.center),
-                      .forward = matrix * turned(camera.forward),
-                      .across = perspective ? matrix * turned(camera.screen_across()) : glm::dvec3(0),
-                      .upward = perspective ? matrix * turned(camera.screen_upward()) : glm::dvec3(0),
-                      .perspective = perspective},
-                     options_.fit.focus);
+  [[nodiscard]] SeenBody seen_body(const BaseFace& base, const std::vector<glm::dvec3>& points, const Seen& all) const {
+    const visibility::PinholeCamera& camera = samples_.camera;
+    const bool perspective = !camera.half_height;
+    const glm::dmat3 matrix = base.matrix();
+    return {.points = points,
+            .near = std::max(all.near, 1e-6 * all.far),
+            .far = all.far,
+            .eye = matrix * turned(camera.eye - basis_.center),
+            .forward = matrix * turned(camera.forward),
+            .across = perspective ? matrix * turned(camera.screen_across()) : glm::dvec3(0),
+            .upward = perspective ? matrix * turned(camera.screen_upward()) : glm::dvec3(0),
+            .perspective = perspective};
+  }
+
+  /// Adds a face for each face of the frustum through which rays to receivers leave it. Where a perspective is too
+  /// strong for float32, an even face of all points follows.
+  void add_frustum_faces(const FittedFace& even, const BaseFace& base, const SeenBody& body,
+                         std::vector<FittedFace>& faces) const {
+    const std::vector<FrustumFace> frustum = frustum_faces(body);
+    std::vector<std::vector<glm::dvec3>> parts(frustum.size());
+    bool all_in_faces = !frustum.empty();
+    const std::size_t group = beside_ == glm::dvec2(0) ? 1 : kSeenPerPoint;  // taps are in the receiver's face
+    for (std::size_t i = 0; all_in_faces && i < body.points.size(); i += group) {
+      const auto nearest =
+          std::ranges::min_element(frustum, {}, [&](const FrustumFace& face) { return face.beyond(body.points[i]); });
+      const auto points = body.points.subspan(i, group);
+      std::ranges::copy(points, std::back_inserter(parts[static_cast<std::size_t>(nearest - frustum.begin())]));
     }
+    for (std::size_t i = 0; i < frustum.size(); ++i) {
+      if (options_.fit.body == ViewBody::frustum) {
+        // Receivers' polygons may pass through a face without a corner there.
+        const glm::dmat3 directions = glm::inverse(frustum[i].matrix);
+        parts[i].clear();
+        for (const double x : {-1.0, 1.0}) {
+          for (const double y : {-1.0, 1.0}) parts[i].push_back(directions * glm::dvec3(x, y, 1));
+        }
+      }
+      if (parts[i].empty()) continue;
+      if (!is_moderate(frustum[i].matrix, parts[i])) {
+        all_in_faces = false;
+        continue;
+      }
+      FittedFace face = even;
+      fit_face(face, base, parts[i], {frustum[i].matrix});
+      faces.push_back(face);
+    }
+    if (all_in_faces) return;
+    FittedFace face = even;
+    fit_face(face, base, body.points, Warp());
+    faces.push_back(face);
+  }
+
+  void fit_face(FittedFace& face, const BaseFace& base, std::span<const glm::dvec3> points, const Warp& warp) const {
     PlaceBounds bounds;
     for (const glm::dvec3& point : points) {
       const glm::dvec3 at = warp.matrix * point;
@@ -244,14 +289,7 @@ class FaceFitter {
         }
       }
     }
-    for (const Tile& tile : tiles) {
-      FittedFace face = whole;
-      const double across = std::exp2(tile.level);
-      const glm::dmat3 zoom{{across, 0, 0}, {0, across, 0}, {-tile.first.x, -tile.first.y, 1}};
-      face.to_face = zoom * whole.to_face;
-      normalise(face);
-      faces.push_back(face);
-    }
+    for (const Tile& tile : tiles) faces.push_back(square_of(whole, tile.level, tile.first));
   }
 
   const visibility::SceneFloats& scene_;
@@ -265,6 +303,15 @@ class FaceFitter {
 };
 
 }  // namespace
+
+FittedFace square_of(const FittedFace& whole, std::uint32_t level, const glm::dvec2& first) {
+  FittedFace face = whole;
+  const double across = std::exp2(level);
+  const glm::dmat3 zoom{{across, 0, 0}, {0, across, 0}, {-first.x, -first.y, 1}};
+  face.to_face = zoom * whole.to_face;
+  normalise(face);
+  return face;
+}
 
 std::vector<FittedFace> fit_faces(const visibility::SceneFloats& scene, const visibility::Light& light,
                                   const LightBasis& basis, const visibility::ViewSamples& samples,

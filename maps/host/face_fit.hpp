@@ -63,6 +63,9 @@ std::vector<FittedFace> fit_faces(const visibility::SceneFloats& scene, const vi
                                   const LightBasis& basis, const visibility::ViewSamples& samples,
                                   const FaceFitOptions& options);
 
+/// Returns a square of the quadtree over a face: 2^level squares across, `first` those before it on either axis.
+FittedFace square_of(const FittedFace& whole, std::uint32_t level, const glm::dvec2& first);
+
 /// Returns the face of a whole side of the light's plane, `spare` texels of `size` away from the face's sides: e is
 /// projected to (x, y) / (|e| + z), on the unit disk (Brabec, Annen, Seidel 2002, "Shadow mapping for hemispherical and
 /// omnidirectional light sources").

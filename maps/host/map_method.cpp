@@ -8,10 +8,12 @@
 #include "base/error.hpp"
 #include "maps/host/aliasing.hpp"
 #include "maps/host/camera_faces.hpp"
+#include "maps/host/queried_tiles.hpp"
 #include "maps/host/receivers.hpp"
 #include "render/compute_pass.hpp"
 #include "visibility/lights/light_parts.hpp"
 #include "visibility/masks/visible_share.hpp"
+#include "visibility/receivers.hpp"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -105,8 +107,13 @@ class MapMethod final : public visibility::Method {
   /// Fits the maps: to all receivers, or to the view of the camera.
   void fit_maps();
   void fit_to_camera(FitOptions fit, const glm::vec3& centre);
-  /// Allocates the light's maps, and renders those of its centre.
   void make_maps();
+  /// Allocates the light's maps, and renders those of its centre.
+  void make_fitted_maps();
+  /// Cuts the fitted faces while a cut changes the picture.
+  void query_tiles();
+  [[nodiscard]] std::vector<float> whole_picture();
+  void take_tile(const visibility::Tile& tile);
   void find_aliasing();
   /// Records maps of light points first … first + count − 1, in submissions that can be timed.
   void render_maps(render::Commands& commands, std::uint32_t first, std::uint32_t count);
@@ -228,12 +235,58 @@ void MapMethod::fit_to_camera(FitOptions fit, const glm::vec3& centre) {
     choices.beside = fit.beside;
     choices.body_reach = fit.body_reach;
   }
+  if (options_.fit.queries()) choices.fit.tiles = 1;
   fitted_.faces = faces_.fit(*device_, {*scene_, light, basis_, *samples_}, choices, fitted_.views.front());
 }
 
 void MapMethod::make_maps() {
   fit_maps();
   maps_are_old_ = false;
+  if (options_.fit.queries()) {
+    query_tiles();
+  } else {
+    make_fitted_maps();
+  }
+}
+
+void MapMethod::query_tiles() {
+  std::vector<std::optional<SeenReceiver>> receivers(samples_->size());
+  for (std::size_t i = 0; i < receivers.size(); ++i) {
+    if (visibility::is_receiver(*scene_, *light_, *samples_, i)) {
+      receivers[i] = seen_receiver(*samples_, i, basis_, light_->two_sided);
+    }
+  }
+  const visibility::Tile asked = tile_;
+  const std::vector<FittedFace> whole = faces_.faces();
+  const QueriedTiles tiles = queried_tiles(whole, receivers, options_.fit, [&](const std::vector<FittedFace>& faces) {
+    fitted_.faces =
+        faces_.take(*device_, {*scene_, *light_, basis_, *samples_}, faces, options_.size, fitted_.views.front());
+    make_fitted_maps();
+    return whole_picture();
+  });
+  take_tile(asked);
+  counters_["queriedPictures"] = tiles.pictures;
+}
+
+std::vector<float> MapMethod::whole_picture() {
+  std::vector<float> visibility(samples_->size());
+  const std::uint32_t rows = max_tile_rows();
+  for (std::uint32_t first = 0; first < samples_->height; first += rows) {
+    take_tile({first, std::min(rows, samples_->height - first)});
+    ask_all(tile_);
+    results_->read(std::span(visibility).subspan(std::size_t{first} * samples_->width, tile_pixels_));
+  }
+  return visibility;
+}
+
+void MapMethod::take_tile(const visibility::Tile& tile) {
+  tile_ = tile;
+  tile_pixels_ = tile.row_count * receivers_.width();
+  if (tile_pixels_ == 0) return;
+  render::grow(*device_, results_, gives_masks() ? "map masks" : "map visibility", result_bytes(tile_pixels_));
+}
+
+void MapMethod::make_fitted_maps() {
   const visibility::Light& light = *light_;
   const bool many = recipe_.points == MapPoints::light_samples;
   const std::uint32_t faces = std::max(fitted_.faces, 1u);
@@ -379,12 +432,10 @@ void MapMethod::ask(render::Commands& commands, const visibility::Tile& tile, st
 
 void MapMethod::evaluate(const visibility::Tile& tile) {
   PENUMBRA_ASSERT(light_ != nullptr, "{}: evaluate before prepare_light", recipe_.description.name);
-  tile_ = tile;
-  tile_pixels_ = tile.row_count * receivers_.width();
+  take_tile(tile);
   if (tile_pixels_ == 0) return;
   if (maps_are_old_) make_maps();
   if (options_.fit.aliasing != AliasingUse::off && aliasing_.errors.empty()) find_aliasing();
-  render::grow(*device_, results_, gives_masks() ? "map masks" : "map visibility", result_bytes(tile_pixels_));
   if (parts_.size() > 1) return add_up_parts(tile);
   ask_all(tile);
 }

@@ -101,9 +101,9 @@ std::vector<BodyPoint> points_in_frustum(const visibility::SceneFloats& scene, c
 }  // namespace
 
 std::vector<visibility::OptionDescription> view_fit_descriptions() {
-  return {kFit.description(),      kViewBody.description(),   kSnap.description(),  kCascades.description(),
-          kSplit.description(),    kSplitShare.description(), kTiles.description(), kFocus.description(),
-          kAliasing.description(), kProjection.description()};
+  return {kFit.description(),     kViewBody.description(),   kSnap.description(),     kCascades.description(),
+          kSplit.description(),   kSplitShare.description(), kTiles.description(),    kRefine.description(),
+          kChanged.description(), kFocus.description(),      kAliasing.description(), kProjection.description()};
 }
 
 std::vector<visibility::OptionDescription> window_fit_descriptions() {
@@ -132,6 +132,8 @@ ViewFit view_fit(std::span<const visibility::OptionDescription> options, const v
   fit.split = parsed[kSplit];
   fit.split_share = parsed[kSplitShare];
   fit.tiles = parsed[kTiles];
+  fit.refine = parsed[kRefine];
+  fit.changed = parsed[kChanged];
   fit.focus = parsed[kFocus];
   return fit;
 }

@@ -27,6 +27,7 @@ enum class Fit : std::uint8_t {
   tsm,        ///< the same, n from a region in focus (Martin and Tan 2004)
   psm,        ///< the camera's own perspective (Stamminger and Drettakis 2002)
   logpsm,     ///< a perspective from the eye and a logarithm along the view (Lloyd et al. 2008)
+  faces,      ///< the faces of the camera's frustum, each with its own perspective (Kozlov 2004, Lloyd et al. 2006)
 };
 /// Spacing of the depths between cascades.
 enum class Split : std::uint8_t { logarithmic, practical, pseudo_near, uniform };
@@ -42,10 +43,11 @@ inline constexpr visibility::ChoiceOption kFit{
      {"lispsm", Fit::lispsm},
      {"tsm", Fit::tsm},
      {"psm", Fit::psm},
-     {"logpsm", Fit::logpsm}},
+     {"logpsm", Fit::logpsm},
+     {"faces", Fit::faces}},
     Fit::receivers,
     "region over which texels are spread: all receivers; the camera's view, in one window, in slices of depth or in "
-    "tiles; or a perspective of the view"};
+    "tiles; a perspective of the view; or the faces of its frustum, each with a perspective"};
 /// Option of methods whose products support windows alone.
 inline constexpr visibility::ChoiceOption kWindowFit{
     "fit",
@@ -74,6 +76,18 @@ inline constexpr visibility::RealOption kSplitShare{"splitShare", 0, 1, 0.5,
                                                     "split=practical: weight of the logarithmic distribution; "
                                                     "pseudo-near: distance of the plane, as a share of all depths"};
 inline constexpr visibility::IntegerOption kTiles{"tiles", 1, 64, 16, "fit=tiles: largest number of maps"};
+/// Reason to cut a tile in four.
+enum class Refine : std::uint8_t {
+  needed,   ///< pixels are smaller than texels (fitted and resolution-matched maps)
+  queried,  ///< the last cut changed pixels (queried virtual shadow maps, Giegl and Wimmer 2007)
+};
+inline constexpr visibility::ChoiceOption kRefine{
+    "refine",
+    {{"needed", Refine::needed}, {"queried", Refine::queried}},
+    Refine::needed,
+    "fit=tiles: cut a tile where pixels need finer texels, or while a cut changes the picture"};
+inline constexpr visibility::IntegerOption kChanged{
+    "changed", 0, 65536, 4, "refine=queried: number of changed pixels in a tile that do not yet require another cut"};
 inline constexpr visibility::RealOption kFocus{
     "focus", 0.01, 0.99, 0.25, "fit=tsm: the nearest share of depths, which gets four fifths of the map"};
 
@@ -115,6 +129,8 @@ struct ViewFit {
   Split split = Split::logarithmic;
   double split_share = kSplitShare.otherwise;
   std::uint32_t tiles = kTiles.otherwise;
+  Refine refine = Refine::needed;
+  std::uint32_t changed = kChanged.otherwise;
   double focus = kFocus.otherwise;
   AliasingUse aliasing = AliasingUse::off;
 
@@ -126,6 +142,8 @@ struct ViewFit {
   }
   /// Returns whether there are faces that no rasteriser draws, for which each texel tests each triangle.
   [[nodiscard]] bool asks_triangles() const { return fit == Fit::logpsm || projection == Projection::paraboloid; }
+  /// Returns whether tiles depend on pictures made with other tiles (queried_tiles.hpp).
+  [[nodiscard]] bool queries() const { return fit == Fit::tiles && refine == Refine::queried; }
   [[nodiscard]] std::uint32_t slices() const {
     if (fit == Fit::tiles) return 1;
     return cascades != 0 ? cascades : fit == Fit::cascades ? 4U : 1U;

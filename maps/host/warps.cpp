@@ -1,5 +1,7 @@
 // Computes the perspectives of Wimmer et al. 2004 (LiSPSM), Martin and Tan 2004 (TSM), Stamminger and Drettakis 2002
-// (PSM) and Lloyd et al. 2008 (LogPSM), for a point light. A face's coordinates (a/w, b/w) are the light's
+// (PSM) and Lloyd et al. 2008 (LogPSM), for a point light, and the perspectives of a frustum's faces: S. Kozlov,
+// Perspective shadow maps: care and feeding, GPU Gems 2004; Lloyd, Tuft, Yoon, Manocha, Warping and partitioning for
+// low error shadow maps, EGSR 2006. A face's coordinates (a/w, b/w) are the light's
 // post-perspective space, where its rays are parallel; there the first, second and last apply a perspective along the
 // image of the view axis whose centre is n before the nearest visible point. Departure: rays through the light are
 // points of its face, and depths are kept as distances along the rays, so that PSM needs no light in post-perspective
@@ -122,16 +124,8 @@ std::optional<glm::dmat3> post_perspective(const SeenBody& body, double back) {
   const glm::dvec3 up = std::abs(v.z) < 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(0, 1, 0);
   const glm::dvec3 s = glm::normalize(up - v * glm::dot(up, v)), r = glm::cross(v, s);
   const glm::dmat3 matrix = with_rows(r.x * x + r.y * y + r.z * z, s.x * x + s.y * y + s.z * z, w);
-  double least = std::numeric_limits<double>::infinity(), most = -least;
-  for (const glm::dvec3& point : body.points) {
-    const double k = glm::dot(w, point) / point.z;
-    least = std::min(least, k);
-    most = std::max(most, k);
-  }
-  // On one side of the line at infinity, and far enough from the line for float32.
-  constexpr double kStrongest = 1e-4;
-  if (least > kStrongest * most && most > 0) return matrix;
-  if (most < kStrongest * least && least < 0) return -matrix;
+  if (is_moderate(matrix, body.points)) return matrix;
+  if (is_moderate(-matrix, body.points)) return -matrix;
   return std::nullopt;
 }
 
@@ -146,7 +140,64 @@ Warp perspective_shadow_map(const SeenBody& body) {
   return {};
 }
 
+/// Returns the face of a frustum whose plane goes through the eye, on the side of `sign` of the picture's axis
+/// `across`. Its plane is g · (x − eye) = 0, so a ray e from 0 meets it at eye + W / (g · e), W = (g · eye) e − (g · e)
+/// eye.
+std::optional<FrustumFace> side_face(const SeenBody& body, const glm::dvec3& across, const glm::dvec3& along,
+                                     double sign) {
+  const glm::dvec3 g = sign * across - body.forward;
+  const double inside = glm::dot(g, body.eye);
+  if (!(inside > 0)) return std::nullopt;
+  const auto row = [&](const glm::dvec3& of) { return inside * of - glm::dot(of, body.eye) * g; };
+  const glm::dvec3 depth = row(body.forward);
+  // 1 / depth = (g · e) / depth row, from −1 at the farthest to 1 at the nearest.
+  const double least = 1 / body.far, most = 1 / body.near;
+  const glm::dvec3 inverse = (2.0 * g - (least + most) * depth) / (most - least);
+  return FrustumFace{with_rows(row(along), inverse, depth)};
+}
+
+/// Returns the frustum's end at this depth, whose outer side is that of `sign` · forward.
+std::optional<FrustumFace> end_face(const SeenBody& body, double at, double sign) {
+  const double away = at + glm::dot(body.forward, body.eye);
+  if (!(sign * away > 0)) return std::nullopt;
+  const auto row = [&](const glm::dvec3& of) { return sign * (away * of - glm::dot(of, body.eye) * body.forward); };
+  return FrustumFace{with_rows(row(body.across), row(body.upward), row(body.forward))};
+}
+
 }  // namespace
+
+double FrustumFace::beyond(const glm::dvec3& point) const {
+  const glm::dvec3 at = matrix * point;
+  if (!(at.z > 0)) return std::numeric_limits<double>::infinity();
+  return std::max(std::abs(at.x), std::abs(at.y)) / at.z - 1;
+}
+
+std::vector<FrustumFace> frustum_faces(const SeenBody& body) {
+  std::vector<FrustumFace> faces;
+  if (!body.perspective || !(body.far > body.near)) return faces;
+  const auto add = [&](const std::optional<FrustumFace>& face) {
+    if (face) faces.push_back(*face);
+  };
+  for (const double sign : {-1.0, 1.0}) {
+    add(side_face(body, body.across, body.upward, sign));
+    add(side_face(body, body.upward, body.across, sign));
+  }
+  add(end_face(body, body.near, -1));
+  add(end_face(body, body.far, 1));
+  return faces;
+}
+
+bool is_moderate(const glm::dmat3& matrix, std::span<const glm::dvec3> points) {
+  double least = std::numeric_limits<double>::infinity(), most = -least;
+  for (const glm::dvec3& point : points) {
+    const double k = (matrix * point).z / point.z;
+    least = std::min(least, k);
+    most = std::max(most, k);
+  }
+  // On one side of the line at infinity, and far enough from the line for float32.
+  constexpr double kStrongest = 1e-4;
+  return least > kStrongest * most && most > 0;
+}
 
 Warp warp_of(Fit fit, const SeenBody& body, double focus) {
   if (!body.perspective || body.points.empty()) return {};

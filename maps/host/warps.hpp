@@ -31,4 +31,23 @@ struct Warp {
 /// points, or the view is along the light's rays. `focus`: ViewFit::focus.
 Warp warp_of(Fit fit, const SeenBody& body, double focus);
 
+/// A face of the camera's frustum, seen from the light's centre: the homography from the directions in which rays leave
+/// the frustum through the face to the camera's image of the face. Of a side of the frustum, places are those along the
+/// picture's border and the inverse of the depth; of the near and the far end, those in the picture. All of the face is
+/// [−1, 1]².
+struct FrustumFace {
+  glm::dmat3 matrix{1};
+
+  /// Returns how far outside of [−1, 1]² the point is seen, at most 0 inside; infinite if not in front of the light.
+  [[nodiscard]] double beyond(const glm::dvec3& point) const;
+};
+
+/// Returns the faces of the frustum from body.near to body.far through which rays from the light's centre leave the
+/// frustum: those whose inner side the light is on. The frustum is convex, so each ray leaves through one of them.
+/// Empty for an orthographic camera.
+std::vector<FrustumFace> frustum_faces(const SeenBody& body);
+
+/// Returns whether float32 suffices for the homography at these points.
+bool is_moderate(const glm::dmat3& matrix, std::span<const glm::dvec3> points);
+
 }  // namespace penumbra::maps

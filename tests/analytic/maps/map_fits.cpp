@@ -1,14 +1,11 @@
-// Maps that are fitted to what a camera sees: closed forms of the papers, the aliasing error, and every fit's shadows
-// texel by texel.
+// Maps that are fitted to what a camera sees: the aliasing error, and every fit's shadows texel by texel.
+// map_fit_forms.cpp holds the closed forms.
 
 #include "maps/host/aliasing.hpp"
-#include "maps/host/base_face.hpp"
 #include "maps/host/face_fit.hpp"
-#include "maps/host/warps.hpp"
 #include "tests/analytic/maps/centre_maps.hpp"
 
 #include <fmt/format.h>
-#include <glm/trigonometric.hpp>
 
 #include <cmath>
 #include <limits>
@@ -19,156 +16,6 @@ namespace penumbra::tests {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-// S4 3.2.3.1: C_i = z_n (z_f / z_n)^(i/m); Zhang et al. 2006 mix it with equal slices.
-TEST(MapFits, SlicesEndWhereThePapersSay) {
-  maps::ViewFit fit{.fit = maps::Fit::cascades, .split_share = 0.5};
-  EXPECT_EQ(fit.slices(), 4U);
-  const auto ends = [&](maps::Split split) {
-    fit.split = split;
-    return maps::split_depths(fit, 1, 81, 4);
-  };
-  const auto expect = [](const std::vector<double>& found, const std::vector<double>& right) {
-    ASSERT_EQ(found.size(), right.size());
-    for (std::size_t i = 0; i < right.size(); ++i) EXPECT_NEAR(found[i], right[i], 1e-12 * right[i]);
-  };
-  expect(ends(maps::Split::logarithmic), {1, 3, 9, 27, 81});
-  expect(ends(maps::Split::uniform), {1, 21, 41, 61, 81});
-  expect(ends(maps::Split::practical), {1, 12, 25, 44, 81});
-  fit.split_share = 0.05;  // from 5 on
-  const double step = std::pow(81.0 / 5, 0.25);
-  expect(ends(maps::Split::pseudo_near), {1, 5 * step, 5 * step * step, 5 * step * step * step, 81});
-}
-
-TEST(MapFits, DistancesAreThePapers) {
-  // Wimmer et al. 2004: z_n + sqrt(z_n z_f), over the sine.
-  EXPECT_DOUBLE_EQ(maps::lispsm_distance(1, 16, 1), 5);
-  EXPECT_DOUBLE_EQ(maps::lispsm_distance(1, 16, 0.5), 10);
-  // Martin and Tan 2004: what is in focus comes to four fifths: 0.8 = (n + d)/d · f/(f + n).
-  const double n = maps::tsm_distance(8, 2);
-  EXPECT_NEAR((n + 8) / 8 * 2 / (2 + n), 0.8, 1e-12);
-  EXPECT_EQ(maps::tsm_distance(8, 6.4), kInfinity);
-}
-
-/// An overhead light so far away that its rays are parallel, over an eye at 0 that looks along b: S4 figure 3.7.
-class Overhead : public testing::Test {
- protected:
-  static constexpr double kHeight = 1e5, kNear = 1, kFar = 25;
-
-  Overhead() {
-    for (const double z : {kNear, kFar}) {
-      for (const double x : {-0.5, 0.5}) points_.emplace_back(x * z, z, kHeight);
-    }
-  }
-  [[nodiscard]] maps::FittedFace face(maps::Fit fit) const {
-    const maps::SeenBody body{.points = points_,
-                              .near = kNear,
-                              .far = kFar,
-                              .eye = {0, 0, kHeight},
-                              .forward = {0, 1, 0},
-                              .across = {2, 0, 0},
-                              .upward = {0, 0, 2}};
-    const maps::Warp warp = fit == maps::Fit::view ? maps::Warp() : maps::warp_of(fit, body, 0.25);
-    maps::PlaceBounds bounds;
-    for (const glm::dvec3& point : points_) {
-      const glm::dvec3 at = warp.matrix * point;
-      bounds.add(glm::dvec2(at) / at.z);
-    }
-    glm::dmat3 unit = maps::to_unit(bounds, 0);
-    if (warp.ratio > 0) {
-      unit[1] = {0, 1, 0};
-      unit[2].y = 0;
-    }
-    return {.to_face = unit * warp.matrix, .ratio = warp.ratio};
-  }
-  /// S4 equation 3.1 with cos α / cos β = 1, across the view and along it: 1/z · dz/ds.
-  static glm::dvec2 errors(const maps::FittedFace& face, double z) {
-    const glm::dvec3 at(0, z, kHeight);
-    const glm::dvec2 across = face.moves(at, {1, 0, 0}), along = face.moves(at, {0, 1, 0});
-    return {1 / (z * glm::length(across)), 1 / (z * glm::length(along))};
-  }
-
-  std::vector<glm::dvec3> points_;
-};
-
-TEST_F(Overhead, ErrorsAlongTheViewAreThoseOfTheNotes) {
-  const double ratio = kFar / kNear, length = kFar - kNear;
-  // Uniform: dz/ds is the length.
-  const maps::FittedFace uniform = face(maps::Fit::view);
-  EXPECT_NEAR(errors(uniform, kNear).y, length / kNear, 1e-6 * length);
-  EXPECT_NEAR(errors(uniform, kFar).y, length / kFar, 1e-6);
-  // PSM: constant across; along, it grows as z.
-  const maps::FittedFace psm = face(maps::Fit::psm);
-  EXPECT_NEAR(errors(psm, kFar).x / errors(psm, kNear).x, 1, 1e-3);
-  EXPECT_NEAR(errors(psm, kFar).y / errors(psm, kNear).y, ratio, 1e-3 * ratio);
-  EXPECT_NEAR(errors(psm, 5).y / errors(psm, kNear).y, 5, 5e-3);
-  // LiSPSM: n_opt is where both ends have the same error, the uniform one times sqrt(z_n / z_f), and less between.
-  const maps::FittedFace lispsm = face(maps::Fit::lispsm);
-  const double most = length / kNear / std::sqrt(ratio);
-  EXPECT_NEAR(errors(lispsm, kNear).y, most, 1e-4 * most);
-  EXPECT_NEAR(errors(lispsm, kFar).y, most, 1e-4 * most);
-  EXPECT_LT(errors(lispsm, 5).y, 0.6 * most);
-  // LogPSM: constant along both, the logarithm of the depths' ratio along the view.
-  const maps::FittedFace logpsm = face(maps::Fit::logpsm);
-  for (const double z : {1.0, 2.0, 7.0, 25.0}) {
-    EXPECT_NEAR(errors(logpsm, z).x, errors(logpsm, kNear).x, 1e-3 * errors(logpsm, kNear).x);
-    EXPECT_NEAR(errors(logpsm, z).y, std::log(ratio), 1e-3) << z;
-  }
-  // TSM: a quarter of the depths has four fifths of the rows.
-  const maps::FittedFace tsm = face(maps::Fit::tsm);
-  const auto row = [&](double z) { return tsm.place({0, z, kHeight})->y; };
-  EXPECT_NEAR((row(kNear + 0.25 * length) - row(kNear + 1e-9)) / (row(kFar - 1e-9) - row(kNear + 1e-9)), 0.8, 1e-4);
-}
-
-TEST_F(Overhead, PlacesAndDirectionsAreInverse) {
-  for (const maps::Fit fit : {maps::Fit::view, maps::Fit::lispsm, maps::Fit::tsm, maps::Fit::psm, maps::Fit::logpsm}) {
-    const maps::FittedFace one = face(fit);
-    for (const glm::dvec2& at : {glm::dvec2(0.1, 0.2), glm::dvec2(0.5, 0.9), glm::dvec2(0.99, 0.01)}) {
-      const auto back = one.place(3.0 * one.direction(at));
-      ASSERT_TRUE(back);
-      EXPECT_NEAR(glm::length(*back - at), 0, 1e-7);
-      EXPECT_NEAR(glm::dot(one.along, one.direction(at)), 1, 1e-12);
-    }
-  }
-}
-
-// Brabec et al. 2002: a direction at the angle θ from the axis is seen tan(θ/2) from the middle; the circle, θ = 90°,
-// is two texels from the sides. Changes are those of places.
-TEST(MapFits, AParaboloidSeesAHalfSpaceInACircle) {
-  const maps::FittedFace face = maps::paraboloid_face(0, 64, 2);
-  for (const double degrees : {0.0, 30.0, 60.0, 89.9}) {
-    const double angle = glm::radians(degrees);
-    for (const double turn : {0.0, 1.0, 4.0}) {
-      const glm::dvec3 e(std::sin(angle) * std::cos(turn), std::sin(angle) * std::sin(turn), std::cos(angle));
-      const auto at = face.place(3.0 * e);
-      ASSERT_TRUE(at);
-      EXPECT_NEAR(glm::length(*at - 0.5), (0.5 - 2.0 / 64) * std::tan(angle / 2), 1e-12);
-      EXPECT_NEAR(glm::length(face.direction(*at) - e / e.z), 0, 1e-9 / e.z);
-      const glm::dvec3 by(0.3, -0.2, 0.15);
-      const glm::dvec2 step = (*face.place(3.0 * e + 1e-6 * by) - *face.place(3.0 * e - 1e-6 * by)) / 2e-6;
-      EXPECT_NEAR(glm::length(face.moves(3.0 * e, by) - step), 0, 1e-8);
-    }
-  }
-  EXPECT_FALSE(face.place({1, 0, 0}));
-  EXPECT_FALSE(face.place({0.1, 0, -1}));
-}
-
-// A camera that moves by less than a texel, or turns a little, does not move texels: their borders are multiples of a
-// width that takes steps.
-TEST(MapFits, SnappedTexelsStayWhereTheyAre) {
-  std::set<double> widths;
-  for (int i = 0; i < 200; ++i) {
-    const double lower = -0.3 + 0.0001 * i, upper = 0.41 + 0.00013 * i;
-    const maps::SnappedSpan span = maps::snapped(lower, upper, 256);
-    widths.insert(span.texel);
-    EXPECT_LE(span.lower, lower);
-    EXPECT_GE(span.lower + 256 * span.texel, upper);
-    EXPECT_LE(span.texel, (upper - lower) / 255 * std::exp2(0.25) * (1 + 1e-12));
-    const double border = span.lower / span.texel;
-    EXPECT_EQ(border, std::round(border));
-  }
-  EXPECT_EQ(widths.size(), 1U);
-}
 
 class FittedMaps : public MapsTest {
  protected:
@@ -230,10 +77,11 @@ TEST_F(FittedMaps, EveryTexelSaysWhatItsCentreSees) {
     });
   };
   using maps::Fit;
-  const std::map<std::string, Fit> fits{
-      {"view", Fit::view},     {"cascades", Fit::cascades}, {"tiles", Fit::tiles},
-      {"lispsm", Fit::lispsm}, {"tsm", Fit::tsm},           {"psm", Fit::psm},
-      {"logpsm", Fit::logpsm}, {"cube", Fit::receivers},    {"paraboloid", Fit::receivers}};
+  const std::map<std::string, Fit> fits{{"view", Fit::view},      {"cascades", Fit::cascades},
+                                        {"tiles", Fit::tiles},    {"lispsm", Fit::lispsm},
+                                        {"tsm", Fit::tsm},        {"psm", Fit::psm},
+                                        {"logpsm", Fit::logpsm},  {"faces", Fit::faces},
+                                        {"cube", Fit::receivers}, {"paraboloid", Fit::receivers}};
   for (const auto& [name, fit] : fits) {
     for (const std::string body : {"visible", "frustum"}) {
       const bool of_receivers = fit == Fit::receivers;  // whatever the camera sees
@@ -302,7 +150,7 @@ TEST_F(FittedMaps, EveryFitAliasesLessThanTheOneBefore) {
   const auto receivers = counters(stage, options("receivers")), view = counters(stage, options("view"));
   EXPECT_EQ(receivers.at("aliasingPixels"), view.at("aliasingPixels"));
   EXPECT_LT(storage(view), 0.97 * storage(receivers));
-  for (const char* fit : {"lispsm", "tsm", "psm", "logpsm", "cascades"}) {
+  for (const char* fit : {"lispsm", "tsm", "psm", "logpsm", "faces", "cascades"}) {
     const auto found = counters(stage, options(fit));
     EXPECT_LT(storage(found), 0.5 * storage(view)) << fit;
     EXPECT_LT(found.at("aliasingWorstThousandths"), view.at("aliasingWorstThousandths")) << fit;
@@ -389,7 +237,7 @@ TEST_F(FittedMaps, HemicubesFiltersAndLayersAgree) {
       visibility::MethodOptions fine = one.more;
       fine["size"] = "256";
       const Masks right = run(one.make, stage, fine);
-      for (const char* fit : {"view", "cascades", "tiles", "lispsm", "tsm", "psm", "logpsm"}) {
+      for (const char* fit : {"view", "cascades", "tiles", "lispsm", "tsm", "psm", "logpsm", "faces"}) {
         visibility::MethodOptions given = fine;
         given["fit"] = fit;
         const Masks found = run(one.make, stage, given);
@@ -448,13 +296,34 @@ TEST_F(FittedMaps, NoReceiverIsOutsideWhereTheLightsPlaneCutsWalls) {
   const visibility::MethodOptions circle = options("receivers", {{"projection", "paraboloid"}});
   EXPECT_EQ(counters(stage, circle).at("outsidePixels"), 0U);
   EXPECT_LE(differing(run(maps::make_shadow_map, stage, circle)), most);
-  for (const char* fit : {"view", "cascades", "tiles", "lispsm", "tsm", "psm", "logpsm"}) {
+  for (const char* fit : {"view", "cascades", "tiles", "lispsm", "tsm", "psm", "logpsm", "faces"}) {
     for (const char* body : {"visible", "frustum"}) {
       const visibility::MethodOptions choice = options(fit, {{"body", body}});
       EXPECT_EQ(counters(stage, choice).at("outsidePixels"), 0U) << fit << ", " << body;
       EXPECT_LE(differing(run(maps::make_shadow_map, stage, choice)), most) << fit << ", " << body;
     }
   }
+}
+
+// Tiles that are cut while a cut changes the picture: like any tiles they show what maps of all receivers show, with
+// fewer pixels off than one map of the same size has; they do not depend on the rows that are asked for.
+TEST_F(FittedMaps, QueriedTilesAreCutWhereShadowsEnd) {
+  const Stage stage(floor_and_plates(), 96, 72, light_samples(1));
+  const Masks right = run(maps::make_shadow_map, stage, options("view", {{"size", "4096"}}));
+  const auto off = [&](const Masks& found) {
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < stage.samples.size(); ++i) count += found.visibility[i] != right.visibility[i] ? 1 : 0;
+    return count;
+  };
+  const visibility::MethodOptions small{{"size", "64"}, {"tiles", "40"}, {"refine", "queried"}, {"changed", "0"}};
+  const auto method = maps::make_shadow_map(device(), options("tiles", small));
+  const Masks found = run(*method, stage);
+  const auto counters = method->counters();
+  EXPECT_GT(counters.at("queriedPictures"), 2U);
+  EXPECT_GT(counters.at("mapFaces"), 10U);
+  EXPECT_LE(counters.at("mapFaces"), 40U);
+  EXPECT_LT(2 * off(found), off(run(maps::make_shadow_map, stage, options("view", {{"size", "64"}}))));
+  EXPECT_EQ(run(*method, stage, 7).visibility, found.visibility);
 }
 
 TEST_F(FittedMaps, WhatNoFitCanDoIsRefused) {
