@@ -22,11 +22,14 @@ namespace penumbra::maps {
 
 namespace {
 
-/// Returns the kinds of light that a method is extended to with these options. A camera's view (fit=) is not mapped to
-/// the space of a sun or of a lamp's disks, where the position of a map would be wrong.
+/// Returns the kinds of light that a method is extended to with these options. A camera's view (fit=, reproject=) is
+/// not mapped to the space of a sun or of a lamp's disks, where the position of a map, or of a pixel, would be wrong.
 Given given_with(Given given, const visibility::MethodOptions& options) {
   const auto fit = options.find("fit");
-  if (fit != options.end() && fit->second != "receivers") given.suns = given.spheres = false;
+  const auto reproject = options.find("reproject");
+  const bool sees_camera = (fit != options.end() && fit->second != "receivers") ||
+                           (reproject != options.end() && reproject->second != "off");
+  if (sees_camera) given.suns = given.spheres = false;
   return given;
 }
 

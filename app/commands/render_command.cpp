@@ -91,6 +91,7 @@ class RenderCommand : public Command {
     outputs.refuse_inputs(now.scene.sources);
     const bool moves = is_sequence_ || now.scene.motion.has_value();
     if (moves && (frames.size() > 1 || request_.moments > 1)) renderer.expect_frames();
+    if (frames.size() > 1) renderer.remember_frames();
     if (frames.front() && !moves) {
       progress.clear();
       spdlog::warn("{} has no animation: every frame shows the same", now.scene.name);
@@ -101,8 +102,11 @@ class RenderCommand : public Command {
       if (is_whole_exr(first, kExposureAttribute)) exposure.stops = written_exposure(first).value_or(exposure.stops);
     }
 
+    std::size_t last = at;
     while (at < frames.size()) {
       const std::size_t next = next_wanted(cameras, at + 1);
+      if (at != last + 1) renderer.forget_frames();  // the frames between were made by another run
+      last = at;
       // The next scene is read while this one is rendered, by a process of its own.
       std::future<ReadScene> coming;
       if (moves && next < frames.size())
@@ -110,7 +114,10 @@ class RenderCommand : public Command {
       for (const std::string& camera : cameras) {
         const FrameFiles files = files_of(options_, frames[at], camera);
         if (options_.skip_existing) {
-          if (files.all_there()) continue;
+          if (files.all_there()) {
+            renderer.forget_frames();
+            continue;
+          }
           progress.clear();
           for (const std::filesystem::path& file : files.spoilt())
             spdlog::warn("{} is cut off, or no file that this command wrote: it is made again", file.string());

@@ -277,6 +277,9 @@ class Comparison {
   Finished run_one(const Entry& entry, const std::vector<Light>& lights, const TileSink& sink) {
     const MethodDescription& description = entry.description;
     const auto method = make_method(description.name, entry.options, machine_);
+    if (options_.memories != nullptr && &entry != &reference_) {
+      visibility::remember(*method, &(*options_.memories)[entry.label]);
+    }
     BeautyAccumulator beauty(session_, lights);
     std::optional<BitsOutput> bits;
     if (wants_bits(entry)) bits.emplace(files_.of(entry.label, ".bits"), session_, lights.front());

@@ -4,8 +4,10 @@
 #include "app/process/progress.hpp"
 #include "compare/stats.hpp"
 #include "scenes/scene.hpp"
+#include "visibility/frame_memory.hpp"
 
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -23,11 +25,13 @@ struct ComparisonOptions {
   std::string sample_pixels = "all";
   std::uint32_t runs = 0;  ///< timed runs of each entry; 0: as many as begin within two seconds, at most five
   bool bits = false, png = false;
-  bool error_budget = false;      ///< compute the causes of error of each image-based method
-  std::filesystem::path stats;    ///< empty: only DIR/metrics.json
-  TevPictures* tev = nullptr;     ///< shows each written picture
-  bool writes = true;             ///< writes all of DIR; false: writes nothing and only returns the result
-  std::optional<double> time;     ///< time of the scene in seconds; nullopt: at rest
+  bool error_budget = false;    ///< compute the causes of error of each image-based method
+  std::filesystem::path stats;  ///< empty: only DIR/metrics.json
+  TevPictures* tev = nullptr;   ///< shows each written picture
+  bool writes = true;           ///< writes all of DIR; false: writes nothing and only returns the result
+  std::optional<double> time;   ///< time of the scene in seconds; nullopt: at rest
+  /// Pictures of earlier frames, by entry; null: this is no sequence.
+  std::map<std::string, visibility::FrameMemory>* memories = nullptr;
   std::optional<float> exposure;  ///< of displayed pictures, in stops; nullopt: from the reference's brightness
   std::vector<std::string> view_arguments = {};  ///< of the program, to see the scene in the live view; for the report
 };

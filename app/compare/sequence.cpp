@@ -175,6 +175,7 @@ compare::Metrics compare_frames(const RunOptions& run, const ComparisonOptions& 
   compare::Metrics all;
   SayOnce said(progress);
   std::map<std::string, EntrySum> sums;
+  std::map<std::string, visibility::FrameMemory> memories;
   Json rows = Json::array();
   std::uint64_t judged = 0, horizon = 0;
   for (const std::int64_t number : frames) {
@@ -182,6 +183,8 @@ compare::Metrics compare_frames(const RunOptions& run, const ComparisonOptions& 
     of_frame.time = static_cast<double>(number) * (1 / fps);  // as in `render`
     of_frame.writes = number == frames.back();
     if (!of_frame.writes) of_frame.stats.clear();
+    of_frame.memories = &memories;
+    for (auto& [entry, memory] : memories) memory.next_frame();
     EntryErrors errors;
     all = compare_methods(run, of_frame, arguments, said, &errors);
     const std::size_t most = std::size_t{all.reference.width} * all.reference.height * frames.size();

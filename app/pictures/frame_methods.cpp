@@ -198,6 +198,12 @@ FaintLights FrameRenderer::leave_out_faint(const BeautyAccumulator& beauty) {
   return faint;
 }
 
+visibility::FrameMemory* FrameRenderer::memory() {
+  const bool of_one_moment = picture_.frame.moments.empty() && !lit().camera.lens;
+  if (!memories_ || picture_.layers || picture_.in_bands || !of_one_moment) return nullptr;
+  return &(*memories_)[picture_.frame.camera];
+}
+
 MethodRun FrameRenderer::run_lights(BeautyAccumulator& beauty, BitsOutput* bits) {
   MethodRun all;
   const Stopwatch find;
@@ -216,6 +222,7 @@ MethodRun FrameRenderer::run_lights(BeautyAccumulator& beauty, BitsOutput* bits)
     plan.holds = &kept.prepared;
     plan.band_rows = picture_.frame.band_rows;
     plan.shades = true;
+    visibility::remember(*kept.method, memory());
     std::unique_ptr<visibility::Method> around;  // asks the method about fewer view samples, or in another order
     if (method.description.gives_area() && lit().camera.lens)
       around = std::make_unique<LensAreas>(*kept.method);

@@ -219,6 +219,7 @@ void FrameRenderer::add_panes() {
 void FrameRenderer::render(scenes::Scene scene, const Frame& frame, const std::filesystem::path& bits,
                            double read_seconds) {
   picture_.frame = frame;
+  if (memories_) (*memories_)[frame.camera].next_frame();
   spent_ = {.load = read_seconds};
   picture_.bits.reset();
   picture_.mean.reset();

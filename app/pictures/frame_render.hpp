@@ -12,6 +12,7 @@
 #include "app/pictures/tev_pictures.hpp"
 #include "app/runner.hpp"
 #include "app/session.hpp"
+#include "visibility/frame_memory.hpp"
 
 #include <glm/vec3.hpp>
 
@@ -79,6 +80,12 @@ class FrameRenderer {
 
   /// Prepares for scenes that follow one another as frames of an animation. To be called before the first picture.
   void expect_frames() { expects_frames_ = true; }
+  /// Gives methods the previous pictures of the same camera (visibility::RemembersFrames), from the next picture on.
+  void remember_frames() { memories_.emplace(); }
+  /// Forgets all previous pictures.
+  void forget_frames() {
+    if (memories_) memories_.emplace();
+  }
   /// Renders pictures at these view samples, of one moment and one sample a pixel. No surface lies in front of these
   /// points, so translucent surfaces are not composited. To be called before the first picture.
   void look_at_surface(SurfaceView view);
@@ -129,6 +136,8 @@ class FrameRenderer {
   /// Adds the cost of other moments of the same lights to the cost of this one.
   static void add_times(MethodRun& to, const MethodRun& before);
   void keep_masks(const TileResult& tile);
+  /// Returns the previous pictures for the current view samples; null if there are none, or the picture is a mean.
+  visibility::FrameMemory* memory();
   /// Returns the names of the whole lights whose V is written to no file and read by no other code.
   [[nodiscard]] std::vector<std::string> lights_without_v() const;
   /// Composites translucent surfaces (BLEND), each shaded at its own view samples, over the surfaces behind.
@@ -226,8 +235,9 @@ class FrameRenderer {
   std::optional<Fine> fine_;
   std::vector<Kept> kept_;
   bool expects_frames_ = false;
-  std::optional<SurfaceView> surface_;  // nullopt: view samples of a camera
-  TevPictures* tev_ = nullptr;          // nullptr: pictures are only written
+  std::optional<std::map<std::string, visibility::FrameMemory>> memories_;  // by camera; nullopt: pictures are apart
+  std::optional<SurfaceView> surface_;                                      // nullopt: view samples of a camera
+  TevPictures* tev_ = nullptr;                                              // nullptr: pictures are only written
   Said said_;
   Plan plan_;
   Done done_;

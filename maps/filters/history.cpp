@@ -1,8 +1,9 @@
 // Scherzer, Jeschke and Wimmer 2007, "Pixel-correct shadow maps with temporal reprojection and shadow test confidence",
 // as described in the course notes of Eisemann et al. (2009, section 3.2.6): each frame has a map with displaced
 // texels, and V of a pixel is mixed from this frame's V and the V stored before, by the confidence 1 - 2 max |position
-// - texel's centre|. Departure: the camera is still, so a pixel finds its stored V in its own place, and no frame
-// depends on another picture.
+// - texel's centre|. The V stored before is found at the pixel's place in the picture before, unless another surface is
+// seen there. Departure: history=N makes N frames of each picture, as of a still camera, which depend on no other
+// picture.
 
 #include "maps/filters/history.hpp"
 
@@ -15,6 +16,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -28,7 +31,7 @@ double mirrored(std::uint32_t i, std::uint32_t base) {
   return value;
 }
 
-class History final : public visibility::Method {
+class History final : public visibility::Method, public visibility::RemembersFrames {
  public:
   History(std::unique_ptr<Method> method, std::unique_ptr<glm::dvec2> jitter, const HistoryOptions& options)
       : jitter_(std::move(jitter)), method_(std::move(method)), options_(options) {}
@@ -41,6 +44,7 @@ class History final : public visibility::Method {
   }
   void prepare_light(const visibility::Light& light) override {
     light_ = &light;
+    reprojected_ = 0;
     *jitter_ = glm::dvec2(0);
     method_->prepare_light(light);
   }
@@ -49,6 +53,7 @@ class History final : public visibility::Method {
     method_->prepare_view(samples);
   }
   [[nodiscard]] std::uint32_t max_tile_rows() const override { return method_->max_tile_rows(); }
+  void remember(visibility::FrameMemory* memory) override { memory_ = options_.reproject ? memory : nullptr; }
   void evaluate(const visibility::Tile& tile) override;
   void read_visibility(std::span<float> visibility) override {
     PENUMBRA_ASSERT(visibility.size() == mixed_.size(), "{} values for a tile of {}", visibility.size(), mixed_.size());
@@ -58,6 +63,7 @@ class History final : public visibility::Method {
   [[nodiscard]] std::map<std::string, std::uint64_t> counters() const override {
     auto counters = method_->counters();
     counters["historyFrames"] = options_.frames;
+    if (options_.reproject) counters["reprojectedPixels"] = reprojected_;
     return counters;
   }
   [[nodiscard]] std::uint64_t memory_bytes() const override { return method_->memory_bytes(); }
@@ -69,7 +75,14 @@ class History final : public visibility::Method {
   const visibility::SceneFloats* scene_ = nullptr;
   const visibility::Light* light_ = nullptr;
   const visibility::ViewSamples* samples_ = nullptr;
+  visibility::FrameMemory* memory_ = nullptr;
+  std::uint64_t reprojected_ = 0;
   std::vector<float> mixed_;  ///< for the tile last evaluated
+
+  [[nodiscard]] visibility::FrameMemory::Key key() const { return {light_->index, light_->piece}; }
+  /// Returns V of the tile in the picture before; NaN where it does not show the surface.
+  [[nodiscard]] std::vector<float> before(const visibility::Tile& tile);
+  void keep(const visibility::Tile& tile);
 };
 
 /// Confidence of a point: 1 at the centre of its texel, 0 on the texel's border and in directions without a face.
@@ -91,30 +104,91 @@ void History::evaluate(const visibility::Tile& tile) {
   const LightBasis basis = light_basis(*light_, *scene_);
   const glm::vec3 centre(basis.center);
   std::vector<float> now(std::size_t{tile.row_count} * samples_->width);
+  mixed_ = before(tile);
+  const std::uint32_t earlier = memory_ != nullptr ? memory_->frame * options_.frames : 0;
   for (std::uint32_t frame = 0; frame < options_.frames; ++frame) {
-    *jitter_ = jitter_of(frame);
+    *jitter_ = jitter_of(earlier + frame);
     method_->prepare_light(*light_);
     method_->prepare_view(*samples_);
     method_->evaluate(tile);
     method_->read_visibility(now);
-    if (frame == 0) {
-      mixed_ = now;
-      continue;
-    }
     const FittedViews fitted =
         fit_views(*scene_, *light_, basis, {&centre, 1}, {.size = options_.size, .jitter = *jitter_});
     std::vector<Face> faces;
     for (std::uint32_t i = 0; i < fitted.faces; ++i) faces.push_back(face_of(fitted.views.front(), basis, i));
     for (std::size_t i = 0; i < now.size(); ++i) {
       if (samples_->triangle[first + i] == visibility::ViewSamples::kBackground) continue;
+      if (std::isnan(mixed_[i])) {
+        mixed_[i] = now[i];
+        continue;
+      }
       const glm::dvec3 d = glm::dvec3(samples_->p[first + i]) - glm::dvec3(centre);
       const auto share = static_cast<float>(confidence(faces, d, options_.size));
       mixed_[i] = share * now[i] + (1 - share) * mixed_[i];
     }
   }
+  keep(tile);
+}
+
+std::vector<float> History::before(const visibility::Tile& tile) {
+  const std::size_t first = std::size_t{tile.first_row} * samples_->width;
+  std::vector<float> found(std::size_t{tile.row_count} * samples_->width, std::numeric_limits<float>::quiet_NaN());
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    if (samples_->triangle[first + i] == visibility::ViewSamples::kBackground) found[i] = 1;
+  }
+  if (memory_ == nullptr) return found;
+  const auto kept = memory_->before.find(key());
+  if (kept == memory_->before.end()) return found;
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    if (samples_->triangle[first + i] == visibility::ViewSamples::kBackground) continue;
+    found[i] = reprojected(kept->second, *samples_, first + i);
+    reprojected_ += std::isnan(found[i]) ? 0 : 1;
+  }
+  return found;
+}
+
+void History::keep(const visibility::Tile& tile) {
+  if (memory_ == nullptr) return;
+  visibility::KeptPicture& picture = memory_->now[key()];
+  if (tile.first_row == 0 || picture.visibility.size() != samples_->size()) {
+    picture = {*samples_, std::vector<float>(samples_->size(), std::numeric_limits<float>::quiet_NaN())};
+  }
+  std::ranges::copy(
+      mixed_, picture.visibility.begin() + static_cast<std::ptrdiff_t>(std::size_t{tile.first_row} * samples_->width));
 }
 
 }  // namespace
+
+float reprojected(const visibility::KeptPicture& before, const visibility::ViewSamples& samples, std::size_t pixel) {
+  constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
+  // Surfaces whose depths differ by less are one: rounding, and a pixel's bend of a curved surface.
+  constexpr double kSameDepth = 0x1p-10;
+  const visibility::PinholeCamera& camera = before.samples.camera;
+  const glm::dvec3 p(samples.p[pixel]), n(samples.n[pixel]), d = p - camera.eye;
+  const double depth = glm::dot(camera.forward, d);
+  if (camera.half_height || !(depth > 0)) return kNone;
+  const double width = before.samples.width, height = before.samples.height;
+  const double x = 0.5 * (glm::dot(camera.screen_across(), d) / depth + 1) * width - 0.5;
+  const double y = 0.5 * (1 - glm::dot(camera.screen_upward(), d) / depth) * height - 0.5;
+  if (!(x > -1 && y > -1 && x < width && y < height)) return kNone;
+  double sum = 0, weights = 0;
+  for (const double row : {std::floor(y), std::floor(y) + 1}) {
+    for (const double column : {std::floor(x), std::floor(x) + 1}) {
+      const double weight = (1 - std::abs(x - column)) * (1 - std::abs(y - row));
+      if (!(weight > 0) || std::min(column, row) < 0 || column >= width || row >= height) continue;
+      const std::size_t there = static_cast<std::size_t>(row) * before.samples.width + static_cast<std::size_t>(column);
+      const float visibility = before.visibility[there];
+      if (before.samples.triangle[there] == visibility::ViewSamples::kBackground || std::isnan(visibility)) continue;
+      // The depth at which the pixel there would see the plane of this surface.
+      const glm::dvec3 seen = glm::dvec3(before.samples.p[there]) - camera.eye;
+      const double on_plane = glm::dot(n, d) / glm::dot(n, seen);
+      if (!(std::abs(on_plane - 1) < kSameDepth)) continue;
+      sum += weight * static_cast<double>(visibility);
+      weights += weight;
+    }
+  }
+  return weights > 0 ? static_cast<float>(sum / weights) : kNone;
+}
 
 glm::dvec2 jitter_of(std::uint32_t frame) {
   if (frame == 0) return glm::dvec2(0);

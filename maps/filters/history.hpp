@@ -1,9 +1,10 @@
 #pragma once
 
-#include "visibility/method.hpp"
+#include "visibility/frame_memory.hpp"
 
 #include <glm/vec2.hpp>
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 
@@ -12,12 +13,19 @@ namespace penumbra::maps {
 /// Displacement of the texels of a sequence's frame, in texels, on either axis in [−½, ½). Frame 0: none.
 glm::dvec2 jitter_of(std::uint32_t frame);
 
-/// Scherzer, Jeschke and Wimmer 2007: hard shadows accumulated over several pictures of a still camera. `method` has a
-/// map of `size` texels a side from the light's centre, displaced by *jitter of a texel when a light is prepared;
-/// `jitter` must outlive the method.
+/// Scherzer, Jeschke and Wimmer 2007: hard shadows accumulated over several pictures, of a still camera or of a
+/// sequence. `method` has a map of `size` texels a side from the light's centre, displaced by *jitter of a texel when a
+/// light is prepared; `jitter` must outlive the method.
 struct HistoryOptions {
-  std::uint32_t frames = 1, size = 0;
+  std::uint32_t frames = 1;  ///< maps for each picture
+  std::uint32_t size = 0;
+  bool reproject = false;  ///< begin with V of the sequence's previous picture (visibility::RemembersFrames)
 };
+
+/// Returns V that a previous picture has for the surface seen at `pixel`, interpolated between the pixels around its
+/// place there that show the same surface; NaN if none does.
+float reprojected(const visibility::KeptPicture& before, const visibility::ViewSamples& samples, std::size_t pixel);
+
 std::unique_ptr<visibility::Method> with_history(std::unique_ptr<visibility::Method> method,
                                                  std::unique_ptr<glm::dvec2> jitter, const HistoryOptions& options);
 

@@ -35,6 +35,11 @@ constexpr visibility::IntegerOption kHistory{
     "history", 1, 1024, 1,
     "frames of a still camera, each with a map whose texels lie elsewhere, mixed by confidence; 1: one map"};
 
+constexpr auto kReproject = visibility::flag_option(
+    "reproject", false,
+    "of a sequence: mix V with that of the frame before, where it shows the same surface; the first frame of a run has "
+    "none before");
+
 visibility::MeshVerdict shadow_map_verdict(const mesh::Diagnosis& mesh) {
   return judge_for_maps("a hard shadow of the light's centre, its edges off by up to half a texel", mesh);
 }
@@ -55,6 +60,7 @@ visibility::MethodDescription shadow_map_description() {
       .repairs = filter_repairs};
   description.options.push_back(kHardTest.description());
   description.options.push_back(kHistory.description());
+  description.options.push_back(kReproject.description());
   for (const auto& option : {kOffsetFactor.description(), kOffsetUnits.description()}) {
     description.options.push_back(option);
   }
@@ -82,11 +88,11 @@ std::unique_ptr<visibility::Method> make_shadow_map(const render::Device& device
     recipe.products.push_back(std::make_unique<NearestIds>(device, parsed[kRasteriser],
                                                            test == HardTest::object ? IdsOf::objects : IdsOf::planes));
   }
-  const HistoryOptions history{parsed[kHistory], parsed[kMapSize]};
-  if (history.frames == 1) return make_map_method(device, std::move(recipe), options);
+  const HistoryOptions history{parsed[kHistory], parsed[kMapSize], parsed[kReproject]};
+  if (history.frames == 1 && !history.reproject) return make_map_method(device, std::move(recipe), options);
   if (const ViewFit fit = view_fit(recipe.description.options, parsed); fit.fit != Fit::receivers || fit.has_faces()) {
     throw UsageError(
-        "method shadow-map: history={} moves windows of all receivers; take fit=receivers and "
+        "method shadow-map: history={} and reproject=on move windows of all receivers; take fit=receivers and "
         "projection=window or cube",
         history.frames);
   }

@@ -69,6 +69,44 @@ TEST_F(Frames, AreAtTheirTime) {
     EXPECT_EQ(render({"--frame", "5", "--fps", wrong, "-o", path("h.exr")}).code, 2) << wrong;
 }
 
+/// V of reproject=on depends on the frames before, of this run alone: its first frame, and the first after frames that
+/// another run made, are those by themselves. `compare` has the same frames.
+TEST_F(Frames, ReprojectedBeginWithARun) {
+  const std::string method = "shadow-map:size=24:reproject=on";
+  const std::vector<std::string> sequence = {"--frames", "1-3", "--method", method, "-o", path("s.exr")};
+  std::vector<std::string> counted = sequence;
+  counted.insert(counted.end(), {"--stats", path("t.json")});
+  ASSERT_EQ(render(counted).code, 0);
+  const auto alone = [&](const char* frame) {
+    EXPECT_EQ(render({"--frame", frame, "--method", method, "-o", path("one.exr")}).code, 0);
+    return read("one.exr");
+  };
+  const std::string second = read("s.0002.exr"), third = read("s.0003.exr");
+  EXPECT_EQ(read("s.0001.exr"), alone("1"));
+  EXPECT_NE(second, alone("2"));
+  EXPECT_NE(third, alone("3"));
+  const auto reprojected = [&](const char* file) {
+    return json::parse(read(file)).at("counters").at("reprojectedPixels").get<std::uint64_t>();
+  };
+  EXPECT_EQ(reprojected("t.0001.json"), 0U);
+  EXPECT_GT(reprojected("t.0002.json"), 200U);  // of 384
+  std::vector<std::string> rest = sequence;
+  rest.emplace_back("--skip-existing");
+  std::filesystem::remove(path("s.0001.exr"));
+  std::filesystem::remove(path("s.0003.exr"));
+  ASSERT_EQ(render(rest).code, 0);
+  EXPECT_EQ(read("s.0002.exr"), second);
+  EXPECT_EQ(read("s.0003.exr"), alone("3"));
+  ASSERT_EQ(run({"compare", path("scene.glb"), "--size", "24x16", "--fps", "10", "--methods", method,
+                 "--reference-samples", "16", "--frames", "1-3", "-o", path("dir")})
+                .code,
+            0);
+  ASSERT_EQ(render(sequence).code, 0);
+  EXPECT_EQ(read("s.0003.exr"), third);
+  EXPECT_EQ(read_exr(path("dir/shadow-map,size=24,reproject=on.exr")).floats.at("V"),
+            read_exr(path("s.0003.exr")).floats.at("V"));
+}
+
 TEST_F(Frames, ThatAreThereAreSkipped) {
   const std::vector<std::string> sequence = {"--frames",    "1-3",        "-o",    path("s.exr"),    "--png",
                                              path("s.png"), "--exposure", "first", "--skip-existing"};

@@ -151,7 +151,8 @@ bool options_exclude(const std::string& method, const std::map<std::string, std:
   };
   const auto is_planar = [](const std::string& kind) { return kind != "sphere" && kind != "sun"; };
   const bool all_planar = std::ranges::all_of(scene.lights, is_planar);
-  if (options.contains("fit") && !is("fit", "receivers") && !all_planar) return true;  // looks through the camera
+  const bool looks_through_camera = (options.contains("fit") && !is("fit", "receivers")) || is("reproject", "on");
+  if (looks_through_camera && !all_planar) return true;
   const bool projected = options.contains("projection") && !is("projection", "window");
   if (projected && options.contains("fit") && !is("fit", "receivers")) return true;  // a picture of all receivers
   if (method == "edge-scatter") {
@@ -181,6 +182,7 @@ bool options_exclude(const std::string& method, const std::map<std::string, std:
            (keep && (taps || mean || (options.contains("weights") && !is("weights", "equal")))) ||
            (mean && (taps || is("weights", "bilinear"))) ||
            (options.contains("history") && !is("history", "1") && (circle || !receivers)) ||
+           (is("reproject", "on") && (circle || !receivers)) ||
            (offset && (circle || is("fit", "logpsm") || (options.contains("depth") && !is("depth", "first")))) ||
            (is("weights", "bilinear") && taps) ||
            (method == "pcf" && faces && is("size", "8") && !options.contains("window"));  // its default is wider

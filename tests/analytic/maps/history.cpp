@@ -80,5 +80,106 @@ TEST_F(History, ApproachesTheHardShadow) {
   EXPECT_THROW(std::ignore = maps::make_shadow_map(device(), {{"history", "2"}, {"fit", "cascades"}}), UsageError);
 }
 
+/// A floor under a turned board, seen from a place beside it; the light's centre is at (0, 5, 0).
+class Reprojection : public MapsTest {
+ protected:
+  static constexpr glm::dvec3 kMiddle{0.11, 2, 0.07}, kU{0.62, 0, 0.23}, kV{-0.2, 0.0, 0.539130434782608};
+
+  static Stage seen_from(double x) {
+    scenes::Scene scene = bare_floor(0.3);
+    add_quad(scene, kMiddle, kU, kV).receives_shadow = false;
+    scene.cameras[0] = camera({x, 4.5, 3}, {x / 3, 0, 0}, 40);
+    return {scene, 128, 96, light_samples(1)};
+  }
+  /// Returns whether the board is between two points.
+  static bool hides(const glm::dvec3& from, const glm::dvec3& to) {
+    const double share = (kMiddle.y - from.y) / (to.y - from.y);
+    const glm::dvec3 on = from + share * (to - from) - kMiddle;
+    const double across = glm::dot(on, kU) / glm::dot(kU, kU), along = glm::dot(on, kV) / glm::dot(kV, kV);
+    return share > 0 && share < 1 && std::max(std::abs(across), std::abs(along)) < 1;
+  }
+  static glm::dvec3 place(const Stage& stage, std::size_t pixel) {
+    return glm::dvec3(stage.samples.p[pixel]) + stage.floats.origin;
+  }
+};
+
+/// V that a picture has for a place is what it shows there: here a plane's height over the floor. What it does not
+/// show, since the board is before it, or it is outside, has none.
+TEST_F(Reprojection, FindsTheSameSurface) {
+  const Stage before = seen_from(0.9), now = seen_from(-0.4);
+  visibility::KeptPicture kept{before.samples, {}};
+  const auto value = [](const glm::dvec3& p) { return 0.5 + 0.1 * p.x + 0.07 * p.z; };
+  for (std::size_t i = 0; i < before.samples.size(); ++i) {
+    kept.visibility.push_back(static_cast<float>(value(place(before, i))));
+  }
+  std::size_t found = 0, hidden = 0;
+  for (std::size_t i = 0; i < now.samples.size(); ++i) {
+    const glm::dvec3 p = place(now, i);
+    if (now.samples.triangle[i] < 0 || p.y > 1) continue;
+    const float v = maps::reprojected(kept, now.samples, i);
+    const glm::dvec3 eye = before.samples.camera.eye + before.floats.origin;
+    // Well within the board's picture no neighbour is floor either.
+    const bool is_hidden = hides(eye, p) && hides(eye, p + glm::dvec3(0.15, 0, 0)) &&
+                           hides(eye, p - glm::dvec3(0.15, 0, 0)) && hides(eye, p + glm::dvec3(0, 0, 0.15)) &&
+                           hides(eye, p - glm::dvec3(0, 0, 0.15));
+    hidden += is_hidden ? 1 : 0;
+    if (is_hidden) {
+      EXPECT_TRUE(std::isnan(v)) << i;
+    } else if (!std::isnan(v)) {
+      ++found;
+      EXPECT_NEAR(static_cast<double>(v), value(p), 0.006) << i << ": a pixel's width, beside what is hidden";
+    }
+  }
+  EXPECT_GT(found, 5000U);
+  EXPECT_GT(hidden, 200U);
+}
+
+/// One map a frame, as many frames of a camera that stands still: what history makes of them.
+TEST_F(Reprojection, OfAStillCameraIsHistory) {
+  const Stage stage = seen_from(0.5);
+  visibility::FrameMemory memory;
+  const auto method = maps::make_shadow_map(device(), {{"size", "64"}, {"reproject", "on"}});
+  visibility::remember(*method, &memory);
+  for (int frame = 0; frame < 4; ++frame) {
+    memory.next_frame();
+    const Masks found = run(*method, stage);
+    EXPECT_EQ(run(*method, stage, 7).visibility, found.visibility) << "again, in tiles";
+    const Masks right = run(maps::make_shadow_map, stage, {{"size", "64"}, {"history", fmt::format("{}", frame + 1)}});
+    for (std::size_t i = 0; i < stage.samples.size(); ++i) {
+      EXPECT_NEAR(found.visibility[i], right.visibility[i], 1e-4) << frame << ", pixel " << i;
+    }
+  }
+}
+
+/// A camera that moves along the floor: after some frames fewer pixels are on the wrong side of the shadow's edge than
+/// in a picture by itself.
+TEST_F(Reprojection, OfAMovingCameraApproachesTheHardShadow) {
+  visibility::FrameMemory memory;
+  const auto method = maps::make_shadow_map(device(), {{"size", "64"}, {"reproject", "on"}});
+  visibility::remember(*method, &memory);
+  const auto wrong = [&](const Stage& stage, const Masks& found) {
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < stage.samples.size(); ++i) {
+      const glm::dvec3 p = place(stage, i);
+      if (stage.samples.triangle[i] < 0 || p.y > 1) continue;
+      count += (found.visibility[i] < 0.5F) != hides(p, {0, 5, 0}) ? 1 : 0;
+    }
+    return count;
+  };
+  constexpr int kFrames = 32;
+  for (int frame = 0; frame < kFrames; ++frame) {
+    memory.next_frame();
+    const Stage stage = seen_from(-0.8 + 0.04 * frame);
+    const Masks found = run(*method, stage);
+    if (frame + 1 < kFrames) continue;
+    const std::size_t one = wrong(stage, run(maps::make_shadow_map, stage, {{"size", "64"}})),
+                      many = wrong(stage, found);
+    fmt::print("wrong: {} by itself, {} in the sequence\n", one, many);
+    EXPECT_GT(one, 60U);
+    EXPECT_LT(3 * many, 2 * one);
+    EXPECT_GT(method->counters().at("reprojectedPixels"), 5000U);
+  }
+}
+
 }  // namespace
 }  // namespace penumbra::tests
