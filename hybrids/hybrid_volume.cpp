@@ -5,6 +5,7 @@
 // that are left out, not of a depth test.
 
 #include "hybrids/methods.hpp"
+#include "hybrids/options.hpp"
 
 #include "base/assert.hpp"
 #include "maps/filters/methods.hpp"
@@ -94,6 +95,8 @@ class HybridVolume final : public visibility::Method {
     const visibility::MethodDescription description = hybrid_volume_description();
     static_cast<void>(visibility::parse_options(description, given));
     MethodOptions options = visibility::complete_options(description, given);
+    options.erase(kVariant.name());
+    options.erase(kJump.name());
     options["window"] = "1";
     options["weights"] = "bilinear";
     return options;
@@ -129,18 +132,21 @@ class HybridVolume final : public visibility::Method {
 visibility::MethodDescription hybrid_volume_description() {
   return {.name = "hybrid-volume",
           .family = visibility::Family::geometry,
-          .paper = "Chan and Durand 2004",
+          .paper = "Chan and Durand 2004; McCool 2000",
           .output = visibility::Output::scalar,
           .exact_for = "nothing; the hard shadow of the light's centre where the map's texels see its outlines",
           .lights = visibility::kPlanarLights,
           .textures = false,
           .on_request = true,
           .options = {maps::kMapSize.description(), maps::kBias.description(), maps::kRasteriser.description(),
-                      maps::kReceiverPlane.description()},
+                      maps::kReceiverPlane.description(), kVariant.description(), kJump.description()},
           .verdict_on = hybrid_volume_verdict};
 }
 
 std::unique_ptr<visibility::Method> make_hybrid_volume(const render::Device& device, const MethodOptions& options) {
+  if (visibility::parse_options(hybrid_volume_description(), options)[kVariant] == HybridVariant::mccool) {
+    return make_reconstructed_volume(device, options);
+  }
   return std::make_unique<HybridVolume>(device, options);
 }
 

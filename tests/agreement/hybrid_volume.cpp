@@ -7,6 +7,8 @@
 #include "tests/unit/shipped_scene.hpp"
 #include "volumes/soft/methods.hpp"
 
+#include <string>
+
 namespace penumbra::tests {
 namespace {
 
@@ -74,6 +76,67 @@ TEST_F(HybridVolume, WhatNoTexelSeesIsLost) {
   const Answers all = ask(stage, "64");
   EXPECT_GT(std::ranges::count(all.volumes, 0.0F), 10);
   EXPECT_EQ(std::ranges::count(all.hybrid, 0.0F), 0);
+}
+
+/// Volumes from a map.
+class ReconstructedVolume : public HybridVolume {
+ protected:
+  static std::unique_ptr<visibility::Method> method(const char* size) {
+    return hybrids::make_hybrid_volume(device(), {{"variant", "mccool"}, {"size", size}});
+  }
+  /// Two boards over a floor, one in the other's shadow in part.
+  static scenes::Scene boards() {
+    scenes::Scene scene;
+    add_object(scene, "floor", quad({0, 0, 0}, {3, 0, 0}, {0, 0, -3}));
+    add_object(scene, "upper", quad({0.1, 3, 0}, {0.4, 0, 0.1}, {0.1, 0, -0.4}));
+    add_object(scene, "lower", quad({0.6, 1.5, 0.2}, {0.5, 0, -0.2}, {-0.2, 0, -0.5}));
+    scene.lights.push_back(ceiling_light(6, 0.3));
+    scene.cameras.push_back(camera({2.5, 4.5, 3}, {0.2, 0, 0}));
+    return scene;
+  }
+};
+
+/// Walls along texels' borders: of flat boards V is that of the map's nearest texel, from outside, from within the
+/// shadow, and of a hemicube, which a wall up to the light's plane makes of the map.
+TEST_F(ReconstructedVolume, OfFlatBoardsIsTheMap) {
+  for (const std::string place : {"outside", "within the shadow", "hemicube"}) {
+    scenes::Scene scene = boards();
+    if (place == "hemicube") add_object(scene, "wall", quad({-3, 4, 0}, {0, 4, 0}, {0, 0, 3}));
+    if (place == "within the shadow") scene.cameras[0] = camera({0.2, 1, 0.1}, {1, 0, 0.6}, 100);
+    const Stage stage(scene, 96, 72, {16, 0, 0, visibility::SamplePattern::grid, 0});
+    const auto reconstructed = method("64");
+    const std::vector<float> found = run(*reconstructed, stage).visibility;
+    const std::vector<float> right = run(*maps::make_shadow_map(device(), {{"size", "64"}}), stage).visibility;
+    std::size_t wrong = 0, dark = 0;
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      wrong += found[i] != right[i] ? 1 : 0;
+      dark += right[i] == 0 ? 1 : 0;
+    }
+    EXPECT_LE(wrong, 2U) << "rounding at a border; " << place;
+    EXPECT_GT(dark, 300U) << place;
+    EXPECT_GT(reconstructed->counters().at("walls"), 60U) << place;
+    EXPECT_EQ(run(*reconstructed, stage, 5).visibility, found) << "in tiles; " << place;
+  }
+}
+
+/// Surfaces do not shade themselves, without any bias: of balls as many pixels are wrong as a map with a bias gets
+/// wrong, and without one a map is wrong over whole surfaces.
+TEST_F(ReconstructedVolume, NeedsNoBias) {
+  const Stage stage = stage_of(shipped_scene("fusion"));
+  const std::vector<float> found = run(*method("256"), stage).visibility;
+  const std::vector<float> right = run(*volumes::make_hard_volume(device(), {}), stage).visibility;
+  const std::vector<float> biased = run(*maps::make_shadow_map(device(), {{"size", "256"}}), stage).visibility;
+  const std::vector<float> unbiased =
+      run(*maps::make_shadow_map(device(), {{"size", "256"}, {"bias", "0"}, {"receiverPlane", "off"}}), stage)
+          .visibility;
+  const auto wrong = [&](const std::vector<float>& v) {
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < v.size(); ++i) count += v[i] != right[i] ? 1 : 0;
+    return count;
+  };
+  fmt::print("wrong: reconstructed {}, map {}, without bias {}\n", wrong(found), wrong(biased), wrong(unbiased));
+  EXPECT_LT(4 * wrong(found), wrong(unbiased));
+  EXPECT_LT(wrong(found), 3 * wrong(biased) + 10);
 }
 
 }  // namespace
