@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """The 3D view of `penumbra view` in headless Chromium (WebGL in software): what is drawn, by which controls, and that it is what
 `wedges` builds.   live_space_page.py PROGRAM SCENES [PHOTOGRAPHS]"""
+import base64
 import json
 import pathlib
 import subprocess
@@ -43,13 +44,13 @@ class SpacePage(Page):
         self.ask(f"(() => {{ const c = document.getElementById('{control}'); {action}; }})()")
         self.settle()
 
-    def pixels(self, folder):
+    def pixels(self):
         """Rows of the 3D view as it is on the screen, and where it begins."""
         self.ask("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))")
-        self.browser.photograph(folder / "space.png")
         left, top, width, height = [round(value) + edge for value, edge in zip(self.box("#space-canvas"), (2, 2, -4, -4))]
-        _, _, rows = png_pixels((folder / "space.png").read_bytes())
-        return [[tuple(row[3 * x:3 * x + 3]) for x in range(left, left + width)] for row in rows[top:top + height]], (left, top)
+        picture = self.browser.call("Page.captureScreenshot", format="png", clip={"x": left, "y": top, "width": width, "height": height, "scale": 1})
+        _, _, rows = png_pixels(base64.b64decode(picture["data"]))
+        return [[tuple(row[x:x + 3]) for x in range(0, len(row), 3)] for row in rows], (left, top)
 
 
 def colors(rows):
@@ -68,7 +69,7 @@ def check_drawn(page, scene, folder):
     same(page.number("wedges"), len(known["wedges"]), "the wedges")
     same(page.data("shown"), page.data("triangles"), "all triangles")
     expect(page.ask("document.getElementById('frame').hidden && !document.getElementById('space').hidden"), "the tab's panel alone is shown")
-    rows, _ = page.pixels(folder)
+    rows, _ = page.pixels()
     expect(len(rows) > 300 and len(colors(rows)) > 100, f"the view is not blank: {len(colors(rows))} colours")
     page.picture("space-first")
     # Each layer is drawn, and not when it is off.
@@ -82,13 +83,13 @@ def check_drawn(page, scene, folder):
         page.browser.wait(f"Number({CANVAS}.dataset.drawn) > {first}", 20)
         expect(page.number("calls") < before, f"{layer} was drawn: {before} calls, then {page.number('calls')}")
     same(page.number("calls"), 0, "nothing is drawn")
-    rows, _ = page.pixels(folder)
+    rows, _ = page.pixels()
     same(len(colors(rows)), 1, "then the view is empty")
     for layer in ("meshes", "lights", "frustum", "silhouettes", "wedges", "floor"):
         page.set(f"layer-{layer}", True)
 
 
-def check_one_wedge(page, folder):
+def check_one_wedge(page):
     page.set("space-all", False)
     same(page.number("bodies"), 1, "one body")
     wedge = page.number("wedges") // 3
@@ -99,7 +100,7 @@ def check_one_wedge(page, folder):
     page.set("layer-wedges", True)
     for layer in ("meshes", "lights", "frustum", "silhouettes", "floor"):
         page.set(f"layer-{layer}", False)
-    rows, (left, top) = page.pixels(folder)
+    rows, (left, top) = page.pixels()
     places = [(x, y) for y, row in enumerate(rows) for x, pixel in enumerate(row) if max(abs(a - b) for a, b in zip(pixel, CHOSEN)) < 12]
     expect(places, "the chosen wedge's edge is on the screen")
     x, y = places[len(places) // 2]
@@ -115,10 +116,10 @@ def check_one_wedge(page, folder):
     page.browser.key("n")
     page.settle()
     same(page.number("chosen"), chosen + 1, "N chooses the next")
-    before, drawn = page.pixels(folder)[0], page.number("drawn")
+    before, drawn = page.pixels()[0], page.number("drawn")
     page.browser.key("ArrowRight")
     page.browser.wait(f"Number({CANVAS}.dataset.drawn) > {drawn}", 20)
-    expect(page.pixels(folder)[0] != before, "an arrow turns the view")
+    expect(page.pixels()[0] != before, "an arrow turns the view")
     x, y, width, height = page.box("#space-canvas")
     drawn = page.number("drawn")
     start = (x + width / 2, y + height / 2)
@@ -208,8 +209,9 @@ def take_pictures(browser):
             if name == "space":
                 page.set("layer-frustum", False)
                 page.ask(f"{CANVAS}.focus()")
-                for _ in range(8):
+                for _ in range(7):
                     page.browser.key("+")
+                page.ask("document.activeElement.blur()")
             if name == "space-narrow":
                 page.set("space-glass", True)
             time.sleep(0.5)
@@ -225,7 +227,7 @@ def main():
         with Server(PROGRAM, scene) as server:
             page = SpacePage(browser, server, width=1400, height=900)
             check_drawn(page, scene, folder)
-            check_one_wedge(page, folder)
+            check_one_wedge(page)
             check_constructions(page, scene, folder)
             check_light_and_pixel(page, folder)
             check_reach(page)
