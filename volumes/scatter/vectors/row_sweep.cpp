@@ -87,7 +87,10 @@ void RowSweep::measure_gap(std::size_t number, double y) {
   const double low_left = gap.left, low_right = gap.right, high_left = lines_[number - 1].at(y),
                high_right = lines_[number].at(y);
   const double first = low_right - low_left, last = high_right - high_left, narrowest = std::min(first, last);
-  if (narrowest < 0) area_.disorder -= narrowest * high;
+  if (narrowest < 0) {
+    area_.disorder -= narrowest * high;
+    area_.overlap = std::max(area_.overlap, -narrowest);
+  }
   if (gap.depth > 0) return;
   const double area = 0.5 * (first + last) * high;
   if (gap.depth < 0) {
@@ -280,6 +283,7 @@ RowSweep::Area RowSweep::operator()(const Input& input) {
   // than at one of them, so with rounding at both, and between, 16. The crossing of its sides is off by 4 · 2⁻⁵³ of the
   // height, and the gap there by that fraction of the total change of its width, at most twice the light's: 8 more.
   area_.disorder += static_cast<double>(ends_in_order_) * 0x1p-48 * in_.width * in_.height;
+  area_.overlap = std::max(area_.overlap, 0x1p-48 * in_.width);
   return area_;
 }
 

@@ -56,6 +56,7 @@ class RowSweep {
     double impossible = 0;  ///< measure of negative depths
     std::size_t parts = 0;  ///< parts of depth 0 that were measured individually
     double disorder = 0;  ///< area of gaps whose left side may be right of their right side: depths may be wrong there
+    double overlap = 0;   ///< how far, at most, their left sides may be right of their right ones
   };
   Area operator()(const Input& input);
 

@@ -12,7 +12,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 namespace penumbra::volumes {
@@ -431,12 +430,11 @@ std::optional<double> RowSum::visible_share(std::int32_t depth_at_corner, std::v
   if (is_open_) return std::nullopt;
   const LightMeasure& measure = region_.measure;
   const auto rounded = static_cast<double>(edges_.size() + left_.size() + 1) * 32 * kUnit * width * height;
-  const auto [visible, impossible, weighed, disorder] =
+  const auto [visible, impossible, weighed, disorder, overlap] =
       sweep_({width, height, edges_, left_, depth_at_corner + at_corner_, parts, measure.plain() ? nullptr : &measure});
-  // Between sides whose order rounding leaves open there may be a wrong depth: 2⁻⁴⁸ of the window for each, and a few
-  // roundings where they cross.
-  const bool is_in_order = disorder <= static_cast<double>(edges_.size() + 2) * 0x1p-46 * width * height;
-  side_error_ = is_in_order ? largest_error_ + 0x1p-46 * (width + height) : std::numeric_limits<double>::infinity();
+  // A depth may be wrong between sides whose order is open: as if a side were off by as much. Its own rounding is 16
+  // units of the window.
+  side_error_ = largest_error_ + 4 * overlap + 16 * kUnit * (width + height);
   // Proof of the fraction: (bound share).
   const double off = error_ * (width + height + 2) + 4 * disorder + rounded;
   const double off_weighed = off * measure.densest() + static_cast<double>(weighed) * measure.rounding();

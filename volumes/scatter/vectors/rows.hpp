@@ -69,8 +69,8 @@ class RowSum {
   void add_horizon(const HorizonLine& line);
   /// Returns the visible fraction; nullopt if it is not proven. `parts`, if not null, receives the visible parts.
   [[nodiscard]] std::optional<double> visible_share(std::int32_t depth_at_corner, std::vector<Trapezoid>* parts);
-  /// Returns a bound of how far any side of the visible parts may be off, in cells; infinite if their order is not that
-  /// of their edges. Call after visible_share. (bound share)
+  /// Returns a bound of how far any side of the visible parts may be off, in cells. Call after visible_share. (bound
+  /// share)
   [[nodiscard]] double side_error() const { return side_error_; }
   /// Returns whether something could not be proven.
   [[nodiscard]] bool is_open() const { return is_open_; }
