@@ -301,8 +301,8 @@ PYBIND11_MODULE(_core, module) {
           [](Renderer& renderer, std::uint32_t width, std::uint32_t height, std::string method,
              std::map<std::string, std::string> options, std::uint32_t light_samples, std::string sample_pattern,
              std::uint32_t sample_seed, std::vector<std::string> lights, std::string camera,
-             std::uint32_t pixel_samples, double pixel_tolerance, double light_cutoff, bool shading_normals,
-             bool masks, std::string instances) {
+             std::uint32_t pixel_samples, double pixel_tolerance, double light_cutoff, bool shading_normals, bool masks,
+             std::string instances) {
             return renderer.render({width, height, std::move(method), std::move(options), light_samples,
                                     std::move(sample_pattern), sample_seed, std::move(lights), std::move(camera),
                                     pixel_samples, pixel_tolerance, light_cutoff, shading_normals, masks,
