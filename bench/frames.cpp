@@ -24,7 +24,7 @@ using volumes::WedgesOn;
 constexpr std::uint32_t kFrames = 8;  // in one run
 
 /// Returns the knot's light at positions on a circle around its original position.
-std::vector<visibility::Light> lights_on_the_way(const scenes::Scene& still, const glm::dvec3& origin) {
+std::vector<visibility::Light> lights_on_the_segment(const scenes::Scene& still, const glm::dvec3& origin) {
   scenes::Scene scene = still;
   std::vector<visibility::Light> lights;
   for (std::uint32_t frame = 0; frame < kFrames; ++frame) {
@@ -70,7 +70,7 @@ void measure_frames(const Options& options, const render::Device& device,
   for (const std::uint64_t triangles : options.triangles) {
     const scenes::Scene scene = knot_scene(triangles);
     const visibility::SceneFloats floats = visibility::make_scene_floats(scene);
-    const std::vector<visibility::Light> lights = lights_on_the_way(scene, floats.origin);
+    const std::vector<visibility::Light> lights = lights_on_the_segment(scene, floats.origin);
     std::array contenders = {Contender("host", WedgesOn::host, device, floats),
                              Contender("device", WedgesOn::device, device, floats)};
     const double load = load_of_machine();

@@ -38,8 +38,8 @@ struct Mover {
     return light;
   }
   scenes::LightShape operator()(scenes::Polygon light) const {
-    const glm::dvec3 way = kShare * (light.vertices.at(1) - light.vertices.at(0));
-    for (glm::dvec3& vertex : light.vertices) vertex += way;
+    const glm::dvec3 toward = kShare * (light.vertices.at(1) - light.vertices.at(0));
+    for (glm::dvec3& vertex : light.vertices) vertex += toward;
     return light;
   }
   scenes::LightShape operator()(scenes::Sun light) const {

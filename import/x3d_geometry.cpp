@@ -286,8 +286,8 @@ class Geometry {
   std::vector<std::int32_t> ring(double radius, double height) {
     std::vector<std::int32_t> corners;
     for (int i = 0; i < kX3dSides; ++i) {
-      const glm::dvec2 way = radius * direction(i);
-      corners.push_back(point({way.x, height, -way.y}));
+      const glm::dvec2 toward = radius * direction(i);
+      corners.push_back(point({toward.x, height, -toward.y}));
     }
     return corners;
   }

@@ -80,9 +80,9 @@ HiddenBy hidden_by(const EmbreeScene& embree, Context& context, const Light& lig
     rtcOccluded1(embree.handle(), &context.embree, &ray);
     if (context.first == kNever) continue;
     ++hidden;
-    const double share = double{context.first}, way = share * glm::length(glm::dvec3(direction)) / range.scale();
-    context.found.nearest = std::min(context.found.nearest, way);
-    widening += light.sun ? way : share / (1 - share);
+    const double share = double{context.first}, toward = share * glm::length(glm::dvec3(direction)) / range.scale();
+    context.found.nearest = std::min(context.found.nearest, toward);
+    widening += light.sun ? toward : share / (1 - share);
   }
   if (hidden != 0) context.found.widening = widening / static_cast<double>(hidden);
   return context.found;

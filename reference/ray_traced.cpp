@@ -187,8 +187,9 @@ void RayTraced::decide_short_rays(std::size_t pixel, const std::vector<glm::vec3
   const glm::vec3 p = embree_->range().scaled(samples_->p[pixel]);
   for (std::uint32_t sample = 0; sample < scaled.size(); ++sample) {
     const std::uint32_t bit = 1u << (sample % 32);
-    const glm::vec3 way = glm::abs(scaled[sample] - p);
-    if ((above[sample / 32] & bit) == 0 || std::max({way.x, way.y, way.z}) >= embree_->range().shortest_ray()) continue;
+    const glm::vec3 toward = glm::abs(scaled[sample] - p);
+    if ((above[sample / 32] & bit) == 0 || std::max({toward.x, toward.y, toward.z}) >= embree_->range().shortest_ray())
+      continue;
     above[sample / 32] &= ~bit;
     counts_.short_rays.fetch_add(1, std::memory_order_relaxed);
     const visibility::PairTruth truth = visibility::decide_pair(*scene_, *samples_, pixel, *light_, sample);

@@ -11,18 +11,18 @@ namespace penumbra::visibility {
 namespace {
 
 /// Vector from p; `off`: error of its end, if it has one.
-struct Way {
-  glm::dvec3 way;
+struct Direction {
+  glm::dvec3 direction;
   double off = 0;
   bool ends = true;
 };
 
-std::optional<bool> decide(const glm::dvec3& p, const Way& from_p, const std::array<glm::vec3, 3>& corners) {
-  const auto& [way, off, ends] = from_p;
+std::optional<bool> decide(const glm::dvec3& p, const Direction& from_p, const std::array<glm::vec3, 3>& corners) {
+  const auto& [direction, off, ends] = from_p;
   const std::array d{glm::dvec3(corners[0]) - p, glm::dvec3(corners[1]) - p, glm::dvec3(corners[2]) - p};
   const std::array squared{glm::dot(d[0], d[0]), glm::dot(d[1], d[1]), glm::dot(d[2], d[2])};
   // An error of l changes a determinant as much as a vector longer by 2⁴⁶ times the error.
-  const double way_length = glm::length(way) + 0x1p46 * off, way_squared = way_length * way_length;
+  const double way_length = glm::length(direction) + 0x1p46 * off, way_squared = way_length * way_length;
   // A determinant of three differences, each right to 2⁻⁵³ of itself in each coordinate, has three such errors, and
   // rounds six products of three, each at most the product of the rows' lengths, and their sums: fewer than 16 · 2⁻⁵³ ·
   // 6 of that product. The bound is squared where nothing underflows; smaller values are not certain.
@@ -34,7 +34,7 @@ std::optional<bool> decide(const glm::dvec3& p, const Way& from_p, const std::ar
   int left = 0, right = 0;
   for (std::size_t i = 0; i < 3; ++i) {
     const std::size_t next = (i + 1) % 3;
-    const int side = sign(glm::dot(way, glm::cross(d[i], d[next])), way_squared * squared[i] * squared[next]);
+    const int side = sign(glm::dot(direction, glm::cross(d[i], d[next])), way_squared * squared[i] * squared[next]);
     left += side > 0 ? 1 : 0;
     right += side < 0 ? 1 : 0;
   }
@@ -43,8 +43,8 @@ std::optional<bool> decide(const glm::dvec3& p, const Way& from_p, const std::ar
   // Differences of differences have errors relative to the lengths of their operands.
   const double largest = std::fmax(squared[0], std::fmax(squared[1], squared[2])), area = largest * largest;
   const int at_p = sign(-glm::dot(n, d[0]), 16 * area * largest);
-  const int at_l = ends ? sign(glm::dot(n, way - d[0]), 16 * area * (largest + way_squared))
-                        : sign(glm::dot(n, way), 16 * area * way_squared);
+  const int at_l = ends ? sign(glm::dot(n, direction - d[0]), 16 * area * (largest + way_squared))
+                        : sign(glm::dot(n, direction), 16 * area * way_squared);
   if (at_p * at_l > 0) return false;
   if ((left < 3 && right < 3) || at_p == 0 || at_l == 0) return std::nullopt;
   return true;
@@ -57,9 +57,9 @@ std::optional<bool> certainly_meets(const glm::dvec3& p, const glm::dvec3& l, co
   return decide(p, {l - p, off, true}, corners);
 }
 
-std::optional<bool> ray_certainly_meets(const glm::dvec3& p, const glm::dvec3& way,
+std::optional<bool> ray_certainly_meets(const glm::dvec3& p, const glm::dvec3& direction,
                                         const std::array<glm::vec3, 3>& corners) {
-  return decide(p, {way, 0, false}, corners);
+  return decide(p, {direction, 0, false}, corners);
 }
 
 }  // namespace penumbra::visibility

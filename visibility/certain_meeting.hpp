@@ -13,8 +13,8 @@ namespace penumbra::visibility {
 std::optional<bool> certainly_meets(const glm::dvec3& p, const glm::dvec3& l, const std::array<glm::vec3, 3>& corners,
                                     double off = 0);
 
-/// Returns whether the ray p + t · way, t > 0, meets the triangle; nullopt if uncertain.
-std::optional<bool> ray_certainly_meets(const glm::dvec3& p, const glm::dvec3& way,
+/// Returns whether the ray p + t · direction, t > 0, meets the triangle; nullopt if uncertain.
+std::optional<bool> ray_certainly_meets(const glm::dvec3& p, const glm::dvec3& direction,
                                         const std::array<glm::vec3, 3>& corners);
 
 }  // namespace penumbra::visibility

@@ -51,7 +51,7 @@ LightFrame light_frame_from(const Light& light, const glm::vec3& p) {
   return {c + k * q, radius * axes.u, radius * axes.v};
 }
 
-glm::dvec3 way_to(const Light& light, const glm::vec3& p, const glm::vec3& l) {
+glm::dvec3 direction_to(const Light& light, const glm::vec3& p, const glm::vec3& l) {
   return light.sun ? glm::dvec3(l) : glm::dvec3(l) - glm::dvec3(p);
 }
 

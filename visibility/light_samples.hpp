@@ -145,7 +145,7 @@ struct Light {
 
 /// Returns the vector from p to one of its light points; for a sun, whose points are directions, the direction itself.
 /// Not rounded if double represents the difference.
-glm::dvec3 way_to(const Light& light, const glm::vec3& p, const glm::vec3& l);
+glm::dvec3 direction_to(const Light& light, const glm::vec3& p, const glm::vec3& l);
 
 /// Returns the brightness in [0, 1] of a spot lamp's cone at p, whose normal is n, by the formula that
 /// KHR_lights_punctual recommends: with c the cosine of the angle at the lamp's centre between its direction and p, t =

@@ -149,12 +149,12 @@ bool meets_before_light(const glm::vec3& p, const PlanePoint& l, const std::arra
   };
   const int side_l = sign_of_determinant(difference(b, a), difference(c, a), way_from(a));
   if (side_l * static_cast<int>(side_p) >= 0) return false;
-  const ExactVector way = way_from(p);
+  const ExactVector toward = way_from(p);
   const std::array d{difference(a, p), difference(b, p), difference(c, p)};
   int first = 0;
   for (std::size_t i = 0; i < 3; ++i) {
     int sign = 0;
-    for (const ExactVector* direction : {&way, &u, &v}) {
+    for (const ExactVector* direction : {&toward, &u, &v}) {
       if (sign == 0) sign = sign_of_determinant(*direction, d[i], d[(i + 1) % 3]);
     }
     if (sign == 0 || sign == -first) return false;
@@ -240,7 +240,7 @@ PairTruth decide_pair(const SceneFloats& scene, const ViewSamples& samples, std:
     truth.zero_predicate |= meeting.zero_predicate;
     if (!meeting.meets) continue;
     truth.by_mask = true;
-    const glm::dvec3 shares = shares_on_line(glm::dvec3(p), way_to(light, p, l), mask);
+    const glm::dvec3 shares = shares_on_line(glm::dvec3(p), direction_to(light, p, l), mask);
     if (transmittance_at(scene, triangle, shares) == 0) truth.outcome = PairOutcome::blocked;
   }
   return truth;

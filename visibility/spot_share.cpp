@@ -23,12 +23,12 @@ struct FacingDisk {
   double scale = 1, offset = 0;
 
   /// Returns the distance of a point from p, over that of the middle.
-  [[nodiscard]] double way(double x, double y) const { return std::sqrt(1 + size * size * (x * x + y * y)); }
+  [[nodiscard]] double toward(double x, double y) const { return std::sqrt(1 + size * size * (x * x + y * y)); }
 
   /// Returns the irradiance from the point, over that of full emission at the middle: reduced by the squared distance,
   /// and by the cosines at both ends.
   [[nodiscard]] double share(double x, double y) const {
-    const double length = way(x, y), c = (cosine - size * sine * x) / length;
+    const double length = toward(x, y), c = (cosine - size * sine * x) / length;
     const double t = glm::clamp(c * scale + offset, 0.0, 1.0);
     return std::max(1 + tilt * x, 0.0) * c * t * t * (3 - 2 * t) / (length * length * length * length);
   }
@@ -100,10 +100,10 @@ double mean_over(const FacingDisk& disk) {
 
 double spot_share(const Light& light, const glm::vec3& p, const glm::vec3& n) {
   if (!light.spot) return 1;
-  const glm::dvec3 way = glm::dvec3(p) - glm::dvec3(light.center);
-  const double length = glm::length(way);
+  const glm::dvec3 toward = glm::dvec3(p) - glm::dvec3(light.center);
+  const double length = glm::length(toward);
   if (length == 0) return 0;
-  const double cosine = glm::dot(way, light.spot->direction) / length;
+  const double cosine = glm::dot(toward, light.spot->direction) / length;
   if (!light.spot->smooth) {
     const double share = glm::clamp(cosine * light.spot->scale + light.spot->offset, 0.0, 1.0);
     return share * share;
@@ -112,9 +112,9 @@ double spot_share(const Light& light, const glm::vec3& p, const glm::vec3& n) {
       .size = light.radius / length, .cosine = cosine, .scale = light.spot->scale, .offset = light.spot->offset};
   // From the lamp's middle as p sees it, the axis lies in the direction of the reversed component of the lamp's
   // direction across the line of sight.
-  const glm::dvec3 across = light.spot->direction - cosine * way / length;
+  const glm::dvec3 across = light.spot->direction - cosine * toward / length;
   disk.sine = glm::length(across);
-  const double facing = -glm::dot(way, glm::dvec3(n)) / length;
+  const double facing = -glm::dot(toward, glm::dvec3(n)) / length;
   if (disk.sine > 1e-9 && facing > 0)
     disk.tilt = disk.size * glm::dot(across, glm::dvec3(n)) / disk.sine / std::max(facing, disk.size);
   return mean_over(disk);

@@ -51,10 +51,10 @@ glm::dvec3 shares_from(const glm::dvec3& volumes) {
   return finite ? shares : glm::dvec3(1, 0, 0);
 }
 
-glm::dvec3 shares_on_line(const glm::dvec3& p, const glm::dvec3& way, const std::array<glm::vec3, 3>& corners) {
+glm::dvec3 shares_on_line(const glm::dvec3& p, const glm::dvec3& direction, const std::array<glm::vec3, 3>& corners) {
   const glm::dvec3 a = glm::dvec3(corners[0]) - p, b = glm::dvec3(corners[1]) - p, c = glm::dvec3(corners[2]) - p;
-  return shares_from(
-      {glm::dot(way, glm::cross(b, c)), glm::dot(way, glm::cross(c, a)), glm::dot(way, glm::cross(a, b))});
+  return shares_from({glm::dot(direction, glm::cross(b, c)), glm::dot(direction, glm::cross(c, a)),
+                      glm::dot(direction, glm::cross(a, b))});
 }
 
 namespace {

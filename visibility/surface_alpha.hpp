@@ -47,9 +47,10 @@ SurfaceAlphas make_surface_alphas(const scenes::Scene& scene);
 /// Returns the alpha mode of a triangle's surface.
 scenes::Alpha::Mode alpha_mode(const SceneFloats& scene, std::uint32_t triangle);
 
-/// Returns the barycentric coordinates of the point where the line p + t · way meets the triangle's plane, in double:
-/// from the signed volumes of `way` and each edge as seen from p. For a line in the plane: the first corner.
-glm::dvec3 shares_on_line(const glm::dvec3& p, const glm::dvec3& way, const std::array<glm::vec3, 3>& corners);
+/// Returns the barycentric coordinates of the point where the line p + t · direction meets the triangle's plane, in
+/// double: from the signed volumes of `direction` and each edge as seen from p. For a line in the plane: the first
+/// corner.
+glm::dvec3 shares_on_line(const glm::dvec3& p, const glm::dvec3& direction, const std::array<glm::vec3, 3>& corners);
 
 /// Returns the surface's alpha at these barycentric coordinates: texture coordinates are linear over the triangle in
 /// double, the nearest texel of level 0. 1 for a surface without alpha.

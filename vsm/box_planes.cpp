@@ -18,8 +18,8 @@ BoxPlanes::BoxPlanes(const std::array<glm::dvec3, 3>& corners, const LightTree& 
   const double size = glm::length(e1) * glm::length(e2);
   int front = 0, back = 0;
   for (const glm::dvec3& l : light.corners) {
-    const glm::dvec3 way = sun_ ? l : l - corners[0];
-    const double side = glm::dot(normal, way), error = size * (kDeterminant * glm::length(way) + off_);
+    const glm::dvec3 direction = sun_ ? l : l - corners[0];
+    const double side = glm::dot(normal, direction), error = size * (kDeterminant * glm::length(direction) + off_);
     front += side > error ? 1 : 0;
     back += side < -error ? 1 : 0;
   }
@@ -57,9 +57,9 @@ BoxPlanes::Answer BoxPlanes::look(const ReceiverTree::Node& box, std::uint32_t& 
     int out = 0;
     for (std::size_t i = 0; i < 4; ++i) {
       const Plane& plane = planes_[4 * e + i];
-      const glm::dvec3 way = plane.base - box.middle;
-      const double value = glm::dot(plane.normal, way), reach = glm::dot(glm::abs(plane.normal), box.half);
-      const double error = plane.relative * (glm::length(way) + box.radius) + beside;
+      const glm::dvec3 direction = plane.base - box.middle;
+      const double value = glm::dot(plane.normal, direction), reach = glm::dot(glm::abs(plane.normal), box.half);
+      const double error = plane.relative * (glm::length(direction) + box.radius) + beside;
       if (value - reach > error) open &= ~(1U << (4 * e + i));
       out += value + reach < -error ? 1 : 0;
     }

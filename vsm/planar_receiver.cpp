@@ -89,16 +89,17 @@ pairs::Footprint PlanarReceiver::footprint(const std::array<glm::vec3, 3>& corne
   glm::dvec2 lower(std::numeric_limits<double>::max()), upper(-lower);
   for (const glm::dvec3& x : std::span(part).first(count)) {
     for (const glm::dvec3& l : light_) {
-      const glm::dvec2 way = sun_ ? -glm::dvec2(l) : glm::dvec2(x) - glm::dvec2(l);
+      const glm::dvec2 direction = sun_ ? -glm::dvec2(l) : glm::dvec2(x) - glm::dvec2(l);
       const double rise = sun_ ? l.z : l.z - x.z;
       for (const double h : {lowest_, highest_}) {
         const double k = (sun_ ? x.z - h : l.z - h) / rise;
-        const glm::dvec2 q = (sun_ ? glm::dvec2(x) : glm::dvec2(l)) + k * way;
+        const glm::dvec2 q = (sun_ ? glm::dvec2(x) : glm::dvec2(l)) + k * direction;
         lower = glm::min(lower, q);
         upper = glm::max(upper, q);
         // Errors of x and l, once more for each multiple of their heights in the extrapolation; for a sun also the
         // error of its direction.
-        footprint.error = std::max(footprint.error, 8 * error_ * (1 + std::abs(k)) * (1 + glm::length(way) / rise));
+        footprint.error =
+            std::max(footprint.error, 8 * error_ * (1 + std::abs(k)) * (1 + glm::length(direction) / rise));
         if (sun_) footprint.error += 0x1p-40 * std::abs(k);
       }
     }

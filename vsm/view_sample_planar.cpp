@@ -179,10 +179,10 @@ void ViewSamplePlanar::look_up(std::uint32_t triangle, std::uint32_t pixel, Look
   // A light sample's distance from its place changes the value by at most |n| times that distance.
   const bool as_published = lookup_ == Lookup::nearest;
   const auto line_of = [&](const glm::dvec3& n, const glm::dvec3& from, double sizes) {
-    const glm::dvec3 way = box_.sun ? -box_.axis : box_.origin - from;
+    const glm::dvec3 direction = box_.sun ? -box_.axis : box_.origin - from;
     return LeftSamples::Line{
-        glm::dot(n, box_.across), glm::dot(n, box_.along), glm::dot(n, way),
-        as_published ? 0 : sizes * 2 * kDeterminant * (glm::length(way) + span) + glm::length(n) * box_.off};
+        glm::dot(n, box_.across), glm::dot(n, box_.along), glm::dot(n, direction),
+        as_published ? 0 : sizes * 2 * kDeterminant * (glm::length(direction) + span) + glm::length(n) * box_.off};
   };
   std::array<LeftSamples::Texel, 4> texels;
   for (std::size_t i = 0; i < 3; ++i) {

@@ -35,16 +35,16 @@ class Points {
   std::vector<float> floats_;
 };
 
-/// Returns the part of a convex polygon where coordinate k, times `way`, is at most `most`.
-std::vector<glm::dvec3> part_below(const std::vector<glm::dvec3>& polygon, int k, double way, double most) {
+/// Returns the part of a convex polygon where coordinate k, times `direction`, is at most `most`.
+std::vector<glm::dvec3> part_below(const std::vector<glm::dvec3>& polygon, int k, double direction, double most) {
   std::vector<glm::dvec3> kept;
   for (std::size_t i = 0; i < polygon.size(); ++i) {
     const glm::dvec3 &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
-    const double over_a = way * a[k] - most, over_b = way * b[k] - most;
+    const double over_a = direction * a[k] - most, over_b = direction * b[k] - most;
     if (over_a <= 0) kept.push_back(a);
     if ((over_a <= 0) != (over_b <= 0)) {
       kept.push_back(a + over_a / (over_a - over_b) * (b - a));
-      kept.back()[k] = way * most;  // not beyond by rounding
+      kept.back()[k] = direction * most;  // not beyond by rounding
     }
   }
   return kept;
@@ -52,8 +52,8 @@ std::vector<glm::dvec3> part_below(const std::vector<glm::dvec3>& polygon, int k
 
 /// Returns a point of the side behind `end`, outside the box.
 glm::dvec3 far_behind(const glm::dvec3& end, const glm::dvec3& l, const volumes::Box& box) {
-  const glm::dvec3 way = end - l;
-  return end + 2 * glm::length(box.upper - box.lower) / glm::length(way) * way;
+  const glm::dvec3 direction = end - l;
+  return end + 2 * glm::length(box.upper - box.lower) / glm::length(direction) * direction;
 }
 
 glm::dvec3 pulled_inside(const glm::dvec3& point, const glm::dvec3& center, const std::vector<glm::dvec3>& corners) {

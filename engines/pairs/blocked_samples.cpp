@@ -45,12 +45,13 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 /// Classifies 32 light samples: those certainly inside all half-spaces, and those that are neither certainly inside all
 /// nor certainly outside of one.
-HalfSpaceBits in_all_here(const HalfSpaces& spaces, const double* ways, std::size_t stride) {
+HalfSpaceBits in_all_here(const HalfSpaces& spaces, const double* directions, std::size_t stride) {
   const hn::CappedTag<double, 8> d;
   const std::size_t lanes = hn::Lanes(d);
   HalfSpaceBits bits;
   for (std::size_t i = 0; i < 32; i += lanes) {
-    const auto x = hn::LoadU(d, ways + i), y = hn::LoadU(d, ways + stride + i), z = hn::LoadU(d, ways + 2 * stride + i);
+    const auto x = hn::LoadU(d, directions + i), y = hn::LoadU(d, directions + stride + i),
+               z = hn::LoadU(d, directions + 2 * stride + i);
     auto least = hn::Set(d, 1.0);  // positive: certainly inside all; 0: open; negative: outside of one
     auto certain = hn::Set(d, 1.0);
     for (const HalfSpace& space : spaces) {
@@ -94,7 +95,7 @@ BoxSide side_of(const HalfSpace& space, const glm::dvec3& middle, const glm::dve
 }  // namespace
 
 BlockedSamples::BlockedSamples(const visibility::Light& light)
-    : light_(&light), padded_((light.points.size() + 31) / 32 * 32), ways_(3 * padded_) {
+    : light_(&light), padded_((light.points.size() + 31) / 32 * 32), directions_(3 * padded_) {
   if (!light.sun) origin_ = glm::dvec3(light.points.front());
   glm::dvec3 lower(std::numeric_limits<double>::max()), upper(-lower);
   for (std::size_t j = 0; j < padded_; ++j) {
@@ -102,7 +103,7 @@ BlockedSamples::BlockedSamples(const visibility::Light& light)
     lower = glm::min(lower, w);
     upper = glm::max(upper, w);
     farthest_ = std::max(farthest_, glm::length(w));
-    for (int axis = 0; axis < 3; ++axis) ways_[static_cast<std::size_t>(axis) * padded_ + j] = w[axis];
+    for (int axis = 0; axis < 3; ++axis) directions_[static_cast<std::size_t>(axis) * padded_ + j] = w[axis];
   }
   middle_ = 0.5 * (lower + upper);
   half_ = 0.5 * (upper - lower) * (1 + 0x1p-40);
@@ -114,7 +115,7 @@ void BlockedSamples::hide(const glm::vec3& p, const std::array<glm::vec3, 3>& co
   const glm::dvec3 at(p), to_origin = light_->sun ? glm::dvec3(0) : origin_ - at;
   const std::array d{glm::dvec3(corners[0]) - at, glm::dvec3(corners[1]) - at, glm::dvec3(corners[2]) - at};
   const std::array length{glm::length(d[0]), glm::length(d[1]), glm::length(d[2])};
-  const double way = farthest_ + glm::length(to_origin);
+  const double direction = farthest_ + glm::length(to_origin);
   const glm::dvec3 first(corners[0]), e1 = glm::dvec3(corners[1]) - first, e2 = glm::dvec3(corners[2]) - first;
   const glm::dvec3 normal = glm::cross(e1, e2);
   // p's side of the plane; the half-spaces for the light's side below have the same normal.
@@ -126,7 +127,7 @@ void BlockedSamples::hide(const glm::vec3& p, const std::array<glm::vec3, 3>& co
   for (std::size_t i = 0; i < 3; ++i) {
     const std::size_t next = (i + 1) % 3;
     const glm::dvec3 n = turn * glm::cross(d[i], d[next]);
-    spaces[i] = {n, glm::dot(n, to_origin), kDeterminant * way * length[i] * length[next]};
+    spaces[i] = {n, glm::dot(n, to_origin), kDeterminant * direction * length[i] * length[next]};
   }
   const glm::dvec3 from = light_->sun ? glm::dvec3(0) : origin_ - first;
   spaces[3] = {turn * normal, turn * glm::dot(normal, from), normal_error * (farthest_ + glm::length(from))};
@@ -157,7 +158,7 @@ void BlockedSamples::hide(const glm::vec3& p, const std::array<glm::vec3, 3>& co
   for (std::size_t word = 0; word < visible.size(); ++word) {
     if (visible[word] == 0) continue;
     const std::size_t number = first_word + word;
-    const HalfSpaceBits bits = in_all(spaces, &ways_[32 * number], padded_);
+    const HalfSpaceBits bits = in_all(spaces, &directions_[32 * number], padded_);
     counts.pairs += 32;
     visible[word] &= ~bits.inside;
     const std::uint32_t open = bits.open & visible[word];

@@ -51,7 +51,7 @@ class BlockedSamples {
 
   const visibility::Light* light_ = nullptr;
   std::size_t padded_ = 0;          // number of light samples, padded to whole words
-  std::vector<double> ways_;        // w of each light sample: all x, all y, all z
+  std::vector<double> directions_;  // w of each light sample: all x, all y, all z
   glm::dvec3 origin_{0};            // o
   glm::dvec3 middle_{0}, half_{0};  // a box around all w
   double farthest_ = 0;             // the largest |w|

@@ -101,11 +101,11 @@ void FarPlane::add_upper(Footprint& footprint, std::span<const glm::dvec3> polyg
   for (const glm::dvec3& x : polygon) {
     const double k = light_.sun ? far_ - x.z : far_ / x.z;
     for (const glm::dvec2& l : light_.corners()) {
-      const glm::dvec2 way = light_.sun ? -l : glm::dvec2(x) - l;
-      footprint.add(light_.sun ? glm::dvec2(x) + k * way : l + k * way);
+      const glm::dvec2 direction = light_.sun ? -l : glm::dvec2(x) - l;
+      footprint.add(light_.sun ? glm::dvec2(x) + k * direction : l + k * direction);
       // Error of x, once more for each multiple of its height in the extrapolation; error of a sun's slope: `off`.
       const double error = light_.sun ? error_ * (4 + 4 * glm::length(l)) + std::abs(k) * (light_.off + 0x1p-50)
-                                      : k * error_ * (4 + 4 * glm::length(way) / x.z);
+                                      : k * error_ * (4 + 4 * glm::length(direction) / x.z);
       footprint.error = std::max(footprint.error, error);
     }
   }

@@ -185,9 +185,9 @@ bool ConeLight::turn(LightGrid& grid, std::span<GridSample> samples) const {
   const double flattest = samples.size() == 1 ? 0x1p-12 : 0x1p-4;
   double lowest = light_.sun ? beyond_ : INFINITY, highest = -INFINITY;
   for (const GridSample& at : samples) {
-    for (const glm::dvec3& way : corners_of(cones[at.cone])) {
-      const double down = glm::dot(axis, way);
-      if (!(-down > flattest * glm::length(way))) return false;
+    for (const glm::dvec3& direction : corners_of(cones[at.cone])) {
+      const double down = glm::dot(axis, direction);
+      if (!(-down > flattest * glm::length(direction))) return false;
       if (light_.sun) continue;
       const double level = glm::dot(axis, glm::dvec3(at.p)) + down;
       lowest = std::min(lowest, level);
@@ -198,9 +198,9 @@ bool ConeLight::turn(LightGrid& grid, std::span<GridSample> samples) const {
   for (const GridSample& at : samples) {
     const glm::dvec3 p(at.p);
     const double height = glm::dot(axis, p) - lowest;
-    const std::array ways = corners_of(cones[at.cone]);
-    for (std::size_t i = 0; i < ways.size(); ++i) {
-      const glm::dvec3 there = p + height / -glm::dot(axis, ways[i]) * ways[i];
+    const std::array directions = corners_of(cones[at.cone]);
+    for (std::size_t i = 0; i < directions.size(); ++i) {
+      const glm::dvec3 there = p + height / -glm::dot(axis, directions[i]) * directions[i];
       const glm::dvec2 place(glm::dot(x_axis, there), glm::dot(y_axis, there));
       all.add(place);
       if (i == 0) corners.add(place);
@@ -253,12 +253,12 @@ void see_cone(const LightGrid& grid, ClusterSample& at) {
   const double height = glm::length(cone.middle), radius = glm::length(cone.u);
   const glm::dvec3 across(grid.across), along(grid.along), axis(grid.axis);
   // way_of maps the grid's coordinates to a direction; `turn` maps on to the light's coordinates.
-  const glm::dmat3 way_of(across / glm::dot(across, across), along / glm::dot(along, along), -axis);
+  const glm::dmat3 direction_of(across / glm::dot(across, across), along / glm::dot(along, along), -axis);
   const glm::dvec2 half(grid.half_cells);
   const glm::dvec3 x = half.x / glm::dot(cone.u, cone.u) * cone.u, y = half.y / glm::dot(cone.v, cone.v) * cone.v,
                    w = cone.middle / height;
   for (int i = 0; i < 3; ++i)
-    at.turn[i] = glm::vec3(glm::dot(x, way_of[i]), glm::dot(y, way_of[i]), glm::dot(w, way_of[i]));
+    at.turn[i] = glm::vec3(glm::dot(x, direction_of[i]), glm::dot(y, direction_of[i]), glm::dot(w, direction_of[i]));
 
   constexpr double kMore = 1.05;  // allowance for second-order terms
   const double cells = std::max(half.x, half.y), deviation = static_cast<double>(grid.cones->deviation);
@@ -267,7 +267,7 @@ void see_cone(const LightGrid& grid, ClusterSample& at) {
   Placing& place = at.on_light;
   place.foot = grid.first_cell;
   place.height = static_cast<float>(height);
-  place.per_way = rounded(24 * kRoundingOf * per_tangent);
+  place.per_ray = rounded(24 * kRoundingOf * per_tangent);
   place.per_reach = rounded(24 * kRoundingOf);
   place.per_foot = rounded(12 * kRoundingOf + deviation / height);
   place.fixed = rounded(16 * kRoundingOf * (half.x + half.y) + cells / radius * deviation);
@@ -275,10 +275,10 @@ void see_cone(const LightGrid& grid, ClusterSample& at) {
   place.through_p = 192 * kRound;
 
   Rectangle window;
-  const auto place_of = [&](const glm::dvec3& way) {
-    return glm::dvec2(glm::dot(across, way), glm::dot(along, way)) / -glm::dot(axis, way);
+  const auto place_of = [&](const glm::dvec3& direction) {
+    return glm::dvec2(glm::dot(across, direction), glm::dot(along, direction)) / -glm::dot(axis, direction);
   };
-  for (const glm::dvec3& way : corners_of(cone)) window.add(place_of(way));
+  for (const glm::dvec3& direction : corners_of(cone)) window.add(place_of(direction));
   const auto over = static_cast<double>(at.height);
   const glm::vec2 around(0x1p-10F);
   at.window = {at.foot + glm::vec2(over * window.low) - around, at.foot + glm::vec2(over * window.high) + around};

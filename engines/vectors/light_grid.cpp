@@ -195,7 +195,7 @@ ClusterSample complete(const LightGrid& grid, const Cluster& cluster, const Grid
   Placing& place = at.on_grid;
   place.foot = at.foot;
   place.height = at.height;
-  place.per_way = kMore * (8 * kRound * grid.per_length * at.height + cells);
+  place.per_ray = kMore * (8 * kRound * grid.per_length * at.height + cells);
   place.per_reach = 8 * kRound;
   place.per_foot = kMore * (kRound * (4 * lengths + 8) + grid.deviation / at.height);
   place.fixed = kMore * (kRound * grid.per_length * 4 * at.away + cells + grid.per_length * grid.deviation);

@@ -109,8 +109,8 @@ struct Placing {
   glm::vec2 foot{0};
   float height = 0;
   /// Coefficients of the error of a point at height w over p, `far_x` from the cluster's middle, whose place is F from
-  /// the foot: (far_x + far) / w · (per_way + per_reach F) + per_foot F + fixed. (bound X)
-  float per_way = 0, per_reach = 0, per_foot = 0, fixed = 0;
+  /// the foot: (far_x + far) / w · (per_ray + per_reach F) + per_foot F + fixed. (bound X)
+  float per_ray = 0, per_reach = 0, per_foot = 0, fixed = 0;
   /// An edge within (far_x + far) · per_lift of p's height may pass through p within rounding. (bound window)
   float per_lift = 0;
   float through_p = 0;  ///< likewise an edge whose clipped part is shorter than (far_x + far) times this

@@ -72,7 +72,7 @@ class OpenJudge {
   virtual std::optional<std::uint32_t> depth_in_plane(const GridSample& sample, const glm::dvec2& st) = 0;
   /// Returns the vector from p to a light sample, in scene floats, not scaled; for a sun a direction of arbitrary
   /// length.
-  virtual glm::dvec3 way_to(const GridSample& sample, std::uint32_t light_sample) = 0;
+  virtual glm::dvec3 direction_to(const GridSample& sample, std::uint32_t light_sample) = 0;
   virtual HorizonLine horizon(const GridSample& sample) = 0;
   /// Returns the triangle's normal, of any length, oriented to p's side; 0 if p is in its plane, or if the triangle is
   /// so thin that its normal is not certain in double.

@@ -23,8 +23,8 @@ glm::vec3 ExactOpenJudge::light_point(const GridSample& sample, std::uint32_t li
   return visibility::sphere_point(seen_->disk, judge_.light.coordinates[light_sample]);
 }
 
-glm::dvec3 ExactOpenJudge::way_to(const GridSample& sample, std::uint32_t light_sample) {
-  return visibility::way_to(judge_.light, judge_.samples.p[sample.pixel], light_point(sample, light_sample));
+glm::dvec3 ExactOpenJudge::direction_to(const GridSample& sample, std::uint32_t light_sample) {
+  return visibility::direction_to(judge_.light, judge_.samples.p[sample.pixel], light_point(sample, light_sample));
 }
 
 std::optional<std::uint32_t> ExactOpenJudge::depth_in_plane(const GridSample& sample, const glm::dvec2& st) {

@@ -16,7 +16,7 @@ class ExactOpenJudge final : public OpenJudge {
 
   std::uint32_t depth(const GridSample& sample, std::uint32_t light_sample) override;
   std::optional<std::uint32_t> depth_in_plane(const GridSample& sample, const glm::dvec2& st) override;
-  glm::dvec3 way_to(const GridSample& sample, std::uint32_t light_sample) override;
+  glm::dvec3 direction_to(const GridSample& sample, std::uint32_t light_sample) override;
   HorizonLine horizon(const GridSample& sample) override;
   glm::dvec3 normal_towards(const GridSample& sample, std::uint32_t triangle) override;
   void decide(const GridSample& sample, const Open& open, SampleMask& mask) override;

@@ -179,9 +179,9 @@ std::vector<std::uint32_t> Subsampled::steps() {
   for (std::size_t i = 0; i < steps.size(); ++i) {
     if (samples_->triangle[i] == ViewSamples::kBackground || std::isinf(widths[i])) continue;
     // On an oblique surface, penumbrae appear narrower.
-    const glm::vec3 way = samples_->eye - samples_->p[i];
+    const glm::vec3 direction = samples_->eye - samples_->p[i];
     const double slant =
-        static_cast<double>(std::abs(glm::dot(samples_->n[i], way)) / std::max(glm::length(way), 1e-30F));
+        static_cast<double>(std::abs(glm::dot(samples_->n[i], direction)) / std::max(glm::length(direction), 1e-30F));
     const double pixels = static_cast<double>(widths[i]) * slant / (unit * static_cast<double>(samples_->depth[i]));
     while (2 * steps[i] <= step_ && 2 * steps[i] * kPixelsAcross <= pixels) steps[i] *= 2;
   }

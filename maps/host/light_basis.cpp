@@ -29,11 +29,12 @@ LightBasis light_basis(const visibility::Light& light, const visibility::SceneFl
   if (!is_body(light.kind)) return light_basis(light);
   LightBasis basis;
   basis.center = light.center;
-  const glm::dvec3 way = 0.5 * (glm::dvec3(scene.lower) + glm::dvec3(scene.upper)) - basis.center, far = glm::abs(way);
+  const glm::dvec3 direction = 0.5 * (glm::dvec3(scene.lower) + glm::dvec3(scene.upper)) - basis.center,
+                   far = glm::abs(direction);
   int axis = 1;
   if (far.x > far[axis]) axis = 0;
   if (far.z > far[axis]) axis = 2;
-  basis.n[axis] = way[axis] > 0 ? 1 : -1;
+  basis.n[axis] = direction[axis] > 0 ? 1 : -1;
   basis.u[(axis + 1) % 3] = 1;
   basis.v = glm::cross(basis.n, basis.u);
   return basis;

@@ -11,7 +11,7 @@ STORAGE(1) readonly buffer Maps { float maps[]; };
 PUSH_CONSTANTS Log { LogarithmicPush push; };  // not Push: blocks with one name are one block in both stages
 layout(location = 0) flat in uint first_corner;
 
-vec3 way_of(vec2 place) {
+vec3 direction_of(vec2 place) {
   if (push.ratio == kCircle) {
     const vec2 at = (place - 0.5) / (0.5 - push.margin);
     return push.inverse_a * (2.0 * at.x) + push.inverse_b * (2.0 * at.y) + push.inverse_1 * (1.0 - dot(at, at));
@@ -22,14 +22,14 @@ vec3 way_of(vec2 place) {
 }
 
 void main() {
-  const vec3 way = way_of(gl_FragCoord.xy / float(push.size));
-  const float along = dot(push.along, way);
+  const vec3 direction = direction_of(gl_FragCoord.xy / float(push.size));
+  const float along = dot(push.along, direction);
   const vec3 p = corner_at(first_corner) - push.point, q = corner_at(first_corner + 1) - push.point,
              r = corner_at(first_corner + 2) - push.point;
   const vec3 normal = cross(q - p, r - p);
-  const vec3 sides = vec3(dot(way, cross(p, q)), dot(way, cross(q, r)), dot(way, cross(r, p)));
+  const vec3 sides = vec3(dot(direction, cross(p, q)), dot(direction, cross(q, r)), dot(direction, cross(r, p)));
   const bool inside = all(greaterThanEqual(sides, vec3(0.0))) || all(lessThanEqual(sides, vec3(0.0)));
-  const float depth = dot(normal, p) / dot(normal, way) * along / push.far;
+  const float depth = dot(normal, p) / dot(normal, direction) * along / push.far;
   if (!(along > 0.0 && inside && depth > 1.0 / 1048576.0 && depth < 1.0)) discard;
   if (push.peels != 0) {
     const uvec2 cell = uvec2(gl_FragCoord.xy);

@@ -17,16 +17,16 @@ layout(location = 0) flat out uint first_corner;
 void bound_circle(out vec2 lower, out vec2 upper) {
   lower = vec2(0.0);
   upper = vec2(1.0);
-  vec3 ways[3], middle = vec3(0.0);
+  vec3 directions[3], middle = vec3(0.0);
   for (uint i = 0; i < 3; ++i) {
     const vec3 d = corner_at(first_corner + i) - push.point;
-    ways[i] = normalize(vec3(dot(push.row_a, d), dot(push.row_b, d), dot(push.row_k, d)));
-    middle += ways[i];
+    directions[i] = normalize(vec3(dot(push.row_a, d), dot(push.row_b, d), dot(push.row_k, d)));
+    middle += directions[i];
   }
   if (!(length(middle) > 1.0e-3)) return;
   middle = normalize(middle);
   float around = 0.0;
-  for (uint i = 0; i < 3; ++i) around = max(around, acos(clamp(dot(middle, ways[i]), -1.0, 1.0)));
+  for (uint i = 0; i < 3; ++i) around = max(around, acos(clamp(dot(middle, directions[i]), -1.0, 1.0)));
   const float half_turn = 3.14159265, off = acos(clamp(middle.z, -1.0, 1.0));
   if (!(around < 0.49 * half_turn) || !(off + around < 0.98 * half_turn)) return;
   const float least = tan(0.5 * (off - around)), most = tan(0.5 * (off + around));

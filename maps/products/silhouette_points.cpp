@@ -50,12 +50,12 @@ std::optional<double> kept(const Passage& passage) {
 std::optional<std::pair<double, double>> clipped(const glm::dvec2& a, const glm::dvec2& b, double count) {
   double from = 0, to = 1;
   for (int axis = 0; axis < 2; ++axis) {
-    const double way = b[axis] - a[axis];
-    if (way == 0) {
+    const double direction = b[axis] - a[axis];
+    if (direction == 0) {
       if (a[axis] < 0 || a[axis] > count) return std::nullopt;
       continue;
     }
-    const double first = -a[axis] / way, last = (count - a[axis]) / way;
+    const double first = -a[axis] / direction, last = (count - a[axis]) / direction;
     from = std::max(from, std::min(first, last));
     to = std::min(to, std::max(first, last));
   }
@@ -84,11 +84,11 @@ void add_silhouette(const SilhouetteEnd& one, const SilhouetteEnd& other, std::u
   // All fractions of the segment at which it passes from a cell to the next.
   std::vector<double> borders{part->first, part->second};
   for (int axis = 0; axis < 2; ++axis) {
-    const double way = b.at[axis] - a.at[axis];
-    if (way == 0) continue;
-    const double first = a.at[axis] + part->first * way, last = a.at[axis] + part->second * way;
+    const double direction = b.at[axis] - a.at[axis];
+    if (direction == 0) continue;
+    const double first = a.at[axis] + part->first * direction, last = a.at[axis] + part->second * direction;
     for (double line = std::ceil(std::min(first, last)); line <= std::max(first, last); ++line)
-      borders.push_back(std::clamp((line - a.at[axis]) / way, part->first, part->second));
+      borders.push_back(std::clamp((line - a.at[axis]) / direction, part->first, part->second));
   }
   std::ranges::sort(borders);
   for (std::size_t i = 0; i + 1 < borders.size(); ++i) {

@@ -41,10 +41,10 @@ bool keep_in_front(glm::dvec3& a, glm::dvec3& b, double near) {
 /// the direction from a to b, x to the right and y up.
 std::optional<gpu::OuterEdge> outer_edge(const glm::dvec3& a, const glm::dvec3& b, bool left, OuterForm form,
                                          double radius) {
-  const glm::dvec2 way = seen(b) - seen(a);
-  const double length = glm::length(way);
+  const glm::dvec2 direction = seen(b) - seen(a);
+  const double length = glm::length(direction);
   if (!(length > 0)) return std::nullopt;
-  const glm::dvec2 along = way / length;
+  const glm::dvec2 along = direction / length;
   const glm::dvec2 beside = left ? glm::dvec2(-along.y, along.x) : glm::dvec2(along.y, -along.x);
   glm::dvec2 outward = beside;
   if (form == OuterForm::cones) {

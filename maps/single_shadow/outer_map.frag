@@ -36,11 +36,11 @@ void main() {
   const vec2 first = a.xy / a.z, second = b.xy / b.z;
   float beside, inverse;  // distance of the texel beside the silhouette, and 1 / Z_v there
   if (part_drawn == kSheet) {
-    const vec2 outward = pair_at(at + 6), way = second - first, to = seen - first;
-    const float across = way.x * outward.y - way.y * outward.x;
+    const vec2 outward = pair_at(at + 6), direction = second - first, to = seen - first;
+    const float across = direction.x * outward.y - direction.y * outward.x;
     const float share = (to.x * outward.y - to.y * outward.x) / across;
     if (!(share >= 0.0 && share <= 1.0)) discard;
-    beside = (way.x * to.y - way.y * to.x) / across;
+    beside = (direction.x * to.y - direction.y * to.x) / across;
     inverse = mix(1.0 / a.z, 1.0 / b.z, share);
   } else {
     beside = distance(seen, part_drawn == kFirstEnd ? first : second);

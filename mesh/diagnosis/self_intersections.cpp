@@ -237,8 +237,8 @@ class Hubs {
     std::size_t count = 0;
     for (const std::uint32_t v : corners) {
       if (v == hub) continue;
-      const glm::dvec3 way = 0.5 * mesh_.positions[v] - 0.5 * mesh_.positions[hub], size = glm::abs(way);
-      ends[count++] = glm::normalize(way / std::max({size.x, size.y, size.z}));
+      const glm::dvec3 direction = 0.5 * mesh_.positions[v] - 0.5 * mesh_.positions[hub], size = glm::abs(direction);
+      ends[count++] = glm::normalize(direction / std::max({size.x, size.y, size.z}));
     }
     const glm::dvec3 chord = ends[1] - ends[0], more(glm::dot(chord, chord) / 4 + 0x1p-40);
     return {glm::min(ends[0], ends[1]) - more, glm::max(ends[0], ends[1]) + more};

@@ -147,13 +147,13 @@ class AimedScene {
     if (aim_ == Aim::corner) l = center - u - v;
     if (aim_ == Aim::left) l -= (1 + s) * u;
     if (aim_ == Aim::row) l += 2 * real() * u;
-    const glm::dvec3 way = l - p;
+    const glm::dvec3 direction = l - p;
     // As seen from p it covers a few light samples, and sometimes many more.
     const double share = 0.05 + 0.9 * positive();
     double size = share * light_size * (random_() % 8 == 0 ? 4 : std::exp2(-0.5 - 2.5 * positive()));
     // An edge that passes the corner matters most if no light row crosses it: half a cell is an eighth of the light.
     if (aim_ == Aim::corner && random_() % 2 == 0) size /= 16;
-    const glm::dvec3 at = p + share * way,
+    const glm::dvec3 at = p + share * direction,
                      e = aim_ == Aim::aligned ? glm::normalize(random_() % 2 == 0 ? u : v) : glm::normalize(vector()),
                      f = glm::normalize(vector());
     switch (aim_) {
@@ -161,14 +161,14 @@ class AimedScene {
       case Aim::row:
         return {at, at + size * e, at + size * f};
       case Aim::sliver: {  // p = a + α (b − a) + β (c − a), outside beside an edge or inside
-        const glm::dvec3 a = at + 0.1 * size * e, b = p + share * positive() * (way + size / share * f);
+        const glm::dvec3 a = at + 0.1 * size * e, b = p + share * positive() * (direction + size / share * f);
         const bool inside = random_() % 2 == 0;
         const double alpha = inside ? -positive() : positive(), beta = inside ? -positive() : real();
         return {a, b, p + alpha * (a - p) + beta * (b - p)};
       }
       case Aim::grazing: {  // low over p: its ends appear far away, or as near as a small height allows
         const double low = std::exp2(-4 - 16 * positive());
-        const glm::dvec3 near = p + low * way, along = glm::normalize(glm::cross(way, e));
+        const glm::dvec3 near = p + low * direction, along = glm::normalize(glm::cross(direction, e));
         const double wide = 16 * low / share * size;
         return {near - wide * along, near + wide * (along + std::exp2(-20 * positive()) * f), near + 0.1 * wide * f};
       }
@@ -190,18 +190,19 @@ class AimedScene {
   /// side is wrong by most. l is farther from the plane than p, so that the triangle's edges pass at some distance from
   /// it.
   Corners standing(const glm::dvec3& p, const glm::vec3& l) {
-    const glm::dvec3 way = glm::dvec3(l) - p;
-    const double length = glm::length(way);
+    const glm::dvec3 direction = glm::dvec3(l) - p;
+    const double length = glm::length(direction);
     const bool on_wide_foot = aim_ == Aim::det;
     const auto make = [&](Numbers numbers) -> Corners {
-      const glm::dvec3 e = glm::normalize(glm::cross(way, numbers.vector())), n = glm::cross(way, e) / length;
+      const glm::dvec3 e = glm::normalize(glm::cross(direction, numbers.vector())),
+                       n = glm::cross(direction, e) / length;
       // By the length of the way: the foot's height and half its width, p's distance from the plane, l's. The bound of
       // det grows with the foot, the other one with the distance of the first corner alone, which then must be the top.
       const double low = std::exp2(-3 - 10 * numbers.next());
       const auto wide = [&] { return numbers.next() * (on_wide_foot ? 1 : low); };
       const double off = std::exp2((on_wide_foot ? -18 : -23) - 6 * numbers.next()),
                    beyond = off / low * numbers.next();
-      const glm::dvec3 tilted = way + length * beyond * n, from = p - length * off * n;
+      const glm::dvec3 tilted = direction + length * beyond * n, from = p - length * off * n;
       return {from + low * tilted + length * wide() * e, from + low * tilted - length * wide() * e,
               from + (0.3 + 0.6 * numbers.next()) * tilted + 0.4 * length * numbers.real() * e};
     };
@@ -242,11 +243,11 @@ class AimedScene {
   /// Two triangles side by side that cover the light's corner and what is around it, and between them one that is as
   /// narrow as floats let it be: the corner is in it. Of many it is that which rounding mirrors by most.
   std::vector<Corners> needle(const glm::dvec3& p, double light_size) {
-    const glm::dvec3 center(frame_.center), way = center - glm::dvec3(frame_.u) - glm::dvec3(frame_.v) - p;
+    const glm::dvec3 center(frame_.center), direction = center - glm::dvec3(frame_.u) - glm::dvec3(frame_.v) - p;
     const auto make = [&](Numbers numbers) -> std::vector<Corners> {
       const double share = 0.05 + 0.9 * numbers.next(), size = share * light_size * std::exp2(-2 * numbers.next());
-      const glm::dvec3 at = p + share * way, e = glm::normalize(numbers.vector()),
-                       f = glm::normalize(glm::cross(way, e));
+      const glm::dvec3 at = p + share * direction, e = glm::normalize(numbers.vector()),
+                       f = glm::normalize(glm::cross(direction, e));
       const glm::dvec3 a = rounded(at + size * e), b = rounded(at - (0.4 + 0.6 * numbers.next()) * size * e);
       glm::dvec3 c = b;  // beside it by no more than a unit in the last place of each coordinate
       for (int axis = 0; axis < 3; ++axis)

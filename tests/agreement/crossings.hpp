@@ -97,9 +97,9 @@ class DevicePlaces {
 /// A triangle with an edge through the light sample, as well as floats let it pass there, by numbers of a search; the
 /// edge is the first side. `width`: of the light, across.
 inline std::array<glm::dvec3, 3> triangle_at(const glm::dvec3& p, const glm::dvec3& l, double width, Numbers& numbers) {
-  const glm::dvec3 way = l - p, across = numbers.vector() + glm::dvec3(0x1p-30);
+  const glm::dvec3 direction = l - p, across = numbers.vector() + glm::dvec3(0x1p-30);
   const double share = 0.1 + 0.8 * numbers.next(), size = share * width * std::exp2(1 - 2 * numbers.next());
-  const glm::dvec3 at = p + share * way, e = glm::normalize(across), f = glm::normalize(glm::cross(way, e));
+  const glm::dvec3 at = p + share * direction, e = glm::normalize(across), f = glm::normalize(glm::cross(direction, e));
   return {at - size * (0.2 + 0.8 * numbers.next()) * e, at + size * (0.2 + 0.8 * numbers.next()) * e, at + size * f};
 }
 

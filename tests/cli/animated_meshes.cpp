@@ -94,22 +94,24 @@ class AnimatedMeshes : public ProgramTest {
   /// Frames 0 to 2 of the scene: in a sequence, and each by itself.
   void expect_same_bytes(Scene& scene) {
     write("scene.glb", scene.gltf.glb());
-    const std::vector<std::vector<std::string>> ways = {{"--light-samples", "16"},
-                                                        {"--method", "view-sample", "--light-samples", "16"},
-                                                        {}};  // the last: exact areas, whose stats the tests look at
-    for (const std::vector<std::string>& way : ways) {
+    const std::vector<std::vector<std::string>> directions = {
+        {"--light-samples", "16"},
+        {"--method", "view-sample", "--light-samples", "16"},
+        {}};  // the last: exact areas, whose stats the tests look at
+    for (const std::vector<std::string>& direction : directions) {
       std::vector<std::string> sequence = {"--frames", "0-2", "-o", path("s.#.exr"), "--stats", path("s.#.json")};
-      sequence.insert(sequence.end(), way.begin(), way.end());
-      if (!way.empty()) sequence.insert(sequence.end(), {"--bits", path("s.#.bits")});
+      sequence.insert(sequence.end(), direction.begin(), direction.end());
+      if (!direction.empty()) sequence.insert(sequence.end(), {"--bits", path("s.#.bits")});
       const Outcome outcome = render(sequence);
       ASSERT_EQ(outcome.code, 0) << outcome.err;
       for (int frame = 0; frame < 3; ++frame) {
         std::vector<std::string> one = {"--frame", std::to_string(frame), "-o", path("one.exr")};
-        one.insert(one.end(), way.begin(), way.end());
-        if (!way.empty()) one.insert(one.end(), {"--bits", path("one.bits")});
+        one.insert(one.end(), direction.begin(), direction.end());
+        if (!direction.empty()) one.insert(one.end(), {"--bits", path("one.bits")});
         ASSERT_EQ(render(one).code, 0);
-        EXPECT_EQ(read("one.exr"), read(fmt::format("s.{}.exr", frame))) << frame << fmt::format(" {}", way.size());
-        if (!way.empty()) {
+        EXPECT_EQ(read("one.exr"), read(fmt::format("s.{}.exr", frame)))
+            << frame << fmt::format(" {}", direction.size());
+        if (!direction.empty()) {
           EXPECT_EQ(read("one.bits"), read(fmt::format("s.{}.bits", frame))) << frame;
         }
       }

@@ -88,22 +88,22 @@ TEST_F(Bake, AnOpenFloorHasTheClosedForm) {
 /// The camera looks straight down, so that pixels are texels, from between card and floor, so that all of it is seen.
 TEST_F(Bake, TexelsHaveTheVOfPixelsThatSeeTheSamePoints) {
   write("scene.json", baked_floor(true).dump());
-  const std::vector<std::vector<std::string>> ways = {{},
-                                                      {"--method", "exact"},
-                                                      {"--light-samples", "64"},
-                                                      {"--method", "view-sample", "--light-samples", "64"},
-                                                      {"--method", "depth-complexity", "--light-samples", "64"},
-                                                      {"--method", "soft-volume"},
-                                                      {"--method", "hard-volume"},
-                                                      {"--method", "shadow-map:size=256"},
-                                                      {"--method", "pcss:size=256"},
-                                                      {"--method", "raytrace", "--light-samples", "64"}};
-  for (const auto& way : ways) {
-    SCOPED_TRACE(testing::PrintToString(way));
+  const std::vector<std::vector<std::string>> directions = {{},
+                                                            {"--method", "exact"},
+                                                            {"--light-samples", "64"},
+                                                            {"--method", "view-sample", "--light-samples", "64"},
+                                                            {"--method", "depth-complexity", "--light-samples", "64"},
+                                                            {"--method", "soft-volume"},
+                                                            {"--method", "hard-volume"},
+                                                            {"--method", "shadow-map:size=256"},
+                                                            {"--method", "pcss:size=256"},
+                                                            {"--method", "raytrace", "--light-samples", "64"}};
+  for (const auto& direction : directions) {
+    SCOPED_TRACE(testing::PrintToString(direction));
     std::vector<std::string> render = {"render", path("scene.json"), "-o", path("seen.exr"), "--quiet"};
-    render.insert(render.end(), way.begin(), way.end());
-    const bool needs_perspective = !way.empty() && way.back().ends_with("-volume");
-    const ExrFile map = bake(way);
+    render.insert(render.end(), direction.begin(), direction.end());
+    const bool needs_perspective = !direction.empty() && direction.back().ends_with("-volume");
+    const ExrFile map = bake(direction);
     if (needs_perspective) {  // which an orthographic camera is not: the exact pairs judge
       std::size_t near = 0;
       const ExrFile exact = bake({});
@@ -117,7 +117,7 @@ TEST_F(Bake, TexelsHaveTheVOfPixelsThatSeeTheSamePoints) {
     const ExrFile seen = read_exr(path("seen.exr"));
     EXPECT_EQ(map.floats.at("P.X"), seen.floats.at("P.X"));
     EXPECT_EQ(map.floats.at("P.Z"), seen.floats.at("P.Z"));
-    const bool fits_map_to_view = !way.empty() && way.back().ends_with("=256");
+    const bool fits_map_to_view = !direction.empty() && direction.back().ends_with("=256");
     std::size_t differing = 0, shadowed = 0;
     for (std::size_t i = 0; i < 256; ++i) {
       differing += map.floats.at("V")[i] != seen.floats.at("V")[i] ? 1 : 0;

@@ -1,5 +1,5 @@
 // Domes as a user meets them: what `render` gives by default, files that hold their light samples, pictures and which
-// way these look, refusals.
+// toward these look, refusals.
 
 #include "tests/cli/program.hpp"
 #include "tests/report_json.hpp"

@@ -39,12 +39,12 @@ LampMesh in_floats(LampMesh mesh) {
   return mesh;
 }
 
-bool meets(const std::array<glm::dvec3, 3>& corners, const glm::dvec3& from, const glm::dvec3& way) {
-  const glm::dvec3 u = corners[1] - corners[0], v = corners[2] - corners[0], h = glm::cross(way, v);
+bool meets(const std::array<glm::dvec3, 3>& corners, const glm::dvec3& from, const glm::dvec3& direction) {
+  const glm::dvec3 u = corners[1] - corners[0], v = corners[2] - corners[0], h = glm::cross(direction, v);
   const double det = glm::dot(u, h);
   if (det == 0) return false;
   const glm::dvec3 s = (from - corners[0]) / det, q = glm::cross(s, u);
-  const double a = glm::dot(s, h), b = glm::dot(way, q), t = glm::dot(v, q);
+  const double a = glm::dot(s, h), b = glm::dot(direction, q), t = glm::dot(v, q);
   return a >= 0 && b >= 0 && a + b <= 1 && t > 0 && t < 1;
 }
 
@@ -81,13 +81,13 @@ Truth truth_at(const glm::dvec3& p, const LampMesh& lamp, bool two_sided, const 
     const double root = std::sqrt(unit(random)), share = unit(random);
     const glm::dvec3 l =
         (1 - root) * lamp.points[t[0]] + root * (1 - share) * lamp.points[t[1]] + root * share * lamp.points[t[2]];
-    const glm::dvec3 way = l - p;
-    const double d2 = glm::dot(way, way), d = std::sqrt(d2);
-    const double value = area * std::max(way.y / d, 0.0) *
-                         std::abs(glm::dot(glm::normalize(lamp.vector_area(t)), way)) / d / d2 / std::numbers::pi;
+    const glm::dvec3 direction = l - p;
+    const double d2 = glm::dot(direction, direction), d = std::sqrt(d2);
+    const double value = area * std::max(direction.y / d, 0.0) *
+                         std::abs(glm::dot(glm::normalize(lamp.vector_area(t)), direction)) / d / d2 / std::numbers::pi;
     largest = std::max(largest, value);
     const bool hidden = std::ranges::any_of(card.triangles, [&](const mesh::Triangle& c) {
-      return meets({card.points[c[0]], card.points[c[1]], card.points[c[2]]}, p, way);
+      return meets({card.points[c[0]], card.points[c[1]], card.points[c[2]]}, p, direction);
     });
     if (hidden) continue;
     seen += 1, sum += value, squares += value * value;

@@ -100,9 +100,9 @@ TEST_F(ImageMethods, OptionsOfPatchesAndOutlinesDoWhatTheySay) {
   EXPECT_GT(bias("bitmask:occluder=patch"), bias("bitmask:occluder=patch:fill=edges"));
   expect_same("bitmask:occluder=rect", "bitmask:occluder=patch");
   EXPECT_GT(bias("bitmask:occluder=rect"), bias("bitmask:occluder=rect:level=2")) << "coarse texels are fatter";
-  for (const char* way : {"contour:traversal=flat", "contour:traversal=minmax", "packet:packet=1x1",
-                          "packet:packet=4x2", "packet:hierarchy=off"}) {
-    expect_same(way, "contour");
+  for (const char* direction : {"contour:traversal=flat", "contour:traversal=minmax", "packet:packet=1x1",
+                                "packet:packet=4x2", "packet:hierarchy=off"}) {
+    expect_same(direction, "contour");
   }
   EXPECT_GT(count("contour:traversal=flat", "cells"), count("contour:traversal=minmax", "cells"));
   EXPECT_GT(count("contour:traversal=minmax", "cells"), count("contour", "cells"));
@@ -181,9 +181,9 @@ TEST_F(ImageMethods, OptionsOfFiltersListsAndManyMapsDoWhatTheySay) {
   EXPECT_LT(rmse("arvo"), rmse("shadow-map:depth=first"));
   EXPECT_GT(rmse("occlusion-textures:slices=1"), rmse("occlusion-textures:slices=8"));
   for (const char* moments : {"vsm", "lvsm", "evsm", "csm", "esm"}) {
-    const std::string way = std::string("vssm:moments=") + moments + ":subdivision=none:filter=";
-    EXPECT_GT(rmse(way + "mip"), rmse(way + "sat")) << "levels are coarse";
-    EXPECT_NE(rmse(way + "n-buffer"), rmse(way + "sat"));
+    const std::string direction = std::string("vssm:moments=") + moments + ":subdivision=none:filter=";
+    EXPECT_GT(rmse(direction + "mip"), rmse(direction + "sat")) << "levels are coarse";
+    EXPECT_NE(rmse(direction + "n-buffer"), rmse(direction + "sat"));
   }
   for (const std::string& method : single) {
     EXPECT_GT(bias(method + ":depth=second"), bias(method + ":depth=first") + 0.03) << method << ": the plate is open";

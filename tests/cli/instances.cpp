@@ -92,18 +92,18 @@ TEST_F(Instances, GiveTheSamePictureWithoutCopies) {
   json whole = scene({trees, pole});
   whole["lights"] = lights;
   write("scene.json", whole.dump());
-  const std::vector<std::vector<std::string>> ways = {{},
-                                                      {"--method", "edge-scatter", "--light-samples", "64"},
-                                                      {"--method", "view-sample"},
-                                                      {"--pixel-samples", "4"},
-                                                      {"--light", "bulb", "--camera", "0.2,0.4,0.3:1,0.2,-1"}};
-  for (const std::vector<std::string>& way : ways) {
-    SCOPED_TRACE(way.empty() ? "" : way.back());
-    const bool has_bits = way.size() >= 2 && way[0] == "--method";
+  const std::vector<std::vector<std::string>> directions = {{},
+                                                            {"--method", "edge-scatter", "--light-samples", "64"},
+                                                            {"--method", "view-sample"},
+                                                            {"--pixel-samples", "4"},
+                                                            {"--light", "bulb", "--camera", "0.2,0.4,0.3:1,0.2,-1"}};
+  for (const std::vector<std::string>& direction : directions) {
+    SCOPED_TRACE(direction.empty() ? "" : direction.back());
+    const bool has_bits = direction.size() >= 2 && direction[0] == "--method";
     for (const std::string use : {"copies", "shared"}) {
       std::vector<std::string> words = {
           "render", path("scene.json"), "-o", path(use + ".exr"), "--quiet", "--instances", use, "--size", "48x36"};
-      words.insert(words.end(), way.begin(), way.end());
+      words.insert(words.end(), direction.begin(), direction.end());
       if (has_bits) words.insert(words.end(), {"--bits", path(use + ".bits")});
       const Outcome outcome = run(words);
       ASSERT_EQ(outcome.code, 0) << outcome.err;
@@ -148,10 +148,10 @@ TEST_F(Instances, OfGltfAreTheMeshOnceForEach) {
   gltf.at("/scenes/0/nodes") = {0, 1, 2, 3, 4};
   write("scene.glb", gltf.glb());
   ASSERT_EQ(run({"convert", path("scene.glb"), "-o", path("world.json"), "--quiet"}).code, 0);
-  for (const std::vector<std::string>& way :
+  for (const std::vector<std::string>& direction :
        {std::vector<std::string>{"scene.glb", "shared"}, {"scene.glb", "copies"}, {"world.json", "copies"}}) {
-    const Outcome outcome = run({"render", path(way[0]), "-o", path(way[0] + way[1] + ".exr"), "--quiet", "--size",
-                                 "64x48", "--instances", way[1]});
+    const Outcome outcome = run({"render", path(direction[0]), "-o", path(direction[0] + direction[1] + ".exr"),
+                                 "--quiet", "--size", "64x48", "--instances", direction[1]});
     ASSERT_EQ(outcome.code, 0) << outcome.err;
   }
   EXPECT_EQ(read("scene.glbshared.exr"), read("scene.glbcopies.exr"));
@@ -242,13 +242,13 @@ TEST_F(InstancesFull, GiveTheSamePictureOfAForest) {
          {"scale", {0.4, 0.5 + 0.01 * (i % 13), 0.5}}});
   }
   write("scene.json", scene({trees}).dump());
-  const std::vector<std::vector<std::string>> ways = {
+  const std::vector<std::vector<std::string>> directions = {
       {}, {"--bits", "FILE"}, {"--method", "view-sample", "--bits", "FILE"}};
-  for (const std::vector<std::string>& way : ways) {
+  for (const std::vector<std::string>& direction : directions) {
     for (const std::string use : {"copies", "auto"}) {
       std::vector<std::string> words = {
           "render", path("scene.json"), "-o", path(use + ".exr"), "--quiet", "--instances", use, "--size", "320x240"};
-      for (const std::string& word : way) words.push_back(word == "FILE" ? path(use + ".bits") : word);
+      for (const std::string& word : direction) words.push_back(word == "FILE" ? path(use + ".bits") : word);
       const Outcome outcome = run(words);
       ASSERT_EQ(outcome.code, 0) << outcome.err;
     }
@@ -256,7 +256,7 @@ TEST_F(InstancesFull, GiveTheSamePictureOfAForest) {
     EXPECT_EQ(one.integers.at("id"), other.integers.at("id"));
     for (const char* channel : {"V", "P.X", "P.Y", "P.Z", "Z", "N.X"})
       EXPECT_EQ(one.floats.at(channel), other.floats.at(channel)) << channel;
-    if (!way.empty()) {
+    if (!direction.empty()) {
       EXPECT_EQ(read("auto.bits"), read("copies.bits"));
     }
   }

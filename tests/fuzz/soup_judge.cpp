@@ -84,8 +84,8 @@ std::array<SoupJudge::Point, 3> SoupJudge::corners_of(std::uint32_t triangle) co
 
 int SoupJudge::edge_sign(const Point& p, const Point& l, const Point& a, const Point& b) const {
   const Point pa = minus(a, p), pb = minus(b, p);
-  for (const Point& way : {minus(l, p), u_, v_}) {
-    if (const int sign = sign_of_determinant(way, pa, pb); sign != 0) return sign;
+  for (const Point& direction : {minus(l, p), u_, v_}) {
+    if (const int sign = sign_of_determinant(direction, pa, pb); sign != 0) return sign;
   }
   return 0;
 }

@@ -55,9 +55,9 @@ struct ExactTriangle {
   }
 };
 
-/// p + t · way, 0 < t < 1, or without an end where the light is infinitely far away.
+/// p + t · direction, 0 < t < 1, or without an end where the light is infinitely far away.
 struct ExactWay {
-  rational::Vector p, way;
+  rational::Vector p, direction;
   rational::Vector straight;  ///< before ties were moved aside: a triangle whose plane holds its end is not met
   bool ends = true;
 };
@@ -68,11 +68,11 @@ inline bool meets(const ExactWay& from_p, const std::array<glm::vec3, 3>& corner
   const Rational at_p = triangle.height(from_p.p), straight = dot(triangle.normal, from_p.straight);
   const Rational at_end = from_p.ends ? Rational(at_p + straight) : straight;
   if (is_zero(triangle.normal) || at_p == 0 || at_end == 0) return false;
-  const Rational rise = dot(triangle.normal, from_p.way);
+  const Rational rise = dot(triangle.normal, from_p.direction);
   if (rise == 0) return false;
   const Rational t = -at_p / rise;
   if (t <= 0 || (from_p.ends && t >= 1)) return false;
-  const Vector q = from_p.p + t * from_p.way;
+  const Vector q = from_p.p + t * from_p.direction;
   return dot(cross(triangle.b - q, triangle.c - q), triangle.normal) >= 0 &&
          dot(cross(triangle.c - q, triangle.a - q), triangle.normal) >= 0 &&
          dot(cross(triangle.a - q, triangle.b - q), triangle.normal) >= 0;

@@ -111,11 +111,11 @@ INSTANTIATE_TEST_SUITE_P(Lights, Scales, testing::Range(0U, 5U));
 
 TEST(ScaleLimits, ALightTooFarForTheSceneIsRefused) {
   Stage stage = snapped_stage(0);
-  for (const float way : {0x1p30F, 0x1p45F}) {
+  for (const float direction : {0x1p30F, 0x1p45F}) {
     Stage far = stage;
-    for (glm::vec3& x : far.light.points) x.y += way;
-    far.light.center.y = far.light.center_u.y = far.light.center_v.y = way;
-    EXPECT_NO_THROW(tests::trace(far)) << way;
+    for (glm::vec3& x : far.light.points) x.y += direction;
+    far.light.center.y = far.light.center_u.y = far.light.center_v.y = direction;
+    EXPECT_NO_THROW(tests::trace(far)) << direction;
   }
   for (glm::vec3& x : stage.light.points) x.y += 0x1p55F;
   EXPECT_THROW(tests::trace(stage), InputError);

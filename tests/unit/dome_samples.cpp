@@ -129,9 +129,9 @@ TEST(DomeFacesMade, ShareTheLightSamples) {
   for (const Light& face : light_faces(light, false)) {
     for (std::size_t j = 0; j < face.points.size(); ++j, ++count) {
       EXPECT_EQ(face.points[j], light.points[count]);
-      const glm::dvec3 way = glm::dvec3(face.center) + face.coordinates[j].x * glm::dvec3(face.sun->axis_u) +
-                             face.coordinates[j].y * glm::dvec3(face.sun->axis_v);
-      EXPECT_LT(glm::distance(glm::normalize(way), glm::normalize(glm::dvec3(face.points[j]))), 1e-7);
+      const glm::dvec3 toward = glm::dvec3(face.center) + face.coordinates[j].x * glm::dvec3(face.sun->axis_u) +
+                                face.coordinates[j].y * glm::dvec3(face.sun->axis_v);
+      EXPECT_LT(glm::distance(glm::normalize(toward), glm::normalize(glm::dvec3(face.points[j]))), 1e-7);
     }
   }
   EXPECT_EQ(count, light.sample_count());

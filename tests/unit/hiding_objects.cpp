@@ -98,9 +98,9 @@ TEST(HidingObjects, AreSoFarAwayAndMakeSoWidePenumbrae) {
     EXPECT_NEAR(found[i].widening, share / (1 - share), 1e-5);
     double shortest = std::numeric_limits<double>::infinity(), longest = 0;
     for (const glm::vec3& point : setup.light.points) {
-      const double way = share * glm::distance(glm::dvec3(point), glm::dvec3(setup.samples.p[pixels[i]]));
-      shortest = std::min(shortest, way);
-      longest = std::max(longest, way);
+      const double direction = share * glm::distance(glm::dvec3(point), glm::dvec3(setup.samples.p[pixels[i]]));
+      shortest = std::min(shortest, direction);
+      longest = std::max(longest, direction);
     }
     EXPECT_GE(found[i].nearest, shortest * (1 - 1e-5));
     EXPECT_LE(found[i].nearest, longest * (1 + 1e-5));

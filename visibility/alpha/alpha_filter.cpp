@@ -48,10 +48,10 @@ struct Slopes {
 /// rounding.
 class Pyramid {
  public:
-  /// `ways`: not empty. `ends`: each vector is a whole segment.
-  Pyramid(const glm::dvec3& p, std::span<const glm::dvec3> ways, bool ends) : p_(p) {
+  /// `directions`: not empty. `ends`: each vector is a whole segment.
+  Pyramid(const glm::dvec3& p, std::span<const glm::dvec3> directions, bool ends) : p_(p) {
     glm::dvec3 middle(0);
-    for (const glm::dvec3& way : ways) middle += way;
+    for (const glm::dvec3& direction : directions) middle += direction;
     const double length = glm::length(middle);
     if (!(length > 0) || !std::isfinite(length)) return;
     middle_ = middle / length;
@@ -60,10 +60,10 @@ class Pyramid {
     axes_[1] = glm::cross(middle_, axes_[0]);
     double farthest = 0;
     Slopes all;
-    for (const glm::dvec3& way : ways) {
-      const std::optional<glm::dvec2> slope = slope_of(way);
+    for (const glm::dvec3& direction : directions) {
+      const std::optional<glm::dvec2> slope = slope_of(direction);
       if (!slope) return;  // all directions: nothing is culled
-      farthest = std::max(farthest, glm::dot(way, middle_));
+      farthest = std::max(farthest, glm::dot(direction, middle_));
       all.add(*slope);
       const std::size_t number = slopes_++;
       if (number % kBlock == 0) blocks_.emplace_back();
@@ -112,10 +112,10 @@ class Pyramid {
     double offset = 0;  // inside: normal · (x − p) ≤ offset
   };
   /// Returns the slopes of a direction; nullopt if it does not point forward enough.
-  [[nodiscard]] std::optional<glm::dvec2> slope_of(const glm::dvec3& way) const {
-    const double along = glm::dot(way, middle_);
-    if (!(along > 0x1p-20 * glm::length(way))) return std::nullopt;
-    return glm::dvec2(glm::dot(way, axes_[0]), glm::dot(way, axes_[1])) / along;
+  [[nodiscard]] std::optional<glm::dvec2> slope_of(const glm::dvec3& direction) const {
+    const double along = glm::dot(direction, middle_);
+    if (!(along > 0x1p-20 * glm::length(direction))) return std::nullopt;
+    return glm::dvec2(glm::dot(direction, axes_[0]), glm::dot(direction, axes_[1])) / along;
   }
 
   glm::dvec3 p_, middle_{0};
@@ -146,7 +146,7 @@ class PixelFilter {
   /// Filters a pixel's mask. Returns whether transmittances changed.
   bool filter(std::size_t pixel, std::span<std::uint32_t> mask, std::span<float> transmittances, AlphaCounts& counts) {
     if (!is_receiver(scene_, light_, samples_, pixel)) return false;
-    find_ways(pixel, mask);
+    find_directions(pixel, mask);
     if (lit_.empty()) return false;
     find_triangles(pixel);
     if (triangles_.empty()) return false;
@@ -160,7 +160,7 @@ class PixelFilter {
 
  private:
   /// State of one light sample's ray.
-  struct WayEnd {
+  struct SegmentEnd {
     double left = 1;       // fraction left after translucent surfaces
     bool dimmed = false;   // a translucent surface was met
     bool by_mask = false;  // texels of a MASK surface were tested
@@ -168,19 +168,19 @@ class PixelFilter {
   };
 
   /// Returns whether all rays are equal, for a sun of one direction: only the first light sample is tested.
-  [[nodiscard]] bool has_one_way() const { return light_.sun && light_.sun->tangent == 0; }
+  [[nodiscard]] bool has_one_direction() const { return light_.sun && light_.sun->tangent == 0; }
 
-  void find_ways(std::size_t pixel, std::span<const std::uint32_t> mask) {
+  void find_directions(std::size_t pixel, std::span<const std::uint32_t> mask) {
     lit_.clear();
-    ways_.clear();
+    directions_.clear();
     const glm::vec3& p = samples_.p[pixel];
     if (std::ranges::all_of(mask, [](std::uint32_t word) { return word == 0; })) return;
     light_points_for(light_, p, points_.data());
     for (std::uint32_t word = 0; word < mask.size(); ++word) {
       for (std::uint32_t left = mask[word]; left != 0; left &= left - 1) {
         lit_.push_back(32 * word + static_cast<std::uint32_t>(std::countr_zero(left)));
-        ways_.push_back(way_to(light_, p, points_[lit_.back()]));
-        if (has_one_way()) return;
+        directions_.push_back(direction_to(light_, p, points_[lit_.back()]));
+        if (has_one_direction()) return;
       }
     }
   }
@@ -188,7 +188,7 @@ class PixelFilter {
   void find_triangles(std::size_t pixel) {
     triangles_.clear();
     const auto carrier = static_cast<std::uint32_t>(samples_.triangle[pixel]);
-    pyramid_.emplace(glm::dvec3(samples_.p[pixel]), ways_, !light_.sun);
+    pyramid_.emplace(glm::dvec3(samples_.p[pixel]), directions_, !light_.sun);
     tree_.for_each_in(*pyramid_, [&](std::uint32_t i) {
       const std::uint32_t triangle = scene_.alphas.casters[i];
       if (!holes_ && alpha_mode(scene_, triangle) == scenes::Alpha::Mode::mask) return;
@@ -206,7 +206,8 @@ class PixelFilter {
     const std::array corners = scene_.corners(triangle);
     const std::array d{glm::dvec3(corners[0]) - from, glm::dvec3(corners[1]) - from, glm::dvec3(corners[2]) - from};
     const std::array edges{glm::cross(d[0], d[1]), glm::cross(d[1], d[2]), glm::cross(d[2], d[0])};
-    // way · (a × b) is rounded by fewer than 16 · 2⁻⁵³ · 6 of the product of the lengths (visibility/certain_meeting).
+    // direction · (a × b) is rounded by fewer than 16 · 2⁻⁵³ · 6 of the product of the lengths
+    // (visibility/certain_meeting).
     const double reach = std::max({glm::length(d[0]), glm::length(d[1]), glm::length(d[2])});
     const double error = 0x1p-46 * reach * reach;
     // p's height over the triangle, times twice its area; rounded like the products above.
@@ -219,9 +220,10 @@ class PixelFilter {
         continue;
       }
       if (ends_[i].stopped) continue;
-      const glm::dvec3& way = ways_[i];
-      const double ab = glm::dot(way, edges[0]), bc = glm::dot(way, edges[1]), ca = glm::dot(way, edges[2]);
-      const double off = error * (std::abs(way.x) + std::abs(way.y) + std::abs(way.z));
+      const glm::dvec3& direction = directions_[i];
+      const double ab = glm::dot(direction, edges[0]), bc = glm::dot(direction, edges[1]),
+                   ca = glm::dot(direction, edges[2]);
+      const double off = error * (std::abs(direction.x) + std::abs(direction.y) + std::abs(direction.z));
       if (std::min({ab, bc, ca}) < -off && std::max({ab, bc, ca}) > off) continue;
       // Descent of the segment; it ends below the plane if that exceeds p's height.
       const double drop = ab + bc + ca, drop_error = 4 * off;
@@ -230,7 +232,7 @@ class PixelFilter {
                            (light_.sun || std::abs(drop) - std::abs(height) > drop_error + height_error);
       if (!(inside && crosses) && !segment_meets_triangle(p, points_[lit_[i]], corners, light_).meets) continue;
       const double left = transmittance_at(scene_, triangle, shares_from({bc, ca, ab}));
-      WayEnd& end = ends_[i];
+      SegmentEnd& end = ends_[i];
       if (is_mask) {
         end.by_mask = true;
         end.stopped = left == 0;
@@ -244,7 +246,7 @@ class PixelFilter {
 
   bool write(std::span<std::uint32_t> mask, std::span<float> transmittances, AlphaCounts& counts) const {
     bool dims = false;
-    const auto one = [&](const WayEnd& end, std::uint32_t sample) {
+    const auto one = [&](const SegmentEnd& end, std::uint32_t sample) {
       counts.mask_pairs += end.by_mask ? 1 : 0;
       counts.blend_pairs += end.dimmed ? 1 : 0;
       if (end.stopped) mask[sample / 32] &= ~(1u << sample % 32);
@@ -253,7 +255,7 @@ class PixelFilter {
       dims = true;
       transmittances[sample] = static_cast<float>(end.left);
     };
-    if (has_one_way()) {
+    if (has_one_direction()) {
       for (std::uint32_t sample = 0; sample < light_.sample_count(); ++sample) one(ends_[0], sample);
     } else {
       for (std::size_t i = 0; i < lit_.size(); ++i) one(ends_[i], lit_[i]);
@@ -268,10 +270,10 @@ class PixelFilter {
   bool holes_;
   std::vector<glm::vec3> points_;
   std::vector<std::uint32_t> lit_;  // light samples whose bits are set, with their directions
-  std::vector<glm::dvec3> ways_;
+  std::vector<glm::dvec3> directions_;
   std::optional<Pyramid> pyramid_;
   std::vector<std::uint32_t> triangles_;
-  std::vector<WayEnd> ends_;
+  std::vector<SegmentEnd> ends_;
   std::size_t open_ = 0;  // number of these that are not stopped
 };
 

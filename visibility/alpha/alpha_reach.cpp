@@ -46,9 +46,9 @@ struct Wall {
 };
 
 /// All segments (or rays) from one p to a light.
-class Ways {
+class Directions {
  public:
-  explicit Ways(const Light& light) : light_(light), ends_(!light.sun) {
+  explicit Directions(const Light& light) : light_(light), ends_(!light.sun) {
     if (light.dome) {  // all directions: only objects behind the carrier are not met
     } else if (light.sun) {
       const glm::dvec3 u = light.sun->tangent * glm::dvec3(light.sun->axis_u),
@@ -71,8 +71,8 @@ class Ways {
       corners_ = {c - u - v, c + u - v, c + u + v, c - u + v};
       normal_ = glm::cross(u, v);
     }
-    ways_.clear();
-    for (const glm::dvec3& corner : corners_) ways_.push_back(ends_ ? corner - p_ : corner);
+    directions_.clear();
+    for (const glm::dvec3& corner : corners_) directions_.push_back(ends_ ? corner - p_ : corner);
     if (ends_) {
       double size = size1(p_);
       for (const glm::dvec3& corner : corners_) size = std::max(size, size1(corner));
@@ -80,10 +80,10 @@ class Ways {
     }
     walls_.clear();
     glm::dvec3 middle(0);
-    for (std::size_t i = 0; i < ways_.size(); ++i) {
-      const glm::dvec3 normal = glm::cross(ways_[i], ways_[i + 1 < ways_.size() ? i + 1 : 0]);
-      add_wall(glm::dot(normal, ways_[(i + 2) % ways_.size()]) > 0 ? -normal : normal);
-      middle += ways_[i];
+    for (std::size_t i = 0; i < directions_.size(); ++i) {
+      const glm::dvec3 normal = glm::cross(directions_[i], directions_[i + 1 < directions_.size() ? i + 1 : 0]);
+      add_wall(glm::dot(normal, directions_[(i + 2) % directions_.size()]) > 0 ? -normal : normal);
+      middle += directions_[i];
     }
     add_wall(-middle);
     if (ends_) {
@@ -127,7 +127,7 @@ class Ways {
   /// Adds a wall through p, or as far along the normal as the segments reach.
   void add_wall(const glm::dvec3& normal) {
     double most = 0;
-    for (const glm::dvec3& way : ways_) most = std::max(most, glm::dot(normal, way));
+    for (const glm::dvec3& direction : directions_) most = std::max(most, glm::dot(normal, direction));
     const double size = size1(normal), reach = most + size * room_;
     // A direction has a length of at least 1 − 2⁻²⁰: x is at most |x − p| (1 + 2⁻¹⁹) of it away.
     walls_.push_back(ends_ ? Wall{normal, reach, kRounding * size}
@@ -136,18 +136,19 @@ class Ways {
 
   /// Returns whether the plane through p and the edge a b has the third corner on one side and the light on the other.
   [[nodiscard]] bool is_beside_edge(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& third) const {
-    if (ways_.empty()) return false;
+    if (directions_.empty()) return false;
     glm::dvec3 normal = glm::cross(a, b);
     const double size = size1(a) * size1(b), side = glm::dot(normal, third);
     if (!(std::abs(side) > kRounding * size * size1(third))) return false;
     if (side < 0) normal = -normal;
-    return std::ranges::all_of(
-        ways_, [&](const glm::dvec3& way) { return glm::dot(normal, way) < -size * (room_ + kRounding * size1(way)); });
+    return std::ranges::all_of(directions_, [&](const glm::dvec3& direction) {
+      return glm::dot(normal, direction) < -size * (room_ + kRounding * size1(direction));
+    });
   }
 
   /// Returns whether p and the light are on one side of the triangle's plane.
   [[nodiscard]] bool is_beside_plane(const std::array<glm::dvec3, 3>& to) const {
-    if (ways_.empty()) return false;
+    if (directions_.empty()) return false;
     const glm::dvec3 first = to[1] - to[0], second = to[2] - to[0];
     glm::dvec3 normal = glm::cross(first, second);
     const double size = size1(first) * size1(second), height = -glm::dot(normal, to[0]);
@@ -156,8 +157,8 @@ class Ways {
     if (height < 0) normal = -normal;
     const double least = ends_ ? -(std::abs(height) - error) : 0;  // of a segment's end, minus p's height; of a
                                                                    // direction
-    return std::ranges::all_of(ways_, [&](const glm::dvec3& way) {
-      return glm::dot(normal, way) > least + size * (room_ + kRounding * size1(way));
+    return std::ranges::all_of(directions_, [&](const glm::dvec3& direction) {
+      return glm::dot(normal, direction) > least + size * (room_ + kRounding * size1(direction));
     });
   }
 
@@ -167,7 +168,7 @@ class Ways {
   glm::dvec3 normal_{0};             // normal of the light's plane
   double room_ = 0;
   glm::dvec3 p_{0};
-  std::vector<glm::dvec3> ways_;
+  std::vector<glm::dvec3> directions_;
   std::vector<Wall> walls_;
 };
 
@@ -250,7 +251,7 @@ std::vector<std::uint8_t> AlphaReach::reached(const ViewSamples& samples, const 
   tbb::parallel_for(
       tbb::blocked_range2d<std::uint32_t>(0, (height + kBlock - 1) / kBlock, 0, (width + kBlock - 1) / kBlock),
       [&](const auto& blocks) {
-        Ways ways(light);
+        Directions directions(light);
         const auto do_block = [&](std::uint32_t top, std::uint32_t left) {
           const std::uint32_t bottom = std::min(top + kBlock, height), right = std::min(left + kBlock, width);
           const auto for_each_pixel = [&](auto&& visit) {
@@ -265,10 +266,10 @@ std::vector<std::uint8_t> AlphaReach::reached(const ViewSamples& samples, const 
           if (!any_in(tree_, all, [](std::uint32_t) { return true; })) return;
           for_each_pixel([&](std::size_t i) {
             const auto carrier = static_cast<std::uint32_t>(samples.triangle[i]);
-            ways.start_at(scene_, samples, i);
-            if (!any_in(tree_, ways, [&](std::uint32_t caster) {
+            directions.start_at(scene_, samples, i);
+            if (!any_in(tree_, directions, [&](std::uint32_t caster) {
                   const std::uint32_t triangle = scene_.alphas.casters[caster];
-                  return may_filter(scene_, light, carrier, triangle) && ways.touch(scene_.corners(triangle));
+                  return may_filter(scene_, light, carrier, triangle) && directions.touch(scene_.corners(triangle));
                 }))
               return;
             reached[i] = 1;

@@ -34,10 +34,10 @@ DiskPart::DiskPart(std::span<const glm::dvec2> corners) {
 }
 
 void DiskPart::add_edge(const glm::dvec2& a, const glm::dvec2& b) {
-  const glm::dvec2 way = b - a;
-  const double length = glm::length(way);
+  const glm::dvec2 direction = b - a;
+  const double length = glm::length(direction);
   if (length == 0) return;
-  const glm::dvec2 along = way / length;
+  const glm::dvec2 along = direction / length;
   const double beside = cross(a, along);  // distance of the line from the centre
   const bool a_inside = glm::dot(a, a) <= 1, b_inside = glm::dot(b, b) <= 1;
   if (!a_inside && !b_inside && std::abs(beside) >= 1) return add_arc(angle(a, b));

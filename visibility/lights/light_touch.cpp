@@ -93,8 +93,8 @@ bool meets_box(std::span<const glm::dvec2> polygon, const glm::dvec2& low, const
   };
   if (polygon.empty() || separates({1, 0}) || separates({0, 1})) return false;
   for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const glm::dvec2 way = polygon[(i + 1) % polygon.size()] - polygon[i];
-    if (separates({-way.y, way.x})) return false;
+    const glm::dvec2 direction = polygon[(i + 1) % polygon.size()] - polygon[i];
+    if (separates({-direction.y, direction.x})) return false;
   }
   return true;
 }

@@ -48,7 +48,9 @@ WholeLight make_whole_light(const Light& light) {
   if (is_parallelogram(light.kind)) {
     whole.corners = {{-u, -v, -2.0 * v}, {u, -v, 2.0 * u}, {u, v, 2.0 * v}, {-u, v, -2.0 * u}};
   } else if (is_polygon(light.kind)) {
-    const auto in_plane = [&](const glm::dvec3& way) { return way - glm::dot(whole.front, way) * whole.front; };
+    const auto in_plane = [&](const glm::dvec3& direction) {
+      return direction - glm::dot(whole.front, direction) * whole.front;
+    };
     const std::size_t count = light.outline.size();
     for (std::size_t i = 0; i < count; ++i) {
       // in the order of form_factor.cpp's sum

@@ -53,9 +53,9 @@ class Shafts {
     // The normal is float32 here, and its product with a direction is rounded: error at most 2⁻²⁰ of the factors'
     // product.
     const bool above = std::ranges::any_of(light.corners, [&](const glm::dvec3& corner) {
-      const glm::dvec3 way = light.directions ? corner : corner - p;
-      return glm::dot(n, way) >
-             -2 * light.room - 0x1p-20 * (sum_of_sides(way) + (light.directions ? 0 : sum_of_sides(p)));
+      const glm::dvec3 direction = light.directions ? corner : corner - p;
+      return glm::dot(n, direction) >
+             -2 * light.room - 0x1p-20 * (sum_of_sides(direction) + (light.directions ? 0 : sum_of_sides(p)));
     });
     if (!above || !light.front) return above;
     return glm::dot(light.front->normal, p - light.front->at) >

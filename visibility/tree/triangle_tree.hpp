@@ -48,14 +48,14 @@ struct TriangleTree {
   /// stops at the first. Boxes are enlarged (by 2⁻⁴⁰ of the segment), which exceeds double rounding.
   template <typename Visit>
   bool any_along(const glm::dvec3& p, const glm::dvec3& l, Visit&& visit) const;
-  /// Returns whether `visit(triangle)` is true for one of the triangles near the ray p + t · way, t ≥ 0, as any_along
-  /// does.
+  /// Returns whether `visit(triangle)` is true for one of the triangles near the ray p + t · direction, t ≥ 0, as
+  /// any_along does.
   template <typename Visit>
-  bool any_along_ray(const glm::dvec3& p, const glm::dvec3& way, Visit&& visit) const;
+  bool any_along_ray(const glm::dvec3& p, const glm::dvec3& direction, Visit&& visit) const;
 
  private:
-  template <typename Way, typename Visit>
-  bool any_touched(const Way& way, Visit&& visit) const;
+  template <typename Direction, typename Visit>
+  bool any_touched(const Direction& direction, Visit&& visit) const;
 };
 
 TriangleTree make_triangle_tree(const SceneFloats& scene);
@@ -87,11 +87,11 @@ void TriangleTree::for_each_near(const glm::vec3& lower, const glm::vec3& upper,
   }
 }
 
-/// A line p + t · way and a box: calls narrow(first, last) with the range of t between each pair of opposite planes;
-/// returns false if the line is parallel to a pair and outside of it.
+/// A line p + t · direction and a box: calls narrow(first, last) with the range of t between each pair of opposite
+/// planes; returns false if the line is parallel to a pair and outside of it.
 class LineAndBox {
  public:
-  LineAndBox(const glm::dvec3& p, const glm::dvec3& way) : p_(p), inverse_(1.0 / way) {}
+  LineAndBox(const glm::dvec3& p, const glm::dvec3& direction) : p_(p), inverse_(1.0 / direction) {}
 
  protected:
   template <typename Narrow>
@@ -112,7 +112,7 @@ class LineAndBox {
   glm::dvec3 p_, inverse_;
 };
 
-/// Computes the range of a segment from p along `way` (p→l), within 0 … 1, that is in a box.
+/// Computes the range of a segment from p along `direction` (p→l), within 0 … 1, that is in a box.
 class SegmentInBox : private LineAndBox {
  public:
   using LineAndBox::LineAndBox;
@@ -128,8 +128,8 @@ class SegmentInBox : private LineAndBox {
   }
 };
 
-/// Tests whether the ray p + t · way, t ≥ 0, touches a box. p is a float, so its start is not rounded; ends of ranges
-/// are widened by more than their double rounding.
+/// Tests whether the ray p + t · direction, t ≥ 0, touches a box. p is a float, so its start is not rounded; ends of
+/// ranges are widened by more than their double rounding.
 class RayInBox : private LineAndBox {
  public:
   using LineAndBox::LineAndBox;
@@ -159,12 +159,12 @@ bool TriangleTree::any_along(const glm::dvec3& p, const glm::dvec3& l, Visit&& v
 }
 
 template <typename Visit>
-bool TriangleTree::any_along_ray(const glm::dvec3& p, const glm::dvec3& way, Visit&& visit) const {
-  return any_touched(RayInBox(p, way), visit);
+bool TriangleTree::any_along_ray(const glm::dvec3& p, const glm::dvec3& direction, Visit&& visit) const {
+  return any_touched(RayInBox(p, direction), visit);
 }
 
-template <typename Way, typename Visit>
-bool TriangleTree::any_touched(const Way& segment, Visit&& visit) const {
+template <typename Direction, typename Visit>
+bool TriangleTree::any_touched(const Direction& segment, Visit&& visit) const {
   std::vector<std::uint32_t> stack;
   if (!nodes.empty()) stack.push_back(0);
   while (!stack.empty()) {

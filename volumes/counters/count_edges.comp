@@ -173,7 +173,7 @@ bool is_near(vec2 x, vec2 a, vec2 direction, float size, float error) {
 
 // Returns the side of the segment from c0 to x on which a point lies: one decision for all edges that meet in the
 // point.
-precise float beside_way(vec2 x, vec2 point) {
+precise float beside_direction(vec2 x, vec2 point) {
   precise const float left = x.x * point.y;
   precise const float right = x.y * point.x;
   precise const float difference = left - right;
@@ -202,7 +202,7 @@ void drain(uint queued) {
       const vec2 direction = direction_of(d, size);
       const int k = int(more.y);
       for (uint i = 0; i < kEach; ++i) {
-        const float side_a = beside_way(x[i], a), side_b = beside_way(x[i], b);
+        const float side_a = beside_direction(x[i], a), side_b = beside_direction(x[i], b);
         const float along_a = dot(x[i], a), along_b = dot(x[i], b);
         const float crossing = clamp((along_a * side_b - along_b * side_a) / (side_b - side_a), min(along_a, along_b), max(along_a, along_b));
         const bool crosses = (side_a > 0.0) != (side_b > 0.0) && crossing > 0.0 && crossing < dot(x[i], x[i]);
@@ -356,10 +356,10 @@ void main() {
     for (j = gl_SubgroupInvocationID; j < kSamples; j += kLanes) depths[pixel * kSamples + j] = counters[j];
     cut_off = cut_off || j < kSamples;
   }
-  const bool flat_way = sees_flat(length(from_center), at.height);
+  const bool flat_direction = sees_flat(length(from_center), at.height);
   // p is on a triangle within rounding: half of all directions from p depend on the side that p is on. (bound on)
   const bool on_some = subgroupAny(side_in_doubt) && subgroupAny(on_triangle);
-  if (subgroupAny(open_pixel || cut_off) || on_some || flat_way || below) {
+  if (subgroupAny(open_pixel || cut_off) || on_some || flat_direction || below) {
     settle_whole(pixel, false, !below);
     return;
   }

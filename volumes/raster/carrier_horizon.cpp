@@ -23,9 +23,9 @@ constexpr std::size_t kMostSamples = 32;
 double distance_to_rim(const glm::vec3& p, const std::array<glm::vec3, 3>& corners) {
   double nearest = kInfinity;
   for (std::size_t i = 0; i < 3; ++i) {
-    const glm::dvec3 a(corners[i]), way = glm::dvec3(corners[(i + 1) % 3]) - a, to_p = glm::dvec3(p) - a;
-    const double t = std::clamp(glm::dot(to_p, way) / glm::dot(way, way), 0.0, 1.0);
-    nearest = std::min(nearest, glm::length(to_p - t * way));
+    const glm::dvec3 a(corners[i]), direction = glm::dvec3(corners[(i + 1) % 3]) - a, to_p = glm::dvec3(p) - a;
+    const double t = std::clamp(glm::dot(to_p, direction) / glm::dot(direction, direction), 0.0, 1.0);
+    nearest = std::min(nearest, glm::length(to_p - t * direction));
   }
   return nearest;
 }

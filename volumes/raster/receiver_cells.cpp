@@ -171,11 +171,11 @@ std::vector<CellBlock> blocks_of_box(const glm::dvec3& lower, const glm::dvec3& 
 glm::dvec3 direction_of(std::uint32_t face, double x, double y) {
   const double across = 2 * x / ReceiverCells::kSide - 1, down = 2 * y / ReceiverCells::kSide - 1;
   const int axis = static_cast<int>(face / 2);
-  glm::dvec3 way;
-  way[axis] = face % 2 == 0 ? 1 : -1;
-  way[(axis + 1) % 3] = across;
-  way[(axis + 2) % 3] = down;
-  return way;
+  glm::dvec3 direction;
+  direction[axis] = face % 2 == 0 ? 1 : -1;
+  direction[(axis + 1) % 3] = across;
+  direction[(axis + 2) % 3] = down;
+  return direction;
 }
 
 std::vector<CellSegment> segments_of(const glm::dvec3& a, const glm::dvec3& b) {
@@ -216,8 +216,8 @@ PlaneDepths::Range PlaneDepths::in(const CellBlock& block, std::uint32_t x, std:
   double least = std::numeric_limits<double>::infinity(), most = 0;
   for (const double right : {-kCellPad, 1 + kCellPad}) {
     for (const double down : {-kCellPad, 1 + kCellPad}) {
-      const glm::dvec3 way = direction_of(block.face, x + right, y + down);
-      const double depth = d_ / glm::dot(n_, way);  // 1 / depth is linear over the cell
+      const glm::dvec3 direction = direction_of(block.face, x + right, y + down);
+      const double depth = d_ / glm::dot(n_, direction);  // 1 / depth is linear over the cell
       if (!(depth > 0)) return {block.least, block.most};
       least = std::min(least, depth);
       most = std::max(most, depth);
@@ -227,9 +227,9 @@ PlaneDepths::Range PlaneDepths::in(const CellBlock& block, std::uint32_t x, std:
 }
 
 bool PlaneDepths::covers_middle(std::uint32_t face, std::uint32_t x, std::uint32_t y) const {
-  const glm::dvec3 way = direction_of(face, x + 0.5371, y + 0.4219);  // on no diagonal of the face
+  const glm::dvec3 direction = direction_of(face, x + 0.5371, y + 0.4219);  // on no diagonal of the face
   for (std::size_t i = 0; i < 3; ++i) {
-    if (!(glm::dot(planes_[i], way) > errors_[i] * norm1(way))) return false;
+    if (!(glm::dot(planes_[i], direction) > errors_[i] * norm1(direction))) return false;
   }
   return true;
 }

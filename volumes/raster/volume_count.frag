@@ -73,13 +73,13 @@ uint between_planes(dvec3 P, dvec3 d, Value h, Value f) {
   const uint bounds = parts[face_part].bounds;
   if ((bounds & (kHasLower | kHasUpper)) == 0) return 0;
   const dvec3 n = parts[face_part].axis;
-  const Value at = along(n, P), way = product(along(n, d), f);
+  const Value at = along(n, P), direction = product(along(n, d), f);
   uint seen = 0;
   if ((bounds & kHasUpper) != 0) {
-    seen |= signs(sum(product(sum(Value(parts[face_part].upper, 0.0LF), negative(at)), h), way));
+    seen |= signs(sum(product(sum(Value(parts[face_part].upper, 0.0LF), negative(at)), h), direction));
   }
   if ((bounds & kHasLower) != 0) {
-    seen |= signs(sum(product(sum(at, Value(-parts[face_part].lower, 0.0LF)), h), negative(way)));
+    seen |= signs(sum(product(sum(at, Value(-parts[face_part].lower, 0.0LF)), h), negative(direction)));
   }
   return seen;
 }
@@ -91,17 +91,17 @@ int side(dvec3 p, dvec3 d, dvec3 l, dvec3 a, dvec3 b) {
   uint seen = signs(h) | signs(det(P, d, A)) | signs(negative(det(P, d, B))) | signs(negative(det(d, a - p, b - p)));
   seen |= between_planes(P, d, h, f);
   if (!counts_before(P)) return agreement(seen | signs(negative(f)));
-  const int way = agreement(seen | signs(f) | signs(difference(h, f)));
-  return way == kUnknown ? kUnknown : -way;
+  const int direction = agreement(seen | signs(f) | signs(difference(h, f)));
+  return direction == kUnknown ? kUnknown : -direction;
 }
 
 /// Returns the contribution of an edge's fan at infinity.
 int fan(dvec3 P, dvec3 d, dvec3 l, dvec3 apex, dvec3 a, dvec3 b) {
   if (counts_before(P)) return 0;
   const dvec3 A = a - l, B = b - l;
-  const int way =
+  const int direction =
       agreement(signs(det(apex, A, B)) | signs(det(d, A, B)) | signs(det(apex, d, B)) | signs(det(apex, A, d)));
-  return way == kUnknown ? kUnknown : -way;
+  return direction == kUnknown ? kUnknown : -direction;
 }
 
 /// Returns the contribution of an edge's fan in the plane n · x = offset, which the ray beyond p meets at Q = (r P + g
@@ -112,10 +112,10 @@ int fan_in_plane(dvec3 P, dvec3 d, dvec3 l, double offset, dvec3 a, dvec3 b) {
   const int ahead = agreement(signs(r) | signs(g));
   if (ahead == 0 || ahead == kUnknown) return ahead;
   const Value rr = ahead > 0 ? r : negative(r), gg = ahead > 0 ? g : negative(g);
-  const int way = agreement(signs(det(n, A, B)) | signs(sum(product(det(P, A, B), rr), product(det(d, A, B), gg))) |
+  const int direction = agreement(signs(det(n, A, B)) | signs(sum(product(det(P, A, B), rr), product(det(d, A, B), gg))) |
                             signs(sum(product(det(n, P, B), rr), product(det(n, d, B), gg))) |
                             signs(sum(product(det(n, A, P), rr), product(det(n, A, d), gg))));
-  return way == kUnknown ? kUnknown : -way * ahead;
+  return direction == kUnknown ? kUnknown : -direction * ahead;
 }
 
 uint passes(dvec3 p, dvec3 d, dvec3 a, dvec3 b, dvec3 c) {
@@ -127,8 +127,8 @@ int cap(dvec3 p, dvec3 d, dvec3 l, dvec3 a, dvec3 b, dvec3 c) {
   uint seen = passes(p, d, a, b, c);
   if (!counts_before(p - l)) return agreement(seen | signs(negative(height)));
   const Value fall = det(b - a, c - a, d);
-  const int way = agreement(seen | signs(height) | signs(difference(fall, height)));
-  return way == kUnknown ? kUnknown : -way;
+  const int direction = agreement(seen | signs(height) | signs(difference(fall, height)));
+  return direction == kUnknown ? kUnknown : -direction;
 }
 
 /// Returns the contribution of a cap on the carrier's plane: cancels its volume, regardless of the side of the plane

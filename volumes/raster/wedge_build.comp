@@ -42,7 +42,7 @@ struct Caster {
   dvec3 away;  // a direction from the light to the edge, or an approximation
 };
 
-double least_way(dvec3 m, Caster caster) {
+double least_direction(dvec3 m, Caster caster) {
   double least = min(dot(m, caster.a - corners[0]), dot(m, caster.b - corners[0]));
   for (uint i = 1; i < push.corner_count; ++i) {
     least = min(least, min(dot(m, caster.a - corners[i]), dot(m, caster.b - corners[i])));
@@ -57,8 +57,8 @@ dvec3 away_of(Caster caster) {
   const dvec3 normal = across / length(across) * (dot(across, caster.a - corners[0]) < 0.0LF ? -1.0LF : 1.0LF);
   const dvec3 edge = caster.b - caster.a, from = caster.a - push.center;
   const dvec3 nearest = from + clamp(-dot(from, edge) / dot(edge, edge), 0.0LF, 1.0LF) * edge;
-  const dvec3 way = nearest / length(nearest);
-  return least_way(normal, caster) > least_way(way, caster) ? normal : way;
+  const dvec3 toward = nearest / length(nearest);
+  return least_direction(normal, caster) > least_direction(toward, caster) ? normal : toward;
 }
 
 /// Returns the multiple of `away` by which the normal must be rotated, so that no n · (x − l) is below twice its bound.

@@ -98,11 +98,11 @@ using Points = std::vector<glm::dvec2>;
 /// Returns the intersection of two convex polygons.
 Points clip(Points polygon, const Points& by) {
   for (std::size_t side = 0; side < by.size(); ++side) {
-    const glm::dvec2 &start = by[side], way = by[(side + 1) % by.size()] - start;
+    const glm::dvec2 &start = by[side], direction = by[(side + 1) % by.size()] - start;
     Points kept;
     for (std::size_t i = 0; i < polygon.size(); ++i) {
       const glm::dvec2 &from = polygon[i], &to = polygon[(i + 1) % polygon.size()];
-      const double d = cross(way, from - start), e = cross(way, to - start);
+      const double d = cross(direction, from - start), e = cross(direction, to - start);
       if (d >= 0) kept.push_back(from);
       if ((d < 0 && e > 0) || (d > 0 && e < 0)) kept.push_back(from + (to - from) * (d / (d - e)));
     }
@@ -149,9 +149,9 @@ Receivers::Receivers(const visibility::ViewSamples& samples, const std::optional
     const glm::dvec3 p(samples.p[i]);
     if (center) {
       // n is a unit vector in float32, off by about 2⁻²²; p is off its plane by an ulp of its coordinates.
-      const glm::dvec3 way = *center - p;
-      const double size = largest(way) + largest(p) + largest(*center);
-      if (glm::dot(glm::dvec3(samples.n[i]), way) < -0x1p-18 * size) continue;
+      const glm::dvec3 direction = *center - p;
+      const double size = largest(direction) + largest(p) + largest(*center);
+      if (glm::dot(glm::dvec3(samples.n[i]), direction) < -0x1p-18 * size) continue;
     }
     const std::size_t x = i % samples.width / kBlock, y = i / samples.width / kBlock;
     Box& block = blocks_[y * columns_ + x];

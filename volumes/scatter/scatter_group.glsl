@@ -9,14 +9,14 @@ struct GroupBounds {
   float height_high, away;
 };
 
-vec3 grid_way(vec3 d) { return vec3(dot(across, d), dot(along, d), dot(axis, d)); }
+vec3 grid_direction(vec3 d) { return vec3(dot(across, d), dot(along, d), dot(axis, d)); }
 
 GroupBounds bounds_of_group(bool on) {
   GroupBounds g;
   const vec3 lower = subgroupMin(on ? at.p : vec3(1e30)), upper = subgroupMax(on ? at.p : vec3(-1e30));
   g.middle = 0.5 * lower + 0.5 * upper;
   g.half_size = (0.5 * upper - 0.5 * lower) * (1.0 + 8.0 * kRound);
-  const vec3 in_grid = grid_way(at.p - g.middle);
+  const vec3 in_grid = grid_direction(at.p - g.middle);
   g.in_grid_low = subgroupMin(on ? in_grid : vec3(1e30));
   g.in_grid_high = subgroupMax(on ? in_grid : vec3(-1e30));
   g.foot_low = subgroupMin(on ? at.foot : vec2(1e30));
@@ -38,12 +38,12 @@ struct Range {
 Range range_of(vec3 x, GroupBounds g) {
   const vec3 from = x - push.center;
   const vec2 above = vec2(dot(across, from), dot(along, from)) + first_cell;
-  const vec3 way = grid_way(x - g.middle);
-  const float h = dot(axis, from), w_low = g.in_grid_low.z - way.z, w_high = g.in_grid_high.z - way.z;
+  const vec3 direction = grid_direction(x - g.middle);
+  const float h = dot(axis, from), w_low = g.in_grid_low.z - direction.z, w_high = g.in_grid_high.z - direction.z;
   Range range;
   range.bounded = w_low > 0.25 * w_high && w_low > 256.0 * kRound * push.reach;
   const float at_low = h / w_low, at_high = h / w_high;
-  const vec2 e0 = way.xy - g.in_grid_high.xy, e1 = way.xy - g.in_grid_low.xy;
+  const vec2 e0 = direction.xy - g.in_grid_high.xy, e1 = direction.xy - g.in_grid_low.xy;
   const vec2 p0 = e0 * at_low, p1 = e0 * at_high, p2 = e1 * at_low, p3 = e1 * at_high;
   const vec2 low = above + min(min(p0, p1), min(p2, p3)), high = above + max(max(p0, p1), max(p2, p3));
   const float far = length(x - g.middle) + length(g.half_size) + cut_far(h);

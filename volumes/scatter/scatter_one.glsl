@@ -3,15 +3,15 @@
 
 // Returns p + d in the coordinates of projections: (across, along) · d and its height over p; its place is foot +
 // height / w (x, y).
-vec3 seen_way(vec3 d) {
+vec3 seen_direction(vec3 d) {
   precise const float w = -dot(axis, d);
-  precise const vec2 way = vec2(dot(across, d), dot(along, d));
-  return vec3(way, w);
+  precise const vec2 direction = vec2(dot(across, d), dot(along, d));
+  return vec3(direction, w);
 }
 
-vec2 appears(vec3 way) {
-  precise const float q = at.height / way.z;
-  precise const vec2 seen = at.foot + q * way.xy;
+vec2 appears(vec3 direction) {
+  precise const float q = at.height / direction.z;
+  precise const vec2 seen = at.foot + q * direction.xy;
   return seen;
 }
 
@@ -41,7 +41,7 @@ int side_seen(vec3 p, vec3 n, vec3 anchor, inout bool open) {
 // that it may hide are as close to its edges as if the edges were displaced by `sliver`. (bound window, bound sliver)
 void scatter_seen(vec3 a, vec3 b, int k, bool open, bool settled, float sliver) {
   const vec3 da = a - at.p, db = b - at.p;
-  const vec3 way_a = seen_way(da), way_b = seen_way(db);
+  const vec3 way_a = seen_direction(da), way_b = seen_direction(db);
   const float far_a = length(da), far_b = length(db), far = max(far_a, far_b);
   const vec2 window = 2.0 * half_cells + 2.0, xa = way_a.xy * at.height + (at.foot - first_cell) * way_a.z,
              xb = way_b.xy * at.height + (at.foot - first_cell) * way_b.z;

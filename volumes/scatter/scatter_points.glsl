@@ -66,9 +66,9 @@ void ask(uint pixel, bool listed) {
 // Every edge counts: even a short one may pass a light sample.
 bool may_change(vec2 low, vec2 high) { return true; }
 
-// Returns twice the area between the three points: > 0 if x is right of the line from `low` along `way`, which points
+// Returns twice the area between the three points: > 0 if x is right of the line from `low` along `direction`, which points
 // upward.
-float side_of(vec2 x, vec2 low, vec2 way) { return (x.x - low.x) * way.y - (x.y - low.y) * way.x; }
+float side_of(vec2 x, vec2 low, vec2 direction) { return (x.x - low.x) * direction.y - (x.y - low.y) * direction.x; }
 
 // Adds to bytes, and records bytes that may overflow: valid changes are in −63 … 63.
 void add_bytes(uint word, uint by) {
@@ -90,7 +90,7 @@ void change_left(float y, int by, bool when) {
 void scatter(vec2 a, vec2 b, int k, float error_a, float error_b) {
   k = push.side < 0.0 ? -k : k;                           // seen from behind, counter-clockwise is clockwise in (X, Y)
   const bool up = a.y < b.y;
-  const vec2 low = up ? a : b, high = up ? b : a, way = high - low, size = abs(way);
+  const vec2 low = up ? a : b, high = up ? b : a, direction = high - low, size = abs(direction);
   const int jump = up ? -k : k;                           // change of the depth to the right of it
   const float left = min(low.x, high.x), right = max(low.x, high.x);
 
@@ -108,7 +108,7 @@ void scatter(vec2 a, vec2 b, int k, float error_a, float error_b) {
 
   // Handles the light's corner, where changes begin; and the part left of the light, as if the edge continued straight
   // to the left.
-  const float corner_side = side_of(vec2(-0.5), low, way);
+  const float corner_side = side_of(vec2(-0.5), low, direction);
   if (all(lessThanEqual(low_near, vec2(-0.5))) && !(abs(corner_side) > near)) open_pixel = true;
   const bool corner_is_right = right <= -0.5 || (left <= -0.5 && corner_side > 0.0);
   corner_change += low.y <= -0.5 && high.y > -0.5 && corner_is_right ? jump : 0;
@@ -119,7 +119,7 @@ void scatter(vec2 a, vec2 b, int k, float error_a, float error_b) {
 
   // A flatter edge may be next to any light sample of a row. (bound side of a point)
   const bool leans = size.y > 1e-6 * size.x;
-  const float slope = leans ? way.x / way.y : 0.0;
+  const float slope = leans ? direction.x / direction.y : 0.0;
   const float beside = leans ? aside * (1.0 + abs(slope)) + 16.0 * kRound * (abs(low.x) + size.x) : 1e30;
   int row = int(clamp(ceil(low_near.y - 0.5), float(first_row), float(last_row + 1)));
   const int end = int(clamp(floor(high_near.y + 0.5) + 1.0, float(first_row), float(last_row + 1)));
@@ -136,14 +136,14 @@ void scatter(vec2 a, vec2 b, int k, float error_a, float error_b) {
     four = four == kNone ? starts[in_row * row_starts + start] : four;
     const uint place = 2 * (in_row * kFours + four);
     const vec4 x = places[place], y = places[place + 1];
-    const vec4 side = (x - low.x) * way.y - (y - low.y) * way.x;
+    const vec4 side = (x - low.x) * direction.y - (y - low.y) * direction.x;
     const bool spans = low.y <= middle && middle < high.y;
     // Whether the place on the row's middle under or over a light sample is right of the edge. If the edge crosses the
     // middle, this does not matter: its change before that place is reverted after it.
-    const int bend = !spans && (middle < low.y) == (way.x > 0.0) ? 1 : 0;
+    const int bend = !spans && (middle < low.y) == (direction.x > 0.0) ? 1 : 0;
     uint changes = 0, near_bits = 0;
     for (uint i = 0; i < kPointsAtOnce; ++i) {
-      const bool is_right = y[i] >= high.y ? way.x < 0.0 : y[i] < low.y ? way.x > 0.0 : side[i] > 0.0;
+      const bool is_right = y[i] >= high.y ? direction.x < 0.0 : y[i] < low.y ? direction.x > 0.0 : side[i] > 0.0;
       const int now = x[i] >= kBeyond ? before : x[i] >= right ? int(spans) : x[i] >= left ? int(is_right) - bend : 0;
       changes |= uint((now - before) * jump & 0xff) << (8 * i);
       before = now;

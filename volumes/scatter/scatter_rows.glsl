@@ -101,8 +101,8 @@ void scatter(vec2 a, vec2 b, int k, float error_a, float error_b) {
   const vec2 near = turn ? b : a, far = turn ? a : b;
   const float error_near = turn ? error_b : error_a, error_far = turn ? error_a : error_b;
   const int jump = (near.y < far.y) == turn ? k : -k;     // crossing the edge to the right, if it runs upward: −k
-  const vec2 way = far - near, low = min(a, b), high = max(a, b);
-  const float slope = way.x / way.y, steep = way.y == 0.0 ? 1e30 : abs(slope);
+  const vec2 direction = far - near, low = min(a, b), high = max(a, b);
+  const float slope = direction.x / direction.y, steep = direction.y == 0.0 ? 1e30 : abs(slope);
 
   // Ends within their error of a row may be on either side of it, which leaves the row open there.
   const vec2 rows = vec2(round(near.y), round(far.y));
@@ -110,7 +110,7 @@ void scatter(vec2 a, vec2 b, int k, float error_a, float error_b) {
   open_near(rows.y, far.x, 1.2 * error_far * (1.0 + steep), abs(far.y - rows.y) < error_far);
 
   // Effect of the far end's error on a crossing on the light.
-  const float weight = min(1.0, (abs(near.y - first_cell.y) + 2.0 * half_cells.y) / abs(way.y));
+  const float weight = min(1.0, (abs(near.y - first_cell.y) + 2.0 * half_cells.y) / abs(direction.y));
   const float error_x = 1.2 * (error_near + weight * error_far) * (1.0 + steep) + 8.0 * kRound * (half_cells.x + abs(near.x));
 
   int row = int(clamp(ceil(low.y), float(first_row), float(last_row + 1)));
@@ -148,7 +148,7 @@ void scatter(vec2 a, vec2 b, int k, float error_a, float error_b) {
   // at_corner, is of the left side, then these are within error_x of it, and that row, or the whole pixel, is open.
   // (bound left)
   if ((a.x < -0.5) != (b.x < -0.5)) {
-    const float y = clamp(near.y + (-0.5 - near.x) * (way.y / way.x), low.y, high.y);
+    const float y = clamp(near.y + (-0.5 - near.x) * (direction.y / direction.x), low.y, high.y);
     if (y > -0.5 && y <= float(last_row)) {
       const int from = max(int(ceil(y)), first_row);
       const int up = (a.x < b.x) ? k : -k;                // crossing it upwards, if it runs to the right: +k

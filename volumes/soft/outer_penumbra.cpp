@@ -34,18 +34,18 @@ double OuterPenumbra::depth_at(const glm::dvec3& p, const glm::dvec3& normal, co
     return center + (x - center) / (1 - h) - p;
   };
   double r = 0, s = 0;
-  const glm::dvec3 from = end(first, r), to = end(last, s), way = to - from;
+  const glm::dvec3 from = end(first, r), to = end(last, s), direction = to - from;
   // Minimum of distance over radius along from + t way, r + t (s − r): where its derivative is 0, or at an end.
-  const double square = glm::dot(way, way), slope = s - r;
+  const double square = glm::dot(direction, direction), slope = s - r;
   double nearest = 0;
   if (square > 0) {
-    const double foot = -glm::dot(from, way) / square, at_foot = r + foot * slope;
-    const glm::dvec3 off = from + foot * way;
+    const double foot = -glm::dot(from, direction) / square, at_foot = r + foot * slope;
+    const glm::dvec3 off = from + foot * direction;
     nearest = at_foot > 0 ? foot + slope * glm::dot(off, off) / (square * at_foot) : slope > 0 ? 1 : 0;
   }
   nearest = std::clamp(nearest, 0.0, 1.0);
   const double reach = r + nearest * slope;
-  return reach > 0 ? std::clamp(1 - glm::length(from + nearest * way) / reach, 0.0, 1.0) : 0;
+  return reach > 0 ? std::clamp(1 - glm::length(from + nearest * direction) / reach, 0.0, 1.0) : 0;
 }
 
 }  // namespace penumbra::volumes

@@ -47,17 +47,17 @@ void main() {
   const dvec3 from = push.c + (a + first * (b - a) - push.c) / (1.0LF - low) - p;
   const dvec3 to = push.c + (a + last * (b - a) - push.c) / (1.0LF - high) - p;
   const double r = table[0] * low / (1.0LF - low), s = table[0] * high / (1.0LF - high);
-  const dvec3 way = to - from;
-  const double square = dot(way, way), slope = s - r;
+  const dvec3 direction = to - from;
+  const double square = dot(direction, direction), slope = s - r;
   double nearest = 0.0LF;
   if (square > 0.0LF) {
-    const double foot = -dot(from, way) / square, at_foot = r + foot * slope;
-    const dvec3 off = from + foot * way;
+    const double foot = -dot(from, direction) / square, at_foot = r + foot * slope;
+    const dvec3 off = from + foot * direction;
     nearest = at_foot > 0.0LF ? foot + slope * dot(off, off) / (square * at_foot) : slope > 0.0LF ? 1.0LF : 0.0LF;
   }
   nearest = clamp(nearest, 0.0LF, 1.0LF);
   const double reach = r + nearest * slope;
-  const dvec3 x = from + nearest * way;
+  const dvec3 x = from + nearest * direction;
   const double depth = 1.0LF - sqrt(dot(x, x)) / reach;
   if (!(reach > 0.0LF) || !(depth > 0.0LF)) return;
   atomicMax(sums[slot], int64_t(round(depth / kSumUnit)));

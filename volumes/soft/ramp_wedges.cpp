@@ -84,9 +84,9 @@ class Builder {
     for (const glm::dvec3& touched : hull_.corners) {
       if (!(glm::dot(normal, touched - center_) < 0)) continue;
       const glm::dvec3 n = glm::cross(wedge.b - wedge.a, touched - wedge.a);
-      const double way = glm::dot(n, away);
-      if (way == 0) continue;
-      const Plane plane = plane_through(wedge.a, way > 0 ? n : -n);
+      const double direction = glm::dot(n, away);
+      if (direction == 0) continue;
+      const Plane plane = plane_through(wedge.a, direction > 0 ? n : -n);
       const bool behind = std::ranges::all_of(hull_.corners, [&](const glm::dvec3& l) {
         return height(plane, l) <= 0x1p-40 * (glm::length(l) + glm::length(wedge.a));
       });

@@ -55,9 +55,9 @@ void add_to_quarter(uint quarter, uint slot, Segment cut, int weight) {
 void add_to_point(uint point, uint slot, dvec2 q0, dvec2 q1, int weight) {
   const dvec2 to[8] = dvec2[](dvec2(1, 0), dvec2(1, 1), dvec2(0, 1), dvec2(-1, 1), dvec2(-1, 0), dvec2(-1, -1),
                               dvec2(0, -1), dvec2(1, -1));
-  const dvec2 g = to[point], way = q1 - q0, rest = g - q0;
+  const dvec2 g = to[point], direction = q1 - q0, rest = g - q0;
   const double from_side = g.x * q0.y - g.y * q0.x, to_side = g.x * q1.y - g.y * q1.x;
-  const double beyond = way.x * rest.y - way.y * rest.x, here = way.y * q0.x - way.x * q0.y;
+  const double beyond = direction.x * rest.y - direction.y * rest.x, here = direction.y * q0.x - direction.x * q0.y;
   if ((from_side < 0.0LF) == (to_side < 0.0LF) || (beyond < 0.0LF) == (here < 0.0LF)) return;
   atomicAdd(sums[slot * kBlendWords + kPointWord + point], int64_t(from_side < 0.0LF ? weight : -weight));
 }

@@ -88,10 +88,11 @@ double distance_to(const std::array<glm::dvec3, 3>& triangle) {
   bool within = glm::dot(n, n) > 0;  // the nearest point of the plane is within the triangle
   double nearest = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < 3; ++i) {
-    const glm::dvec3 &from = triangle[i], way = triangle[(i + 1) % 3] - from;
-    within = within && glm::dot(glm::cross(way, -from), n) >= 0;
-    const double size = glm::dot(way, way), share = size > 0 ? std::clamp(-glm::dot(from, way) / size, 0.0, 1.0) : 0;
-    nearest = std::min(nearest, glm::length(from + share * way));
+    const glm::dvec3 &from = triangle[i], direction = triangle[(i + 1) % 3] - from;
+    within = within && glm::dot(glm::cross(direction, -from), n) >= 0;
+    const double size = glm::dot(direction, direction),
+                 share = size > 0 ? std::clamp(-glm::dot(from, direction) / size, 0.0, 1.0) : 0;
+    nearest = std::min(nearest, glm::length(from + share * direction));
   }
   return within ? std::min(nearest, std::abs(glm::dot(n, a)) / glm::length(n)) : nearest;
 }

@@ -48,8 +48,9 @@ struct Range {
 /// plane, not before projection: where an edge passes p closely, X² + Y² ≤ W² would be decided by the squares of small
 /// differences.
 std::optional<ClippedEdge> cut_by_disk(const ClippedEdge& edge) {
-  const glm::dvec2 way = edge.to - edge.from;
-  const double size = glm::dot(way, way), half = glm::dot(edge.from, way), rest = glm::dot(edge.from, edge.from) - 1;
+  const glm::dvec2 toward = edge.to - edge.from;
+  const double size = glm::dot(toward, toward), half = glm::dot(edge.from, toward),
+               rest = glm::dot(edge.from, edge.from) - 1;
   const bool from_inside = rest <= 0, to_inside = glm::dot(edge.to, edge.to) <= 1;
   if (from_inside && to_inside) return edge;
   const double discriminant = half * half - size * rest;
@@ -61,8 +62,8 @@ std::optional<ClippedEdge> cut_by_disk(const ClippedEdge& edge) {
   if (!to_inside) range.to = std::min(1.0, high);
   if (!(range.from < range.to)) return std::nullopt;
   ClippedEdge inside = edge;
-  if (!from_inside) inside.from = edge.from + range.from * way;
-  if (!to_inside) inside.to = edge.from + range.to * way;
+  if (!from_inside) inside.from = edge.from + range.from * toward;
+  if (!to_inside) inside.to = edge.from + range.to * toward;
   inside.from_error = inside.to_error = std::max(edge.from_error, edge.to_error);
   return inside;
 }

@@ -39,9 +39,10 @@ struct Signed {
 Signed height(const Crop& crop, const glm::dvec3& l) {
   const glm::dvec3 u = crop.triangle[1] - crop.triangle[0], v = crop.triangle[2] - crop.triangle[0],
                    w = l - crop.triangle[0];
-  const glm::dvec3 size = glm::abs(u), other = glm::abs(v), way = glm::abs(w);
-  const double sum = way.x * (size.y * other.z + size.z * other.y) + way.y * (size.z * other.x + size.x * other.z) +
-                     way.z * (size.x * other.y + size.y * other.x);
+  const glm::dvec3 size = glm::abs(u), other = glm::abs(v), direction = glm::abs(w);
+  const double sum = direction.x * (size.y * other.z + size.z * other.y) +
+                     direction.y * (size.z * other.x + size.x * other.z) +
+                     direction.z * (size.x * other.y + size.y * other.x);
   return {glm::dot(glm::cross(u, v), w), 0x1p-49 * sum};
 }
 
@@ -51,8 +52,8 @@ bool holds_where_cropped(const glm::dvec3& n, double factor, const Crop& crop, c
   return std::ranges::all_of(cast.light, [&](const glm::dvec3& l) {
     const Signed h = height(crop, l);
     return std::ranges::all_of(std::array{cast.a, cast.b}, [&](const glm::dvec3& x) {
-      const glm::dvec3 way = x - l;
-      const double along = glm::dot(n, way), size = glm::dot(glm::abs(n), glm::abs(way));
+      const glm::dvec3 direction = x - l;
+      const double along = glm::dot(n, direction), size = glm::dot(glm::abs(n), glm::abs(direction));
       const double rest = along - factor * crop.others * h.value;
       return rest > 0x1p-50 * (size + std::abs(factor * h.value)) + factor * h.error;
     });

@@ -34,8 +34,9 @@ void add_edge(Part& part, const Wedge& wedge) {
 
 Part octahedron(std::string name, const glm::dvec3& center, double radius) {
   Part part{std::move(name), kPoint, {}, {}, {}};
-  for (const double way : {-radius, radius}) {
-    for (const glm::dvec3& axis : {glm::dvec3(way, 0, 0), glm::dvec3(0, way, 0), glm::dvec3(0, 0, way)}) {
+  for (const double direction : {-radius, radius}) {
+    for (const glm::dvec3& axis :
+         {glm::dvec3(direction, 0, 0), glm::dvec3(0, direction, 0), glm::dvec3(0, 0, direction)}) {
       part.positions.push_back(center + axis);
     }
   }

@@ -24,8 +24,8 @@ class Careless {
     const glm::dvec3 edge = b - a;
     std::vector<Plane> planes;
     for (const double turn : {1.0, -1.0}) {
-      const double way = fault_ == Fault::front_back_swapped ? -1.0 : 1.0;
-      add(planes, way * tangent(a, edge, turn, false), a, cast);
+      const double toward = fault_ == Fault::front_back_swapped ? -1.0 : 1.0;
+      add(planes, toward * tangent(a, edge, turn, false), a, cast);
     }
     for (const bool at_a : {true, false}) {
       const glm::dvec3 &end = at_a ? a : b, &other = at_a ? b : a;

@@ -200,8 +200,8 @@ int orientation(const ExactPoint& a, const ExactPoint& b, const ExactPoint& c, c
   // of three by thrice this error and 5 roundings; there are six of at most 8 M³: below 48 · 2⁻⁴⁸ M³.
   const double size = std::max({largest(a.near), largest(b.near), largest(c.near), largest(p.near)});
   if (std::abs(value) > 0x1p-42 * size * size * size) return value > 0 ? 1 : -1;
-  const Vector normal = cross(difference(b, a), difference(c, a)), way = difference(p, a);
-  return sgn(mpq_class(normal[0] * way[0] + normal[1] * way[1] + normal[2] * way[2]));
+  const Vector normal = cross(difference(b, a), difference(c, a)), direction = difference(p, a);
+  return sgn(mpq_class(normal[0] * direction[0] + normal[1] * direction[1] + normal[2] * direction[2]));
 }
 
 Polyhedron cut_box(const Box& box, std::span<const Plane> planes) {

@@ -94,11 +94,11 @@ std::optional<ExactPoint> witness_against(const Plane& plane, const EdgeAndLight
 /// Returns a direction with positive products with all x − l, found by an iteration to the point of their hull nearest
 /// to zero (Gilbert 1966): independent of separating_direction.
 std::optional<glm::dvec3> other_separating_direction(const EdgeAndLight& cast) {
-  std::vector<glm::dvec3> ways;
-  for (const glm::dvec3& l : cast.light) ways.insert(ways.end(), {cast.a - l, cast.b - l});
-  glm::dvec3 at = ways.front();
+  std::vector<glm::dvec3> directions;
+  for (const glm::dvec3& l : cast.light) directions.insert(directions.end(), {cast.a - l, cast.b - l});
+  glm::dvec3 at = directions.front();
   for (int step = 0; step < 1000; ++step) {
-    const glm::dvec3 lowest = *std::ranges::min_element(ways, {}, [&](const auto& w) { return glm::dot(at, w); });
+    const glm::dvec3 lowest = *std::ranges::min_element(directions, {}, [&](const auto& w) { return glm::dot(at, w); });
     if (glm::dot(at, lowest) > 0) break;
     const glm::dvec3 d = lowest - at;
     at += std::clamp(-glm::dot(at, d) / glm::dot(d, d), 0.0, 1.0) * d;
@@ -196,14 +196,14 @@ bool WedgeProofs::is_proved_crop(const Job& job, const Plane& plane) const {
   std::vector<mpq_class> heights;
   for (const glm::dvec3& l : job.cast.light) heights.emplace_back(crop->others * volume(crop->triangle, l));
   for (const glm::dvec3& x : {job.cast.a, job.cast.b}) {
-    std::vector<mpq_class> ways;
-    for (const glm::dvec3& l : job.cast.light) ways.push_back(along(plane.normal(), x, l));
-    for (std::size_t i = 0; i < ways.size(); ++i) {
+    std::vector<mpq_class> directions;
+    for (const glm::dvec3& l : job.cast.light) directions.push_back(along(plane.normal(), x, l));
+    for (std::size_t i = 0; i < directions.size(); ++i) {
       if (sgn(heights[i]) < 0) continue;
-      if (sgn(ways[i]) < 0) return false;
-      for (std::size_t j = 0; j < ways.size(); ++j) {
-        if (sgn(heights[j]) >= 0 || sgn(ways[j]) >= 0) continue;
-        if (ways[j] * heights[i] < ways[i] * heights[j]) return false;
+      if (sgn(directions[i]) < 0) return false;
+      for (std::size_t j = 0; j < directions.size(); ++j) {
+        if (sgn(heights[j]) >= 0 || sgn(directions[j]) >= 0) continue;
+        if (directions[j] * heights[i] < directions[i] * heights[j]) return false;
       }
     }
   }

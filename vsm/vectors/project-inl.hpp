@@ -83,7 +83,7 @@ class Projection {
     const D d;
     const TriangleTable& near = s_.near;
     const M live = hn::AndNot(same_bits(column(near, kTrianglePlane, i), bits(at_.plane)), first_lanes(end - i));
-    const Ways a = way_to(kCornerA, i), b = way_to(kCornerB, i), c = way_to(kCornerC, i);
+    const Directions a = direction_to(kCornerA, i), b = direction_to(kCornerB, i), c = direction_to(kCornerC, i);
     const V least = hn::Min(a.w, hn::Min(b.w, c.w)), most = hn::Max(a.w, hn::Max(b.w, c.w));
     const V far = hn::Add(column(near, kTriangleFar, i), set(at_.far));
     const V triangle = hn::BitCast(d, numbers_from(i));
@@ -104,8 +104,8 @@ class Projection {
     // (bound X)
     const V from_foot = hn::Add(hn::Max(hn::Sub(high_x, foot_x), hn::Sub(foot_x, low_x)),
                                 hn::Max(hn::Sub(high_y, foot_y), hn::Sub(foot_y, low_y)));
-    const V way = hn::Mul(far, hn::Mul(hn::Max(qa, hn::Max(qb, qc)), set(1.0001F / place_.height)));
-    const V error = hn::MulAdd(way, hn::MulAdd(set(place_.per_reach), from_foot, set(place_.per_way)),
+    const V direction = hn::Mul(far, hn::Mul(hn::Max(qa, hn::Max(qb, qc)), set(1.0001F / place_.height)));
+    const V error = hn::MulAdd(direction, hn::MulAdd(set(place_.per_reach), from_foot, set(place_.per_ray)),
                                hn::MulAdd(set(place_.per_foot), from_foot, set(place_.fixed)));
     const M kept = hn::And(hn::And(live, clear), reaches(low_x, high_x, low_y, high_y, error));
     const std::size_t more = hn::CountTrue(d, kept);
@@ -132,19 +132,19 @@ class Projection {
   }
 
  private:
-  struct Ways {
+  struct Directions {
     V x, y, w;
   };
-  [[nodiscard]] Ways way_to(std::size_t corner, std::size_t i) const {
-    const Ways way{hn::Sub(column(s_.near, corner, i), set(at_.in_grid.x)),
-                   hn::Sub(column(s_.near, corner + 1, i), set(at_.in_grid.y)),
-                   hn::Sub(set(at_.in_grid.z), column(s_.near, corner + 2, i))};
-    return in_.grid.cones ? Ways{turned(way, 0), turned(way, 1), turned(way, 2)} : way;
+  [[nodiscard]] Directions direction_to(std::size_t corner, std::size_t i) const {
+    const Directions direction{hn::Sub(column(s_.near, corner, i), set(at_.in_grid.x)),
+                               hn::Sub(column(s_.near, corner + 1, i), set(at_.in_grid.y)),
+                               hn::Sub(set(at_.in_grid.z), column(s_.near, corner + 2, i))};
+    return in_.grid.cones ? Directions{turned(direction, 0), turned(direction, 1), turned(direction, 2)} : direction;
   }
   /// Returns a direction as p sees a sphere or sun.
-  [[nodiscard]] V turned(const Ways& way, glm::length_t row) const {
-    return hn::MulAdd(set(at_.turn[2][row]), way.w,
-                      hn::MulAdd(set(at_.turn[1][row]), way.y, hn::Mul(set(at_.turn[0][row]), way.x)));
+  [[nodiscard]] V turned(const Directions& direction, glm::length_t row) const {
+    return hn::MulAdd(set(at_.turn[2][row]), direction.w,
+                      hn::MulAdd(set(at_.turn[1][row]), direction.y, hn::Mul(set(at_.turn[0][row]), direction.x)));
   }
   /// Returns whether the box may contain a light sample. For tiles: whether it is not certainly outside of all cells.
   [[nodiscard]] M reaches(V low_x, V high_x, V low_y, V high_y, V error) const {

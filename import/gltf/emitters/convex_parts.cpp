@@ -182,10 +182,11 @@ std::vector<std::vector<std::size_t>> flat_regions(const Welded& mesh, double ro
     for (const std::uint32_t point : mesh.triangles[a])
       reach = std::max(reach, glm::distance(mesh.points[point], from));
     return std::ranges::all_of(mesh.triangles[b], [&](std::uint32_t point) {
-      const glm::dvec3 way = mesh.points[point] - from;
+      const glm::dvec3 direction = mesh.points[point] - from;
       // The plane of three rounded points is off by the rounding at these points, and farther away in proportion to the
       // inverse of the triangle's height, which is its doubled area over its reach.
-      return std::abs(glm::dot(normals[a], way)) <= 4 * rounding * (1 + glm::length(way) * reach / sizes[a]);
+      return std::abs(glm::dot(normals[a], direction)) <=
+             4 * rounding * (1 + glm::length(direction) * reach / sizes[a]);
     });
   };
   std::vector<std::vector<std::size_t>> regions;

@@ -127,18 +127,18 @@ void cut(inout vec2 part, float value, float change) {
 // Returns whether the light sample at s is hidden by the contents of rows first_row ... last_row of the face, and the
 // next row.
 bool ray_is_stopped(MapFace face, vec2 s) {
-  const vec3 start = to_face(face, asked.e), way = to_face(face, vec3(s, 0.0)) - start;
+  const vec3 start = to_face(face, asked.e), direction = to_face(face, vec3(s, 0.0)) - start;
   // The ray ends where the map is empty; beyond the receiver's height the map is empty, too.
   vec2 part = vec2(0.0, 1.0 - 0.99999 * near_height / asked.e.z);
   const vec2 upper = face.lower + float(lookup.size) * face.texel;
   const vec2 rows = face.lower.y + vec2(lookup.first_row, min(lookup.last_row + 2, lookup.size)) * face.texel.y;
-  cut(part, start.z, way.z);
-  cut(part, start.x - face.lower.x * start.z, way.x - face.lower.x * way.z);
-  cut(part, upper.x * start.z - start.x, upper.x * way.z - way.x);
-  cut(part, start.y - rows.x * start.z, way.y - rows.x * way.z);
-  cut(part, rows.y * start.z - start.y, rows.y * way.z - way.y);
+  cut(part, start.z, direction.z);
+  cut(part, start.x - face.lower.x * start.z, direction.x - face.lower.x * direction.z);
+  cut(part, upper.x * start.z - start.x, upper.x * direction.z - direction.x);
+  cut(part, start.y - rows.x * start.z, direction.y - rows.x * direction.z);
+  cut(part, rows.y * start.z - start.y, rows.y * direction.z - direction.y);
   if (!(part.x < part.y)) return false;
-  const vec3 first = start + part.x * way, last = start + part.y * way;
+  const vec3 first = start + part.x * direction, last = start + part.y * direction;
   if (!(first.z > 0.0) || !(last.z > 0.0)) return false;
   const vec2 from = (first.xy / first.z - face.lower) / face.texel, to = (last.xy / last.z - face.lower) / face.texel;
   const vec2 over = to - from;

@@ -59,9 +59,9 @@ void look_past_edges(ViewSamples& samples, const SceneFloats& floats, const Ligh
       for (std::uint32_t i = 0; i < kBlock * kBlock; ++i) {
         const std::size_t pixel = std::size_t{top + i / kBlock} * samples.width + left + i % kBlock;
         const auto [center, u, v] = visibility::light_frame_from(light, glm::vec3(x));
-        const glm::dvec3 way = (light.sun ? center : center - x) + (aim.x + spread * share(random)) * u +
-                               (aim.y + spread * share(random)) * v;
-        const glm::dvec3 p = x - (x.y - floor) / way.y * way;
+        const glm::dvec3 direction = (light.sun ? center : center - x) + (aim.x + spread * share(random)) * u +
+                                     (aim.y + spread * share(random)) * v;
+        const glm::dvec3 p = x - (x.y - floor) / direction.y * direction;
         samples.p[pixel] = glm::vec3(p.x, floor, p.z);
       }
     }

@@ -74,14 +74,15 @@ std::optional<tests::OneLightScene> at_the_frames_corner(std::uint32_t scene_see
   const glm::dvec3 side = aim.across(across);
   const double away = size * aim.power(-0.5, 1.5) + 16 * ulp, lean = aim.real(0.2, 1.5);
   const glm::dvec3 p = counted + away * (std::cos(lean) * (seed % 4 < 2 ? 1.0 : -1.0) * across + std::sin(lean) * side);
-  const glm::dvec3 way = counted + aim.real(0, 1) * (placed - counted) - p;
-  const glm::dvec3 along = glm::normalize(glm::cross(glm::normalize(way), across)),
-                   beside = glm::cross(along, glm::normalize(way));
+  const glm::dvec3 toward = counted + aim.real(0, 1) * (placed - counted) - p;
+  const glm::dvec3 along = glm::normalize(glm::cross(glm::normalize(toward), across)),
+                   beside = glm::cross(along, glm::normalize(toward));
   const double width = size * aim.power(-0.5, 1), share = aim.real(0.2, 0.98);
   const double sign = aim.real(-1, 1) < 0 ? -1 : 1;
-  scene.add_occluder({{p + share * way + width * along, p + (share + aim.real(-0.1, 0.02)) * way - width * along,
-                       p + share * way + sign * width * beside}});
-  scene.look_from(aim, p, glm::normalize(-glm::normalize(way) + 0.5 * aim.direction()), 0.02, ulp * aim.power(-0.5, 1));
+  scene.add_occluder({{p + share * toward + width * along, p + (share + aim.real(-0.1, 0.02)) * toward - width * along,
+                       p + share * toward + sign * width * beside}});
+  scene.look_from(aim, p, glm::normalize(-glm::normalize(toward) + 0.5 * aim.direction()), 0.02,
+                  ulp * aim.power(-0.5, 1));
   return scene;
 }
 

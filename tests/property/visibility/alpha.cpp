@@ -80,11 +80,11 @@ struct Leaves {
 
 /// Is there a texel where the way meets the triangle's plane? Nothing on a border.
 std::optional<bool> literal_is_there(const scenes::Scene& scene, const SceneFloats& floats, std::uint32_t triangle,
-                                     const Vector& p, const Vector& way) {
+                                     const Vector& p, const Vector& direction) {
   const auto corners = floats.corners(triangle);
   const tests::ExactTriangle exactly(corners);
-  const Rational t = -exactly.height(p) / dot(exactly.normal, way);
-  const Vector q = p + t * way;
+  const Rational t = -exactly.height(p) / dot(exactly.normal, direction);
+  const Vector q = p + t * direction;
   const Rational area = dot(exactly.normal, exactly.normal);
   const std::array shares{Rational(dot(cross(exactly.b - q, exactly.c - q), exactly.normal) / area),
                           Rational(dot(cross(exactly.c - q, exactly.a - q), exactly.normal) / area),
@@ -140,16 +140,16 @@ TEST_P(AlphaOnLattice, TexelsDecide) {
       for (std::uint32_t j = 0; j < 9; ++j) {
         if ((unfiltered[pixel] >> j & 1u) == 0) continue;
         const Vector p = exact(samples.p[pixel]);
-        const Vector way = light.sun ? exact(light.points[j]) : Vector(exact(light.points[j]) - p);
+        const Vector direction = light.sun ? exact(light.points[j]) : Vector(exact(light.points[j]) - p);
         const Vector u = light.sun ? exact(light.sun->axis_u) : Vector(exact(light.center_u) - exact(light.center));
         const Vector v = light.sun ? exact(light.sun->axis_v) : Vector(exact(light.center_v) - exact(light.center));
-        const Vector moved = way + kTiny * u + kTiny * kTiny * v;
+        const Vector moved = direction + kTiny * u + kTiny * kTiny * v;
         bool visible = true, certain = true;
         for (const std::uint32_t leaf : floats.alphas.casters) {
           if (floats.plane[leaf] == floats.plane[carrier] ||
-              !tests::meets({p, moved, way, !light.sun}, floats.corners(leaf)))
+              !tests::meets({p, moved, direction, !light.sun}, floats.corners(leaf)))
             continue;
-          const auto there = literal_is_there(leaves.scene, floats, leaf, p, way);
+          const auto there = literal_is_there(leaves.scene, floats, leaf, p, direction);
           certain &= there.has_value();
           visible &= !there.value_or(false);
         }
@@ -317,8 +317,8 @@ TEST(AlphaFilters, WhatCornersShareHasNoNoise) {
     std::mt19937 random(3);
     std::uniform_real_distribution<double> real(0, 1);
     for (int i = 0; i < 2000; ++i) {
-      const glm::dvec3 aim = glm::dvec3(real(random), 0, real(random)), way(real(random), -1, real(random));
-      const glm::dvec3 shares = shares_on_line(aim - way, way, floats.corners(0));
+      const glm::dvec3 aim = glm::dvec3(real(random), 0, real(random)), direction(real(random), -1, real(random));
+      const glm::dvec3 shares = shares_on_line(aim - direction, direction, floats.corners(0));
       EXPECT_EQ(alpha_at(floats, 0, shares), double{vertex});
       EXPECT_EQ(transmittance_at(floats, 0, shares), 0);
     }

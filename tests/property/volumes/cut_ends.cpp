@@ -85,8 +85,9 @@ TEST(CutEnds, AreWhereTheEdgesPassThroughThePlane) {
         EXPECT_DOUBLE_EQ(end.place->y, mpq_class((r + 1) / 2).get_d()) << "seed " << seed;
       } else {
         ++far;
-        const glm::dvec3 way = glm::dvec3(b) - glm::dvec3(a), d = end.point - glm::dvec3(a);
-        EXPECT_LT(glm::length(glm::cross(way, d)), 1e-13 * glm::length(way) * (glm::length(way) + glm::length(c)))
+        const glm::dvec3 direction = glm::dvec3(b) - glm::dvec3(a), d = end.point - glm::dvec3(a);
+        EXPECT_LT(glm::length(glm::cross(direction, d)),
+                  1e-13 * glm::length(direction) * (glm::length(direction) + glm::length(c)))
             << "seed " << seed;
       }
     }

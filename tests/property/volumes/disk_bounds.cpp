@@ -103,8 +103,8 @@ Use use_at_disk(const Case& of) {
   const std::array heights{dot(n, ends[0] - center), dot(n, ends[1] - center)};
   if (sgn(heights[0]) * sgn(heights[1]) >= 0) return {};
   Rational place = ends[0] - center;
-  const Rational way = ends[1] - ends[0];
-  for (std::size_t i = 0; i < 3; ++i) place[i] += heights[0] / (heights[0] - heights[1]) * way[i];
+  const Rational direction = ends[1] - ends[0];
+  for (std::size_t i = 0; i < 3; ++i) place[i] += heights[0] / (heights[0] - heights[1]) * direction[i];
   const mpq_class volume = determinant(u, v, n), cells = 8;
   const std::array exact{mpq_class(cells * (1 + determinant(place, v, n) / volume)),
                          mpq_class(cells * (1 + determinant(u, place, n) / volume))};

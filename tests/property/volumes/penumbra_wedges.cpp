@@ -81,9 +81,10 @@ const Case kCases[] = {
      }},
     {"points at the light",
      [](Random& r) {
-       const glm::dvec3 l(r.real(0.9), 4, r.real(0.9)), way = r.point(2) - l;
-       return WedgeEdge{
-           glm::dvec3(glm::vec3(l + 0.5 * way)), glm::dvec3(glm::vec3(l + (1 + std::abs(r.real())) * way)), {}};
+       const glm::dvec3 l(r.real(0.9), 4, r.real(0.9)), direction = r.point(2) - l;
+       return WedgeEdge{glm::dvec3(glm::vec3(l + 0.5 * direction)),
+                        glm::dvec3(glm::vec3(l + (1 + std::abs(r.real())) * direction)),
+                        {}};
      }},
     {"longer than its distance",
      [](Random& r) {

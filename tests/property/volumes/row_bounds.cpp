@@ -41,12 +41,12 @@ class ExactLight {
 
   /// Where x appears to p, in cells from the corner; nothing if it is not above p and below the light.
   [[nodiscard]] std::optional<std::array<mpq_class, 2>> operator()(const glm::dvec3& p, const glm::dvec3& x) const {
-    const Rational from = rational(p) - corner_, way = rational(x) - rational(p);
-    const mpq_class height = dot(normal_, from), over = -dot(normal_, way);
+    const Rational from = rational(p) - corner_, direction = rational(x) - rational(p);
+    const mpq_class height = dot(normal_, from), over = -dot(normal_, direction);
     if (sgn(over) * sgn(height) <= 0 || abs(over) > abs(height)) return std::nullopt;
     const mpq_class t = height / over;
     Rational at = from;
-    for (std::size_t i = 0; i < 3; ++i) at[i] += t * way[i];
+    for (std::size_t i = 0; i < 3; ++i) at[i] += t * direction[i];
     return std::array<mpq_class, 2>{cells_ * dot(across_, at) / squared_, cells_ * dot(along_, at) / squared_};
   }
 

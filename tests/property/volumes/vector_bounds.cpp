@@ -38,7 +38,7 @@ Appears appears(const LightGrid& grid, const Cluster& cluster, const ClusterSamp
   if (!(w > 64 * kRound * far)) return {};
   const glm::vec2 place = at.foot + q * glm::vec2(dot(grid.across) - at.in_grid.x, dot(grid.along) - at.in_grid.y);
   const float from_foot = glm::length(place - at.foot);
-  return {place, far / w * (at.on_grid.per_way + at.on_grid.per_reach * from_foot) + at.on_grid.per_foot * from_foot +
+  return {place, far / w * (at.on_grid.per_ray + at.on_grid.per_reach * from_foot) + at.on_grid.per_foot * from_foot +
                      at.on_grid.fixed};
 }
 
@@ -85,12 +85,13 @@ class BoundX {
     if (computed.bound == 0) return {};
     // The light's plane and axes are those of the stored points (LightGrid::axes, exact up to 2⁻⁵³).
     const auto exact_dot = [](const glm::dvec3& n, const Exact& d) { return n.x * d.x + n.y * d.y + n.z * d.z; };
-    const Exact p(at.p), way = Exact(x) - p, to_p = p - Exact(grid.corner);
-    const long double height = exact_dot(grid.axes[2], to_p), over = -exact_dot(grid.axes[2], way);
+    const Exact p(at.p), direction = Exact(x) - p, to_p = p - Exact(grid.corner);
+    const long double height = exact_dot(grid.axes[2], to_p), over = -exact_dot(grid.axes[2], direction);
     Use worst;
     for (int axis = 0; axis < 2; ++axis) {
       const auto i = static_cast<std::size_t>(axis);
-      const long double place = exact_dot(grid.axes[i], to_p) + height / over * exact_dot(grid.axes[i], way) - 0.5L;
+      const long double place =
+          exact_dot(grid.axes[i], to_p) + height / over * exact_dot(grid.axes[i], direction) - 0.5L;
       const auto error = static_cast<double>(std::abs(static_cast<long double>(computed.at[axis]) - place));
       const auto bound = static_cast<double>(computed.bound);
       if (error / bound > worst.of_bound) worst = {error / bound, error, bound};

@@ -109,7 +109,7 @@ TEST(VisibleLight, AllVisibleIsTheWholeToTheLastBit) {
         visibility::light_points_for(light, p, samples.data());
         Mask mask(light.words_per_mask());
         for (std::uint32_t j = 0; j < light.sample_count(); ++j) {
-          if (glm::dot(seen.normal(), visibility::way_to(light, p, samples[j])) > 0) mask[j / 32] |= 1u << j % 32;
+          if (glm::dot(seen.normal(), visibility::direction_to(light, p, samples[j])) > 0) mask[j / 32] |= 1u << j % 32;
         }
         EXPECT_EQ(mask == full(light), n == up);
         EXPECT_GT(seen.whole(), 0.001) << kind;

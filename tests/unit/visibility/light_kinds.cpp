@@ -111,9 +111,9 @@ TEST(LightKindsMade, FormFactorIsTheSumOverSamples) {
     const glm::dvec3 area = doubled_area(rim) / 2.0;
     double sum = 0;
     for (const glm::vec3& l : points_of(light, kReceiver)) {
-      const glm::dvec3 way = way_to(light, kReceiver, l);
-      const double squared = glm::dot(way, way);
-      sum += way.y * std::abs(glm::dot(way, area)) / (squared * squared);
+      const glm::dvec3 direction = direction_to(light, kReceiver, l);
+      const double squared = glm::dot(direction, direction);
+      sum += direction.y * std::abs(glm::dot(direction, area)) / (squared * squared);
     }
     const UnshadowedLight seen(light, kReceiver, n);
     EXPECT_TRUE(seen.above_horizon()) << name_of(light.kind);

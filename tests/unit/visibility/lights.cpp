@@ -207,10 +207,10 @@ TEST(Lights, SphereShowsEachPointTheDiskThatItsTangentsBound) {
     for (int i = 0; i < 16; ++i) {
       const double angle = 2 * kPi * i / 16;
       const glm::dvec3 rim = frame.center + std::cos(angle) * frame.u + std::sin(angle) * frame.v,
-                       way = glm::dvec3(p) - rim;
+                       toward = glm::dvec3(p) - rim;
       EXPECT_NEAR(glm::length(rim - c), r, 1e-14);
-      EXPECT_NEAR(glm::dot(way, rim - c), 0, 1e-14 * d);  // the line touches the sphere there
-      EXPECT_NEAR(glm::dot(way, q), glm::length(way) * d * cosine, 1e-14 * d * d);
+      EXPECT_NEAR(glm::dot(toward, rim - c), 0, 1e-14 * d);  // the line touches the sphere there
+      EXPECT_NEAR(glm::dot(toward, q), glm::length(toward) * d * cosine, 1e-14 * d * d);
     }
     const double disk = r * cosine;
     for (std::size_t j = 0; j < points.size(); ++j) {
@@ -248,10 +248,10 @@ double share_by_grid(const scenes::Sphere& lamp, const glm::dvec3& p, const glm:
     const double x = (2.0 * (i % kSide) + 1) / kSide - 1, y = (2.0 * (i / kSide) + 1) / kSide - 1;
     if (x * x + y * y > 1) continue;
     ++points;
-    const glm::dvec3 way = middle + lamp.radius * (x * u + y * v);
-    const double length = glm::length(way), c = -glm::dot(way, axis) / length;
+    const glm::dvec3 toward = middle + lamp.radius * (x * u + y * v);
+    const double length = glm::length(toward), c = -glm::dot(toward, axis) / length;
     const double t = glm::clamp((c - dark) / std::max(full - dark, 0.001), 0.0, 1.0);
-    const double there = glm::dot(way, away) / length, here = std::max(glm::dot(way, n), 0.0) / length;
+    const double there = glm::dot(toward, away) / length, here = std::max(glm::dot(toward, n), 0.0) / length;
     sum += there * here / (length * length) * c * t * t * (3 - 2 * t);
   }
   return sum / points * glm::dot(middle, middle) / glm::dot(away, n);

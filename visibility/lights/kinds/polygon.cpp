@@ -118,7 +118,7 @@ double polygon_form_factor(const UnshadowedLight& seen) {
   const Light& light = seen.light();
   const glm::dvec3 center = seen.frame().center, &along = seen.along(), &n = seen.normal();
   // Computed in the frame's plane, as V and parts are: three corners that are close together may tilt it considerably.
-  const auto in_plane = [&](const glm::dvec3& way) { return way - glm::dot(along, way) * along; };
+  const auto in_plane = [&](const glm::dvec3& direction) { return direction - glm::dot(along, direction) * along; };
   FormFactorLoop loop(n);
   for (std::size_t i = 0; i < light.outline.size(); ++i) {
     const glm::dvec3 from(light.outline[i]), to(light.outline[(i + 1) % light.outline.size()]);

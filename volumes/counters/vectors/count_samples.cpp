@@ -77,15 +77,15 @@ class SampleCount {
   void see(std::size_t i) {
     const CrossingTable& table = s_.crossing;
     const glm::vec2 a = glm::vec2(table[kX0][i], table[kY0][i]) - kCorner,
-                    b = glm::vec2(table[kX1][i], table[kY1][i]) - kCorner, way = b - a;
-    const float size = std::abs(a.x) + std::abs(a.y) + std::abs(b.x) + std::abs(b.y), wide = std::abs(way.x),
-                high = std::abs(way.y), around = 2.41F * (table[kError][i] + 4 * kRound * size);
+                    b = glm::vec2(table[kX1][i], table[kY1][i]) - kCorner, direction = b - a;
+    const float size = std::abs(a.x) + std::abs(a.y) + std::abs(b.x) + std::abs(b.y), wide = std::abs(direction.x),
+                high = std::abs(direction.y), around = 2.41F * (table[kError][i] + 4 * kRound * size);
     field(kAX, i) = a.x;
     field(kAY, i) = a.y;
     field(kBX, i) = b.x;
     field(kBY, i) = b.y;
     field(kJumpLeft, i) = in_.grid.side < 0 ? -table[kK][i] : table[kK][i];
-    field(kCornerSide, i) = a.y * way.x - a.x * way.y;
+    field(kCornerSide, i) = a.y * direction.x - a.x * direction.y;
     field(kOffA, i) = 16 * kRound * (std::abs(a.x) + std::abs(a.y));
     field(kOffB, i) = 16 * kRound * (std::abs(b.x) + std::abs(b.y));
     field(kNearSide, i) = around * (wide + high) + 16 * kRound * wide * high;
@@ -95,11 +95,11 @@ class SampleCount {
   }
 
   [[nodiscard]] bool is_near(std::size_t i, const glm::vec2& x) {
-    const glm::vec2 a(field(kAX, i), field(kAY, i)), b(field(kBX, i), field(kBY, i)), way = b - a, from_a = x - a;
+    const glm::vec2 a(field(kAX, i), field(kAY, i)), b(field(kBX, i), field(kBY, i)), direction = b - a, from_a = x - a;
     const float around = field(kAround, i);
     return std::min(a.x, b.x) - around <= x.x && x.x <= std::max(a.x, b.x) + around &&
            std::min(a.y, b.y) - around <= x.y && x.y <= std::max(a.y, b.y) + around &&
-           std::abs(from_a.x * way.y - from_a.y * way.x) <= field(kNearSide, i);
+           std::abs(from_a.x * direction.y - from_a.y * direction.x) <= field(kNearSide, i);
   }
   /// Tests nearness with the errors of the edge's own ends.
   [[nodiscard]] bool is_near_itself(std::size_t i, const glm::vec2& x) {
@@ -110,11 +110,12 @@ class SampleCount {
                     std::array{glm::vec2(table[kX0][i], table[kY0][i]), glm::vec2(table[kX1][i], table[kY1][i])}},
                    s_.open);
     if (!placed) return true;
-    const glm::vec2 a(field(kAX, i), field(kAY, i)), way = glm::vec2(field(kBX, i), field(kBY, i)) - a, from_a = x - a;
-    const float size = std::abs(a.x) + std::abs(a.y) + std::abs(way.x) + std::abs(way.y);
+    const glm::vec2 a(field(kAX, i), field(kAY, i)), direction = glm::vec2(field(kBX, i), field(kBY, i)) - a,
+                                                     from_a = x - a;
+    const float size = std::abs(a.x) + std::abs(a.y) + std::abs(direction.x) + std::abs(direction.y);
     const float error = 1.2F * (placed->error_near + placed->error_far) + 16 * kRound * size;
-    return std::abs(from_a.x * way.y - from_a.y * way.x) <=
-           error * (std::abs(way.x) + std::abs(way.y)) + 16 * kRound * std::abs(way.x * way.y);
+    return std::abs(from_a.x * direction.y - from_a.y * direction.x) <=
+           error * (std::abs(direction.x) + std::abs(direction.y)) + 16 * kRound * std::abs(direction.x * direction.y);
   }
 
   void look_again(const CountScratch::Near& near) {

@@ -229,12 +229,12 @@ struct Cell {
   double sign;
   glm::dvec2 low, high;
 
-  /// Returns whether certainly no direction of the cone of `ways` is in the cell.
-  [[nodiscard]] bool misses(std::span<const glm::dvec3> ways) const {
+  /// Returns whether certainly no direction of the cone of `directions` is in the cell.
+  [[nodiscard]] bool misses(std::span<const glm::dvec3> directions) const {
     std::array<bool, 5> beyond;
     beyond.fill(true);
-    for (const glm::dvec3& way : ways) {
-      const double z = sign * way[axis], x = way[(axis + 1) % 3], y = way[(axis + 2) % 3];
+    for (const glm::dvec3& direction : directions) {
+      const double z = sign * direction[axis], x = direction[(axis + 1) % 3], y = direction[(axis + 2) % 3];
       const double rounding = -0x1p-45 * (std::abs(x) + std::abs(y) + std::abs(z));
       beyond[0] = beyond[0] && z < rounding;
       beyond[1] = beyond[1] && x - low.x * z < rounding;
@@ -250,13 +250,13 @@ struct Cell {
 /// (column, row).
 template <typename Visit>
 void for_each_cell(const Cell& face, std::uint32_t column, std::uint32_t row, std::uint32_t size,
-                   std::span<const glm::dvec3> ways, const Visit& visit) {
+                   std::span<const glm::dvec3> directions, const Visit& visit) {
   const auto place = [](std::uint32_t i) { return 2.0 * i / kCells - 1; };
   const Cell cell{face.axis, face.sign, {place(column), place(row)}, {place(column + size), place(row + size)}};
-  if (cell.misses(ways)) return;
+  if (cell.misses(directions)) return;
   if (size == 1) return visit(column, row);
   for (const std::uint32_t i : {0U, 1U, 2U, 3U})
-    for_each_cell(face, column + i % 2 * (size / 2), row + i / 2 * (size / 2), size / 2, ways, visit);
+    for_each_cell(face, column + i % 2 * (size / 2), row + i / 2 * (size / 2), size / 2, directions, visit);
 }
 
 }  // namespace
@@ -265,16 +265,16 @@ void for_each_cell(const Cell& face, std::uint32_t column, std::uint32_t row, st
 /// of the ends' x − c and x − l.
 void EdgeSearch::build_hemicube(const std::vector<Edge>& edges, std::span<const glm::dvec3> light) {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> in_cell;
-  std::vector<glm::dvec3> ways;
+  std::vector<glm::dvec3> directions;
   for (std::uint32_t i = 0; i < edges.size(); ++i) {
-    ways.clear();
+    directions.clear();
     for (const glm::dvec3& x : edges[i]) {
-      ways.push_back(x - center_);
-      for (const glm::dvec3& l : light) ways.push_back(x - l);
+      directions.push_back(x - center_);
+      for (const glm::dvec3& l : light) directions.push_back(x - l);
     }
     for (std::uint32_t face = 0; face < 6; ++face) {
       const Cell of_face{static_cast<int>(face / 2), face % 2 == 0 ? 1.0 : -1.0, {}, {}};
-      for_each_cell(of_face, 0, 0, kCells, ways, [&](std::uint32_t column, std::uint32_t row) {
+      for_each_cell(of_face, 0, 0, kCells, directions, [&](std::uint32_t column, std::uint32_t row) {
         in_cell.emplace_back((face * kCells + row) * kCells + column, i);
       });
     }
@@ -284,14 +284,14 @@ void EdgeSearch::build_hemicube(const std::vector<Edge>& edges, std::span<const 
 }
 
 std::size_t EdgeSearch::cell_of(const glm::vec3& p) const {
-  const glm::dvec3 way = glm::dvec3(p) - center_, size = glm::abs(way);
+  const glm::dvec3 direction = glm::dvec3(p) - center_, size = glm::abs(direction);
   const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
   const double z = std::max(size[axis], std::numeric_limits<double>::min());
   const auto place = [&](int i) {
-    const double at = std::floor((way[i] / z + 1) * 0.5 * kCells);
+    const double at = std::floor((direction[i] / z + 1) * 0.5 * kCells);
     return static_cast<std::size_t>(std::clamp(at, 0.0, static_cast<double>(kCells - 1)));
   };
-  const std::size_t face = 2 * static_cast<std::size_t>(axis) + (way[axis] < 0 ? 1 : 0);
+  const std::size_t face = 2 * static_cast<std::size_t>(axis) + (direction[axis] < 0 ? 1 : 0);
   return (face * kCells + place((axis + 2) % 3)) * kCells + place((axis + 1) % 3);
 }
 

@@ -24,9 +24,9 @@ using namespace vectors::HWY_NAMESPACE;
 std::optional<bool> certainly_meets(const CornerInput& in, const std::array<glm::vec3, 3>& corners) {
   const glm::dvec3 p(in.at.p);
   if (!in.grid.cones) return visibility::certainly_meets(p, in.grid.corner, corners, in.grid.corner_off);
-  const glm::dvec3 way = in.grid.cones->of[in.at.cone].corner();
-  if (!in.grid.cones->end) return visibility::ray_certainly_meets(p, way, corners);
-  return visibility::certainly_meets(p, p + way, corners, 0x1p-51 * static_cast<double>(in.grid.reach));
+  const glm::dvec3 direction = in.grid.cones->of[in.at.cone].corner();
+  if (!in.grid.cones->end) return visibility::ray_certainly_meets(p, direction, corners);
+  return visibility::certainly_meets(p, p + direction, corners, 0x1p-51 * static_cast<double>(in.grid.reach));
 }
 
 /// Returns the number of met triangles among those that float arithmetic leaves open.

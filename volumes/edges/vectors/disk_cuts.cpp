@@ -85,10 +85,10 @@ class SlowDiskCut {
 
  private:
   static double distance(const glm::dvec2& x, const glm::dvec2& from, const glm::dvec2& to) {
-    const glm::dvec2 way = to - from;
-    const double squared = glm::dot(way, way);
-    const double share = squared > 0 ? std::clamp(glm::dot(x - from, way) / squared, 0.0, 1.0) : 0.0;
-    return glm::length(x - from - share * way);
+    const glm::dvec2 direction = to - from;
+    const double squared = glm::dot(direction, direction);
+    const double share = squared > 0 ? std::clamp(glm::dot(x - from, direction) / squared, 0.0, 1.0) : 0.0;
+    return glm::length(x - from - share * direction);
   }
   /// Returns the largest distance of the part within the slab from the segment where the caster passes through the
   /// plane.
@@ -176,10 +176,10 @@ class FastDiskCuts {
       const auto middle = [&](std::size_t axis, double of_p) {
         return hn::Sub(column(vectors::NearSpheres::kMiddle + axis, i), number(of_p));
       };
-      const Double3 way{middle(0, plane_.p.x), middle(1, plane_.p.y), middle(2, plane_.p.z)};
+      const Double3 direction{middle(0, plane_.p.x), middle(1, plane_.p.y), middle(2, plane_.p.z)};
       // A radius includes a margin for rounding.
       const Double most_off = hn::Add(column(vectors::NearSpheres::kRadius, i), number(slab_));
-      const Which near = hn::And(hn::FirstN(d, near_.count - i), hn::Le(hn::Abs(height(way)), most_off));
+      const Which near = hn::And(hn::FirstN(d, near_.count - i), hn::Le(hn::Abs(height(direction)), most_off));
       if (hn::AllFalse(d, near)) continue;
       spheres_.add(column(vectors::NearSpheres::kNumber, i), near);
       if (spheres_.full()) pick_meeting();
@@ -226,12 +226,12 @@ class FastDiskCuts {
   }
   /// Computes as DiskPlane does.
   struct Corner {
-    Double3 way;
+    Double3 direction;
     Double height, s, t;
   };
   [[nodiscard]] Double height(const Double3& w) const { return hn::Sub(along(plane_.axis, w), number(plane_.end)); }
-  [[nodiscard]] Corner corner(const Double3& way) const {
-    return {way, height(way), along(plane_.u, way), along(plane_.v, way)};
+  [[nodiscard]] Corner corner(const Double3& direction) const {
+    return {direction, height(direction), along(plane_.u, direction), along(plane_.v, direction)};
   }
   struct Passing {
     Double s, t;
@@ -254,7 +254,8 @@ class FastDiskCuts {
       for (std::size_t field = 0; field < corners_.columns.size(); ++field) corners_.columns[field][i] = row[field];
     }
     for (std::size_t i = 0; i < spheres_.count; i += hn::Lanes(d)) {
-      const Double3 a = way(corners_.get(0, i)), b = way(corners_.get(1, i)), c = way(corners_.get(2, i));
+      const Double3 a = direction(corners_.get(0, i)), b = direction(corners_.get(1, i)),
+                    c = direction(corners_.get(2, i));
       const Double high_a = height(a), high_b = height(b), high_c = height(c);
       const Which meets = hn::And(hn::Le(hn::Min(high_a, hn::Min(high_b, high_c)), number(slab_)),
                                   hn::Ge(hn::Max(high_a, hn::Max(high_b, high_c)), number(-slab_)));
@@ -262,13 +263,13 @@ class FastDiskCuts {
       if (hn::AllFalse(d, these)) continue;
       std::size_t field = 0;
       for (const Double& x : {a.x, a.y, a.z, b.x, b.y, b.z, c.x, c.y, c.z})
-        pack(x, these, d, &ways_.columns[field++][meeting_.count]);
+        pack(x, these, d, &directions_.columns[field++][meeting_.count]);
       meeting_.add(hn::LoadU(d, &spheres_.numbers[i]), these);
       if (meeting_.full()) cut();
     }
     spheres_.count = 0;
   }
-  [[nodiscard]] Double3 way(const Double3& to) const {
+  [[nodiscard]] Double3 direction(const Double3& to) const {
     return {hn::Sub(to.x, number(plane_.p.x)), hn::Sub(to.y, number(plane_.p.y)), hn::Sub(to.z, number(plane_.p.z))};
   }
 
@@ -280,16 +281,19 @@ class FastDiskCuts {
 
   void cut(std::size_t first, Double which, Which used) {
     const Doubles d;
-    const Corner a = corner(ways_.get(0, first)), b = corner(ways_.get(1, first)), c = corner(ways_.get(2, first));
+    const Corner a = corner(directions_.get(0, first)), b = corner(directions_.get(1, first)),
+                 c = corner(directions_.get(2, first));
     const Double zero = hn::Zero(d), slab = number(slab_);
     const Double nearest = hn::Min(hn::Abs(a.height), hn::Min(hn::Abs(b.height), hn::Abs(c.height)));
-    const Double side = hn::Neg(product(a.way, {hn::Sub(hn::Mul(b.way.y, c.way.z), hn::Mul(b.way.z, c.way.y)),
-                                                hn::Sub(hn::Mul(b.way.z, c.way.x), hn::Mul(b.way.x, c.way.z)),
-                                                hn::Sub(hn::Mul(b.way.x, c.way.y), hn::Mul(b.way.y, c.way.x))}));
+    const Double side = hn::Neg(
+        product(a.direction, {hn::Sub(hn::Mul(b.direction.y, c.direction.z), hn::Mul(b.direction.z, c.direction.y)),
+                              hn::Sub(hn::Mul(b.direction.z, c.direction.x), hn::Mul(b.direction.x, c.direction.z)),
+                              hn::Sub(hn::Mul(b.direction.x, c.direction.y), hn::Mul(b.direction.y, c.direction.x))}));
     // Error bound as in visibility::certainly_meets.
     const Double unsure =
         hn::Mul(number(0x1p-46),
-                hn::Sqrt(hn::Mul(product(a.way, a.way), hn::Mul(product(b.way, b.way), product(c.way, c.way)))));
+                hn::Sqrt(hn::Mul(product(a.direction, a.direction),
+                                 hn::Mul(product(b.direction, b.direction), product(c.direction, c.direction)))));
     const Which sure = hn::And(hn::Gt(nearest, slab), hn::Gt(hn::Abs(side), unsure));
     add_slowly(which, hn::AndNot(sure, used));
     if (hn::AllFalse(d, hn::And(used, sure))) return;
@@ -359,8 +363,8 @@ class FastDiskCuts {
   Open& open_;
   CrossingTable& out_;
   Waiting spheres_, meeting_;
-  Corners corners_;  // of those that wait as spheres
-  Corners ways_;     // vectors from p, of those that meet the plane
+  Corners corners_;     // of those that wait as spheres
+  Corners directions_;  // vectors from p, of those that meet the plane
 };
 
 void add_disk_cuts_here(const DiskCutInput& in, OpenJudge& judge, Open& open, CrossingTable& out) {

@@ -33,7 +33,7 @@ struct GroupBounds {
   glm::vec3 middle{0}, half_size{0};
   glm::vec2 foot_low{0}, foot_high{0};
   glm::vec2 lean_low{0}, lean_high{0};
-  float height_high = 0, far = 0, per_way = 0, per_reach = 0, per_foot = 0, fixed = 0, per_lean = 0;
+  float height_high = 0, far = 0, per_ray = 0, per_reach = 0, per_foot = 0, fixed = 0, per_lean = 0;
   LightGrid::Range window;
   glm::vec3 turned{0};  // smallest and largest ratios of a direction's coordinates to its height over p on the light
 };
@@ -55,7 +55,7 @@ GroupBounds bounds_of(std::span<const ClusterSample> samples) {
     g.foot_high = glm::max(g.foot_high, at.foot);
     g.height_high = std::max(g.height_high, at.height);
     g.far = std::max(g.far, at.far);
-    g.per_way = std::max(g.per_way, at.on_grid.per_way);
+    g.per_ray = std::max(g.per_ray, at.on_grid.per_ray);
     g.per_reach = std::max(g.per_reach, at.on_grid.per_reach);
     g.per_foot = std::max(g.per_foot, at.on_grid.per_foot);
     g.fixed = std::max(g.fixed, at.on_grid.fixed);
@@ -124,7 +124,7 @@ class GroupFilter {
       for (std::size_t axis = 0; axis < 2; ++axis) {
         V least = set(3e38F), most = set(-3e38F);
         for (const std::size_t corner : {std::size_t{kCornerA}, std::size_t{kCornerB}, std::size_t{kCornerC}}) {
-          const auto [low, high] = beside_way(column(corner + axis), column(corner + 2), axis);
+          const auto [low, high] = beside_direction(column(corner + axis), column(corner + 2), axis);
           least = hn::Min(least, low);
           most = hn::Max(most, high);
         }
@@ -151,7 +151,7 @@ class GroupFilter {
     V low, high;
   };
   /// Returns the distance of a point from the segment from p to the light's corner, along one axis.
-  [[nodiscard]] Interval beside_way(V x, V h, std::size_t axis) const {
+  [[nodiscard]] Interval beside_direction(V x, V h, std::size_t axis) const {
     const auto i = static_cast<glm::length_t>(axis);
     const V w_low = hn::Sub(set(g_.in_grid.low.z), h), w_high = hn::Sub(set(g_.in_grid.high.z), h);
     const V low = set(g_.lean_low[i]), high = set(g_.lean_high[i]);
@@ -224,9 +224,9 @@ class GroupFilter {
     V far = hn::Add(column(kFar, i), set(g_.far));
     if (in_.grid.cut_reach > 0)  // see (bound cut)
       far = hn::Add(far, hn::IfThenElseZero(hn::Lt(r.level, set(2 * near_cut(in_.grid))), set(cut_far(in_.grid))));
-    const V way = hn::Mul(far, inverse);
+    const V direction = hn::Mul(far, inverse);
     // (bound X), enlarged by a tenth: the differences of height are computed differently than those of view samples
-    r.error = hn::Mul(set(1.1F), hn::MulAdd(way, hn::MulAdd(set(g_.per_reach), foot, set(g_.per_way)),
+    r.error = hn::Mul(set(1.1F), hn::MulAdd(direction, hn::MulAdd(set(g_.per_reach), foot, set(g_.per_ray)),
                                             hn::MulAdd(set(g_.per_foot), foot, set(g_.fixed))));
     const V around = hn::Mul(set(4), r.error);
     r.low_x = hn::Sub(low_x, around);

@@ -16,31 +16,31 @@ namespace penumbra::volumes {
 namespace {
 
 /// A vector from p: across, along, and up to the light. Its place on the light is foot + height / w (x, y).
-using Way = glm::vec3;
+using Direction = glm::vec3;
 
-glm::vec2 appears(const Placing& place, const Way& way) {
-  const float q = place.height / way.z;
-  return {place.foot.x + q * way.x, place.foot.y + q * way.y};
+glm::vec2 appears(const Placing& place, const Direction& direction) {
+  const float q = place.height / direction.z;
+  return {place.foot.x + q * direction.x, place.foot.y + q * direction.y};
 }
 
 /// Returns the vector in the coordinates of the light as seen from p.
-Way turned(const LightGrid& grid, const ClusterSample& at, const Way& way) {
-  if (!grid.cones) return way;
+Direction turned(const LightGrid& grid, const ClusterSample& at, const Direction& direction) {
+  if (!grid.cones) return direction;
   const auto along = [&](glm::length_t row) {
-    return (at.turn[0][row] * way.x + at.turn[1][row] * way.y) + at.turn[2][row] * way.z;
+    return (at.turn[0][row] * direction.x + at.turn[1][row] * direction.y) + at.turn[2][row] * direction.z;
   };
   return {along(0), along(1), along(2)};
 }
 
 /// Returns the error of a place. (bound X)
 float error_of(const Placing& place, float far, float w, float from_foot) {
-  return far / w * (place.per_way + place.per_reach * from_foot) + place.per_foot * from_foot + place.fixed;
+  return far / w * (place.per_ray + place.per_reach * from_foot) + place.per_foot * from_foot + place.fixed;
 }
 
 /// Returns the length of an end's vector for the bounds: includes the end's error if the light's plane cut it. (bound
 /// cut)
-float far_of(const LightGrid& grid, const Placing& place, const Way& way, float far) {
-  return place.height - way.z < near_cut(grid) ? far + cut_far(grid) : far;
+float far_of(const LightGrid& grid, const Placing& place, const Direction& direction, float far) {
+  return place.height - direction.z < near_cut(grid) ? far + cut_far(grid) : far;
 }
 
 class Marks {
@@ -85,9 +85,9 @@ ProjectedEdge project_edge(const LightGrid& grid, const glm::vec2& a, const glm:
                   0,
                   turn,
                   false};
-  const glm::vec2 way = s.far - s.near;
-  s.slope = way.x / way.y;
-  s.steep = way.y == 0 ? 1e30F : std::abs(s.slope);
+  const glm::vec2 direction = s.far - s.near;
+  s.slope = direction.x / direction.y;
+  s.steep = direction.y == 0 ? 1e30F : std::abs(s.slope);
   return s;
 }
 
@@ -101,7 +101,7 @@ float first_right_of(const PreciseInput& in, float row, float lowest, float high
   for (; first <= highest; ++first) {
     const std::uint32_t sample =
         static_cast<std::uint32_t>(row) * in.of.grid.columns + static_cast<std::uint32_t>(first);
-    const int side = side_of_way(in, glm::dvec3(in.of.grid.points[sample]) - glm::dvec3(in.at.p));
+    const int side = side_of_direction(in, glm::dvec3(in.of.grid.points[sample]) - glm::dvec3(in.at.p));
     if (side == 0) {
       marks.sample(row, first);
     } else if ((side < 0) == runs_up) {  // right of an edge that runs upward
@@ -180,10 +180,10 @@ template <typename Counter>
 void cross_left_side(const PreciseInput& in, const ProjectedEdge& s, float from, Counter up,
                      const Changes<Counter>& changes, Marks& marks) {
   const LightGrid& grid = in.of.grid;
-  const glm::vec2 way = s.far - s.near;
-  const float inverse = way.y / way.x;
+  const glm::vec2 direction = s.far - s.near;
+  const float inverse = direction.y / direction.x;
   const float weight =
-      std::min(1.0F, (std::abs(s.near.x - grid.first_cell.x) + 2 * grid.half_cells.x) / std::abs(way.x));
+      std::min(1.0F, (std::abs(s.near.x - grid.first_cell.x) + 2 * grid.half_cells.x) / std::abs(direction.x));
   const float error = 1.2F * (s.error_near + s.error_far * weight) * (1 + std::abs(inverse)) +
                       8 * kRound * (grid.half_cells.y + std::abs(s.near.y));
   const float y = std::clamp(s.near.y + (-0.5F - s.near.x) * inverse, s.low.y, s.high.y);
@@ -208,7 +208,7 @@ std::array<glm::dvec3, 2> ends_of(const ClusterInput& in, std::size_t edge) {
 
 /// The part of an edge in a window of about twice the light. (bound window)
 struct WindowPart {
-  Way start, end;
+  Direction start, end;
   float far_start, far_end;
   bool passes_at_start = false, passes_at_end = false;  ///< crosses a sphere's disk there
   bool is_empty = false;
@@ -216,8 +216,8 @@ struct WindowPart {
 
 /// Clips an edge to the window. Widened by the lift, so that rounding cannot put an edge at p's own height below the
 /// window.
-WindowPart cut_to_window(const LightGrid& grid, const ClusterSample& at, const Way& a, const Way& b, float far_a,
-                         float far_b, const PassingEdge& passing) {
+WindowPart cut_to_window(const LightGrid& grid, const ClusterSample& at, const Direction& a, const Direction& b,
+                         float far_a, float far_b, const PassingEdge& passing) {
   const Placing& place = at.on_light;
   const float lift = place.per_lift * std::max(far_a, far_b);
   const glm::vec2 window = 2.0F * grid.half_cells + 2.0F, off = place.foot - grid.first_cell;
@@ -259,7 +259,7 @@ std::optional<float> exact_multiplicity(const EdgeTable& edges, std::size_t edge
   return k;
 }
 
-int side_of_way(const PreciseInput& in, const glm::dvec3& l) {
+int side_of_direction(const PreciseInput& in, const glm::dvec3& l) {
   const auto [from, to] = ends_of(in.of, in.edge);
   const glm::dvec3 a = from - glm::dvec3(in.at.p), b = to - glm::dvec3(in.at.p);
   const double side = glm::dot(l, glm::cross(a, b));
@@ -276,11 +276,11 @@ std::optional<ProjectedEdge> place_edge(const PreciseInput& in, Open& open) {
   const EdgeTable& edges = in.of.edges;
   const std::size_t edge = in.edge;
   const Placing& place = at.on_light;
-  const auto way_to = [&](float x, float y, float h) {
+  const auto direction_to = [&](float x, float y, float h) {
     return turned(grid, at, {x - at.in_grid.x, y - at.in_grid.y, at.in_grid.z - h});
   };
-  const Way a = way_to(edges[kAx][edge], edges[kAy][edge], edges[kAh][edge]);
-  const Way b = way_to(edges[kBx][edge], edges[kBy][edge], edges[kBh][edge]);
+  const Direction a = direction_to(edges[kAx][edge], edges[kAy][edge], edges[kAh][edge]);
+  const Direction b = direction_to(edges[kBx][edge], edges[kBy][edge], edges[kBh][edge]);
   const float far = edges[kFar][edge] + at.far, far_a = far_of(grid, place, a, far),
               far_b = far_of(grid, place, b, far);
   const PassingEdge passing = !in.settled && at.meets_end ? pass_disk({grid, at}, ends_of(in.of, edge)) : PassingEdge();

@@ -52,7 +52,7 @@ struct ProjectedEdge {
 std::optional<ProjectedEdge> place_edge(const PreciseInput& input, Open& open);
 /// Returns the exact side of the edge's plane through p that a light point is on, given the vector to it (of any
 /// length): > 0 left of the projected edge a→b; 0: within double rounding.
-int side_of_way(const PreciseInput& input, const glm::dvec3& way);
+int side_of_direction(const PreciseInput& input, const glm::dvec3& direction);
 
 /// Adds the edge's changes, and marks the samples that it leaves open. For light samples in rows.
 template <typename Counter>

@@ -72,25 +72,25 @@ class Projection {
     return in_.exact_area ? hn::IfThenElse(m.open, set(kUnknown), m.k) : m.k;
   }
 
-  struct Ways {
+  struct Directions {
     V x, y, w;
   };
-  [[nodiscard]] Ways way_to(const GroupTable& table, std::size_t first, std::size_t i) const {
+  [[nodiscard]] Directions direction_to(const GroupTable& table, std::size_t first, std::size_t i) const {
     const auto column = [&](std::size_t field) { return hn::Load(D(), table[first + field] + i); };
-    const Ways way{hn::Sub(column(0), set(at_.in_grid.x)), hn::Sub(column(1), set(at_.in_grid.y)),
-                   hn::Sub(set(at_.in_grid.z), column(2))};
-    return in_.grid.cones ? Ways{turned(way, 0), turned(way, 1), turned(way, 2)} : way;
+    const Directions direction{hn::Sub(column(0), set(at_.in_grid.x)), hn::Sub(column(1), set(at_.in_grid.y)),
+                               hn::Sub(set(at_.in_grid.z), column(2))};
+    return in_.grid.cones ? Directions{turned(direction, 0), turned(direction, 1), turned(direction, 2)} : direction;
   }
-  [[nodiscard]] V turned(const Ways& way, glm::length_t row) const {
+  [[nodiscard]] V turned(const Directions& direction, glm::length_t row) const {
     const auto part = [&](V x, glm::length_t column) { return hn::Mul(set(at_.turn[column][row]), x); };
-    return hn::Add(hn::Add(part(way.x, 0), part(way.y, 1)), part(way.w, 2));
+    return hn::Add(hn::Add(part(direction.x, 0), part(direction.y, 1)), part(direction.w, 2));
   }
   struct LightPoints {
     V x, y;
   };
-  [[nodiscard]] LightPoints appears(const Ways& way) const {
-    const V q = hn::Div(set(place_.height), way.w);
-    return {hn::Add(set(place_.foot.x), hn::Mul(q, way.x)), hn::Add(set(place_.foot.y), hn::Mul(q, way.y))};
+  [[nodiscard]] LightPoints appears(const Directions& direction) const {
+    const V q = hn::Div(set(place_.height), direction.w);
+    return {hn::Add(set(place_.foot.x), hn::Mul(q, direction.x)), hn::Add(set(place_.foot.y), hn::Mul(q, direction.y))};
   }
 
   /// Projects edges well above p.
@@ -102,7 +102,7 @@ class Projection {
     if (hn::AllFalse(D(), live)) return;
     const M open = hn::And(live, open_ones(m));
     if (!hn::AllFalse(D(), open)) special({table, i, open, m, true});
-    const Ways a = way_to(table, kAx, i), b = way_to(table, kBx, i);
+    const Directions a = direction_to(table, kAx, i), b = direction_to(table, kBx, i);
     const LightPoints place_a = appears(a), place_b = appears(b);
     V error = hn::Load(D(), table[kGroupError] + i);
     if (in_.grid.cones) {
@@ -122,7 +122,7 @@ class Projection {
     const Multiplicity m = multiplicity(table, at_, i);
     M live = hn::And(first_lanes(table.count - i), hn::Or(m.open, hn::Ne(m.k, set(0))));
     if (hn::AllFalse(d, live)) return;
-    const Ways a = way_to(table, kAx, i), b = way_to(table, kBx, i);
+    const Directions a = direction_to(table, kAx, i), b = direction_to(table, kBx, i);
     const glm::vec2 window = 2.0F * grid.half_cells + 2.0F, off = place_.foot - grid.first_cell;
     // Lanes past the end of the table hold garbage.
     const V edge = hn::IfThenElseZero(first_lanes(table.count - i), hn::Load(d, table[kGroupEdge] + i));
@@ -159,8 +159,9 @@ class Projection {
       return hn::IfThenElse(cut, hn::Add(hn::Mul(x, hn::Sub(set(1), t)), hn::Mul(y, t)), uncut);
     };
     const M cut_a = hn::Gt(from, set(0)), cut_b = hn::Lt(to, set(1));
-    const Ways start{at(from, cut_a, a.x, b.x, a.x), at(from, cut_a, a.y, b.y, a.y), at(from, cut_a, a.w, b.w, a.w)};
-    const Ways end{at(to, cut_b, a.x, b.x, b.x), at(to, cut_b, a.y, b.y, b.y), at(to, cut_b, a.w, b.w, b.w)};
+    const Directions start{at(from, cut_a, a.x, b.x, a.x), at(from, cut_a, a.y, b.y, a.y),
+                           at(from, cut_a, a.w, b.w, a.w)};
+    const Directions end{at(to, cut_b, a.x, b.x, b.x), at(to, cut_b, a.y, b.y, b.y), at(to, cut_b, a.w, b.w, b.w)};
     const V far_start = at(from, cut_a, far_a, far_b, far_a), far_end = at(to, cut_b, far_a, far_b, far_b);
     const V through_p = set(place_.through_p);
     const M near_p = hn::Or(hn::Lt(start.w, hn::Mul(through_p, far_start)), hn::Lt(end.w, hn::Mul(through_p, far_end)));
@@ -183,7 +184,7 @@ class Projection {
   [[nodiscard]] V error_of(const LightPoints& place, V w, V far) const {
     const V foot =
         hn::Add(hn::Abs(hn::Sub(place.x, set(place_.foot.x))), hn::Abs(hn::Sub(place.y, set(place_.foot.y))));
-    return hn::MulAdd(hn::Div(far, w), hn::MulAdd(set(place_.per_reach), foot, set(place_.per_way)),
+    return hn::MulAdd(hn::Div(far, w), hn::MulAdd(set(place_.per_reach), foot, set(place_.per_ray)),
                       hn::MulAdd(set(place_.per_foot), foot, set(place_.fixed)));
   }
 

@@ -124,8 +124,9 @@ class PointScatter {
                end = static_cast<std::uint32_t>(tiles_at[steps >> 16] >> 16);
     const UpwardEdge e{edges_, edge};
     changes_.tiles[end + static_cast<std::uint32_t>(row)] += (where & EdgesInRows::kCrosses) != 0 ? jump_of(e) : 0;
-    const auto way = hn::Set(d, tiles_.row_low[static_cast<std::size_t>(row)]);
-    const TileM low_above = hn::Gt(hn::Set(d, e[kLowY]), way), high_above = hn::Gt(hn::Set(d, e[kHighY]), way);
+    const auto direction = hn::Set(d, tiles_.row_low[static_cast<std::size_t>(row)]);
+    const TileM low_above = hn::Gt(hn::Set(d, e[kLowY]), direction),
+                high_above = hn::Gt(hn::Set(d, e[kHighY]), direction);
     for (std::uint32_t tile = from; tile < end; ++tile) {
       const auto begins = hn::Set(d, tiles_.tile_low[tile]);
       test({tile, hn::And(low_above, hn::Lt(hn::Set(d, e[kLowX]), begins)),
@@ -211,7 +212,8 @@ class PointScatter {
     // An end that may be on either side of the sample's height makes the path's crossing uncertain.
     const bool at_end = std::abs(s.near.y - y) < 2 * s.error_near || std::abs(s.far.y - y) < 2 * s.error_far;
     const bool has_y = e[kLowY] <= y && y < e[kHighY];
-    const int exact = at_end || s.may_be_cut || !has_y ? 0 : side_of_way(precise_of(e), judge_.way_to(*at_, sample));
+    const int exact =
+        at_end || s.may_be_cut || !has_y ? 0 : side_of_direction(precise_of(e), judge_.direction_to(*at_, sample));
     if (exact == 0 && (at_end || s.may_be_cut || has_y)) s_.open.samples.push_back(sample);
     const bool is_right = (exact < 0) == (s_.crossing[kY0][e.crossing()] < s_.crossing[kY1][e.crossing()]);
     if (exact != 0 && is_right != (side > 0)) changes_.slots[slot] += is_right ? e[kJump] : -e[kJump];

@@ -147,7 +147,7 @@ int RowSum::multiplicity(const WideEdges& leaf, std::size_t lane) const {
 }
 
 /// Returns the vector to a point, with its error. (bound way)
-RowSum::Way RowSum::way_to(const glm::dvec3& point) const {
+RowSum::Direction RowSum::direction_to(const glm::dvec3& point) const {
   const glm::dvec3 d = point - p_;
   const double length = std::abs(d.x) + std::abs(d.y) + std::abs(d.z), error = kUnit * skew_ * length;
   return {{glm::dot(axes_[0], d), glm::dot(axes_[1], d), -glm::dot(axes_[2], d)},
@@ -156,13 +156,13 @@ RowSum::Way RowSum::way_to(const glm::dvec3& point) const {
           length};
 }
 
-RowSum::Way RowSum::way_to(const CutEnd& end) const {
+RowSum::Direction RowSum::direction_to(const CutEnd& end) const {
   if (!end.place) {
-    Way way = way_to(end.point);  // computed from points within `reach`
+    Direction direction = direction_to(end.point);  // computed from points within `reach`
     const double off = 16 * kUnit * static_cast<double>(grid_.reach);
-    way.error += off * per_length_;
-    way.error_up += off;
-    return way;
+    direction.error += off * per_length_;
+    direction.error_up += off;
+    return direction;
   }
   const glm::dvec2 place = *end.place * 2.0 * glm::dvec2(grid_.half_cells), to = place - foot_;
   const double size = std::abs(place.x) + std::abs(place.y);
@@ -172,27 +172,27 @@ RowSum::Way RowSum::way_to(const CutEnd& end) const {
           height_ / steepness_ * (1 + size)};
 }
 
-RowSum::Ways RowSum::ways_of(const WideEdges& leaf, std::size_t lane, const CutEnds* ends) const {
+RowSum::Directions RowSum::directions_of(const WideEdges& leaf, std::size_t lane, const CutEnds* ends) const {
   const std::uint32_t cut = leaf.cut[lane];
   if (cut == 0 || ends == nullptr) {
     const glm::dvec3 a = point(leaf.a, lane), b = point(leaf.b, lane);
-    return {way_to(a), way_to(b), vectors::comes_first(b, a)};
+    return {direction_to(a), direction_to(b), vectors::comes_first(b, a)};
   }
   const CutEnds::Edge& edge = (*ends)[cut];
-  return {way_to(edge.a), way_to(edge.b)};
+  return {direction_to(edge.a), direction_to(edge.b)};
 }
 
 /// Returns the double rounding error of the distance of a vector's end inside a side of the window.
-double RowSum::error_inside(const Way& way, int axis) const {
+double RowSum::error_inside(const Direction& direction, int axis) const {
   const double middle = static_cast<double>(grid_.half_cells[axis]), window = 2 * middle + 2;
-  return 2 * (height_ * way.error + (window + std::abs(foot_[axis] - middle)) * way.error_up +
-              error_height_ * std::abs(way.to[axis]) + error_foot_ * std::abs(way.to.z));
+  return 2 * (height_ * direction.error + (window + std::abs(foot_[axis] - middle)) * direction.error_up +
+              error_height_ * std::abs(direction.to[axis]) + error_foot_ * std::abs(direction.to.z));
 }
 
 /// True if an edge that was clipped away completely might still pass through p within rounding. If it is no nearer to p
 /// than that, every part of it on the light is so high above p that no error can have hidden it. (bound apex)
-bool RowSum::may_pass_p(const Ways& ways) const {
-  const Way &a = ways.a, &b = ways.b;
+bool RowSum::may_pass_p(const Directions& directions) const {
+  const Direction &a = directions.a, &b = directions.b;
   const double error = std::max({error_inside(a, 0), error_inside(a, 1), error_inside(b, 0), error_inside(b, 1)});
   const glm::dvec2 lengths = glm::dvec2(1 / per_length_);
   const glm::dvec3 near_a(glm::dvec2(a.to) * lengths, a.to.z), near_b(glm::dvec2(b.to) * lengths, b.to.z);
@@ -202,8 +202,8 @@ bool RowSum::may_pass_p(const Ways& ways) const {
 
 /// Clips an edge to a window of about twice the light, before any division. (bound window) Returns false if no part of
 /// it is on the light.
-bool RowSum::cut_to_window(Ways& ways) {
-  Way &a = ways.a, &b = ways.b;
+bool RowSum::cut_to_window(Directions& directions) {
+  Direction &a = directions.a, &b = directions.b;
   const glm::dvec2 middle(grid_.half_cells), window = 2.0 * middle + 2.0;
   double from = 0, to = 1;
   const auto cut = [&](double inside_a, double inside_b) {
@@ -220,7 +220,7 @@ bool RowSum::cut_to_window(Ways& ways) {
       if (inside_a < 0 && inside_b < 0) {
         // The window is larger than the light: a part wrongly taken to be outside passes p, or is not on the light.
         const bool certain = inside_a <= -error_inside(a, axis) && inside_b <= -error_inside(b, axis);
-        is_open_ = is_open_ || (!certain && may_pass_p(ways));
+        is_open_ = is_open_ || (!certain && may_pass_p(directions));
         return false;
       }
       cut(inside_a, inside_b);
@@ -229,8 +229,8 @@ bool RowSum::cut_to_window(Ways& ways) {
   bool starts_at_disk = false, ends_at_disk = false;
   if (grid_.cones && grid_.cones->end) {  // (bound ends)
     const int side_a = cuts_at_disk_ ? side_of_disk(a) : 0, side_b = cuts_at_disk_ ? side_of_disk(b) : 0;
-    ways.is_unsure = cuts_at_disk_ && side_a * side_b == 0;
-    if (!ways.is_unsure) {
+    directions.is_unsure = cuts_at_disk_ && side_a * side_b == 0;
+    if (!directions.is_unsure) {
       if (a.to.z > height_ && b.to.z > height_) return false;
       const double there = cut(height_ - a.to.z, height_ - b.to.z);
       starts_at_disk = side_a > 0 && from == there;
@@ -238,12 +238,12 @@ bool RowSum::cut_to_window(Ways& ways) {
     }
   }
   if (from > to) {
-    is_open_ = is_open_ || may_pass_p(ways);
+    is_open_ = is_open_ || may_pass_p(directions);
     return false;
   }
   if (from == 0 && to == 1) return true;
   const glm::dvec3 start = from > 0 ? glm::mix(a.to, b.to, from) : a.to, end = to < 1 ? glm::mix(a.to, b.to, to) : b.to;
-  if (starts_at_disk || ends_at_disk) (starts_at_disk ? a : b) = ways.b_first ? pass_disk(b, a) : pass_disk(a, b);
+  if (starts_at_disk || ends_at_disk) (starts_at_disk ? a : b) = directions.b_first ? pass_disk(b, a) : pass_disk(a, b);
   if (!starts_at_disk) a.to = start;
   if (!ends_at_disk) b.to = end;
   return true;
@@ -260,9 +260,9 @@ std::optional<RowSum::Placed> RowSum::place(const WideEdges& leaf, std::size_t l
                                             std::optional<int> known) {
   const int from_front = known ? *known : multiplicity(leaf, lane), k = grid_.side < 0 ? -from_front : from_front;
   if (k == 0 || is_open_) return std::nullopt;
-  Ways ways = ways_of(leaf, lane, ends);
-  if (!cut_to_window(ways)) return std::nullopt;
-  const Way &a = ways.a, &b = ways.b;
+  Directions directions = directions_of(leaf, lane, ends);
+  if (!cut_to_window(directions)) return std::nullopt;
+  const Direction &a = directions.a, &b = directions.b;
   const double lowest = std::min(a.to.z, b.to.z), error = std::max(a.error, b.error),
                error_up = std::max(a.error_up, b.error_up);
   if (!(lowest > 8 * error_up)) {  // the edge passes through p within rounding
@@ -275,7 +275,7 @@ std::optional<RowSum::Placed> RowSum::place(const WideEdges& leaf, std::size_t l
   const glm::dvec2 from = foot_ + place_a, to = foot_ + place_b;
   const Placed placed{{from.x, from.y, to.x, to.y, k},
                       placing_error(std::max(stretch_a, stretch_b), error, error_up, far)};
-  if (!ways.is_unsure) return placed;
+  if (!directions.is_unsure) return placed;
   is_open_ = is_open_ || !passes_by(placed.edge, kUnsure * placed.error);
   return std::nullopt;
 }

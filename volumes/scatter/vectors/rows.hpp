@@ -77,29 +77,29 @@ class RowSum {
 
  private:
   /// A vector from p: across and along, and up to the light; the errors of these; and a lower bound of its length.
-  struct Way {
+  struct Direction {
     glm::dvec3 to{0};
     double error = 0, error_up = 0, length = 0;
   };
-  struct Ways {
-    Way a, b;
+  struct Directions {
+    Direction a, b;
     bool b_first = false;    ///< b is lexicographically first
     bool is_unsure = false;  ///< an end is at a sphere's disk within rounding
   };
   void see_cone(const LightCone& cone);
-  [[nodiscard]] Way way_to(const glm::dvec3& point) const;
-  [[nodiscard]] Way way_to(const CutEnd& end) const;
-  [[nodiscard]] Ways ways_of(const WideEdges& leaf, std::size_t lane, const CutEnds* ends) const;
+  [[nodiscard]] Direction direction_to(const glm::dvec3& point) const;
+  [[nodiscard]] Direction direction_to(const CutEnd& end) const;
+  [[nodiscard]] Directions directions_of(const WideEdges& leaf, std::size_t lane, const CutEnds* ends) const;
   [[nodiscard]] int multiplicity(const WideEdges& leaf, std::size_t lane) const;
   [[nodiscard]] int side_of(const WideEdges& leaf, std::size_t side, std::size_t lane) const;
-  [[nodiscard]] double error_inside(const Way& way, int axis) const;
-  [[nodiscard]] bool may_pass_p(const Ways& ways) const;
-  [[nodiscard]] bool cut_to_window(Ways& ways);
+  [[nodiscard]] double error_inside(const Direction& direction, int axis) const;
+  [[nodiscard]] bool may_pass_p(const Directions& directions) const;
+  [[nodiscard]] bool cut_to_window(Directions& directions);
   [[nodiscard]] double placing_error(double stretch, double error, double error_up, double far) const;
   // Functions for a sphere's disk (rows_at_disk.cpp).
-  [[nodiscard]] double error_over_disk(const Way& way) const;
-  [[nodiscard]] int side_of_disk(const Way& way) const;
-  [[nodiscard]] Way pass_disk(const Way& first, const Way& second) const;
+  [[nodiscard]] double error_over_disk(const Direction& direction) const;
+  [[nodiscard]] int side_of_disk(const Direction& direction) const;
+  [[nodiscard]] Direction pass_disk(const Direction& first, const Direction& second) const;
   [[nodiscard]] bool is_beside(const RowEdge& edge, double error) const;
   [[nodiscard]] bool passes_by(const RowEdge& edge, double error) const;
   void add_line(const HorizonLine& line);

@@ -20,20 +20,20 @@ using vectors::NearSpheres;
 
 /// Returns the double rounding error of the height of a vector's end over the disk's plane: m is off by error_height_,
 /// and a point λ times as far away by λ times that.
-double RowSum::error_over_disk(const Way& way) const {
-  return way.error_up + error_height_ * std::max(1.0, way.to.z / height_);
+double RowSum::error_over_disk(const Direction& direction) const {
+  return direction.error_up + error_height_ * std::max(1.0, direction.to.z / height_);
 }
 
 /// Returns −1 for a point in front of the disk; 1 behind; 0 if rounding leaves the side open.
-int RowSum::side_of_disk(const Way& way) const {
-  const double over = way.to.z - height_;
-  if (!(std::abs(over) > 4 * error_over_disk(way))) return 0;
+int RowSum::side_of_disk(const Direction& direction) const {
+  const double over = direction.to.z - height_;
+  if (!(std::abs(over) > 4 * error_over_disk(direction))) return 0;
   return over > 0 ? 1 : -1;
 }
 
 /// Returns the crossing of the plane by the segment between ends on either side: always computed from the
 /// lexicographically first one, so that all edges that end there have the same numbers. (bound pass)
-RowSum::Way RowSum::pass_disk(const Way& first, const Way& second) const {
+RowSum::Direction RowSum::pass_disk(const Direction& first, const Direction& second) const {
   const double across = first.to.z - second.to.z, share = (first.to.z - height_) / across;
   const glm::dvec2 aside = glm::dvec2(second.to) - glm::dvec2(first.to), to = glm::dvec2(first.to) + share * aside;
   const double size = std::abs(aside.x) + std::abs(aside.y),
@@ -71,20 +71,20 @@ std::optional<RowSum::Placed> RowSum::place_disk_cut(std::size_t caster) {
   const double* row = &grid_.cones->casters->rows[caster * NearCasters::kRow];
   if (row[NearCasters::kPlane] == static_cast<double>(plane_)) return std::nullopt;  // its own plane hides nothing
   std::array<glm::dvec3, 3> corners;
-  std::array<Way, 3> ways;
+  std::array<Direction, 3> directions;
   std::array<int, 3> sides{};
   RowEdge box{INFINITY, INFINITY, -INFINITY, -INFINITY, 0};  // bounds of its corners, in the direction of the plane
   double error = 0, error_up = 0, far = 0;
   for (std::size_t i = 0; i < 3; ++i) {
     corners[i] = {row[3 * i], row[3 * i + 1], row[3 * i + 2]};
-    ways[i] = way_to(corners[i]);
-    sides[i] = side_of_disk(ways[i]);
-    const glm::dvec2 aside(ways[i].to);
+    directions[i] = direction_to(corners[i]);
+    sides[i] = side_of_disk(directions[i]);
+    const glm::dvec2 aside(directions[i].to);
     box = {std::min(box.x0, foot_.x + aside.x), std::min(box.y0, foot_.y + aside.y),
            std::max(box.x1, foot_.x + aside.x), std::max(box.y1, foot_.y + aside.y), 0};
     far = std::max(far, std::abs(aside.x) + std::abs(aside.y));
-    error = std::max(error, ways[i].error);
-    error_up = std::max(error_up, ways[i].error_up);
+    error = std::max(error, directions[i].error);
+    error_up = std::max(error_up, directions[i].error_up);
   }
   if (std::abs(sides[0] + sides[1] + sides[2]) == 3) return std::nullopt;
   if (sides[0] * sides[1] * sides[2] == 0) {
@@ -94,10 +94,10 @@ std::optional<RowSum::Placed> RowSum::place_disk_cut(std::size_t caster) {
   }
   // Walking around the part in front of the plane, with the corners in order: the boundary leaves at `from`, and
   // returns at `to`.
-  Way from, to;
+  Direction from, to;
   for (const auto& [i, next] : {std::pair{0U, 1U}, std::pair{1U, 2U}, std::pair{2U, 0U}}) {
     if (sides[i] != sides[next])
-      (sides[i] < 0 ? from : to) = pass_disk(ways[std::min(i, next)], ways[std::max(i, next)]);
+      (sides[i] < 0 ? from : to) = pass_disk(directions[std::min(i, next)], directions[std::max(i, next)]);
   }
   const glm::dvec2 a = foot_ + glm::dvec2(from.to), b = foot_ + glm::dvec2(to.to);
   const RowEdge edge{a.x, a.y, b.x, b.y, 0};

@@ -23,15 +23,15 @@ Double number(double x) {
   return hn::Set(Doubles(), x);
 }
 
-/// The operations are those of RowSum::way_to, cut_to_window, place and placing_error, in the same order: an edge may
-/// be placed by either code, and its ends are ends of other edges.
+/// The operations are those of RowSum::direction_to, cut_to_window, place and placing_error, in the same order: an edge
+/// may be placed by either code, and its ends are ends of other edges.
 class SideBySide {
  public:
   explicit SideBySide(const PlacesFrame& frame) : f_(frame) {}
 
   void operator()(WidePlaces& places, std::size_t first) const {
     const Doubles d;
-    const Way a = way_to(places.a, first), b = way_to(places.b, first);
+    const Direction a = direction_to(places.a, first), b = direction_to(places.b, first);
     const Double height = number(f_.height), error = hn::Max(a.error, b.error),
                  error_up = hn::Max(a.error_up, b.error_up);
     Which placed = hn::Gt(hn::Min(a.z, b.z), hn::Mul(number(8), error_up));
@@ -82,10 +82,10 @@ class SideBySide {
   }
 
  private:
-  struct Way {
+  struct Direction {
     Double x, y, z, error, error_up;
   };
-  [[nodiscard]] Way way_to(const std::array<WidePlaces::Column, 3>& points, std::size_t first) const {
+  [[nodiscard]] Direction direction_to(const std::array<WidePlaces::Column, 3>& points, std::size_t first) const {
     const Doubles d;
     const auto from_p = [&](std::size_t axis) {
       return hn::Sub(hn::Load(d, &points[axis][first]), number(f_.p[static_cast<glm::length_t>(axis)]));
