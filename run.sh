@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: Apache-2.0
 # Installs what is missing, builds, and runs penumbra with the given arguments. Paths are relative to where you stand.
 # Without arguments, the main job: compare geometry-based, image-based and reference methods on the default scene.
 set -euo pipefail

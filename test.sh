@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: Apache-2.0
 # Installs what is missing, builds, and runs the tests with ctest: label `quick`, or what the arguments say
 # (./test.sh -L full, ./test.sh -R layering, ./test.sh -R Suite.Test).
 set -euo pipefail

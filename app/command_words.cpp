@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Collects the words of commands and options from CLI11 and formats help.
 
 #include "app/command_words.hpp"

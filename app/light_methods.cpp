@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Chooses a method for each light.
 
 #include "app/light_methods.hpp"

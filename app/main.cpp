@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/commands.hpp"
 #include "app/process/interrupt.hpp"
 #include "app/process/process.hpp"

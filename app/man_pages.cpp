@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Formats manual pages.
 
 #include "app/man_pages.hpp"

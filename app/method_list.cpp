@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Lists methods as JSON.
 
 #include "app/method_list.hpp"

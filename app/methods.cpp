@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Joins the tables of methods and selects default methods.
 
 #include "app/methods.hpp"

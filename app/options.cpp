@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Adds and parses options common to several commands.
 
 #include "app/options.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Sums beauty, writes bits and collects statistics of runs.
 
 #include "app/output.hpp"

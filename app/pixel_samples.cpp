@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Finds the view samples of single pixels by testing every triangle.
 
 #include "app/pixel_samples.hpp"

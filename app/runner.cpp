@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Runs methods on sessions: timing, tiles, and the host's rules.
 
 #include "app/runner.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Opens sessions: scene, view samples, lights and classes of pixels.
 
 #include "app/session.hpp"

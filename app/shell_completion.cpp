@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Generates completion scripts of shells.
 
 #include "app/shell_completion.hpp"

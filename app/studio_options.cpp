@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/studio_options.hpp"
 
 #include "app/parse.hpp"

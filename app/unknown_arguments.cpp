@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Explains unknown words of a command line by the nearest existing names.
 
 #include "app/unknown_arguments.hpp"

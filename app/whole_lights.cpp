@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Combines the results of a light's pieces.
 
 #include "app/whole_lights.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Projects triangles to the light's plane in integer homogeneous coordinates and clips them (Sutherland and Hodgman
 // 1974), exactly (back_projection.hpp derives the projection). Not from a paper.
 

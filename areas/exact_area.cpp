@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Computes the area of the union of back-projected triangles, by signed edges.
 //
 // Each triangle, as seen from p, is clipped to the region between p and the light and oriented counter-clockwise; each

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Sums form factors of uncovered trapezoids in closed form (visibility/lights/form_factor.hpp), with a texture cut at
 // blocks of texels. Not from a paper.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Computes the exact region of a light in its own plane, and grids that convert doubles to integers.
 
 #include "areas/light_region.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Classifies points against the clip planes of a light's shaft in double, with error bounds; the exact test is
 // BackProjection's.
 

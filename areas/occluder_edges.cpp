@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Collects the signed edges of back-projected occluders, merged where triangles share them (Laine et al. 2005; any
 // soup: docs/signed-crossings.md).
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Computes prefix sums of a texture's columns for TextureMeasure.
 
 #include "areas/texture_measure.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Luminance of a light's texture over trapezoids between two of its rows, as a fraction of the whole, from prefix sums.
 
 #include "areas/textured_part.hpp"

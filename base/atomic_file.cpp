@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Output files that appear whole or not at all: nameless files (O_TMPFILE) linked in place, or locked, uniquely named
 // part files.
 

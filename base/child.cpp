@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Child processes by posix_spawn: start, wait, kill.
 
 #include "base/child.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Suggestions for misspelled names: edit distance, and abbreviations that are the last words of a name.
 
 #include "base/did_you_mean.hpp"

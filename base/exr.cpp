@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reading of OpenEXR files through OpenEXR's own library, from a path or from memory.
 
 #include "base/exr.hpp"

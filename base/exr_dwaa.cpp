@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Writing of DWAA files by OpenEXR's own library. The library takes channels for colours by the part after the last dot
 // of their names (R, G, B, Y, BY, RY: blocks of 8 x 8 in a cosine transform, as 16-bit floats) and keeps all others
 // exact: "P.Y" would be treated as a luminance, and the numbers of Cryptomatte as colours. Layers with such exact

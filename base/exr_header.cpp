@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The header of the "OpenEXR File Layout": magic number, version, and attributes, each a name, a type, a size and a
 // value.
 

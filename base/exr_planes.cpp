@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Converts the channels of an OpenEXR file to the bytes of its scan lines.
 
 #include "base/exr_planes.hpp"

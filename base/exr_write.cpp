@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Writing of OpenEXR files, scan lines packed as OpenEXR's ZIP on all cores by libdeflate, which takes half of zlib's
 // time for as many bytes. (DWAA: exr_dwaa.cpp.)
 #include "base/assert.hpp"

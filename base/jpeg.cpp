@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // JPEG through libjpeg, which reports errors by longjmp. longjmp must not skip destructors: no local of `decode_jpeg`
 // and `write_jpeg` has one.
 #include "base/jpeg.hpp"

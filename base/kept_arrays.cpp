@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Cache of large freed arrays for `operator new` (pages.cpp).
 
 #include "base/kept_arrays.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Memory available to this process (machine, control groups, resource limits), and settings of the C library's
 // allocator.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Base64, and deflate in parts, for data embedded in HTML.
 
 #include "base/packed.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Replaces the global `operator new`: large arrays lie in large pages and are reused (kept_arrays.hpp).
 
 #include "base/pages.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // PNG through libpng's simplified interface, which reports errors as values. (The classic interface needs setjmp, which
 // must not skip destructors.)
 #include "base/png.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Decoding of PNG with the file's own values. libpng's simplified interface (png.cpp) obeys gAMA chunks and takes 16
 // bits without one as linear light, using a power of 2.2 instead of sRGB's curve; the classic interface returns the
 // stored bits. The classic interface reports errors by longjmp, which must not skip destructors: no local of `decode`

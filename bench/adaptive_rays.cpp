@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Casts a few rays everywhere and all rays where the few disagree.
 
 #include "bench/adaptive_rays.hpp"

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Error against processor time of Penumbra and of Blender's Cycles, whole processes from start to file.
 
     bench/against_cycles.py measure [BUILD]     renders and measures; writes bench/results/against-cycles.json; an hour

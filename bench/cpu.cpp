@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Times the parts that run on the processor once for each mesh: edge graph, edge records, hierarchy, wedges.
 
 #include "bench/cpu.hpp"

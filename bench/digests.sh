@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: Apache-2.0
 # digests.sh BUILD [SCENE…]: one line a picture, with a digest of its channels and of its mask. Two builds whose lists are the
 # same compute the same masks, V and beauty on this device:
 #   bench/digests.sh build >before.txt; …; bench/digests.sh build | diff before.txt -

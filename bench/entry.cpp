@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Runs all contestants on one subject in turns and compares their results with the oracle.
 
 #include "bench/entry.hpp"

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Draws error against time from the lines that penumbra-bench --json FILE --reference METHOD wrote: RMSE of V against the seconds of `shadow`, both by
 powers of ten, a panel a subject, a curve a contestant through its numbers of light samples.
 

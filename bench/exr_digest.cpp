@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // exr_digest FILE…: prints one line for each file, a digest of its size and of all its channels. Header attributes are
 // left out, so that two builds with different names and the same picture agree. Used by bench/digests.sh.
 #include "base/error.hpp"

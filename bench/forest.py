@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """A forest of copies of one tree, and what a picture of it costs:
 python3 bench/forest.py PROGRAM FOLDER [TREES ...] [--size PIXELS] [--results FILE.json --machine TEXT --conditions TEXT]
 

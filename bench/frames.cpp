@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Times the work of a frame with a moved light: facings, silhouettes, wedges and lists, on host and device.
 
 #include "bench/frames.hpp"

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: Apache-2.0
 # gpu.sh [FILE.json] [DEVICE] [largest side]: is every pass right on this machine's GPU, and how fast is it? Eight minutes at most. Runs
 # from the unpacked tarball (cmake/tarball.sh), where nothing needs to be installed, or from a built clone. DEVICE as for --device.
 # Three parts, in FILE.json (gpu.json): the self-test; the bits of exact methods on the device against those of the processor's vector

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Formats results as tables and JSON lines.
 
 #include "bench/lines.hpp"

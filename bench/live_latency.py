@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """How fast `penumbra view` answers: bare clients drag the camera and a light, one after the other and both at once, and note
 when pictures come, what they cost, and whether each is whole.
   live_latency.py PROGRAM SCENE… [--seconds S] [--minutes M] [--out FILE.json]

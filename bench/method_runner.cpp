@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Runs and times one method of the program.
 
 #include "app/methods.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Moves a light by a twelfth of its width.
 
 #include "bench/moved_light.hpp"

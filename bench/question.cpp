@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Prepares subjects, reference visibility and pixel sets for the contestants.
 
 #include "bench/question.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Times ray casters on Embree.
 
 #include "app/process/stopwatch.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Times `penumbra render` on a generated sequence of frames.
 
 #include "bench/sequence.hpp"

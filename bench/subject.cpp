@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Makes subjects: shipped scenes, torus knots, spheres, with variations of light and size.
 
 #include "bench/subject.hpp"

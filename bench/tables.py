@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Writes the tables of bench/README.md, docs/devices.md and docs/instances.md from bench/results/*.json, and the list of these files in bench/results/README.md.
 
   bench/tables.py            writes them

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Times whole pictures by methods and by a plain program on Embree.
 
 #include "bench/whole_frame.hpp"

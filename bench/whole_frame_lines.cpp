@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Formats times of whole frames as a table and JSON lines.
 
 #include "bench/entry.hpp"

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Shared by run.sh and test.sh (sourced): from a bare clone to a built tree. Quiet when there is nothing to do.
 # Everything is built in one folder, build/, so that a fresh clone compiles each file once.
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Meshes of Debian's package libcgal-demo, unpacked once into the build tree: real meshes, many with defects.
 # penumbra_cgal_corpus(target): defines PENUMBRA_CGAL_CORPUS for the target's code (a folder with meshes/*.off). Without
 # the package the folder is empty, and the tests that need it fail with a message.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Turns a script of another project into a source: cmake -DSCRIPT=a.js -DHEADER=… -DNAMESPACE=… -DNAME=… -DSOURCE=out.cpp
 # -P embed_script.cmake: the constant NAME, declared in HEADER. Without SCRIPT the constant is empty.
 set(text "")

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Turns a page into a source: cmake -DFOLDER=… -DSTYLE=a;b -DSCRIPT=… -DMARKUP=… -DHEADER=… -DNAMESPACE=… -DPREFIX=…
 # -DSOURCE=out.cpp -P embed_text.cmake: the constants k<PREFIX>Style, k<PREFIX>Script and k<PREFIX>Markup, declared in
 # HEADER. Files of one kind follow one another; scripts are in one strict block, so that none of their names is global.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # cmake -DPROGRAM=penumbra -DPREFIX=… -P install_words.cmake: writes the program's manual pages and shell completion
 # scripts to the folders searched by man, bash, zsh and fish.
 function(ask file)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # `cpack` in the build folder makes a Debian package of the files installed by `cmake --install`: programs, library,
 # headers, Python module, manual pages, completions. Its dependencies are determined by dpkg-shlibdeps from the files.
 set(CPACK_GENERATOR DEB)

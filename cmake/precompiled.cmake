@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Headers of libraries included by nearly every file are parsed once (about half of the compiler's time was spent on
 # them). Files still include what they use: preset `dev` builds without precompiled headers, and reports missing
 # includes.

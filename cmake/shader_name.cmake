@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Sets `name` to the C++ name of a shader: view_sample.comp → kViewSampleComp, in any folder.
 get_filename_component(parts ${NAME} NAME)
 string(REPLACE "." "_" parts ${parts})

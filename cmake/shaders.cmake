@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 find_program(GLSLANG glslangValidator REQUIRED)
 find_program(SPIRV_VAL spirv-val REQUIRED)
 

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: Apache-2.0
 # tarball.sh BUILD [FOLDER]: packs the programs of a built tree as FOLDER/penumbra-VERSION-linux-x86_64.tar.xz, which runs where nothing is
 # installed but the C library (Debian 12's or a newer one). Unpack it anywhere:
 #   bin/            penumbra, penumbra-import, penumbra-repair

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # penumbra_discover_suites(target [PREFIX p] FULL pattern… [SHARDS suite=n…]): adds each test suite of a GoogleTest
 # executable to ctest as one test, hence one process in which a device, and fixtures shared by tests, are made once. The
 # tests that match a pattern of FULL have the label full, all others quick; a suite with both kinds is two tests of

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Every target of Penumbra links this: warnings are errors, in g++ 12 and clang 14.
 add_library(penumbra_warnings INTERFACE)
 target_compile_options(penumbra_warnings INTERFACE -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror)

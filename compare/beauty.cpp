@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Computes direct light on diffuse surfaces, equations 1.3 and 1.4 of Eisemann, Schwarz, Assarsson, Wimmer: Real-Time
 // Shadows (2011), with the integrals in closed form where available (visibility/lights/form_factor.hpp).
 #include "compare/beauty.hpp"

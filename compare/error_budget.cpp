@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Computes error budgets: the change of RMSE by the repair of one cause of error (docs/error-budget.md), with limits of
 // sequences by Aitken's Δ².
 

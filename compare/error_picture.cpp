@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Paints errors and V of each pixel by colour scales, and computes the exposure of pictures.
 
 #include "compare/error_picture.hpp"

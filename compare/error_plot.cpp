@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Draws a double-logarithmic plot as SVG, with labels placed without overlaps (greedy).
 
 #include "compare/error_plot.hpp"

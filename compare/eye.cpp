@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Computes visible errors of V: differences of more than one step of 255, and banding between neighbouring pixels
 // (eye.hpp).
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Computes FLIP (Andersson et al. 2020, cited in eye.hpp); section and equation numbers are the paper's. Both pictures
 // are filtered by contrast sensitivity functions, and colours are compared by HyAB in Hunt-adjusted L*a*b* (the colour
 // pipeline); edges and points of their unfiltered luminance are detected by derivatives of a Gaussian (the feature

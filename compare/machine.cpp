@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads processor, memory and operating system from /proc and /etc.
 
 #include "compare/machine.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Computes error metrics of V, pairs and beauty over sets of pixels.
 
 #include "compare/metrics.hpp"

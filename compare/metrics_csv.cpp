@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Writes metrics.csv.
 
 #include "compare/metrics_csv.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Decides which entries of a comparison compute the same quantity.
 
 #include "compare/question.hpp"

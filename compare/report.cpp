@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Assembles the report: one self-contained HTML page. Its script draws all that the page shows from the JSON in it.
 
 #include "compare/report.hpp"

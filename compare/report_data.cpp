@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Packs the report's numbers for its script: planes of bytes, deflated, as base64.
 
 #include "compare/report_data.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Describes the scene in words.
 #include "compare/report.hpp"
 #include "compare/report_text.hpp"

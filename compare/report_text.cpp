@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Formats texts of the report.
 
 #include "compare/report_text.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Writes stats.json and metrics.json.
 
 #include "compare/stats.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Looks up textures as defined by glTF 2.0, 3.8.4: (0, 0) is the picture's top left corner, texel centres at half
 // integers.
 #include "compare/surface.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Computes equation 1.3 of Eisemann, Schwarz, Assarsson, Wimmer: Real-Time Shadows (2011), direct light on diffuse
 // surfaces, from masks. Departures: instead of point samples, a visible cell counts with its form factor, and sums of
 // samples are scaled by the known result of the whole light. Loops over 32 samples are written for automatic

@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: Apache-2.0
 # docs/images/coverage-explain.svg: a light as one view sample sees it past a box and a leaning board, drawn by
 # `wedges --explain`. Usage: docs/coverage_pictures.sh [PROGRAM]
 set -eu

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """docs/images/domes.png: scenes/skies/knot.json under each of its domes by itself, side by side, and the picture of the sky that
 one of them has, scenes/skies/evening.hdr, which is computed here. Python's standard library is all that it needs.
 

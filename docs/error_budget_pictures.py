@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """The picture and the table of docs/error-budget.md: error_budget_pictures.py PROGRAM, with chromium installed
 (packages.txt)."""
 import json

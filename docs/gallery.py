@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """docs/gallery.md and its pictures: the small Blender scenes of tests/blender/scenes.py by the add-on, by Cycles, and the
 ratio of the two. Needs Blender, numpy, and a built program and add-on.
 

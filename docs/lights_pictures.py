@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """docs/images/lights.png: scenes/lights.json under each of its seven lights by itself, side by side, without light
 samples. Python's standard library is all that it needs.
 

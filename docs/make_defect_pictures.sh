@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: Apache-2.0
 # make_defect_pictures.sh [PENUMBRA [WHAT]]: the pictures and the tables of docs/defects.md; WHAT: pictures, tables or all.
 # Pictures: scenes/broken.json by four methods. Tables: each defect of the generator on a floor, under a square light, and
 # what each method gets wrong: methods of light samples and maps against ray casting on the same 64 light samples

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """The picture and the table of docs/map-fits.md: map_fits_pictures.py PROGRAM. A long floor with plates over it, a camera
 near its end, a light so small that its shadows are hard: for each fit V's error, and 1/m, the inverse of the aliasing error.
 Python's standard library is all that it needs."""

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """What methods get wrong, in PNGs. The strips of README.md (geometry, image): for each method V, and below it how far V is
 off, in docs/images/methods/, out of one comparison a strip. And the error maps of the methods' pages (pages): V, and beside it how
 far it is off where errors are judged, on a scene where that can be seen, in docs/images/errors/. Exact areas judge. Python's standard library is all

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Renders the moving picture of README.md, docs/images/moving-light.png: the sun of scenes/room.json moves on a circle. Left: the picture
 with exact shadows. Right: the error of V of that sun by `pcss`, in the colours of the report. Needs numpy and the Python module:
 

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Writes docs/options.md, every option of every method, from `penumbra methods --json`.
 
   docs/option_tables.py [--program build/penumbra]            writes the page

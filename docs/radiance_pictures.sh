@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: Apache-2.0
 # radiance_pictures.sh [PENUMBRA]: the pictures and the second table of docs/radiance.md. Pictures: things before a panel
 # that stands on the floor, by `exact` and by a method that knows only V. Table: error of the beauty against `exact`.
 set -euo pipefail

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """The picture of docs/report.md: report_pictures.py PROGRAM, with chromium installed (packages.txt)."""
 import pathlib
 import subprocess

@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: Apache-2.0
 # docs/images/wedges-original.png and wedges-tight.png: the penumbra wedges of one slanted edge's triangle, exported by
 # `wedges` and rendered by `render`. Usage: docs/wedges_pictures.sh [PROGRAM]
 set -eu

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A method that delegates each light to one of two engines with equal results.
 
 #include "engines/engine_by_light.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // View samples by the GPU's visibility buffer, by scan conversion, or by a tree of boxes.
 
 #include "engines/view_sampler.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Combines a shadow map with shadow volumes: E. Chan, F. Durand, An efficient hybrid shadow rendering algorithm, EGSR
 // 2004. A view sample is at a silhouette where the four texels around it disagree; shadow volumes are drawn for these
 // samples alone, under a mask that keeps all others out of the stencil, and the map decides the others. Departures: the

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // M. McCool, Shadow volume reconstruction from depth maps, ACM Transactions on Graphics 19 (1), 2000: edges of a shadow
 // map become shadow volumes. Departures: an edge is where neither texel's surface, continued along its own slope, meets
 // the other's, in place of a filter over the map; walls run along texels' borders, without the paper's templates that

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Table of the family's methods.
 
 #include "hybrids/methods.hpp"

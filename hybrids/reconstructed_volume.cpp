@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Hard shadows by volumes that are reconstructed from a shadow map: M. McCool 2000 (map_volumes.cpp). The volumes have
 // no caps, since nothing is seen through the surfaces that the map shows: what is counted are the walls between the eye
 // and a view sample, from the eye's own place on.

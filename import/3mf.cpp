@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads 3MF files: meshes, components and build items.
 
 #include "import/3mf.hpp"

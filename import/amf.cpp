@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads AMF files: meshes and constellations.
 
 #include "import/amf.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Checks the chunk sizes and counts of 3D Studio files before Assimp reads them.
 
 #include "import/audit_3ds.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Counts the triangles of COLLADA files and checks their polygons before Assimp reads them.
 
 #include "import/audit_collada.hpp"

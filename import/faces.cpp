@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Triangulates a file's faces and counts changed and skipped ones.
 
 #include "import/faces.hpp"

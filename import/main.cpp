@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // penumbra-import: reads one foreign file in a process of its own. Not for users: penumbra starts it, passes the file
 // and the limits, and reads the answer from its standard output (see mesh/import_helper.hpp).
 

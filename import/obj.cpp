@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads Wavefront OBJ files in double precision.
 
 #include "import/obj.hpp"

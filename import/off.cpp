@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads Geomview OFF files in double precision.
 
 #include "import/off.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads PLY files, ASCII or binary, in double precision.
 
 #include "import/ply.hpp"

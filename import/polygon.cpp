@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Triangulates polygons by fans or ear clipping.
 
 #include "import/polygon.hpp"

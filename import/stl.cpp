@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads STL files, ASCII or binary.
 
 #include "import/stl.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Computes the cross-section planes of X3D extrusions (ISO/IEC 19775-1, 13.3.5).
 
 #include "import/x3d_spine.hpp"

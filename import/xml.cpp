@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "import/xml.hpp"
 
 #include "import/text.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads zip archives: the list of entries at the end, and entries packed by deflate or stored (APPNOTE.TXT of PKWARE,
 // 4.3 to 4.5). Sizes and offsets of 64 bits are in an entry's extra field wherever the plain field has all bits set,
 // which several writers do for small entries, too.

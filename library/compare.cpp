@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/compare/comparison.hpp"
 #include "app/options.hpp"
 #include "compare/stats.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/inspect/examine.hpp"
 #include "app/inspect/report.hpp"
 #include "base/error.hpp"

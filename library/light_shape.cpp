@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Converts shapes of lights between the interface and the rooms.
 
 #include "library/light_shape.hpp"

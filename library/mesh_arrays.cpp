@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Checks a program's mesh arrays and converts them to a soup.
 
 #include "library/mesh_arrays.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Adds methods of the calling program to those of this program: each is a row of the table of methods whose method
 // calls the calling program's.
 

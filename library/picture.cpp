@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "library/picture_state.hpp"
 
 #include "base/error.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Renders pictures of one scene one after another, with the frame renderer of the command line.
 
 #include "app/light_methods.hpp"

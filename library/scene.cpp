@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Scene of the interface: reading, writing, lights and cameras, with the checks of a file for each change.
 
 #include "base/error.hpp"

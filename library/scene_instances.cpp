@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Instances of the interface's scene: meshes that it has several times, stored once. A call that throws changes
 // nothing.
 

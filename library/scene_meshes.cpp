@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Meshes of the interface's scene: adding, replacing, moving. A call that throws changes nothing.
 
 #include "library/as_error.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What changes of the interface's scene share: its objects, their vertices, and its origin.
 
 #include "library/scene_objects.hpp"

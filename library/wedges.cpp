@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/wedges/built_wedges.hpp"
 #include "library/as_error.hpp"
 #include "library/scene_state.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Table of the family's methods, with their support of lights and surfaces with holes.
 
 #include "maps/methods.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Builds a balanced tree of boxes by splitting at medians, in parallel.
 
 #include "mesh/box_tree.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Finds connected components of a mesh and consistent windings by breadth-first search across edges; linear in the
 // mesh. Not from a paper.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Builds the edge graph of a triangle soup from its sorted sides: vertices merged by position, kinds of triangles by
 // exact predicates. Not from a paper.
 

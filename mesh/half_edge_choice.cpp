@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Selects the triangles that a half-edge structure can hold, and orients them consistently. Not from a paper.
 
 #include "mesh/half_edge_choice.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Builds a half-edge structure (OpenMesh) from the selected triangles, and walks its silhouette loops.
 
 #include "mesh/half_edge_view.hpp"

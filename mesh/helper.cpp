@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Starts helper programs and supervises them: pipes, deadlines, limits on output.
 
 #include "mesh/helper.hpp"

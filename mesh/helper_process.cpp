@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Sandbox of helper processes: end with the parent, no new files, no children, limits on memory and time.
 
 #include "mesh/helper_process.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Runs the import helper for a mesh file and checks its answer.
 
 #include "mesh/import.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Opens input files so that symbolic links cannot lead out of a folder, and so that devices and pipes are refused.
 
 #include "mesh/input_file.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Keeps the list of files opened by the import helper.
 
 #include "mesh/opened_files.hpp"

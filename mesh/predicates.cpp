@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Exact orientation predicates: a floating-point filter with a derived error bound, then CGAL's exact numbers.
 
 #include "mesh/predicates.hpp"

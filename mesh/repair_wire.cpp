@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "mesh/repair_wire.hpp"
 
 namespace penumbra::mesh {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Computes signed multiplicities of edges seen from a point (Bergeron 1986; Laine et al. 2005; Lehtinen et al. 2006),
 // extended to any triangle soup (silhouettes.hpp has the definition), with exact signs.
 

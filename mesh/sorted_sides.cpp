@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Merges equal positions by hashing, and groups the sides of triangles by edge: a counting sort by the lower vertex,
 // then a sort of each group, in parallel. Not from a paper.
 #include "mesh/sorted_sides.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Writes STL and OFF files.
 
 #include "mesh/soup_files.hpp"

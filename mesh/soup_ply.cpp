@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Writes PLY files.
 
 #include "mesh/soup_ply.hpp"

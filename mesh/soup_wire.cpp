@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The program's end of the wire: decodes the import helper's triangles on all cores.
 
 #include "base/pages.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Removes unused vertices and renumbers the others.
 
 #include "mesh/unused_vertices.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Checks requests: token, host and origin.
 
 #include "network/requests.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Sends pictures to tev by its network protocol.
 
 #include "network/tev_client.hpp"

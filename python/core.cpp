@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Module penumbra._core: the library's classes for Python. Arrays of pictures are views that keep the picture alive;
 // every long call releases the interpreter's lock and handles Ctrl-C. The interface for Python users is in __init__.py.
 

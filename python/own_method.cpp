@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Shadow methods implemented by Python functions: called with arrays, returning an array. The interpreter's lock is
 // taken for each call, since the library runs without the lock.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 // Internal to this room: Embree's calls for one, four, eight or sixteen rays under one name.

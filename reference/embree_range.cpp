@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Scaling of scenes and rays to the range in which Embree's float32 arithmetic neither overflows nor underflows.
 
 #include "reference/embree_range.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Builds an Embree scene of chosen triangles, scaled into Embree's range, and converts Embree's errors to exceptions.
 
 #include "reference/embree_scene.hpp"

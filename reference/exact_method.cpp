@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The method `exact`: V and the form factor of each view sample by areas/exact_area.hpp, in parallel over pixels.
 
 #include "reference/methods.hpp"

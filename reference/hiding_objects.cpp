@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Rays that record every object that they meet: Embree's filter function inspects and rejects each hit.
 
 #include "reference/hiding_objects.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Plain shadow rays through Embree in packets, as a renderer traces them; a speed reference for benchmarks.
 
 #include "reference/plain_rays.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The method `raytrace`: one shadow ray for each light sample; the first oracle.
 //
 // Conditions (1) and (2) of the truth of a pair (horizon, emitting side) are decided exactly; (3) is decided by Embree.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Sorts light samples by Morton code, so that rays traced together are similar.
 
 #include "reference/tracing_order.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // For shaders of both rasterisers: Vulkan's, as SPIR-V, and OpenGL's, as text (PENUMBRA_OPENGL). Structs of push
 // constants must have the same layout in scalar and in std140: no vec3 except at multiples of 16 bytes, and padding to
 // whole 16 bytes before a member that follows a struct.

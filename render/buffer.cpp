@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "render/buffer.hpp"
 
 #include "base/assert.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Device requirements of shaders: SPIR-V's capabilities, and the Vulkan features that they need.
 
 #include "render/features.hpp"

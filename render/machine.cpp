@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The Vulkan device of a run, made when work needs one.
 
 #include "render/machine.hpp"

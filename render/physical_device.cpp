@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "render/physical_device.hpp"
 
 #include "render/optional_features.hpp"

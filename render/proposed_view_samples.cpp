@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Computes view samples from the pixels proposed by OpenGL's rasteriser, with coverage decided in double on the host.
 
 #include "render/proposed_view_samples.hpp"

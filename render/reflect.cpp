@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads the bindings and push constants of a shader from its SPIR-V by SPIRV-Cross.
 
 #include "base/assert.hpp"

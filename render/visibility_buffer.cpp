@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Computes view samples on the device: the rasteriser proposes pixels, and shaders decide coverage in double.
 
 #include "render/visibility_buffer.hpp"

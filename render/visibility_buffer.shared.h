@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Push constants shared by C++ and GLSL: the camera of the visibility buffer, in double, relative to the scene's
 // origin.
 #ifdef __cplusplus

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Orients closed parts outward and fills holes with CGAL's Polygon Mesh Processing.
 
 #include "repair/cgal.hpp"

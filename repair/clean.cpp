@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Removes zero-area and duplicate triangles; a triangle with vertices of collinear triangles on its edges is split into
 // fans. Not from a paper.
 

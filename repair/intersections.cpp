@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Resolves self-intersections with CGAL's Polygon Mesh Processing, part by part.
 
 #include "mesh/predicates.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Pairs the triangles around non-manifold edges by their order around the edge, with exact predicates. Not from a
 // paper.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Runs the steps of a repair in order and counts their changes.
 
 #include "repair/run_repair.hpp"

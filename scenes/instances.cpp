@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Instances of meshes that a scene has several times: conversion to triangles.
 
 #include "scenes/instances.hpp"

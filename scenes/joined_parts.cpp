@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Joins parts of scenes into one scene.
 
 #include "scenes/joined_parts.hpp"

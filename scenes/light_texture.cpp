@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads, checks and averages pictures on lights.
 
 #include "scenes/light_texture.hpp"

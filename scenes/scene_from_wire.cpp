@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The program's end of the wire: decodes and checks the import helper's scenes and textures.
 
 #include "scenes/scene_fields.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Adds a floor, a light and a camera around a mesh or scene.
 
 #include "scenes/studio.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Places a camera so that a bounding sphere fits its picture.
 
 #include "scenes/whole_view.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 // Maps of a stage's light from its centre, rendered as by methods, and read back.

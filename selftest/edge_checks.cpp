@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Compares silhouettes, facings, volumes and wedges of the device with the host's.
 
 #include "selftest/edge_checks.hpp"

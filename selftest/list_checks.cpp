@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Compares lists made from maps of light samples with each sample's map.
 
 #include "selftest/list_checks.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Compares products of maps with their twins.
 
 #include "selftest/map_checks.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Compares masks and counters with exact predicates.
 
 #include "selftest/mask_checks.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Compares prefiltered tables and levels with functions in double.
 
 #include "selftest/prefilter_checks.hpp"

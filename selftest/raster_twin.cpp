@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Computes the surfaces that any rasteriser must draw, in homogeneous coordinates: with corners A, B, C = (x, y, w)
 // from the vertex shader, a texel's centre c = (x, y, 1) is covered where c · (B × C), c · (C × A) and c · (A × B) all
 // have the sign of A · (B × C), and 1 / w there is c · (B × C + C × A + A × B) / A · (B × C) (Olano and Greer 1997).

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Compares maps and view samples of rasterisers with RasterTwin and with each other.
 
 #include "selftest/rasteriser_checks.hpp"

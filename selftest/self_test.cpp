@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Runs all checks on small scenes.
 
 #include "selftest/self_test.hpp"

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Methods of several rooms, one against the other and all against the exact decision.
 set(soup_sources ${CMAKE_CURRENT_SOURCE_DIR}/fuzz/soup_case.cpp ${CMAKE_CURRENT_SOURCE_DIR}/fuzz/soup_judge.cpp
                  ${CMAKE_CURRENT_SOURCE_DIR}/fuzz/soup_methods.cpp)

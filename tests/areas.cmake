@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Areas of unions on the light, and `exact`, which gives them. No device.
 penumbra_test(areas
   SOURCES analytic/exact_area_closed_forms.cpp property/exact_area_soups.cpp unit/exact_method.cpp

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # penumbra-bench as its user meets it: lines that parse, names that stay. No times.
 if(NOT PENUMBRA_BENCH)
   return()

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # The Blender add-on: without Blender (quick), and beside Cycles in Blender (full). numpy is Debian's, hence its Python.
 find_program(PENUMBRA_SYSTEM_PYTHON python3 PATHS /usr/bin NO_DEFAULT_PATH REQUIRED)
 set(addon ${PROJECT_BINARY_DIR}/penumbra-blender.zip)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # The report as people meet it: headless Chromium, driven by Python's standard library through the browser's own pipe.
 find_package(Python3 REQUIRED COMPONENTS Interpreter)
 add_test(NAME browser.report

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Error metrics, pictures and reports; form factors, and the beauty that is made of them. No device.
 find_package(hwy REQUIRED)
 penumbra_test(compare

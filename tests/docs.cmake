@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # The figures of docs/ are what their script draws; each picture and link of a page leads somewhere; the commands of the README, of the
 # tutorials and of docs/scenes.md print what the pages say; options.md is what the program says; tables of timings are what bench/results/
 # holds, and every method has its rows in them and in the ranking; the chart of a benchmark has its marks where its lines say.

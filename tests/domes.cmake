@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Domes: every method that does them against closed forms, against one another and against the exact decision; and as a user
 # meets them. No device.
 penumbra_test(domes

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # The program where the system says no: limits, streams, disks, kills. The long searches are those called Long….
 penumbra_test(faults FULL *Long*
   SOURCES

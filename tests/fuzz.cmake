@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Fuzz targets. Every build replays the corpus (label quick). The preset `fuzz` links the same code with libFuzzer, and
 # its tests (label full) look for ten minutes each; elsewhere tests of that name configure and build that preset first.
 set(PENUMBRA_FUZZ_SECONDS 600 CACHE STRING "How long each fuzz target runs")

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # What the child process does: polygons of any shape, glTF, and files that are opened once.
 penumbra_test(import FULL ImportCorpus.*
   SOURCES

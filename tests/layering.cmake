@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # cmake -DROOT=… -P layering.cmake: fails on an include that runs against the arrows of ARCHITECTURE.md, on a quoted
 # include that does not start at the root, and on a library that leaves the room it is kept in.
 # cmake -DSELF_TEST=folder -P layering.cmake: plants one violation of each kind and expects to catch it.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # The library as a program uses it that only knows its headers, and the Python module.
 penumbra_test(library
   SOURCES library/instances.cpp library/own_method.cpp library/renderer.cpp cli/program.cpp

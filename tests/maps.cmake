@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # The image-based family against closed forms and the twins of its products.
 penumbra_test(maps FULL MapsTable.*
   SOURCES

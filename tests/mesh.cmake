@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Meshes: readers through the child process, exact predicates, the edge graph, silhouettes, half-edges, diagnosis.
 find_package(CGAL REQUIRED)
 penumbra_test(mesh FULL CgalMeshes.All

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Methods that take pairs away triangle by triangle, against the exact decision.
 penumbra_test(pairs
   SOURCES

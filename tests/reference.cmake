@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # The ray caster against closed forms and exact predicates. No device.
 penumbra_test(reference
   SOURCES

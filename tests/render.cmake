@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Devices, buffers, and the visibility buffer against its definition.
 penumbra_test(render
   SOURCES unit/render/buffer.cpp unit/render/device.cpp unit/render/scan_conversion.cpp unit/render/visibility_buffer.cpp

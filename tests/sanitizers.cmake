@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Every method under AddressSanitizer and UndefinedBehaviorSanitizer, in a build of its own.
 add_test(NAME sanitizers.smoke
          COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/sanitizers/smoke.sh ${PROJECT_SOURCE_DIR} ${PROJECT_BINARY_DIR}/sanitizers)

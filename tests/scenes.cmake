@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Scenes (all but glTF), generated shapes, and files that appear whole or not at all.
 penumbra_test(scenes
   SOURCES

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # The program on a second Vulkan driver for processors, where one is installed.
 penumbra_test(second_driver
   SOURCES cli/program.cpp cli/second_driver.cpp

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # The live view: what its server lets in, its state and messages, packets for tev; then the program from outside, by a bare
 # client (Python's standard library), and the page in headless Chromium.
 penumbra_test(view

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # The question itself: scene floats, lights and their samples, the exact truth of a pair, the tree, bits files. No device.
 find_package(CGAL REQUIRED)
 penumbra_test(visibility

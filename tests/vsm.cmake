@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # View-sample mapping against the exact decision and closed forms.
 penumbra_test(vsm
   SOURCES

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Segment–triangle test in double with a derived error bound; undecided cases are left to exact predicates.
 
 #include "visibility/certain_meeting.hpp"

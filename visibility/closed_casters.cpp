@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Closed parts of a mesh, and the layer of triangles of each that counts toward a light.
 
 #include "visibility/closed_casters.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Faces of a dome's cube as lights, and integrals over its light samples.
 
 #include "visibility/dome_faces.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Directions of a sky picture's texels, and stratified light samples in proportion to luminance times solid angle.
 
 #include "visibility/dome_picture.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Points on a square that are in different cells of a grid, in different columns and in different rows of a fine one:
 // Kensler, "Correlated multi-jittered sampling" (Pixar Technical Memo 13-01, 2013), with other permutations. From the
 // square to the disk: Shirley, Chiu, "A low distortion map between disk and square" (1997).

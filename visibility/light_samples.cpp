@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Properties of a light in scene floats: its kind, its frame, its centre, its points as p sees them.
 
 #include "visibility/light_samples.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Texture of a rectangle light: luminance, texel look-up, and weights of light samples that add up to exactly 1.
 
 #include "visibility/light_texture.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Texels of a lightmap as view samples: the triangle that covers a texel's centre in the map gives the sample's place
 // on the surface.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The truth of a pair (docs/definitions.md), decided exactly.
 
 #include "visibility/pair_truth.hpp"

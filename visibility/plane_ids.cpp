@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Finds exactly coplanar triangles, for a million triangles in a fraction of a second.
 //
 // A plane is the ratio n.x : n.y : n.z : n·a with n = (b − a) × (c − a). Finite floats are integers times powers of

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The five patterns of light samples on the unit square. All are deterministic: integers, hashes and exact fractions.
 
 #include "visibility/sample_patterns.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Scene floats: world space in double minus the origin, rounded once to float32; triangles with sorted vertices.
 
 #include "visibility/scene_floats.hpp"

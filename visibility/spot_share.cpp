@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Brightness of the cone of a spot lamp, by quadrature over the lamp's disk for smooth cones.
 
 #include "visibility/light_samples.hpp"

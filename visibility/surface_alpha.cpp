@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Alpha of surfaces with holes and translucent ones, from factor, texel and vertex values.
 
 #include "visibility/surface_alpha.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // View samples: the visible point of each pixel, in double arithmetic on the scene floats; the definition that a
 // rasteriser has to match.
 

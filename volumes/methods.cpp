@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "volumes/methods.hpp"
 
 #include "volumes/counters/methods.hpp"

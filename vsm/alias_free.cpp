@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // T. Aila and S. Laine, Alias-free shadow maps, 2004; G. Johnson, J. Lee, C. Burns and W. Mark, The irregular Z-buffer,
 // 2005: a shadow map whose samples are at the places of view samples. View samples are stored in lists of light pixels;
 // each triangle is rasterised conservatively from the light's centre and tested against the lists of the pixels that it

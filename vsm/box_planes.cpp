@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Tests boxes of view samples against the thirteen half-spaces between a triangle and a box of light samples; see
 // box_planes.hpp.
 

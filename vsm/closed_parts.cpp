@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Finds the closed parts of a scene, and the triangles that view samples outside of a part need not test.
 
 #include "vsm/closed_parts.hpp"

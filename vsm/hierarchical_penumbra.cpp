@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // S. Laine and T. Aila, Hierarchical penumbra casting, Computer Graphics Forum 24 (3), 2005: traverses the Cartesian
 // product of light samples and view samples. For one triangle at a time, pairs of boxes that the triangle is certainly
 // between, or certainly not between, are decided as a whole; the others are divided.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Host of find_leaves.comp: runs the pass, and grows its lists of chunks of leaves until they fit.
 
 #include "vsm/leaf_lists.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Left-sample maps (Eisemann and Décoret 2007, section 4.3) with bounds: for each texel the light samples left of all,
 // of any and of the middle one of its lines.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Conservative test whether segments between boxes of view samples and of light samples may meet a triangle's box.
 
 #include "vsm/light_shaft.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Builds a binary hierarchy over light samples by halving at whole words of masks.
 
 #include "vsm/light_tree.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Footprints of triangles on a plane or height field of view samples (Eisemann and Décoret 2007, section 4.1), with
 // error bounds.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Builds a binary hierarchy of boxes over view samples.
 
 #include "vsm/receiver_tree.hpp"

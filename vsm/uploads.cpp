@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Data for the view-sample shaders: tags of closed parts, marks of dispensable subtrees, and the table of light
 // samples.
 

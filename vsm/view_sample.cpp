@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `view-sample`: selects one of its two engines for each light; or the published variant.
 
 #include "vsm/methods.hpp"

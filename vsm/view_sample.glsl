@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Shared by the two passes of view-sample mapping: one workgroup is one subgroup and handles one block of neighbouring
 // pixels; a lane in turn stands for a child box, a triangle, a view sample. docs/view-sample.md derives every bound, by
 // the names used here.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Push constants shared by C++ and GLSL (scalar layout): input of the view-sample passes. Lengths are in scene floats
 // times a power of two, so that the float range fits scenes of any size.
 #ifdef __cplusplus

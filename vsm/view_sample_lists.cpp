@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // E. Sintorn, E. Eisemann and U. Assarsson, Sample based visibility for soft shadows using alias-free shadow maps,
 // Computer Graphics Forum 27 (4), 2008: view samples in lists of light pixels on the far plane of the light's frustum;
 // for each triangle the hull of its footprints from the light's corners, rasterised conservatively; in each light pixel

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // E. Eisemann and X. Décoret, Visibility sampling on GPU and applications, Computer Graphics Forum 26 (3), 2007: a
 // receiver patch is the picture, its texels are view samples. For each triangle, a box on the receiver that contains
 // every point from which it may hide any of the light; in each texel there the triangle is projected back onto the

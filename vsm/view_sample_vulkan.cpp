@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // View-sample mapping on the Vulkan device: kernels, lists and questions for device::MaskMethod.
 
 #include "vsm/view_sample_vulkan.hpp"

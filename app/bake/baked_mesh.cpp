@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Selects the baked mesh of a scene and its points: texels of a lightmap, or vertices with angle-weighted points.
 
 #include "app/bake/baked_mesh.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Command `bake`: options and the run.
 
 #include "app/bake/baked_mesh.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Averages values at vertices and writes them as PLY.
 
 #include "app/bake/vertex_file.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/command_words.hpp"
 #include "app/commands.hpp"
 #include "app/man_pages.hpp"

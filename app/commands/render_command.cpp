@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Command `render`: frames and cameras one after another, with the next scene read in parallel.
 
 #include "app/process/terminal_progress.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/commands/self_test_report.hpp"
 
 #include "base/error.hpp"

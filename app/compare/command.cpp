@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Command `compare`: options, tables and exit codes.
 
 #include "app/process/terminal_progress.hpp"

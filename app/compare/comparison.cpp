@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Runs a comparison: reference, rays, methods, and all files of its folder.
 
 #include "app/compare/comparison.hpp"

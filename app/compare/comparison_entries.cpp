@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Selects the entries of a comparison and the number of their runs.
 
 #include "app/compare/comparison_entries.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Names and removes the files of a comparison.
 
 #include "app/compare/comparison_files.hpp"

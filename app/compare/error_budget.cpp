@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Runs the repairs of a method's error and concludes its budget (docs/error-budget.md).
 
 #include "app/compare/error_budget.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Classifies judged pixels by visibility and hiding object.
 
 #include "app/compare/error_classes.hpp"

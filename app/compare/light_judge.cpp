@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Judges methods light by light: errors, pairs, classes.
 
 #include "app/compare/light_judge.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Counts differing pairs and samples them evenly for exact decisions.
 
 #include "app/compare/mask_comparison.hpp"

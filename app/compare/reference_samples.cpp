@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/compare/reference_samples.hpp"
 
 #include "app/whole_lights.hpp"

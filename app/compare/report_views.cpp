@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Prepares packed numbers for the report.
 
 #include "app/compare/report_views.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/compare/separated_beauty.hpp"
 
 #include "app/output.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Compares the frames of an animation and sums their errors.
 
 #include "app/compare/sequence.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Writes the batch script of a Slurm array and its sbatch commands.
 
 #include "app/farm/batch_script.hpp"

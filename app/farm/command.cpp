@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Command `submit`: renders the missing frames of a sequence here or by Slurm.
 
 #include "app/commands.hpp"

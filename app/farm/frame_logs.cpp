@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Splits a worker's output into logs of frames.
 
 #include "app/farm/frame_logs.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Runs Slurm's commands and parses their output.
 
 #include "app/farm/slurm.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Divides missing frames into tasks.
 
 #include "app/farm/tasks.hpp"

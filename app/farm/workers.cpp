@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Runs worker processes and repeats failed frames.
 
 #include "app/farm/workers.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Command `inspect`: options, reports, pictures, repair.
 
 #include "app/commands.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Counts of defects by keys of the JSON, tables and CSV.
 
 #include "app/inspect/counts.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Draws two views of a mesh with its defects: view samples of a camera, shaded by a light at the eye, with lines over
 // them.
 

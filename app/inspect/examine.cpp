@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads meshes and scenes and diagnoses their objects.
 
 #include "app/inspect/examine.hpp"

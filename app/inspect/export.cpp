@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Colours defects and writes them as PLY.
 
 #include "app/inspect/export.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Lists lights, cameras, materials and animations of a scene.
 
 #include "app/inspect/scene_facts.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Formats reports of `inspect` as tables.
 
 #include "app/inspect/report.hpp"

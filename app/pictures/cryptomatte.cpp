@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Writes Cryptomatte layers (Friedman, Jones: "Cryptomatte specification" 1.2, 2018; MurmurHash3, Appleby 2011).
 
 #include "app/pictures/cryptomatte.hpp"

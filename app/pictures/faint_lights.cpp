@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/pictures/faint_lights.hpp"
 
 #include "app/whole_lights.hpp"

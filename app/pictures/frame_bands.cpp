@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Part of FrameRenderer: pictures of scenes with instances, rendered in bands of rows.
 
 #include "app/pictures/frame_render.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Checks whether files of a picture are complete.
 
 #include "app/pictures/frame_files.hpp"

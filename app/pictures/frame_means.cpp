@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Part of FrameRenderer: pictures that are the mean of several view samples a pixel, of moments, and of a lens's
 // points.
 

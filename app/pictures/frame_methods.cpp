@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Part of FrameRenderer: the methods of each light, and their results at the current view samples.
 
 #include "app/methods.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Renders a picture of a scene and writes its files.
 
 #include "app/pictures/frame_render.hpp"

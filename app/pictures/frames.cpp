@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Parses frame ranges and forms names of frames' files.
 
 #include "app/pictures/frames.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Interpolates areas at several view samples a pixel from one sample a pixel, where second differences bound the error
 // (docs/pictures.md). Not from a paper.
 

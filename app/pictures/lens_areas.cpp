@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/pictures/lens_areas.hpp"
 
 #include <glm/common.hpp>

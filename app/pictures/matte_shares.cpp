@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Sums the coverage of mattes over view samples.
 
 #include "app/pictures/matte_shares.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Writes OUT.exr: channels, header attributes, matrices.
 
 #include "app/pictures/picture_file.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Names and selects layers and channels of pictures.
 
 #include "app/pictures/picture_format.hpp"

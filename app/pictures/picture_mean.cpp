@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Averages pictures, with weights of a pixel filter.
 
 #include "app/pictures/picture_mean.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Computes weights of pixel filters. Blackman-Harris: Harris, "On the use of windows for harmonic analysis with the
 // discrete Fourier transform", Proc. IEEE 66 (1978), the four terms of at most −92 dB; over both axes, as in Blender's
 // Cycles.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Adds and parses the options of `render` and `submit`.
 
 #include "app/pictures/request.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Adds the radiance of visible domes at background pixels.
 
 #include "app/pictures/sky.hpp"

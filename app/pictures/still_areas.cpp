@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/pictures/still_areas.hpp"
 
 #include "base/assert.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Maps view samples to objects and materials.
 
 #include "app/pictures/surfaces.hpp"

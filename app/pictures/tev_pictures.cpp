@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/pictures/tev_pictures.hpp"
 
 #include "app/pictures/picture_format.hpp"

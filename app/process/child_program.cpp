@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Starts programs, reads their output, ends them.
 
 #include "app/process/child_program.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Converts exceptions to messages and exit codes.
 
 #include "app/process/failure.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Ends the process on signals, from a thread of its own.
 
 #include "app/process/interrupt.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Checks output files before long work.
 
 #include "app/process/output_files.hpp"

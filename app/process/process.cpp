@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Prepares the process and explains exceptions.
 
 #include "app/process/process.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Shows progress on stderr.
 
 #include "app/process/terminal_progress.hpp"

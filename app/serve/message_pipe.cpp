@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads and writes messages of pipes without blocking on a slow reader.
 
 #include "app/serve/message_pipe.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/serve/picture_job.hpp"
 
 #include "app/machine.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Keeps a scene as replaceable things and joins them.
 
 #include "app/serve/scene_parts.hpp"

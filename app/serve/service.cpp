@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/serve/service.hpp"
 
 #include "app/view/light_json.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Command `sweep`: options and tables.
 
 #include "app/commands.hpp"

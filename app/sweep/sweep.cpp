@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Runs comparisons over products of values and finds the Pareto front of error and time.
 
 #include "app/sweep/sweep.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Writes sweeps as JSON, CSV and SVG.
 
 #include "app/sweep/sweep_files.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Command `view`: serves a scene to a browser.
 
 #include "app/commands.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Converts lights and cameras to and from the page's JSON.
 
 #include "app/view/light_json.hpp"

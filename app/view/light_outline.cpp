@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/view/light_outline.hpp"
 
 #include <glm/common.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Adapts the quality of live pictures to the time they take.
 
 #include "app/view/live_pace.hpp"

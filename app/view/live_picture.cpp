@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Converts live pictures to messages and pixels to JSON.
 
 #include "app/view/live_picture.hpp"

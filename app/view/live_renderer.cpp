@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Interface of the live renderer; its thread is in live_thread.cpp.
 
 #include "app/view/live_renderer.hpp"

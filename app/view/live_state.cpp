@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Applies messages of the page to the state.
 
 #include "app/view/live_state.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Thread of LiveRenderer.
 #include "app/machine.hpp"
 #include "app/methods.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Connects the page's server with the renderer.
 
 #include "app/view/live_view.hpp"

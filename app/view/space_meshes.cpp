@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Meshes and their defects as messages of the 3D view.
 
 #include "app/view/space_meshes.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/view/space_message.hpp"
 
 #include "app/view/message_text.hpp"

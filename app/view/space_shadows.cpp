@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Silhouettes, shadow volumes and penumbra wedges of a light as a message of the 3D view.
 
 #include "app/view/space_shadows.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/view/space_view.hpp"
 
 #include "app/parse.hpp"

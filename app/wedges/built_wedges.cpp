@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Builds and validates the wedges of a light for a request.
 
 #include "app/wedges/built_wedges.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Command `wedges`: options and output.
 
 #include "app/commands.hpp"

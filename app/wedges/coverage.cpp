@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Checks sums over silhouettes against triangles and exact unions at pixels of a scene.
 
 #include "app/wedges/coverage.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Explains one pixel: its wedges, edges and sums.
 
 #include "app/wedges/explain.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Draws a light as seen from a view sample, with edges, as SVG (docs/coverage.md).
 
 #include "app/wedges/light_picture.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Writes the results of `wedges` as JSON and as text.
 
 #include "app/wedges/report.hpp"

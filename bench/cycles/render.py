@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Renders one picture of an open file, for against_cycles.py. Runs inside Blender:
 
     blender -b FILE.blend --python-exit-code 1 -P render.py -- OUT.exr ENGINE SAMPLES ANTIALIASED SEED PENUMBRA [X0 X1 Y0 Y1]

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Four scenes for error against time (against_cycles.py). Runs inside Blender:
 
     blender -b --factory-startup --python-exit-code 1 -P scenes.py -- ADDON.zip FOLDER WIDTH HEIGHT

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Penumbra in Blender: exact soft shadows as a render engine. docs/blender.md says what is rendered and what is not."""
 
 bl_info = {

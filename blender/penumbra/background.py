@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Blender without a window (`blender -b`): a frame that failed makes the process fail."""
 
 import atexit

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The Bake button: writes the light or visibility at the active object into one of Blender's images, by the active UV map."""
 
 import math

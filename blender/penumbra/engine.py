@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Penumbra as one of Blender's render engines."""
 
 import os

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Blender's scene, as its dependency graph evaluates it for a render, in the exchange file (glb.py)."""
 
 import os

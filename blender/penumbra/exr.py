@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Reads the pictures that the program writes: OpenEXR, scan lines, ZIP (16 lines a block), float and unsigned channels.
 Writes such, without compression, which is how many pixels get into Blender at once.
 

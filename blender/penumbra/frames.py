@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Pixels that a render requests, and settings of a scene that are not supported. Independent of bpy."""
 
 from dataclasses import dataclass

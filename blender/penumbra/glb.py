@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Writes the scene that the program reads: binary glTF 2.0, with extras for what glTF has no word for (docs/blender.md).
 
 Knows nothing of Blender. Matrices are sequences of four rows, as Blender's are; lengths and axes are Blender's, and one

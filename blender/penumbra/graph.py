@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Node trees: what feeds a socket, through reroutes, muted nodes and groups, and what numbers and colours come to that depend on
 nothing, or on one image. Knows nodes by their names and values alone, not bpy."""
 

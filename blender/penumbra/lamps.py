@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Blender's lamps and cameras in the exchange file's units. Knows their names and values alone, not bpy.
 
 Brightness is that of Cycles, measured (tests/blender/): a point or spot lamp of P watts has P / 4π candela, an area lamp

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Converts a material's nodes to a surface that reflects diffusely, emits, and transmits light.
 
 Knows nodes by their names and values alone, not bpy.

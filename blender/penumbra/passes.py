@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Assigns a picture's channels to Blender's passes. Independent of bpy; Blender's Z is up."""
 
 import hashlib

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A `penumbra serve` child and its messages (docs/serve.md). Knows nothing of Blender."""
 
 import collections

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Settings of a scene and of the add-on. panels.py shows them."""
 
 import bpy

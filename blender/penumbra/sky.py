@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Blender's world as a dome light, and as the background. Knows nodes and images by their names and values
 alone, not bpy.
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Positions of surfaces: distance from a lamp, and whether they are between two distances in front of the camera. Independent of bpy."""
 
 import numpy

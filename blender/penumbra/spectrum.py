@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Colour of a black body: Planck's law, seen by the CIE 1931 observer, in linear Rec. 709 of luminance 1."""
 
 from math import exp

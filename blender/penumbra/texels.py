@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Texels of Blender's images: read, interpolated as Cycles does, and written as PNG. Knows images by their names and values
 alone, not bpy."""
 

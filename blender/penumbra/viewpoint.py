@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Camera of a 3D view. Independent of bpy; Blender's Z is up."""
 
 from math import atan, degrees, sqrt

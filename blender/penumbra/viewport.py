@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The *Rendered* shading of 3D views: a `penumbra serve` child for each, which is sent what changes and nothing else."""
 
 import traceback

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the page says in words: the findings at a glance, the question, scene, methods, machine and warnings.
 
 const place = (id) => document.getElementById(id);

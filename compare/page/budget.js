@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Why each method is wrong: its error without one cause alone, and without all (docs/error-budget.md).
 
 const kCauses = ["resolution", "view", "layers", "fusion", "gaps", "bias"];

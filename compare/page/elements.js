@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Elements of the page, and numbers as texts. All texts go through here, and none becomes markup.
 
 const kNotThere = "–";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Pictures of the page itself, painted when they come into sight, and the wipe that the page begins with.
 
 // One canvas of the page: `what` as pictureOf() takes it.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The pictures of the page: figures whose canvases are painted when they come into sight, and that open the viewer.
 
 // Old browsers can neither unpack the numbers nor show the viewer.

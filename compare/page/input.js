@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Pointer, keys and controls of the viewer, and the ways into it from the page.
 
 function setPixel(pixel, hold) {

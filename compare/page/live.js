@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // "Open live": two of the methods side by side in `penumbra view`, started by a command to copy, or already there. A page from a
 // file can neither start a program nor ask one (its own policy forbids that too), and knows no address: the view prints it.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The tables of numbers: failures, errors, exactness pair by pair, seconds, passes and counters.
 
 const { metrics } = report;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Numbers to colours: the same pictures as those of the page, by the same formulas (compare/error_picture.cpp), for
 // any exposure and scale.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // RMSE of V against seconds for the shadow, both by powers of ten; marks without any error lie on a line of their own.
 
 const kNoError = 2 ** -25;  // half of the last digit of V, a float

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Tables: built from numbers, sorted by a click on a column's header, and saved as comma-separated values.
 
 // A cell is a text, or {text, value, small, href, best, picture}: `value` is what the column is sorted by and what is

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The viewer: one picture, two with a wipe between them, or all at once, with one zoom for all. What is shown is in
 // `state` alone; every control and key changes it and calls update(). The address keeps it (#look?…), as a link to it.
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The pictures of a method that `compare` wrote, as rows of RGB bytes. Python's standard library alone."""
 
 import sys

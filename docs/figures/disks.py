@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Figure of docs/exact.md: what of a trapezoid lies in a disk."""
 
 from math import atan2, cos, hypot, pi, sin, sqrt

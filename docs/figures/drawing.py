@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A small SVG writer for the figures of docs/: Python's standard library alone.
 
 A Drawing has pixel coordinates, y down, and a white card behind everything, so that it can be read on a dark page too.

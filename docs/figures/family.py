@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """maps/README.md: the methods of the family by year, and who improves on whom."""
 
 from drawing import BLUE, DARK, GREEN, INK, RED, Drawing

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """docs/pcf.md, vssm.md, convolution.md, occlusion-textures.md, adaptive-light.md, deep-penumbra.md, layered-attenuation.md."""
 
 from math import floor

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The geometry that the figures compute: vectors, projection onto a light, signed multiplicities, areas in the plane."""
 
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """docs/alias-free.md, hierarchical-penumbra.md, view-sample-planar.md, soft-irregular.md, and the variant of view-sample.md: view
 samples in lists of light pixels, pairs of boxes, footprints, wedges and left-sample maps."""
 

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Writes the figures of docs/ into docs/images/. Each is computed here, from a few points and the formula that its page
 explains; and into papers/ the papers' figures, from the measured numbers that are kept there. Python's standard library is all
 that it needs.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """docs/shadow-map.md, pcss.md, accumulate.md: from the side, so a map is a row of texels and a caster a segment."""
 
 from math import floor

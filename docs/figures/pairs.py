@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """docs/definitions.md, docs/raytrace.md: light samples and the truth of a pair. docs/view-sample.md: half-planes, bits.
 docs/depth-complexity.md: counters along ways. docs/exact.md: the sweep."""
 

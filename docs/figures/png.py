@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """8-bit PNG, RGB or grey, as far as the pictures of docs/ need it."""
 
 import struct

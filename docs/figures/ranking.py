@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """docs/ranking.md: every method on every scene under three sizes of its light, ranked, with who wins where and why. Errors alone:
 what a machine does meanwhile changes none of them.
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """ARCHITECTURE.md: which room includes which, from the includes themselves. The rooms are those of tests/layering.cmake,
 which fails on an include that is not allowed; this only draws what is there."""
 

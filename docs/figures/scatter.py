@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """docs/edge-scatter.md: changes and running sums; block, shaft and cone; open light samples."""
 
 from math import atan2, ceil, cos, degrees, hypot, pi, sin

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """docs/penumbra-map.md, smoothies.md, brabec-seidel.md, kirsch-doellner.md, parker.md, arvo.md, layer-rays.md."""
 
 from math import pi, sqrt

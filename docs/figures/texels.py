@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """docs/backproject.md, backproject-peel.md, bitmask.md, soft-shadow-map.md, contour.md, packet.md: texels of one map as occluders.
 From the side a map is a row of texels, a caster a segment, and the light a line at height 0; heights grow downward."""
 

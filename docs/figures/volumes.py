@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """docs/hard-volume.md, soft-volume.md, soft-volume-blend.md, wedge-ramp.md, plateaus.md, signed-crossings.md."""
 
 from math import hypot

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Structs shared by C++ and GLSL (scalar layout): data between the host of mask methods and their kernels.
 #ifdef __cplusplus
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "engines/device/mask_layout.hpp"
 
 #include "base/assert.hpp"

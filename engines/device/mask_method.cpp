@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Host of mask methods on the Vulkan device: runs their kernels over bands of a tile until all lists fit, and settles
 // open light samples by exact predicates.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Exact decisions about light samples that kernels left open, in parallel.
 
 #include "engines/device/open_judge.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Uploads a scene's triangle hierarchy to the device.
 
 #include "engines/device/triangle_upload.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Uploads view samples to the device, row by row as tiles need them.
 
 #include "engines/device/view_upload.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Light samples that a triangle hides from a view sample: Eisemann and Décoret 2007, section 4; planes instead of a
 // projection as in Sintorn, Eisemann and Assarsson 2008, section 4.3 (for lights that are not planar): no division, and
 // no clipping.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Projection of view samples and triangles onto the far plane of a light's frustum (Sintorn, Eisemann and Assarsson
 // 2008, sections 4.1 and 4.2), with error bounds.
 

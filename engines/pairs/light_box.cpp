@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A planar light or a sun in orthonormal axes, with bounds of its light samples and of their rounding.
 
 #include "engines/pairs/light_box.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // View samples in lists of light pixels (irregular z-buffer): Johnson et al. 2005, section 3; Sintorn, Eisemann and
 // Assarsson 2008, section 4.
 

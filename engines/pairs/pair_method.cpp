@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Base of methods that start from all pairs of a view sample and a light sample and remove the hidden ones.
 
 #include "engines/pairs/pair_method.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Classifies view samples against the light, and splits blocks of pixels into clusters.
 
 #include "engines/vectors/clusters.hpp"

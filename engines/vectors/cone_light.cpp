@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Spheres and suns on the vector engine: each view sample's cone, its error bounds, and a rectangle behind the cones of
 // neighbouring view samples. See docs/edge-scatter.md, "Spheres and suns".
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Casters at the plane of the disk that a view sample sees of a sphere. See docs/edge-scatter.md, "Ends".
 
 #include "engines/vectors/disk_plane.hpp"

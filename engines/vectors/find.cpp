@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // First stage of methods on vector units: finds the edges or triangles in the leaves that a traversal visits, eight at
 // a time.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Cuts masks of light samples at the plane of the carrying triangle: rows by whole columns, tiles by vectors of
 // samples.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Tests whether edges or triangles may meet the hull of view samples and the light. Inside engines/vectors/ only, and
 // in the stages of methods.
 

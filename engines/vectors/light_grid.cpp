@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Makes the grid of cells of a planar light, and the bounds of clusters of view samples. Error bounds:
 // docs/edge-scatter.md.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Sorts light samples that are not in rows into tiles of sixteen, with look-up tables by row and column.
 
 #include "engines/vectors/light_tiles.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Host of mask methods on vector units: regions of pixels in parallel, each divided into blocks and clusters whose
 // light samples the method decides.
 

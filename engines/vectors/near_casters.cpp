@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Finds the casters that may meet the disks of a sphere that a few view samples see: vector tests of bounding spheres.
 
 #include "engines/vectors/near_casters.hpp"

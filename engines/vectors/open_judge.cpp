@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Exact decisions, for methods on vector units, about light samples that float arithmetic left open.
 
 #include "engines/vectors/open_judge.hpp"

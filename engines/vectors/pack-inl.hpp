@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Compacts selected lanes of a vector. Inside engines/vectors/ only, and in the stages of methods.
 
 #if defined(PENUMBRA_VECTORS_PACK_INL_HPP) == defined(HWY_TARGET_TOGGLE)

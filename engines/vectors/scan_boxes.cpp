@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Pixels that a triangle may cover, as derived in scan_conversion.cpp, in float, a vector of triangles at a time; most
 // triangles of a large mesh lie between the pixels' centres. Cases that float cannot decide are left to
 // scan_conversion.cpp (kOpen).

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Scan conversion on the processor: pixels that triangles may cover, tile by tile. scan_tile.cpp decides coverage, in
 // double, as visibility::cover does; the code here must never lose a pixel that scan_tile.cpp would give to a triangle.
 // For most triangles scan_boxes.cpp finds the pixels, in float; careful_box() does so in double for those near the

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Coverage and depth of the pixels of one tile, a vector of pixels at a time, with the operations of visibility::cover
 // in the same order.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Converts hierarchies of triangles and edges to nodes and leaves with eight entries for vector code.
 
 #include "engines/vectors/trees.hpp"

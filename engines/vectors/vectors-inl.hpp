@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Vectors of floats of the processor's width: included once for each target by each stage of a method on the processor.
 // Inside engines/vectors/ only, and in the stages of methods.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Traversals of hierarchies with the shaft from a cluster of view samples to the light, eight children at a time, as in
 // find_edges.comp. Inside engines/vectors/ only.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Shadow method in one file outside of Penumbra's tree, compared with Penumbra's methods:
 //
 //   own_method SCENE -o DIR      compares it with pcss and hard shadows; the report is DIR/report.html

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "import/gltf/area_lamp.hpp"
 
 #include "base/error.hpp"

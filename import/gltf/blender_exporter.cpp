@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "import/gltf/blender_exporter.hpp"
 
 #include <tiny_gltf.h>

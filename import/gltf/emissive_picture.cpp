@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Means of pictures over triangles: triangles are clipped to rows and texels (Sutherland and Hodgman), large ones
 // sampled.
 

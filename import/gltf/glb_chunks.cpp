@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The container of glTF 2.0, section 4.4.
 
 #include "import/gltf/glb_chunks.hpp"

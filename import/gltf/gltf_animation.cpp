@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Animations of glTF 2.0: section 3.11 and appendix C (interpolation).
 
 #include "import/gltf/gltf_animation.hpp"

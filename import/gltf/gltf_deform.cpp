@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Morph targets and skins of glTF 2.0: sections 3.7.2.2 and 3.7.3.
 
 #include "import/gltf/gltf_deform.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // EXT_mesh_gpu_instancing: a node's mesh once for each element of its TRANSLATION, ROTATION and SCALE accessors,
 // instead of once at the node.
 

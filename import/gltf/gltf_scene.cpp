@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Builds a scene from a parsed glTF model: nodes, meshes, materials, lamps and emissive meshes.
 
 #include "import/gltf/gltf_scene.hpp"

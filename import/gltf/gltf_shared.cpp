@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "import/gltf/gltf_shared.hpp"
 
 #include "import/gltf/gltf_instances.hpp"

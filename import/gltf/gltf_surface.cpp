@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Materials of glTF 2.0 (section 3.9) with KHR_materials_emissive_strength and KHR_texture_transform, reduced to
 // diffuse surfaces.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // KHR_lights_punctual (Khronos, ratified extension of glTF 2.0).
 
 #include "import/gltf/punctual_lights.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 /// Marks symbols for programs that link libpenumbra; all others in the library are hidden.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 /// Penumbra computes the visible fraction of an area light at each visible point. Contents of the library:

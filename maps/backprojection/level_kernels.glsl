@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Kernels on the levels (levels.glsl) of a receiver processed by a workgroup (group_kernel.glsl): the kernel on the
 // coarser of two levels comes after the one on the finer. The shader defines
 //   Kernel kernel_at_level(MapFace face)    the receiver's kernel on the current level

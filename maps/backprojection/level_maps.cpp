@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Records the coarse levels of a light's maps (level_maps.comp), all layers and faces.
 
 #include "maps/backprojection/level_maps.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Shared by C++ and GLSL: push constants of level_maps.comp, and the width of a level.
 #ifndef PENUMBRA_MAPS_LEVEL_MAPS  // included more than once by shaders, hence an include guard in place of #pragma once
 #define PENUMBRA_MAPS_LEVEL_MAPS

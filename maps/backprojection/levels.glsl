@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Coarse levels of a map in place of the map (Guennebaud, Barthe and Paulin 2007; Schwarz and Stamminger 2008): a texel
 // of level l has the nearest depth of 2^l x 2^l texels. Either one level for all receivers, or the finest whose kernel
 // has no more texels than a budget. A level between two whole levels is a blend of both: the coarser is weighted by the

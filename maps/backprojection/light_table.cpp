@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Computes tables of prefix sums (Crow 1984) of the area of a light, exact at the nodes.
 
 #include "maps/backprojection/light_table.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Fraction of the light covered by a rectangle in its plane, and fraction above the receiver's horizon. Includers
 // define LIGHT_TABLE first, the binding of LightTable's buffer.
 #include "maps/backprojection/light_table.shared.h"

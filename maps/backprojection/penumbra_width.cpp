@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Records penumbra_width.comp: a bound of the narrowest penumbra at each view sample, used by subsampled.cpp
 // (Guennebaud, Barthe and Paulin 2007 do not give the estimate).
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Search for a receiver's kernel (Guennebaud, Barthe and Paulin 2006): the kernel's nearest depth gives a narrower
 // kernel, with a nearest depth of its own, until the kernel no longer changes. Where its deepest texel, too, is in
 // front of the receiver, all of the light is hidden. Included after group_kernel.glsl, with PYRAMID_BINDING.

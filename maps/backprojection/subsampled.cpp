@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Computes V of some pixels, fewer where penumbrae are wide on the screen, and fills in the others by pull-push:
 // Guennebaud, Barthe and Paulin 2007, "High-quality adaptive soft shadow mapping", as described in the course notes of
 // Eisemann et al. (2009, section 5.2.3.5). The notes do not give the estimate of the width; here it comes from nodes of

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Bounds over a rectangle of texels and a group of receivers. Depth thresholds x and y: a depth nearer to the light
 // than x shades all receivers of the group, a depth at y or farther shades none; and a test for texels seen beside the
 // light. The bounds are those of blocks_light (taps.glsl) for a single texel, with a margin for rounding, so that a

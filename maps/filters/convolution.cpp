@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Computes the mean of a blocker picture over the light's image: Soler and Sillion 1998, "Fast calculation of soft
 // shadow textures using convolution". Departures: the mean over the light's image is computed for each view sample, by
 // summed areas, instead of convolving a picture for one receiver at a time; blockers are all casters except the ground

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Gathers the splats of a light's picture: Zhang 1998, "Forward shadow mapping", as described in the course notes of
 // Eisemann et al. (2009, box in section 3.2). Departures: each view sample gathers the splats that reach it, with the
 // same sums; a splat lies on the surface shown by its texel, with a B-spline as shape; and the receiver's plane is

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Scherzer, Jeschke and Wimmer 2007, "Pixel-correct shadow maps with temporal reprojection and shadow test confidence",
 // as described in the course notes of Eisemann et al. (2009, section 3.2.6): each frame has a map with displaced
 // texels, and V of a pixel is mixed from this frame's V and the V stored before, by the confidence 1 - 2 max |position

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Computes percentage-closer filtering: Reeves, Salesin, Cook 1987, "Rendering antialiased shadows with depth maps";
 // the window and its weights as in Eisemann et al. 2009, section 4.1.2. Departures: each texel is compared with the
 // receiver's plane (receiverPlane=off: with the receiver's depth, as published), and a window in a hemicube continues

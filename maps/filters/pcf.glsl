@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "maps/filters/pcf.shared.h"
 #define OWN_PUSH PcfPush
 #include "maps/host/look_up.glsl"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Computes percentage-closer soft shadows: Fernando 2005, "Percentage-closer soft shadows". Departures: windows have
 // the light's own shape in place of a square, the near plane is at the nearest depth of the map, every tap is compared
 // with the receiver's plane, and a tap whose light point is below the receiver's horizon counts as hidden, as in every

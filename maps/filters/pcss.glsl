@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "maps/filters/pcss.shared.h"
 #define OWN_PUSH PcssPush
 #include "maps/host/look_up.glsl"

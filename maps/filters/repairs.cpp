@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Options that separate the causes of error of the methods that filter one map (docs/error-budget.md).
 
 #include "maps/filters/repairs.hpp"

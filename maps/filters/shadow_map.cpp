@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Computes the hard shadow of the light's centre: Williams 1978, "Casting curved shadows on curved surfaces".
 // Departures: the receiver's plane is compared at the texel's centre in place of a constant bias (taps.glsl), and up to
 // five faces replace one perspective image (map_fit.cpp).

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Computes hard shadows with silhouette points: Sen, Cammarano, Hanrahan 2003, "Shadow silhouette maps"; Sen 2004.
 // Departures: those of silhouette_points.cpp, and the receiver's plane is compared at each texel's centre
 // (receiverPlane=off: the receiver's own depth, as published).

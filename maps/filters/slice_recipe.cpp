@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Assembles `convolution` and `occlusion-textures` (Soler and Sillion 1998; Eisemann and Décoret 2006): options and
 // products common to both.
 

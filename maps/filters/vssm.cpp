@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Computes soft shadows from prefiltered moments: windows as in Fernando 2005, their statistics by Donnelly and
 // Lauritzen 2006 (vsm), Lauritzen and McCool 2008 (lvsm, evsm), Annen et al. 2007 and 2008 (csm, esm), and the mean
 // blocker by Yang et al. 2010 or, with csm, by Annen et al. 2008. Windows whose mean is behind the receiver are cut

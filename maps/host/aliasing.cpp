@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Measures the aliasing error of fitted maps: Eisemann et al. 2009, equation 3.2; Lloyd et al. 2008.
 
 #include "maps/host/aliasing.hpp"

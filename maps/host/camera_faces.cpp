@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Uploads and draws faces fitted to a camera (docs/map-fits.md).
 
 #include "maps/host/camera_faces.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Renders depth maps of casters (Williams 1978), layers behind others by depth peeling (Everitt 2001).
 
 #include "maps/host/caster_maps.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Extends methods of maps to domes: the sky as suns of equal power (Debevec 2005). Departures: parts of the sky consist
 // of the dome's light samples, which have equal power, not of texels; and a sun is as wide as its part, not one
 // direction, so that methods with penumbrae have few steps.

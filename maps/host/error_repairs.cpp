@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Options that separate the causes of error of map methods: resolution, view, bias, layers (docs/error-budget.md).
 
 #include "maps/host/error_repairs.hpp"

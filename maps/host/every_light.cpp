@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Adapts methods of maps to suns (projective space), spheres (disks) and surfaces with holes. Not from a paper.
 
 #include "maps/host/every_light.hpp"

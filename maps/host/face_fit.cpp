@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Fits faces to the view of a camera: bounds of the visible receivers and their casters, warps and quadtree tiles
 // (docs/map-fits.md).
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Taps into faces fitted to the view of a camera (face_fit.hpp), in place of a window or a hemicube: for look-ups that
 // define FITTED_FACES. Faces are in a table; a receiver uses the faces of its own depth.
 #include "maps/host/fitted_face.glsl"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Projects directions to fitted faces: homographies, logarithmic rows (Lloyd et al. 2007) and paraboloids (Brabec,
 // Annen, Seidel 2002).
 

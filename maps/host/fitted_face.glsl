@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Directions in a fitted face.
 #include "maps/host/fitted_face.shared.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Shared by C++ and GLSL: faces fitted to the view of a camera (face_fit.hpp), in the form used by look-ups.
 #ifndef PENUMBRA_MAPS_FITTED_FACE
 #define PENUMBRA_MAPS_FITTED_FACE

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Kernels of a receiver processed by a workgroup of 64 invocations; see look_up.glsl. The shader defines
 //   Kernel kernel_of(MapFace face)                              the texels of a face to process
 //   bool nothing_hides(MapFace face, ivec2 first, ivec2 last)   true if certainly none of these texels hides any light

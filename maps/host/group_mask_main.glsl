@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Computes a mask of each receiver, one bit for each light sample, from maps of the light's centre, whose texels are
 // processed by a workgroup; see group_kernel.glsl. The shader also defines
 //   void hide(MapFace face, uvec2 cell)                       calls hide_sample(j) for each sample hidden by a texel

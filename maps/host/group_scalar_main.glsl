@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Computes V of each receiver, whose texels are processed by a workgroup; see group_kernel.glsl. The shader also
 // defines
 //   uint hidden_by(MapFace face, uvec2 cell)    part of the light hidden by a texel, in units of 1 / kWholeLight

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Traversal of a kernel by a workgroup (group_kernel.glsl) in tiles: most of a kernel is lit, or seen beside the light,
 // and such tiles are skipped as a whole. Before including this file, the main defines
 //   void before_tiles()                       run by all invocations, between barriers, before tiles are tested

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Prepares surfaces with holes (alphaMode MASK) for rasterisers: for each texel of a picture, the least vertex alpha at
 // which the surface is solid.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Test whether a surface with holes (alphaMode MASK) is solid at a texel's centre: the nearest texel of the picture's
 // level 0, as in the pair's definition. Rasterisers interpolate linearly over a triangle in scene space; corners carry
 // values times a weight, and the weight, since a scene in projective coordinates has other weights than the face's w.

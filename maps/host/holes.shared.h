@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Shared by C++ and GLSL: layout of the data of surfaces with holes (alphaMode MASK) for rasterisers. holes.hpp
 // describes the pictures.
 #ifndef PENUMBRA_MAPS_HOLES

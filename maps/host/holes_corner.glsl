@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Interface of vertex shaders to holes.glsl.
 #include "maps/host/holes.shared.h"
 

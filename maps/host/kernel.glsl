@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Texels of a map from the light's centre that can hide some of the light from a receiver: occluders lie in the pyramid
 // of the light over the receiver, and the map sees the part of this pyramid at heights of at least `near` over the
 // light's plane in a part of each face. On a window, with tangents (a, b) = (x/z, y/z), this part is Guennebaud 2006's

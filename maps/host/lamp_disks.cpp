@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Replaces a sphere by disks that face pyramids of directions. Not from a paper.
 
 #include "maps/host/lamp_disks.hpp"

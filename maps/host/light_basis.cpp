@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Computes the basis, bounds and outline of a light for its maps.
 
 #include "maps/host/light_basis.hpp"

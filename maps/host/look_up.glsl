@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Common head of all look-up shaders: bindings, and taps into the maps. A shader with its own push constants defines
 // OWN_PUSH, the struct's name, before including this file. Products are the shader's own bindings, from FIRST_PRODUCT
 // on. The shader then defines one function and includes the main that calls this function:

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Returns the depth stored for a fragment: the distance along the face's axis, or 1 for fragments behind the light's
 // plane, which a warped face may contain.
 float map_depth(CasterPush face, vec4 at) {

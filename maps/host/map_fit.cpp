@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Fits the maps of a light point. A light emits into a half space, but one perspective image cannot hold 180°.
 // Receivers are finite, and every occluder between a receiver and the light point is seen in the receiver's direction:
 // a window that holds every receiver's direction misses no shadow. Its bounds, min and max of x/z and of y/z over the

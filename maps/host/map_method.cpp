@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Implements everything common to methods of this family. Maps of many light points together would not fit into memory,
 // so evaluate renders them in batches and looks up each batch at once. A batch is a power of two of light points, at
 // most 32: no batch crosses two words of a mask.

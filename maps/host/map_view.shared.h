@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Shared by C++ and GLSL: views of one light point's maps and push constants of look-ups. README.md has a picture.
 #ifndef PENUMBRA_MAPS_MAP_VIEW  // included more than once by shaders, hence an include guard in place of #pragma once
 #define PENUMBRA_MAPS_MAP_VIEW

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Computes one bit for each light point, each from its own maps; see look_up.glsl. One invocation processes a batch of
 // up to 32 light points for one receiver. Batches come in the order of light samples; the first batch of a word writes
 // the word, later ones add their bits.

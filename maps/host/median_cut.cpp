@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Divides directions into parts of equal power by median cuts (Debevec 2005).
 
 #include "maps/host/median_cut.hpp"

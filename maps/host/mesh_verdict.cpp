@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "maps/host/mesh_verdict.hpp"
 
 namespace penumbra::maps {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Texels around the receiver's own, on its face and, in a hemicube, on the next face. Included after look_up.glsl.
 
 // Returns the direction of a neighbour of the receiver's own texel, `offset` texels along the face's coordinates; of

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Draws depth maps by OpenGL, with the same shaders as Vulkan.
 
 #include "maps/host/opengl_maps.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Options common to methods of maps, and their parsing.
 
 #include "maps/host/options.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Depth peeling (Everitt 2001): fragments not behind the previous layer are discarded. Depth as in caster.frag; a
 // surface within 2^-20 of the previous layer is the same surface. `maps` is declared by the shader.
 

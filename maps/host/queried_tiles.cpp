@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // M. Giegl, M. Wimmer, Queried virtual shadow maps, I3D 2007, as described in the course notes of Eisemann et al. 2009,
 // section 3.2.4.1. Departures: pictures are compared on the host, where the paper counts by occlusion queries; all
 // squares that are due are cut for one picture; where the number of maps runs out, the most changed squares come first.

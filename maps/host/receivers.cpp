@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Uploads view samples to the device in bands of rows.
 
 #include "maps/host/receivers.hpp"

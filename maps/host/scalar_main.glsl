@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Computes V of each receiver from the maps of one light point; see look_up.glsl.
 void main() {
   const uint i = this_receiver();

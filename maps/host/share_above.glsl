@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Returns the fraction of the light above a receiver's horizon, from the light samples: for methods whose products give
 // the hidden fraction of the light at a position, but not the hidden part. These methods use the smaller of the two
 // fractions. The shader has the samples bound: `vec3 samples[]`, x and y in the light's basis and their weight, and

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Maps a scene under a sun to a projective space in which the sun is a disk (sun_space.hpp derives the map). Not from a
 // paper.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Taps into the maps of one light point; README.md has a picture.
 //
 // A texel holds the depth of the nearest surface in the direction of its *centre*, while the receiver lies somewhere in

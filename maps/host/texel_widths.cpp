@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Computes the width of a map's texels at view samples, for comparisons across resolutions.
 
 #include "maps/host/texel_widths.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads V of a tile from the device.
 
 #include "maps/host/tile_visibility.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Computes the body seen by a camera (clipping by Sutherland and Hodgman 1974) and the closed forms of fits: split
 // depths (Zhang et al. 2006), LiSPSM (Wimmer et al. 2004), TSM (Martin and Tan 2004), snapped windows.
 

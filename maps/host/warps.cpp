@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Computes the perspectives of Wimmer et al. 2004 (LiSPSM), Martin and Tan 2004 (TSM), Stamminger and Drettakis 2002
 // (PSM) and Lloyd et al. 2008 (LogPSM), for a point light, and the perspectives of a frustum's faces: S. Kozlov,
 // Perspective shadow maps: care and feeding, GPU Gems 2004; Lloyd, Tuft, Yoon, Manocha, Warping and partitioning for

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Builds pyramids of depth ranges: Guennebaud, Barthe and Paulin 2006 (HSM), Schwarz and Stamminger 2007 (MSSM) and
 // 2008 (YSM), Yang et al. 2009 (the dual grid). Departures: all three are on the dual grid and differ in one number,
 // the spacing of the nodes of a level; the dual grid has one more cell on either side, between the map's border and the

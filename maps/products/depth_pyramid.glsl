@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Queries of a DepthPyramid. Includers define PYRAMID_BINDING first, the binding of its buffer.
 #include "maps/products/depth_pyramid.shared.h"
 

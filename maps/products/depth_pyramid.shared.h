@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Shared by C++ and GLSL: pyramids of smallest and largest depths over the maps of one light point, their queries and
 // traversal. The same few lines of integers run in shaders and in the tests that count nodes.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Distributes points over a light (R2 sequence, Roberts 2018) and maps the unit square to a light's shape (Shirley and
 // Chiu 1997).
 

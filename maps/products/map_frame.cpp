@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Computes the depth of receivers and the box with the light's second moments (map_frame.hpp).
 
 #include "maps/products/map_frame.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Shared by C++ and GLSL: data of a light and its receivers for look-ups of whole windows.
 #ifndef PENUMBRA_MAPS_MAP_FRAME
 #define PENUMBRA_MAPS_MAP_FRAME

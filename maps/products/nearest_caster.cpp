@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Records the minimum of depths of the centre's maps (nearest_caster.comp).
 
 #include "maps/products/nearest_caster.hpp"

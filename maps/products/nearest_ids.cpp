@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Draws a map of identities of the nearest surfaces: Hourcade and Nicolas 1985, "Algorithms for antialiased cast
 // shadows". Departure: identities are ranks of triangles, which do not depend on the order of triangles.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Stores the triangle at the map's depth in a texel (Hourcade and Nicolas 1985): of several at one depth the smallest
 // id, independent of the order of drawing. Depth as in caster.frag; as in peel.frag, surfaces within 2^-20 of the
 // nearest are the same surface. `maps` and `nearest` are declared by the shader.

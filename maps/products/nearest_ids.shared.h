@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Shared by C++ and GLSL: identity of a texel's nearest surface. nearest_ids.hpp describes it.
 #ifndef PENUMBRA_MAPS_NEAREST_IDS
 #define PENUMBRA_MAPS_NEAREST_IDS

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Prefilters functions of depth for means over windows: summed areas in integers (Crow 1984), mip levels (Williams
 // 1983), N-buffers (Décoret 2005).
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Means of prefiltered functions over boxes of a face. Bindings PREFILTER_FIRST … PREFILTER_FIRST + 4 are the
 // product's, specialization constants 0 and 1 are its scheme and its number of buffers. A look-up calls mean_over in
 // one place, in a loop: compilers inline it at each call.

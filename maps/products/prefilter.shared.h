@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Shared by C++ and GLSL: functions of texels, stored so that means over windows take a fixed number of fetches.
 // prefilter.hpp describes them.
 #ifndef PENUMBRA_MAPS_PREFILTER

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Functions of prefilter.shared.h. `t`: the texel's height in [0, 1], or for kBit the bit itself.
 #include "maps/products/map_frame.shared.h"
 #include "maps/products/prefilter.shared.h"

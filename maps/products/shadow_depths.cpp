@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Computes the depth at which shadows begin (Wang and Molnar 1994, Woo 1992, Weiskopf and Ertl 2003), for methods that
 // use means of depths.
 

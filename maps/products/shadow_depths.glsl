@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Returns the depth at which the shadow of a texel's surfaces begins, in place of the nearest depth. Both are fractions
 // of far, 1 for empty texels. A look-up's bias reduces a receiver's own height by the fraction `forgiven`, whatever
 // texel is compared; depths that need no bias, a second surface or a middle, are reduced by the same fraction: for

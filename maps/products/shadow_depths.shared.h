@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Shared by C++ and GLSL: value of a texel of two layers, for methods that filter or sort depths.
 #ifndef PENUMBRA_MAPS_SHADOW_DEPTHS
 #define PENUMBRA_MAPS_SHADOW_DEPTHS

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Computes silhouette points in cells of a map: P. Sen, M. Cammarano, P. Hanrahan, Shadow silhouette maps, SIGGRAPH
 // 2003, section 4.1. Departures: edges are traversed on the host, not drawn as quads; of several edges in a cell the
 // nearest counts, where the paper keeps the last that is not hidden, so that the result does not depend on the order of

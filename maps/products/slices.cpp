@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Sorts casters into light-space slices: equally thick (Eisemann and Décoret 2006), or one plane (Soler and Sillion
 // 1998).
 

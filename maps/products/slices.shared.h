@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Shared by C++ and GLSL: light-space slices. slices.hpp describes them.
 #ifndef PENUMBRA_MAPS_SLICES
 #define PENUMBRA_MAPS_SLICES

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Records summed-area tables (Crow 1984): rows, then columns (summed_areas.comp).
 
 #include "maps/products/summed_areas.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads counters of a look-up's work.
 
 #include "maps/products/work_counts.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Computes V as the weighted mean of hard shadows from an adaptive set of light points: Schwärzler, "Real-time soft
 // shadows with adaptive light source sampling": shadow maps from the corners of the light; two maps of opposite corners
 // are compared at the view samples, and where too many differ the cell is split. Departures: pixels that are below the

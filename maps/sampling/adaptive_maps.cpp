@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Refines the set of light points with maps (Schwärzler, sections 3.3.1 to 3.3.3) and renders their maps.
 
 #include "maps/sampling/adaptive_maps.hpp"

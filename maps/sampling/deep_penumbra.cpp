@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Looks up penumbra deep shadow maps: St-Amour, Paquette and Poulin, "Soft shadows from extended light sources with
 // penumbra deep shadow maps" (Graphics Interface 2005), as described in the course notes of Eisemann et al. (2009,
 // section 5.2.4). Departures: V(depth) is kept as constant pieces (V jumps at every event, so that lines would violate

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Looks up layered attenuation maps: Agrawala, Ramamoorthi, Heirich and Moll, "Efficient image-based methods for
 // rendering soft shadows" (SIGGRAPH 2000), as described in the course notes of Eisemann et al. (2009, section 5.2.4).
 // Departures: a texel is warped with its extent (layered_warp.comp), a receiver not found in its own texel is searched

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Splits cells of a light whose corners' maps differ, and weights the points (Schwärzler, sections 3.3.1, 3.3.4 and
 // 3.3.5).
 

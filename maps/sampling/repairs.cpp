@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Options that separate the causes of error of the methods with maps from many points of the light
 // (docs/error-budget.md).
 

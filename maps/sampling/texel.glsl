@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Texel in a direction, for look-ups of lists in place of depths, or of several buffers of maps. Included after
 // taps.glsl.
 struct Texel {

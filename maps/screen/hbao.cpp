@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Computes horizon-based ambient occlusion: Bavoil, Sainz and Dimitrov 2008, "Image-space horizon-based ambient
 // occlusion": along directions of the picture the highest horizon h is found; V = 1 - 1/2π ∫ (sin h - sin t) W dθ, t
 // the angle of the surface's own tangent, both over the picture's plane, each rise of the horizon weighted by the

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Common part of methods that use the camera's picture. The whole picture is evaluated at once, for any tiles; a
 // dithered result is blurred over the 4 x 4 pixels of its pattern, as published, but not across steps of depth.
 

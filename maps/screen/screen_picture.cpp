@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Converts a camera's view samples to a picture of depths in eye space.
 
 #include "maps/screen/screen_picture.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Computes screen-space ambient occlusion: Mittring 2007, "Finding next gen: CryEngine 2", as described by
 // Akenine-Möller, Haines and Hoffman (2008) and the course notes of Eisemann et al. (2009, section 6.2): points in a
 // ball around the view sample are hidden if the picture's depth is nearer; a plane hides half of the ball, so V is

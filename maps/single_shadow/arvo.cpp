@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Floods penumbrae from the borders of a hard shadow over the picture: Arvo, Hirvikorpi and Tyystjärvi 2004,
 // "Approximate soft shadows with an image-space flood-fill algorithm", as described in the course notes of Eisemann et
 // al. (2009, section 5.2.1). Departures: a border is between differing neighbouring pixels, in place of the result of a

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Searches a map for the nearest border of the hard shadow: Brabec and Seidel 2002, "Single sample soft shadows using
 // depth maps", as described in the course notes of Eisemann et al. (2009, section 5.2.1). Departures: the half penumbra
 // on either side is that of a light of its disk's radius, where the paper scales by hand; distances are to a texel's

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Descriptions and repairs common to the methods of this room.
 
 #include "maps/single_shadow/descriptions.hpp"

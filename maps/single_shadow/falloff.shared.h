@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Shared by C++ and GLSL: constants of falloff.glsl.
 #ifndef PENUMBRA_MAPS_FALLOFF
 #define PENUMBRA_MAPS_FALLOFF

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Floods borders of hard shadows over a picture (Arvo et al. 2004, see arvo.cpp).
 
 #include "maps/single_shadow/flood.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Looks up a map of distances to the border of the hard shadow: Kirsch and Döllner 2003, "Real-time soft shadows using
 // a single light sample", as described in the course notes of Eisemann et al. (2009, section 5.2.1). Departures:
 // distances are Euclidean, computed in two passes; black are all casters except the ground (as in convolution; the

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Computes silhouettes as seen from the light's centre, and the side of each on which its shadow ends. Wyman and Hansen
 // 2003 and Chan and Durand 2003 draw whole cones and corners at a silhouette's vertices; here each end has only the
 // part outside of its own edge: the inner part would shade the caster's own lit side.

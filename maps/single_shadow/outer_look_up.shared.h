@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Shared by C++ and GLSL: push constants of outer_look_up.comp after LookupPush.
 #include "maps/single_shadow/falloff.shared.h"
 #ifdef __cplusplus

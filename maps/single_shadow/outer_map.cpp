@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Draws a second map of penumbrae beside silhouettes (Wyman and Hansen 2003, Chan and Durand 2003).
 
 #include "maps/single_shadow/outer_map.hpp"

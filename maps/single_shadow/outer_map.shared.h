@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Shared by C++ and GLSL: silhouette edges and the triangles drawn beside them. outer_map.hpp describes them.
 #ifndef PENUMBRA_MAPS_OUTER_MAP
 #define PENUMBRA_MAPS_OUTER_MAP

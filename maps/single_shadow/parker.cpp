@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Computes soft edges around a hard shadow: Parker, Shirley and Smits 1998, "Single sample soft shadows". Departure: in
 // the paper a ray gives the distance at which it passes each object; here these distances come from texels of the
 // light's map, which are the visible parts of the objects.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Draws cones and sheets at silhouettes in a second map: Wyman and Hansen 2003, "Penumbra maps: approximate soft
 // shadows in real-time". Departures: the light's radius is that of the disk of its area; an edge's ends have the outer
 // part of their cones (outer_edges.cpp); sheets and cones are intersected at texels' centres exactly, whatever

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Search of the map around a receiver's own texel, nearest texels first. Included after look_up.glsl, with OWN_PUSH
 // SearchPush.
 #include "maps/host/neighbours.glsl"

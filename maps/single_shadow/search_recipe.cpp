@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Assembles `brabec-seidel` and `parker`: offsets of the search and products.
 
 #include "maps/single_shadow/search_recipe.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Draws strips beside silhouettes in a second map: Chan and Durand 2003, "Rendering fake soft shadows with smoothies".
 // Departures: where the paper has one width for all, chosen by hand, the default is the correct width for an edge at
 // the mean height of the silhouettes; an edge's ends have quarters of disks in place of corners between two edges.

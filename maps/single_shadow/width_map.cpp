@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Records the shadow width map: occluders drawn without the ground, then distances in two passes (width_map.comp).
 
 #include "maps/single_shadow/width_map.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Runs the searches for defects of a mesh and joins their results.
 
 #include "mesh/diagnosis/diagnosis.hpp"

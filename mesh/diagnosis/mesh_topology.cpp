@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Computes fans, components and other connectivity of a triangle soup from its edge graph. Not from a paper.
 
 #include "mesh/diagnosis/mesh_topology.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Measures the effect of storing a mesh's positions in float32: spacing of floats, lost vertices and triangles. Not
 // from a paper.
 

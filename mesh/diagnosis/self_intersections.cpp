@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Self-intersections of a soup, exact. The cases by shared vertices are those of CGAL's polygon mesh processing,
 // self_intersections(); the predicates come from CGAL's kernel (LGPL).
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // T-junctions: vertices exactly inside edges. Candidates come from a tree over the vertices, which each edge traverses
 // as a segment (a long diagonal edge has a large box, but passes few vertices); the verdict is exact. The traversal
 // errs only toward more candidates.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Watertightness of a soup by its signed boundary; here is why a test at each vertex suffices. The signed boundary is a
 // sum of m_e [a_e → b_e]. Different lines share at most a point, so the boundary is zero exactly if its part on each
 // line is. That part has, along the line, a piecewise constant multiplicity that is zero far away, so it is zero

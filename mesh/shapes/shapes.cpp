@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Generates boxes, rings and other shapes with known properties.
 
 #include "mesh/shapes/shapes.hpp"

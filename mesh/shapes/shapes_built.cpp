@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "mesh/shapes/shape_builder.hpp"
 
 #include "base/assert.hpp"

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Penumbra: how much of an area light each visible point sees, exactly or by any known approximation.
 
     import penumbra

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Replaces the other sources in a build without EGL or OpenGL: nothing can be made, and every function reports the
 // reason.
 

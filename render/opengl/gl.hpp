@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 // Inside render/opengl/ only: the one header that includes EGL and OpenGL. Functions come from libEGL and libOpenGL,
 // the vendor-neutral libraries that dispatch to the installed driver.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "render/opengl/raster_pass.hpp"
 
 #include "base/assert.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "scenes/formats/checks.hpp"
 #include "scenes/formats/glb_model.hpp"
 #include "scenes/formats/lights/light_formats.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "scenes/formats/json_document.hpp"
 
 #include "base/file_error.hpp"

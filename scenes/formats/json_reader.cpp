@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "scenes/formats/json_reader.hpp"
 
 #include "base/did_you_mean.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "scenes/formats/package_files.hpp"
 
 #include "base/file_error.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "scenes/formats/parts_writer.hpp"
 
 #include "base/atomic_file.hpp"

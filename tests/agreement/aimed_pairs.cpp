@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Error bounds, tested where they matter: every pair of scenes in which all casters pass segments of pairs within float
 // rounding.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 // Scenes in which everything happens within float rounding of a pair: each view sample has a triangle of its own that

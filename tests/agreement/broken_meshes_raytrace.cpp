@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The mask methods and the ray caster on meshes that are broken: every defect of the generator, random soups on a
 // lattice, and the meshes of CGAL's demos, many of which are flawed.
 

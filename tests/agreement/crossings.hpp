@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 // Where edge-scatter says that an edge crosses the row of a light sample, beside where it does: what a search for input

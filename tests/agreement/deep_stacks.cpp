@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // So many layers between view samples and light that counts of one byte would begin again at 0.
 
 #include "tests/agreement/mask_methods.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 // Signs that passes on the device take in floats, as they compute them and as they are, and what bounds the difference.

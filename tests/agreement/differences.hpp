@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 // A mask method and the ray caster, pair by pair on the same view and light samples. They share no code that decides

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Domes: masks of every method against the exact decision of each pair, areas of two arithmetics against one another
 // and against many light samples.
 

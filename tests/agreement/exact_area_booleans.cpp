@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The exact area against CGAL's Boolean set operations: projected triangles joined one by one in an exact kernel, cut
 // from the light; what is left of the square around a disk, intersected with the circle in numbers a + b √c. Nothing is
 // shared with the sweep but the question.

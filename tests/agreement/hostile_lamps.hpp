@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 // Lamps and what is around them where rounding matters most: panels in, near and through the light's plane, magnitudes

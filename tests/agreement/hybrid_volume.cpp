@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // hybrid-volume: the map's answer where its texels agree, that of shadow volumes elsewhere.
 
 #include "hybrids/methods.hpp"

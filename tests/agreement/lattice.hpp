@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 // Soups whose corners, light samples and cameras lie on a small integer lattice: coincidences are the rule. What a

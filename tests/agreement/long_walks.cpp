@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Scenes so dense between the view samples and the light that one block of pixels looks at more of a hierarchy than
 // some drivers' loops may turn (65,535 times a workgroup): every engine comes to an end, with the same bits.
 

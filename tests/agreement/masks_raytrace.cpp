@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The mask methods and the ray caster on every shipped scene.
 
 #include "tests/agreement/differences.hpp"

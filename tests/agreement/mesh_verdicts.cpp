@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What `inspect` says that a method makes of a flawed mesh is what it does: each method of the table, on each defect of
 // the generator. A verdict of "exact" allows no pair that the exact predicates decide otherwise.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the families' tables say of their methods is what these do.
 #include "app/methods.hpp"
 #include "tests/agreement/support.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Shadows of things in front of a light that stands on the floor: where V times the unshadowed integral is wrong, how
 // wrong it is, and how far point samples and cells are from `exact`. Prints the table of docs/radiance.md.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 // What tests of methods on a device share: a device with validation, a run over a whole picture, and the truth of every

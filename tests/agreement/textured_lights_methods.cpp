@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // All methods under textured lights: the same pairs as without, V from the weights of what is visible, and beauty.
 
 #include "compare/beauty.hpp"

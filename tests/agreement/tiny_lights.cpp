@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Lights, casters and view samples that are all a millionth of the scene or less, near its origin, where floats still
 // have all their digits but products of six lengths underflow.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 // A floor, a board and a square light, all parallel: which light samples a view sample on the floor sees, and which

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The coverage integral against areas that can be written down.
 //
 // Tolerance: an area is a sum of a handful of terms below 4, each off by a few ulps of 1, of ends off by a few ulps of

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Domes of one radiance against form factors that can be written down (J. Howell, A catalog of radiation heat transfer
 // configuration factors): V is one minus that of what hides the sky. Areas are held to rounding, masks to what so many
 // light samples can say.

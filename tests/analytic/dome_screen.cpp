@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // ssao and hbao against what they give by hand: on planes, at the bottom of valleys and beside a wall; and what they
 // refuse.
 

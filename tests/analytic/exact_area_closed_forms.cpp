@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Exact areas against areas that can be written down.
 //
 // Tolerance: the sweep adds at most a few hundred slabs of area ≤ 4 whose lengths are off by a few ulps of 1: 1e-12 is

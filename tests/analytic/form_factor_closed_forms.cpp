@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Form factors against closed forms of others (J. Howell, A Catalog of Radiation Heat Transfer Configuration Factors),
 // against quadrature, and against one another.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `exact`'s form factors: closed forms, brute force, additivity. Lights near the floor make cosines and distances
 // differ over the light as much as they can.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The ray caster against shadows that can be written down: which light samples are hidden (exactly, except for pairs
 // within rounding of the projected edge, which are counted), and how fast the share approaches the area.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Domes with a picture, as areas: against closed forms, against the dome of one radiance, against a million directions,
 // and the integrals of a sky against one another.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `exact` under textures: against the areas of many small lights, one for each texel, and against what can be written
 // down. The tolerance is exact_area_closed_forms.cpp's; integrals of a piecewise constant texture are lengths of the
 // same edges times sums of at most 2048 luminances in double, whose rounding is far below it.

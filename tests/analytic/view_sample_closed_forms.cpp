@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // View-sample mapping against shadows that can be written down: exactly the samples that the closed form hides, except
 // pairs within the closed form's own rounding of the projected edge, which are counted; and convergence to the area.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Wedges as meshes for viewing, and what a plane cuts out of them: against closed forms.
 #include "volumes/wedges/wedge_body.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Form factors of whole lights, and of their parts, side by side against one at a time: the same bits on every vector
 // width, whatever is near an edge, a plane or the horizon. And the arc tangent of both against the x87's.
 #include "tests/unit/visibility/scenes.hpp"

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """The Blender add-on without Blender: what is in the zip, that all of it compiles, and its parts that know nothing of
 Blender: lamps and lenses, the exchange file, and the pictures that come back. Nodes: addon_nodes.py.
 

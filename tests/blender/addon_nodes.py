@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """What the add-on makes of materials' nodes, without Blender: surfaces, colours that are evaluated, images, and what is refused.
 
     addon_nodes.py ADDON.zip

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The Bake button: the image of an object beside a picture that sees the same points. Run inside Blender:
 
     run.sh baked.py ADDON.zip PENUMBRA WORK

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What Blender's compositor takes from a picture that the program wrote: layers of each light, depth, and objects cut out by
 Cryptomatte. Run inside Blender:
 

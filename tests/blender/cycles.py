@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Renders small scenes (scenes.py) by the add-on and by Cycles' direct light, and compares. Run inside Blender:
 
     run.sh cycles.py ADDON.zip PENUMBRA WORK [SCENE...]

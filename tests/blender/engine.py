@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The add-on as Blender's render engine: animation, passes, what is refused and what is warned of. Run inside Blender:
 
     run.sh engine.py ADDON.zip PENUMBRA WORK

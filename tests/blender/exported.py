@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Renders the small scenes (scenes.py) from the files that Blender's own glTF exporter makes of them, and compares with Cycles'
 direct light as cycles.py does. Run inside Blender:
 

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """The add-on as farms run it: `blender -b --addons penumbra FILE.blend … -f 1`, without saved preferences. What succeeds ends with 0
 and a file, what fails with another code and none; a killed Blender leaves nothing.
 

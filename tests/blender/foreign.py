@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Renders small scenes (scenes.py) from FBX and COLLADA files that Blender's own exporters make of them, and compares with Cycles'
 direct light as exported.py does. Run inside Blender:
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What scripts that run inside Blender share: the add-on, installed from its zip, and an empty scene."""
 
 import os

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What can be edited with Penumbra as the engine: the panels of each tab, and what they show. Run inside Blender:
 
     run.sh panels.py ADDON.zip PENUMBRA WORK

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: Apache-2.0
 # run.sh SCRIPT ADDON.zip PENUMBRA WORK [ARGUMENT…]: a script of this folder in a Blender that has no settings but its own.
 # Prints what the script prints after "compare: "; the rest is in WORK/log. WINDOW=1 in the environment: with a window, on a
 # screen of its own (Xvfb) that Mesa's processor drivers draw.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Small scenes, made by script: what an artist sets up in Blender, one thing a scene. Run inside Blender.
 
 Each function builds its scene from nothing; `SCENES` has them by name.

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """`penumbra serve` as the add-on's own client meets it, without Blender: what is shown in the end is what `render` makes of
 the whole scene, byte for byte; what is refused; how it ends.
 

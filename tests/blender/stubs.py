@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What stands for Blender's own things where there is no Blender: values by name, sockets, nodes, images."""
 
 import types

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Colours that nodes and images make, beside Cycles; and what is refused or said of surfaces, lamps and cameras. Run inside Blender:
 
     run.sh surfaces.py ADDON.zip PENUMBRA WORK

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A scene of things that the tests of `penumbra serve` put and write, seen as a 3D view sees it."""
 
 import math

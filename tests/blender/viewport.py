@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The add-on in a 3D view of a Blender with a window: the view orbits, a lamp moves, a mesh is edited; what is shown in the end
 is what the program renders of the whole scene, byte for byte, and it is what is on the screen. Run inside Blender:
 

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """What a 3D view of the add-on sends and says, without Blender: what was refused is sent again; a picture of the world that is
 replaced while it is read.
 

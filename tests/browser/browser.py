@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Headless Chromium through its debugging pipe, with Python's standard library alone: open a page, press keys, move the
 pointer, ask, photograph. https://chromedevtools.github.io/devtools-protocol/ has the names of the methods."""
 import base64

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What tests of pages and live views claim: all of it is looked at, and what does not hold is printed."""
 
 _failed = []

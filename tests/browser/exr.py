@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Just as much OpenEXR as OUT.exr needs: scan lines, ZIP or none, 32-bit channels."""
 import struct
 import zlib

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """The report's tables, plots and words in a browser, as its script draws them from the JSON in the page: those of a real comparison
 against metrics.json, and those of JSON that was changed.
   report_numbers.py PROGRAM SCENE [PHOTOGRAPHS]   PHOTOGRAPHS: a folder for pictures of the page, for people to look at"""

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `render` and `compare` of glTF surfaces with holes (alphaMode MASK) and translucent ones (BLEND).
 #include "tests/cli/program.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Frames of what deforms, moves, folds, vanishes and lets light through: of a sequence, in which meshes are kept and
 // follow, each file is that of the frame by itself, byte for byte.
 #include "tests/cli/program.hpp"

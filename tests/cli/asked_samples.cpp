@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which view samples methods are not asked about, because their answers are known or nobody looks: no bit of a picture
 // depends on it.
 #include "tests/cli/program.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // bake: V and irradiance at texels and vertices against closed forms and against a render of the same points.
 #include "tests/cli/program.hpp"
 

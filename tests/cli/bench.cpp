@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // penumbra-bench: JSON lines, stable names. Sizes are tiny, and no time is looked at.
 #include "tests/cli/program.hpp"
 

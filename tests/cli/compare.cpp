@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `compare`: the files it writes, the numbers it claims, the answers it gives by its exit code.
 #include "tests/cli/program.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `compare` further on: errors by class of pixel, how often methods run, who may judge, and sequences.
 #include "tests/cli/program.hpp"
 

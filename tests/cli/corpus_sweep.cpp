@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // All meshes of two packages and the shipped scenes, through the program as a user runs it: inspected, rendered by two
 // exact methods and by rays, and their faces counted by other code. Prints what came of it as a table.
 #include "mesh/import.hpp"

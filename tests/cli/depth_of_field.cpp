@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `render` through a thin lens: circles of confusion by their closed form.
 #include "tests/cli/program.hpp"
 

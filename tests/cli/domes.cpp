@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Domes as a user meets them: what `render` gives by default, files that hold their light samples, pictures and which
 // toward these look, refusals.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Emissive meshes of glTF that are no flat convex outline: pictures against points on their triangles, summed here.
 #include "tests/cli/program.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `compare --error-budget` on scenes where one cause of error is there alone: the budget must name it, with its sign. A
 // floor that casts nothing under casters that receive nothing, the light at height 5; exact areas judge.
 #include "base/image.hpp"

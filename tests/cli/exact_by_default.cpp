@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `render` without options: exact areas where nobody asks for light samples, and which options ask for them.
 
 #include "tests/cli/program.hpp"

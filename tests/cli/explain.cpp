@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // wedges --explain and the coverage that --validate checks: what is printed, written as JSON, drawn, and refused.
 #include "tests/cli/program.hpp"
 #include "tests/unit/textured_lights_support.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What compositors take from OUT.exr: layers of each light, mattes, matrices, names.
 #include "tests/cli/program.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Lights that the default method cannot hold beside the scene in float32: another takes them, and says so.
 #include "tests/cli/program.hpp"
 

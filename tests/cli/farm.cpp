@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `submit`: the sequence that `render --frames` makes, by several processes, here or by a batch script; what fails is
 // named, and nothing is rendered twice.
 #include "tests/cli/program.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `submit` on a farm: Slurm's own daemons, started here with two nodes on this machine, and a node that dies in the
 // middle.
 #include "tests/cli/program.hpp"

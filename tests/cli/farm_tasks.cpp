@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The arithmetic of `submit`: which frames go into which task, and how many; and words for a shell.
 #include "tests/cli/program.hpp"
 

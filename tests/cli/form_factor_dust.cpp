@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Beauty where little or nothing of a round light is above the receiver's plane: `exact` and the default add up other
 // pieces, and agree within the rounding of sums of terms up to 1 (docs/radiance.md).
 #include "tests/cli/program.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `render` of what moves: which frames, which files, and that a frame of a sequence is the frame by itself.
 #include "tests/cli/program.hpp"
 

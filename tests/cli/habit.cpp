@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a user of other command-line tools types first: help, version, one method, completions, manual pages, threads.
 #include "tests/cli/program.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The options of image-based methods that scripts give, by their names on the command line: each is taken and does what
 // it says. One comparison of all of them, judged by what metrics.json says.
 #include "tests/cli/program.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // inspect: what it says of a mesh whose defects are known, in table, JSON and files, and what it refuses.
 #include "tests/cli/program.hpp"
 

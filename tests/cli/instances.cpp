@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A mesh with instances is the scene in which the mesh is written once for each of them, to the last bit.
 #include "tests/cli/program.hpp"
 #include "tests/unit/import/gltf_file.hpp"

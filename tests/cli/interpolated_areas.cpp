@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Areas at several view samples a pixel, of which most are interpolated: against functions that are known, and pictures
 // against those whose every view sample was evaluated.
 #include "tests/cli/program.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Ctrl-C at any moment: exit code 130, soon, and nothing left behind.
 #include "tests/cli/program.hpp"
 

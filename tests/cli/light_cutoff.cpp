@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // --light-cutoff: which lights are left out of which pixels, against the unshadowed light of the same scene when
 // nothing in it casts a shadow.
 #include "tests/cli/program.hpp"

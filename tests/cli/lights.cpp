@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Kinds of lights from the scene's file to the picture, and lights that are linked to meshes.
 #include "tests/cli/program.hpp"
 

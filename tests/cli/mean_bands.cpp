@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Pictures of several view samples a pixel that are evaluated in bands of rows: the same bits as evaluated at once.
 #include "app/machine.hpp"
 #include "app/options.hpp"

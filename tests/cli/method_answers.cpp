@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Whatever a method answers, what is no share of a light goes no further than the host.
 #include "app/process/terminal_progress.hpp"
 #include "app/machine.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Options together: a covering array of all options of `render` and `compare`, and of all methods with their own
 // options. Other tests try each option alone; here any two (quick) or three (full) of them meet. Of the quick ones two
 // options of one method, or one of them and one of the command, meet in `compare` (nine of ten such pairs); `render`

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Several view samples a pixel: what a filter makes of them, and whose share of a pixel a matte is.
 #include "tests/cli/program.hpp"
 

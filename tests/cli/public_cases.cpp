@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Files of kinds that people reported to other tools, with what must come of each: every table in tests/public_cases/
 // (its README.md says what a table's members mean).
 #include "tests/cli/program.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Scene files as other programs write them, after public reports (tests/public_cases/README.md): what the program makes
 // of each, by values that were computed without it.
 #include "tests/cli/program.hpp"

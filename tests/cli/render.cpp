@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `render`: what its files hold, and that the same command gives the same bytes.
 #include "tests/cli/program.hpp"
 

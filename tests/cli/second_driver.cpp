@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A second driver for processors, SwiftShader, as Debian's package chromium brings it: subgroups of four lanes, neither
 // double precision nor 64-bit integers. What runs there is right there, too; what does not is refused by name.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `render` through a shifted lens: what it shows is a part of a larger picture.
 #include "tests/cli/program.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A mesh file is a scene: a studio is put around it, chosen by options.
 
 #include "base/exr.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `sweep`: its three files say the same, and what it concludes follows from its rows.
 #include "app/sweep/ranges.hpp"
 #include "base/error.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // methods, devices, --help, --version, convert: what they print can be read by people and by programs.
 #include "tests/cli/program.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // wedges: what it prints and writes, and its exit codes.
 #include "tests/cli/program.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The program on a machine without a Vulkan driver: what runs on the processor gives the bytes that it gives with one,
 // and what does not is refused by name.
 

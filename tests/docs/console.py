@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Runs the commands of a page as a reader would, from top to bottom, in a folder that holds scenes/:
 
   console.py PROGRAM SOURCE PAGE              fails where a command prints something else than the page says

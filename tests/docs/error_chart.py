@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """bench/error_chart.py on lines written by hand: marks lie where seconds and errors say, and what cannot be drawn is counted."""
 import json
 import pathlib

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A disk that fails, or a process that is killed, at any of its calls: each output is the old one, or whole, or not
 // there; exit code 0 or 4; and nothing is left, at the latest after the next run.
 #include "tests/faults/child.hpp"

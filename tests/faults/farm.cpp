@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Sequences whose processes are killed: what was rendered stays, nothing is rendered twice, and nobody is left behind.
 #include "base/exr.hpp"
 #include "tests/faults/child.hpp"

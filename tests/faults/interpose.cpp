@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Loaded before the C library (LD_PRELOAD) by tests: makes the n-th call of a function fail, or be the last one of the
 // process; or a driver's threads deaf.
 //   PENUMBRA_FAULT_CALL=write|fsync|linkat|rename|open   which calls count: on regular files (pwrite as write), and

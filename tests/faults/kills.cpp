@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The program is killed at moments drawn at random, while it renders and compares: no file is torn, and the next run
 // leaves none but its own.
 #include "base/exr.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Resource limits that are too low for the work, for part of it, or for anything: exit code 0 or 4, a message that
 // names the matter, no hang, and nothing left behind.
 #include "tests/faults/child.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The program takes memory in proportion to what it uses, and asks for it only where there is as much.
 #include "base/exr.hpp"
 #include "base/memory.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The program may be killed at any moment, above all when it has just started the helper that reads foreign files: the
 // helper ends with it.
 #include "tests/faults/child.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // No output is written to a file that the command reads, and no two outputs to one file, whatever they are called:
 // exit code 2 with both names, and every file as it was.
 #include "base/exr.hpp"

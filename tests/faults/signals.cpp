@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // SIGINT and SIGTERM end every command within two seconds, whatever it is doing, with 130, and nothing is left of what
 // it was writing.
 #include "tests/faults/child.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Standard streams that are closed, full, or read by nobody: a documented exit code, and output files as usual.
 #include "tests/faults/child.hpp"
 

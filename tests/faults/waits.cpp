@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A device that takes work and does not finish it: the program still ends, and in an orderly way.
 #include "tests/faults/child.hpp"
 

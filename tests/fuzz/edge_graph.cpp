@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Edge graph, silhouettes and diagnosis of any small soup, against definitions read off their headers by brute force.
 // On a lattice of small integers, stretched by a power of two from one end of double's range to the other, signs are
 // those of integers; on wild coordinates only what needs no sign is checked.

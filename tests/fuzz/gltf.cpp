@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The glTF reader on any file, as a scene and as a mesh: an InputError, or a scene that passes the checks of the
 // importer's answer, and the same triangles both times.
 #include "base/assert.hpp"

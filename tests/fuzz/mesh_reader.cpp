@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What runs inside the import helper, on any file: the first byte chooses the format, the rest is the file's content.
 // All of these are read by our own code; of COLLADA, the part before Assimp.
 #include "base/error.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The OFF reader on any text: an InputError, or a mesh in which everything is in range.
 #include "base/error.hpp"
 #include "import/off.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Messages of `serve` and of the live view from any bytes: one that is refused leaves the state as it was, and a state
 // can always be told.
 #include "app/serve/message_pipe.hpp"

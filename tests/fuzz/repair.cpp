@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Repair of any small soup, with CGAL's own checks on: it ends, what comes out is a soup, and triangles without area
 // are gone or mentioned.
 #include "base/assert.hpp"

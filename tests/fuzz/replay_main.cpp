@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Runs a fuzz target on files and on the files of folders: what libFuzzer does with a corpus, with any compiler.
 #include "tests/fuzz/bytes.hpp"
 

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: Apache-2.0
 # run.sh SOURCE BUILD TARGET SECONDS: lets libFuzzer look for trouble. Builds the preset `fuzz` beside BUILD, unless BUILD
 # is one already. What is found lies in BUILD/fuzz_findings; the corpus that grows, in BUILD/fuzz_corpus.
 set -euo pipefail

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The reader of penumbra-scene/1 on any text: an InputError, or a scene that is whole. No file but the package
 // manager's lists is read: the scene's folder does not exist, and there is no import helper.
 #include "base/assert.hpp"

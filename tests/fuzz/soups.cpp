@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Small adversarial scenes: every bit of every method that promises the truth, against a judge that shares no code with
 // them.
 #include "tests/fuzz/bytes.hpp"

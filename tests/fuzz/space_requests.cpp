@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Targets of requests for the live view's 3D view, from any bytes: numbers are in their ranges, or the request is
 // refused.
 #include "app/view/space_view.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Pictures on lights, PNG or OpenEXR, as the import helper reads them: an Error, or as many texels as it says.
 #include "base/assert.hpp"
 #include "base/error.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // 3D Studio files as the import helper reads them: by Assimp, which is the system's and not instrumented, and from
 // there by our code. Whatever Assimp makes of a damaged file, a mesh that is let through keeps its promises.
 #include "base/error.hpp"

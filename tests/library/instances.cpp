@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Instances of the library's scenes: the same numbers with copies and without, as the program's, and after changes.
 
 #include "tests/cli/program.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Methods of the calling program: what they are given, and what becomes of their answers.
 
 #include <penumbra/penumbra.hpp>

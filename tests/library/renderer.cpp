@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The library against the program: the same numbers, kept from call to call, from several threads, and after errors.
 
 #include "base/exr.hpp"

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A bare client of `penumbra view`, with Python's standard library alone: HTTP, WebSocket (RFC 6455), the messages of
 docs/view.md, and just as much PNG as they need."""
 import base64

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """`penumbra view` with clients that go wrong: one that is gone in the middle of a drag, one that never reads, too many, and
 messages and requests without end. The others are served, and memory stays bounded.   live_clients.py PROGRAM"""
 import math

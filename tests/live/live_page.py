@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """The page of `penumbra view` in headless Chromium, by pointer and by keys, against what the program writes.
   live_page.py PROGRAM SCENES [PHOTOGRAPHS]   PHOTOGRAPHS: a folder for pictures of the page, for people to look at"""
 import base64

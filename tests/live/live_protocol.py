@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """`penumbra view` as a bare client meets it: who is let in, what is refused, and that what it shows in the end is what
 `render` writes.   live_protocol.py PROGRAM"""
 import json

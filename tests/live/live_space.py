@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """What `penumbra view` answers its page's 3D view, against what `wedges` and `inspect` write.   live_space.py PROGRAM"""
 import json
 import pathlib

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """The 3D view of `penumbra view` in headless Chromium (WebGL in software): what is drawn, by which controls, and that it is what
 `wedges` builds.   live_space_page.py PROGRAM SCENES [PHOTOGRAPHS]"""
 import base64

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """`--tev`: what arrives at a listener that understands tev's protocol is what the EXR has.   tev_pictures.py PROGRAM"""
 import pathlib
 import socket

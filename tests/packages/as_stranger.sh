@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: Apache-2.0
 # as_stranger.sh package|tarball|driver [FOLDER]: what try.sh runs in a bare system, as a user who owns nothing but a home.
 set -euo pipefail
 kind=$1

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: Apache-2.0
 # gpu_verdict.sh: bench/gpu.sh exits with 1 where a run fails or bits differ, and with 0 where runs are only out of time. The program here is
 # a script, which plays each of these parts.
 set -euo pipefail

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: Apache-2.0
 # try.sh BUILD WORK: makes the Debian package and the tarball of a built tree, and tries both as strangers do: in a bare Debian 12 made by
 # debootstrap, as another user, in a folder with spaces, where /tmp cannot be written. Skipped (77) without root, debootstrap or mirror.
 #   the package: installed by apt; renders, compares, repairs, is imported by Python

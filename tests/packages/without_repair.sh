@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: Apache-2.0
 # without_repair.sh: cmake/tarball.sh packs a build of `penumbra` alone, without penumbra-repair. Programs here are words, and `ldd` is quick.
 set -euo pipefail
 root=$(cd -- "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")/../.." && pwd)

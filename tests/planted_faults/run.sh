@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: Apache-2.0
 # Plants each fault of faults.txt into a copy of the tree, builds what is needed and runs the tests that should fail.
 #   run.sh match SOURCE               does every fault still fit the tree? Builds nothing.
 #   run.sh plant SOURCE WORK [NAME…]  plants all, or those whose names hold one of these; prints a table. What an earlier run

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Random cases of the soup fuzzer: no bit of any exact mask method may be other than the truth, which a judge computes
 // from its definition in integers, without any code of the program's.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Exact areas of soups on a lattice: what must not change them, and what point samples say.
 
 #include "tests/unit/exact_area_soups.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 // Does a way from p meet a triangle? Evaluated literally in GMP's rationals: another library and another formula than

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Spheres and suns, which every view sample sees otherwise, where nothing is in general position: every bit of the
 // methods that do them is the exact decision on the light points of its view sample, without tolerance.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Every pair of lamps with panels in, near and through their planes, with mixed magnitudes and needles: the mask
 // methods against the exact decision, without tolerance.
 

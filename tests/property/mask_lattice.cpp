@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The mask methods where nothing is in general position: every pair equals the exact decision, without tolerance.
 
 #include "tests/agreement/volumes/light_span.hpp"

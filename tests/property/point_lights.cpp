@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // edge-scatter on both engines under lights whose samples form no rows: every pair equals the exact decision, without
 // tolerance.
 

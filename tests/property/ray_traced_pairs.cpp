@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Every pair of a small picture, ray caster against the exact decision: away from exact zeros Embree's robust mode is
 // off by rounding alone.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A scene scaled by a power of two asks the ray caster the same questions, and floats hold it exactly: every bit stays,
 // over all of float32's range. What Embree's float32 cannot hold is refused, or decided exactly.
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The Python module against the program and against itself: module.py PENUMBRA SOURCE."""
 
 import copy

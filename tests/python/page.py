@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Runs the code of docs/python.md from top to bottom, as a reader would: page.py PENUMBRA SOURCE. Its last lines say what must
 have come of it."""
 

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: Apache-2.0
 # The program under AddressSanitizer and UndefinedBehaviorSanitizer: every method on the shipped scenes, and every command
 # once. For CI, where the whole suite under sanitizers (preset asan-ubsan, half an hour of two cores) is too long.
 #   smoke.sh SOURCE WORK          builds `penumbra` and `penumbra-import` into WORK, and runs them there

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: Apache-2.0
 # The tests under ThreadSanitizer, with a TBB that is instrumented too: without it every loop would look like a race.
 #   tests/sanitizers/thread.sh WORK [CTEST ARGS…]     default: -L quick -j2
 # Fetches Debian's source of TBB (that needs a deb-src line for apt), builds it and the project into WORK, once.

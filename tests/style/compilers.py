@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Do all presets configure, and does everything compile as `clang`, `fuzz`, `coverage` and a Debug build would have it? Without
 building them:
 

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: Apache-2.0
 # Fails if clang-format would change any C++ source or header, structs that shaders share among them.
 #   format.sh SOURCE          names what it would change
 #   format.sh SOURCE --write  changes it

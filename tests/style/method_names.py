@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """method_names.py SOURCE PROGRAM: fails where app/, bench/, compare/ or a script of theirs names a shadow method in a string. What
 there is to know of a method comes from its family's table; only what users get if they choose nothing is named."""
 

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """one_definition.py SOURCE: no two files define different types of one name in one namespace.
 
 Compilers see one file at a time, and linkers keep one of all constructors and destructors of a name: with two types of that

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """spdx.py SOURCE [--write]: checks that every source file names its licence at its begin, in the form of SPDX. Prints the files that do not and
 exits with 1; with --write, adds the line to them. REUSE.toml names the licence of all other files."""
 import pathlib

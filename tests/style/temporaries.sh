@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: Apache-2.0
 # Views of temporaries that are gone: a range-for over what a temporary's function returned (C++20 keeps the last temporary of
 # a range alive, not those before it), and a span or string_view that is kept of a temporary that owns what it shows. Both
 # compile without a warning, and read a dead stack frame.

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: Apache-2.0
 # clang-tidy over sources, and over the headers of ours that those include: any finding fails.
 #   tidy.sh SOURCE BUILD           all, compiled as g++ compiles them: a target's files as one
 #   tidy.sh SOURCE BUILD changed   what this branch changed since it left its upstream; on the upstream itself the last commit

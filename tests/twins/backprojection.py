@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Backprojection methods against twins in numpy (the module penumbra must be found).
 
 Each twin is written from its paper and shares nothing with the program but how wide a map's window is: depths are those of

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The filtering map methods against numpy, from their papers, on depths of parallelograms that are computed and not drawn.
 The light is a square of half-size LIGHT at height TOP over a level floor; everything is in the light's frame:
 x and y across, z the depth below its plane."""

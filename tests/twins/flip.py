@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """FLIP (Andersson et al. 2020) in numpy against what `compare` says of the pictures that it writes: argv is the program, a scene.
 
 Written from the paper, with whole two-dimensional filters where the program has rows and columns. Both work in double on the same

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """layered-attenuation against a twin in numpy (the module penumbra must be found), from Agrawala, Ramamoorthi, Heirich and Moll
 2000: which light samples see a texel of the centre's image, by the texel of each sample's own map in which it lies.
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """ssao and hbao against numpy, from their papers: Mittring 2007 (as Akenine-Moeller et al. 2008 tell it) and Bavoil et al. 2008.
 Depths of the picture are those of its view samples; the eye's space is the camera's, written down again."""
 

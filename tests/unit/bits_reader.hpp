@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 // `--bits` files as tests read them; visibility/masks/bits_file.hpp has the format.

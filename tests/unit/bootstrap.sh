@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: Apache-2.0
 # Which packages cmake/bootstrap.sh installs, with a dpkg-query and an apt-get of this test's own.
 #   bootstrap.sh SOURCE WORK
 set -euo pipefail

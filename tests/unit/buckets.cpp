@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Sorting in linear time on all cores: against what std::stable_sort and a search from the front make of it.
 
 #include "base/buckets.hpp"

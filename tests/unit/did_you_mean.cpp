@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which name a misspelt one is near to.
 
 #include "base/did_you_mean.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where a dome's picture is in the sky, which light samples it gets, and the faces that share them.
 
 #include "tests/unit/dome_stage.hpp"

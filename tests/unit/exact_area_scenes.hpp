@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 // Scenes and view samples for the tests of exact areas. All coordinates are multiples of 1/64 and the scene's bounding

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `exact` as a method: pixels asked for and not, rules, options, the same bits however it is cut in tiles.
 
 #include "reference/methods.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "reference/hiding_objects.hpp"
 
 #include "tests/unit/ray_traced_masks.hpp"

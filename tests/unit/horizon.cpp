@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The horizon of a view sample, over masks of light samples in rows and in tiles.
 
 #include "engines/vectors/horizon.hpp"

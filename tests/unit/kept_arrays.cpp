@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which arrays are kept for the next, and how many.
 
 #include "base/kept_arrays.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which casters may meet the disks that a few view samples see of a sphere, against the disks themselves.
 
 #include "engines/vectors/disk_plane.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Lanes that are kept, side by side: every choice of them, on every vector unit that this processor has.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Light samples anywhere as the device has them: in rows, four slots at a time.
 
 #include "volumes/scatter/point_rows.hpp"

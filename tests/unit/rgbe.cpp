@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Radiance pictures: headers, the three ways that scan lines are written, and what is no such picture.
 
 #include "base/error.hpp"

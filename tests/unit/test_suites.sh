@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: Apache-2.0
 # What ctest is told of an executable's tests (cmake/test_suites.cmake): labels, names, parts, what is skipped and what fails.
 #   test_suites.sh SOURCE WORK
 set -euo pipefail

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Textures from files: what each kind of picture means, what is refused and in which words, and that nothing is lost
 // when they are written and read again.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Weights of light samples: they add up, they are those of the texel at the sample, and they change nothing where
 // nothing should change.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Leaves of hierarchies that are made when somebody asks for them.
 
 #include "engines/vectors/wide_leaves.hpp"

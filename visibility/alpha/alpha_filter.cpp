@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Attenuation of masks by surfaces with holes and translucent surfaces: for each view sample, finds the triangles in
 // the pyramid from the view sample to the visible part of the light; for each of them, in double, the light samples not
 // certainly missed; for each of those, applies the exact predicate and the texel's alpha.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A triangle is met on no segment from p to the light if a plane separates it from the hull of both. As for any two
 // convex bodies (Gottschalk, Lin, Manocha 1996), the planes of their faces are tried: those through p and two
 // neighbouring corners of the light, the light's own, the carrier's (objects below it are on no segment to a light

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Layers of translucent surfaces in front of each pixel's carrier.
 
 #include "visibility/alpha/panes.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Clips convex polygons at axis-parallel lines (Sutherland and Hodgman 1974).
 
 #include "visibility/lights/convex_polygon.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Planar lights in the float32 frame of device passes, with bounds on the distance of their stored samples.
 
 #include "visibility/lights/device_light.hpp"

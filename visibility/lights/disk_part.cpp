@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Intersection of a convex polygon with the unit disk, edge by edge.
 
 #include "visibility/lights/disk_part.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Lambert's sum on vectors of doubles: the operations of form_factor.cpp in their order, without contraction, so that
 // each lane has the bits of the scalar code. Included once for each target. Inside visibility/lights/ only.
 

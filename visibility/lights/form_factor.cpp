@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Form factors of polygons, disks and ellipses in closed form (Lambert 1760; Baum et al. 1989); form_factor.hpp has the
 // equations.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Condition (1) of the truth of a pair for many light points, in double with an error bound, exact where needed.
 
 #include "visibility/lights/horizon.hpp"

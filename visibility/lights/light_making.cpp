@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Makes lights from scenes, independent of their kind. Frames, outlines and light samples: lights/kinds/.
 
 #include "visibility/light_samples.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Divides planar lights into parts (Yang et al. 2009, section 5) by a grid over their bounding rectangle.
 
 #include "visibility/lights/light_parts.hpp"

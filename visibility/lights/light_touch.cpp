@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Finds triangles that touch a light's plane close to its samples, conservatively, by a tree of boxes.
 
 #include "visibility/lights/light_touch.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Form factors of parts of a light, a vector of parts at a time. Lanes repeat the operations of UnshadowedLight::part
 // in their order, including cuts at the horizon (FormFactorLoop).
 #include "visibility/lights/part_form_factors.hpp"

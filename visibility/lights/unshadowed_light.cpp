@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Form factors of an unoccluded light and of its parts, with horizon and emitting side.
 
 #include "visibility/lights/unshadowed_light.hpp"

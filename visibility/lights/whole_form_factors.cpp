@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Form factors of a whole light at many elements, a vector of elements at a time. Lanes repeat the operations of
 // unshadowed_light.cpp and form_factor.cpp in their order, without contraction, so that all have the bits of the scalar
 // code. Elements whose horizon cuts the light, elements so close to the light's plane that double does not decide their

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Writes masks of visible light samples as a file of packed bits.
 
 #include "visibility/masks/bits_file.hpp"

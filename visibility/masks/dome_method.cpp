@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Domes for methods that support rectangles infinitely far away: evaluates the faces of a cube one after the other.
 
 #include "visibility/masks/dome_method.hpp"

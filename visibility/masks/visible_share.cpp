@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // V of masks: counts of bits, or sums of weights.
 
 #include "visibility/masks/visible_share.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "visibility/seen/light_shafts.hpp"
 
 #include "base/assert.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "visibility/seen/placed_meshes.hpp"
 
 #include <glm/common.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "visibility/seen/seen_part.hpp"
 
 #include "base/memory.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "visibility/seen/view_rays.hpp"
 
 #include "mesh/predicates.hpp"

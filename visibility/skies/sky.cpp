@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Flux from regions of a dome's picture: sides on the borders of faces from tables, other sides texel by texel.
 
 #include "visibility/skies/sky.hpp"

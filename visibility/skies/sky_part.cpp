@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Sums flux over trapezoids of a sweep, by their sides.
 
 #include "visibility/skies/sky_part.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Integrals of a picture in latitude and longitude along great circles, by prefix sums and closed forms: Green's
 // theorem on the sphere. Not from a paper; for one radiance it becomes Lambert's sum
 // (visibility/lights/form_factor.hpp).

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Groups boxes by Morton order: C. Lauterbach, M. Garland, S. Sengupta, D. Luebke, D. Manocha, Fast BVH construction on
 // GPUs, 2009; groups as the items that the surface area heuristic divides: J. Pantaleoni, D. Luebke, HLBVH, 2010. In
 // those papers all cells have one size; here they are as large as their boxes allow, and dense ones get their own grid.

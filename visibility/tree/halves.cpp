@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Selection of the smallest items along an axis, by counting on vector units.
 
 #include "visibility/tree/halves.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Builds a tree over many boxes with the divisions of an existing tree of triangles.
 
 #include "visibility/tree/tree_along.hpp"

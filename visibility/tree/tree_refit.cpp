@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Refitting of a hierarchy's boxes for the next frame, and its cost by the surface area heuristic.
 
 #include "visibility/tree/tree_refit.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Hierarchies as texels for shaders, with boxes rounded outward.
 
 #include "visibility/tree/tree_texels.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Builds an eight-wide bounding volume hierarchy by the binned surface area heuristic: I. Wald, On fast construction of
 // SAH-based bounding volume hierarchies, 2007; eight children as in Wald, Benthin, Boulos, Getting rid of packets,
 // 2008: the largest child is divided until there are eight. The divided items are groups of neighbouring boxes

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // View samples (visibility/view_samples.hpp) by traversal of a tree. A pixel that cover() gives to a triangle because
 // of rounding is outside of the triangle by less than a pixel, as rasterisers assume, too
 // (render/visibility_buffer.vert): boxes are enlarged by that much.

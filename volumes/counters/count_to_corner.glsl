@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Counts D at the corner of the light's frame. Included by count_edges.comp, after its data about the view sample.
 
 // Returns the number of triangles that the segment from p to c0 meets, one lane for each triangle (Woop et al. 2013: in

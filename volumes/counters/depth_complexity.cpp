@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // S. Laine, T. Aila, U. Assarsson, J. Lehtinen, T. Akenine-Möller, Soft shadow volumes for ray tracing, 2005: counters
 // of light samples that change at silhouette edges. Departures (docs/depth-complexity.md): candidates come from a
 // hierarchy of edges instead of wedges in a hemicube, signed multiplicities make it correct for any soup, the constant

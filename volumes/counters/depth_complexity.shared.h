@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Structs shared by C++ and GLSL (scalar layout): questions of the depth-complexity pass to the host.
 #ifdef __cplusplus
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // V. Forest, L. Barthe, M. Paulin, Accurate shadows by depth complexity sampling, Computer Graphics Forum 27 (2), 2008:
 // counters of light samples in a few packed words for each view sample, changed by the silhouettes of the light's
 // centre where their wedges are on the screen; shadow volumes of the centre give the constant. Departures: integers in

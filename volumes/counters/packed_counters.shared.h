@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Shared by C++ and GLSL: packing of counters of light samples (docs/depth-complexity.md, variant=forest).
 #ifdef __cplusplus
 #pragma once

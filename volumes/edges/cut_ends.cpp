@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Exact places where edges cross a light's plane, in rationals, for areas that rounding to float would affect.
 
 #include "volumes/edges/cut_ends.hpp"

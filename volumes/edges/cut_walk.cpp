@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Conservative side of a box relative to a light's plane, and the triangles whose boxes the plane may cut.
 
 #include "volumes/edges/cut_walk.hpp"

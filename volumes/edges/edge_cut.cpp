@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Cuts edge records at a light's plane, and finds the edges that cut triangles have in the plane
 // (docs/signed-crossings.md, cut edges).
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Records of signed edges: an edge with the planes of two of its triangles, computed on demand from positions and
 // casters.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Chooses the edge records of a light: with or without its body, and cut at its plane if something lies behind it.
 
 #include "volumes/edges/edge_sides.hpp"

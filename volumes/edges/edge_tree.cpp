@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Builds hierarchies over edge records with cones of normals, and converts them to texels for devices.
 
 #include "volumes/edges/edge_tree.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The window of a light: a parallelogram of its plane, exact in the stored numbers.
 
 #include "volumes/edges/light_window.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Cones of normals of edge records, on vector units, and their unions.
 
 #include "volumes/edges/normal_cones.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Normals of triangles with each coordinate rounded once from its exact value.
 
 #include "volumes/edges/plane_normal.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Effects of a carrier's plane on sums over edges at a view sample that rounding moved off the plane.
 
 #include "volumes/raster/carrier_horizon.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Determinants in double with a bound of their error (volumes/README.md, Doubt).
 
 struct Value {

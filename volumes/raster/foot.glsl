@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Projection of points onto the light from a receiver (docs/coverage.md). Requires `push`.
 
 /// The orthogonal projection of p onto the light's plane, and the inverse of the light's height over p.

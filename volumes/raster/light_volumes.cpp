@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Shadow volumes of any triangle soup (F. Crow 1977; P. Bergeron 1986 for open meshes): a volume for each triangle,
 // their common faces removed by the signed multiplicity of edges.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // View samples in cells of directions from a light point, on the faces of a cube, clustered by depth.
 
 #include "volumes/raster/receiver_cells.hpp"

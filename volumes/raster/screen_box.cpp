@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Screen boxes of volumes' faces. Clips in homogeneous coordinates (I. Sutherland, G. Hodgman, Reentrant polygon
 // clipping, 1974), so that points at infinity and faces that contain the eye are no special cases; then takes the
 // smallest of the rectangles that have an edge along one of the polygon's.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // T. Aila, T. Akenine-Möller, A hierarchical shadow volume algorithm, Graphics Hardware 2004: a tile whose box meets no
 // face of a shadow volume is inside or outside it as a whole. Departures: boxes are those of the tile's view samples,
 // not of its pixels between the least and the largest depth; all volumes are tested together; a hierarchy over tiles

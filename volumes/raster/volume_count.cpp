@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Shadow volumes: F. Crow, Shadow algorithms for computer graphics, 1977; counted per pixel, T. Heidmann, Real shadows,
 // real time, 1991; beyond the pixel's surface (B. Bilodeau, M. Songy 1999; J. Carmack 2000) and out to infinity (C.
 // Everitt, M. Kilgard, Practical and robust stenciled shadow volumes, 2002). Departures: integers in a buffer instead

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Structs shared by C++ and GLSL: faces of shadow volumes, view samples, push constants.
 #ifdef __cplusplus
 #pragma once

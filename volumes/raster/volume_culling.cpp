@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reduced shadow volumes: D. B. Lloyd, J. Wendt, N. Govindaraju, D. Manocha, CC shadow volumes, EGSR 2004; M. Stich, C.
 // Wächter, A. Keller, Efficient and robust shadow volumes using hierarchical occlusion culling and geometry shaders,
 // GPU Gems 3, 2007; S. Laine, Split-plane shadow volumes, Graphics Hardware 2005. Departures: a caster is tested

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The faces of shadow volumes on the screen, after C. Everitt and M. Kilgard 2002: sides to infinity, caps, far ends.
 // Departure: the far end is a fan for each silhouette edge, not a cap for each triangle (volumes/README.md, Counting).
 

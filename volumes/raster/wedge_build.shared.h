@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Structs shared by C++ and GLSL (scalar layout): penumbra wedges that the device builds.
 #ifdef __cplusplus
 #pragma once

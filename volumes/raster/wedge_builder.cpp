@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The host's half of silhouette_*.comp and wedge_build.comp: silhouettes and penumbra wedges on the device or the host.
 // docs/wedges.md, On the device.
 

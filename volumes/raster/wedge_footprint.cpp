@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Screen footprints of penumbra wedges. A wedge is cut by the receivers' box and by a plane in front of the nearest
 // receiver, so no corner is behind the eye, and an eye inside the wedge is no special case. The footprint is the convex
 // hull of the projected remainder.

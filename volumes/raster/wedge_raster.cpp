@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Host of the passes that rasterise penumbra wedges and add up a fragment shader's integers at each receiver.
 
 #include "volumes/raster/wedge_raster.hpp"

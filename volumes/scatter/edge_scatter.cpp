@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Depth complexity by silhouette edges (Laine et al. 2005), for any soup by signed multiplicities (Bergeron 1986), on a
 // grid of light samples, or on arbitrary light samples in rows of similar height: docs/edge-scatter.md.
 

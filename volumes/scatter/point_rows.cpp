@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Sorts arbitrary light samples into rows of similar height with start tables, for scatter_points.comp.
 
 #include "volumes/scatter/point_rows.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Constants and structs shared by C++ and GLSL (scalar layout): arbitrary light samples, and questions about them.
 #ifdef __cplusplus
 #pragma once

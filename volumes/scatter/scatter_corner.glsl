@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The depth at the light's corner, to which changes are added. Part of scatter_edges.comp and scatter_points.comp.
 
 // Opens the pixel if p is within rounding of a triangle whose side is not certain: half of all directions from p depend

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Selects the edges of a list that affect the view samples of a subgroup, one lane for each edge, and scatters them.
 // Part of scatter_edges.comp and scatter_points.comp.
 

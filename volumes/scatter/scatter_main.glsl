@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Computes a few view samples, from lists to bits. Part of scatter_edges.comp and scatter_points.comp.
 
 void main() {

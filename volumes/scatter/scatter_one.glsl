@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One projected edge for one view sample: its changes, and the samples that rounding leaves open because of it. Part of
 // scatter_edges.comp and scatter_points.comp.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Arbitrary light samples, in rows (point_rows.hpp): changes by one edge, and samples that rounding leaves open. Part
 // of scatter_points.comp.
 #include "volumes/scatter/point_rows.shared.h"

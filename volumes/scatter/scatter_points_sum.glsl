@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Converts changes to depths, and depths to masks, for arbitrary light samples. Part of scatter_points.comp.
 
 uint mask_word(uint pixel, uint word) { return (push.first_pixel + pixel) * (band_count() * kMaskWords) + first_word() + word; }

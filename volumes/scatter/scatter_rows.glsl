@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Light samples in rows of a rectangle: changes by one edge, and samples that rounding leaves open. Part of
 // scatter_edges.comp.
 

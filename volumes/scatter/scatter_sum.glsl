@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Converts changes to depths, and depths to masks, for light samples in rows of a rectangle. Part of
 // scatter_edges.comp.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Shared by scatter_edges.comp and scatter_points.comp: their inputs, and a lane's data about its view sample.
 
 layout(constant_id = 2) const uint kGroupWidth = 4;       // pixels; the group's height is lanes / width

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Twin of coverage_table.glsl: places of the table's points, and the shares beyond the edges between them.
 
 #include "volumes/soft/coverage_table.hpp"

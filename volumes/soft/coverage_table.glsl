@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Points of a light for looking up edges (Assarsson and Akenine-Möller 2003: a 4D table, here 32⁴). Twin of
 // coverage_table.cpp. No point is at the centre, and each is in the quadrant of all places that are moved to it: so a
 // cone's sector changes by less than half a light, and its orientation is known. Points on the rim stay there.

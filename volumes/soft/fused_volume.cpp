@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // U. Assarsson, M. Dougherty, M. Mounier, T. Akenine-Möller, An optimized soft shadow volume algorithm with real-time
 // performance, Graphics Hardware 2003: occluders one by one, instead of all together. Course notes 1.3, 5.3.2.2.
 

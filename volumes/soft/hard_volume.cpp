@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Crow 1977, Heidmann 1991, Everitt and Kilgard 2002: V is 1 where no shadow volume of the light's centre is counted.
 // volume_count.cpp documents the count and its departures. ZP+ is S. Hornus, J. Hoberock, S. Lefebvre, J. Hart, ZP+:
 // correct z-pass stencil shadows, I3D 2005: there the counts on the near plane are drawn from the light; here the near

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Cuts a rectangle light into n × n equal rectangles (Assarsson, Dougherty, Mounier and Akenine-Möller 2003).
 #include "volumes/soft/light_parts.hpp"
 

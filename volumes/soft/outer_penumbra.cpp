@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Depth of a point in the outer penumbra of an edge (E. Haines, Soft planar shadows using plateaus, 2001), on the
 // point's own plane.
 

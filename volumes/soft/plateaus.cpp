@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // E. Haines, Soft planar shadows using plateaus, Journal of Graphics Tools 6 (1), 2001; course notes, 5.3.1: the hard
 // shadow of the light's centre, darkened outward by disks at the silhouette's vertices and sheets between them, with
 // the sine of S. Parker et al. 1998. Departures: any receiver, each on its own plane, where the paper draws the disks

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Constants shared by C++ and GLSL: plateaus.
 #ifdef __cplusplus
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Penumbra wedges of Akenine-Möller and Assarsson 2002 (wedge-ramp), with shared sides, and their ramps in double.
 
 #include "volumes/soft/ramp_wedges.hpp"

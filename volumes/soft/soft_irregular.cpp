@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // G. Johnson, W. Hunt, A. Hux, W. Mark, C. Burns and S. Junkins, Soft irregular shadow mapping: fast, high-quality, and
 // robust soft shadows, I3D 2009: an irregular shadow map decides the umbra of the light's centre; the penumbra wedge of
 // each silhouette edge of the centre is drawn, in light space, over view samples in a grid shaped like the light's

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // U. Assarsson, T. Akenine-Möller, A geometry-based soft shadow volume algorithm using graphics hardware, SIGGRAPH
 // 2003: shadow volumes of the light's centre count the layers there; a penumbra wedge for each edge finds the pixels
 // where the edge changes that count for a part of the light, and adds the part. Departures: any soup, by signed

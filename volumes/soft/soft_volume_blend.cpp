@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // V. Forest, L. Barthe, M. Paulin, Realistic soft shadows by penumbra-wedges blending, Graphics Hardware 2006: four
 // quarters of the light at once, their common corner is the point from which silhouettes are seen, and in each quarter
 // a box around the covered part reduces the contributions of further occluders. Departures: an occluder is an object of

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Shared by C++ and GLSL: sums of one occluder's edges at one receiver, in 64-bit words.
 #ifdef __cplusplus
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Checks the invariant `coverage` (docs/coverage.md): the sums over silhouettes equal the sums over triangles, or lie
 // between the exact area of the union and the sum of layers. Not from a paper.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Computes the hidden part of a light triangle by triangle: projects each triangle to the light's plane, clips by
 // Sutherland and Hodgman 1974, and sums areas. Used to check the sums over silhouettes.
 

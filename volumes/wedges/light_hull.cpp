@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Constructs a convex hull around a light: a circumscribed regular polygon (disk, ellipse) or icosahedron (sphere),
 // enlarged by a bound of the rounding error. Not from a paper.
 

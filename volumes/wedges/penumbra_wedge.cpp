@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Constructs penumbra wedges: `original` after Assarsson and Akenine-Möller 2003 (with splits where the paper's planes
 // do not exist), `tight` as the facets of the convex hull of the penumbra (not from a paper). Departs from the paper:
 // every plane is checked by exact signs and rounded outward.

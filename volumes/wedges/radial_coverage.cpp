@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Computes the coverage integral of soft shadow volumes: U. Assarsson, T. Akenine-Möller, "A geometry-based soft shadow
 // volume algorithm using graphics hardware", 2003. Departs from the paper: instead of a table of arc tangents for
 // sectors, a sector of a polygon is a linear function along each side of the polygon; C need not be the light's centre.

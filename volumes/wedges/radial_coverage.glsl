@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Computes the part of a light that one edge takes or gives back as seen from p (U. Assarsson, T. Akenine-Möller 2003):
 // the cone from the light's centre over the edge's projection, cut by the light, less the triangle within; derived in
 // docs/coverage.md. The light is [−1, 1]² or the unit disk in its own coordinates, with centre (0, 0).

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Computes soft shadow volumes (U. Assarsson, T. Akenine-Möller 2003) at one view sample and without a raster. Beyond
 // the paper: arbitrary triangle soups, by signed multiplicities; exact decisions where a rounded one would change the
 // result by a whole light; another reference point where an edge ends at the light's centre; also silhouettes from the

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Integrates a light's texture over regions by Green's theorem, with prefix sums of rows of texels. Not from a paper;
 // derived in docs/coverage.md.
 

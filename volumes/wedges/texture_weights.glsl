@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Integrals of a rectangle light's texture, constant in each texel. Twin of texture_weights.cpp, which fills `table`:
 // rows of texels from the bottom, P(x) of each row = ∫ luminance from −1 to x, and PP = ∫ P; all for a light of weight
 // 1.

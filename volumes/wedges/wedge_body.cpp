@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Cuts wedges by a box, and bodies by a horizontal plane, for viewing.
 
 #include "volumes/wedges/wedge_body.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Selects the silhouette edges that cast penumbrae and derives their crop planes (Lehtinen et al. 2006; extended to
 // triangle soups, see wedge_casters.hpp).
 

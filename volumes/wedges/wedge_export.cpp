@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Writes wedges, light and violations as a mesh file for viewing.
 
 #include "volumes/wedges/wedge_export.hpp"

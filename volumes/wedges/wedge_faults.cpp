@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Builds wedges of the construction of Assarsson and Akenine-Möller 2003 with one deliberate fault each, for tests of
 // the validation.
 

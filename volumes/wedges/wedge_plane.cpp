@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Decides by exact signs whether a half-space contains a penumbra, and rounds half-spaces outward until it does
 // (wedge_plane.hpp derives the criterion). Not from a paper.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Clips the box by one half-space after another (Sutherland and Hodgman, on all faces at once): corners beyond the
 // half-space are removed, edges that cross its plane get a corner shared by both their faces, and the new face is the
 // loop of the edges left on the plane.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Proves the invariants of a single wedge with rational arithmetic, independent of the wedge's construction: witnesses
 // against planes, a second search for a separating direction (Gilbert 1966), sampled points of the penumbra.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Measures the area of wedges against the area of the penumbra on receiver planes (wedge_tightness.hpp derives the
 // penumbra's cross-section). Not from a paper.
 

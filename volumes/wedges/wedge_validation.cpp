@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Proves the invariants of wedges, of their split pieces and of silhouette loops (wedge_validation.hpp lists them). Not
 // from a paper.
 

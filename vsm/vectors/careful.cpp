@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // View-sample mapping on a processor: one triangle for one view sample in double, at any position: at or below p's
 // height, through the light's plane, an edge within float rounding of a light sample. Uses the half-planes of
 // docs/view-sample.md.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // View-sample mapping on a processor: a vector of triangles for one view sample, and their spans of light columns row
 // by row (scan conversion). Cases that float arithmetic cannot decide go to test_carefully.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // View-sample mapping on a processor: places of a vector of triangles on the light as one view sample sees them. Inside
 // vsm/ only.
 

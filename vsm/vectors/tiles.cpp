@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // View-sample mapping on a processor for light samples that are not in rows: each triangle is tested against the tiles
 // that it may cover, a vector of light samples at a time. docs/view-sample.md, "Light samples anywhere".
 

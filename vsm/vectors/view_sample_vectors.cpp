@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // View-sample mapping on a processor: its lists, and their use for each cluster. vectors::MaskMethod does the rest.
 
 #include "vsm/vectors/view_sample_vectors.hpp"

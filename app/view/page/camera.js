@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The camera: where it looks, and how it is moved by hand. The same formulas as the program's (visibility/view_samples).
 let view = { eye: [0, 0, 1], target: [0, 0, 0], up: [0, 1, 0], verticalFov: 45, shift: [0, 0] };
 let pictureSize = [512, 512];

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The socket: JSON both ways, and pictures as binary messages. Changes that follow one another within a frame of the screen
 // go out as one, the newest.
 const token = new URLSearchParams(location.search).get("token") || "";

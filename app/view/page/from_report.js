@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A comparison's report opens this page with what it wants to see in the address: #scene=…&a=…&b=…&samples=….
 
 function takeReport(state) {

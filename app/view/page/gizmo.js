@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Every light where it is, over the picture, and handles on the chosen one: arrows along the axes, squares for planes, a disk
 // for the picture's plane, a diamond to aim, dots for the size.
 const names = ["X", "Y", "Z"], axes = [[1, 0, 0], [0, 1, 0], [0, 0, 1]], colors = ["#ff5a52", "#5fd35f", "#5b9dff"];

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Lights by numbers: what a light is, changes of it, and the way back.
 let lights = [], off = [], solo = "", history = [], undone = [], lightsBefore = "[]";
 const kinds = ["rectangle", "ellipse", "disk", "polygon", "sphere", "sun"];

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The state that the server tells, and the controls that are not a room of their own.
 function trouble(text, lasting = true, kind = "bad") {
   byId("trouble").textContent = text;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which methods are shown, with their options, as the program describes them.
 let methods = [];
 const slots = { a: { select: byId("method"), options: byId("options-a"), given: {} }, b: { select: byId("method-b"), options: byId("options-b"), given: {} } };

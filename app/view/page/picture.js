@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The picture on its canvas, which has the final picture's pixels; one or two answers, by wipe or side by side.
 let shown = null;  // header, and bitmaps by what they show
 const canvas = byId("picture"), overlay = byId("overlay");

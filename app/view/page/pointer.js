@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the pointer and the keys do on the picture.
 let dragging = null, lastPlace = null, stillTimer = 0;
 const pointers = new Map();

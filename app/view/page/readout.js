@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a pixel says, and what pictures cost.
 let asking = null, wanted = null, pointed = null;
 const frameTimes = [];

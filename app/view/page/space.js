@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The scene from outside, drawn by three.js: meshes, lights, what the camera sees, silhouettes, shadow volume, wedges, defects.
 // Places are relative to the scene's origin, as the program's own numbers are.
 let space = null;          // renderer, groups and answers; null until the view was opened

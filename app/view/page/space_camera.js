@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The eye outside: it turns around a point of the scene, by pointer and by keys.
 const outside = { target: [0, 0, 0], away: [0, 0, 1], size: 1 };
 const spaceCanvas = byId("space-canvas");

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the 3D view draws, from the server: meshes, their defects, and the shadows of the chosen light, each a header and
 // arrays of numbers. One question at a time, of the newest state.
 const spaceArrays = { float32: Float32Array, uint32: Uint32Array, int32: Int32Array };

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Figures of L. Atty, N. Holzschuch, M. Lapierre, J.-M. Hasenfratz, C. Hansen, F. Sillion, *Soft shadow maps: efficient
 sampling of light source visibility*, Computer Graphics Forum 25 (4), 2006: error and work of `soft-shadow-map`.
 

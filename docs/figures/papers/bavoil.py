@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Figures of L. Bavoil, S. Callahan, C. Silva, *Robust soft shadow mapping with depth peeling*, University of Utah,
 UUSCI-2006-028: layers, gap filling and midpoints. Strands of hair take the place of the paper's dandelion."""
 

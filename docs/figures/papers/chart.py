@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Charts of measured numbers on a Drawing: axes, curves with a marker each, bars, pictures."""
 
 from math import log10

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Figures of E. Eisemann, U. Assarsson, M. Schwarz, M. Wimmer, *Casting shadows in real time*, SIGGRAPH Asia 2009 courses: what
 filters, micropatches, slices and the fusion of occluders get wrong."""
 

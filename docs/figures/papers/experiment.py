@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Scenes of the papers' figures, runs of `penumbra compare` on them, and what is measured in its pictures.
 
 Truth is V of `edge-scatter:rows=exact`, exact areas, at every pixel of the same run. The floor is looked at from just above it

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Measures the numbers of the papers' figures with a built program, and draws the figures. Python's standard library and the
 bunny of Debian's glmark2-data are all that it needs.
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The papers' figures, and others of measured numbers: for each a module has how it is measured and how it is drawn. NAME.json beside this file has the measured
 numbers, NAME.svg the figure drawn of them; docs/figures/make.py draws, docs/figures/papers/measure.py measures."""
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """How pictures' cost grows with triangles, pixels and lights: processor seconds (user + system, all cores) of whole runs of
 `penumbra render`, which a busy machine changes less than the clock on the wall, and the largest resident set."""
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Figures of M. Schwärzler, *Real-time soft shadows with adaptive light source sampling*: maps where they are needed.
 The paper gives no epsilon; figures show what it does."""
 

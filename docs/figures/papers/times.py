@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Error against time of every method, by penumbra-bench: on the default scene and on the one whose penumbrae are widest."""
 
 import json

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Figures of B. Yang, J. Feng, G. Guennebaud, X. Liu, *Packet-based hierarchal soft shadow mapping*, EGSR 2009: `packet`,
 `contour`, and what they are compared with."""
 

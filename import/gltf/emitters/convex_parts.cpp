@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Divides an emitting mesh into flat convex parts (Hertel and Mehlhorn 1983; convex_parts.hpp has the departures).
 
 #include "import/gltf/emitters/convex_parts.hpp"

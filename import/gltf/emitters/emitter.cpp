@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Recognises emissive meshes as area lights: flat convex outlines, spheres, or several convex parts.
 
 #include "import/gltf/emitters/emitter.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Recognises flat convex emissive meshes as rectangle or polygon lights, within a given rounding of positions.
 
 #include "import/gltf/emitters/flat_light.hpp"

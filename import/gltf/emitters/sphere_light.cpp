@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Recognises meshes that approximate a sphere, by a least-squares fit of the centre. Not from a paper.
 
 #include "import/gltf/emitters/sphere_light.hpp"

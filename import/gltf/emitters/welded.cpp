@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Merges equal positions of a mesh and divides it into connected parts.
 
 #include "import/gltf/emitters/welded.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Computes contours of the texels that shade by marching squares, integrated around the light's centre: Guennebaud,
 // Barthe and Paulin 2007, "High-quality adaptive soft shadow mapping". Departures: a texel is compared with the
 // receiver's plane in the texel's direction (taps.glsl); whether the light's centre is inside a contour follows from

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Shared by C++ and GLSL: push constants of contour.comp after LookupPush, and the contents of its products' buffers.
 #include "maps/host/map_view.shared.h"
 #ifndef PENUMBRA_MAPS_CONTOUR  // included more than once by shaders, hence an include guard in place of #pragma once

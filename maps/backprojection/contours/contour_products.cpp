@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Converts a planar light to the form used for clipping contours, and uploads it.
 
 #include "maps/backprojection/contours/contour_products.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Assembles `contour` and `packet`: shader constants, pyramids and products from the options.
 
 #include "maps/backprojection/contours/contour_recipe.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Contours of the texels that shade a receiver, and the area of the light hidden by them. Included by contour.comp,
 // after the state of its packet.
 //

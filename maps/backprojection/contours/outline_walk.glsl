@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Search for the edges of a kernel: cell by cell, or below nodes of a pyramid. Included by contour.comp.
 
 // Returns the rows of group_cells (the kernels of all members from `first` on) processed in this pass.

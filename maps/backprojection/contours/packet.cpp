@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Computes the contours of `contour` once for a packet of pixels and below the nodes of a multi-scale pyramid, with the
 // light cut into sub-lights with a map each: Yang, Feng, Guennebaud and Liu 2009, "Packet-based hierarchal soft shadow
 // mapping". Departures: those of contour; a texel makes a packet incoherent where the texel is near some pixel's plane

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Kernels of a packet's pixels, in cells, and the grouping of pixels that search for contours together. Included by
 // contour.comp.
 

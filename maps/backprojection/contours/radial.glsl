@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Part of the light that lies beyond an edge in its plane as seen from the light's centre: the sector between the rays
 // through the ends of the edge's part on the light, less the triangle (the coverage integral of Assarsson and
 // Akenine-Moller 2003, as used by Guennebaud, Barthe and Paulin 2007). An edge beside the light has none. The signed

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Projects texels of one map back onto the light: Guennebaud, Barthe and Paulin 2006, "Real-time soft shadow mapping by
 // backprojection". Departures: each texel is compared with the receiver's plane in its own direction (taps.glsl); up to
 // five faces replace one perspective image; parts of the light are added as integers; lights have any planar shape

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Shared by C++ and GLSL: push constants of backproject_peel.comp after LookupPush.
 #ifdef __cplusplus
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Keeps the light samples hidden by texels as bits: Schwarz and Stamminger 2007, "Bitmask soft shadows"; 2008, "Quality
 // scalability of soft shadow mapping" (rect, level). Departures: bits are the light samples of the command line, of any
 // number and pattern, and are decided one by one in place of look-up tables; quads are two triangles; the box of a

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Shared by C++ and GLSL: constants, and push constants of bitmask.comp after LookupPush.
 #ifdef __cplusplus
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Selection of the texels that hide light, and gap filling (Guennebaud, Barthe and Paulin 2006; the diagonal: Schwarz
 // and Stamminger 2007). A patch extends to its left and lower neighbours' patches where these hide light from the same
 // receiver: to the projection of their common border at the neighbour's depth, if farther out (edges, diagonal), or in

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Shared by C++ and GLSL: constants of fill.glsl.
 #ifdef __cplusplus
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Casts shadow rays through a layered depth image of the light's centre: Lischinski and Rappoport 1998, "Image-based
 // rendering for non-diffuse synthetic scenes"; Keating and Max 1999, "Shadow penumbrae for complex objects by
 // depth-dependent filtering of multi-layer depth images"; Agrawala et al. 2000 (ray tracing of layers). These rays use

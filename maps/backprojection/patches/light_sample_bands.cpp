@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Sorts the light samples into bands across the light (bucket sort), for queries by rectangle.
 
 #include "maps/backprojection/patches/light_sample_bands.hpp"

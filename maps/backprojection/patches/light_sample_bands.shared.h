@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Shared by C++ and GLSL: head of LightSampleBands' buffer.
 #ifdef __cplusplus
 #pragma once

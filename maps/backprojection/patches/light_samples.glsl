@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Light samples of LightSampleBands' buffer, in their order. Includers define SAMPLE_BANDS first, the buffer's binding.
 #include "maps/backprojection/patches/light_sample_bands.shared.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Micropatches (Guennebaud, Barthe and Paulin 2006): each texel of a map is a rectangle of its own extent at its own
 // depth, parallel to the face; seen from the receiver, the rectangle covers a rectangle of the light. Included after
 // kernel.glsl.

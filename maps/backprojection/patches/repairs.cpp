@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Options that separate the causes of error of three methods with one principle: patches of k layers whose fractions of
 // the light are added (backproject; backproject-peel with all texels), or whose bits are joined (bitmask).
 

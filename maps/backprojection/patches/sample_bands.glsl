@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Queries for the light samples in a rectangle or a triangle of the light's plane. Includers define SAMPLE_BANDS first,
 // the binding of LightSampleBands' buffer; hide_sample(j) is group_mask_main.glsl's.
 #include "maps/backprojection/patches/light_samples.glsl"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The patch as its bounding sphere, the light as a sphere or as the disk of its area that faces the receiver (Bavoil
 // and Silva 2006): the fraction of the light's cap of directions covered by the sphere's cap. Included after
 // group_kernel.glsl, light_table.glsl; the shader has own.radius, the light's radius, and own.ball, whether the light

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "maps/backprojection/soft_shadow_map/soft_units.glsl"
 
 // Coverage of the light by one occluder texel, for one receiver texel, in both forms of soft-shadow-map (Atty et al.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Separates occluders from receivers and fits a window to each (Atty et al. 2006).
 
 #include "maps/backprojection/soft_shadow_map/soft_scene.hpp"

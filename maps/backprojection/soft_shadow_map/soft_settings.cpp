@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Options of soft-shadow-map, and its description.
 
 #include "maps/backprojection/soft_shadow_map/soft_settings.hpp"

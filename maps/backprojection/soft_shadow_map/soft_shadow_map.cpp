@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Computes V in a map of the receivers: Atty, Holzschuch, Lapierre, Hasenfratz, Hansen and Sillion, "Soft shadow maps:
 // efficient sampling of light source visibility" (Computer Graphics Forum 25 (4), 2006). Departures: extents are
 // computed for each axis, so that light and map need not have the same aspect; the second pass draws the farthest

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Fraction of the light covered by patches, added as integers: low word, high word.
 
 // Return the covered and the visible fraction; 2^40 units are the whole light.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Builds layered depth images: warps the maps of light samples to the light's centre and merges them (Agrawala et al.
 // 2000).
 

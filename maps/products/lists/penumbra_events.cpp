@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Builds penumbra deep shadow maps: V as a function of depth in each texel (St-Amour, Paquette and Poulin 2005), in
 // bands of texels.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Shared by C++ and GLSL: push constants of the shaders of penumbra_events.cpp, and the part read by a look-up.
 #include "maps/host/map_view.shared.h"
 #ifdef __cplusplus

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Renders and keeps the maps of all light samples on the device, with integer weights of the samples.
 
 #include "maps/products/lists/sample_maps.hpp"

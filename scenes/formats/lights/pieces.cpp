@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "base/assert.hpp"
 #include "base/error.hpp"
 #include "scenes/formats/lights/light_formats.hpp"

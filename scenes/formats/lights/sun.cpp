@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "base/error.hpp"
 #include "scenes/formats/checks.hpp"
 #include "scenes/formats/json_meshes.hpp"

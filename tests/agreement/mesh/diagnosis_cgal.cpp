@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The diagnosis against CGAL's own functions on CGAL's own meshes. Polygons of more than three corners are cut into the
 // same fans for both sides. Where CGAL's function means something else, the comparison says what and why.
 

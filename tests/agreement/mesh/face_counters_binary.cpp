@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/agreement/mesh/face_counters.hpp"
 
 #include <nlohmann/json.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What goes in comes out: every surface of the files of Debian's assimp-testmodels and of libcgal-demo, against counts
 // by code of this test's own. What the readers refuse is the corpus test's business; what they let through is whole.
 #include "mesh/import.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Every file of Debian's assimp-testmodels either loads or is refused with a message; none crashes or hangs us.
 #include "base/error.hpp"
 #include "mesh/import.hpp"

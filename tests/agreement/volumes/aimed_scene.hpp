@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 // Scenes made for one bound at a time: a small light somewhere in a scene of reach 1, an occluder aimed by the test

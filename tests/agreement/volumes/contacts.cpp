@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // edge-scatter where a caster is a thousand times nearer to its shadow than the light is: neighbouring view samples in
 // a small part of a large scene. All bits and all areas against the exact ones; rectangles with the other methods that
 // promise every bit, too.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What soft shadow volumes get wrong, predicted and measured: silhouettes of the light's centre, and sums in place of
 // unions. And what they get right, in scenes of several solids that shadow themselves.
 

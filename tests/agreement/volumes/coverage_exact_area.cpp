@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Sums over silhouettes against areas that know no silhouette: of each triangle by itself, and of their exact union.
 
 #include "mesh/shapes/shapes.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Sums over silhouettes of textured lights and of spheres against the triangles one by one, and against `exact`.
 
 #include "tests/unit/coverage_stage.hpp"

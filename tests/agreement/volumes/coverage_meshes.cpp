@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Sums of the receiver's silhouettes over meshes with every defect, and over real ones: against triangles one by one,
 // and the exact union.
 

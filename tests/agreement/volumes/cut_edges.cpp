@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Edges that the light's plane cuts and that go on past p, nearly through it: the end at the light is stored as floats,
 // and what that moves it by turns the part of the edge beside p much farther. (docs/edge-scatter.md, bound cut)
 

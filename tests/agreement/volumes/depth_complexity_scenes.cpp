@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Depth complexity on the shipped scenes: every bit equals that of edge scatter and of view-sample mapping, which share
 // hardly any arithmetic with it, and hardly any bit differs from the ray caster's.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Cropping (Lehtinen et al. 2006): edges that are no silhouettes as seen from a group of view samples are left out of
 // its list. It removes nothing that matters, and how much it removes is counted.
 

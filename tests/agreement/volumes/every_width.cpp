@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One picture on every vector unit that this processor has: the same bits, so that a test on one of them is about all.
 
 #include "tests/agreement/mask_methods.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // edge-scatter with rows=exact against the exact areas: no light samples on either side.
 
 #include "tests/agreement/volumes/exact_rows.hpp"

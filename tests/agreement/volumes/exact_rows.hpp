@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 // edge-scatter with rows=exact held against the exact areas, view sample by view sample.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // edge-scatter with rows=exact against the exact areas, for lights of every shape: disks, ellipses, polygons, textures,
 // spheres, suns.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // edge-scatter with rows=exact under spheres that casters reach into, as lamps have it whose own body does: areas of
 // what is before the disk that each view sample sees, against integers.
 

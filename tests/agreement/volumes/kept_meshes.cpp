@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What methods carry over from one frame's mesh to the next: vertices of lattice soups move, alone or with all that lie
 // at their place, so that edges, planes and triangles without area come and go; each answer has the bits of a method
 // that never saw another frame.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 // The refusals that a test of methods may pass over: each is told by its cause, and any other is thrown on.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 // Plain C++ twins of depth-complexity variant=forest, with exact signs: by edges, as the method does it, and by

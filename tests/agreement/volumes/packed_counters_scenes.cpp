@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // depth-complexity variant=forest on the shipped scenes: its counters are those of the twins, and where it differs from
 // the ray caster it is too bright, never too dark.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // plateaus against closed forms, against the least of many places along each edge, and against its C++ twin.
 
 #include "tests/agreement/volumes/soft_stage.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // soft-irregular against the sum over all silhouettes of the light's centre at each view sample (SoftVisibility): its
 // lists lose no edge and no layer. With umbra=layers and arc=tangent the numbers are the same to the last bit. An arc
 // cosine is off by √(2 · 2⁻⁵²) where its angle is near 0 or π (the cosine rounds by 2⁻⁵² at most): an edge's share of

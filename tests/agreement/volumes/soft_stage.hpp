@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 // A scene as soft shadow volumes see it, beside their C++ twin and the exact areas.

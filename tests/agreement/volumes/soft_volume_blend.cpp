@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // soft-volume-blend: soft-volume where one object stands alone, less than its sum where objects overlap.
 
 #include "tests/agreement/volumes/soft_stage.hpp"

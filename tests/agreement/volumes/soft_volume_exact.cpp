@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // soft-volume against exact areas: right where its model holds, and off by what the model predicts where not.
 
 #include "tests/agreement/volumes/soft_stage.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // soft-volume with other rules than the sum: each object's share against a scene in which it casts alone, and all of
 // them against exact areas. Tolerance: V is stored in float, twice here.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The other ways to measure what lies beyond an edge: a table, and a texture texel by texel.
 
 #include "tests/agreement/volumes/soft_stage.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // soft-volume against its C++ twin, pixel by pixel.
 //
 // Tolerance: each edge's term is rounded to whole multiples of 2⁻³², so n of them are off by n 2⁻³³. Either side makes

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where soft-volume's silhouettes and wedges are built must not change a bit of V.
 
 #include "tests/agreement/differences.hpp"

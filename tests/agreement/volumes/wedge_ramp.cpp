@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // wedge-ramp against its C++ twin: the exact count and the ramps of all edges. Tolerance: soft_volume_twin.cpp's.
 
 #include "tests/agreement/volumes/soft_stage.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Pleats so steep that the normals of an edge's two triangles fill nearly a half-space, seen along the middle of that
 // half-space by view samples close together: where the culling by cones of normals has least to spare.
 

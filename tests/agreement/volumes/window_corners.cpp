@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Edges seen at the corner of a light's window by view samples close together: a count of what hides that corner in
 // two ways, by floats at where they put it and in double at where it is, must not take the one for the other.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // adaptive-light's V: against accumulate on the same points, and against areas in closed form.
 
 #include "tests/analytic/maps/adaptive_light.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 // What the tests of adaptive-light share: its pictures with their counters, a sphere over a floor, and its errors

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How many maps adaptive-light takes, and what they are refined by.
 
 #include "tests/analytic/maps/adaptive_light.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 // Small scenes for methods that project maps back onto the light: the light at height 5, the floor at 0, casters
 // between that receive nothing, so that every receiver is well behind all casters.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Means over boxes of prefiltered texels, as look-ups take them: against sums over texels in double, and by how many
 // words of memory each takes, whatever the box's size (Eisemann et al. 2009, sections 5.2.2.3 and 5.2.5).
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 // The maps of a stage's light from its centre, as the self-test makes them; and view samples by hand.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/analytic/maps/parallel_square.hpp"
 
 #include "visibility/pair_truth.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Input that has no meaning, or hardly any, for every method of the family: V is a share of the light whatever it is
 // given, 1 where nothing casts, and the same to the bit however large the scene is.
 

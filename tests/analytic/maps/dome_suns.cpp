@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Domes as suns (maps/host/dome_suns.hpp): the parts that the sky is cut into, and methods of maps under a sky against
 // exact areas and exact masks.
 

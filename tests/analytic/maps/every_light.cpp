@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Suns, spheres and surfaces with holes before methods whose maps know planar lights and solid casters alone
 // (maps/host/every_light.hpp), against closed forms, exact areas, and the same casters cut out of solid surfaces.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What holds of every filter whatever it is given: V in [0, 1] for input that has no meaning, 1 where nothing is near,
 // the same bytes in any order of triangles; and where filters are known to be wrong.
 

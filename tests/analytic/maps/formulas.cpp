@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The formulas of image methods, one by one, where casters are parallel to the light: penumbra width, blocker search,
 // near plane and filter of pcss, tap by tap, and the bias. A formula that is off by 2 % fails here.
 

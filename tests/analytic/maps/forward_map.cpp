@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // forward-map: splats against closed forms, against a twin that throws each texel's light at all view samples, and what
 // sets it apart from shadow-map.
 

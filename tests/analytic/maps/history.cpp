@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // shadow-map:history: frames whose texels lie elsewhere, against the recurrence that mixes them and the hard shadow.
 
 #include "maps/filters/history.hpp"

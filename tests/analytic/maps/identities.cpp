@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What holds of methods on every scene, whatever it is made of: identities and inequalities between the pictures of two
 // ways to run a method, and what no way may do to any picture. One table for all methods; judged on shipped scenes,
 // meshes with every defect and soups on a small lattice, where a camera, a light and triangles coincide. I, B and A are

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // layered-attenuation's layers a texel, joined from the maps of many light samples, against the maps that they were
 // made of.
 

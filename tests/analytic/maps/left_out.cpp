@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Texels that are left out many at a time because none of them can shade a receiver: bounds decide, and here are the
 // inputs that come nearest to them.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What holds on every scene between one light and its parts or its corners (docs/predicates.md: I4, I19, I20).
 
 #include "maps/backprojection/contours/methods.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The cells of adaptive-light, without a device: what is shared, what a bound on points does, and what the weights are.
 
 #include "maps/sampling/light_tree.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What bounds of lists of depths a texel do, to the last step: how few steps deep-penumbra keeps, from where on its
 // rays are walked, from what difference on layered-attenuation takes two surfaces for one.
 

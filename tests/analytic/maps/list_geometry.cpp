@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where lists of depths are right to a texel's hundredth or to a light sample: where a hemicube's faces meet, and at
 // receivers' horizons.
 

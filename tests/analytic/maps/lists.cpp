@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // deep-penumbra's steps, joined from the maps of many light samples, against twins and against the maps that they were
 // made of; and what holds of all methods with lists.
 

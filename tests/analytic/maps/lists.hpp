@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 // What tests of lists of depths share: deep-penumbra's steps and layered-attenuation's layers.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Fits of maps to what a camera sees, in closed form: the papers' distances, warps and frustum faces, and the squares
 // that queries leave.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Maps that are fitted to what a camera sees: the aliasing error, and every fit's shadows texel by texel.
 // map_fit_forms.cpp holds the closed forms.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // vssm: against its twin in double, and against the closed forms of Chebyshev's bound.
 
 #include "maps/filters/methods.hpp"

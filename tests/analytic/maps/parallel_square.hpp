@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 // A square parallel to a square light and a floor: every pair of view sample and light sample is known in closed form.
 

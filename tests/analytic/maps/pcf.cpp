@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // pcf: a fixed window of texels, whose widths, levels and self-shadowing are known in closed form.
 
 #include "maps/filters/methods.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Forms of pcf that ask less than every texel, or something else: extreme depths of a window (Pagot et al. 2004), its
 // mean depth (Luft and Deussen 2006), objects (Brabec and Seidel 2002); and shadow-map's objects.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 // What pcss must answer under casters that are rectangles parallel to the light: its maps are known in closed form, so

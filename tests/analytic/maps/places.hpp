@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 // Scenes on which whatever holds of a method must hold: shipped ones, meshes with every defect, and soups on a small

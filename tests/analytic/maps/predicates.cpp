@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What papers and algebra say of the image-based family on every scene, or on every scene of a class, where no other
 // file of this room has it. docs/predicates.md lists all, with their names and what is measured.
 

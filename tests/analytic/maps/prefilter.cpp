@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What means over windows are taken from: summed areas, mip levels and N-buffers against twins, bit by bit.
 
 #include "maps/products/map_frame.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What maps are made of and made into, against a few lines of C++: the depths of two planes, and products against their
 // twins on maps read back from the device.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Pyramids of smallest and largest depths: what the device makes against brute force, which cells a question covers,
 // and how many nodes a walk looks at (Yang et al. 2009, section 4.2).
 

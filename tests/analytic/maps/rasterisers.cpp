@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Maps drawn by Vulkan and by OpenGL: against the triangles in double, against each other, and what methods make of
 // them. The twin itself against triangles whose coverage is known.
 

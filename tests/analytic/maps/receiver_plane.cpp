@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // receiverPlane: texels are compared with the receiver's plane, or with its own depth, as papers have it. (What the
 // bias forgives in either: Bias.*; that hierarchies know of it: MapsIdentities.*.)
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the error budget relies on: methods that are to differ in one thing alone do.
 
 #include "tests/analytic/maps/backprojection_scenes.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The tables of docs/accumulate.md, docs/pcss.md and docs/shadow-map.md, as measured and as written there.
 
 #include "scenes/formats/reader.hpp"

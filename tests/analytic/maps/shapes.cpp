@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where maps look and from where, in closed form: points of a light, windows, receivers and blockers apart.
 
 #include "maps/backprojection/soft_shadow_map/soft_scene.hpp"

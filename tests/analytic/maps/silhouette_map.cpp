@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Silhouette maps: outlines between texels against closed forms, and what two of them in a texel do.
 
 #include "maps/products/silhouette_points.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Penumbrae made of one hard shadow: under the edge of a half plane each paper's formula is a closed form, and so is
 // what each of them gets wrong.
 

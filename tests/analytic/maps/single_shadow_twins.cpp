@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The second maps of methods that make penumbrae of one hard shadow, and their searches, against twins that try every
 // edge at every texel, and every texel for every view sample.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // occlusion-textures and convolution: slices against their twin, and what flat blockers parallel to the light must
 // give.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How wide a map's texels are where shadows fall.
 #include "maps/host/texel_widths.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 // What tests of vssm share: a scene, the method's options out of its twin's settings, the suite.

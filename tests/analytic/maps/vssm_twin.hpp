@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 // vssm in double, each mean a plain sum over the texels of its window: docs/vssm.md in a few lines. For maps of one

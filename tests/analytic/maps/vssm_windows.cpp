@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // vssm: what each kind of moments promises of a window, cut or whole, and of a fixed one.
 
 #include "maps/filters/methods.hpp"

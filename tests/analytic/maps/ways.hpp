@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 // Methods of maps/ by the words of the command line: "bitmask:occluder=quad:layers=2".

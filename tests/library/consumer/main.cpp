@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // consumer SCENE.json: renders with the installed library, and prints what it found. Replaces operator new, which a
 // library must leave to its host.
 

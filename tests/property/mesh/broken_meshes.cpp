@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The generator of broken meshes against the diagnosis: the defects that a mesh was made to have are those that are
 // found in it. The known answers are formulas; the diagnosis searches.
 

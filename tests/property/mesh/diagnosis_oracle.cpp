@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/property/mesh/diagnosis_oracle.hpp"
 
 #include <CGAL/Exact_predicates_exact_constructions_kernel.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The diagnosis of random lattice soups against the definitions applied by brute force, and what it must not depend on.
 
 #include "tests/property/mesh/diagnosis_oracle.hpp"

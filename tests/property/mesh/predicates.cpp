@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Exact predicates against GMP's rationals: on a tiny lattice, where zeros are the rule, on doubles of every exponent,
 // and a few ulp from degenerate.
 

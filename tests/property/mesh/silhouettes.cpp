@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Signed multiplicities and silhouettes: the definition in integers on lattice soups, what must not change them, closed
 // forms, and the conservative list of edges that can be silhouettes.
 

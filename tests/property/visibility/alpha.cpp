@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What surfaces that let light through make of pairs, against docs/definitions.md evaluated literally: crossing points,
 // texture coordinates and texels in GMP's rationals, on lattices where coincidences are the rule; and closed forms.
 #include "visibility/alpha/alpha_filter.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where what lets light through may take part: specks that reach into the pyramid from p to a light by a ten-thousandth
 // of it, or stay out of it by as much; and light samples that are met, which must all be foreseen.
 #include "visibility/alpha/alpha_reach.hpp"

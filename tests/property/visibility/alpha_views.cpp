@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Surfaces that let light through, in what pixels see: behind holes, and panes before it.
 #include "visibility/alpha/panes.hpp"
 

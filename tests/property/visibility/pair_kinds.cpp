@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Whole pairs of spheres and suns against the sentence of docs/definitions.md, in rationals: soups on a tiny lattice,
 // view samples on their corners and edges and in the light.
 

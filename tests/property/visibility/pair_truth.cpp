@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The exact pair decision against the sentence of docs/definitions.md, evaluated literally in GMP's rationals: the
 // light point is moved by ε·u + ε²·v with an ε small enough for the lattice, the crossing point with the triangle's
 // plane is computed, and its barycentric coordinates say whether it is on the triangle. Coordinates come from a tiny

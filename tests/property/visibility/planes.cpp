@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // plane ids, rank and zero area against their definitions on soups drawn from a tiny lattice, where coplanar, doubled
 // and degenerate triangles are normal.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The part of a scene with instances that a picture needs gives the same view samples, and the same truth of every
 // pair, as the scene in which each instance is a copy. Both are judged without any tree.
 #include "visibility/seen/seen_part.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Σ of signed crossings over clipped edges = the number of triangles that the open segment meets, as integers, by the
 // exact pair decision, on soups drawn from a tiny lattice: edges through the segment, corners and edges on the light's
 // plane and on p's, light points on triangles' planes, edges along the ray, doubled and degenerate triangles are the

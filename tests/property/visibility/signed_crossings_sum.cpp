@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Depth complexity from signed edges (Laine et al. 2005; any soup: ours), exact. Derived in docs/signed-crossings.md,
 // whose sections the comments name. Works on edges that scatter methods would project onto the light; a method in
 // floats has this one as its twin.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The hierarchy that view-sample mapping searches: it holds every triangle that casts shadow exactly once, and no box
 // is smaller than what is below it.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What must not change the coverage integral: the point from which a closed loop is looked at, the place where an edge
 // is cut, mirrors, scale, and the order and winding of triangles.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What lies beyond one edge of a textured light, against its texels one by one.
 //
 // Points are multiples of 2⁻⁴ and reference points odd multiples of 2⁻¹⁰, as in coverage_properties.cpp: signs are

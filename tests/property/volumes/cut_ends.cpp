@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where edges pass through a light's plane, and normals, against rationals.
 
 #include "tests/agreement/hostile_lamps.hpp"

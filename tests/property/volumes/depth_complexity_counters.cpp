@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The counters themselves against the number of triangles that each segment meets, triangle by triangle with exact
 // predicates, on broken meshes; and where the paper's counters hold: closed meshes, not those that an open boundary
 // lets fold over.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Depth complexity where nothing is in general position: every pair of variant=soup equals the exact decision, without
 // tolerance, for light samples in rows and for heaps of points.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where rows=exact cuts edges and casters at the disk that a view sample sees of a sphere: how much of the bound of
 // that place is ever used, and that all that ends there has the same numbers.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Cones of normals in a hierarchy of edges: each holds the normals of every edge below it, up to sign. Where normals
 // lie in a plane angles add up, and a cone joined of others may be no narrower than their sum.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Edges cut at a light's plane inside their hierarchy, on vector units and on the device: what the walk finds is what
 // cutting all records gives, and restoring leaves nothing behind.
 

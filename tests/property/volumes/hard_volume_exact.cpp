@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Shadow volumes against the exact count: at every pixel, the number of triangles that the open segment from p to the
 // light's centre meets, each triangle by itself, by exact predicates.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Variants of hard-volume that cost less: V is the default's at every pixel, and what they leave out is what their
 // papers say.
 

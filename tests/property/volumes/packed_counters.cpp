@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // depth-complexity variant=forest against its twins and exact predicates: every counter, and what happens where there
 // is none.
 

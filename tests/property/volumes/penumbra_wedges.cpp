@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Wedges of random and of awkward edges: every plane is proved, exactly, to contain the penumbra; points of it are
 // inside; and the bound is as small as its construction promises.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How much of its bounds rows=exact ever uses of where an edge's ends appear: searches for the input that uses most,
 // held against exact places (rational numbers).
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 // What tests of the bounds of rows=exact share: cases that a search varies, and exact numbers.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The sweep of rows=exact by itself: the area that no triangle covers does not depend on the direction of the rows.
 
 #include "volumes/scatter/vectors/row_sweep.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The device's silhouettes against mesh/silhouettes: the same edges, multiplicities and order, also where every second
 // facing is a tie.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 // View samples under a rectangle light as methods on vector units see them, for tests that hold bounds of error to

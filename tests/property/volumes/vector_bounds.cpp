@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How much of a bound of error is ever used on vector units: a search for the input that uses most of it. Exact values
 // come from long double, 2⁻⁶⁴ beside bounds of 2⁻²⁴.
 

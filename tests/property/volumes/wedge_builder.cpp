@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Wedges that the device builds: proved by the exact signs that prove the host's, and hardly looser than they.
 
 #include "tests/agreement/support.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Wedges of the meshes of Debian's libcgal-demo under every kind of light: as they come, in scene floats.
 
 #include "mesh/diagnosis/diagnosis.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Boxes cut by half-spaces: exact corners, ties of every kind, and flaws that are found.
 
 #include "volumes/wedges/wedge_polyhedron.hpp"

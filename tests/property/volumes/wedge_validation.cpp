@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `wedges --validate` as a library: every mesh and every kind of light passes; every fault is caught.
 
 #include "mesh/shapes/broken_meshes.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The irregular z-buffer against each triangle by itself with exact predicates: lattice soups, flawed meshes, shipped
 // scenes, every kind of light, view samples all around it.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Methods that take pairs away triangle by triangle against the exact decision, without tolerance: lattice soups under
 // every kind of light that they do, lamps where rounding matters most, flawed meshes, shipped scenes.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Closed parts drop the triangles that pairs outside of them do not need: not one bit may change. The parts here are
 // the worst that are still closed: spheres only in how they are connected, with vertices anywhere on a lattice, so that
 // they cross themselves, touch their box, the floor and the view samples, and have hardly anything that could be called

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What must not change a single bit of view-sample mapping: the order, winding and first vertex of triangles, doubled
 // vertices and faces, the size of tiles, a second run, a scale by a power of two. And what may change almost nothing:
 // another scale, another place in the world.

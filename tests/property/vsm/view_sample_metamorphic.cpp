@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Broken meshes described in other ways: the same triangles in another order, from another first vertex, wound the
 // other way, on vertices of their own, twice, or cut at points exactly on them. None of this may change a bit.
 // (view_sample_invariance.cpp does this for scenes and for soups with lights among them.)

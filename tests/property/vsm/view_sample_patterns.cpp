@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Every kind of planar light, sample pattern and count: a random soup over a tilted floor, each pair (of a choice of
 // pixels where there are many) against the exact decision.
 

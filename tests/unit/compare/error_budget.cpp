@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where sequences of runs lead, and what of that is said of each cause.
 #include "compare/error_budget.hpp"
 

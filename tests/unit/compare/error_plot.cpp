@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The plot of errors against seconds, as `sweep` writes it.
 
 #include "compare/error_plot.hpp"

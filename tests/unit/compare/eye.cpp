@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What an eye sees of errors: shares, banding and FLIP.
 #include "compare/eye.hpp"
 

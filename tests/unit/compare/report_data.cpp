@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the report's script unpacks is what was packed: each packing is undone here in a few lines of C++.
 #include "base/packed.hpp"
 #include "compare/report_data.hpp"

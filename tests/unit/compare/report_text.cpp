@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Numbers, times and scenes as the report's page says them.
 
 #include "compare/report.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "compare/machine.hpp"
 #include "compare/stats.hpp"
 

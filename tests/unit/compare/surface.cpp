@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What surfaces look like: closed forms of interpolation, wrapping and filtering.
 #include "compare/surface.hpp"
 

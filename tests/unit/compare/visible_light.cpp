@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Masks to form factors: runs are sums of cells, cells cover the light once, all visible is the whole to the last bit,
 // whatever the pattern and the shape.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Emissive meshes as lights: whole, or in pieces.
 #include "import/gltf/emitters/emitter.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // FBX and COLLADA files as scenes: nodes, materials, lamps, cameras; and formats that are not read.
 #include "scenes/formats/reader.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What moves and bends in glTF: animations, skins, morph targets.
 #include "scenes/formats/gltf_reader.hpp"
 

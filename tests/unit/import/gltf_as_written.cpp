@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // glTF as exporters write it: what is not strictly valid, or not in the core, and is read all the same.
 #include "tests/unit/import/gltf_reader.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Domes of extras: what glTF has no word for.
 #include "scenes/formats/gltf_reader.hpp"
 

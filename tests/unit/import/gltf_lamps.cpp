@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Lamps of glTF scenes: KHR_lights_punctual.
 #include "scenes/formats/gltf_reader.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 // What tests of glTF scenes share: a scene of made-up bytes, read or refused.

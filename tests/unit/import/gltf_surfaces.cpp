@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How glTF surfaces look: colours, pictures, normals, and what lets light through.
 #include "scenes/formats/gltf_reader.hpp"
 

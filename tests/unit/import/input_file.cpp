@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Files below a folder, and nothing else, whatever names and links say.
 #include "mesh/input_file.hpp"
 

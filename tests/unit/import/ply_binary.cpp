@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Binary PLY is read many numbers at once where it is of the usual kind: the same soup, notes and messages as number by
 // number, of whole files, of files that end at any byte, and of files with any one byte changed.
 #include "import/ply.hpp"

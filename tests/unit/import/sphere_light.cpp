@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "import/gltf/emitters/sphere_light.hpp"
 
 #include <glm/geometric.hpp>

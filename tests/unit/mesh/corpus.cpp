@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The half-edge view and repair on the meshes of Debian's libcgal-demo, good and bad: no face is lost without being
 // listed, OpenMesh refuses none, silhouette loops are the signed multiplicities, and repair keeps its promises. The
 // label `quick` has some small flawed ones, `full` all.

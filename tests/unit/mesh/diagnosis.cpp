@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Meshes small enough to count their defects by hand: edges, vertices, windings, components.
 
 #include "mesh/diagnosis/diagnosis.hpp"

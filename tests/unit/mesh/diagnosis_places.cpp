@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Meshes small enough to count by hand what depends on where their corners are: T-junctions, coincident patches, areas,
 // intersections, lost precision.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The edge graph against a few lines with std::map, on soups drawn from a tiny lattice: doubled, degenerate and
 // non-manifold are the normal case.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The half-edge view on shapes with known answers, and on random lattice soups against the definitions: held and listed
 // faces are all faces, and the silhouette loops are exactly the signed multiplicities of the held faces, ties included.
 

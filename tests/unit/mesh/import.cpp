@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "mesh/import.hpp"
 
 #include "tests/unit/mesh/import_files.hpp"

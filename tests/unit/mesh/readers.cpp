@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What Assimp reads wrongly, or not at all, and our own readers read.
 #include "mesh/import.hpp"
 

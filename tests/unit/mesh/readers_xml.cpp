@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Formats of XML, zipped or plain: AMF and 3MF.
 #include "mesh/import.hpp"
 

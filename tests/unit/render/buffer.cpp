@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Buffers keep what is written to them, and say no before the device does.
 
 #include "tests/agreement/support.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Choosing a device: by name, number or kind, and with a reason for every one that is refused.
 
 #include "tests/agreement/support.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // View samples on the processor's vectors equal their definition bit for bit where floats come to their limits: corners
 // that lie on the rays of pixels but for their own rounding, triangles far smaller than a pixel, eyes far from the
 // origin.

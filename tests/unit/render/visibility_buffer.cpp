@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The rasterised view samples equal their definition bit for bit, also where triangles coincide, cross each other,
 // cross the eye's plane or are seen edge-on.
 

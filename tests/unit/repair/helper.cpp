@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // mesh::repair is run_repair in another process: the same answer, and an error that says what and where if that process
 // is missing, crashes or lies.
 

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """licence.py BUILD: no object of the library, the programs or the Python module depends on a header that is under the GPL alone.
 
 Reads what ninja has recorded of each object's headers, and their SPDX lines. The objects of penumbra-repair, which is a program of

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Repair of known defects, with the counts that it must report, and of random lattice soups, where it must keep its
 // promises: an oriented manifold by indices, the same points, its own input untouched, and nothing left for a second
 // repair.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "base/atomic_file.hpp"
 #include "tests/unit/scenes/support.hpp"
 

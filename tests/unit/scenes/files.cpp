@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "mesh/input_file.hpp"
 #include "scenes/formats/package_files.hpp"
 #include "tests/unit/scenes/support.hpp"

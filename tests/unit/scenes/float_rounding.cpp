@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
 /// A guard against our compiler. g++ 12 at -O2 (its SLP vectoriser) takes two neighbouring double → float → double

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A scene that is cut in parts and joined again is the scene that it was.
 #include "scenes/joined_parts.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The schema of scene files, and the validator that speaks to people, against a JSON Schema library.
 
 #include "scenes/formats/json_schema.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The tables of light kinds: what files make of each, and that no row is forgotten.
 #include "scenes/formats/writer.hpp"
 #include "scenes/light_kind.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "mesh/shapes/broken_meshes.hpp"
 #include "mesh/shapes/shapes.hpp"
 #include "scenes/formats/json_meshes.hpp"

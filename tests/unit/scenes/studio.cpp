@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What is put around meshes and scenes without lights.
 
 #include "scenes/formats/reader.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A scene on its way from the import helper: nothing is lost, and whatever else arrives is found out.
 #include "mesh/import_wire.hpp"
 #include "scenes/scene_wire.hpp"

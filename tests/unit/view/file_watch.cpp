@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A file counts as changed once it has been the same at two looks.
 #include "app/view/file_watch.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Lights and cameras as the page has them: there and back nothing changes, and what a file could not say is refused.
 #include "app/view/light_json.hpp"
 

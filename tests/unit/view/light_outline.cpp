@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Outlines of occluders projected from a point onto a light, against places found by hand.
 #include "app/view/light_outline.hpp"
 

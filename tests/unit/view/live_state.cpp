@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What messages make of the state, and what a file that changes makes of it.
 #include "app/view/live_state.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The quality of quick pictures follows what they take.
 #include "app/view/live_pace.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which requests the page's server answers.
 #include "network/requests.hpp"
 

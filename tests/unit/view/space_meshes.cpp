@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Meshes as the 3D view draws them: coarser where there are too many triangles, defects in colours.
 #include "app/view/space_meshes.hpp"
 

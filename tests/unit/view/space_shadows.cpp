@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Silhouettes, shadow volumes and wedges of the 3D view, against places found by hand and against the library's own.
 #include "app/view/space_shadows.hpp"
 

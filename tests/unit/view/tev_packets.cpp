@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Packets for tev, byte by byte, as its protocol has them.
 #include "base/error.hpp"
 #include "network/tev_client.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What trees are built of: groups of boxes that lie together, and halves of the last dozens.
 
 #include "visibility/tree/box_groups.hpp"

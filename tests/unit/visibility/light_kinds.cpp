@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The table of what each kind of light does: area, points and form factor of a made light agree with the region that
 // the kind's traits say, by numbers that no code of the product computes.
 #include "visibility/light_samples.hpp"

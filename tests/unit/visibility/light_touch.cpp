@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which light samples something in the light's plane touches.
 
 #include "tests/unit/visibility/scenes.hpp"

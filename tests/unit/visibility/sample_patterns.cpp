@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "visibility/sample_patterns.hpp"
 
 #include "base/error.hpp"

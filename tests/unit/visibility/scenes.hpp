@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 // Small scenes for tests of visibility and of its oracles: the self-test's own.

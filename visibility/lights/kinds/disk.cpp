@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Disks: circles of a radius, with axes chosen around the normal.
 
 #include "visibility/axes_around.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Domes: directions all around. Light samples are strata of luminance × solid angle, so that a sun in a picture gets
 // samples in proportion to its light: the unit square's y selects the row of texels, and the place in it, by the sums
 // of all rows, x the texel of the row by its luminance (M. Pharr, W. Jakob, G. Humphreys, Physically Based Rendering,

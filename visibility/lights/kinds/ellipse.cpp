@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Ellipses: the unit disk of any frame.
 
 #include "visibility/lights/form_factor.hpp"

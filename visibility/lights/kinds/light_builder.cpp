@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Makes lights from scenes: parts common to all kinds.
 
 #include "visibility/lights/kinds/light_builder.hpp"

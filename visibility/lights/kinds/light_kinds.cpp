@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "visibility/lights/kinds/light_kinds.hpp"
 
 #include "visibility/lights/form_factor.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Polygons: flat and convex, with their own corners.
 
 #include "visibility/lights/form_factor.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Rectangles, or parallelograms: the square [−1, 1]² of the frame.
 
 #include "visibility/lights/kinds/light_kinds.hpp"

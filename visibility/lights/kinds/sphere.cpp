@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Spheres: each p sees a different disk (light_frame_from), so that no points are stored. With a cone: spot lamps.
 
 #include "visibility/lights/kinds/light_kinds.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Suns: directions around a middle one, the disk at distance 1 whose radius is the tangent of half the angle.
 
 #include "base/error.hpp"

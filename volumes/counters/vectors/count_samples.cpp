@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // depth-complexity on a processor: one counter for each light sample, in vectors of light samples. Each edge that the
 // straight segment from the light's corner to a light sample crosses changes its counter by k.
 // docs/depth-complexity.md, "On vector units".

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // depth-complexity on a processor: edge-scatter's lists (VectorEdges), and a counter for each light sample.
 
 #include "volumes/counters/vectors/depth_complexity_vectors.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Searches for silhouette candidates of view samples: J. Lehtinen, S. Laine, T. Aila, An improved physically-based soft
 // shadow volume algorithm, 2006 (kd-tree); S. Laine, T. Aila, U. Assarsson, J. Lehtinen, T. Akenine-Möller, Soft shadow
 // volumes for ray tracing, 2005 (hemicube).

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Host of find_edges.comp: prepares the hierarchies of edges and triangles for a light, runs the pass, and grows its
 // lists until they fit.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Uploads a hierarchy of edges, cuts it at a light's plane, and restores it for the next light.
 
 #include "volumes/edges/device/edge_upload.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Structs shared by C++ and GLSL (scalar layout): input of a triangle's facing. Lengths are in scene floats times a
 // power of two.
 #ifdef __cplusplus

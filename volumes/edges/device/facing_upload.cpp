@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The host's half of the facing filter: normals in double, rounded once, and error bounds of them and of the device's
 // arithmetic. A change of an expression here or in silhouette_facing.comp requires a change of its derivation in
 // volumes/README.md (Bounds).

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Structs shared by C++ and GLSL (scalar layout): data of the silhouette passes.
 #ifdef __cplusplus
 #pragma once

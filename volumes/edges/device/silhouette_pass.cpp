@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Host of silhouette_*.comp: facings by floats with a bound, the rest by the exact predicate, then k_e and the list of
 // silhouettes.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Edge scatter on a processor: the depth at the light's corner, to which edges add their changes.
 
 #include "visibility/certain_meeting.hpp"

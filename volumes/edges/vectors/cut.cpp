@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Hierarchies of edges for vector units: their leaves, made on demand, and their cuts at a light's plane.
 
 #include "volumes/edges/vectors/cut.hpp"

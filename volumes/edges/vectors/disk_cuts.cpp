@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Edges that a sphere's disk cuts into casters that pass through it, on vector units with a scalar fallback.
 // docs/edge-scatter.md, "Ends".
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Edge scatter on a processor: selects, for a few neighbouring view samples together, those of their cluster's edges
 // and triangles that affect them.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One edge for one view sample in scalar code, with the operations of the vector code, and its exact decisions.
 // docs/edge-scatter.md derives the bounds.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Signed edges on a processor: places of a group's edges as one of its view samples sees them. Inside volumes/ only.
 
 #if defined(PENUMBRA_VOLUMES_PROJECTION_INL_HPP) == defined(HWY_TARGET_TOGGLE)

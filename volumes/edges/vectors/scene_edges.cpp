@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Edges of a scene for vector units: made, refit for the next frame, and attributed to lights' bodies.
 
 #include "volumes/edges/vectors/scene_edges.hpp"

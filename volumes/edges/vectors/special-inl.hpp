@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Signed edges on a processor: a group's edges that vectors cannot handle, for light samples that are not in rows.
 // Inside volumes/ only.
 

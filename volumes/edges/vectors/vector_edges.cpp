@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Lists of edges and triangles for regions and clusters of view samples, by traversals of their hierarchies.
 
 #include "volumes/edges/vectors/vector_edges.hpp"

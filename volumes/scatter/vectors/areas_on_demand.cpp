@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Exact areas for view samples whose share double cannot prove, made on first use.
 
 #include "volumes/scatter/vectors/areas_on_demand.hpp"

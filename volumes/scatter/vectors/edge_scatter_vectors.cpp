@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Edge scatter on a processor: evaluation of its lists (VectorEdges), by light samples or by areas.
 
 #include "volumes/scatter/vectors/edge_scatter_vectors.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Minimum of a list of doubles, on vector units.
 
 #include "volumes/scatter/vectors/first_least.hpp"

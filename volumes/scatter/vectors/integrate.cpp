@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Edge scatter on a processor, rows=exact: visible fraction of the light from projected edges, without light samples.
 
 #include "volumes/scatter/vectors/integrate.hpp"

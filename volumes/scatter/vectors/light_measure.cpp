@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Area or luminance of parts of a light's window: plain, in the unit disk, or under a texture.
 
 #include "volumes/scatter/vectors/light_measure.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Edge scatter on a processor for light samples that are not in rows: an edge is tested against the tiles that it
 // passes, a vector of light samples at a time; for all others of a row to its right one number gives the change.
 // docs/edge-scatter.md, "Light samples anywhere".

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Area of depth zero by a sweep over projected edges (Bentley and Ottmann 1979), with a bound of its disorder.
 // docs/edge-scatter.md, "Without light samples".
 

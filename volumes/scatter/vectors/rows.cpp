@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // rows=exact of edge scatter: places edges for one view sample in double with error bounds, and proves the visible
 // fraction of the light. docs/edge-scatter.md, "Without light samples" and "What double proves".
 

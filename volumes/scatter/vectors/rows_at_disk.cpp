@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // rows=exact for a sphere that casters reach into: only objects in front of the disk that a view sample sees hide it.
 // docs/edge-scatter.md, "Ends".
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // rows=exact: places the edges of one view sample on vector units, except those that need more.
 
 #include "volumes/scatter/vectors/rows.hpp"

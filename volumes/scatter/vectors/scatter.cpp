@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Edge scatter on a processor: the algorithm of scatter_edges.comp, with vectors of edges instead of view samples.
 
 #include "volumes/scatter/vectors/scatter.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Finds the rows of tiles of light samples that a vector of edges is in (points.cpp). Included once for each target,
 // after foreach_target.h.
 

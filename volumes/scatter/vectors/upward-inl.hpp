@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Edges oriented upward, in vectors: the form in which arbitrary light samples are tested (points.cpp). Included once
 // for each target, after foreach_target.h.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Places of edges for one view sample in vectors of doubles, with the operations of RowSum in the same order.
 
 #include "volumes/scatter/vectors/wide_places.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Backprojection against every texel one by one, against closed forms, and the identities that hold on every scene.
 
 #include "tests/analytic/maps/parallel_square.hpp"

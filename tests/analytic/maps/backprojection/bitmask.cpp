@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Bitmasks of one map: each bit against the occluders one by one, and what must hold between occluders, levels, layers
 // and sums, on every scene or on every scene of a class.
 

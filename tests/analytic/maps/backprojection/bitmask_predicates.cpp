@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What papers say of bitmask on every scene of a class; the rest of docs/predicates.md is in predicates.cpp.
 
 #include "tests/analytic/maps/predicates.hpp"

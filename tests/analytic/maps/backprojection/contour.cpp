@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Contours against their closed form, in kernels and sub-lights.
 
 #include "base/error.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What papers say of contours, hierarchies, packets and sub-lights, on scenes of the class they say it of: signs and
 // rough sizes. docs/contour.md and docs/packet.md have the measured numbers.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 // Scenes for contours: what they are about is said beside each. Lights are 5 above a floor at height 0.
 

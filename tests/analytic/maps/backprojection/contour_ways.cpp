@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What holds of contours on every scene: the way in which they are looked for never changes a bit of V (Yang et al.
 // 2009, sections 1 and 4.3).
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How parts of a shadow come together: sums, unions, and the deepest layer alone, where all parts are rectangles
 // parallel to the light and known in closed form.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // At a receiver's horizon: what hides light is above the receiver's plane, so that V is the share of the light above
 // the horizon less what of it is hidden.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // layer-rays: each bit against a ray that is tried at every texel, wall and column of the layers, and what rays through
 // layers are for: the same surfaces as patches, closer to the truth with every layer, and wrong where a layer is
 // missing.

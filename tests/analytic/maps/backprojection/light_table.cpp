@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a patch covers of a light of any shape, and the receiver's horizon across it, against closed forms and exact
 // areas.
 

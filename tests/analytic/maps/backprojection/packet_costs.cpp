@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which packets look for contours together (Yang et al. 2009, section 4.3, equations 4 to 6), each decided here by the
 // kernels of its pixels. V is the same either way (MapsContourWays): only what is counted shows whether a cost or a
 // chance is off.

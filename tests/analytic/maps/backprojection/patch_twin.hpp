@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 // Backprojection of every texel of a light's maps, one by one, in double and without kernels: what backproject must
 // give where all casters are well in front of all receivers, so that which texels hide light is no question of

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // backproject-peel: layers, midpoints and strides.
 
 #include "tests/analytic/maps/backprojection_scenes.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // soft-shadow-map against closed forms, and its two forms against each other and backproject.
 
 #include "tests/analytic/maps/backprojection/soft_shadow_map.hpp"

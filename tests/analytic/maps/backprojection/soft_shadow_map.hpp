@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 // What the tests of soft-shadow-map share: its pictures with their counters, floors with a light above, the papers'

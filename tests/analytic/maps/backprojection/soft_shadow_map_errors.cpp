@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The error curves of Atty et al. 2006: soft-shadow-map's error and work over passes, resolution, and the light's size.
 
 #include "tests/analytic/maps/backprojection/soft_shadow_map.hpp"

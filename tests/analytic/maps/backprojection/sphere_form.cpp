@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // backproject with form=sphere: bounding spheres of texels before a sphere or the disk of the light's area that faces
 // the receiver, against every texel in double, against closed forms and against rays.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // V of few pixels for all: what is computed, what is filled in, and how far off that is.
 
 #include "maps/backprojection/penumbra_width.hpp"

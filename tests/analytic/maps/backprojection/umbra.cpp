@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where all of the light is hidden nothing of it is left, however many texels it takes: whatever is looked for in too
 // narrow a part of a map leaves some at the light's ends.
 
