@@ -24,7 +24,7 @@
 
 namespace penumbra::tests {
 
-/// What of a triangle passes a pair's segment, or what else the segment comes near.
+/// The part of a triangle that a pair's segment passes, or another thing that the segment comes near.
 enum class Aim : std::uint8_t {
   edge,     ///< an edge through the light sample, as seen from p
   aligned,  ///< the same, along one of the light's sides
@@ -42,8 +42,8 @@ enum class Aim : std::uint8_t {
 };
 inline constexpr std::array kAims{Aim::edge,    Aim::corner,  Aim::left, Aim::vertex, Aim::row,   Aim::sliver,
                                   Aim::grazing, Aim::horizon, Aim::side, Aim::det,    Aim::needle};
-/// Those of which the scene is searched for: that which uses most of a bound. The last is of edge-scatter on the device
-/// alone, with the bound of light samples in rows; 64 anywhere have the same cells.
+/// Measures that the search maximises over scenes: how much of a bound is used. The last is of edge-scatter on the
+/// device alone, with the bound of light samples in rows; 64 anywhere have the same cells.
 inline constexpr std::array kSearchedAims{Aim::side, Aim::det, Aim::needle, Aim::beside};
 /// The share of the bound that planted_faults leaves of it.
 inline double planted_cut(Aim aim) {
@@ -178,7 +178,7 @@ class AimedScene {
     }
   }
 
-  /// As scene floats will have it.
+  /// Returns the triangle as scene floats will store it.
   static FloatCorners stored(const Corners& corners) {
     FloatCorners at{glm::vec3(corners[0]), glm::vec3(corners[1]), glm::vec3(corners[2])};
     std::sort(at.begin(), at.end(), [](const glm::vec3& a, const glm::vec3& b) {

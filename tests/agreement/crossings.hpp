@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// Where edge-scatter says that an edge crosses the row of a light sample, beside where it does: what a search for input
-// that uses most of that bound maximises.
+// The position at which edge-scatter has an edge cross the row of a light sample, and the true one. A search maximises
+// their difference over the bound.
 
 #include "base/size1.hpp"
 #include "tests/agreement/device_twins.hpp"

@@ -30,7 +30,7 @@ struct Differences {
 
 inline constexpr std::size_t kMostJudged = 2000;
 
-/// Of the pairs that differ, the first `most_judged` are decided exactly.
+/// Counts pairs that differ; the first `most_judged` of them are decided exactly.
 inline Differences differences(const visibility::SceneFloats& floats, const visibility::ViewSamples& samples,
                                const visibility::Light& light, const Masks& mapped, const Masks& traced,
                                std::size_t most_judged = kMostJudged) {

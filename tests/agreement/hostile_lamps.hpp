@@ -118,7 +118,7 @@ class HostileLamp {
     if (below(4) == 0) add_object(scene_, "body", quad(center_, u_, v_)).emits = 0;
   }
 
-  /// Of any size between 2⁻⁴⁰ and 2⁹, with either sign; sometimes a whole number, or 0.
+  /// Returns a number of any size between 2⁻⁴⁰ and 2⁹, with either sign; sometimes a whole number, or 0.
   double mixed() {
     if (below(4) == 0) return lattice(4);
     const double size = std::ldexp(1 + static_cast<double>(below(16)) / 16, static_cast<int>(below(50)) - 40);

@@ -65,7 +65,7 @@ inline constexpr std::array kMaskMethods{kViewSample, kNativeViewSample, kEdgeSc
 inline constexpr std::array kAllMaskMethods{kViewSample,        kNativeViewSample,     kEdgeScatter,
                                             kNativeEdgeScatter, kEdgeScatterPoints,    kNativeEdgeScatterPoints,
                                             kDepthComplexity,   kNativeDepthComplexity};
-/// Those that do spheres and suns.
+/// Methods that do spheres and suns.
 inline constexpr std::array kConeMethods{kNativeEdgeScatter, kNativeViewSample, kNativeDepthComplexity};
 
 }  // namespace penumbra::tests

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// What tests of methods on a device share: a device with validation, a run over a whole picture, and the truth of every
-// pair to hold it against.
+// Support for tests of methods on a device: a device with validation, a run over a whole picture, and the truth of
+// every pair to hold it against.
 
 #include "base/error.hpp"
 #include "render/device.hpp"
@@ -103,7 +103,7 @@ inline std::string text_of(const glm::vec3& v) {
   return fmt::format("({:.9g}, {:.9g}, {:.9g})", v.x, v.y, v.z);
 }
 
-/// What a light's stored numbers are: of a sphere its centre and radius, of a sun its directions.
+/// Returns a light's stored numbers as text: of a sphere its centre and radius, of a sun its directions.
 inline std::string text_of(const visibility::Light& light) {
   const std::string kind = visibility::name_of(light.kind), center = text_of(light.center);
   if (light.kind == visibility::LightKind::sphere)

@@ -161,7 +161,7 @@ TEST_F(AlphaSurfaces, LightsOfWhichTheSameIsSaidShareALine) {
 /// Behind the light, below the floor and far beside, or where it casts nothing: nothing is counted.
 TEST_F(AlphaSurfaces, APaneThatDimsNothingLeavesAreas) {
   translucent(0.3);
-  // What is seen and hides nothing keeps the scene's origin where it is.
+  // A mesh that is seen and hides nothing keeps the scene's origin where it is.
   gltf.at("/nodes").push_back({{"name", "Far"}, {"mesh", 2}, {"translation", {0, 7, 0}}});
   gltf.at("/nodes").push_back({{"name", "Deep"}, {"mesh", 2}, {"translation", {0, -3, 0}}});
   gltf.at("/scenes/0/nodes") = {0, 1, 2, 4, 5};
@@ -224,7 +224,7 @@ TEST_F(AlphaSurfaces, PanesAreCompositedAndCarryNothingElse) {
   EXPECT_EQ(json::parse(read("stats.json")).at("counters").at("viewSamplesCounted"), 33 * 21) << "of the floor";
 }
 
-/// Of a light that nothing but a pane is before something in the picture is lit.
+/// A light with only a pane in front of it lights something in the picture.
 TEST_F(AlphaSurfaces, PanesAreLitToo) {
   look_from_above();
   translucent(0.4);
@@ -274,7 +274,7 @@ TEST_F(AlphaSurfaces, TexelsDecideOfHoles) {
   std::size_t penumbra = 0;
   for (std::size_t i = 0; i < mask.size(); ++i) penumbra += half[i] > 0 && half[i] < 1 ? 1 : 0;
   EXPECT_GT(penumbra, mask.size() / 4);
-  // Where the edge passes exactly through a light sample a texel's border and an edge are read each in its own way.
+  // An edge exactly through a light sample: a texel's border and an edge have different rules there.
   std::size_t different = 0;
   for (std::size_t i = 0; i < mask.size(); ++i) different += mask[i] != half[i] ? 1 : 0;
   EXPECT_LE(different, mask.size() / 100);

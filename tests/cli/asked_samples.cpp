@@ -32,7 +32,7 @@ class AskedSamples : public ProgramTest {
   }
 };
 
-/// Where V of a spot lamp is not written, methods are asked about its cone alone.
+/// If V of a spot lamp is not written, methods evaluate view samples in its cone alone.
 TEST_F(AskedSamples, BesideConesNothingIsAsked) {
   const auto spot = [](double x, bool smooth) {
     return json{{"name", smooth ? "smooth" : "sharp"},

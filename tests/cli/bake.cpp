@@ -38,8 +38,8 @@ json baked_floor(bool with_card) {
   return scene;
 }
 
-/// Of a point on the floor: the integral of both cosines over π d² from the corner of a rectangle, x by z, that begins
-/// over the point at height h (the form factor of a differential area and a parallel rectangle).
+/// Returns, for a point on the floor, the integral of both cosines over π d² from the corner of a rectangle, x by z,
+/// that begins over the point at height h (the form factor of a differential area and a parallel rectangle).
 double corner_form_factor(double x, double z, double h) {
   const double a = x / h, b = z / h, c = std::sqrt(1 + a * a), d = std::sqrt(1 + b * b);
   return (a / c * std::atan(b / c) + b / d * std::atan(a / d)) / (2 * std::numbers::pi);

@@ -94,7 +94,7 @@ TEST_F(Compare, ExactRowsAreAreasAndHaveErrorsButNoPairs) {
   EXPECT_FALSE(std::filesystem::exists(path("dir/edge-scatter,rows=exact.bits")));
   EXPECT_TRUE(std::filesystem::exists(path("dir/edge-scatter.bits")));
   EXPECT_EQ(read_exr(path("dir/edge-scatter,rows=exact.exr")).attributes.at("penumbra.output"), "radiance");
-  // What cannot be done is refused before the reference is traced.
+  // Impossible requests are refused before the reference is traced.
   const Outcome bits = run({"render", path("scene.json"), "-o", path("a.exr"), "--method", "edge-scatter",
                             "--method-option", "rows=exact", "--bits", path("a.bits")});
   EXPECT_EQ(bits.code, 2) << bits.err;
@@ -146,7 +146,7 @@ TEST_F(Compare, ARefusalLeavesNoFolders) {
   EXPECT_TRUE(std::filesystem::is_empty(path("kept")));
 }
 
-/// Where too many pairs differ to decide each of them, an evenly spaced sample of them is decided, and metrics.json
+/// If too many pairs differ to decide each of them, an evenly spaced sample of them is decided, and metrics.json
 /// says how large it is.
 TEST_F(Compare, VerdictsAreGivenBySamplingWhereTooManyPairsDiffer) {
   const Outcome outcome = compare({"--methods", "accumulate:size=8,raytrace", "--light-samples", "64",
@@ -296,7 +296,7 @@ TEST_F(Compare, DefaultIsEveryGeometryAndImageMethodThatIsNotOnRequest) {
   EXPECT_EQ(result["methods"][0]["lights"][0]["lightSamples"], 16);
   EXPECT_EQ(result["methods"][1]["lights"][0]["quantity"], "area");
   EXPECT_EQ(result["methods"][1]["lightSamples"], 0);
-  // What excludes the areas leaves out them alone.
+  // An option that excludes the areas leaves out nothing else.
   const Outcome vulkan = compare({"--methods", "geometry", "--method-option", "engine=vulkan", "--light-samples", "4",
                                   "--reference-samples", "4"});
   EXPECT_EQ(vulkan.code, 0) << vulkan.err;

@@ -73,7 +73,7 @@ TEST_F(CompareFurther, ErrorsByClassAddUp) {
   EXPECT_GT(shared(method.at("contactDistance").at("pixels")), pixels_of("umbra"));
 }
 
-/// What an eye sees, and the beauty's parts, computed again from the EXRs. A map with a bias as large as the scene
+/// Computes the visible errors and the beauty's parts again from the EXRs. A map with a bias as large as the scene
 /// shows V = 1 everywhere: its beauty is ∫G.
 TEST_F(CompareFurther, EyeAndSeparationAreThoseOfThePictures) {
   ASSERT_EQ(

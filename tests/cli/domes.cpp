@@ -137,7 +137,7 @@ TEST_F(DomeCommands, ReportsDrawLightSamples) {
   EXPECT_EQ(within, 32) << "half of them are above 30 degrees, where half of the solid angle is";
 }
 
-/// What is right of the picture's middle lies along +X, where the wall is; turned by half a turn, it does not.
+/// The picture's right half is along +X, where the wall is; with a rotation by half a turn it is not.
 TEST_F(DomeCommands, APictureLooksWhereItIsTurned) {
   sky(6, 1);  // turns from 3/4 to 7/8: from +X toward +Z; 0 to 45 degrees high
   const auto mean_v = [&](const std::string& dome) {

@@ -49,7 +49,7 @@ bool meets(const std::array<glm::dvec3, 3>& corners, const glm::dvec3& from, con
   return a >= 0 && b >= 0 && a + b <= 1 && t > 0 && t < 1;
 }
 
-/// What points on the lamp say of one point of the floor, with the standard errors of both numbers.
+/// Estimates for one point of the floor from points on the lamp, with the standard errors of both numbers.
 struct Truth {
   double v = 0, v_error = 0, irradiance = 0, irradiance_error = 0;  ///< irradiance over π and radiance: a form factor
   bool lit = false;
@@ -189,7 +189,7 @@ TEST_F(Emitters, BallsCoarseAndFine) {
   expect_truth(false, 0.0025);                              // import/gltf/emitters/sphere_light.hpp
 }
 
-/// The same floats, as six lights and as one.
+/// Six lights and one light of the same floats.
 TEST_F(Emitters, SixRectanglesAreTheCubeToTheBit) {
   set_lamp(test::cube_lamp({0.25, 3.5, -0.25}, 0.5), true);
   ASSERT_EQ(run({"convert", path("scene.glb"), "-o", path("one.json")}).code, 0);
@@ -256,7 +256,7 @@ TEST_F(Emitters, OneLightForEveryCommand) {
   EXPECT_EQ(method.at("error").at("max"), 0);
   EXPECT_GT(metrics.at("judgedPixels"), 300);
 
-  // What `convert` writes is the same light: with a body, and without one.
+  // `convert` writes the same light: with a body, and without one.
   ASSERT_EQ(run({"render", path("scene.glb"), "-o", path("first.exr"), "--size", "24x16"}).code, 0);
   const std::vector<float> v = read_exr(path("first.exr")).floats.at("V");
   ASSERT_EQ(run({"convert", path("scene.glb"), "-o", path("copy.json")}).code, 0);

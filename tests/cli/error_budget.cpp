@@ -232,7 +232,7 @@ TEST_F(ErrorBudget, EachLightIsExplained) {
             json::parse(read("among/metrics.json")).at("methods").at(0).at("lights").at(1).at("errorBudget"));
 }
 
-/// Where stderr is no terminal there is no bar, but a line every five seconds.
+/// If stderr is no terminal, there is a line every five seconds in place of a bar.
 using ErrorBudgetFull = ErrorBudget;
 TEST_F(ErrorBudgetFull, SaysHowFarItIs) {
   const Outcome outcome =

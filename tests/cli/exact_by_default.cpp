@@ -35,7 +35,7 @@ class ExactByDefault : public ProgramTest {
     if (outcome.code != 0) return {};
     return {read_exr(path("out.exr")), json::parse(read("stats.json")), outcome.err};
   }
-  /// What the files say of the first light: both the same.
+  /// Expects the same statement about the first light in both files.
   static void expect_first_light(const Rendered& rendered, const json& expected) {
     const json &stats = rendered.stats, &light = stats.at("lights").at(0);
     const auto& header = rendered.image.attributes;
@@ -103,7 +103,7 @@ TEST_F(ExactByDefault, OfAMethodThatWasNamedToo) {
   EXPECT_EQ(run({"render", path("scene.json"), "-o", path("out.exr"), "--method-option", "search=hsm"}).code, 2);
 }
 
-/// What looks at no light samples does not say that it does.
+/// A method that uses no light samples does not report any.
 TEST_F(ExactByDefault, EstimatesAreNoCounts) {
   tiny_scene();
   const Rendered hard = render({"--method", "alias-free"});

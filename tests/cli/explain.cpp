@@ -196,7 +196,7 @@ TEST_F(ExplainCommand, NamesEdgesOutsideTheirWedgesOfWrongConstructionsAlone) {
       EXPECT_EQ(alarms("original", pixel), 0) << pixel;
     }
   }
-  // Of shipped scenes, pixels whose own triangle's edges appear.
+  // Pixels of shipped scenes at which edges of the carrying triangle appear.
   for (const auto& [shipped, pixel] : {std::pair{"/self-shadow.json", "45,40"}, {"/thin.json", "32,72"}}) {
     const Outcome outcome =
         run({"wedges", std::string(PENUMBRA_SCENES) + shipped, "--size", "128x128", "--explain", pixel});

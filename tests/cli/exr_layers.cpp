@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What compositors take from OUT.exr: layers of each light, mattes, matrices, names.
+// Contents of OUT.exr that compositors use: layers of each light, mattes, matrices, names.
 #include "tests/cli/program.hpp"
 
 #include "app/pictures/cryptomatte.hpp"
@@ -114,7 +114,7 @@ TEST_F(Layers, ThoseAskedForAreWritten) {
             (std::set<std::string>{"Plane_001.B", "Plane_001.G", "Plane_001.R", "Plane_001.V"}))
       << "the light's own name";
   EXPECT_EQ(names_of(render({"--layers", "*"})), names_of(both)) << "none of what repeats others";
-  // What Blender's compositor takes: the lights' two parts apart.
+  // Blender's compositor takes the lights' two parts separately.
   const ExrFile parts = render({"--layers", "*_light,*_V"});
   EXPECT_EQ(names_of(parts),
             (std::set<std::string>{"Plane_001_V.V", "Plane_001_light.B", "Plane_001_light.G", "Plane_001_light.R",
@@ -188,7 +188,7 @@ TEST_F(Layers, NamesFitIntoHosts) {
                                               "Combined_2", "Lampe \xc3\xbc", "a_b_c"}));
 }
 
-/// As floats have it: 2^24 + 1 is none of them.
+/// Floats hold whole numbers up to 2^24; 2^24 + 1 is not a float.
 TEST(TriangleNumbers, AreExactAsFloats) {
   for (const std::int64_t triangle :
        {std::int64_t{-1}, std::int64_t{0}, std::int64_t{1} << 20, (std::int64_t{1} << 24) - 2,

@@ -175,7 +175,7 @@ TEST_F(Farm, AnArrayIsRenderedAndItsSummarySubmitsWhatWasLost) {
   const Outcome outcome = submit("farm", {"--chunk", "1"}, environment);
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_EQ(outcome.out, "7 8\n");
-  // As many tasks as an array may have; the first frame was rendered by `submit`.
+  // The number of tasks is the most that an array may have; the first frame was rendered by `submit`.
   EXPECT_THAT(outcome.err, HasSubstr("5 frames in 3 tasks are job 7, its summary is job 8"));
   EXPECT_THAT(read("bin/summary.8"), HasSubstr("2 frames in 2 tasks are job 9, its summary is job 10"));
   EXPECT_THAT(read("bin/summary.10"), HasSubstr("all 6 frames are there\n0\n"));

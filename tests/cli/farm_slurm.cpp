@@ -146,7 +146,7 @@ SchedulerParameters=sched_interval=2,bf_interval=2
         << read("slurmctld.out") << read("n1.out");
   }
 
-  /// What a command of Slurm prints; nothing if it fails.
+  /// Returns the output of a command of Slurm; empty if it fails.
   std::string slurm(std::vector<std::string> command) { return app::run_program(std::move(command)).output; }
 
   static bool eventually(int seconds, const std::function<bool()>& holds) {
@@ -270,7 +270,7 @@ TEST_F(FarmSlurmFull, NothingIsLostWithANodeAndNothingRenderedTwice) {
   RecordProperty("picturesBeforeTheKill", static_cast<int>(before.size()));
 }
 
-/// What no task can render is submitted once more and reported; the others are there.
+/// A frame that no task can render is submitted once more and reported; the other frames are there.
 TEST_F(FarmSlurmFull, AFrameThatFailsIsReported) {
   std::filesystem::create_directories(path("farm/s.03.exr"));
   const Outcome outcome = sequence("submit", "farm", {"--chunk", "4", "--size", "24x16"});
@@ -290,7 +290,7 @@ TEST_F(FarmSlurmFull, AFrameThatFailsIsReported) {
       << logs(path("farm/s.farm")) << slurm({"squeue"});
 }
 
-/// Who cancels an array does not want it again; the first frame's job may itself be on the farm.
+/// A cancelled array is not submitted again; the first frame's job may itself be on the farm.
 TEST_F(FarmSlurmFull, WhatWasCancelledIsReportedAndNotSubmittedAgain) {
   const Outcome outcome = sequence("submit", "farm", {"--chunk", "4"});
   ASSERT_EQ(outcome.code, 0) << outcome.err;

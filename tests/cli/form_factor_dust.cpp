@@ -65,8 +65,8 @@ TEST_F(FormFactorDust, IsBounded) {
   }
 }
 
-/// What arrives at p of a ball that nothing hides: 1/π of the integral of max(0, n · ω) over the cone of directions to
-/// it, ring by ring around its axis, each ring in 4096 parts. Nothing of the program's is used.
+/// Returns the form factor at p of a ball that nothing hides: 1/π of the integral of max(0, n · ω) over the cone of
+/// directions to it, ring by ring around its axis, each ring in 4096 parts. Nothing of the program's is used.
 double arriving(const glm::dvec3& p, const glm::dvec3& n, const glm::dvec3& center, double radius) {
   constexpr int kRings = 1024, kParts = 4096;
   const glm::dvec3 to = center - p;

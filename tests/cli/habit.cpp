@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a user of other command-line tools types first: help, version, one method, completions, manual pages, threads.
+// Commands that users of other command-line tools type first: help, version, one method, completions, manual pages,
+// threads.
 #include "tests/cli/program.hpp"
 
 #include <gmock/gmock.h>

@@ -149,7 +149,7 @@ TEST_F(InterpolatedAreas, ErrByNoMoreThanTheTolerance) {
   EXPECT_EQ(asked_, kAll);
 }
 
-/// Where two surfaces touch, as a wall on a floor, a shadow may begin between two pixels.
+/// At a contact of two surfaces, such as a wall on a floor, a shadow may begin between two pixels.
 TEST_F(InterpolatedAreas, AreContinuedToTheEdgeOfASurfaceUnlessAnotherIsNear) {
   constexpr std::uint32_t kColumn = 3 * kSide + 1;
   const auto both = [](const glm::vec3& p) { return p.z == 0 ? 0.2 + 0.1 * double{p.x} : 0.9 - 0.1 * double{p.x}; };

@@ -136,7 +136,7 @@ TEST_F(LightKinds, BitsOfASunHoldDirections) {
   }
 }
 
-/// What does not cast for a light is to it as if it cast for none, and the other lights know nothing of it.
+/// An object that does not cast for one light is to this light as if it cast for none; other lights are unaffected.
 TEST_F(LightKinds, CastersAreEachLightsOwn) {
   const std::string other = fmt::format(R"({{"name": "other", {}}})", kCeiling);
   const auto bits_of = [&](const char* method, const char* light) {

@@ -82,7 +82,7 @@ class OptionsTogether : public ProgramTest {
     return names;
   }
 
-  /// What both commands are told.
+  /// Returns the arguments that both commands get.
   [[nodiscard]] std::vector<std::string> common_arguments(const Row& row) const {
     const LitScene& scene = scene_of(row);
     std::vector<std::string> arguments = {scene.file};
@@ -340,7 +340,7 @@ TEST_P(CompareThree, EveryTriple) {
 INSTANTIATE_TEST_SUITE_P(Part, RenderThree, testing::Range<std::size_t>(0, kParts));
 INSTANTIATE_TEST_SUITE_P(Part, CompareThree, testing::Range<std::size_t>(0, kCompareParts));
 
-/// What cannot be done is refused with a documented code and a reason, whatever is wrong with it.
+/// Impossible combinations are refused with a documented code and a reason, whatever is wrong.
 TEST_F(OptionsTogether, WhatCannotBeIsRefused) {
   scenes_ = write_lit_scenes(folder_, false);
   std::size_t tried = 0;
@@ -357,7 +357,7 @@ TEST_F(OptionsTogether, WhatCannotBeIsRefused) {
       expect_exit(outcome, can ? testing::Matcher<int>(2) : testing::Matcher<int>(AnyOf(2, 3)));
       EXPECT_FALSE(std::filesystem::exists(path("a.exr")));
     }
-    // Of each option one wrong value is given to the program, and all of them to what it reads them with.
+    // The program gets one wrong value of each option; its parser gets all of them.
     for (const json& option : method.at("options")) {
       const std::string key = option.at("name");
       const std::vector<std::string> wrong = {"", "no such value", "-1", "1e400", "nan"};

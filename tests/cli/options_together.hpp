@@ -23,7 +23,7 @@ struct LitScene {
 /// Writes NAME.json of the scenes with which options are tried. `many`: more of them.
 std::vector<LitScene> write_lit_scenes(const std::filesystem::path& folder, bool many);
 
-/// What `penumbra methods --json` says, with the questions that a command line raises.
+/// Table of `penumbra methods --json`, with the queries that a command line needs.
 class MethodTable {
  public:
   explicit MethodTable(nlohmann::json methods) : methods_(std::move(methods)) {}
@@ -58,7 +58,7 @@ bool options_exclude(const std::string& method, const std::map<std::string, std:
 /// Options chosen for the method: factors are named METHOD.OPTION.
 std::map<std::string, std::string> options_of(const Row& row, const nlohmann::json& method);
 
-/// What must hold for each file that is there after a run. Adds failures to the current test.
+/// Checks a picture that a run has written. Adds failures to the current test.
 void expect_whole_picture(const std::string& path, bool all_pixels);
 void expect_whole_png(const std::string& path);
 void expect_whole_bits(const std::string& path);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Several view samples a pixel: what a filter makes of them, and whose share of a pixel a matte is.
+// Several view samples a pixel: their mean under a filter, and the shares of a pixel in mattes.
 #include "tests/cli/program.hpp"
 
 #include "app/pictures/cryptomatte.hpp"
@@ -23,7 +23,7 @@ using app::PixelFilter;
 using nlohmann::json;
 using testing::HasSubstr;
 
-/// Where Harris's four cosines are 1, 0 or −1.
+/// Compares weights at offsets where Harris's four cosines are 1, 0 or −1.
 TEST(PixelFilters, AreTheirFormula) {
   const PixelFilter wide{PixelFilter::Kind::blackman_harris, 0.75};
   EXPECT_NEAR(wide.share(0), 1, 1e-15);
@@ -64,7 +64,7 @@ class FilteredPictures : public ProgramTest {
   }
 };
 
-/// What view sample k of the large picture counts for pixel i, by the formula in degrees.
+/// Returns the weight of view sample k of the large picture for pixel i, by the formula in degrees.
 double share_of(std::size_t k, std::size_t i) {
   constexpr std::size_t kSide = 3, kWidth = 24;
   const auto along = [](std::size_t sample, std::size_t pixel) {
@@ -76,7 +76,7 @@ double share_of(std::size_t k, std::size_t i) {
   return along(k % (kSide * kWidth), i % kWidth) * along(k / (kSide * kWidth), i / kWidth);
 }
 
-/// The same by another way: every view sample of a large picture, each with its share.
+/// Means computed independently: every view sample of a large picture, each with its weight.
 TEST_F(FilteredPictures, AreWeighedMeans) {
   const ExrFile filtered =
       picture("24x16", {"--pixel-samples", "9", "--pixel-tolerance", "0", "--pixel-filter", "blackman-harris"});

@@ -11,7 +11,7 @@
 
 namespace penumbra::tests {
 
-/// What the program left behind.
+/// Exit code and output of a run of the program.
 struct Outcome {
   int code = -1;  ///< exit code; 128 + signal if it was killed
   std::string out, err;

@@ -40,7 +40,7 @@ class PublicCases : public ProgramTest {
     return json::parse(file)["cases"];
   }
 
-  /// What `inspect` says of a file.
+  /// Compares the report of `inspect` on a file with the expected values.
   static void expect_inspected(const json& wanted, const json& report) {
     const std::string error = report.value("error", "");
     if (wanted.contains("refused")) {

@@ -215,7 +215,7 @@ TEST_F(RenderOnce, ImageMethodsSayHowTheyMakeBeauty) {
       run({"render", path("scene.json"), "-o", path("b.exr"), "--method", "pcss", "--bits", path("out.bits")});
   EXPECT_EQ(bits.code, 2);
   EXPECT_THAT(bits.err, HasSubstr("pcss"));
-  // Of few pixels there are no bits, and beauty is V times what is not shadowed.
+  // Without bits, for few pixels: beauty is V times the unshadowed light.
   const std::vector<std::string> few = {"render",  path("scene.json"), "-o",      path("few.exr"),   "--method",
                                         "bitmask", "--method-option",  "size=64", "--method-option", "subsample=2"};
   ASSERT_EQ(run(few).code, 0);

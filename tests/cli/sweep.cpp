@@ -88,7 +88,7 @@ TEST_F(SweepTest, RowsAreWhatCompareSays) {
     EXPECT_EQ(table[i].at("size"), rows[i].at("options").value("size", ""));
     EXPECT_EQ(table[i].at("pareto") == "1", rows[i].at("pareto").get<bool>());
   }
-  // The same question to `compare`, with the light at that size in the file.
+  // Asks `compare` the same, with the light at that size in the file.
   std::string scene = read("scene.json");
   EXPECT_THAT(read("dir/sweep.svg"), HasSubstr("light.half=0.6"));
   json at_size = json::parse(scene);

@@ -108,7 +108,7 @@ TEST_F(WedgesCommand, ExportsNamedParts) {
   EXPECT_THAT(read("w.ply"), AllOf(HasSubstr("element edge"), HasSubstr("red")));
 }
 
-/// What is exported is a scene that the program itself can read: a GLB of meshes.
+/// An export is a scene that the program itself can read: a GLB of meshes.
 TEST_F(WedgesCommand, AnExportIsAGlb) {
   ASSERT_EQ(run({"wedges", tiny_scene(), "--export", path("w.glb")}).code, 0);
   write("shown.json", R"({"format": "penumbra-scene/1",

@@ -25,7 +25,7 @@ inline constexpr bool kSanitized = true;
 inline constexpr bool kSanitized = false;
 #endif
 
-/// What a standard stream of the program is.
+/// Kinds of a standard stream of the program.
 enum class Stream {
   captured,
   closed,

@@ -7,7 +7,7 @@
 #include <cstring>
 #include <span>
 
-/// What libFuzzer calls, and the replay of the corpus in other builds (replay_main.cpp).
+/// Entry point for libFuzzer, and for the replay of the corpus in other builds (replay_main.cpp).
 extern "C" int LLVMFuzzerTestOneInput(  // NOLINT(readability-identifier-naming): libFuzzer's name
     const std::uint8_t* data, std::size_t size);
 

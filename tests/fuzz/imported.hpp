@@ -8,7 +8,7 @@
 
 namespace penumbra::fuzz {
 
-/// What must hold of every mesh that a reader lets through.
+/// Checks the properties of every mesh that a reader accepts.
 inline void check_imported(const mesh::ImportedMesh& mesh) {
   const mesh::TriangleSoup& soup = mesh.soup;
   PENUMBRA_ASSERT(!soup.triangles.empty(), "an empty mesh was let through");

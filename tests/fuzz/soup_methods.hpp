@@ -14,7 +14,7 @@
 
 namespace penumbra::fuzz {
 
-/// What was found of one case, or of many.
+/// Findings of one case, or of many.
 struct SoupFindings {
   std::uint64_t cases = 0, pairs = 0, visible = 0;  ///< pairs: of each case, by the judge
   std::uint64_t answers = 0;                        ///< pairs that a method answered

@@ -22,7 +22,7 @@
 
 namespace penumbra::tests {
 
-/// What all cameras see, and also points on triangles that no camera's rounding has moved off them.
+/// Returns the view samples of all cameras, and also points on triangles that no camera's rounding has moved off them.
 inline visibility::ViewSamples all_samples(const scenes::Scene& scene, const visibility::SceneFloats& floats,
                                            std::mt19937& random) {
   visibility::ViewSamples samples = samples_on_triangles(floats, 8, 8, random);
@@ -78,7 +78,7 @@ inline PairCounts expect_lattice_truth(MethodsByLayout& methods, const LatticeRu
   return counts;
 }
 
-/// The same a thousand soups at a time, each thousand said under a name, as far as the first that fails.
+/// Checks a thousand soups at a time, each thousand under a name, up to the first that fails.
 inline PairCounts expect_lattice_truth_by_thousands(MethodsByLayout& methods, const LatticeRun& run_of,
                                                     const std::string& name) {
   PairCounts counts;

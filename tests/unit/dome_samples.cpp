@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where a dome's picture is in the sky, which light samples it gets, and the faces that share them.
+// The direction of each texel of a dome's picture, its light samples, and the faces that share them.
 
 #include "tests/unit/dome_stage.hpp"
 #include "visibility/dome_faces.hpp"
@@ -146,7 +146,7 @@ scenes::AreaLight with_bright_texel(float bright, bool half) {
   return source;
 }
 
-/// Of the light as many samples as of its power: ∫ luminance dω of each texel is 2π / 8 (cos of its borders).
+/// Shares of light samples are shares of power: ∫ luminance dω of each texel is 2π / 8 (cos of its borders).
 TEST(DomePictures, HaveSamplesInProportionToTheirLight) {
   for (const bool half : {false, true}) {
     constexpr float kBright = 100;

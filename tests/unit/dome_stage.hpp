@@ -33,7 +33,7 @@ inline scenes::AreaLight dome_light(const scenes::Dome& dome = {}) {
 
 using MadeMethod = std::unique_ptr<visibility::Method>;
 
-/// Those that answer with masks.
+/// Methods that give masks.
 inline std::vector<std::pair<std::string, MadeMethod>> dome_mask_methods() {
   const render::Machine machine;
   std::vector<std::pair<std::string, MadeMethod>> methods;
@@ -43,7 +43,7 @@ inline std::vector<std::pair<std::string, MadeMethod>> dome_mask_methods() {
   return methods;
 }
 
-/// Those that give areas.
+/// Methods that give areas.
 inline std::vector<std::pair<std::string, MadeMethod>> dome_area_methods() {
   std::vector<std::pair<std::string, MadeMethod>> methods;
   methods.emplace_back("rows=exact", volumes::make_edge_scatter(render::Machine(), {{"rows", "exact"}}));

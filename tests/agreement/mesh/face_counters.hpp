@@ -20,7 +20,7 @@ using FaceCounter = FaceCount (*)(const std::filesystem::path& file);
 /// The counters, by the extension in lower case.
 const std::map<std::string, FaceCounter>& face_counters();
 
-// What the counters have in common.
+// Code that the counters share.
 
 std::string bytes_of_file(const std::filesystem::path& file);
 /// Text in UTF-8, whatever its byte order mark says.

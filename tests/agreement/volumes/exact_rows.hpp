@@ -23,7 +23,7 @@ namespace penumbra::tests {
 /// disks 10⁻¹⁰: 64 · 2⁻⁵³ for each of a few thousand trapezoids at the rim.
 constexpr double kExactRowsTolerance = 2 * 0x1p-25 + 0x1p-26 + 1e-10;
 
-/// What a method of output radiance says.
+/// Results of a method of output radiance.
 struct RowsAnswer {
   std::vector<float> shares;
   std::vector<glm::dvec3> form_factors;

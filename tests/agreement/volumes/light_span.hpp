@@ -26,7 +26,7 @@ inline bool refuses_size(const InputError& error) {
   return says(error, "handles lights between 2^-28 and 2^28 of the scene's size");
 }
 
-/// What visibility::check_size says of a planar light.
+/// Returns whether visibility::check_size accepts a planar light.
 inline bool spans(const visibility::SceneFloats& floats, const visibility::Light& light) {
   try {
     visibility::check_size(light, visibility::make_device_light(light, visibility::device_scale(floats)), "this test");

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// What the tests of adaptive-light share: its pictures with their counters, a sphere over a floor, and its errors
+// Support for tests of adaptive-light: its pictures with their counters, a sphere over a floor, and its errors
 // there.
 
 #include "tests/analytic/maps/backprojection_scenes.hpp"

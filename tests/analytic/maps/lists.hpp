@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// What tests of lists of depths share: deep-penumbra's steps and layered-attenuation's layers.
+// Support for tests of lists of depths: deep-penumbra's steps and layered-attenuation's layers.
 
 #include "maps/sampling/methods.hpp"
 #include "selftest/list_checks.hpp"

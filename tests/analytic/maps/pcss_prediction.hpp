@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// What pcss must answer under casters that are rectangles parallel to the light: its maps are known in closed form, so
-// every tap is, except those within half a texel of an outline. V lies between the answers that those leave open.
+// Predicts the answers of pcss under casters that are rectangles parallel to the light: its maps are known in closed
+// form, so every tap is, except those within half a texel of an outline. V lies between the answers that those leave
+// open.
 
 #include "maps/host/light_basis.hpp"
 #include "maps/products/light_shape.hpp"
@@ -55,7 +56,7 @@ class PcssPrediction {
     Between v{0, 0};
     for (std::size_t k = 0; k < filter_.size(); ++k) {
       const glm::dvec2 s(filter_[k]);
-      // Where the tap goes is linear in 1/z: between its places for the least and the largest mean height.
+      // The tap's position is linear in 1/z: it lies between those for the least and the largest mean height.
       const glm::dvec2 a = at + s * (1 / low - 1 / d.z), b = at + s * (1 / high - 1 / d.z);
       const Tap between = tap_between(glm::min(a, b), glm::max(a, b));
       if (!between.may_block) v.low += weights_[k];
@@ -66,7 +67,8 @@ class PcssPrediction {
   }
 
  private:
-  /// Of the filter's taps, 1 together: equal, or a rectangle's texture at the light point, its first row uppermost.
+  /// Returns the weights of the filter's taps, 1 together: equal, or a rectangle's texture at the light point, its
+  /// first row uppermost.
   [[nodiscard]] std::vector<double> weights_of(const visibility::Light& light) const {
     std::vector<double> weights(filter_.size(), 1.0);
     if (light.texture) {
@@ -136,7 +138,7 @@ class PcssPrediction {
     }
 
    private:
-    /// Of `count` numbers of this sum and any of the others.
+    /// Returns the least mean of `count` numbers of this sum and any of the others.
     static double least_mean(double sum, std::size_t count, std::vector<double> others) {
       std::ranges::sort(others);
       for (const double other : others) {

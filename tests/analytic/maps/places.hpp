@@ -28,7 +28,7 @@ struct Place {
   Stage stage, shuffled;
 };
 
-/// The same scene: objects and triangles in another order, and some triangles wound the other way.
+/// Returns the scene with objects and triangles in another order, and some triangles wound in the opposite direction.
 inline scenes::Scene shuffled(const scenes::Scene& scene, std::uint32_t seed) {
   std::mt19937 random(seed);
   const auto order_of = [&](std::size_t count) {

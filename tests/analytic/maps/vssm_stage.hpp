@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// What tests of vssm share: a scene, the method's options out of its twin's settings, the suite.
+// Support for tests of vssm: a scene, the method's options out of its twin's settings, the suite.
 
 #include "tests/analytic/maps/vssm_twin.hpp"
 
@@ -11,7 +11,7 @@ namespace penumbra::tests {
 
 inline constexpr std::uint32_t kMapSize = 128;
 
-/// What the methods ask their map to hold beside the receivers.
+/// Returns the margin around the receivers that the methods ask their map to hold.
 inline glm::dvec2 beside(const Stage& stage) {
   return maps::half_extent(stage.light, maps::light_basis(stage.light)) / maps::half_width(stage.light);
 }

@@ -211,7 +211,7 @@ class VssmTwin {
     return box.inside * sum / (extent.x * extent.y) + (1 - box.inside) * f(1);
   }
 
-  /// Of all texels that the box touches, or of 16 along an axis; whole ones.
+  /// Returns the mean over all texels that the box touches, or 16 along an axis; whole texels.
   [[nodiscard]] double texel_by_texel(const Box& box, const std::function<double(double)>& f) const {
     if (box.inside == 0) return 1;
     const glm::dvec2 first = glm::floor(box.lower), extent = glm::ceil(box.upper) - first,

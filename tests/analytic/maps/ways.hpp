@@ -26,7 +26,7 @@ struct Way {
       options[field.substr(0, equals)] = field.substr(equals + 1);
     }
   }
-  /// As it is, with more options, which say what it does not.
+  /// Returns this variant with more options, for those that it leaves open.
   [[nodiscard]] Way with(const visibility::MethodOptions& more) const {
     Way way = *this;
     way.options.insert(more.begin(), more.end());

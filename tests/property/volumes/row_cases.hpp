@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// What tests of the bounds of rows=exact share: cases that a search varies, and exact numbers.
+// Support for tests of the bounds of rows=exact: cases that a search varies, and exact numbers.
 
 #include "tests/agreement/most_used.hpp"
 #include "tests/agreement/support.hpp"
@@ -43,7 +43,7 @@ struct Use {
   double of_bound = 0, error = 0, bound = 0;
 };
 
-/// What a search varies: a scene of a floor and a light, p on the floor, and an edge over p.
+/// Variables of a search: a scene of a floor and a light, p on the floor, and an edge over p.
 struct Case {
   scenes::Scene scene;
   glm::vec3 p{0};

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-/// What tests of validation share: meshes as casters, a light of each kind, and the whole check.
+/// Support for tests of validation: meshes as casters, a light of each kind, and the whole check.
 namespace penumbra::volumes::test {
 
 /// A light of each kind about `center`, below which the casters are; stored relative to zero.

@@ -68,7 +68,7 @@ double corner_form_factor(double a, double b, double c) {
   return (x / rx * std::atan(y / rx) + y / ry * std::atan(x / ry)) / (2 * kPi);
 }
 
-/// Of a square of half-size 1 at height 2.
+/// Form factor of a square of half-size 1 at height 2.
 const double kStraightAbove = 4 * corner_form_factor(1, 1, 2);
 
 TEST(Beauty, OneSampleStraightAbove) {
@@ -176,7 +176,8 @@ TEST(Beauty, ASunShinesOverItsSolidAngle) {
       for (const glm::vec3& color : floor.shade({{seen, {}}})) EXPECT_NEAR(color.r / expected, 1, 1e-6) << angle;
     }
   }
-  // Of angle 0, `radiance` is the irradiance of what faces it: a diffuse surface shows colour / π of that.
+  // A sun of angle 0: `radiance` is the irradiance of a surface that faces it; a diffuse surface shows colour / π of
+  // that.
   scene.lights[0].shape = scenes::Sun{{std::sqrt(0.75), -0.5, 0}, 0};
   floor.lights = {visibility::make_light(scene, 0, glm::dvec3(0), {4, 2, 2, visibility::SamplePattern::grid, 0})};
   for (const glm::vec3& color : floor.shade({{seen, {}}})) EXPECT_NEAR(color.r, 0.5 * 10 / kPi / 2, 1e-6);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where sequences of runs lead, and what of that is said of each cause.
+// Results of sequences of runs, and the part of each cause.
 #include "compare/error_budget.hpp"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What an eye sees of errors: shares, banding and FLIP.
+// Visible errors: shares, banding and FLIP.
 #include "compare/eye.hpp"
 
 #include <gtest/gtest.h>

@@ -83,7 +83,7 @@ TEST(Exposure, IsThatOfSortedPixels) {
     std::vector<std::uint8_t> left_out;
     std::vector<float> largest;
     for (std::size_t i = 0; i < count; ++i) {
-      // Of every exponent, some of them equal.
+      // Values of every exponent, some of them equal.
       const float value = std::ldexp(1 + static_cast<float>(random() % 5) / 8, static_cast<int>(random() % 250) - 125);
       linear.emplace_back(value / 2, value, value / 4);
       left_out.push_back(i > 0 && random() % 3 == 0 ? 1 : 0);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the report's script unpacks is what was packed: each packing is undone here in a few lines of C++.
+// The report's script unpacks what was packed: each packing is undone here in a few lines of C++.
 #include "base/packed.hpp"
 #include "compare/report_data.hpp"
 

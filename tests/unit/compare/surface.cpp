@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What surfaces look like: closed forms of interpolation, wrapping and filtering.
+// Colours of surfaces: closed forms of interpolation, wrapping and filtering.
 #include "compare/surface.hpp"
 
 #include "compare/beauty.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What moves and bends in glTF: animations, skins, morph targets.
+// Motion in glTF: animations, skins, morph targets.
 #include "scenes/formats/gltf_reader.hpp"
 
 #include "tests/unit/import/gltf_file.hpp"
@@ -30,7 +30,7 @@ class GltfAnimation : public test::FileTest {
     options.time = 0.5;
     return test::input_error([&] { read_gltf(path, options); });
   }
-  /// Where the corner of the body that was modelled at (1, 0, 0) is.
+  /// Returns the position of the body's corner that was modelled at (1, 0, 0).
   glm::dvec3 corner(Gltf& gltf, std::optional<double> time) const { return read(gltf, time).soup.positions[1]; }
 };
 
@@ -238,7 +238,7 @@ TEST_F(GltfAnimation, ALampThatIsScaledToNothingIsDark) {
     EXPECT_EQ(after.center, glm::dvec3(0, 5.5, 0)) << "where it is by then";
     EXPECT_THAT(shown.warnings, IsEmpty());
     EXPECT_THAT(hidden.warnings, ::testing::ElementsAre("'Lamp' is scaled to nothing: a light that is dark"));
-    // Nothing is seen of it, and it is the light's own body all the same.
+    // The body is invisible, and still the light's own body.
     ASSERT_EQ(hidden.objects.size(), shown.objects.size());
     EXPECT_EQ(hidden.objects[1].emits, std::optional(0u));
     for (const mesh::Triangle& t : hidden.soup.triangles) {

@@ -130,7 +130,7 @@ TEST_F(GltfAsWritten, ChunksOfGlbs) {
   EXPECT_THAT(test::input_error([&] { read_gltf(path); }), HasSubstr("first chunk is not its JSON"));
 }
 
-/// What exporters multiply in single precision.
+/// Products that exporters compute in single precision.
 TEST_F(GltfAsWritten, SinglePrecisionIsNoFault) {
   Gltf gltf;
   gltf.at("/nodes/0")["matrix"] = {1, 0, 0, 0, 0, 1, 0, -1e-7, 0, 0, 1, 0, 5, 0, 0, 0.9999999};

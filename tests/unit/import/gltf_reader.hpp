@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// What tests of glTF scenes share: a scene of made-up bytes, read or refused.
+// Support for tests of glTF scenes: a scene of made-up bytes, read or refused.
 
 #include "scenes/formats/gltf_reader.hpp"
 #include "tests/unit/import/gltf_file.hpp"

@@ -92,8 +92,8 @@ TEST_F(GltfSurfaces, HaveMaterialsColoursAndNormals) {
   EXPECT_EQ(scene.looks.normals.back(), glm::vec3(0));
 }
 
-/// What stops all light is plain geometry, what stops none is not there; what lies between keeps its alpha.
-/// Of those that Blender's exporter does not know it writes nothing; of an Emission alone, that it reflects nothing.
+/// A surface that stops all light is plain geometry, one that stops none is absent; others keep their alpha.
+/// Blender's exporter writes nothing of shaders that it does not know; an Emission alone reflects nothing.
 TEST_F(GltfSurfaces, OfBlendersOtherShaders) {
   Gltf gltf;
   gltf.at("/materials/0").erase("pbrMetallicRoughness");
@@ -199,7 +199,7 @@ TEST_F(GltfSurfaces, PicturesOfAnyDepthAreAsTheyAre) {
             (std::array<std::uint8_t, 4>{128, 64, 255, 7}));
 }
 
-/// What would be lost in silence is named.
+/// Losses are named.
 TEST_F(GltfSurfaces, WhatAlphaLacksIsNamed) {
   Gltf gltf = textured();
   gltf.at("/meshes/0/primitives/0/attributes").erase("TEXCOORD_0");
@@ -256,13 +256,13 @@ TEST_F(GltfSurfaces, ShineWithTheMeanOfTheirPictureWhereItLies) {
   EXPECT_EQ(radiance(lit(whole, {{"scale", {0.5, 1}}, {"offset", {0.5, 0}}})), glm::dvec3(20, 10, 0));
   // One place for all corners, as of a palette.
   EXPECT_EQ(radiance(lit({0.25f, 0.5f, 0.25f, 0.5f, 0.25f, 0.5f, 0.25f, 0.5f})), glm::dvec3(20 * dark, 0, 0));
-  // Where the picture repeats, and so far away that doubles have no more texels between them: it ends.
+  // Coordinates where the picture repeats, and so far away that doubles do not resolve texels: the picture ends.
   for (const double offset : {1e6, 9.1e15}) {
     Gltf far = lit(whole, {{"scale", {64, 1}}, {"offset", {offset, 0}}});
     far.at("/samplers/0/wrapS") = 10497;
     EXPECT_NEAR(radiance(far).x, 20 * (dark + 1) / 2, offset < 1e7 ? 1e-6 : 10) << offset;
   }
-  // Where it is black, there is no light.
+  // Black texels give no light.
   Gltf black = lit({0, 1, 0.5f, 1, 0, 0, 0.5f, 0});
   black.at("/materials/1/emissiveFactor") = {0, 1, 1};
   EXPECT_THAT(refusal(black), HasSubstr("'Lamp' (its emissive picture is black where it lies on it)"));

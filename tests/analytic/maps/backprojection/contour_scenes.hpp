@@ -55,7 +55,7 @@ inline bool on_object(const Stage& stage, std::size_t pixel, std::uint32_t objec
   return triangle >= 0 && stage.floats.object[static_cast<std::size_t>(triangle)] == object;
 }
 
-/// What there is to say of V against exact areas, over the floor (object 0).
+/// Errors of V against exact areas, over the floor (object 0).
 struct FloorErrors {
   double rmse = 0, bias = 0;
   double leak = 0;    ///< the share of pixels in the umbra that are brighter than 0.05

@@ -46,7 +46,8 @@ class PatchTwin {
     return height > 1.05 * deepest;
   }
 
-  /// What bitmask's occluders cover in the light's plane, as convex polygons; of a patch, of windows only.
+  /// Returns the areas that bitmask's occluders cover in the light's plane, as convex polygons; patches are for windows
+  /// only.
   [[nodiscard]] std::vector<Polygon> occluders(std::size_t pixel, Occluder kind) const {
     const glm::dvec3 d = maps_.basis.local(stage_->samples.p[pixel]);
     const maps::gpu::SideView& side = maps_.fitted.views.front().side[d.z < 0 ? 1 : 0];
@@ -154,7 +155,7 @@ class PatchTwin {
     return found * direction.z < e.z ? found : 0;
   }
 
-  /// Where the line from e through the point of a face meets the light's plane.
+  /// Returns the point where the line from e through the point of a face meets the light's plane.
   static glm::dvec2 on_light(const Face& face, const glm::dvec3& e, const glm::dvec2& at, double depth) {
     const glm::dvec3 q = depth * (at.x * face.axes[0] + at.y * face.axes[1] + face.axes[2]);
     const glm::dvec3 s = e + (q - e) * (e.z / (e.z - q.z));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// What the tests of soft-shadow-map share: its pictures with their counters, floors with a light above, the papers'
+// Support for tests of soft-shadow-map: its pictures with their counters, floors with a light above, the papers'
 // measure.
 
 #include "tests/analytic/maps/parallel_square.hpp"
