@@ -57,7 +57,7 @@ foreach(room patches contours soft_shadow_map)
 endforeach()
 list(APPEND may_maps/backprojection/soft_shadow_map maps/backprojection/patches)  # self=backproject
 set(may_maps maps/host maps/filters maps/sampling maps/single_shadow maps/screen maps/backprojection/patches maps/backprojection/contours maps/backprojection/soft_shadow_map engines render ${all_visibility} scenes mesh base)
-set(may_hybrids volumes/soft maps/filters maps/host engines render ${all_visibility} scenes mesh base)
+set(may_hybrids volumes/soft volumes/raster maps/filters maps/host engines render ${all_visibility} scenes mesh base)
 set(may_selftest maps/products/lists maps/products maps/host vsm engines/vectors volumes/scatter volumes/counters volumes/raster ${signed_edges} volumes/wedges render/opengl render
     ${all_visibility} scenes mesh/shapes mesh base)
 set(may_reference areas engines render ${all_visibility} scenes mesh base)
