@@ -141,7 +141,7 @@ hn::Mask<D> between_rows(const WalkInput& in, const Extent& across, const Extent
   const auto aside = [&](const Extent& from) { return hn::Max(hn::Abs(from.low), hn::Abs(from.high)); };
   const V foot = hn::Mul(hn::Add(aside(across), aside(along)), most);
   const V reach = hn::Add(far, set(in.grid.cut_reach > 0 ? cut_far(in.grid) : 0));
-  const V error = hn::MulAdd(hn::Mul(reach, inverse), hn::MulAdd(set(place.per_reach), foot, set(place.per_way)),
+  const V error = hn::MulAdd(hn::Mul(reach, inverse), hn::MulAdd(set(place.per_reach), foot, set(place.per_ray)),
                              hn::MulAdd(set(place.per_foot), foot, set(place.fixed)));
   const V around = scaled(error, 4);
   const hn::Mask<D> right = hn::Gt(hn::Sub(x.low, around), set(-0.5F));

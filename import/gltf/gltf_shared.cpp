@@ -39,7 +39,7 @@ const SharedPrimitives::Primitive& SharedPrimitives::add(const Number& number, s
   primitive.mesh = static_cast<std::uint32_t>(to_->meshes.size());
   primitive.object = std::move(object);
   if (measures_) primitive.local = local;
-  to_->meshes.push_back(std::make_shared<const SharedMesh>(std::move(mesh)));
+  to_->meshes.push_back(std::make_shared<const scenes::SharedMesh>(std::move(mesh)));
   return primitive;
 }
 

@@ -217,11 +217,11 @@ TilePlan plan_tiles(const LightVolumes& volumes, std::span<const gpu::VolumeRece
   if (receivers.empty()) return plan;
   TileTree tree(volumes.l, receivers, width);
   const auto from_l = [&](const glm::vec3& x) { return glm::dvec3(x) - glm::dvec3(volumes.l); };
-  mesh::for_each_index(volumes.edges.size(), [&](std::size_t i) {
+  for_each_index(volumes.edges.size(), [&](std::size_t i) {
     const VolumeEdge& edge = volumes.edges[i];
     tree.touch(ConvexFace::side(from_l(edge.a), from_l(edge.b)), [](std::uint32_t) { return true; });
   });
-  mesh::for_each_index(volumes.caps.size(), [&](std::size_t i) {
+  for_each_index(volumes.caps.size(), [&](std::size_t i) {
     const auto& [a, b, c] = volumes.caps[i].corners;
     tree.touch(ConvexFace::triangle({from_l(a), from_l(b), from_l(c)}),
                [&](std::uint32_t plane) { return plane != volumes.caps[i].plane; });
@@ -229,7 +229,7 @@ TilePlan plan_tiles(const LightVolumes& volumes, std::span<const gpu::VolumeRece
   std::set<std::uint32_t> planes;
   for (const Block& tile : tree.tiles()) planes.insert(tile.plane);
   const std::vector<Rim> rims = rims_of(volumes, planes);
-  mesh::for_each_index(rims.size(), [&](std::size_t i) {
+  for_each_index(rims.size(), [&](std::size_t i) {
     tree.touch(ConvexFace::side(from_l(rims[i].a), from_l(rims[i].b)),
                [&](std::uint32_t plane) { return plane == rims[i].plane; });
   });
