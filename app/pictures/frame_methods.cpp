@@ -9,6 +9,7 @@
 #include "app/process/stopwatch.hpp"
 #include "app/whole_lights.hpp"
 #include "base/assert.hpp"
+#include "base/memory.hpp"
 
 #include <fmt/ranges.h>
 
@@ -141,10 +142,26 @@ FrameRenderer::Kept& FrameRenderer::method_for(const LightMethod& wanted) {
   return kept_.back();
 }
 
+void FrameRenderer::require_room_for_masks() const {
+  if (!picture_.frame.keeps_masks || picture_.layers) return;
+  std::uint64_t samples = 0, words = 0;  // of all lights
+  for (std::size_t i = 0; i < plan_.lights.size(); ++i) {
+    if (plan_.chosen[i].description.output != visibility::Output::mask) continue;
+    samples += plan_.lights[i].sample_count();
+    words += plan_.lights[i].words_per_mask();
+  }
+  require_memory(words * sizeof(std::uint32_t) * lit().pixel_count(),
+                 fmt::format("a mask with a bit for each of {} light samples, for each of {}x{} pixels,", samples,
+                             lit().width, lit().height),
+                 "choose a smaller size or fewer light samples, or do without masks");
+}
+
 void FrameRenderer::keep_masks(const TileResult& tile) {
   if (!picture_.frame.keeps_masks || picture_.layers || tile.masks.empty()) return;
   picture_.masks.resize(lit().lights.size());
-  picture_.masks[tile.light].insert(picture_.masks[tile.light].end(), tile.masks.begin(), tile.masks.end());
+  std::vector<std::uint32_t>& masks = picture_.masks[tile.light];
+  if (masks.empty()) masks.reserve(lit().pixel_count() * plan_.lights[tile.light].words_per_mask());
+  masks.insert(masks.end(), tile.masks.begin(), tile.masks.end());
 }
 
 void FrameRenderer::run_methods(const std::filesystem::path& bits) {
@@ -154,6 +171,7 @@ void FrameRenderer::run_methods(const std::filesystem::path& bits) {
   mark_lights();
   choose_methods(lit());
   say_notes();
+  require_room_for_masks();
   spent_.load += watch.seconds();
   if (!bits.empty()) {
     check_bits(plan_.chosen.front().description, lit().lights);

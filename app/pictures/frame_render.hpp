@@ -136,6 +136,8 @@ class FrameRenderer {
   FaintLights leave_out_faint(const BeautyAccumulator& beauty);
   /// Adds the cost of other moments of the same lights to the cost of this one.
   static void add_times(MethodRun& to, const MethodRun& before);
+  /// Throws ResourceError if the masks that the picture keeps need more memory than there is.
+  void require_room_for_masks() const;
   void keep_masks(const TileResult& tile);
   /// Returns the previous pictures for the current view samples; null if there are none, or the picture is a mean.
   visibility::FrameMemory* memory();

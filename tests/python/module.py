@@ -5,6 +5,7 @@ import copy
 import json
 import os
 import pathlib
+import resource
 import signal
 import subprocess
 import sys
@@ -185,6 +186,19 @@ class Module(unittest.TestCase):
         np.testing.assert_array_equal(np.ascontiguousarray(rows[..., :12]).view("<f4").reshape(16, 24, 3), picture.Prel)
         seen = picture.masks.mean(axis=-1)[picture.A == 1]
         np.testing.assert_allclose(picture.V[picture.A == 1], seen, atol=1e-7)  # a share of 64, rounded to float32
+
+    def test_masks_without_room_are_refused_first(self):
+        scene = penumbra.load(ROOM)
+        options = dict(size=(1024, 1024), method="edge-scatter", light_samples=4096)  # two lights: 1 GiB of masks
+        soft, hard = resource.getrlimit(resource.RLIMIT_DATA)
+        data = int(pathlib.Path("/proc/self/statm").read_text().split()[5]) * resource.getpagesize()
+        resource.setrlimit(resource.RLIMIT_DATA, (data + (640 << 20), hard))
+        try:
+            with self.assertRaisesRegex(penumbra.ResourceError, "each of 8192 light samples.* 1024x1024 .*about 1 GiB.* do without masks"):
+                penumbra.render(scene, **options)
+        finally:
+            resource.setrlimit(resource.RLIMIT_DATA, (soft, hard))
+        self.assertIsNone(penumbra.render(scene, **{**options, "size": (8, 8)}, masks=False).masks)
 
     def test_exact_half_shadow(self):
         # Below the board's edge the plane x = 0 through p divides the light: V by the similar triangles of the section, for
