@@ -48,6 +48,7 @@ PAGES = {
     "plateaus": ("fusion", 64, ["plateaus"]),
     "hybrid-volume": ("thin", 64, ["hybrid-volume:size=256"]),
     "soft-volume-fusion": ("fusion", 64, ["soft-volume:fusion=max", "soft-volume:fusion=product", "soft-volume:fusion=average", "soft-volume:fusion=vote"]),
+    "soft-volume-published": ("papers/centred", 64, ["soft-volume:as=published", "soft-volume", "soft-volume:fusion=vote"]),
     "soft-volume-blend": ("large-penumbra", 64, ["soft-volume-blend"]),
     "soft-irregular": ("fusion", 64, ["soft-irregular", "soft-irregular:umbra=layers"]),
     "raytrace": ("bunny", 64, ["raytrace"]),
@@ -74,6 +75,7 @@ PAGES = {
     "backproject-peel": ("papers/ball", 64, ["backproject-peel:size=128"]),
     "bitmask": ("papers/bars", 256, ["bitmask:size=256", "bitmask:size=256:occluder=patch"]),
     "contour": ("papers/gap-open", 64, ["contour:size=256"]),
+    "contour-texture": ("textured-light", 64, ["contour:size=256", "packet:size=256:sublights=2"]),
     "packet": ("papers/ball", 64, ["packet:size=256", "packet:size=256:sublights=2"]),
     "adaptive-light": ("papers/ball", 64, ["adaptive-light:size=256"]),
     "layered-attenuation": ("contact", 36, ["layered-attenuation:size=128"]),
@@ -81,6 +83,7 @@ PAGES = {
 }
 LIGHTS = {"skies/knot": ["--light", "around"]}  # of scenes with several: the first
 PAGE_SIZE, PAGE_LIMIT = 144, 0.5  # pixels on a side; the error of the deepest colour
+SIZES = {"papers/centred": 145}  # of scenes whose middle row and column of pixels matter
 # Colours of compare/error_picture.cpp.
 BACKGROUND = (96, 104, 116)
 TOO_BRIGHT = ((255, 255, 255), (188, 218, 236), (90, 163, 206), (33, 102, 172), (5, 40, 90))
@@ -133,7 +136,7 @@ def render_pages(program, pages):
         runs.setdefault(PAGES[page][:2], []).append(page)
     for (scene, samples), together in runs.items():
         entries = [entry for page in together for entry in PAGES[page][2]]
-        found = Runner(program).compare(f"scenes/{scene}.json", entries, size=PAGE_SIZE, samples=samples, more=LIGHTS.get(scene, []))
+        found = Runner(program).compare(f"scenes/{scene}.json", entries, size=SIZES.get(scene, PAGE_SIZE), samples=samples, more=LIGHTS.get(scene, []))
         found[TRUTH] = found["truth"]
         for page in together:
             print(f"{page}: scenes/{scene}.json, {samples} light samples, {write_page(page, found)} bytes")
@@ -144,14 +147,15 @@ def render_pages(program, pages):
 
 def write_page(page, found):
     """For each entry V, and beside it how far it is off."""
-    rows = [b""] * PAGE_SIZE
+    size = SIZES.get(PAGES[page][0], PAGE_SIZE)
+    rows = [b""] * size
     for k, entry in enumerate(PAGES[page][2]):
         greys, errors = [], []
         for v, truth, a, judged in zip(found[entry]["V"], *(found[TRUTH][name] for name in ("V", "A", "judged"))):
             greys.append((round(255 * min(max(v, 0), 1)),) * 3 if a else BACKGROUND)
             errors.append(error_color(v - truth) if judged else BACKGROUND)
-        for y in range(PAGE_SIZE):
-            line = slice(y * PAGE_SIZE, (y + 1) * PAGE_SIZE)
+        for y in range(size):
+            line = slice(y * size, (y + 1) * size)
             rows[y] += b"\xff" * (24 if k else 0) + b"".join(map(bytes, greys[line])) + b"\xff" * 12 + b"".join(map(bytes, errors[line]))
     path = ROOT / "docs" / "images" / "errors" / f"{page}.png"
     path.parent.mkdir(exist_ok=True)

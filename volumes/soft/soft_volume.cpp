@@ -71,6 +71,14 @@ constexpr visibility::ChoiceOption kFusion{
     "largest, as if independent, or by the middle between largest and sum; vote: adds, with layers by the votes of "
     "three points of the light"};
 
+/// Handling of edges that pass the light's centre within rounding, as a view sample sees them.
+enum class Sides { exact, published };
+constexpr visibility::ChoiceOption kSides{"as",
+                                          {{"repaired", Sides::exact}, {"published", Sides::published}},
+                                          Sides::exact,
+                                          "repaired: decides by exact signs on which side of the light's centre an "
+                                          "edge passes; published: by floats, wrong by a whole layer where they are"};
+
 visibility::MeshVerdict soft_volume_verdict(const mesh::Diagnosis& mesh) {
   return {visibility::Verdict::approximate,
           visibility::reason_with(
@@ -93,7 +101,7 @@ visibility::MethodDescription soft_volume_description() {
               "the light's centre sees: planar ones, say",
           .lights = visibility::kPlanarLights - visibility::kPolygons,
           .options = {kSplit.description(), kTable.description(), kConstruction.description(), kWedges.description(),
-                      kTests.description(), kFusion.description()},
+                      kTests.description(), kFusion.description(), kSides.description()},
           .verdict_on = soft_volume_verdict};
 }
 
@@ -132,7 +140,10 @@ class SoftVolume final : public visibility::Method {
         builder_(device,
                  {.on = options[kWedges], .construction = options[kConstruction], .layers = Layers::one_a_solid}),
         tests_(options[kTests]),
-        votes_(options[kFusion] == Combined::vote) {
+        votes_(options[kFusion] == Combined::vote),
+        sides_(votes_                                ? 2
+               : options[kSides] == Sides::published ? 1
+                                                     : 0) {
     for (std::uint32_t i = 0; i < split_ * split_; ++i) {
       parts_.push_back(std::make_unique<CountedPart>(device));
       for (std::uint32_t k = 0; votes_ && k < gpu::kVoters; ++k) {
@@ -221,6 +232,7 @@ class SoftVolume final : public visibility::Method {
   WedgeBuilder builder_;
   WedgeTests tests_;
   bool votes_;
+  gpu::uint sides_;                        // constant kSides of the shader
   std::vector<gpu::uint> kind_;            // constants of raster_: shape and measure
   const CountedPart* prepared_ = nullptr;  // the part whose table raster_ has
   std::unique_ptr<WedgeRaster> raster_;
@@ -236,7 +248,7 @@ class SoftVolume final : public visibility::Method {
 void SoftVolume::make_raster(const Light& light) {
   const gpu::uint shape = is_round(light.kind) ? gpu::kDisk : gpu::kRectangle;
   const gpu::uint measure = table_ ? gpu::kTable : light.texture ? gpu::kTexture : gpu::kArea;
-  const std::vector<gpu::uint> kind{shape, measure, votes_ ? 1U : 0U};
+  const std::vector<gpu::uint> kind{shape, measure, sides_};
   if (raster_ && kind == kind_) return;
   raster_ = std::make_unique<WedgeRaster>(*device_, WedgeShader{.name = "wedges",
                                                                 .fragment = shaders::kSoftVolumeFrag,

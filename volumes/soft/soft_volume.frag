@@ -14,8 +14,10 @@
 
 layout(constant_id = 0) const uint kShape = 0;
 layout(constant_id = 1) const uint kMeasure = 0;
-layout(constant_id = 2) const uint kVote = 0;  // 1: sides as rounded by floats, and the layers between the centre and
-                                               // the voters
+// The side of the light's centre on which an edge passes: 0: exact; 1: as rounded by floats; 2: so, and the layers
+// between the centre and the voters.
+layout(constant_id = 2) const uint kSides = 0;
+const bool kRounded = kSides != 0, kVote = kSides == 2;
 
 layout(scalar, binding = 0) readonly buffer Faces { WedgeFace faces[]; };  // used by the vertex shader; one set for
                                                                            // both stages
@@ -79,15 +81,15 @@ void main() {
   const dvec3 from = project(a - p, foot), to = project(b - p, foot);
   const Segment cut = kShape == kDisk ? cut_by_disk(from, to) : cut_by_square(from, to);
   if (!cut.any) return;
-  const int turn = kVote == 0 ? turn_of(a, b, p, foot) : rounded_turn_of(a, b, p, foot);
+  const int turn = kRounded ? rounded_turn_of(a, b, p, foot) : turn_of(a, b, p, foot);
   const Cone cone = cone_of(cut, turn, size_of(a, b, p, from, to), kShape == kDisk);
-  if (kVote == 0 && cone.doubtful) {
+  if (!kRounded && cone.doubtful) {
     doubts[slot] = 1;
     return;
   }
   const double share = share_of(cone, cut.from.xy / cut.from.z, cut.to.xy / cut.to.z);
-  const uint words = kVote == 0 ? 1 : 1 + kVoters;
-  for (uint i = 0; kVote != 0 && i < kVoters; ++i) {
+  const uint words = kVote ? 1 + kVoters : 1;
+  for (uint i = 0; kVote && i < kVoters; ++i) {
     const int change = layers_between(cut, turn, kVoterAt[i]);
     if (change != 0) atomicAdd(sums[slot * words + 1 + i], int64_t(change * facing_of(foot) * face_weight));
   }
