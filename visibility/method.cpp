@@ -48,7 +48,7 @@ void check_light(const MethodDescription& description, const Light& light) {
   if (light.texture && !description.textures) {
     throw InputError(
         "light \"{}\" has a texture; method {}, as asked for, does not weigh V by it. Take another light (--light) or "
-        "method (--method: edge-scatter and raytrace do textures, of outlines packet:sublights=S, S of 2 or more)",
+        "method (--method: edge-scatter and raytrace do textures; of maps contour, packet and backproject)",
         light.name, description.name);
   }
   if (light.rows == 0 && !description.any_pattern && is_parallelogram(light.kind)) {

@@ -7,11 +7,14 @@
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <glm/vec2.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <numeric>
+#include <optional>
 
 namespace penumbra::visibility {
 namespace {
@@ -32,6 +35,14 @@ double luminance_in(const LightTexture& texture, const glm::dvec2& lower, const 
     }
   }
   return sum;
+}
+
+/// Returns the texture of a part; nullopt if it is constant.
+std::optional<LightTexture> texture_of_part(const LightTexture& whole, std::uint32_t count, const glm::uvec2& part) {
+  LightTexture texture = texture_part(whole, count, part);
+  if (std::ranges::adjacent_find(texture.luminance, std::not_equal_to<>()) == texture.luminance.end())
+    return std::nullopt;
+  return texture;
 }
 
 /// Returns the light's outline in its frame's coordinates.
@@ -118,7 +129,8 @@ std::vector<LightPart> rectangle_parts(const Light& light, std::uint32_t count) 
       if (weight == 0) continue;
       const glm::dvec3 center = frame.center + (2.0 * column + 1.0 - count) * u + (2.0 * row + 1.0 - count) * v;
       LightPart& part = parts.emplace_back(LightPart{light, weight});
-      part.light.texture.reset();
+      part.light.texture = std::nullopt;
+      if (light.texture) part.light.texture = texture_of_part(*light.texture, count, {column, row});
       part.light.weights.clear();
       part.light.sample_colors.clear();
       part.light.area = light.area / (static_cast<double>(count) * count);
@@ -135,6 +147,23 @@ std::vector<LightPart> rectangle_parts(const Light& light, std::uint32_t count) 
 }
 
 }  // namespace
+
+LightTexture texture_part(const LightTexture& texture, std::uint32_t n, const glm::uvec2& part) {
+  LightTexture result{texture.width, texture.height, {}, {}, 0};
+  // Rows run from the top, parts from the bottom.
+  const std::uint32_t from_top = n - 1 - part.y;
+  for (std::uint32_t y = 0; y < texture.height; ++y) {
+    for (std::uint32_t x = 0; x < texture.width; ++x) {
+      const std::size_t texel =
+          std::size_t{(from_top * texture.height + y) / n} * texture.width + (part.x * texture.width + x) / n;
+      result.colors.push_back(texture.colors[texel]);
+      result.luminance.push_back(texture.luminance[texel]);
+      result.mean_luminance += texture.luminance[texel];
+    }
+  }
+  result.mean_luminance /= static_cast<double>(result.luminance.size());
+  return result;
+}
 
 std::vector<LightPart> light_parts(const Light& light, std::uint32_t count) {
   if (count == 1) return {{light, 1}};

@@ -2,19 +2,27 @@
 #pragma once
 
 #include "visibility/light_samples.hpp"
+#include "visibility/light_texture.hpp"
+
+#include <glm/vec2.hpp>
 
 #include <cstdint>
 #include <vector>
 
 namespace penumbra::visibility {
 
-/// A part of a light, as a light without a texture. A rectangle's part is a rectangle, and its samples are the whole
-/// light's, scaled down; parts of other lights are polygons, and all samples of a part are at its centroid.
+/// A part of a light. A rectangle's part is a rectangle with its part of the texture, unless this is constant, and its
+/// samples are the whole light's, scaled down and without weights; parts of other lights are polygons, and all samples
+/// of a part are at its centroid.
 struct LightPart {
   Light light;
   double weight = 1;  ///< weight of its V in the whole light's: its area, times the texture's luminance. The weights
                       ///< add up to 1
 };
+
+/// Returns the texture of part (column, row), from s = t = −1, of a rectangle cut in n × n: exact, with each texel
+/// itself cut in n × n.
+LightTexture texture_part(const LightTexture& texture, std::uint32_t n, const glm::uvec2& part);
 
 /// Divides a planar light into `count` × `count` parts, row by row along its u (Yang et al. 2009, section 5): a
 /// rectangle's are equal, and black ones are left out; other lights are cut by a grid over their bounding rectangle, a

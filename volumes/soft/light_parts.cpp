@@ -3,7 +3,7 @@
 #include "volumes/soft/light_parts.hpp"
 
 #include "base/assert.hpp"
-#include "volumes/wedges/texture_weights.hpp"
+#include "visibility/lights/light_parts.hpp"
 
 namespace penumbra::volumes {
 
@@ -28,7 +28,7 @@ std::vector<visibility::Light> light_parts(const visibility::Light& light, std::
       part.coordinates.clear();
       part.weights.clear();
       part.sample_colors.clear();
-      if (light.texture) part.texture = texture_part(*light.texture, n, {column, row});
+      if (light.texture) part.texture = visibility::texture_part(*light.texture, n, {column, row});
       parts.push_back(part);
     }
   }

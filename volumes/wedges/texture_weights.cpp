@@ -143,22 +143,4 @@ double TextureWeights::weight_of(std::span<const glm::dvec2> polygon) const {
   return sum;
 }
 
-visibility::LightTexture texture_part(const visibility::LightTexture& texture, std::uint32_t n,
-                                      const glm::uvec2& part) {
-  visibility::LightTexture result{texture.width, texture.height, {}, {}, 0};
-  // Rows run from the top, parts from the bottom.
-  const std::uint32_t from_top = n - 1 - part.y;
-  for (std::uint32_t y = 0; y < texture.height; ++y) {
-    for (std::uint32_t x = 0; x < texture.width; ++x) {
-      const std::size_t texel =
-          std::size_t{(from_top * texture.height + y) / n} * texture.width + (part.x * texture.width + x) / n;
-      result.colors.push_back(texture.colors[texel]);
-      result.luminance.push_back(texture.luminance[texel]);
-      result.mean_luminance += texture.luminance[texel];
-    }
-  }
-  result.mean_luminance /= static_cast<double>(result.luminance.size());
-  return result;
-}
-
 }  // namespace penumbra::volumes

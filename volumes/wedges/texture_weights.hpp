@@ -60,7 +60,4 @@ class TextureWeights {
   std::vector<double> words_;
 };
 
-/// Returns the texture of part (column, row) of a rectangle cut in n × n: exact, with each texel itself cut in n × n.
-visibility::LightTexture texture_part(const visibility::LightTexture& texture, std::uint32_t n, const glm::uvec2& part);
-
 }  // namespace penumbra::volumes

@@ -33,7 +33,6 @@ visibility::MethodDescription contour_description() {
       .output = visibility::Output::scalar,
       .exact_for = "nothing; in the limit of large maps, where all that shades lies in one plane parallel to the light",
       .lights = visibility::kPlanarLights,
-      .textures = false,
       .options = compared_map_option_descriptions(),
       .verdict_on = contour_verdict,
       .repairs = contour_repairs};

@@ -36,6 +36,8 @@ struct ContourLight {
                        // a rectangle
   uint disk;           // 1: a disk or an ellipse
   float inverse_area;  // of a polygon
+  uint texture_width;  // texels of a rectangle's texture, whose table follows (radiance.glsl); 0: no texture
+  uint texture_height;
 };
 
 // Counters of the work, in the order of WorkCounts.

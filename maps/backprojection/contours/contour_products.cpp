@@ -24,6 +24,27 @@ void set_to_unit(gpu::ContourLight& head, const glm::dvec2& u, const glm::dvec2&
   head.to_unit_y = rows[1];
 }
 
+/// Returns the table of a texture, in threes, filled up with zeros.
+std::vector<glm::vec3> texture_table(const visibility::LightTexture& texture) {
+  const std::size_t width = texture.width, height = texture.height;
+  const double whole = texture.mean_luminance * static_cast<double>(width * height);
+  std::vector<glm::vec3> table(((width + 1) * height + height + 1 + 2) / 3, glm::vec3(0));
+  const auto set = [&](std::size_t at, double sum) {
+    table[at / 3][static_cast<glm::length_t>(at % 3)] = static_cast<float>(sum / whole);
+  };
+  double below = 0;
+  for (std::size_t y = 0; y < height; ++y) {
+    double left = 0;
+    for (std::size_t x = 0; x < width; ++x) {
+      left += texture.luminance[(height - 1 - y) * width + x];  // rows of a texture run from the top downward
+      set(y * (width + 1) + x + 1, left);
+    }
+    below += left;
+    set((width + 1) * height + y + 1, below);
+  }
+  return table;
+}
+
 }  // namespace
 
 ContourLightData contour_light(const visibility::Light& light, const LightBasis& basis) {
@@ -46,6 +67,11 @@ ContourLightData contour_light(const visibility::Light& light, const LightBasis&
     const visibility::LightFrame frame = visibility::light_frame(light);
     const glm::dvec3 u = basis.local(basis.center + frame.u), v = basis.local(basis.center + frame.v);
     set_to_unit(data.head, glm::dvec2(u), glm::dvec2(v));
+    if (light.texture) {
+      data.head.texture_width = light.texture->width;
+      data.head.texture_height = light.texture->height;
+      data.corners = texture_table(*light.texture);
+    }
     return data;
   }
   std::vector<glm::dvec2> outline = light_outline(light, basis);

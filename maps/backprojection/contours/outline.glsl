@@ -68,7 +68,7 @@ void add_edge(uint pixel, ivec2 base, uint edge, float depth_from, float depth_t
   const float turned = own_here ? cross2(from_own(pixel, base, from), from_own(pixel, base, to)) : face_turn * cross2(a, b);
   const float turn = turned >= 0.0 ? 1.0 : -1.0;
   const float area = beyond_edge(to_unit(a), to_unit(b), turn * face_turn);
-  atomicAdd(pixel_edges[pixel], int(turn) * int(area * float(kContourWhole) + 0.5));
+  atomicAdd(pixel_edges[pixel], int(turn) * int(floor(area * float(kContourWhole) + 0.5)));
 }
 
 // Adds the edges of a cell, for all members from `first` on.

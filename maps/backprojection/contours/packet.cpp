@@ -3,8 +3,7 @@
 // light cut into sub-lights with a map each: Yang, Feng, Guennebaud and Liu 2009, "Packet-based hierarchal soft shadow
 // mapping". Departures: those of contour; a texel makes a packet incoherent where the texel is near some pixel's plane
 // in its own direction, not where its depth is between the pixels' (thresholds.glsl); an incoherent packet is processed
-// pixel by pixel by the same workgroup, not in a second pass; a textured light is replaced by as many plain lights as
-// there are sub-lights.
+// pixel by pixel by the same workgroup, not in a second pass; a sub-light has its part of the light's texture.
 
 #include "maps/backprojection/contours/methods.hpp"
 
@@ -104,8 +103,6 @@ visibility::MethodDescription packet_description(const visibility::MethodOptions
     description.options.push_back(option);
   description.options.push_back(kSubsample.description());
   description.options.push_back(kSubsampleBy.description());
-  // Outlines give an area only; a texture is applied as weights of the sub-lights.
-  description.textures = visibility::parse_options(description, options)[kSubLights] > 1;
   return description;
 }
 

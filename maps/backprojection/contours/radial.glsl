@@ -8,7 +8,7 @@
 
 layout(scalar, binding = LIGHT) readonly buffer Light {
   ContourLight light;
-  vec3 light_corners[];
+  vec3 light_corners[];  // of a polygon; of a textured rectangle, three numbers of its table each (radiance.glsl)
 };
 
 const float kPi = 3.14159265358979;
@@ -64,7 +64,10 @@ vec2 clip_to_light(vec2 a, vec2 d) {
   return t;
 }
 
-// Returns the fraction of the light beyond the edge a b, in unit coordinates. `turn`: 1 if the edge runs
+#include "maps/backprojection/contours/radiance.glsl"
+
+// Returns the fraction of the light beyond the edge a b, in unit coordinates; with a texture, up to what adds up to
+// nothing along an outline (radiance.glsl). `turn`: 1 if the edge runs
 // counter-clockwise around the centre, else -1. The caller decides: near the centre the two differ by the whole light,
 // and `turn` must agree with the caller's count of contours around the centre.
 float beyond_edge(vec2 a, vec2 b, float turn) {
@@ -72,6 +75,7 @@ float beyond_edge(vec2 a, vec2 b, float turn) {
   const vec2 t = clip_to_light(a, d);
   if (!(t.x < t.y)) return 0.0;
   const vec2 from = a + t.x * d, to = t.y == 1.0 ? b : a + t.y * d;
+  if (light.texture_width > 0) return radiance_beyond(from, to, turn);
   float sector = turn * (swept(to) - swept(from));
   // A sector is at most 5/9 of the light (of a triangle, by a line through its centroid): values far from [0, 5/9] have
   // passed the fixed ray, values just below 0 are rounding.
@@ -81,7 +85,7 @@ float beyond_edge(vec2 a, vec2 b, float turn) {
   return max(0.0, sector - triangle);
 }
 
-// Returns the fraction of the light's area above the horizon of the receiver e, m its normal away from the light: of
+// Returns the fraction of the light above the horizon of the receiver e, m its normal away from the light: of
 // points s with m . (e - s) > 0.
 float light_above_horizon(vec3 e, vec3 m) {
   const float h = dot(m, e), mm = dot(m.xy, m.xy);
@@ -89,6 +93,7 @@ float light_above_horizon(vec3 e, vec3 m) {
   if (dot(abs(m.xy), reach) <= abs(h)) return h > 0.0 ? 1.0 : 0.0;
   const vec2 along = vec2(-m.y, m.x) * ((h < 0.0 ? -4.0 : 4.0) * (reach.x + reach.y) / sqrt(mm));
   const vec2 foot = m.xy * (h / mm);
-  const float beyond = beyond_edge(to_unit(foot - along), to_unit(foot + along), 1.0);
+  // Rounded sums of a texture may be beyond 0 ... 1.
+  const float beyond = clamp(beyond_edge(to_unit(foot - along), to_unit(foot + along), 1.0), 0.0, 1.0);
   return h > 0.0 ? 1.0 - beyond : beyond;
 }

@@ -2,11 +2,9 @@
 // Contours against their closed form, in kernels and sub-lights.
 
 #include "base/error.hpp"
-#include "maps/host/map_fit.hpp"
 #include "tests/agreement/differences.hpp"
 #include "tests/analytic/maps/backprojection/contour_scenes.hpp"
-
-#include <numbers>
+#include "tests/analytic/maps/backprojection/octagon_twin.hpp"
 
 namespace penumbra::tests {
 namespace {
@@ -14,88 +12,6 @@ namespace {
 using visibility::MethodOptions;
 
 class MapsContour : public ContourTest {};
-
-/// What contours hide under the parallel square: the texels whose centres it holds, with the corners cut off midway to
-/// the next texels' centres, projected onto the light.
-class OctagonTwin {
- public:
-  /// `level`: blocks of 2^level texels a side are one, which shades if any of them does.
-  OctagonTwin(const Stage& stage, std::uint32_t size, std::uint32_t level = 0) : stage_(&stage) {
-    const maps::LightBasis basis = maps::light_basis(stage.light);
-    const maps::LightBounds bounds = maps::light_bounds(stage.light, basis);
-    const glm::vec3 centre(basis.center);
-    const auto fitted = maps::fit_views(stage.floats, stage.light, basis, std::span(&centre, 1),
-                                        {.size = size, .reach = glm::max(-bounds.lower, bounds.upper)});
-    const maps::gpu::SideView& side = fitted.views.front().side[0];
-    basis_ = basis;
-    glm::dvec2 lower(1e30), upper(-1e30);
-    for (std::size_t i = 6; i < 12; ++i) {  // the occluder's corners follow the floor's six
-      const glm::dvec3 corner = basis.local(stage.floats.positions[i]);
-      lower = glm::min(lower, glm::dvec2(corner) / corner.z);
-      upper = glm::max(upper, glm::dvec2(corner) / corner.z);
-      height_ = corner.z;
-    }
-    texel_ = (glm::dvec2(side.upper) - glm::dvec2(side.lower)) / static_cast<double>(size);
-    // First and last texels whose centres it holds, or their blocks, and half a texel beyond: the contour.
-    const double block = 1U << level;
-    glm::dvec2 first = glm::ceil((lower - glm::dvec2(side.lower)) / texel_ - 0.5);
-    glm::dvec2 last = glm::floor((upper - glm::dvec2(side.lower)) / texel_ - 0.5);
-    first = glm::floor(first / block) - 0.5;
-    last = glm::floor(last / block) + 0.5;
-    texel_ *= block;
-    const glm::dvec2 a = glm::dvec2(side.lower) + (first + 0.5) * texel_,
-                     b = glm::dvec2(side.lower) + (last + 0.5) * texel_;
-    const glm::dvec2 half = 0.5 * texel_;
-    outline_ = {{a.x + half.x, a.y}, {b.x - half.x, a.y}, {b.x, a.y + half.y}, {b.x, b.y - half.y},
-                {b.x - half.x, b.y}, {a.x + half.x, b.y}, {a.x, b.y - half.y}, {a.x, a.y + half.y}};
-    if (stage.light.kind == visibility::LightKind::disk) {
-      constexpr int kSides = 4096;  // circumscribed and inscribed differ in area by 2 (π / 4096)² = 1.2e-6
-      for (int i = 0; i < kSides; ++i) {
-        const double angle = 2 * std::numbers::pi * i / kSides;
-        light_.emplace_back(stage.light.radius * std::cos(angle), stage.light.radius * std::sin(angle));
-      }
-    } else if (stage.light.kind == visibility::LightKind::ellipse) {
-      const auto [u, v] = maps::light_axes(stage.light, basis);
-      for (int i = 0; i < 4096; ++i) {
-        const double angle = 2 * std::numbers::pi * i / 4096;
-        light_.push_back(std::cos(angle) * u + std::sin(angle) * v);
-      }
-    } else {
-      for (const glm::vec3& corner : stage.light.outline) light_.emplace_back(basis.local(corner));
-    }
-  }
-  [[nodiscard]] double visibility(std::size_t pixel) const {
-    const glm::dvec3 p = basis_.local(stage_->samples.p[pixel]);
-    std::vector<glm::dvec2> seen = light_;
-    const double f = height_ * p.z / (p.z - height_);
-    for (std::size_t i = 0; i < outline_.size(); ++i) {
-      const glm::dvec2 a = (outline_[i] - glm::dvec2(p) / p.z) * f;
-      const glm::dvec2 b = (outline_[(i + 1) % outline_.size()] - glm::dvec2(p) / p.z) * f;
-      std::vector<glm::dvec2> inside;
-      for (std::size_t k = 0; k < seen.size(); ++k) {
-        const glm::dvec2 &s = seen[k], &t = seen[(k + 1) % seen.size()];
-        const double left_s = cross(b - a, s - a), left_t = cross(b - a, t - a);
-        if (left_s >= 0) inside.push_back(s);
-        if ((left_s >= 0) != (left_t >= 0)) inside.push_back(s + (t - s) * (left_s / (left_s - left_t)));
-      }
-      seen = std::move(inside);
-    }
-    return 1 - area(seen) / area(light_);
-  }
-
- private:
-  static double cross(const glm::dvec2& a, const glm::dvec2& b) { return a.x * b.y - a.y * b.x; }
-  static double area(const std::vector<glm::dvec2>& polygon) {
-    double twice = 0;
-    for (std::size_t i = 0; i < polygon.size(); ++i) twice += cross(polygon[i], polygon[(i + 1) % polygon.size()]);
-    return std::abs(twice) / 2;
-  }
-  const Stage* stage_;
-  maps::LightBasis basis_;
-  double height_ = 0;
-  glm::dvec2 texel_{0};
-  std::vector<glm::dvec2> outline_, light_;
-};
 
 // An occluder of n × m texels is n · m − ½ texels large: each of its four corners is cut off by an eighth. Areas are
 // rounded to 2⁻²² of the light for each of the edges, tangents to 2⁻²⁴ of the window's 1.6, which are 1e-6 of the
@@ -338,13 +254,6 @@ TEST_F(MapsContour, SubLightsWeighByTheTexture) {
 
 TEST_F(MapsContour, WhatItCannotDoIsRefused) {
   scenes::Scene scene = ball_over_floor(1);
-  const Stage plain(scene, 8, 8, light_samples(4));
-  visibility::Light textured = plain.light;
-  textured.texture = visibility::LightTexture{
-      .width = 1, .height = 1, .colors = {glm::vec3(1)}, .luminance = {1}, .mean_luminance = 1};
-  const auto contour = maps::make_contour(device(), {{"size", "16"}});
-  contour->prepare_mesh(plain.floats);
-  EXPECT_THROW(contour->prepare_light(textured), InputError);
   scene.lights.front().shape = scenes::Sphere{{0, 5, 0}, 0.9};
   const Stage bulb(scene, 8, 8, light_samples(4));
   const auto packet = maps::make_packet(device(), {{"size", "16"}, {"sublights", "2"}});
@@ -353,20 +262,6 @@ TEST_F(MapsContour, WhatItCannotDoIsRefused) {
   for (const char* extent : {"0x3", "3x0", "9x8", "3", "x3", "3x", "3x3x", "3X3", "-1x2", " 2x2", "4294967297x1"}) {
     EXPECT_THROW(maps::make_packet(device(), {{"packet", extent}}), UsageError) << extent;
   }
-  // Outlines know no texture, and sub-lights are weighed by theirs.
-  const auto one = maps::make_packet(device(), {{"size", "16"}}),
-             four = maps::make_packet(device(), {{"size", "16"}, {"sublights", "2"}});
-  one->prepare_mesh(plain.floats);
-  four->prepare_mesh(plain.floats);
-  EXPECT_FALSE(one->description().textures);
-  try {
-    one->prepare_light(textured);
-    ADD_FAILURE() << "a texture is not weighed";
-  } catch (const InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("packet:sublights=S"), std::string::npos) << error.what();
-  }
-  EXPECT_TRUE(four->description().textures);
-  four->prepare_light(textured);
   EXPECT_THROW(maps::make_contour(device(), {{"traversal", "deep"}}), UsageError);
 }
 
