@@ -50,6 +50,19 @@ struct OneRun {
   double mesh = 0, view = 0, read = 0;
 };
 
+/// What is known of a run's time before its end. Rows may differ by much, so this is a guess.
+struct RunEstimate {
+  double lights, rows;   ///< of the whole run; rows of each light
+  double rows_done = 0;  ///< of all lights
+  double tiles = 0;      ///< seconds of these rows
+  [[nodiscard]] bool is_done() const { return rows_done == lights * rows; }
+  /// Returns the seconds of the whole run, of which `elapsed` have passed: what is not of rows is of lights.
+  [[nodiscard]] double of_all(double elapsed) const {
+    const double lights_begun = std::ceil(rows_done / rows);
+    return (elapsed - tiles) * lights / lights_begun + tiles * lights * rows / rows_done;
+  }
+};
+
 double sum_of(const OneRun& run, double LightTimes::*time) {
   return std::transform_reduce(run.lights.begin(), run.lights.end(), 0.0, std::plus(),
                                [&](const LightTimes& light) { return light.*time; });
@@ -72,10 +85,14 @@ class Host {
 
   [[nodiscard]] const visibility::SceneFloats* prepared() const { return mesh_; }
 
-  /// `reads`: pass on the results.
-  OneRun run(bool reads, MethodRun& result) {
+  /// `reads`: pass on the results. `limited`: no longer than RunPlan::most_seconds, in bands.
+  OneRun run(bool reads, bool limited, MethodRun& result) {
+    constexpr std::uint32_t kBands = 64;  // what is spent beyond the limit is a band's time at most
     OneRun times{std::vector<LightTimes>(plan_.lights.size())};
     result.counters.clear();
+    const Stopwatch whole;
+    RunEstimate estimate{.lights = static_cast<double>(chosen_lights(plan_).size()),
+                         .rows = static_cast<double>(session_.height)};
     for (const std::size_t light : in_order_of_meshes()) {
       Stopwatch watch;
       if (const visibility::SceneFloats& floats = session_.floats_for(light); mesh_ != &floats) {
@@ -100,13 +117,19 @@ class Host {
       times.view += watch.seconds();
       std::uint32_t rows = std::max(method_.max_tile_rows(), 1u);
       rows = std::min({rows, most_rows_to_read(light), plan_.band_rows});
+      if (limited) rows = std::min(rows, session_.height / kBands + 1);
       for (std::uint32_t row = 0; row < session_.height; row += rows) {
+        const Stopwatch tile_watch;
         const Tile tile{row, std::min(rows, session_.height - row)};
         times.lights[light].evaluate += evaluate(tile) + filter(light, samples, tile);
         watch.restart();
         if (reads) read(light, tile, result);
         times.read += watch.seconds();
         progress_.advance(tile.row_count);
+        estimate.tiles += tile_watch.seconds();
+        estimate.rows_done += tile.row_count;
+        if (limited && !estimate.is_done() && whole.seconds() > plan_.most_seconds)
+          throw TakesTooLong(estimate.of_all(whole.seconds()));
       }
       // Counters start again with each light; the result has their sum.
       for (const auto& [name, count] : method_.counters()) result.counters[name] += count;
@@ -370,7 +393,7 @@ MethodRun run_method(visibility::Method& method, const Session& session, const R
     method.take_pass_times();  // discards those of earlier runs
     const bool is_first = !first && runs.empty(), is_discarded = is_first && plan.discard_first;
     const Stopwatch watch;
-    OneRun times = host.run(is_first, result);
+    OneRun times = host.run(is_first, is_discarded && std::isfinite(plan.most_seconds), result);
     if (!is_discarded) elapsed += watch.seconds();
     if (is_first) {
       result.times.mesh = times.mesh;  // later runs prepare meshes again only where lights' casters differ

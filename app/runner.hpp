@@ -6,6 +6,7 @@
 #include "visibility/method.hpp"
 
 #include <cstdint>
+#include <exception>
 #include <functional>
 #include <limits>
 #include <map>
@@ -54,6 +55,8 @@ struct RunPlan {
   const visibility::SceneFloats** holds = nullptr;
   /// Largest number of rows evaluated at once. Between bands, Progress may stop the run.
   std::uint32_t band_rows = std::numeric_limits<std::uint32_t>::max();
+  /// Limit of the discarded first run, which is then evaluated in bands of a few rows: TakesTooLong.
+  double most_seconds = std::numeric_limits<double>::infinity();
   std::string stage = {};  ///< label of the progress bar; empty: the method's name
 };
 
@@ -81,6 +84,13 @@ struct MethodRun {
   std::map<std::string, std::uint64_t> counters;
   std::uint64_t memory_bytes = 0;
   const visibility::SceneFloats* prepared = nullptr;  ///< the method's current scene (RunPlan::prepared)
+};
+
+/// Thrown by run_method between two bands, after RunPlan::most_seconds.
+struct TakesTooLong final : std::exception {
+  double seconds = 0;  ///< of a whole run, as estimated from the rows that are done
+  explicit TakesTooLong(double estimated) : seconds(estimated) {}
+  [[nodiscard]] const char* what() const noexcept override { return "a method takes too long"; }
 };
 
 /// Adds the result of another method for other lights of the same plan, or for other pixels of the same lights.

@@ -19,6 +19,7 @@ penumbra_test(cli FULL *EveryTriple* SHARDS Part/RenderTogether=2 Part/CompareTo
   cli/far_lights.cpp
   cli/form_factor_dust.cpp
   cli/method_answers.cpp
+  cli/slow_methods.cpp
   cli/exact_by_default.cpp
   cli/exr_layers.cpp
   cli/farm.cpp

@@ -105,7 +105,7 @@ class Comparison {
   compare::Metrics run(const std::vector<std::string>& arguments) {
     run_reference();
     run_rays();
-    for (const Entry& entry : entries_) run_or_report(entry);
+    run_entries();
     if (options_.writes) make_error_pictures();
     if (options_.error_budget) explain_errors();
     progress_.clear();
@@ -216,6 +216,33 @@ class Comparison {
       truths_[light].rays = std::move(done.run.visibility[light]);
   }
 
+  /// Runs all entries, and forgets those that are left out for their time.
+  void run_entries() {
+    std::vector<Entry> kept;
+    for (Entry& entry : entries_) {
+      try {
+        run_or_report(entry);
+        kept.push_back(std::move(entry));
+      } catch (const TakesTooLong& found) {
+        leave_out(entry, found.seconds);
+      }
+    }
+    entries_ = std::move(kept);
+  }
+
+  void leave_out(const Entry& entry, double seconds) {
+    progress_.clear();
+    const auto has_budget = [](const visibility::OptionDescription& option) { return option.name == "budget"; };
+    const bool bounded = std::ranges::any_of(entry.description.options, has_budget);
+    warn(
+        fmt::format("{} is left out: a run of it would take about {:.0f} seconds here, and methods that are not named "
+                    "have {:.0f}; ask for it by name (--methods){}",
+                    entry.label, seconds, options_.most_seconds,
+                    bounded ? fmt::format(", or bound its texels: {}:budget=4096", entry.label) : ""));
+    if (!options_.writes) return;
+    for (std::string& text : files_.remove(entry.label)) warn(std::move(text));
+  }
+
   /// A method that fails does not end the comparison of the others. After a device stops answering, no other method
   /// runs, and the device's exception is rethrown once everything is written.
   void run_or_report(const Entry& entry) {
@@ -228,6 +255,8 @@ class Comparison {
     } catch (const render::DeviceDoesNotAnswer& error) {
       hang_ = std::current_exception();
       report_failure(entry, {error.code(), error.what()});
+    } catch (const TakesTooLong&) {
+      throw;
     } catch (...) {
       report_failure(entry, current_failure());
     }

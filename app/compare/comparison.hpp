@@ -9,6 +9,7 @@
 
 #include <filesystem>
 #include <map>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -33,6 +34,8 @@ struct ComparisonOptions {
   std::optional<double> time;   ///< time of the scene in seconds; nullopt: at rest
   /// Pictures of earlier frames, by entry; null: this is no sequence.
   std::map<std::string, visibility::FrameMemory>* memories = nullptr;
+  /// A method of a group (not requested by name) whose first run takes longer is left out, with a warning.
+  double most_seconds = std::numeric_limits<double>::infinity();
   std::optional<float> exposure;  ///< of displayed pictures, in stops; nullopt: from the reference's brightness
   std::vector<std::string> view_arguments = {};  ///< of the program, to see the scene in the live view; for the report
 };

@@ -12,6 +12,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -24,7 +25,7 @@ using visibility::MethodDescription;
 /// for a group's exact areas if --method-option excludes them.
 std::optional<Entry> describe_entry(const MethodEntry& chosen, const std::function<void(std::string)>& warn) {
   try {
-    return Entry{chosen.label, describe_method(chosen.name, chosen.options), chosen.options};
+    return Entry{chosen.label, describe_method(chosen.name, chosen.options), chosen.options, chosen.from_group};
   } catch (const UsageError& error) {
     if (!chosen.exact_area) throw;
     warn(fmt::format("{} is left out: {}", chosen.label, error.what()));
@@ -174,8 +175,13 @@ RunPlan plan_of(const Entry& entry, bool is_reference, const ComparisonOptions& 
   const bool is_judge = is_reference || method.family == visibility::Family::reference;
   // Areas of a judge are not timed against others, and may take minutes.
   if (is_judge && method.output != visibility::Output::mask) return {.lights = {}, .runs = 1};
-  if (options.runs != 0) return {.lights = {}, .runs = options.runs, .discard_first = true};
-  return {.lights = {}, .runs = 5, .run_seconds = 2, .discard_first = true};
+  RunPlan plan{.lights = {}, .runs = 5, .run_seconds = 2, .discard_first = true};
+  if (options.runs != 0) {
+    plan.runs = options.runs;
+    plan.run_seconds = std::numeric_limits<double>::infinity();
+  }
+  if (entry.from_group && !is_reference) plan.most_seconds = options.most_seconds;
+  return plan;
 }
 
 std::vector<MethodLabel> labels_of(const Entry& entry, std::span<const visibility::Light> lights,

@@ -20,6 +20,7 @@ struct Entry {
   std::string label;
   visibility::MethodDescription description;
   visibility::MethodOptions options;
+  bool from_group = false;  ///< requested with others, not by name
 };
 
 /// Returns the methods with the options given for all of them (ComparisonOptions::method_options). Throws UsageError

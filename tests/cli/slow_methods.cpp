@@ -1,0 +1,120 @@
+// Methods that take too long are left out of a comparison, unless they are named.
+#include "app/compare/comparison.hpp"
+#include "app/machine.hpp"
+#include "app/options.hpp"
+#include "app/process/terminal_progress.hpp"
+#include "app/runner.hpp"
+#include "app/session.hpp"
+#include "scenes/formats/reader.hpp"
+#include "tests/cli/program.hpp"
+
+#include <gmock/gmock.h>
+
+#include <chrono>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace penumbra::tests {
+namespace {
+
+using testing::AllOf;
+using testing::Contains;
+using testing::HasSubstr;
+using testing::Not;
+
+/// Takes two milliseconds a row.
+class Slow final : public visibility::Method {
+ public:
+  Slow() {
+    description_.name = "slow";
+    description_.output = visibility::Output::scalar;
+    description_.lights = {visibility::LightKind::rectangle};
+  }
+  [[nodiscard]] const visibility::MethodDescription& description() const override { return description_; }
+  void prepare_mesh(const visibility::SceneFloats& /*scene*/) override {}
+  void prepare_light(const visibility::Light& /*light*/) override {}
+  void prepare_view(const visibility::ViewSamples& /*samples*/) override {}
+  [[nodiscard]] std::uint32_t max_tile_rows() const override { return 4096; }
+  void evaluate(const visibility::Tile& tile) override {
+    tiles.push_back(tile.row_count);
+    std::this_thread::sleep_for(std::chrono::milliseconds(2 * tile.row_count));
+  }
+  void read_visibility(std::span<float> visibility) override { std::ranges::fill(visibility, 0.5F); }
+
+  std::vector<std::uint32_t> tiles;
+
+ private:
+  visibility::MethodDescription description_;
+};
+
+class Warnings final : public app::Progress {
+ public:
+  void begin(std::string /*stage*/, std::uint64_t /*steps*/) override {}
+  void advance(std::uint64_t /*steps*/) override {}
+  void clear() override {}
+  void say(Level /*level*/, const std::string& message) override { said.push_back(message); }
+  std::vector<std::string> said;
+};
+
+class SlowMethods : public ProgramTest {
+ protected:
+  [[nodiscard]] app::RunOptions options() const {
+    app::RunOptions run;
+    run.scene = tiny_scene();
+    return run;
+  }
+};
+
+// 200 rows take 0.4 s or more: after a tenth of it the run ends, in bands of 4 rows, and says how long all would take.
+TEST_F(SlowMethods, EndBetweenBands) {
+  app::RunOptions run = options();
+  run.size = "8x200";
+  const render::Machine machine = app::make_machine("cpu");
+  app::TerminalProgress progress(false);
+  const app::Session session = app::open_session(run, std::nullopt, machine, 0, progress);
+  const auto none = [](const app::TileResult&) {};
+  Slow slow;
+  app::RunPlan plan{.lights = session.lights, .discard_first = true, .most_seconds = 0.04};
+  try {
+    app::run_method(slow, session, plan, none, progress);
+    ADD_FAILURE() << "as long as it likes";
+  } catch (const app::TakesTooLong& found) {
+    EXPECT_GT(found.seconds, 0.3);
+  }
+  EXPECT_LT(slow.tiles.size(), 40U);
+  EXPECT_THAT(slow.tiles, testing::Each(4U));
+  // With the time that it takes, the timed run is in one piece.
+  Slow patient;
+  plan.most_seconds = 1e6;
+  EXPECT_EQ(app::run_method(patient, session, plan, none, progress).times.runs, 1U);
+  EXPECT_EQ(patient.tiles.size(), 51U);
+  EXPECT_EQ(patient.tiles.back(), 200U);
+  // Without a discarded run there is no limit.
+  Slow first;
+  plan.most_seconds = 0;
+  plan.discard_first = false;
+  EXPECT_NO_THROW(app::run_method(first, session, plan, none, progress));
+}
+
+// Of a group each is left out by name, with the others' results in their places; a method that is named is not.
+TEST_F(SlowMethods, AreLeftOutOfGroupsByName) {
+  app::ComparisonOptions comparison;
+  comparison.methods = app::parse_methods("raytrace,geometry");
+  comparison.writes = false;
+  comparison.reference_samples = "16";
+  comparison.runs = 1;
+  comparison.most_seconds = 0;
+  app::RunOptions run = options();
+  run.light_samples = "16";
+  Warnings warnings;
+  const compare::Metrics metrics = app::compare_methods(scenes::read_scene(run.scene), run, comparison, warnings);
+  ASSERT_EQ(metrics.methods.size(), 1U);
+  EXPECT_EQ(metrics.methods.front().entry, "raytrace");
+  EXPECT_TRUE(metrics.methods.front().error.has_value());
+  EXPECT_THAT(warnings.said, Contains(AllOf(HasSubstr("edge-scatter is left out"), HasSubstr("--methods"))));
+  EXPECT_THAT(warnings.said, Not(Contains(HasSubstr("raytrace is left out"))));
+}
+
+}  // namespace
+}  // namespace penumbra::tests
