@@ -1,19 +1,20 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Four scenes for error against time (against_cycles.py). Runs inside Blender:
+"""Scenes for error against time (against_cycles.py) and for whole processes (whole_processes.py). Runs inside Blender:
 
-    blender -b --factory-startup --python-exit-code 1 -P scenes.py -- ADDON.zip FOLDER WIDTH HEIGHT
+    blender -b --factory-startup --python-exit-code 1 -P scenes.py -- ADDON.zip FOLDER WIDTH HEIGHT [NAME …]
 
-Writes FOLDER/NAME.blend, and FOLDER/NAME.glb as the add-on hands it to the program.
+Without names the four of against_cycles.py. Writes FOLDER/NAME.blend, and FOLDER/NAME.glb as the add-on hands it to the program.
 """
 
 import os
+import random
 import sys
 from math import radians, sin
 
 import bpy
 from mathutils import Vector
 
-ZIP, FOLDER, WIDTH, HEIGHT = sys.argv[sys.argv.index("--") + 1:]
+ZIP, FOLDER, WIDTH, HEIGHT, *NAMES = sys.argv[sys.argv.index("--") + 1:]
 
 
 def diffuse(name, color):
@@ -49,9 +50,9 @@ def lamp(name, kind, location, target=(0, 0, 0.5), **values):
     bpy.context.scene.collection.objects.link(thing)
 
 
-def camera(location=(4.2, -5.0, 3.4), target=(0, 0, 0.6)):
+def camera(location=(4.2, -5.0, 3.4), target=(0, 0, 0.6), angle=40):
     data = bpy.data.cameras.new("Camera")
-    data.angle = radians(40)
+    data.angle = radians(angle)
     thing = bpy.data.objects.new("Camera", data)
     thing.location = location
     thing.rotation_euler = (Vector(target) - Vector(location)).to_track_quat("-Z", "Y").to_euler()
@@ -104,6 +105,37 @@ def four_lamps():
     lamp("Sun", "SUN", (0, -3, 6), angle=radians(3), energy=0.5)
 
 
+def lamps(count):
+    """Point lamps, spot lamps and rectangles in turn over a floor of 40 × 40 with 64 blocks; the same numbers in every run."""
+    numbers = random.Random(7)
+    bpy.ops.mesh.primitive_plane_add(size=40)
+    place(bpy.context.object, "Floor", (0.6, 0.6, 0.6))
+    for i in range(64):
+        height = numbers.uniform(0.5, 2.5)
+        bpy.ops.mesh.primitive_cube_add(size=1, location=(4 * (i % 8) - 14, 4 * (i // 8) - 14, height / 2),
+                                        rotation=(0, 0, numbers.uniform(0, 1.5)))
+        bpy.context.object.scale = (1.2, 1.2, height)
+        place(bpy.context.object, f"Block {i}", [numbers.uniform(0.3, 0.9) for _ in range(3)])
+    for i in range(count):
+        x, y, z = numbers.uniform(-17, 17), numbers.uniform(-17, 17), numbers.uniform(3.6, 5)
+        down = (x + numbers.uniform(-1, 1), y + numbers.uniform(-1, 1), 0)
+        if i % 3 == 0:
+            lamp(f"Lamp {i}", "POINT", (x, y, z), down, shadow_soft_size=0.1, energy=20)
+        elif i % 3 == 1:
+            lamp(f"Lamp {i}", "SPOT", (x, y, z), down, shadow_soft_size=0.1, energy=60, spot_size=radians(60), spot_blend=0.2)
+        else:
+            lamp(f"Lamp {i}", "AREA", (x, y, z), down, shape="RECTANGLE", size=0.4, size_y=0.2, energy=20)
+    camera((20, -24, 16), (0, 0, 0), 50)
+
+
+def lamps_200():
+    lamps(200)
+
+
+def lamps_1000():
+    lamps(1000)
+
+
 def write(name, build):
     from penumbra.export import SceneWriter
     from penumbra.frames import region_of
@@ -114,7 +146,8 @@ def write(name, build):
     scene = bpy.context.scene
     scene.render.resolution_x, scene.render.resolution_y, scene.render.resolution_percentage = int(WIDTH), int(HEIGHT), 100
     build()
-    camera()
+    if scene.camera is None:
+        camera()
     scene.render.engine = "PENUMBRA"
     losses = Losses()
     writer = SceneWriter(bpy.context.evaluated_depsgraph_get(), losses, True)
@@ -127,5 +160,6 @@ def write(name, build):
 
 
 bpy.ops.preferences.addon_install(filepath=ZIP)
-for function in (small, large_penumbrae, dense, four_lamps):
-    write(function.__name__, function)
+SCENES = {function.__name__: function for function in (small, large_penumbrae, dense, four_lamps, lamps_200, lamps_1000)}
+for name in NAMES or list(SCENES)[:4]:
+    write(name, SCENES[name])

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Methods that take too long are left out of a comparison, unless they are named.
 #include "app/compare/comparison.hpp"
 #include "app/machine.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Radiance of a textured rectangle light beyond the edges of an outline, weighted by the texture's luminance, as a
 // fraction of the whole light's. What lies beyond an edge is a polygon: the edge, the ray outward through its one end,
 // the light's border, and the ray back to its other end. By Green's theorem the polygon's radiance is the integral

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Contours under a textured light: the radiance that they hide against closed forms and exact areas.
 
 #include "tests/analytic/maps/backprojection/contour_scenes.hpp"

@@ -1,0 +1,135 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
+"""Processor seconds of whole processes, from start to file, user and system time of the process and of its children.
+
+    bench/whole_processes.py small|lamps|dense [BUILD]
+
+Writes bench/results/NAME.json, of which bench/tables.py makes a table of bench/README.md. `lamps` and `dense` need Blender and the
+add-on (target penumbra_blender_addon). What is compared takes turns; a number is the least of its runs, for others that work on the
+machine only add to it.
+
+small   a picture of a box, 64 × 64: what a process pays before its first pixel, by processes that do more and more of it
+lamps   200 and 1,000 lamps, 320 × 240, beside Cycles with 32 samples a pixel
+dense   504,080 triangles, 640 × 480: the program from the add-on's exchange file, and what Blender adds with the add-on
+"""
+
+import json
+import os
+import platform
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+RESULTS = ROOT / "bench/results"
+BOX = {"format": "penumbra-scene/1", "size": [64, 64], "camera": {"eye": [3, 3, 4], "target": [0, 0.4, 0]},
+       "meshes": [{"name": "floor", "quad": {"center": [0, 0, 0], "halfU": [3, 0, 0], "halfV": [0, 0, -3]}},
+                  {"name": "box", "shape": {"type": "box", "center": [0, 0.5, 0], "halfSize": [0.5, 0.5, 0.5]}}],
+       "lights": [{"name": "key", "rectangle": {"center": [1.5, 3, 1], "halfU": [0.4, 0, 0], "halfV": [0, 0, 0.4]}, "radiance": [10, 10, 10]}]}
+
+
+def processor_seconds(command, environment=None):
+    with tempfile.TemporaryFile() as log:
+        process = subprocess.Popen([str(part) for part in command], stdin=subprocess.DEVNULL, stdout=log, stderr=log, env=environment)
+        _, status, usage = os.wait4(process.pid, 0)
+        process.returncode = os.waitstatus_to_exitcode(status)
+        if process.returncode != 0:
+            log.seek(0)
+            raise SystemExit(f"{' '.join(map(str, command))}: exit code {process.returncode}\n{log.read().decode(errors='replace')[-2000:]}")
+    return usage.ru_utime + usage.ru_stime
+
+
+def in_turns(commands, runs, environment=None):
+    """Least processor seconds of each of these commands."""
+    least = [float("inf")] * len(commands)
+    for _ in range(runs):
+        for i, command in enumerate(commands):
+            least[i] = min(least[i], processor_seconds(command, environment))
+    return least
+
+
+def processor():
+    for line in Path("/proc/cpuinfo").read_text().splitlines():
+        if line.startswith("model name"):
+            return line.partition(":")[2].strip()
+    return platform.processor()
+
+
+def save(name, title, conditions, columns, rows, formats):
+    commit = subprocess.run(["git", "-C", ROOT, "rev-parse", "--short", "HEAD"], capture_output=True, text=True).stdout.strip()
+    data = {"title": title, "commit": commit, "machine": f"{processor()}, {os.cpu_count()} threads, load {os.getloadavg()[1]:.0f}",
+            "command": f"bench/whole_processes.py {sys.argv[1]}", "conditions": conditions, "columns": columns, "formats": formats, "rows": rows}
+    text = json.dumps({**data, "rows": None}, indent=1, ensure_ascii=False)
+    text = text.replace('"rows": null', '"rows": [\n  ' + ",\n  ".join(json.dumps(row, ensure_ascii=False) for row in rows) + "\n ]")
+    (RESULTS / f"{name}.json").write_text(text + "\n", encoding="utf-8")
+    for row in rows:
+        print(row)
+
+
+def small(program, folder):
+    runs = 40
+    scene, out = folder / "box.json", folder / "box.exr"
+    scene.write_text(json.dumps(BOX))
+    render = [program, "render", scene, "-o", out]
+    version, tiny, beauty, all_layers = in_turns([
+        [program, "version"], [*render, "--size", "4x4", "--layers", "beauty"], [*render, "--layers", "beauty"], render], runs)
+    rows = [["the process starts and ends (`penumbra version`): libraries are linked, tables are filled", version, version],
+            ["reads the scene, makes hierarchies and threads, renders 4 × 4 pixels, writes R G B A", tiny, tiny - version],
+            ["renders 64 × 64 pixels", beauty, beauty - tiny],
+            ["writes all layers", all_layers, all_layers - beauty]]
+    save("small-render", "a small picture, phase by phase", f"A floor and a box under a rectangle, 64 × 64 pixels, exact areas; least of {runs} runs in turns. Each line does what "
+         "the one above does, and more.", ["what", "processor ms", "of it new"], [[what, 1000 * a, 1000 * b] for what, a, b in rows], [None, ".1f", ".1f"])
+
+
+def make_scenes(build, folder, size, names):
+    environment = {**os.environ, "BLENDER_USER_SCRIPTS": str(folder / "scripts"), "BLENDER_USER_CONFIG": str(folder / "config")}
+    (folder / "scripts").mkdir()
+    processor_seconds(["blender", "-b", "--factory-startup", "--python-exit-code", "1", "-P", ROOT / "bench/cycles/scenes.py", "--",
+                       build / "penumbra-blender.zip", folder, *size, *names], environment)
+    return environment
+
+
+def blender(program, scene, out, engine, samples):
+    return ["blender", "-b", scene, "--python-exit-code", "1", "-P", ROOT / "bench/cycles/render.py", "--", out, engine, samples, 0, 1, program]
+
+
+def lamps(build, program, folder):
+    runs, names = 1, ("lamps_200", "lamps_1000")
+    environment = make_scenes(build, folder, (320, 240), names)
+    rows = []
+    for name in names:
+        render = [program, "render", folder / f"{name}.glb", "-o", folder / "o.exr", "--no-studio", "--size", "320x240"]
+        seconds = in_turns([[*render, "--layers", "beauty"], render, [*render, "--layers", "beauty", "--light-cutoff", "0.001"],
+                            blender(program, folder / f"{name}.blend", folder / "c.exr", "CYCLES", 32)], runs, environment)
+        rows.append([int(name.partition("_")[2]), *seconds])
+    save("many-lamps", "hundreds of lamps, beside Cycles", "Point lamps, spot lamps and rectangles in turn over a floor with 64 blocks (770 triangles), 320 × 240 pixels, exact areas; "
+         "in turns. Cycles: direct light alone, with Blender's start.",
+         ["lamps", "R G B A", "V and light of each lamp, too", "R G B A, `--light-cutoff 0.001`", "Cycles, 32 samples a pixel"], rows, [None] + [".1f"] * 4)
+
+
+def dense(build, program, folder):
+    runs = 3
+    environment = make_scenes(build, folder, (640, 480), ["dense"])
+    scene = folder / "dense.blend"
+    render = [program, "render", folder / "dense.glb", "-o", folder / "o.exr", "--no-studio", "--size", "640x480"]
+    start, alone, added = in_turns([["blender", "-b", scene, "--python-exit-code", "1", "--python-expr", "import bpy"], render,
+                                    blender(program, scene, folder / "b.exr", "PENUMBRA", 0)], runs, environment)
+    rows = [["the program, GLB to EXR with all layers", alone], ["Blender opens its file, and ends", start],
+            ["Blender with the add-on renders and saves", added], ["of it the add-on's own part: export, exchange, passes back", added - start - alone]]
+    save("dense-start-to-file", "504,080 triangles from start to file", f"A terrain and a bumpy ball under a disk, 640 × 480 pixels, exact areas; least of {runs} runs in turns.",
+         ["what", "processor seconds"], rows, [None, ".2f"])
+
+
+def main():
+    if not sys.argv[1:] or sys.argv[1] not in ("small", "lamps", "dense"):
+        sys.exit(__doc__)
+    build = Path(sys.argv[2] if len(sys.argv) > 2 else ROOT / "build").resolve()
+    with tempfile.TemporaryDirectory() as folder:
+        if sys.argv[1] == "small":
+            small(build / "penumbra", Path(folder))
+        else:
+            globals()[sys.argv[1]](build, build / "penumbra", Path(folder))
+
+
+main()
