@@ -20,7 +20,7 @@ namespace {
 
 using Edge = std::array<glm::dvec3, 2>;
 
-visibility::Light light_of(const scenes::LightShape& shape) {
+visibility::Light made_light(const scenes::LightShape& shape) {
   scenes::Scene scene = space_scene();
   scene.lights[0].shape = shape;
   return visibility::make_light(scene, 0, glm::dvec3(0), {});
@@ -31,14 +31,14 @@ void expect_point(const glm::dvec3& found, const glm::dvec3& wanted) {
 }
 
 TEST(SpaceShadows, PointsOfTheLightAreOnIt) {
-  const auto rectangle = light_of(scenes::Rectangle{{0, 6, 0}, {2, 0, 0}, {0, 0, 1}});
+  const auto rectangle = made_light(scenes::Rectangle{{0, 6, 0}, {2, 0, 0}, {0, 0, 1}});
   expect_point(light_point(rectangle, {0.5, -1}), {1, 6, -1});
-  const auto disk = light_of(scenes::Disk{{0, 6, 0}, {0, -1, 0}, 2});
+  const auto disk = made_light(scenes::Disk{{0, 6, 0}, {0, -1, 0}, 2});
   EXPECT_NEAR(glm::length(light_point(disk, {1, 1}) - glm::dvec3(0, 6, 0)), 2, 1e-6);  // not in the square's corner
-  const auto sphere = light_of(scenes::Sphere{{0, 6, 0}, 2});
+  const auto sphere = made_light(scenes::Sphere{{0, 6, 0}, 2});
   expect_point(light_point(sphere, {0.5, 0}), {1, 6, 0});
   // A triangle: centroid (0, 6, 1); a corner of its bounding rectangle is pulled back to its outline.
-  const auto polygon = light_of(scenes::Polygon{{{-3, 6, 0}, {3, 6, 0}, {0, 6, 3}}});
+  const auto polygon = made_light(scenes::Polygon{{{-3, 6, 0}, {3, 6, 0}, {0, 6, 3}}});
   expect_point(light_point(polygon, {0, 0}), {0, 6, 1});
   for (const glm::dvec2 place : {glm::dvec2(1, 1), glm::dvec2(-1, 1), glm::dvec2(1, -1), glm::dvec2(0.9, 0.2)}) {
     const glm::dvec3 p = light_point(polygon, place);
