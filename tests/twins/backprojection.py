@@ -12,7 +12,6 @@ light 1 wide. Up to 50 texels' borders are an outline that counts: 5e-4 at worst
 corners to 1/256): pixels whose kernels hold one are left out.
 """
 
-import json
 import struct
 import sys
 import tempfile
@@ -368,9 +367,7 @@ class Twins(unittest.TestCase):
             if textured:
                 scene["lights"][0]["texture"] = "window.png"
                 Path(folder, "window.png").write_bytes(window_png())
-            file = Path(folder, "scene.json")
-            file.write_text(json.dumps(scene, default=np.ndarray.tolist), encoding="utf-8")
-            picture = penumbra.render(file, size=self.SIZE, method=method, options=options, light_samples=samples,
+            picture = penumbra.render(penumbra.Scene.from_dict(scene, folder), size=self.SIZE, method=method, options=options, light_samples=samples,
                                   sample_pattern="grid" if samples else "")
         floor = (picture.A == 1) & (np.abs(picture.P[..., 1]) < 1e-4)
         return local(picture.P[floor].astype(float)), picture.V[floor].astype(float)
