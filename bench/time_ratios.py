@@ -1,0 +1,117 @@
+#!/usr/bin/env python3
+"""Measures ratios of time that the papers sell, one method's over another's, into results/time-ratios.json.
+
+  bench/time_ratios.py [PROGRAM]      about twenty minutes on two busy cores; then bench/tables.py writes the table of docs/figures.md
+
+A number is processor seconds of a run (`light` and `evaluate`): those of a whole `penumbra compare` of one method with more runs less
+those with one run, a run. So what a program needs to start, to read, to compile shaders and to judge is in neither, and other
+programs at work disturb less than they do a clock. The methods of a question are measured in turns; a ratio is the median of each
+turn's own."""
+
+import json
+import resource
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+from statistics import median
+
+ROOT = Path(__file__).resolve().parent.parent
+sys.dont_write_bytecode = True
+sys.path[:0] = [str(ROOT / "docs" / "figures"), str(ROOT / "docs" / "figures" / "papers")]
+
+from experiment import ball, bunny, scene  # noqa: E402
+from schwaerzler import world_of  # noqa: E402
+
+RESULT = ROOT / "bench" / "results" / "time-ratios.json"
+TURNS = 3
+
+
+def bunnies(count):
+    """So many bunnies in rows of four above a floor, which the camera sees from the front."""
+    world = scene([], half=0.5, light_y=6.0, floor=4.0, floor_casts=True)
+    for k in range(count):
+        one = bunny(height=1.2)
+        one["name"] = f"bunny {k}"
+        one["fit"]["base"] = [1.5 * (k % 4) - 0.75 * (min(count, 4) - 1), 0.02, 1.4 * (k // 4) - 0.7 * ((count - 1) // 4)]
+        world["meshes"].append(one)
+    world["camera"] = {"eye": [0, 3.5, 7], "target": [0, 0.4, 0], "verticalFov": 45}
+    return world
+
+
+def standing(body, half):
+    world = scene([body], half=half, floor=2.5, floor_casts=True)
+    world["camera"] = {"eye": [0, 2.2, 5], "target": [0, 0.8, 0], "verticalFov": 45}
+    return world
+
+
+def questions():
+    """(paper, question, the paper's number, scene, size, options, methods): the ratio is the first method's time over the second's."""
+    for count in (1, 2, 4, 8):
+        yield ("Atty et al., fig. 25", f"`soft-shadow-map` (two passes, 210²) over `soft-volume`, {count} bunn{'y' if count == 1 else 'ies'}, {70 * count}k triangles",
+               "falls with the polygons, below 1", bunnies(count), 256, [],
+               ("soft-shadow-map:passes=2:size=210", "soft-volume"))
+    for half in (0.1, 0.5, 1.5):
+        yield ("Schwärzler, section 4", f"`adaptive-light` over `accumulate`, 128 light samples, maps of 512², plate close to the floor, light of half-size {half:g}",
+               "0.18 to 0.5, at worst 1.5", world_of("plate", half), 256, ["--light-samples", "128"],
+               ("adaptive-light:size=512", "accumulate:size=512"))
+    for layers in (2, 3):
+        yield ("Bavoil et al., fig. 6", f"`backproject-peel` with {layers} layers over 1, bunny on the floor, map 512²", "1.42 to 1.54 with 3", standing(bunny(), 0.5), 128, [],
+               (f"backproject-peel:size=512:layers={layers}", "backproject-peel:size=512:layers=1"))
+    for size in (4096, 5792):
+        yield ("course notes, 3.2.5", f"`alias-free` over `shadow-map` of {size}², bunny, 512² pixels", "0.33 of an 8192² map", standing(bunny(), 0.1), 512, [],
+               ("alias-free", f"shadow-map:size={size}"))
+    yield ("course notes, 4.2.4", "`vssm:moments=csm` over `moments=esm`, map 1024², bunny", "2 to 3", standing(bunny(), 0.5), 256, [],
+           ("vssm:moments=csm:size=1024", "vssm:moments=esm:size=1024"))
+    yield ("course notes, 5.3.2.3", "`soft-volume` by table over by arc cosines, a ball", "above 1", standing(ball(y=1.2), 0.5), 512, [],
+           ("soft-volume:coverage=table", "soft-volume"))
+
+
+def processor_seconds(command):
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+
+
+def of_a_run(program, folder, method, size, more, runs):
+    def whole(count):
+        return processor_seconds([program, "-q", "compare", folder / "scene.json", "-o", folder / "out", "--methods", method, "--size", f"{size}x{size}",
+                                  "--reference-samples", "1", "--sample-pixels", "1", "--runs", str(count), *more])
+    return (whole(1 + runs) - whole(1)) / runs
+
+
+def write(program, commit, rows):
+    device = json.loads(subprocess.run([program, "devices", "--json"], check=True, capture_output=True, text=True).stdout)["devices"][0]["name"]
+    cpu = next(line.partition(":")[2].strip() for line in Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines() if line.startswith("model name"))
+    data = {"title": "ratios of time that the papers print, measured again", "commit": commit, "machine": f"{device} on {cpu}, 2 threads that other programs used as well",
+            "command": "bench/time_ratios.py", "conditions": f"Processor seconds of a run, `light` and `evaluate`, medians of {TURNS} turns.",
+            "columns": ["paper", "question", "the paper's", "here", "turns", "seconds"]}
+    text = json.dumps(data, ensure_ascii=False, indent=1).removesuffix("\n}")
+    lines = ",\n".join("  " + json.dumps(row, ensure_ascii=False) for row in rows)
+    RESULT.write_text(text + ',\n "rows": [\n' + lines + "\n ]\n}\n", encoding="utf-8")
+
+
+def main():
+    program = Path(sys.argv[1] if len(sys.argv) > 1 else ROOT / "build" / "penumbra").resolve()
+    git = ["git", "-C", ROOT]
+    commit = subprocess.run([*git, "rev-parse", "--short", "HEAD"], check=True, capture_output=True, text=True).stdout.strip()
+    asked = list(questions())
+    rows = {row[1]: row for row in json.loads(RESULT.read_text(encoding="utf-8"))["rows"]} if RESULT.is_file() else {}
+    for paper, question, claimed, world, size, more, methods in asked:
+        if question in rows:  # delete a row to measure it again
+            continue
+        with tempfile.TemporaryDirectory() as name:
+            folder = Path(name)
+            (folder / "scene.json").write_text(json.dumps(world), encoding="utf-8")
+            # About a second of runs, so that a clock tick counts for nothing.
+            runs = {method: max(1, min(20, round(1 / max(of_a_run(program, folder, method, size, more, 1), 0.05)))) for method in methods}
+            seconds = [[of_a_run(program, folder, method, size, more, runs[method]) for method in methods] for _ in range(TURNS)]
+        ratios = sorted(first / second for first, second in seconds)
+        first, second = (median(turn[k] for turn in seconds) for k in range(2))
+        rows[question] = [paper, question, claimed, f"{median(ratios):.2f}", f"{ratios[0]:.2f} to {ratios[-1]:.2f}", f"{first:.2g} over {second:.2g}"]
+        print(" | ".join(rows[question]), flush=True)
+        write(program, commit, [rows[one[1]] for one in asked if one[1] in rows])
+
+
+main()
