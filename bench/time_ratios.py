@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Measures ratios of time that the papers sell, one method's over another's, into results/time-ratios.json.
 
   bench/time_ratios.py [PROGRAM]      about twenty minutes on two busy cores; then bench/tables.py writes the table of docs/figures.md

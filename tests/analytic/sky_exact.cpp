@@ -77,7 +77,7 @@ void expect_shares(const scenes::Scene& scene, const std::function<double(const 
 
 /// A rectangle that stands on the element's plane, from its foot `a` to one side and `b` up, `c` away (J. Howell,
 /// C-12).
-double standing(double a, double b, double c) {
+double wall_factor(double a, double b, double c) {
   const double far = std::hypot(b, c);
   return (std::atan(a / c) - c / far * std::atan(a / far)) / (2 * pi);
 }
@@ -94,7 +94,7 @@ TEST(SkyExact, AStepIsHiddenByItsHalvesOfAWall) {
         scene,
         [&](const glm::dvec3& p) {
           const double far = p.z - kAt;
-          const double left = standing(kLong + p.x, kHeight, far), right = standing(kLong - p.x, kHeight, far);
+          const double left = wall_factor(kLong + p.x, kHeight, far), right = wall_factor(kLong - p.x, kHeight, far);
           return 1 - (kLeft * left + kRight * right) / ((kLeft + kRight) / 2);
         },
         1e-6);
@@ -125,7 +125,7 @@ TEST(SkyExact, WhatIsBlackAboveTheFloorGivesNothing) {
       [](const glm::dvec3&) { return 0.0; }, 0);
 }
 
-scenes::Dome some_dome(std::uint32_t seed) {
+scenes::Dome pictured_dome(std::uint32_t seed) {
   switch (seed % 4) {
     case 0:
       return {};
@@ -141,7 +141,7 @@ scenes::Dome some_dome(std::uint32_t seed) {
 scenes::Scene soup_under_sky(std::uint32_t seed, std::optional<scenes::Texture> sky) {
   std::mt19937 random(seed);
   scenes::Scene scene = soup_over_tilted_floor(random, 40);
-  scene.lights.push_back(dome_light(some_dome(seed)));
+  scene.lights.push_back(dome_light(pictured_dome(seed)));
   scene.lights.front().texture = std::move(sky);
   return scene;
 }
@@ -182,7 +182,7 @@ TEST_P(SkyAreas, AreThoseOfAMillionDirections) {
   const Stage stage(soup_under_sky(GetParam(), sky), 12, 12, {});
   const auto methods = dome_area_methods();
   const DomeAnswer rows = answer_of(*methods[0].second, stage), exact = answer_of(*methods[1].second, stage);
-  const scenes::Dome dome = some_dome(GetParam());
+  const scenes::Dome dome = pictured_dome(GetParam());
   const DomeFrame frame = visibility::dome_frame(dome.up, dome.rotate);
   std::uniform_real_distribution<double> unit(0, 1);
   std::size_t judged = 0;

@@ -2,6 +2,7 @@
 // Instances of the library's scenes: the same numbers with copies and without, as the program's, and after changes.
 
 #include "tests/cli/program.hpp"
+#include "tests/library/picture_bytes.hpp"
 
 #include <penumbra/penumbra.hpp>
 
@@ -20,13 +21,8 @@ namespace {
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-template <typename Value>
-std::string bytes_of(std::span<const Value> values) {
-  return {reinterpret_cast<const char*>(values.data()), values.size_bytes()};
-}
-
 /// All numbers of a picture with one light that are exact; the last bit of exact areas' form factors is not.
-std::string all_bytes(const Picture& picture) {
+std::string exact_bytes(const Picture& picture) {
   return bytes_of(picture.alpha()) + bytes_of(picture.positions()) + bytes_of(picture.normals()) +
          bytes_of(picture.depth()) + bytes_of(picture.ids()) + bytes_of(picture.visibility(0)) +
          bytes_of(picture.masks(0));
@@ -110,16 +106,16 @@ TEST_F(LibraryInstances, AreTheFilesAndTheirCopies) {
   write("camp.json", file.dump());
   for (const char* method : {"", "edge-scatter", "view-sample"}) {
     SCOPED_TRACE(method);
-    const std::string copies = all_bytes(Renderer(scene).render(with("copies", method)));
-    EXPECT_EQ(all_bytes(Renderer(scene).render(with("shared", method))), copies);
-    EXPECT_EQ(all_bytes(Renderer(Scene::load(path("camp.json"))).render(with("shared", method))), copies);
-    EXPECT_EQ(all_bytes(Renderer(Scene::load(path("camp.json"))).render(with("copies", method))), copies);
+    const std::string copies = exact_bytes(Renderer(scene).render(with("copies", method)));
+    EXPECT_EQ(exact_bytes(Renderer(scene).render(with("shared", method))), copies);
+    EXPECT_EQ(exact_bytes(Renderer(Scene::load(path("camp.json"))).render(with("shared", method))), copies);
+    EXPECT_EQ(exact_bytes(Renderer(Scene::load(path("camp.json"))).render(with("copies", method))), copies);
   }
   // What is saved reads back as the same scene, with its instances.
   EXPECT_THAT(scene.save(path("saved.json")), IsEmpty());
   const Scene saved = Scene::load(path("saved.json"));
   EXPECT_EQ(saved.instance_count(saved.mesh("tent")), static_cast<std::size_t>(kTents));
-  EXPECT_EQ(all_bytes(Renderer(saved).render(kShared)), all_bytes(Renderer(scene).render(kShared)));
+  EXPECT_EQ(exact_bytes(Renderer(saved).render(kShared)), exact_bytes(Renderer(scene).render(kShared)));
 }
 
 TEST_F(LibraryInstances, MoveAndLeaveTheMeshesTreesAlone) {
@@ -134,43 +130,43 @@ TEST_F(LibraryInstances, MoveAndLeaveTheMeshesTreesAlone) {
   renderer.scene().set_transform(InstanceId{mesh, 4}, there);
   const Picture moved = renderer.render(kShared);
   EXPECT_EQ(built(moved), 0);
-  EXPECT_NE(all_bytes(moved), all_bytes(first));
-  EXPECT_EQ(all_bytes(Renderer(renderer.scene()).render(with("copies"))), all_bytes(moved));
-  EXPECT_EQ(all_bytes(renderer.render(with("copies"))), all_bytes(moved)) << "one way after the other";
-  EXPECT_EQ(all_bytes(renderer.render(kShared)), all_bytes(moved));
+  EXPECT_NE(exact_bytes(moved), exact_bytes(first));
+  EXPECT_EQ(exact_bytes(Renderer(renderer.scene()).render(with("copies"))), exact_bytes(moved));
+  EXPECT_EQ(exact_bytes(renderer.render(with("copies"))), exact_bytes(moved)) << "one way after the other";
+  EXPECT_EQ(exact_bytes(renderer.render(kShared)), exact_bytes(moved));
   renderer.scene().set_transform(InstanceId{mesh, 4}, place(4));
-  EXPECT_EQ(all_bytes(renderer.render(kShared)), all_bytes(first)) << "the origin stays where it was";
+  EXPECT_EQ(exact_bytes(renderer.render(kShared)), exact_bytes(first)) << "the origin stays where it was";
   // Positions are the mesh's own, of all instances; only its tree is made anew.
   renderer.scene().set_positions(mesh, tent(1.1));
   const Picture higher = renderer.render(kShared);
   EXPECT_EQ(built(higher), 1);
-  EXPECT_EQ(all_bytes(Renderer(renderer.scene()).render(with("copies"))), all_bytes(higher));
+  EXPECT_EQ(exact_bytes(Renderer(renderer.scene()).render(with("copies"))), exact_bytes(higher));
 }
 
 TEST_F(LibraryInstances, ChangeTogether) {
-  const std::string high = all_bytes(Renderer(camp(1.1)).render(kShared));
+  const std::string high = exact_bytes(Renderer(camp(1.1)).render(kShared));
   Scene scene = camp(0.8);
   const MeshId mesh = scene.mesh("tent");
   scene.set_mesh(mesh, tent(1.1), kTentFaces);
   EXPECT_EQ(scene.instance_count(mesh), static_cast<std::size_t>(kTents));
-  EXPECT_EQ(all_bytes(Renderer(scene).render(kShared)), high);
+  EXPECT_EQ(exact_bytes(Renderer(scene).render(kShared)), high);
   scene.set_positions(mesh, tent(0.8));
-  EXPECT_EQ(all_bytes(Renderer(scene).render(kShared)), all_bytes(Renderer(camp(0.8)).render(kShared)));
+  EXPECT_EQ(exact_bytes(Renderer(scene).render(kShared)), exact_bytes(Renderer(camp(0.8)).render(kShared)));
   // A matrix of the mesh moves them all: exact in the numbers chosen, as if each had been moved.
   const Matrix up = {1, 0, 0, 0, 0, 1, 0, 0.25, 0, 0, 1, 0, 0, 0, 0, 1};
   Scene each = scene, all = scene;
   for (int i = 0; i < kTents; ++i)
     each.set_transform(InstanceId{mesh, static_cast<std::uint32_t>(i)}, product(up, place(i)));
   all.set_transform(mesh, up);
-  EXPECT_EQ(all_bytes(Renderer(all).render(kShared)), all_bytes(Renderer(each).render(kShared)));
+  EXPECT_EQ(exact_bytes(Renderer(all).render(kShared)), exact_bytes(Renderer(each).render(kShared)));
   all.add_instance(mesh, place(kTents));
   each.add_instance(mesh, product(up, place(kTents)));
-  EXPECT_EQ(all_bytes(Renderer(all).render(kShared)), all_bytes(Renderer(each).render(kShared)));
+  EXPECT_EQ(exact_bytes(Renderer(all).render(kShared)), exact_bytes(Renderer(each).render(kShared)));
 }
 
 TEST_F(LibraryInstances, RefuseWhatCannotBe) {
   Scene scene = camp(0.8);
-  const std::string before = all_bytes(Renderer(scene).render(kShared));
+  const std::string before = exact_bytes(Renderer(scene).render(kShared));
   const MeshId mesh = scene.mesh("tent");
   Matrix far = place(0), flat = place(0);
   far[3] = 1e300, flat[12] = 1;
@@ -183,7 +179,7 @@ TEST_F(LibraryInstances, RefuseWhatCannotBe) {
   EXPECT_THROW(scene.set_positions(mesh, std::vector<Vector>(4)), InputError);
   EXPECT_THROW(static_cast<void>(Renderer(scene).render(with("some"))), UsageError);
   EXPECT_THROW(static_cast<void>(Renderer(scene).render(with("shared", "pcf"))), UsageError);
-  EXPECT_EQ(all_bytes(Renderer(scene).render(kShared)), before);
+  EXPECT_EQ(exact_bytes(Renderer(scene).render(kShared)), before);
   // What looks at more than lies between gets copies.
   EXPECT_NO_THROW(static_cast<void>(Renderer(scene).render(with("", "pcf"))));
   EXPECT_THAT(wedges_json(scene, {.light = "key"}), HasSubstr("key"));

@@ -3,6 +3,7 @@
 
 #include "base/exr.hpp"
 #include "tests/cli/program.hpp"
+#include "tests/library/picture_bytes.hpp"
 
 #include <penumbra/penumbra.hpp>
 
@@ -21,12 +22,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-/// All numbers of a picture, as text of bytes that can be compared.
-template <typename Value>
-std::string bytes_of(std::span<const Value> values) {
-  return {reinterpret_cast<const char*>(values.data()), values.size_bytes()};
-}
-
+/// Returns all numbers of a picture.
 std::string all_bytes(const Picture& picture) {
   std::string bytes = bytes_of(picture.beauty()) + bytes_of(picture.alpha()) + bytes_of(picture.positions()) +
                       bytes_of(picture.relative_positions()) + bytes_of(picture.normals()) + bytes_of(picture.depth()) +

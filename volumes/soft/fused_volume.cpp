@@ -75,7 +75,7 @@ class FusedVolume final : public visibility::Method {
       visibility::require_kind(light, visibility::kParallelograms,
                                "; method soft-volume cuts only rectangles in parts: take split=1");
     }
-    parts_ = light_parts(light, options_.split);
+    parts_ = volumes::light_parts(light, options_.split);
     visibility_.clear();
   }
   void prepare_view(const ViewSamples& samples) override {

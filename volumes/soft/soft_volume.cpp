@@ -170,7 +170,7 @@ class SoftVolume final : public visibility::Method {
                                "; method soft-volume cuts only rectangles in parts: take split=1");
     }
     make_raster(light);
-    const std::vector<Light> lights = light_parts(light, split_);
+    const std::vector<Light> lights = volumes::light_parts(light, split_);
     for (std::size_t i = 0; i < parts_.size(); ++i) prepare(*parts_[i], lights[i]);
     double whole = 0;
     for (const auto& part : parts_) whole += part->weight;

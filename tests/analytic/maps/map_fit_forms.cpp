@@ -19,7 +19,7 @@
 namespace penumbra::tests {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kBeyond = std::numeric_limits<double>::infinity();
 
 // S4 3.2.3.1: C_i = z_n (z_f / z_n)^(i/m); Zhang et al. 2006 mix it with equal slices.
 TEST(MapFits, SlicesEndWhereThePapersSay) {
@@ -48,7 +48,7 @@ TEST(MapFits, DistancesAreThePapers) {
   // Martin and Tan 2004: what is in focus comes to four fifths: 0.8 = (n + d)/d · f/(f + n).
   const double n = maps::tsm_distance(8, 2);
   EXPECT_NEAR((n + 8) / 8 * 2 / (2 + n), 0.8, 1e-12);
-  EXPECT_EQ(maps::tsm_distance(8, 6.4), kInfinity);
+  EXPECT_EQ(maps::tsm_distance(8, 6.4), kBeyond);
 }
 
 /// An overhead light so far away that its rays are parallel, over an eye at 0 that looks along b: S4 figure 3.7.
@@ -193,7 +193,7 @@ TEST(MapFits, RaysLeaveAFrustumThroughTheFaceThatSaysSo) {
     const double depth = kNear + (kFar - kNear) * share(random);
     const glm::dvec3 x = eye + depth * (forward + 0.8 * anywhere(random) * right + 0.6 * anywhere(random) * up);
     // The same, as a walk along the ray: where it is in the picture and how deep, and the first of these to end.
-    double leaves = kInfinity;
+    double leaves = kBeyond;
     glm::dvec2 place(0);
     std::size_t through = 0;
     const glm::dvec3 inverse_range(0, 1 / kNear + 1 / kFar, 1 / kNear - 1 / kFar);
