@@ -191,11 +191,19 @@ class Line:
         low, high = (entries[f"cycles {samples}"] for samples in CYCLES_SAMPLES)
         self.each = (high["seconds"] - low["seconds"]) / (CYCLES_SAMPLES[1] - CYCLES_SAMPLES[0])
         self.start = low["seconds"] - self.each * CYCLES_SAMPLES[0]
+        self.most_error, self.least_seconds = low["error"], low["seconds"]  # measured
         # error = unit / sqrt(samples): the geometric mean of what both counts say of unit
         self.unit = sqrt(low["error"] * high["error"]) * (CYCLES_SAMPLES[0] * CYCLES_SAMPLES[1]) ** 0.25
 
     def seconds(self, error):
         return self.start + self.each * max(1, (self.unit / error) ** 2)
+
+    def factor(self, error, ours):
+        """How many times as long as `ours` Cycles takes, as text: for more error than at the fewest measured samples a bound, since
+        what a process costs without samples is a small difference of large times."""
+        if error > self.most_error:
+            return f"≤ {number(self.least_seconds / ours)}"
+        return number(self.seconds(error) / ours)
 
 
 def number(value):
@@ -211,7 +219,7 @@ def table(rows):
         error = f"{ours['error']:.5f}" if ours["error"] > row["leastError"] else f"≤ {row['leastError']:.5f}"
         cycles = " | ".join(f"{entries[f'cycles {samples}']['error']:.4f} / {number(entries[f'cycles {samples}']['seconds'])}" for samples in CYCLES_SAMPLES)
         # An error below what ours has is nothing that both reach.
-        factors = ", ".join(number(line.seconds(error) / ours["seconds"]) if error >= ours["error"] else "–" for error in ERRORS)
+        factors = ", ".join(line.factor(error, ours["seconds"]) if error >= ours["error"] else "–" for error in ERRORS)
         yield f"| {NAMES[row['scene']]} | {number(ours['seconds'])} | {number(entries['add-on']['seconds'])} | {error} | {cycles} | {factors} |"
 
 
@@ -228,14 +236,14 @@ def chart(data):
         for style, row in enumerate(row for row in data["rows"] if row["antialiased"] == antialiased):
             entries = {entry["entry"]: entry for entry in row["entries"]}
             line = Line(row)
-            counts = [4 ** k for k in range(1, 9) if line.start + line.each * 4 ** k <= xs[1]]
+            counts = [4 ** k for k in range(3, 9) if line.start + line.each * 4 ** k <= xs[1]]
             plot.curve([(line.start + line.each * count, line.unit / sqrt(count)) for count in counts], style)
             ours = entries["penumbra"]
             at = plot.at(max(ours["seconds"], xs[0]), max(ours["error"], row["leastError"], ys[0]))
             d.circle(at, 8, None, STYLES[style][0], 1.6)
             mark(d, at, *STYLES[style])
     key(d, (70, 405), list(enumerate(NAMES[row["scene"]] for row in data["rows"] if not row["antialiased"])), 220)
-    d.text((70, 430), "Ringed: Penumbra. Curves: Cycles, 4, 16, 64 … light samples a pixel.", 12)
+    d.text((70, 430), "Ringed: Penumbra. Curves: Cycles, 64 and 256 light samples a pixel, measured, and 1,024 … computed from these.", 12)
     return d.finish()
 
 
@@ -250,8 +258,8 @@ writes; that script's head says how errors and times are taken.
 Commit {commit}, {machine}, {threads} threads, load {load[0]} at the end, {blender}, {size[0]} × {size[1]} pixels. Times are
 processor seconds (user and system, medians of {runs}), so another process on the machine changes them less than the clock. The error is
 relative RMSE over a crop of {crop[2]} × {crop[3]} pixels full of penumbra, against Cycles with {judgeSamples} samples a pixel; "≤": below the
-judge's own noise. The last column extrapolates Cycles' error by one over the root of its samples; "–": an error that Penumbra's picture does not
-reach.
+judge's own noise. The last column extrapolates Cycles' error by one over the root of its samples, to more samples than 64 only ("≤" for fewer);
+"–": an error that Penumbra's picture does not reach.
 
 ## At pixels' centres
 

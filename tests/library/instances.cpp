@@ -36,8 +36,9 @@ std::vector<Vector> tent(double height) {
 
 /// Turned about Y, mirrored if `i` is odd, and away.
 Matrix place(int i) {
+  const int row = i / 4;
   const double turn = 0.7 * i, c = std::cos(turn), s = std::sin(turn), flip = i % 2 == 0 ? 1 : -1;
-  return {flip * c, 0, s, 0.7 * (i % 4) - 1, 0, 1 + 0.1 * i, 0, 0.05, -flip * s, 0, c, 0.8 * (i / 4) - 0.9, 0, 0, 0, 1};
+  return {flip * c, 0, s, 0.7 * (i % 4) - 1, 0, 1 + 0.1 * i, 0, 0.05, -flip * s, 0, c, 0.8 * row - 0.9, 0, 0, 0, 1};
 }
 
 Matrix product(const Matrix& a, const Matrix& b) {

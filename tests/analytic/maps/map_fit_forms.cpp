@@ -240,9 +240,9 @@ class QueriedTiles : public testing::Test {
     constexpr std::size_t kSide = 256;
     std::vector<std::optional<maps::SeenReceiver>> receivers;
     for (std::size_t i = 0; i < kSide * kSide; ++i) {
-      const glm::dvec2 at((static_cast<double>(i % kSide) + 0.5) / kSide,
-                          (static_cast<double>(i / kSide) + 0.5) / kSide);
-      receivers.push_back(maps::SeenReceiver{0, {at.x, at.y, 1}, 1});
+      const std::size_t row = i / kSide;
+      const glm::dvec2 at((static_cast<double>(i % kSide) + 0.5) / kSide, (static_cast<double>(row) + 0.5) / kSide);
+      receivers.emplace_back(maps::SeenReceiver{0, {at.x, at.y, 1}, 1});
     }
     receivers[5] = std::nullopt;  // the background
     const auto picture = [&](const std::vector<maps::FittedFace>& faces) {
