@@ -8,7 +8,13 @@
 #include "tests/unit/shipped_scene.hpp"
 #include "volumes/soft/methods.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <memory>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace penumbra::tests {
 namespace {
@@ -98,7 +104,9 @@ class ReconstructedVolume : public HybridVolume {
 };
 
 /// Walls along texels' borders: of flat boards V is that of the map's nearest texel, from outside, from within the
-/// shadow, and of a hemicube, which a wall up to the light's plane makes of the map.
+/// shadow, and of a hemicube, which a wall up to the light's plane makes of the map. All but a few pixels at outlines
+/// of shadows, or of boards in the picture: a texel reaches up to half of itself beyond the board that it shows, where
+/// a volume without cap is entered unseen.
 TEST_F(ReconstructedVolume, OfFlatBoardsIsTheMap) {
   for (const std::string place : {"outside", "within the shadow", "hemicube"}) {
     scenes::Scene scene = boards();
@@ -108,36 +116,50 @@ TEST_F(ReconstructedVolume, OfFlatBoardsIsTheMap) {
     const auto reconstructed = method("64");
     const std::vector<float> found = run(*reconstructed, stage).visibility;
     const std::vector<float> right = run(*maps::make_shadow_map(device(), {{"size", "64"}}), stage).visibility;
-    std::size_t wrong = 0, dark = 0;
+    const std::vector<float> four =
+        run(*maps::make_pcf(device(), {{"size", "64"}, {"window", "1"}, {"weights", "bilinear"}}), stage).visibility;
+    const auto is_beside_board = [&](std::size_t pixel) {
+      for (const std::ptrdiff_t step : {-97, -96, -95, -1, 1, 95, 96, 97}) {
+        const auto other = static_cast<std::size_t>(
+            std::clamp<std::ptrdiff_t>(static_cast<std::ptrdiff_t>(pixel) + step, 0, std::ssize(found) - 1));
+        if (std::abs(stage.samples.p[other].y - stage.samples.p[pixel].y) > 0.5F) return true;
+      }
+      return false;
+    };
+    std::size_t wrong = 0, dark = 0, away_from_outlines = 0;
     for (std::size_t i = 0; i < found.size(); ++i) {
-      wrong += found[i] != right[i] ? 1 : 0;
       dark += right[i] == 0 ? 1 : 0;
+      if (found[i] == right[i]) continue;
+      ++wrong;
+      away_from_outlines += (four[i] == 0 || four[i] == 1) && !is_beside_board(i) ? 1 : 0;
     }
-    EXPECT_LE(wrong, 2U) << "rounding at a border; " << place;
+    EXPECT_LE(wrong, place == "within the shadow" ? 2U : 12U) << place;
+    EXPECT_EQ(away_from_outlines, 0U) << place;
     EXPECT_GT(dark, 300U) << place;
     EXPECT_GT(reconstructed->counters().at("walls"), 60U) << place;
     EXPECT_EQ(run(*reconstructed, stage, 5).visibility, found) << "in tiles; " << place;
   }
 }
 
-/// Surfaces do not shade themselves, without any bias: of balls as many pixels are wrong as a map with a bias gets
-/// wrong, and without one a map is wrong over whole surfaces.
+/// Surfaces hardly shade themselves, without any bias: a map without one has several times as many pixels wrong.
 TEST_F(ReconstructedVolume, NeedsNoBias) {
-  const Stage stage = stage_of(shipped_scene("fusion"));
-  const std::vector<float> found = run(*method("256"), stage).visibility;
-  const std::vector<float> right = run(*volumes::make_hard_volume(device(), {}), stage).visibility;
-  const std::vector<float> biased = run(*maps::make_shadow_map(device(), {{"size", "256"}}), stage).visibility;
-  const std::vector<float> unbiased =
-      run(*maps::make_shadow_map(device(), {{"size", "256"}, {"bias", "0"}, {"receiverPlane", "off"}}), stage)
-          .visibility;
-  const auto wrong = [&](const std::vector<float>& v) {
-    std::size_t count = 0;
-    for (std::size_t i = 0; i < v.size(); ++i) count += v[i] != right[i] ? 1 : 0;
-    return count;
-  };
-  fmt::print("wrong: reconstructed {}, map {}, without bias {}\n", wrong(found), wrong(biased), wrong(unbiased));
-  EXPECT_LT(4 * wrong(found), wrong(unbiased));
-  EXPECT_LT(wrong(found), 3 * wrong(biased) + 10);
+  for (const auto& [name, size] : {std::pair("contact", "256"), std::pair("fusion", "1024")}) {
+    const Stage stage = stage_of(shipped_scene(name));
+    const std::vector<float> right = run(*volumes::make_hard_volume(device(), {}), stage).visibility;
+    const auto wrong = [&](const std::unique_ptr<visibility::Method>& one) {
+      const std::vector<float> found = run(*one, stage).visibility;
+      std::size_t count = 0;
+      for (std::size_t i = 0; i < found.size(); ++i) count += found[i] != right[i] ? 1 : 0;
+      return count;
+    };
+    const std::size_t reconstructed = wrong(method(size)),
+                      biased = wrong(maps::make_shadow_map(device(), {{"size", size}})),
+                      unbiased = wrong(
+                          maps::make_shadow_map(device(), {{"size", size}, {"bias", "0"}, {"receiverPlane", "off"}}));
+    fmt::print("{}, wrong: reconstructed {}, map {}, without bias {}\n", name, reconstructed, biased, unbiased);
+    EXPECT_LT(4 * reconstructed, unbiased) << name;
+    EXPECT_LT(reconstructed, 3 * biased + 10) << name;
+  }
 }
 
 }  // namespace
