@@ -17,8 +17,8 @@ from png import write_png  # noqa: E402
 
 # Texels a side, and what there is of each fit at about as many texels in all.
 ROWS = [("receivers", 256), ("view", 256), ("cascades", 128), ("lispsm", 256), ("tsm", 256), ("psm", 256), ("logpsm", 256),
-        ("tiles", 64)]
-COLUMNS = 4
+        ("tiles", 64), ("faces", 114)]
+COLUMNS = 3
 
 
 def scene():
