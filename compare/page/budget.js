@@ -61,9 +61,9 @@ function repairPictures(name, pictures, { errorBudget: budget, errorBudgetRuns: 
     return make("figure", {}, make("label", { class: "picture" }, make("input", { type: "checkbox", "aria-label": `Enlarge: ${alt}` }),
       make("img", { alt, src: png, width: report.width, height: report.height })), make("figcaption", {}, make("b", {}, repaired), make("span", {}, caption)));
   });
-  return [make("h4", {}, `Where repairs change V of ${name}`),
+  return [folded(`Where repairs change V of ${name}`,
     make("p", { class: "note" }, "Blue becomes brighter, red darker, in the scale of the errors; white stays."),
-    make("div", { class: "gallery" }, figures)];
+    make("div", { class: "gallery" }, figures))];
 }
 
 function budgetUnder(light, largest) {
@@ -85,5 +85,6 @@ function errorBudget() {
     error: Math.max(...all.flatMap(({ errorBudget: budget, errorBudgetRuns: runs }) => [runs.rmse, budget.remainder ?? 0])) };
   return [make("h3", { id: "error-budget" }, "Error budget"), make("p", { class: "note" }, "Over each light’s judged pixels. A dash: nothing separates this cause "
     + "for that method. The changes need not add up, since causes hide and feed one another; the remainder is what is left when all that can be combined "
-    + "is repaired at once."), ...report.lights.flatMap((_, light) => budgetUnder(light, largest))];
+    + "is repaired at once."), ...report.lights.flatMap((_, light) =>
+    (light === 0 ? budgetUnder(0, largest) : [folded(`Error budget${under(light)}`, budgetUnder(light, largest))]))];
 }

@@ -328,6 +328,7 @@ def check_budget(page, photographs):
     for light, name in enumerate(light["name"] for light in methods[0]["lights"]):
         table = f"""[...document.querySelectorAll('table.sortable')].find(t => t.caption.textContent.includes(
             'Why each method is wrong under light \u201c{name}\u201d'))"""
+        browser.ask(f"{table}.closest('details')?.setAttribute('open', '')")
         rows = browser.ask(f"""[...{table}.tBodies[0].rows].map(row => [...row.cells].map(cell => ({{
             text: cell.textContent, value: cell.dataset.value ?? null, bar: cell.querySelector('svg rect') && {{
                 better: cell.querySelector('rect').classList.contains('better'), x: Number(cell.querySelector('rect').getAttribute('x')),
