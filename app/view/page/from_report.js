@@ -4,7 +4,7 @@
 function takeReport(state) {
   const wanted = new URLSearchParams(location.hash.slice(1));
   if (!wanted.has("scene")) return;
-  history.replaceState(null, "", location.pathname + location.search);  // once: what is changed here stays
+  window.history.replaceState(null, "", location.pathname + location.search);  // once: what is changed here stays
   if (wanted.get("scene") !== state.scene) {
     trouble(`The report is about ${wanted.get("scene")}; this is ${state.scene}. Nothing is changed.`);
     return;
