@@ -11,11 +11,14 @@
 #include <nlohmann/json.hpp>
 
 #include <cmath>
+#include <functional>
 
 namespace penumbra {
 namespace {
 
-std::string json_of(const std::filesystem::path& file, const app::InspectedMesh& mesh, const InspectOptions& options,
+/// Examines the mesh that `read` returns. `read` gets a function to be called while it waits.
+template <typename Read>
+std::string json_of(const std::filesystem::path& file, const Read& read, const InspectOptions& options,
                     const RendererOptions& host) {
   if (!(options.weld >= 0 && std::isfinite(options.weld)))
     throw UsageError("weld {}: expected a distance, 0 or more", options.weld);
@@ -24,7 +27,9 @@ std::string json_of(const std::filesystem::path& file, const app::InspectedMesh&
   diagnosis.search_intersections = options.self_intersections;
   diagnosis.list_limit = options.list_limit;
   LibraryProgress progress(host);
+  const std::function<void()> step = [&] { progress.begin("reading", 1); };
   try {
+    const app::InspectedMesh mesh = read(step);
     const app::FileReport report = app::examine(file, mesh, diagnosis, progress);
     progress.rethrow();
     return app::report_json(report, std::nullopt, options.list_limit)
@@ -39,15 +44,19 @@ std::string json_of(const std::filesystem::path& file, const app::InspectedMesh&
 
 std::string inspect_json(const std::filesystem::path& file, const InspectOptions& options,
                          const RendererOptions& host) {
-  return json_of(file, with_errors([&] { return app::read_inspected(file, false); }), options, host);
+  return json_of(
+      file, [&](const std::function<void()>& step) { return app::read_inspected(file, false, &step); }, options, host);
 }
 
 std::string inspect_json(std::span<const Vector> positions, std::span<const std::array<std::uint32_t, 3>> triangles,
                          const InspectOptions& options, const RendererOptions& host) {
-  app::InspectedMesh mesh;
-  mesh.soup = with_errors([&] { return soup_of(positions, triangles, "mesh"); });
-  mesh.objects = {"mesh"};
-  return json_of("mesh", mesh, options, host);
+  const auto read = [&](const std::function<void()>& /*step*/) {
+    app::InspectedMesh mesh;
+    mesh.soup = soup_of(positions, triangles, "mesh");
+    mesh.objects = {"mesh"};
+    return mesh;
+  };
+  return json_of("mesh", read, options, host);
 }
 
 }  // namespace penumbra

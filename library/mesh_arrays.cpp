@@ -6,12 +6,16 @@
 #include "base/error.hpp"
 #include "library/float3.hpp"
 #include "library/light_shape.hpp"
+#include "mesh/unused_vertices.hpp"
 #include "scenes/formats/checks.hpp"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 namespace penumbra {
 
@@ -44,6 +48,22 @@ mesh::TriangleSoup soup_of(std::span<const Vector> positions, std::span<const st
   soup.source_face.resize(triangles.size());
   std::iota(soup.source_face.begin(), soup.source_face.end(), std::uint32_t{0});
   return soup;
+}
+
+GivenMesh given_mesh(const std::string& where, std::span<const Vector> positions,
+                     std::span<const std::array<std::uint32_t, 3>> triangles) {
+  GivenMesh given{.soup = soup_of(positions, triangles, where), .vertices = {}, .warning = {}};
+  given.vertices.used = mesh::drop_unused_vertices(given.soup);
+  given.vertices.count = positions.size();
+  if (const std::size_t unused = positions.size() - given.soup.positions.size(); unused > 0)
+    given.warning = fmt::format("{}: left out {} vertices that no triangle uses", where, unused);
+  return given;
+}
+
+void note_given(Scene::State& state, std::uint32_t object, GivenVertices vertices) {
+  if (vertices.used.empty() && object >= state.given.size()) return;
+  if (object >= state.given.size()) state.given.resize(object + 1);
+  state.given[object] = std::move(vertices);
 }
 
 }  // namespace penumbra

@@ -3,7 +3,9 @@
 
 #include "base/error.hpp"
 #include "library/as_error.hpp"
+#include "library/library_progress.hpp"
 #include "library/light_shape.hpp"
+#include "library/mesh_arrays.hpp"
 #include "library/named.hpp"
 #include "library/scene_objects.hpp"
 #include "library/scene_state.hpp"
@@ -18,6 +20,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <iterator>
+#include <limits>
+#include <map>
 #include <utility>
 
 namespace penumbra {
@@ -51,6 +57,22 @@ scenes::ReadOptions reading(const LoadOptions& options) {
   return read;
 }
 
+/// Calls `read` with options that report progress to the calling program's function, and end on its request.
+template <typename Read>
+void read_watched(const LoadOptions& options, const Read& read) {
+  const RendererOptions host{.progress = options.progress};
+  LibraryProgress progress(host);
+  const std::function<void()> step = [&] { progress.begin("reading", 1); };
+  try {
+    scenes::ReadOptions given = reading(options);
+    if (options.progress) given.step = &step;
+    read(given);
+  } catch (...) {
+    progress.rethrow();
+    throw_as_error();
+  }
+}
+
 }  // namespace
 
 Scene::Scene() : state_(std::make_unique<State>()) {
@@ -66,11 +88,12 @@ Scene& Scene::operator=(Scene&& other) noexcept = default;
 Scene::~Scene() = default;
 
 Scene Scene::load(const std::filesystem::path& file, const LoadOptions& options) {
+  if (!options.arrays.empty())
+    throw UsageError("arrays are for a text (Scene::parse), and {} is a file", file.string());
   Scene scene;
-  with_errors([&] {
-    scenes::ReadOptions wished = reading(options);
-    wished.instances = &scene.state_->instances;
-    scene.state_->scene = scenes::read_scene(file, wished);
+  read_watched(options, [&](scenes::ReadOptions read) {
+    read.instances = &scene.state_->instances;
+    scene.state_->scene = scenes::read_scene(file, read);
     adopt_instances(*scene.state_);
   });
   scene.state_->file_origin = scene.state_->scene.origin;
@@ -79,13 +102,32 @@ Scene Scene::load(const std::filesystem::path& file, const LoadOptions& options)
 
 Scene Scene::parse(std::string_view json, const std::filesystem::path& folder, const LoadOptions& options) {
   Scene scene;
+  State& state = *scene.state_;
   const std::filesystem::path file = folder / "scene";
-  with_errors([&] {
-    scenes::ReadOptions wished = reading(options);
-    wished.instances = &scene.state_->instances;
-    scene.state_->scene = scenes::read_json_text(json, file, wished);
-    scenes::check_scene(scene.state_->scene, "scene", true, scene.state_->instances);
-    adopt_instances(*scene.state_);
+  const auto place_of = [&](const MeshArrays& mesh) { return fmt::format("{}: /meshes/{}", file.string(), mesh.mesh); };
+  read_watched(options, [&](scenes::ReadOptions read) {
+    std::map<std::size_t, mesh::TriangleSoup> soups;
+    std::vector<GivenVertices> vertices;
+    std::vector<std::string> warnings;
+    for (const MeshArrays& mesh : options.arrays) {
+      GivenMesh given = given_mesh(place_of(mesh), mesh.positions, mesh.triangles);
+      if (!soups.emplace(mesh.mesh, std::move(given.soup)).second)
+        throw UsageError("{}: arrays are given twice", place_of(mesh));
+      vertices.push_back(std::move(given.vertices));
+      if (!given.warning.empty()) warnings.push_back(std::move(given.warning));
+    }
+    if (!soups.empty()) read.given = &soups;
+    read.instances = &state.instances;
+    state.scene = scenes::read_json_text(json, file, read);
+    for (std::size_t i = 0; i < options.arrays.size(); ++i) {
+      const MeshArrays& mesh = options.arrays[i];
+      if (mesh.mesh >= state.scene.objects.size())
+        throw UsageError("{}: the scene has {} meshes", place_of(mesh), state.scene.objects.size());
+      note_given(state, mesh.mesh, std::move(vertices[i]));
+    }
+    std::ranges::move(warnings, std::back_inserter(state.scene.warnings));
+    scenes::check_scene(state.scene, "scene", true, state.instances);
+    adopt_instances(state);
   });
   return scene;
 }

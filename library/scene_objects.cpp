@@ -6,7 +6,6 @@
 #include "base/error.hpp"
 #include "library/light_shape.hpp"
 #include "library/mesh_arrays.hpp"
-#include "mesh/unused_vertices.hpp"
 #include "visibility/seen/placed_meshes.hpp"
 
 #include <fmt/format.h>
@@ -56,26 +55,10 @@ void require_no_light(const scenes::Scene& scene, std::uint32_t object, const st
                      scene.lights[*emits].name);
 }
 
-GivenMesh given_mesh(const std::string& where, std::span<const Vector> positions,
-                     std::span<const std::array<std::uint32_t, 3>> triangles) {
-  GivenMesh given{.soup = soup_of(positions, triangles, where), .vertices = {}, .warning = {}};
-  given.vertices.used = mesh::drop_unused_vertices(given.soup);
-  given.vertices.count = positions.size();
-  if (const std::size_t unused = positions.size() - given.soup.positions.size(); unused > 0)
-    given.warning = fmt::format("{}: left out {} vertices that no triangle uses", where, unused);
-  return given;
-}
-
-void note_given(Scene::State& state, std::uint32_t object, GivenVertices vertices) {
-  if (vertices.used.empty() && object >= state.given.size()) return;
-  if (object >= state.given.size()) state.given.resize(object + 1);
-  state.given[object] = std::move(vertices);
-}
-
 std::vector<glm::dvec3> kept_positions(const Scene::State& state, std::uint32_t object,
                                        std::span<const Vector> positions, std::size_t count, const std::string& where) {
-  static const GivenVertices kAll;
-  const GivenVertices& given = object < state.given.size() ? state.given[object] : kAll;
+  static const GivenVertices all;
+  const GivenVertices& given = object < state.given.size() ? state.given[object] : all;
   const std::size_t wanted = given.used.empty() ? count : given.count;
   if (positions.size() != wanted) throw InputError("{}: {} positions; it has {}", where, positions.size(), wanted);
   std::vector<glm::dvec3> kept(count);

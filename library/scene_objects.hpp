@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "library/mesh_arrays.hpp"
 #include "library/scene_state.hpp"
 #include "mesh/triangle_soup.hpp"
 
@@ -25,16 +26,6 @@ std::pair<std::uint32_t, std::uint32_t> vertices_of(const scenes::Scene& scene, 
 /// Throws if the mesh is the body of a light: a light and its body move together, which the interface does not support.
 void require_no_light(const scenes::Scene& scene, std::uint32_t object, const std::string& name);
 
-/// Mesh as given by a program, without the vertices that no triangle uses.
-struct GivenMesh {
-  mesh::TriangleSoup soup;
-  GivenVertices vertices;
-  std::string warning;  ///< empty: all vertices are used
-};
-GivenMesh given_mesh(const std::string& where, std::span<const Vector> positions,
-                     std::span<const std::array<std::uint32_t, 3>> triangles);
-/// Records the indices of a mesh's given vertices that the scene keeps.
-void note_given(Scene::State& state, std::uint32_t object, GivenVertices vertices);
 /// Returns the positions of the vertices that the scene keeps, of those given anew for a mesh of `count` vertices.
 /// Throws InputError for another number than was given with the mesh.
 std::vector<glm::dvec3> kept_positions(const Scene::State& state, std::uint32_t object,

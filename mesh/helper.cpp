@@ -116,14 +116,23 @@ HelperEnding supervise(Child& child, Streams streams, const HelperRun& run) {
   HelperEnding outcome;
   std::array<std::byte, 4096> buffer;
   const auto remaining = [&] { return std::chrono::ceil<std::chrono::milliseconds>(deadline - Clock::now()).count(); };
+  constexpr std::chrono::milliseconds kStep{100};
+  Clock::time_point next_step = Clock::now();
+  const auto step = [&] {
+    if (run.step == nullptr || Clock::now() < next_step) return;
+    (*run.step)();
+    next_step = Clock::now() + kStep;
+  };
 
   while (outcome.how == HelperEnding::How::by_itself && (output.read.is_open() || errors.read.is_open())) {
+    step();
     if (remaining() <= 0) {
       outcome.how = HelperEnding::How::out_of_time;
       break;
     }
     std::array<pollfd, 2> waiting{{{output.read.get(), POLLIN, 0}, {errors.read.get(), POLLIN, 0}}};  // -1 is skipped
-    const int timeout = static_cast<int>(std::min<std::int64_t>(remaining(), 1000));
+    const int timeout =
+        static_cast<int>(std::min<std::int64_t>(remaining(), run.step != nullptr ? kStep.count() : 1000));
     if (::poll(waiting.data(), waiting.size(), timeout) <= 0) continue;  // timeout, or a signal
     if (waiting[0].revents != 0) {
       drain(output.read, outcome.output.room(kPipeBytes), [&](std::span<const std::byte> bytes) {
@@ -142,6 +151,7 @@ HelperEnding supervise(Child& child, Streams streams, const HelperRun& run) {
   }
   // A child that closed its streams may still run: the deadline applies to its end as well.
   while (outcome.how == HelperEnding::How::by_itself && !child.has_ended()) {
+    step();
     if (remaining() <= 0)
       outcome.how = HelperEnding::How::out_of_time;
     else

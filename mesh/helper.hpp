@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -67,6 +68,8 @@ struct HelperRun {
                                        ///< so on
   std::optional<std::chrono::milliseconds> time = {};
   std::uint64_t output_bytes = ~std::uint64_t{0};
+  /// Called ten times a second while the helper works; its exception ends the helper. Null: none.
+  const std::function<void()>* step = nullptr;
 };
 inline constexpr int kFirstHelperFile = 3;
 

@@ -9,6 +9,7 @@
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -30,6 +31,7 @@ struct ImportLimits {
   std::chrono::milliseconds time{20000};
   std::uint64_t memory_bytes = 4ull << 30;
   std::uint64_t output_bytes = 4ull << 30;
+  const std::function<void()>* step = nullptr;  ///< HelperRun::step
 };
 
 /// Reads OBJ, PLY, OFF, STL, AMF and 3MF with readers of this project, glTF/GLB with that of scenes, and 3DS and other

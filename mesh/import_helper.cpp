@@ -75,7 +75,8 @@ HelperAnswer run_import_helper(const HelperJob& job, const ImportLimits& wanted)
                  std::to_string(::getpid()), file},
                 {job.input.content.get(), job.input.folder.get()},
                 limits.time,
-                limits.output_bytes};
+                limits.output_bytes,
+                limits.step};
   run.arguments.insert(run.arguments.end(), job.flags.begin(), job.flags.end());
   HelperEnding outcome = run_helper(kImport, run);
   if (outcome.how == HelperEnding::How::too_much_output && limits.output_bytes < wanted.output_bytes) {

@@ -13,6 +13,7 @@
 #include <pybind11/stl/filesystem.h>
 
 #include <cstring>
+#include <tuple>
 #include <utility>
 
 namespace py = pybind11;
@@ -157,6 +158,11 @@ RendererOptions options_of(std::string device, py::object log, py::object progre
   return options;
 }
 
+/// Returns a progress function by which Ctrl-C ends the call.
+std::function<bool(std::string_view, double)> ends_on_signals() {
+  return options_of({}, py::none(), py::none()).progress;
+}
+
 }  // namespace
 
 PYBIND11_MODULE(_core, module) {
@@ -185,23 +191,34 @@ PYBIND11_MODULE(_core, module) {
   py::class_<Scene>(module, "Scene")
       .def(py::init<>())
       .def(py::init<const Scene&>())
-      .def_static(
-          "load",
-          [](const std::filesystem::path& file, bool lenient, bool allow_outside, std::optional<double> frame,
-             double fps, std::optional<double> lamp_radius, std::optional<double> sun_angle,
-             std::optional<double> lumens_per_watt, std::vector<std::string> clips, bool studio) {
-            return Scene::load(file, {lenient, allow_outside, frame, fps, lamp_radius, sun_angle, lumens_per_watt,
-                                      std::move(clips), studio});
-          },
-          Unlocked())
-      .def_static(
-          "parse",
-          [](const std::string& json, const std::filesystem::path& folder, bool allow_outside) {
-            LoadOptions options;
-            options.allow_outside = allow_outside;
-            return Scene::parse(json, folder, options);
-          },
-          Unlocked())
+      .def_static("load",
+                  [](const std::filesystem::path& file, bool lenient, bool allow_outside, std::optional<double> frame,
+                     double fps, std::optional<double> lamp_radius, std::optional<double> sun_angle,
+                     std::optional<double> lumens_per_watt, std::vector<std::string> clips, bool studio) {
+                    const LoadOptions options{
+                        lenient,         allow_outside,    frame,  fps, lamp_radius,      sun_angle,
+                        lumens_per_watt, std::move(clips), studio, {},  ends_on_signals()};
+                    const py::gil_scoped_release unlocked;
+                    return Scene::load(file, options);
+                  })
+      .def_static("parse",
+                  [](const std::string& json, const std::filesystem::path& folder, bool allow_outside,
+                     const std::vector<std::tuple<std::uint32_t, Doubles, Indices>>& arrays) {
+                    std::vector<std::vector<Vector>> rows;
+                    std::vector<std::vector<std::array<std::uint32_t, 3>>> faces;
+                    std::vector<MeshArrays> given;
+                    for (const auto& [mesh, vertices, triangles] : arrays) {
+                      rows.push_back(rows_of(vertices));
+                      faces.push_back(faces_of(triangles));
+                      given.push_back({mesh, rows.back(), faces.back()});
+                    }
+                    LoadOptions options;
+                    options.allow_outside = allow_outside;
+                    options.arrays = given;
+                    options.progress = ends_on_signals();
+                    const py::gil_scoped_release unlocked;
+                    return Scene::parse(json, folder, options);
+                  })
       .def("add_mesh",
            [](Scene& scene, std::string name, const Doubles& vertices, const Indices& faces, const Vector& color,
               bool casts_shadow, bool receives_shadow) {
@@ -347,12 +364,12 @@ PYBIND11_MODULE(_core, module) {
     const py::gil_scoped_release unlocked;
     return inspect_json(positions, triangles, {weld, self_intersections, list_limit}, host);
   });
-  module.def(
-      "wedges_json",
-      [](const Scene& scene, std::string light, std::string construction, std::string from, bool validate) {
-        return wedges_json(scene, {std::move(light), std::move(construction), std::move(from), validate});
-      },
-      Unlocked());
+  module.def("wedges_json", [](const Scene& scene, std::string light, std::string construction, std::string from,
+                               bool validate) {
+    const WedgeOptions options{std::move(light), std::move(construction), std::move(from), validate, ends_on_signals()};
+    const py::gil_scoped_release unlocked;
+    return wedges_json(scene, options);
+  });
   define_own_methods(module);
   module.def("methods_json", &methods_json);
   module.def("version", &version);

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # The library as a program uses it that only knows its headers, and the Python module.
 penumbra_test(library
-  SOURCES library/instances.cpp library/own_method.cpp library/renderer.cpp cli/program.cpp
+  SOURCES library/ends.cpp library/instances.cpp library/own_method.cpp library/renderer.cpp cli/program.cpp
   LIBRARIES penumbra::penumbra penumbra_base nlohmann_json::nlohmann_json)
 target_compile_definitions(library_test PRIVATE PENUMBRA_PROGRAM="$<TARGET_FILE:penumbra>")
 add_dependencies(library_test penumbra)

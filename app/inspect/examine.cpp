@@ -24,8 +24,8 @@ namespace {
 
 constexpr std::uint32_t kUnusedPosition = std::numeric_limits<std::uint32_t>::max();
 
-InspectedMesh read_scene(const std::filesystem::path& file, bool allow_outside) {
-  scenes::Scene scene = scenes::read_scene(file, {.allow_outside = allow_outside, .needs_light = false});
+InspectedMesh read_scene(const std::filesystem::path& file, bool allow_outside, const std::function<void()>* step) {
+  scenes::Scene scene = scenes::read_scene(file, {.allow_outside = allow_outside, .needs_light = false, .step = step});
   InspectedMesh mesh;
   mesh.scene = facts_of(scene);
   mesh.soup = std::move(scene.soup);
@@ -126,15 +126,15 @@ mesh::TriangleSoup ObjectParts::soup_of(std::size_t object) {
   return part;
 }
 
-InspectedMesh read_inspected(const std::filesystem::path& file, bool allow_outside) {
+InspectedMesh read_inspected(const std::filesystem::path& file, bool allow_outside, const std::function<void()>* step) {
   std::string extension = file.extension().string();
   std::ranges::transform(extension, extension.begin(),
                          [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
   InspectedMesh mesh;
   if (extension == ".json" || extension == ".gltf" || extension == ".glb") {
-    mesh = read_scene(file, allow_outside);
+    mesh = read_scene(file, allow_outside, step);
   } else {
-    mesh::ImportedMesh imported = mesh::import_mesh(file);
+    mesh::ImportedMesh imported = mesh::import_mesh(file, {.step = step});
     mesh.soup = std::move(imported.soup);
     mesh.notes = std::move(imported.notes);
     mesh.objects = {file.filename().string()};

@@ -32,7 +32,9 @@ struct InspectedMesh {
 };
 
 /// Reads .json, .gltf and .glb as scenes (glTF: with or without a light), any other file as a mesh. Throws InputError.
-InspectedMesh read_inspected(const std::filesystem::path& file, bool allow_outside);
+/// `step`: scenes::ReadOptions::step.
+InspectedMesh read_inspected(const std::filesystem::path& file, bool allow_outside,
+                             const std::function<void()>* step = nullptr);
 
 /// Objects of a soup, each as a soup of its own. Borrows the soup.
 class ObjectParts {

@@ -88,6 +88,10 @@ LightWedges wedges_of(const volumes::Casters& casters, const visibility::Light& 
 BuiltWedges::BuiltWedges(const scenes::Scene& scene, const WedgeRequest& asked) : request(asked) {
   const bool tight = parse_construction(request.construction).construction == volumes::Construction::tight;
   static_cast<void>(parse_from(request.from));
+  const auto step = [&](double done) {
+    if (request.step != nullptr) (*request.step)(done);
+  };
+  step(0);
   floats = visibility::make_scene_floats(scene);
   light = visibility::make_light(scene, find_light(scene, request.light), floats.origin, {});
   if (!light.unshaded_by.empty()) floats = cast_for(floats, light);
@@ -95,14 +99,19 @@ BuiltWedges::BuiltWedges(const scenes::Scene& scene, const WedgeRequest& asked) 
     warnings.push_back(fmt::format(
         "\"{}\" lets light through (alphaMode MASK or BLEND): wedges are of what stops all light", light.filtered_by));
   require_wedges(light);
+  step(0.1);
   casters = volumes::casters_of(floats, light);
+  step(0.2);
   LightWedges made = wedges_of(casters, light, request);
   hull = std::move(made.hull);
   casting = std::move(made.casting);
   wedges = std::move(made.wedges);
   if (!request.validate) return;
+  step(0.4);
   report = volumes::validate({casters, casting, hull, wedges, tight});
+  step(0.7);
   tightness = volumes::tightness_of(wedges, hull, shape_of(light, hull));
+  step(0.8);
   coverage = check_scene_coverage(scene, floats, light, casters, *report);
 }
 

@@ -9,6 +9,7 @@
 #include "volumes/wedges/wedge_tightness.hpp"
 #include "volumes/wedges/wedge_validation.hpp"
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -21,6 +22,8 @@ struct WedgeRequest {
   std::string construction = "original";  ///< original, tight, or broken:1 to broken:6
   std::string from = "centre";            ///< centre or anywhere
   bool validate = false;                  ///< prove every invariant
+  /// Called between the steps of the work; its exception ends the work. Null: none.
+  const std::function<void(double done)>* step = nullptr;
 };
 
 /// Wedges of the edges that cast penumbrae of one light.

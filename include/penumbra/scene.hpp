@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -81,6 +82,14 @@ struct MeshOptions {
   bool casts_shadow = true, receives_shadow = true;
 };
 
+/// Vertices and triangles of an entry of "meshes" of a scene file's text, in place of the source that the text names.
+/// The entry's "transform", "fit" or "instances" apply to them.
+struct MeshArrays {
+  std::uint32_t mesh = 0;  ///< index in "meshes"
+  std::span<const Vector> positions = {};
+  std::span<const std::array<std::uint32_t, 3>> triangles = {};
+};
+
 /// Options of reading a file. Unset numbers have the file's own value, or the default of the command line.
 struct LoadOptions {
   bool lenient = false;              ///< leave out, with a warning, unsupported features that would change a shadow
@@ -90,6 +99,10 @@ struct LoadOptions {
   std::optional<double> lamp_radius = {}, sun_angle = {}, lumens_per_watt = {};  ///< for glTF lamps without their own
   std::vector<std::string> clips = {};  ///< for glTF: animations by name or index; empty: all that can play at once
   bool studio = false;                  ///< add a light and a floor also to a scene with lights
+  /// For parse(): vertices and triangles of entries of "meshes".
+  std::span<const MeshArrays> arrays = {};
+  /// Progress of reading, ten times a second; false, or an exception, ends the reading (RendererOptions::progress).
+  std::function<bool(std::string_view stage, double done)> progress = {};
 };
 
 /// Identifies one mesh of one scene.
@@ -119,9 +132,10 @@ class PENUMBRA_API Scene {
 
   /// Reads .json (penumbra-scene/1), .gltf or .glb, or a mesh file. A mesh, and a glTF scene without lights, is placed
   /// in a studio: a soft rectangle light, a floor, a camera (noted in warnings()). Throws InputError, with the location
-  /// in the file and the expected value, and ResourceError.
+  /// in the file and the expected value, ResourceError, and Cancelled.
   static Scene load(const std::filesystem::path& file, const LoadOptions& options = {});
-  /// Reads the text of a penumbra-scene/1 file with mesh files relative to `folder`. Throws as load().
+  /// Reads the text of a penumbra-scene/1 file with mesh files relative to `folder`. Throws as load(), and as
+  /// add_mesh() for LoadOptions::arrays.
   static Scene parse(std::string_view json, const std::filesystem::path& folder = ".", const LoadOptions& options = {});
 
   /// Adds a mesh. `positions`: one row x, y, z for each vertex; `triangles`: three indices each; both are copied.

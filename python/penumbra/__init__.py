@@ -98,27 +98,19 @@ class Scene:
         (F, 3) in place of a file or a shape. Names of files are relative to `folder`."""
         scene = dict(scene)
         scene.setdefault("format", "penumbra-scene/1")
-        arrays = {}
+        arrays = []
         meshes = []
         for index, mesh in enumerate(scene.get("meshes", [])):
             if "vertices" in mesh or "faces" in mesh:
                 mesh = dict(mesh)
                 if not ("vertices" in mesh and "faces" in mesh):
                     raise UsageError(f"mesh {index}: vertices and faces come together")
-                if "fit" in mesh:
-                    raise UsageError(f"mesh {index}: fit is for files; give arrays a transform")
-                arrays[index] = mesh.pop("vertices"), mesh.pop("faces")
-                # Placeholder for the mesh while the file's other rules are checked; shows the effect of its transform.
-                mesh["triangles"] = [[0, 0, 0, 1, 0, 0, 0, 1, 0], [0, 0, 0, 0, 1, 0, 0, 0, 1]]
+                arrays.append((index, _np.asarray(mesh.pop("vertices"), float), mesh.pop("faces")))
+                # The file's rules ask for a source; the arrays replace this one.
+                mesh["triangles"] = [[0, 0, 0, 1, 0, 0, 0, 1, 0]]
             meshes.append(mesh)
         scene["meshes"] = meshes
-        core = _core.Scene.parse(_json.dumps(scene, default=_plain), _os.fspath(folder), allow_outside)
-        for index, (vertices, faces) in arrays.items():
-            vertices = _np.asarray(vertices, float)
-            if "transform" in meshes[index]:
-                vertices = _transformed(meshes[index]["transform"], vertices)
-            core.set_mesh(index, vertices, faces)
-        return cls(core)
+        return cls(_core.Scene.parse(_json.dumps(scene, default=_plain), _os.fspath(folder), allow_outside, arrays))
 
     def add_mesh(self, name, vertices, faces, *, color=(0.8, 0.8, 0.8), casts_shadow=True, receives_shadow=True):
         """Adds a mesh: vertices (V, 3), faces (F, 3). Returns its number."""
@@ -241,23 +233,6 @@ def _shape(kind, given):
         shape["image"] = _os.fspath(shape["image"])
     as_tuple = lambda value: value if _np.isscalar(value) else _np.asarray(value, float).tolist()
     return {key: as_tuple(value) for key, value in shape.items()}
-
-
-def _transformed(transform, vertices):
-    """The rule of scene files: scale, then rotate about x, y and z in degrees, then translate; or 16 numbers row by row."""
-    if not isinstance(transform, dict):
-        matrix = _np.asarray(transform, float).reshape(4, 4)
-        return vertices @ matrix[:3, :3].T + matrix[:3, 3]
-    scale = _np.broadcast_to(_np.asarray(transform.get("scale", 1), float), 3)
-    vertices = vertices * scale
-    for axis, angle in enumerate(_np.radians(_np.asarray(transform.get("rotate", (0, 0, 0)), float))):
-        a, b = [(1, 2), (2, 0), (0, 1)][axis]
-        turned = vertices.copy()
-        sine, cosine = _np.round([_np.sin(angle), _np.cos(angle)], 15) if angle % (_np.pi / 2) == 0 else (_np.sin(angle), _np.cos(angle))
-        turned[:, a] = cosine * vertices[:, a] - sine * vertices[:, b]
-        turned[:, b] = sine * vertices[:, a] + cosine * vertices[:, b]
-        vertices = turned
-    return vertices + _np.asarray(transform.get("translate", (0, 0, 0)), float)
 
 
 class LightPicture:

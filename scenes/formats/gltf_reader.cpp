@@ -48,7 +48,7 @@ Scene read_by_helper(const mesh::InputFile& input, bool has_folder, const ReadOp
   for (const std::string& clip : options.clips) job.flags.push_back("--clip=" + clip);
   if (options.lightmap != nullptr) job.flags.push_back(fmt::format("--uv={}", options.lightmap->set));
   if (options.instances != nullptr) job.flags.emplace_back("--instances");
-  mesh::HelperAnswer answer = mesh::run_import_helper(job, {});
+  mesh::HelperAnswer answer = mesh::run_import_helper(job, {.step = options.step});
   try {
     mesh::WireReader from(answer.payload());
     Scene scene = get_scene(from);

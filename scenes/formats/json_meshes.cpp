@@ -42,9 +42,10 @@ struct SourceMesh {
 SourceMesh import_file(const SceneFile& file, const std::string& shown, const Place& place, const ReadOptions& options,
                        Scene& scene) {
   return at_place(place, [&] {
-    mesh::ImportedMesh imported = mesh::import_mesh(
-        file.input, {}, {.allow_outside = options.allow_outside, .lenient = options.lenient || !options.needs_light},
-        options.lightmap != nullptr);
+    mesh::ImportedMesh imported =
+        mesh::import_mesh(file.input, {.step = options.step},
+                          {.allow_outside = options.allow_outside, .lenient = options.lenient || !options.needs_light},
+                          options.lightmap != nullptr);
     scene.sources.push_back(file.path);
     std::ranges::copy_if(imported.sources, std::back_inserter(scene.sources),
                          [&](const std::filesystem::path& source) { return source != file.path; });
@@ -68,6 +69,10 @@ mesh::TriangleSoup read_triangles(const json& triangles) {
 }
 
 SourceMesh read_source(const json& mesh, const Place& place, const ReadOptions& options, Scene& scene) {
+  if (options.given != nullptr) {
+    const auto given = options.given->find(scene.objects.size() - 1);
+    if (given != options.given->end()) return {given->second};
+  }
   if (mesh.contains("triangles")) return {read_triangles(mesh["triangles"])};
   if (mesh.contains("shape")) return {at_place(place / "shape", [&] { return read_shape(mesh["shape"]); })};
   if (mesh.contains("quad")) {

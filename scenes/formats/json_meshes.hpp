@@ -32,10 +32,10 @@ SceneFile open_scene_file(const std::string& name, const Place& place, const Rea
 /// Opens the picture of a dome in the same manner; the file goes to `scene.sources`.
 Texture read_sky(const std::string& name, const Place& place, const ReadOptions& options, Scene& scene);
 
-/// Reads, generates or lists the mesh, and transforms it to world space, once for each of its instances; with
-/// ReadOptions::instances, returns the mesh before any of their transforms. Changes are
-/// reported in `scene.warnings`, read files in `scene.sources`; the mesh's lightmap coordinates are appended to
-/// ReadOptions::lightmap.
+/// Reads, generates or lists the mesh of the scene's last object, or copies it from ReadOptions::given, and transforms
+/// it to world space, once for each of its instances; with ReadOptions::instances, returns the mesh before any of their
+/// transforms. Changes are reported in `scene.warnings`, read files in `scene.sources`; the mesh's lightmap coordinates
+/// are appended to ReadOptions::lightmap.
 mesh::TriangleSoup read_mesh(const nlohmann::json& mesh, const Place& place, const ReadOptions& options, Scene& scene);
 
 /// Converts picture coordinates whose v runs upward, as OBJ has them, to v from the top; kNoPlace stays.

@@ -281,6 +281,7 @@ Scene read_json_text(std::string_view text, const std::filesystem::path& file, c
   scene.lights = read_lights(document, root, options, scene);
   require_room_for_meshes(document["meshes"], root / "meshes", options.instances != nullptr);
   for (const json& value : document["meshes"]) {
+    if (options.step != nullptr) (*options.step)();
     const std::size_t index = scene.objects.size();
     const Place place = root / "meshes" / index;
     scene.objects.push_back(read_object(value, place, scene.lights, fmt::format("mesh{}", index)));

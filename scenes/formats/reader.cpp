@@ -23,8 +23,10 @@ namespace penumbra::scenes {
 namespace {
 
 /// Reads a mesh file as a scene of one object, without light and camera.
-Scene read_mesh_file(const std::filesystem::path& file, LightmapPlaces* lightmap) {
-  mesh::ImportedMesh imported = mesh::import_mesh(mesh::open_input(file), {}, {}, lightmap != nullptr);
+Scene read_mesh_file(const std::filesystem::path& file, const ReadOptions& options) {
+  LightmapPlaces* const lightmap = options.lightmap;
+  mesh::ImportedMesh imported =
+      mesh::import_mesh(mesh::open_input(file), {.step = options.step}, {}, lightmap != nullptr);
   Scene scene;
   scene.name = file.filename().string();
   scene.soup = std::move(imported.soup);
@@ -58,7 +60,7 @@ Scene read_scene(const std::filesystem::path& file, const ReadOptions& options) 
     throw InputError("{}: a file of Blender's own; export it as glTF 2.0 (.glb), or render it by Blender's add-on",
                      file.string());
   } else {
-    scene = read_mesh_file(file, options.lightmap);
+    scene = read_mesh_file(file, options);
   }
   if (options.rest != nullptr && !scene.origin) {
     const Scene& rest = *options.rest;

@@ -3,12 +3,16 @@
 
 #include "scenes/scene.hpp"
 #include "mesh/import.hpp"
+#include "mesh/triangle_soup.hpp"
 #include "scenes/studio.hpp"
 
 #include <glm/vec2.hpp>
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -50,6 +54,11 @@ struct ReadOptions {
   /// Receives meshes that the scene has several times (scenes/instances.hpp); null: they are copied into the scene's
   /// soup.
   Instances* instances = nullptr;
+  /// Called ten times a second while another process reads a file, and before each mesh of a JSON file; its exception
+  /// ends the reading. Null: none.
+  const std::function<void()>* step = nullptr;
+  /// JSON: meshes of the calling program that replace the sources of entries of "meshes", by index; null: none.
+  const std::map<std::size_t, mesh::TriangleSoup>* given = nullptr;
 };
 
 /// Reads .json (penumbra-scene/1), .gltf or .glb, .fbx or .dae by the file's extension; any other file as a mesh. If a

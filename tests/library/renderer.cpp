@@ -192,30 +192,6 @@ TEST_F(Library, StaysUsableAfterErrors) {
   EXPECT_THROW(Renderer(Scene()).render(), InputError);
 }
 
-TEST_F(Library, ProgressEndsACall) {
-  std::string stages;
-  bool goes_on = true;
-  std::vector<std::string> messages;
-  Renderer renderer(Scene::load(scene_), {.log = [&](LogLevel, std::string_view text) { messages.emplace_back(text); },
-                                          .progress =
-                                              [&](std::string_view stage, double done) {
-                                                EXPECT_GE(done, 0);
-                                                EXPECT_LE(done, 1);
-                                                stages += std::string(stage) + ";";
-                                                return goes_on;
-                                              }});
-  const std::string before = all_bytes(renderer.render());
-  EXPECT_THAT(stages, HasSubstr("edge-scatter"));
-  goes_on = false;
-  EXPECT_THROW(renderer.render(), Cancelled);
-  goes_on = true;
-  EXPECT_EQ(all_bytes(renderer.render()), before);
-  renderer.scene().set_light("key", LightOptions{.radiance = {1, 1, 1}});
-  renderer.scene().set_light("key", Rectangle{.center = {0, 4, 0}, .half_u = {0.5, 0, 0}, .half_v = {0, 0, -0.5}});
-  static_cast<void>(renderer.render());  // shines up: nothing is lit
-  EXPECT_THAT(messages, testing::Contains(HasSubstr("no visible point")));
-}
-
 /// Many pictures on two threads at once, each by methods that keep buffers of threads, are those that each makes alone.
 TEST_F(Library, RenderersOnTwoThreadsDoNotMeet) {
   const auto pictures = [this](const char* method, bool sphere) {
@@ -295,15 +271,6 @@ TEST_F(Library, UnusedVerticesAreNoPartOfAScene) {
   EXPECT_TRUE(all_bytes(Renderer(loose).render(options)) == all_bytes(Renderer(tight).render(options)));
 }
 
-TEST_F(Library, InspectionsEndToo) {
-  const std::array<Vector, 3> positions = {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}};
-  const std::array<std::array<std::uint32_t, 3>, 1> triangle = {{{0, 1, 2}}};
-  EXPECT_EQ(nlohmann::json::parse(inspect_json(positions, triangle)).at("triangles"), 1);
-  EXPECT_THROW(static_cast<void>(
-                   inspect_json(positions, triangle, {}, {.progress = [](std::string_view, double) { return false; }})),
-               Cancelled);
-}
-
 /// A mesh with vertices' normals that was turned and then given positions has the normals that it was read with.
 TEST_F(Library, PositionsTakeTheTransformBack) {
   // Three positions, then three normals, in float.
@@ -338,18 +305,6 @@ TEST_F(Library, WrongOptionsDropNothing) {
   EXPECT_THROW(renderer.render({.method = "no-such-method"}), UsageError);
   const auto stats = nlohmann::json::parse(renderer.render(options).stats_json());
   EXPECT_EQ(stats.at("counters").at("meshesKept"), 1);
-}
-
-TEST_F(Library, ComparisonsEndToo) {
-  int calls = 0;
-  const auto end = [&](std::string_view, double) -> bool {
-    if (++calls > 5) throw std::logic_error("the host's own");
-    return true;
-  };
-  EXPECT_THROW(
-      compare_json(Scene::load(scene_), {.methods = {"edge-scatter", "raytrace"}, .runs = 1}, {.progress = end}),
-      std::logic_error);
-  EXPECT_EQ(calls, 6);
 }
 
 TEST_F(Library, BuildsWhatAFileSays) {

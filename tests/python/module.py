@@ -11,7 +11,9 @@ import subprocess
 import sys
 import tempfile
 import threading
+import time
 import unittest
+import unittest.mock
 
 import numpy as np
 
@@ -252,24 +254,37 @@ class Module(unittest.TestCase):
             renderer.set_light("sky", image="none.hdr")
         self.assertEqual(renderer.scene.light("sky")["image"], "")
 
-    def test_transform_of_arrays(self):
-        scene = board_over_floor()
-        turned = json.loads(json.dumps(scene, default=lambda a: a.tolist()))
-        transform = {"translate": [0.1, 0.2, 0], "rotate": [10, 20, 30], "scale": 0.5}
-        scene["meshes"][1]["transform"] = transform
-        mesh = turned["meshes"][1]
-        mesh["triangles"] = [sum((mesh["vertices"][v] for v in face), []) for face in mesh.pop("faces")]
-        mesh.pop("vertices")
-        mesh["transform"] = transform
-        turned["format"] = "penumbra-scene/1"
-        floor = turned["meshes"][0]
-        floor["triangles"] = [sum((floor["vertices"][v] for v in face), []) for face in floor.pop("faces")]
-        floor.pop("vertices")
-        with tempfile.TemporaryDirectory() as folder:
-            file = pathlib.Path(folder, "scene.json")
-            file.write_text(json.dumps(turned))
-            by_file = penumbra.render(file, size=(32, 32))
-        np.testing.assert_allclose(penumbra.render(scene, size=(32, 32)).P, by_file.P, atol=1e-5)
+    def test_arrays_are_placed_as_the_file_places_them(self):
+        turn = {"translate": [0.1, 0.2, 0.3], "rotate": [10, 20, 37], "scale": [0.7, 0.3, 1.1]}
+        rows = [0.1, 0, 0.7, 1.3, 0, -0.9, 0.2, 0.6, -0.3, 0, 0.1, 0.3, 0, 0, 0, 1]
+        placings = [{"transform": turn}, {"transform": rows}, {"transform": {"scale": [-1.1, 1, 1]}}, {"fit": {"height": 0.7}},
+                    {"instances": [rows, {"transform": turn}, {"translate": [0.7, 0, 0]}]}]
+        vertices = np.array([[0, 0, 0], [9, 9, 9], [0.1, 0, 0.3], [0.7, 0.9, 0], [0.3, 1, 0.7]])  # one that no face has
+        faces = np.array([[0, 2, 3], [0, 3, 4]])
+        for placing in placings:
+            scene = board_over_floor()
+            scene["meshes"] = [{"name": "tilted", "vertices": vertices, "faces": faces, "emits": "key", **placing}]
+            given = penumbra.Scene.from_dict(scene)
+            scene["meshes"][0] = {"name": "tilted", "emits": "key", **placing,
+                                  "triangles": [vertices[face].ravel().tolist() for face in faces]}
+            scene["format"] = "penumbra-scene/1"
+            with tempfile.TemporaryDirectory() as folder:
+                file = pathlib.Path(folder, "scene.json")
+                file.write_text(json.dumps(scene))
+                penumbra.load(file).save(f"{folder}/file.json")
+                given.save(f"{folder}/given.json")
+                saved = [pathlib.Path(folder, name).read_bytes() for name in ("file.json", "given.json")]
+            self.assertEqual(saved[0], saved[1], placing)
+            self.assertIn("left out 1 vertices", " ".join(given.warnings))
+            if "instances" in placing:  # the mesh's own vertices, the one that no face has among them
+                del scene["meshes"][0]["emits"]
+                scene["meshes"][0].pop("triangles")
+                given = penumbra.Scene.from_dict({**scene, "meshes": [{"vertices": vertices, "faces": faces, **placing}]})
+                given.set_positions(0, vertices + 0.1)
+                with self.assertRaisesRegex(penumbra.InputError, "it has 5"):
+                    given.set_positions(0, np.concatenate([vertices, vertices]))
+        with self.assertRaisesRegex(penumbra.InputError, "/meshes/0: triangle 0 has vertex 7"):
+            penumbra.Scene.from_dict({**board_over_floor(), "meshes": [{"vertices": vertices, "faces": [[0, 1, 7]]}]})
 
     def test_errors(self):
         scene = penumbra.load(ROOM)
@@ -349,6 +364,18 @@ class Module(unittest.TestCase):
             penumbra.compare(ROOM, ["edge-scatter", "raytrace"], size=(24, 16), runs=1, progress=lambda stage, done: 1 // 0)
         with self.assertRaises(ZeroDivisionError):
             penumbra.inspect([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]], progress=lambda stage, done: 1 // 0)
+        with tempfile.TemporaryDirectory() as folder, unittest.mock.patch.dict(os.environ):
+            slow, mesh = pathlib.Path(folder, "slow"), pathlib.Path(folder, "mesh.obj")
+            slow.write_text("#!/bin/sh\nexec sleep 100\n")
+            slow.chmod(0o700)
+            mesh.write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+            os.environ["PENUMBRA_IMPORT_HELPER"] = str(slow)
+            for call in (penumbra.load, penumbra.inspect):
+                threading.Timer(0.3, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
+                begin = time.monotonic()
+                with self.assertRaises(KeyboardInterrupt):
+                    call(mesh)
+                self.assertLess(time.monotonic() - begin, 5)
         threading.Timer(0.3, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
         with self.assertRaises(KeyboardInterrupt):
             for _ in range(1000):
