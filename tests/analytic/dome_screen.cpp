@@ -10,7 +10,9 @@
 #include <glm/trigonometric.hpp>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <string>
 
@@ -72,25 +74,98 @@ TEST(ScreenOcclusion, APlaneShadesNothing) {
   }
 }
 
+constexpr double kPixel = 4.0 / 128;  // of valley()
+
+/// How high a valley is at x.
+double height_at(double x, double left, double right) {
+  return x < 0 ? -x * std::tan(left) : x * std::tan(right);
+}
+
+/// V of a ball around the valley's point at x, by volume: in cells of the plane across the valley, of which none lies
+/// on a diagonal.
+double free_of_ball(double x, double radius, double left, double right) {
+  constexpr int kAcross = 511, kUp = 508;
+  double inside = 0, free = 0;
+  const auto middle = [](int i, int cells) { return (2 * i + 1.0) / cells - 1; };
+  for (int i = 0; i < kAcross; ++i) {
+    for (int k = 0; k < kUp; ++k) {
+      const double across = middle(i, kAcross), up = middle(k, kUp), rest = 1 - across * across - up * up;
+      if (rest <= 0) continue;
+      const double along = std::sqrt(rest);  // the valley is level along itself
+      inside += along;
+      const double there = height_at(x + radius * across, left, right);
+      if (height_at(x, left, right) + radius * up >= there) free += along;
+    }
+  }
+  return std::min(1.0, 2 * free / inside);
+}
+
+/// N points that fill a ball evenly: within the distance of neighbours from a face of the part that is free there are
+/// about N^2/3, and of these so many are on the wrong side as the root of that: a share of N^-2/3 of all. V is twice
+/// the share.
+double off_of_points(double count) {
+  return 2 * std::pow(count, -2.0 / 3);
+}
+
+struct Search {
+  int directions = 32, steps = 16;
+  double pixel = 0;  ///< a sample is at the centre of its pixel, if this is a length
+  std::function<double(double)> weight = [](double) { return 1.0; };
+};
+
+/// 1 less the mean over directions of what the horizon, found at so many steps over the radius, rises over the tangent.
+double below_horizons(double x, double radius, const glm::dvec2& slopes, const Search& search) {
+  const auto height = [&](double at) { return height_at(at, slopes.x, slopes.y); };
+  const auto to_centre = [&](double to) {  // from the centre of the own pixel
+    return search.pixel > 0 ? search.pixel * std::floor(to / search.pixel + 0.5) : to;
+  };
+  double hidden = 0;
+  for (int k = 0; k < search.directions; ++k) {
+    const double turn = 2 * std::numbers::pi * k / search.directions;
+    double horizon = -1;
+    for (int step = 1; step <= search.steps; ++step) {
+      const double far = radius * step / search.steps;
+      const double across = to_centre(far * std::cos(turn)), along = to_centre(far * std::sin(turn));
+      const double rise = height(x + across) - height(x), away = std::hypot(across, along, rise);
+      if (away == 0 || away >= radius) continue;
+      const double tangent = std::tan(slopes.y) * across;  // of the own plane, on which x is
+      const double base = std::max(horizon, tangent / std::hypot(across, along, tangent));
+      if (rise / away <= base) continue;
+      hidden += search.weight(away / radius) * (rise / away - base);
+      horizon = rise / away;
+    }
+  }
+  return 1 - hidden / search.directions;
+}
+
 /// At the bottom of a valley of angle φ a ball is free in φ/2π of it, so V = φ/π; and the directions between the
-/// horizons are as many, at half a pixel from it a little more. Light comes by the cosine: the exact V is (1 − cos
-/// φ)/2.
+/// horizons are as many. Light comes by the cosine: the exact V is (1 − cos φ)/2. Pixels' centres are half a pixel from
+/// the bottom, and horizons are those of pixels' centres.
 TEST(ScreenOcclusion, AValleyIsFreeByItsAngle) {
   for (const auto& [left, right] : {std::pair(45.0, 45.0), std::pair(0.0, 45.0), std::pair(20.0, 60.0)}) {
-    const double angle = 180 - left - right;
-    const Stage stage = valley(glm::radians(left), glm::radians(right));
-    const MethodOptions common{{"radius", radius(stage, 0.9)}, {"dither", "off"}};
+    const double angle = 180 - left - right, radius_seen = 0.9;
+    const glm::dvec2 slopes(glm::radians(left), glm::radians(right));
+    const auto free = [&](double x) { return free_of_ball(x, radius_seen, slopes.x, slopes.y); };
+    EXPECT_NEAR(free(0), angle / 180, 1e-3);  // half a cell along the faces
+    const Stage stage = valley(slopes.x, slopes.y);
+    const MethodOptions common{{"radius", radius(stage, radius_seen)}, {"dither", "off"}};
     MethodOptions options = common;
-    options["samples"] = "512";
-    EXPECT_NEAR(at_the_bottom(visibility_of(maps::make_ssao(options), stage), 128), angle / 180, 0.035) << angle;
+    options["samples"] = "1024";
+    const double near = free(kPixel / 2), off = off_of_points(1024);
+    EXPECT_NEAR(at_the_bottom(visibility_of(maps::make_ssao(options), stage), 128), near, off) << angle;
     options["around"] = "hemisphere";
-    EXPECT_NEAR(at_the_bottom(visibility_of(maps::make_ssao(options), stage), 128), angle / 180, 0.035) << angle;
+    EXPECT_NEAR(at_the_bottom(visibility_of(maps::make_ssao(options), stage), 128), near, off) << angle;
     options = common;
     options.insert({{"directions", "32"}, {"steps", "16"}, {"angleBias", "0"}, {"attenuation", "none"}});
-    EXPECT_NEAR(at_the_bottom(visibility_of(maps::make_hbao(options), stage), 128), angle / 180, 0.035) << angle;
-    // Dithered, few samples say the same on the whole.
-    EXPECT_NEAR(at_the_bottom(visibility_of(maps::make_ssao({{"radius", radius(stage, 0.9)}}), stage), 128),
-                angle / 180, 0.08)
+    EXPECT_NEAR(below_horizons(1e-9, radius_seen, slopes, {.directions = 4096}), angle / 180, 1e-3);
+    EXPECT_NEAR(at_the_bottom(visibility_of(maps::make_hbao(options), stage), 128),
+                below_horizons(kPixel / 2, radius_seen, slopes, {.pixel = kPixel}), 1e-5)
+        << angle;
+    // Dithered, few samples say the same on the whole: 16 each at the 4 × 4 pixels of the mean.
+    double mean = 0;
+    for (const double x : {-1.5, -0.5, 0.5, 1.5}) mean += free(x * kPixel) / 4;
+    EXPECT_NEAR(at_the_bottom(visibility_of(maps::make_ssao({{"radius", radius(stage, radius_seen)}}), stage), 128),
+                mean, off_of_points(16 * 16))
         << angle;
   }
 }
@@ -107,31 +182,32 @@ TEST(ScreenOcclusion, AWallTakesACapOfTheBall) {
     for (std::size_t y = 32; y < 96; ++y) mean += static_cast<double>(found[y * 128 + column]) / 64;
     const glm::dvec3 p = glm::dvec3(stage.samples.p[64 * 128 + column]) + stage.floats.origin;
     const double away = std::min(std::hypot(p.x, p.y) / 0.8, 1.0);
-    EXPECT_NEAR(mean, 1 - (2 - 3 * away + away * away * away) / 4, 0.03) << away;
+    EXPECT_NEAR(mean, 1 - (2 - 3 * away + away * away * away) / 4, off_of_points(2048)) << away;
   }
 }
 
 /// The weight of a horizon falls off with the distance of its cause: at the bottom of a valley the first step, at a
 /// share s of the radius, raises the whole horizon.
 TEST(ScreenOcclusion, HorizonsCountByTheirDistance) {
-  const double slope = std::numbers::pi / 4;
+  const double slope = std::numbers::pi / 4, radius_seen = 1.1;
   const Stage stage = valley(slope, slope);
-  MethodOptions options{
-      {"radius", radius(stage, 1.1)}, {"dither", "off"}, {"directions", "64"}, {"steps", "1"}, {"angleBias", "0"}};
+  MethodOptions options{{"radius", radius(stage, radius_seen)},
+                        {"dither", "off"},
+                        {"directions", "64"},
+                        {"steps", "1"},
+                        {"angleBias", "0"}};
   // One step, as far as the radius in the picture: on the other side it is farther than the radius in space.
-  const double none = at_the_bottom(visibility_of(maps::make_hbao(options), stage), 128);
+  EXPECT_GT(at_the_bottom(visibility_of(maps::make_hbao(options), stage), 128), 0.9);
   options["steps"] = "4";
-  const double linear = at_the_bottom(visibility_of(maps::make_hbao(options), stage), 128);
-  options["attenuation"] = "quadratic";
-  const double quadratic = at_the_bottom(visibility_of(maps::make_hbao(options), stage), 128);
-  options["attenuation"] = "none";
-  const double whole = at_the_bottom(visibility_of(maps::make_hbao(options), stage), 128);
-  EXPECT_GT(none, 0.9);
-  // A quarter of the radius across; up the slope √2 as much, along the valley no rise.
-  EXPECT_GT(linear, quadratic);
-  EXPECT_GT(quadratic, whole);
-  EXPECT_NEAR(whole, 0.5, 0.03);
-  EXPECT_NEAR(1 - linear, 0.5 * (1 - 0.25 * 1.3), 0.05);
+  const auto check = [&](const char* attenuation, const std::function<double(double)>& weight) {
+    options["attenuation"] = attenuation;
+    EXPECT_NEAR(at_the_bottom(visibility_of(maps::make_hbao(options), stage), 128),
+                below_horizons(kPixel / 2, radius_seen, {slope, slope}, {64, 4, kPixel, weight}), 1e-5)
+        << attenuation;
+  };
+  check("linear", [](double share) { return 1 - share; });
+  check("quadratic", [](double share) { return 1 - share * share; });
+  check("none", [](double) { return 1.0; });
 }
 
 /// A ball in front of a far plane darkens it, as published; not where hiding has a range.
