@@ -180,9 +180,8 @@ def main():
     if arguments.minutes:
         row, notes, count = measure_long(arguments.program, arguments.scenes[0], arguments.minutes)
         rows.append(row)
-        middle = len(notes) // 2
-        said = (f" In the long drag {count:,} pictures came; memory after a minute {notes[0]:.0f} MiB, then {min(notes):.0f} to {max(notes):.0f} MiB"
-                f" (median of the first half {statistics.median(notes[:middle]):.0f}, of the second {statistics.median(notes[middle:]):.0f}).") if len(notes) > 1 else ""
+        if len(notes) > 1:
+            said = f" In the long drag {count:,} pictures came; memory after a minute {notes[0]:.0f} MiB, then {min(notes):.0f} to {max(notes):.0f} MiB."
     loads.append(os.getloadavg()[0])
     load = f"{min(loads):.0f} to {max(loads):.0f}"
     if not arguments.out:
@@ -195,8 +194,8 @@ def main():
     result = {"title": "answers of the live view to a drag", "commit": commit, "machine": f"{model}, {os.cpu_count()} threads, load {load}",
               "command": f"bench/live_latency.py build/penumbra {' '.join(f'scenes/{pathlib.Path(scene).name}' for scene in arguments.scenes)} "
                          f"--seconds {arguments.seconds:g} --minutes {arguments.minutes:g}",
-              "conditions": "A bare client sends 60 changes a second, at 512 × 512 pixels. Other programs were at work on the same threads: an idle machine does better, and of these "
-                            "figures only the processor's milliseconds of a picture (of all pictures, quick and exact) do not depend on them. Memory is that of the whole process at the end." + said,
+              "conditions": "A bare client sends 60 changes a second, at 512 × 512 pixels. Other programs were at work on the same threads: an idle machine does better. "
+                            "Processor time is of all pictures, quick and exact, and depends less on the load: quick pictures are coarser when time is short. Memory is that of the whole process at the end." + said,
               "columns": COLUMNS, "formats": FORMATS, "rows": rows}
     parts = [f' "{key}": {json.dumps(value, ensure_ascii=False)}' for key, value in result.items() if key != "rows"]
     listed = ",\n".join("  " + json.dumps([round(cell, 2) if isinstance(cell, float) else cell for cell in row], ensure_ascii=False) for row in rows)

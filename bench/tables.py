@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Writes the tables of bench/README.md, docs/devices.md, docs/instances.md, docs/figures.md and docs/domes.md from bench/results/*.json, and the list of these files in bench/results/README.md.
+"""Writes the tables of the pages PAGES from bench/results/*.json, and the list of these files in bench/results/README.md.
 
   bench/tables.py            writes them
   bench/tables.py --check    exits 1 if a page is not what this script writes, or if a file of results lacks commit, machine or command
@@ -24,7 +24,7 @@ RESULTS = ROOT / "bench" / "results"
 BLOCK = re.compile(r"(<!-- results/([\w-]+)\.json -->\n).*?(<!-- end -->)", re.S)
 GPU = "nvidia-h100"  # docs/devices.md has its table
 OWN_PAGE = {"against-cycles"}  # another script writes the page
-PAGES = [ROOT / "bench" / "README.md", ROOT / "docs" / "devices.md", ROOT / "docs" / "instances.md", ROOT / "docs" / "figures.md", ROOT / "docs" / "domes.md"]
+PAGES = [ROOT / "bench" / "README.md", ROOT / "docs" / "devices.md", ROOT / "docs" / "instances.md", ROOT / "docs" / "figures.md", ROOT / "docs" / "domes.md", ROOT / "docs" / "view.md"]
 
 
 def read(path):
