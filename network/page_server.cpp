@@ -8,6 +8,7 @@
 
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/post.hpp>
+#include <boost/asio/steady_timer.hpp>
 #include <boost/asio/strand.hpp>
 #include <boost/asio/thread_pool.hpp>
 #include <boost/beast/core.hpp>
@@ -32,6 +33,8 @@ using tcp = asio::ip::tcp;
 using Clock = std::chrono::steady_clock;
 
 constexpr std::uint32_t kHeaderBytes = 8192;
+/// Time that a client has to answer when its connection is closed.
+constexpr std::chrono::seconds kGoodbye{5};
 
 std::string_view view_of(beast::string_view text) {
   return {text.data(), text.size()};
@@ -160,7 +163,7 @@ class PageServer::State::Socket : public std::enable_shared_from_this<Socket> {
   void read() {
     stream_.async_read(buffer_, [self = this->shared_from_this()](beast::error_code error, std::size_t) {
       if (error) return self->end();
-      self->take_message();
+      if (!self->closing_) self->take_message();
     });
   }
 
@@ -207,12 +210,18 @@ class PageServer::State::Socket : public std::enable_shared_from_this<Socket> {
 
   void close(websocket::close_code code) {
     if (std::exchange(closing_, true)) return;
-    // A client that does not read does not read this message either: then the timeout ends the connection.
     stream_.async_close(code, [self = this->shared_from_this()](beast::error_code) { self->end(); });
+    // A client that does not read does not read this message either. The stream's own timeout begins anew with
+    // everything that the client sends.
+    goodbye_.expires_after(kGoodbye);
+    goodbye_.async_wait([self = this->shared_from_this()](beast::error_code error) {
+      if (!error) self->drop();
+    });
   }
 
   void end() {
     closing_ = true;
+    goodbye_.cancel();
     drop();
     if (id_ == 0 || server_.sockets_.erase(id_) == 0) return;
     server_.handler_.closed(id_);
@@ -221,6 +230,7 @@ class PageServer::State::Socket : public std::enable_shared_from_this<Socket> {
   State& server_;
   websocket::stream<beast::tcp_stream> stream_;
   beast::flat_buffer buffer_;
+  asio::steady_timer goodbye_{stream_.get_executor()};
   ClientId id_ = 0;
   double allowed_ = 50;  // messages
   Clock::time_point last_message_ = Clock::now();
