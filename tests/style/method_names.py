@@ -10,8 +10,8 @@ from pathlib import Path
 
 DEFAULTS = {("app/compare/comparison.hpp", "raytrace"),
             ("bench/options.cpp", "edge-scatter,view-sample"), ("bench/options.cpp", "edge-scatter,edge-scatter:rows=exact")}
-# Measures what papers say of methods by name.
-OF_PAPERS = {"bench/time_ratios.py"}
+# Measures what papers, or a page, say of methods by name.
+OF_PAPERS = {"bench/time_ratios.py", "bench/domes.py"}
 
 
 def literals(text):

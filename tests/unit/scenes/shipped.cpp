@@ -39,7 +39,8 @@ TEST(ShippedScenes, AllLoadWithoutAWarning) {
       EXPECT_TRUE(file.filename() == "lights.json" && warning.find("parallelogram") != std::string::npos)
           << file << ": " << warning;
     }
-    EXPECT_EQ(scene.width, 512u) << file;
+    // Edges of papers/centred.json pass the light's centre as seen from the picture's middle row: it has an odd number.
+    EXPECT_EQ(scene.width, file.filename() == "centred.json" ? 145u : 512u) << file;
     ++count;
   }
   EXPECT_GE(count, 12 + 12);
