@@ -16,7 +16,7 @@ from pathlib import Path
 
 DOCS = Path(__file__).resolve().parent
 # Options that several methods share, by the page that says what they mean.
-SHARED = {"map-fits.md": ("cascades", "split", "splitShare", "tiles", "focus"), "domes.md": ("suns",)}
+SHARED = {"map-fits.md": ("cascades", "split", "splitShare", "tiles", "refine", "changed", "focus"), "domes.md": ("suns",)}
 HEAD = """# Options of all methods
 
 Every method with what it can do and the options that it takes. `docs/option_tables.py` generates this page from `penumbra methods --json`; do not edit it. An option is
