@@ -85,7 +85,7 @@ ObjectsWith objects_with(const Scene& scene, const Instances& instances) {
   find_objects_with<glm::vec3>(scene.soup, scene.looks.normals, glm::vec3(0), with.normals);
   std::vector<ObjectsWith> of_meshes;  // each has one object
   for (const auto& mesh : instances.meshes) {
-    ObjectsWith& own = of_meshes.emplace_back(std::vector<bool>(1), std::vector<bool>(1));
+    ObjectsWith& own = of_meshes.emplace_back(ObjectsWith{std::vector<bool>(1), std::vector<bool>(1)});
     find_objects_with<glm::vec4>(mesh->soup, mesh->colors, glm::vec4(1), own.colors);
     find_objects_with<glm::dvec3>(mesh->soup, mesh->normals, glm::dvec3(0), own.normals);
   }
