@@ -57,7 +57,9 @@ std::optional<glm::dvec3> settled_origin(const Scene::State& state, std::span<co
 
 /// Returns the instances of an object; empty: its triangles are in the soup.
 inline std::span<const scenes::Instance> instances_of(const Scene::State& state, std::uint32_t object) {
-  return std::ranges::equal_range(state.instances.all, object, {}, &scenes::Instance::object);
+  const std::vector<scenes::Instance>& all = state.instances.all;  // clang 14 has no std::ranges::equal_range
+  const auto first = std::ranges::lower_bound(all, object, {}, &scenes::Instance::object);
+  return {first, std::ranges::upper_bound(all, object, {}, &scenes::Instance::object)};
 }
 /// Prepares a scene that was read for changes of its instances.
 void adopt_instances(Scene::State& state);

@@ -99,8 +99,9 @@ TEST(MeanBands, RowsOfACameraAreThoseOfItsPicture) {
     camera.height = rows;
     const visibility::ViewSamples some = vectors::scan_view_samples(floats, camera);
     ASSERT_EQ(some.size(), std::size_t{90} * rows);
+    const std::ptrdiff_t skipped = std::ptrdiff_t{90} * first;
     const auto same = [&](const auto& values, const auto& all) {
-      return std::equal(values.begin(), values.end(), all.begin() + std::ptrdiff_t{90} * first);
+      return std::equal(values.begin(), values.end(), all.begin() + skipped);
     };
     EXPECT_TRUE(same(some.triangle, whole.triangle));
     EXPECT_TRUE(same(some.p, whole.p));
