@@ -50,7 +50,7 @@ struct OneRun {
   double mesh = 0, view = 0, read = 0;
 };
 
-/// What is known of a run's time before its end. Rows may differ by much, so this is a guess.
+/// Estimate of a run's time before its end, from the rows done so far. Rows may differ by much.
 struct RunEstimate {
   double lights, rows;   ///< of the whole run; rows of each light
   double rows_done = 0;  ///< of all lights

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What changes of the interface's scene share: its objects, their vertices, and its origin.
+// Objects of the interface's scene, their vertices, and its origin, for all functions that change them.
 
 #include "library/scene_objects.hpp"
 

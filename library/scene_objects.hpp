@@ -17,7 +17,8 @@
 #include <utility>
 #include <vector>
 
-/// What changes of meshes and of instances share. Objects' triangles stand in the soup in the order of the objects.
+/// Functions for changing meshes and instances of a scene. Objects' triangles stand in the soup in the order of the
+/// objects.
 namespace penumbra {
 
 /// Returns the range of the object's vertices among the scene's; empty for an object without triangles in the soup.

@@ -31,7 +31,7 @@ bool has_closed_form(const Light& light) {
   return !light.texture && !light.dome;
 }
 
-/// What tasks count.
+/// Counters of a task.
 struct Counts {
   std::uint64_t pairs = 0;
   double largest_share = 0;

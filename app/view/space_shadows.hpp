@@ -22,7 +22,7 @@ inline constexpr std::size_t kMostShownBodies = 2'000, kMostShownSides = 50'000;
 /// Largest number of wedges that are named of one point.
 inline constexpr std::size_t kMostNamedWedges = 1'000;
 
-/// What the 3D view wants to see of a light's shadows.
+/// Request of the 3D view: which of a light's shadows to show.
 struct SpaceShadows {
   WedgeRequest wedges = {};                 ///< light, construction and from
   glm::dvec2 place{0};                      ///< point of the light, from which silhouettes are: light_point()

@@ -118,7 +118,7 @@ TEST(SkyExact, ATexelIsHiddenByItsAzimuths) {
       2e-5);  // the wall ends 2^-20 before the azimuth of +X, and near the zenith
 }
 
-/// What lights nothing but undersides gives V = 0 on a floor, as with light samples.
+/// A sky that lights only undersides gives V = 0 on a floor, as with light samples.
 TEST(SkyExact, WhatIsBlackAboveTheFloorGivesNothing) {
   expect_shares(
       floor_scene({}, picture(8, 4, [](std::uint32_t, std::uint32_t y) { return glm::vec3(y < 2 ? 0 : 1); })),
@@ -243,8 +243,8 @@ double largest_difference(const SkyFlux& a, const SkyFlux& b) {
   return largest;
 }
 
-/// What is above a plane, and what is below, is what the faces have; a plane cuts each face in two; and sides on a
-/// face's border, from tables, are those just inside, which go from texel to texel.
+/// The parts of the sky above and below a plane add up to the faces; a plane cuts each face in two; and sides on a
+/// face's border, from tables, equal sides just inside, which go from texel to texel.
 TEST(SkySums, FacesHalvesAndBordersAgree) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> unit(-1, 1);

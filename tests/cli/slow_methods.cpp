@@ -98,7 +98,8 @@ TEST_F(SlowMethods, EndBetweenBands) {
   EXPECT_NO_THROW(app::run_method(first, session, plan, none, progress));
 }
 
-// Of a group each is left out by name, with the others' results in their places; a method that is named is not.
+// Slow methods of a group are left out by name, with the others' results in their places; a method that is named is
+// kept.
 TEST_F(SlowMethods, AreLeftOutOfGroupsByName) {
   app::ComparisonOptions comparison;
   comparison.methods = app::parse_methods("raytrace,geometry");

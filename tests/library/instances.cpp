@@ -112,7 +112,7 @@ TEST_F(LibraryInstances, AreTheFilesAndTheirCopies) {
     EXPECT_EQ(exact_bytes(Renderer(Scene::load(path("camp.json"))).render(with("shared", method))), copies);
     EXPECT_EQ(exact_bytes(Renderer(Scene::load(path("camp.json"))).render(with("copies", method))), copies);
   }
-  // What is saved reads back as the same scene, with its instances.
+  // A saved scene reads back as the same, with its instances.
   EXPECT_THAT(scene.save(path("saved.json")), IsEmpty());
   const Scene saved = Scene::load(path("saved.json"));
   EXPECT_EQ(saved.instance_count(saved.mesh("tent")), static_cast<std::size_t>(kTents));

@@ -66,7 +66,7 @@ float radiance_beyond(vec2 from, vec2 to, float turn) {
   float sum = radiance_left_of(second, first);
   // A sector of no width, or of rays in the wrong order by rounding, holds no border. Opposite rays part the light.
   if (angle <= 0.0 && dot(enters, ends) > 0.0) return sum;
-  // Of the light's border only its right side has radiance left of it while it runs upward. The sector holds the right
+  // The light's right side is the only border that runs upward with radiance to its left. The sector holds the right
   // side from where it enters there, or from the lower corner, up to where it ends there, or to the upper corner.
   vec2 side = vec2(1.0, -1.0);
   for (int k = 0; k < 2; ++k) {

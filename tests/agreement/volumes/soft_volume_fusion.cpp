@@ -123,8 +123,9 @@ scenes::Scene edges_at_the_centre() {
   return scene;
 }
 
-/// As published, floats say on which side of the centre an edge passes: the layers are one off where they are wrong, so
-/// that V is off by what an edge through the centre parts, half of the light or all of it. Repaired, no pixel is.
+/// With as=published, floats decide on which side of the centre an edge passes. Where they are wrong, the number of
+/// layers is off by one, and V by the part of the light on one side of an edge through its centre. Repaired, no pixel
+/// is wrong.
 TEST_F(SoftVolumeFusion, SidesByFloatsAreAWholeLayerOff) {
   const SoftStage stage(edges_at_the_centre(), device(), 65, 65);
   const std::vector<double> right = stage.twin(Viewer::center);

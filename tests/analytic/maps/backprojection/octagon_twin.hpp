@@ -11,8 +11,8 @@
 
 namespace penumbra::tests {
 
-/// What contours hide under the parallel square: the texels whose centres it holds, with the corners cut off midway to
-/// the next texels' centres, projected onto the light.
+/// The area that contours hide under the parallel square: the texels whose centres it holds, with the corners cut off
+/// midway to the next texels' centres, projected onto the light.
 class OctagonTwin {
  public:
   /// `level`: blocks of 2^level texels a side are one, which shades if any of them does.
