@@ -48,19 +48,46 @@ void require_mesh_memory(const visibility::MethodDescription& method, const visi
 struct OneRun {
   std::vector<LightTimes> lights;
   double mesh = 0, view = 0, read = 0;
+  double bands = 0;  ///< part of `lights` that is spent because of more tiles than other runs have; an estimate
 };
 
-/// Estimate of a run's time before its end, from the rows done so far. Rows may differ by much.
-struct RunEstimate {
-  double lights, rows;   ///< of the whole run; rows of each light
-  double rows_done = 0;  ///< of all lights
-  double tiles = 0;      ///< seconds of these rows
-  [[nodiscard]] bool is_done() const { return rows_done == lights * rows; }
-  /// Returns the seconds of the whole run, of which `elapsed` have passed: what is not of rows is of lights.
-  [[nodiscard]] double of_all(double elapsed) const {
-    const double lights_begun = std::ceil(rows_done / rows);
-    return (elapsed - tiles) * lights / lights_begun + tiles * lights * rows / rows_done;
+/// Estimate of a run's time before its end. A tile takes a time of its own, such as drawing all maps again, and a time
+/// for each of its rows: both by least squares over the tiles that are done, which have different numbers of rows.
+class RunEstimate {
+ public:
+  /// Numbers of the whole run; `rows`: of each light.
+  RunEstimate(std::size_t lights, std::uint32_t rows) : lights_(static_cast<double>(lights)), rows_(rows) {}
+
+  void add(std::uint32_t rows, double seconds) {
+    const double size = rows;
+    ++count_, sizes_ += size, squares_ += size * size, seconds_ += seconds, products_ += size * seconds;
   }
+  [[nodiscard]] bool is_done() const { return sizes_ == lights_ * rows_; }
+  /// Returns the seconds of a tile of that many rows.
+  [[nodiscard]] double of_tile(double rows) const { return of_each_tile() + rows * of_each_row(); }
+  /// Returns the seconds of a whole run in tiles of that many rows, of which `elapsed` have passed and `mesh` were
+  /// spent on meshes: time outside of tiles is spent once for each light.
+  [[nodiscard]] double of_all(double elapsed, double mesh, std::uint32_t rows_of_tile) const {
+    const double begun = std::ceil(sizes_ / rows_);
+    return mesh + (elapsed - mesh - seconds_) * lights_ / begun +
+           lights_ * (tiles_of_light(rows_of_tile) * of_each_tile() + rows_ * of_each_row());
+  }
+  /// Returns the seconds spent because there were more tiles than with that many rows in each.
+  [[nodiscard]] double of_bands(std::uint32_t rows_of_tile) const {
+    return std::max(count_ - lights_ * tiles_of_light(rows_of_tile), 0.0) * of_each_tile();
+  }
+
+ private:
+  [[nodiscard]] double tiles_of_light(std::uint32_t rows_of_tile) const { return std::ceil(rows_ / rows_of_tile); }
+  [[nodiscard]] double of_each_tile() const {
+    const double spread = count_ * squares_ - sizes_ * sizes_;
+    if (!(spread > 0)) return 0;  // all tiles have the same number of rows
+    return std::clamp((seconds_ * squares_ - sizes_ * products_) / spread, 0.0, seconds_ / count_);
+  }
+  [[nodiscard]] double of_each_row() const { return (seconds_ - count_ * of_each_tile()) / sizes_; }
+
+  double lights_, rows_;  // of the whole run; rows of each light
+  double count_ = 0, sizes_ = 0, squares_ = 0, seconds_ = 0, products_ = 0;
 };
 
 double sum_of(const OneRun& run, double LightTimes::*time) {
@@ -85,14 +112,16 @@ class Host {
 
   [[nodiscard]] const visibility::SceneFloats* prepared() const { return mesh_; }
 
-  /// `reads`: pass on the results. `limited`: no longer than RunPlan::most_seconds, in bands.
+  /// `reads`: pass on the results. `limited`: ends with TakesTooLong if it would take longer than
+  /// RunPlan::most_seconds. Its tiles are a few rows first and double, so that both parts of a tile's time become
+  /// known.
   OneRun run(bool reads, bool limited, MethodRun& result) {
-    constexpr std::uint32_t kBands = 64;  // what is spent beyond the limit is a band's time at most
+    constexpr std::uint32_t kFirstShare = 64;  // of a light's rows
     OneRun times{std::vector<LightTimes>(plan_.lights.size())};
     result.counters.clear();
     const Stopwatch whole;
-    RunEstimate estimate{.lights = static_cast<double>(chosen_lights(plan_).size()),
-                         .rows = static_cast<double>(session_.height)};
+    RunEstimate estimate(chosen_lights(plan_).size(), session_.height);
+    std::uint32_t growing = session_.height / kFirstShare + 1, most = 1;
     for (const std::size_t light : in_order_of_meshes()) {
       Stopwatch watch;
       if (const visibility::SceneFloats& floats = session_.floats_for(light); mesh_ != &floats) {
@@ -117,19 +146,22 @@ class Host {
       times.view += watch.seconds();
       std::uint32_t rows = std::max(method_.max_tile_rows(), 1u);
       rows = std::min({rows, most_rows_to_read(light), plan_.band_rows});
-      if (limited) rows = std::min(rows, session_.height / kBands + 1);
+      most = rows;
       for (std::uint32_t row = 0; row < session_.height; row += rows) {
         const Stopwatch tile_watch;
+        if (limited) rows = std::min(growing, most);
         const Tile tile{row, std::min(rows, session_.height - row)};
         times.lights[light].evaluate += evaluate(tile) + filter(light, samples, tile);
         watch.restart();
         if (reads) read(light, tile, result);
         times.read += watch.seconds();
         progress_.advance(tile.row_count);
-        estimate.tiles += tile_watch.seconds();
-        estimate.rows_done += tile.row_count;
-        if (limited && !estimate.is_done() && whole.seconds() > plan_.most_seconds)
-          throw TakesTooLong(estimate.of_all(whole.seconds()));
+        if (!limited) continue;
+        estimate.add(tile.row_count, tile_watch.seconds());
+        const double left = plan_.most_seconds - whole.seconds();
+        const double all = estimate.of_all(whole.seconds(), times.mesh, most);
+        if (!estimate.is_done() && left < 0 && all > plan_.most_seconds) throw TakesTooLong(all);
+        if (growing == session_.height / kFirstShare + 1 || estimate.of_tile(2 * growing) < left) growing *= 2;
       }
       // Counters start again with each light; the result has their sum.
       for (const auto& [name, count] : method_.counters()) result.counters[name] += count;
@@ -139,6 +171,7 @@ class Host {
       }
       alpha_counts_ = {};
     }
+    if (limited) times.bands = estimate.of_bands(most);
     return times;
   }
 
@@ -422,7 +455,7 @@ MethodRun run_method(visibility::Method& method, const Session& session, const R
   if (first) {
     // A first run that happens to be faster than the median has no warm-up time.
     const double longer = sum_of(*first, &LightTimes::light) + sum_of(*first, &LightTimes::evaluate) -
-                          result.times.light - result.times.evaluate;
+                          result.times.light - result.times.evaluate - first->bands;
     result.times.warmup = std::max(longer, 0.0);
   }
   for (const auto& [name, count] : method.take_mesh_counters()) result.counters[name] += count;

@@ -55,7 +55,7 @@ struct RunPlan {
   const visibility::SceneFloats** holds = nullptr;
   /// Largest number of rows evaluated at once. Between bands, Progress may stop the run.
   std::uint32_t band_rows = std::numeric_limits<std::uint32_t>::max();
-  /// Limit of the discarded first run, which is then evaluated in bands of a few rows: TakesTooLong.
+  /// Limit of a run, tried on the discarded first one: TakesTooLong. This run begins with tiles of a few rows.
   double most_seconds = std::numeric_limits<double>::infinity();
   std::string stage = {};  ///< label of the progress bar; empty: the method's name
 };
@@ -71,10 +71,12 @@ struct RunTimes {
   double view = 0;                 ///< of the first run: passing view samples to the method
   double read = 0;                 ///< of the first run: reading back, and sinks
   std::vector<LightTimes> lights;  ///< of each of the plan's; 0 for lights that were not evaluated
-  std::optional<double> warmup;    ///< the discarded run's light + evaluate less the medians, >= 0; empty: no such run
-  std::uint32_t runs = 0;          ///< timed runs
-  double total = 0;                ///< wall-clock time of the whole call for this method, including reading back and
-                                   ///< sinks
+  /// The discarded run's light + evaluate less the medians, >= 0; with a limit (RunPlan::most_seconds) also less what
+  /// its additional tiles took, as estimated. Empty: no such run.
+  std::optional<double> warmup;
+  std::uint32_t runs = 0;  ///< timed runs
+  double total = 0;        ///< wall-clock time of the whole call for this method, including reading back and
+                           ///< sinks
 };
 
 struct MethodRun {
@@ -86,7 +88,7 @@ struct MethodRun {
   const visibility::SceneFloats* prepared = nullptr;  ///< the method's current scene (RunPlan::prepared)
 };
 
-/// Thrown by run_method between two bands, after RunPlan::most_seconds.
+/// Thrown by run_method between two tiles, after RunPlan::most_seconds, if a whole run would take longer than that.
 struct TakesTooLong final : std::exception {
   double seconds = 0;  ///< of a whole run, as estimated from the rows that are done
   explicit TakesTooLong(double estimated) : seconds(estimated) {}

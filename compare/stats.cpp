@@ -213,11 +213,15 @@ Json to_json(const Metrics& metrics) {
     same_samples["errorAllLights"] = to_json(rays->all_lights_error);
     same_samples["lights"] = lights_json(rays->stats.lights, rays->lights);
   }
+  Json left_out = Json::array();
+  for (const LeftOut& one : metrics.left_out)
+    left_out.push_back({{"entry", one.entry}, {"seconds", one.seconds}, {"limit", one.limit}});
   return {{"reference", to_json(metrics.reference)},
           {"judgedPixels", metrics.judged_pixels},
           {"horizonPixels", metrics.horizon_pixels},
           {"sameSamples", same_samples},
-          {"methods", methods}};
+          {"methods", methods},
+          {"leftOut", left_out}};
 }
 
 std::string json_text(const Json& json) {

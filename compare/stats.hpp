@@ -135,11 +135,18 @@ struct SampleCost {
 };
 
 /// Contents of metrics.json.
+/// Method of a group that was not compared, since it would have taken longer than its limit.
+struct LeftOut {
+  std::string entry;
+  double seconds = 0, limit = 0;  ///< of a run, as estimated; and the limit
+};
+
 struct Metrics {
   Stats reference;
   std::uint64_t judged_pixels = 0, horizon_pixels = 0;  ///< of the first light
   std::optional<SampleCost> same_samples;
   std::vector<MethodResult> methods;
+  std::vector<LeftOut> left_out;
 };
 
 nlohmann::ordered_json to_json(const LightStats& light);

@@ -131,9 +131,8 @@ class CompareCommand : public Command {
     cli_.add_option(
             "--methods,--method", methods_,
             "what to compare: names with options of their own, a:key=value,b; or geometry, image, all, or default, "
-            "those of geometry and image that do not take minutes; of a group, methods are left out whose run takes "
-            "more "
-            "than 30 seconds")
+            "those of geometry and image that do not take minutes; a method of a group is left out, by name, if a run "
+            "of it takes more than 30 seconds (not with --max-rmse or --frames)")
         ->type_name("LIST")
         ->capture_default_str();
     cli_.add_option("--reference", options_.reference,
@@ -250,7 +249,7 @@ class CompareCommand : public Command {
                                           Progress& progress) const {
     if (frames_.empty()) {
       ComparisonOptions options = options_;
-      options.most_seconds = kMostGroupSeconds;
+      if (!max_rmse_) options.most_seconds = kMostGroupSeconds;  // a method that did not run has not passed
       return compare_methods(run_, options, arguments, progress);
     }
     if (frame_) throw UsageError("--frames {} and --frame {}: expected one of them", frames_, *frame_);

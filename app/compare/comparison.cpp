@@ -228,6 +228,9 @@ class Comparison {
       }
     }
     entries_ = std::move(kept);
+    if (entries_.empty() && !report_.metrics.left_out.empty())
+      throw UsageError("every method is left out, since it takes longer than {:.0f} seconds: name one (--methods)",
+                       options_.most_seconds);
   }
 
   void leave_out(const Entry& entry, double seconds) {
@@ -239,6 +242,7 @@ class Comparison {
                     "have {:.0f}; ask for it by name (--methods){}",
                     entry.label, seconds, options_.most_seconds,
                     bounded ? fmt::format(", or bound its texels: {}:budget=4096", entry.label) : ""));
+    report_.metrics.left_out.push_back({entry.label, seconds, options_.most_seconds});
     if (!options_.writes) return;
     for (std::string& text : files_.remove(entry.label)) warn(std::move(text));
   }

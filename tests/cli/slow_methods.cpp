@@ -12,6 +12,7 @@
 #include <gmock/gmock.h>
 
 #include <chrono>
+#include <numeric>
 #include <string>
 #include <thread>
 #include <vector>
@@ -24,10 +25,10 @@ using testing::Contains;
 using testing::HasSubstr;
 using testing::Not;
 
-/// Takes two milliseconds a row.
+/// Takes two milliseconds a row, and `each_tile` milliseconds a tile, as a method that draws its maps again for each.
 class Slow final : public visibility::Method {
  public:
-  Slow() {
+  explicit Slow(std::uint32_t each_tile = 0, std::uint32_t each_row = 2) : each_tile_(each_tile), each_row_(each_row) {
     description_.name = "slow";
     description_.output = visibility::Output::scalar;
     description_.lights = {visibility::LightKind::rectangle};
@@ -39,14 +40,18 @@ class Slow final : public visibility::Method {
   [[nodiscard]] std::uint32_t max_tile_rows() const override { return 4096; }
   void evaluate(const visibility::Tile& tile) override {
     tiles.push_back(tile.row_count);
-    std::this_thread::sleep_for(std::chrono::milliseconds(2 * tile.row_count));
+    const auto begin = std::chrono::steady_clock::now();
+    std::this_thread::sleep_for(std::chrono::milliseconds(each_tile_ + each_row_ * tile.row_count));
+    seconds.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
   }
   void read_visibility(std::span<float> visibility) override { std::ranges::fill(visibility, 0.5F); }
 
   std::vector<std::uint32_t> tiles;
+  std::vector<double> seconds;  // of each tile
 
  private:
   visibility::MethodDescription description_;
+  std::uint32_t each_tile_, each_row_;
 };
 
 class Warnings final : public app::Progress {
@@ -67,8 +72,9 @@ class SlowMethods : public ProgramTest {
   }
 };
 
-// 200 rows take 0.4 s or more: after a tenth of it the run ends, in bands of 4 rows, and says how long all would take.
-TEST_F(SlowMethods, EndBetweenBands) {
+// 200 rows take 0.4 s or more: after a tenth of it the run ends, in tiles of 4, 8, 16 … rows, and says how long all
+// would take.
+TEST_F(SlowMethods, EndBetweenTiles) {
   app::RunOptions run = options();
   run.size = "8x200";
   const render::Machine machine = app::make_machine("cpu");
@@ -83,19 +89,38 @@ TEST_F(SlowMethods, EndBetweenBands) {
   } catch (const app::TakesTooLong& found) {
     EXPECT_GT(found.seconds, 0.3);
   }
-  EXPECT_LT(slow.tiles.size(), 40U);
-  EXPECT_THAT(slow.tiles, testing::Each(4U));
+  ASSERT_FALSE(slow.tiles.empty());
+  EXPECT_EQ(slow.tiles.front(), 4U);
+  for (std::size_t i = 1; i < slow.tiles.size(); ++i) EXPECT_LE(slow.tiles[i], 2 * slow.tiles[i - 1]);
+  EXPECT_LE(std::reduce(slow.tiles.begin(), slow.tiles.end()), 100U) << "beyond the limit there is one tile at most";
   // With the time that it takes, the timed run is in one piece.
   Slow patient;
   plan.most_seconds = 1e6;
   EXPECT_EQ(app::run_method(patient, session, plan, none, progress).times.runs, 1U);
-  EXPECT_EQ(patient.tiles.size(), 51U);
-  EXPECT_EQ(patient.tiles.back(), 200U);
+  EXPECT_THAT(patient.tiles, testing::ElementsAre(4U, 8U, 16U, 32U, 64U, 76U, 200U));
   // Without a discarded run there is no limit.
   Slow first;
   plan.most_seconds = 0;
   plan.discard_first = false;
   EXPECT_NO_THROW(app::run_method(first, session, plan, none, progress));
+}
+
+// Sixty-four tiles of 80 ms would take 5 s, one takes 80 ms: less than the limit, so the method is kept. Its warm-up is
+// not the time of the first run's six tiles.
+TEST_F(SlowMethods, AreNotThoseWhoseTilesCostMuch) {
+  app::RunOptions run = options();
+  run.size = "8x200";
+  const render::Machine machine = app::make_machine("cpu");
+  app::TerminalProgress progress(false);
+  const app::Session session = app::open_session(run, std::nullopt, machine, 0, progress);
+  Slow slow(80, 0);
+  const app::RunPlan plan{.lights = session.lights, .discard_first = true, .most_seconds = 0.2};
+  const auto none = [](const app::TileResult&) {};
+  const app::MethodRun done = app::run_method(slow, session, plan, none, progress);
+  EXPECT_LE(slow.tiles.size(), 10U);
+  // The last tile is the timed run.
+  const double first = std::reduce(slow.seconds.begin(), slow.seconds.end() - 1), timed = slow.seconds.back();
+  EXPECT_LT(done.times.warmup.value(), 0.5 * (first - timed)) << "this is what the additional tiles took";
 }
 
 // Slow methods of a group are left out by name, with the others' results in their places; a method that is named is
@@ -113,6 +138,9 @@ TEST_F(SlowMethods, AreLeftOutOfGroupsByName) {
   const compare::Metrics metrics = app::compare_methods(scenes::read_scene(run.scene), run, comparison, warnings);
   ASSERT_EQ(metrics.methods.size(), 1U);
   EXPECT_EQ(metrics.methods.front().entry, "raytrace");
+  ASSERT_FALSE(metrics.left_out.empty());
+  EXPECT_EQ(metrics.left_out.front().limit, 0);
+  EXPECT_THAT(compare::to_json(metrics).at("leftOut").dump(), HasSubstr("edge-scatter"));
   EXPECT_TRUE(metrics.methods.front().error.has_value());
   EXPECT_THAT(warnings.said, Contains(AllOf(HasSubstr("edge-scatter is left out"), HasSubstr("--methods"))));
   EXPECT_THAT(warnings.said, Not(Contains(HasSubstr("raytrace is left out"))));
