@@ -95,6 +95,9 @@ void adopt_instances(Scene::State& state) {
   if (!std::ranges::is_sorted(instances.all, {}, &scenes::Instance::object) ||
       !std::ranges::is_sorted(state.scene.soup.object)) {
     state.scene = scenes::copied(std::move(state.scene), std::exchange(instances, {}));
+    state.scene.warnings.emplace_back(
+        "instances are copied: the file's nodes are in another order than its meshes, which cannot share triangles "
+        "here");
     return;
   }
   for (const auto& mesh : instances.meshes) state.boxes.push_back(box_of(mesh->soup));
@@ -169,6 +172,8 @@ InstanceId Scene::add_instance(MeshId mesh, const Matrix& matrix) {
       const ObjectBox box = box_of(shared.soup);
       require_near(box, placement, where);
       auto changed = with_object(*state_, mesh.index, [](scenes::Scene&) {});
+      // A mesh that was moved keeps the scene's origin where it is, also as an instance.
+      if (mesh.index < state_->rest.size() && state_->rest[mesh.index]) changed->instances_moved = true;
       scenes::Instances& instances = changed->instances;
       instances.meshes.push_back(std::make_shared<const scenes::SharedMesh>(std::move(shared)));
       changed->boxes.push_back(box);

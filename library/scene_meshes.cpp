@@ -38,6 +38,18 @@ RestMesh& rest_of(Scene::State& state, std::uint32_t object) {
   return *rest;
 }
 
+/// Replaces the positions of a mesh whose triangles are in the soup. Throws InputError, before any change, for a wrong
+/// number.
+void put_positions(Scene::State& state, std::uint32_t object, std::span<const Vector> positions,
+                   const std::string& where) {
+  RestMesh& rest = rest_of(state, object);
+  std::vector<glm::dvec3> kept = kept_positions(state, object, positions, rest.positions.size(), where);
+  state.meshes = next_meshes();
+  rest.positions = std::move(kept);
+  std::ranges::copy(rest.positions, state.scene.soup.positions.begin() + rest.first);
+  std::ranges::copy(rest.normals, state.scene.looks.normals.begin() + rest.first);
+}
+
 }  // namespace
 
 std::uint64_t next_meshes() {
@@ -149,14 +161,12 @@ void Scene::set_positions(MeshId mesh, std::span<const Vector> positions) {
   with_errors([&] {
     if (!instances_of(*state_, mesh.index).empty()) {
       if (!shares_with_others(*state_, mesh.index)) return set_shared_positions(*state_, mesh.index, positions, where);
-      state_ = with_copies_of(*state_, mesh.index);
+      std::unique_ptr<State> changed = with_copies_of(*state_, mesh.index);
+      put_positions(*changed, mesh.index, positions, where);
+      state_ = std::move(changed);
+      return;
     }
-    RestMesh& rest = rest_of(*state_, mesh.index);
-    std::vector<glm::dvec3> kept = kept_positions(*state_, mesh.index, positions, rest.positions.size(), where);
-    state_->meshes = next_meshes();
-    rest.positions = std::move(kept);
-    std::ranges::copy(rest.positions, state_->scene.soup.positions.begin() + rest.first);
-    std::ranges::copy(rest.normals, state_->scene.looks.normals.begin() + rest.first);
+    put_positions(*state_, mesh.index, positions, where);
   });
 }
 

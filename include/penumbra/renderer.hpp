@@ -66,11 +66,10 @@ class PENUMBRA_API Cancelled : public Error {
   ~Cancelled() override;
 };
 
-/// Renders pictures of one scene, and keeps unchanged data from call to call: hierarchies over a mesh while it is not
-/// moved (and refits them when it is), trees over meshes with instances also while
-/// instances move, view samples while camera, size and meshes are unchanged, the Vulkan device
-/// always. Renderers on different threads are independent; one renderer is for one thread at a time. A call that throws
-/// leaves the renderer usable.
+/// Renders pictures of one scene, and keeps unchanged data from call to call. Hierarchies over a mesh are kept until it
+/// moves, and are then refitted; trees over meshes with instances are kept also when instances move. View samples are
+/// kept while camera, size and meshes are unchanged, the Vulkan device always. Renderers on different threads are
+/// independent; one renderer is for one thread at a time. A call that throws leaves the renderer usable.
 class PENUMBRA_API Renderer {
  public:
   explicit Renderer(Scene scene, RendererOptions options = {});

@@ -101,7 +101,8 @@ struct LoadOptions {
   bool studio = false;                  ///< add a light and a floor also to a scene with lights
   /// For parse(): vertices and triangles of entries of "meshes".
   std::span<const MeshArrays> arrays = {};
-  /// Progress of reading, ten times a second; false, or an exception, ends the reading (RendererOptions::progress).
+  /// Progress of reading: before each mesh of a JSON scene, and ten times a second while another process reads a file.
+  /// False, or an exception, ends the reading (RendererOptions::progress).
   std::function<bool(std::string_view stage, double done)> progress = {};
 };
 
@@ -146,11 +147,13 @@ class PENUMBRA_API Scene {
   /// colours and pictures are removed. Throws as add_mesh().
   void set_mesh(MeshId mesh, std::span<const Vector> positions,
                 std::span<const std::array<std::uint32_t, 3>> triangles);
-  /// Adds an instance of a mesh, which is stored once. From its first instance on, a mesh is in the scene only once for
-  /// each of them: its vertices, as they are then, are in the mesh's own space, and `matrix` takes them to the world.
-  /// set_mesh() and set_positions() then are for all instances, and set_transform() of the mesh moves them all. Files
-  /// have instances, too: JSON's "instances", nodes of a glTF file that share a mesh (set_mesh() and set_positions()
-  /// give such a node a mesh of its own, in the world), and EXT_mesh_gpu_instancing. Throws as set_transform().
+  /// Adds an instance of a mesh, which is stored once. From its first instance on, a mesh stands only where its
+  /// instances are: its vertices, as they are then, are in the mesh's own space, and `matrix` takes them to the world.
+  /// set_mesh() and set_positions() change all of its instances, and set_transform() of the mesh moves them all.
+  ///
+  /// Files have instances, too: JSON's "instances", EXT_mesh_gpu_instancing, and nodes of a glTF file that share a
+  /// mesh. set_mesh() and set_positions() of such a node replace its instances by a mesh of its own: it has no
+  /// instances then, and set_positions() takes the world positions of all their vertices. Throws as set_transform().
   InstanceId add_instance(MeshId mesh, const Matrix& matrix);
   /// Moves an instance: replaces its matrix. Throws as for a mesh.
   void set_transform(InstanceId instance, const Matrix& matrix);
