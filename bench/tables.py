@@ -24,7 +24,7 @@ RESULTS = ROOT / "bench" / "results"
 BLOCK = re.compile(r"(<!-- results/([\w-]+)\.json -->\n).*?(<!-- end -->)", re.S)
 GPU = "nvidia-h100"  # docs/devices.md has its table
 OWN_PAGE = {"against-cycles"}  # another script writes the page
-PAGES = [ROOT / "bench" / "README.md", ROOT / "docs" / "devices.md", ROOT / "docs" / "instances.md", ROOT / "docs" / "figures.md", ROOT / "docs" / "domes.md", ROOT / "docs" / "view.md"]
+PAGES = [ROOT / "bench" / "README.md", ROOT / "docs" / "devices.md", ROOT / "docs" / "instances.md", ROOT / "docs" / "figures.md", ROOT / "docs" / "domes.md", ROOT / "docs" / "pictures.md", ROOT / "docs" / "view.md"]
 
 
 def read(path):

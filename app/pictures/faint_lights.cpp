@@ -2,6 +2,7 @@
 #include "app/pictures/faint_lights.hpp"
 
 #include "app/whole_lights.hpp"
+#include "base/memory.hpp"
 #include "visibility/lights/whole_form_factors.hpp"
 
 #include <glm/vector_relational.hpp>
@@ -12,6 +13,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <utility>
 
 namespace penumbra::app {
 namespace {
@@ -47,8 +49,15 @@ struct Buffers {
 
 class Search {
  public:
-  Search(const Session& session, std::span<const glm::vec3> normals, double cutoff, FaintLights& found)
-      : session_(session), normals_(normals), wholes_(whole_lights(session.lights)), cutoff_(cutoff), found_(found) {}
+  /// `counted`: the range of the view samples whose pairs are counted.
+  Search(const Session& session, std::span<const glm::vec3> normals, double cutoff,
+         std::pair<std::size_t, std::size_t> counted, FaintLights& found)
+      : session_(session),
+        normals_(normals),
+        wholes_(whole_lights(session.lights)),
+        cutoff_(cutoff),
+        counted_(counted),
+        found_(found) {}
 
   Counts operator()(std::size_t begin, std::size_t end) {
     Buffers& own = buffers_.local();
@@ -103,7 +112,7 @@ class Search {
       if (!asked || !glm::all(glm::lessThanEqual(sum, cutoff_ * own.total[i - begin]))) continue;
       for (std::size_t light = whole.first; light < whole.first + whole.count; ++light) found_.dark[light][i] = 1;
       if (sum == glm::dvec3(0)) continue;
-      ++counts.pairs;
+      counts.pairs += i >= counted_.first && i < counted_.second ? 1 : 0;
       own.hidden[i - begin] += sum;
     }
   }
@@ -112,16 +121,21 @@ class Search {
   std::span<const glm::vec3> normals_;
   std::vector<WholeLight> wholes_;
   double cutoff_;
+  std::pair<std::size_t, std::size_t> counted_;
   FaintLights& found_;
   tbb::enumerable_thread_specific<Buffers> buffers_;
 };
 
 }  // namespace
 
-FaintLights find_faint_lights(const Session& session, std::span<const glm::vec3> normals, double cutoff) {
+FaintLights find_faint_lights(const Session& session, std::span<const glm::vec3> normals, double cutoff,
+                              const visibility::Tile& counted) {
   FaintLights found;
+  require_memory(session.lights.size() * session.samples.size(), "which lamps are left out of which view samples",
+                 "choose a smaller --size, or leave out --light-cutoff");
   found.dark.assign(session.lights.size(), std::vector<std::uint8_t>(session.samples.size(), 0));
-  Search search(session, normals, cutoff, found);
+  const std::size_t first = std::size_t{counted.first_row} * session.width;
+  Search search(session, normals, cutoff, {first, first + std::size_t{counted.row_count} * session.width}, found);
   tbb::combinable<Counts> counts;
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, session.samples.size(), kGrain), [&](const auto& range) {
     const Counts here = search(range.begin(), range.end());
@@ -136,6 +150,7 @@ FaintLights find_faint_lights(const Session& session, std::span<const glm::vec3>
   for (std::vector<std::uint8_t>& dark : found.dark) {
     if (std::ranges::find(dark, std::uint8_t{1}) == dark.end()) dark = {};
   }
+  if (std::ranges::all_of(found.dark, [](const auto& dark) { return dark.empty(); })) found.dark.clear();
   return found;
 }
 

@@ -27,6 +27,8 @@ struct FaintLights {
 ///
 /// Pieces of a light are left out together. Textured lights and domes stay, and are not counted in the sum; so do
 /// lights at view samples where V is set by a rule (PixelClass::unshadowed, emitter). `normals`: of the beauty.
-FaintLights find_faint_lights(const Session& session, std::span<const glm::vec3> normals, double cutoff);
+/// `counted`: rows of view samples whose pairs are counted. Throws ResourceError without the memory for `dark`.
+FaintLights find_faint_lights(const Session& session, std::span<const glm::vec3> normals, double cutoff,
+                              const visibility::Tile& counted);
 
 }  // namespace penumbra::app

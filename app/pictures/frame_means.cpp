@@ -23,7 +23,8 @@ namespace {
 constexpr std::uint32_t kFewestRows = 16;  ///< pixel rows of a band: its neighbours' rows are evaluated, too
 
 /// Pixel rows on either side of a band whose interpolated answers may differ from those of the whole picture
-/// (InterpolatedAreas): a view sample's cell has corners up to one row away, and a corner's curvature takes one more.
+/// (InterpolatedAreas): a view sample's cell has corners up to one row away, the slope at a corner takes the curvature
+/// of its neighbours, one row farther, and that takes theirs.
 constexpr std::uint32_t kRowsInterpolated = 3;
 
 }  // namespace
@@ -94,6 +95,8 @@ void FrameRenderer::render_mean(scenes::Scene scene, bool by_lens) {
     } else {
       picture_.still.reset();
     }
+    if (picture_.in_bands)
+      picture_.own_rows = {band.pixels.first_row * side - band.samples.first_row, band.pixels.row_count * side};
     MethodRun before = std::exchange(picture_.run, {});
     run_methods({});
     const Stopwatch watch;
@@ -147,6 +150,7 @@ void FrameRenderer::render_mean(scenes::Scene scene, bool by_lens) {
   }
   picture_.still.reset();
   picture_.in_bands = false;
+  picture_.own_rows.reset();
   if (!is_fine) {
     show(maker_, std::move(scene));
     spent_.view += session().filtering_seconds();

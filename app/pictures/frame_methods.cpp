@@ -27,10 +27,10 @@ namespace penumbra::app {
 namespace {
 
 /// Returns the view samples that are marked in one of both (RunPlan::dark).
-std::vector<std::vector<std::uint8_t>> either(const std::vector<std::vector<std::uint8_t>>& one,
+std::vector<std::vector<std::uint8_t>> either(std::vector<std::vector<std::uint8_t>> one,
                                               const std::vector<std::vector<std::uint8_t>>& other) {
   if (one.empty() || other.empty()) return one.empty() ? other : one;
-  std::vector<std::vector<std::uint8_t>> both = one;
+  std::vector<std::vector<std::uint8_t>> both = std::move(one);
   for (std::size_t light = 0; light < both.size(); ++light) {
     if (both[light].empty()) both[light] = other[light];
     if (other[light].empty()) continue;
@@ -210,7 +210,8 @@ std::vector<std::string> FrameRenderer::lights_without_v() const {
 FaintLights FrameRenderer::leave_out_faint(const BeautyAccumulator& beauty) {
   const double below = picture_.frame.light_cutoff;
   if (below == 0) return {};
-  FaintLights faint = find_faint_lights(lit(), beauty.normals(), below);
+  FaintLights faint =
+      find_faint_lights(lit(), beauty.normals(), below, picture_.own_rows.value_or(visibility::Tile{0, lit().height}));
   if (!picture_.cutoff) picture_.cutoff = compare::LightCutoff{below};
   picture_.cutoff->pairs += faint.pairs;
   picture_.cutoff->largest_share = std::max(picture_.cutoff->largest_share, faint.largest_share);
@@ -226,11 +227,11 @@ visibility::FrameMemory* FrameRenderer::memory() {
 MethodRun FrameRenderer::run_lights(BeautyAccumulator& beauty, BitsOutput* bits) {
   MethodRun all;
   const Stopwatch find;
-  const std::vector<std::vector<std::uint8_t>> beside =
+  std::vector<std::vector<std::uint8_t>> beside =
       bits != nullptr ? std::vector<std::vector<std::uint8_t>>()
                       : samples_beside_cones(lit().samples, lit().lights, lights_without_v());
   const FaintLights faint = leave_out_faint(beauty);
-  const std::vector<std::vector<std::uint8_t>> dark = either(beside, faint.dark);
+  const std::vector<std::vector<std::uint8_t>> dark = either(std::move(beside), faint.dark);
   spent_.view += find.seconds();
   const auto run_with = [&](const LightMethod& method, RunPlan plan) {
     const Stopwatch make;

@@ -228,6 +228,7 @@ void FrameRenderer::render(scenes::Scene scene, const Frame& frame, const std::f
   picture_.mattes.reset();
   picture_.masks.clear();
   picture_.in_bands = false;
+  picture_.own_rows.reset();
   picture_.layers = false;
   picture_.lamps.clear();
   for (Kept& kept : kept_) kept.used = false;

@@ -214,6 +214,7 @@ class FrameRenderer {
     MethodRun run;
     std::vector<std::vector<glm::vec3>> beauty;     // of each light
     bool in_bands = false;                          // the current view samples are those of some rows alone
+    std::optional<visibility::Tile> own_rows;       // of them, those that no other band has; nullopt: all
     bool layers = false;                            // translucent surfaces are evaluated, not the surfaces behind them
     std::vector<std::vector<std::uint32_t>> masks;  // of each light
     std::vector<float> alpha;                       // of each pixel

@@ -36,24 +36,32 @@ app::RunOptions options_of(const std::string& scene) {
   return run;
 }
 
-app::RenderedFrame rendered(const app::RunOptions& run, app::Frame frame, std::uint64_t band_samples) {
+struct Rendered {
+  app::RenderedFrame picture;
+  std::uint64_t left_out = 0;  // compare::LightCutoff::pairs
+};
+
+Rendered rendered(const app::RunOptions& run, app::Frame frame, std::uint64_t band_samples) {
   const render::Machine machine = app::make_machine("");
   const app::MethodWish wish;
   Silence silence;
   app::FrameRenderer renderer(run, wish, machine, silence);
   frame.band_samples = band_samples;
   renderer.render(app::read_session_scene(run, std::nullopt), frame, {}, 0);
-  return renderer.take();
+  const compare::Stats stats = renderer.stats();
+  return {renderer.take(), stats.light_cutoff ? stats.light_cutoff->pairs : 0};
 }
 
 void expect_same_in_bands(const app::RunOptions& run, const app::Frame& frame) {
-  const app::RenderedFrame whole = rendered(run, frame, std::numeric_limits<std::uint64_t>::max());
+  const auto [whole, left_out_of_whole] = rendered(run, frame, std::numeric_limits<std::uint64_t>::max());
   // 40 times 16 view samples in a row of pixels, 20 rows of these: four bands of 17 or 18 rows.
-  const app::RenderedFrame bands = rendered(run, frame, 40 * 16 * 20);
+  const auto [bands, left_out_of_bands] = rendered(run, frame, 40 * 16 * 20);
   EXPECT_EQ(bands.alpha, whole.alpha);
   EXPECT_EQ(bands.visibility, whole.visibility);
   EXPECT_EQ(bands.beauty, whole.beauty);
   EXPECT_EQ(bands.sum, whole.sum);
+  EXPECT_EQ(left_out_of_bands, left_out_of_whole);
+  EXPECT_EQ(frame.light_cutoff > 0, left_out_of_whole > 0);
   ASSERT_FALSE(whole.visibility.empty());
   const auto between = std::ranges::count_if(whole.visibility.front(), [](float v) { return v > 0 && v < 1; });
   EXPECT_GT(between, 100);
@@ -69,6 +77,23 @@ TEST(MeanBands, AreTheWholePicture) {
       frame.pixel_tolerance = tolerance;
       expect_same_in_bands(options_of("room.json"), frame);
     }
+  }
+}
+
+TEST(MeanBands, AreTheWholePictureUnderAWideFilter) {
+  app::Frame frame;
+  frame.pixel_side = 4;
+  frame.filter = {app::PixelFilter::Kind::blackman_harris, 6};
+  expect_same_in_bands(options_of("room.json"), frame);
+}
+
+TEST(MeanBands, AreTheWholePictureWithoutFaintLights) {
+  for (const double tolerance : {app::kPixelTolerance, 0.0}) {
+    app::Frame frame;
+    frame.pixel_side = 4;
+    frame.pixel_tolerance = tolerance;
+    frame.light_cutoff = 0.25;
+    expect_same_in_bands(options_of("room.json"), frame);
   }
 }
 
