@@ -9,6 +9,7 @@
 #include "maps/filters/history.hpp"
 
 #include "base/assert.hpp"
+#include "base/memory.hpp"
 #include "maps/host/light_basis.hpp"
 #include "maps/host/map_fit.hpp"
 
@@ -18,6 +19,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <utility>
 #include <vector>
@@ -31,6 +33,9 @@ double mirrored(std::uint32_t i, std::uint32_t base) {
   for (; i != 0; i /= base) value += (digit /= base) * (i % base);
   return value;
 }
+
+/// Bytes of a view sample and its V (KeptPicture).
+constexpr std::uint64_t kBytesKept = sizeof(std::int32_t) + 2 * sizeof(glm::vec3) + 2 * sizeof(float) + 1;
 
 class History final : public visibility::Method, public visibility::RemembersFrames {
  public:
@@ -67,7 +72,15 @@ class History final : public visibility::Method, public visibility::RemembersFra
     if (options_.reproject) counters["reprojectedPixels"] = reprojected_;
     return counters;
   }
-  [[nodiscard]] std::uint64_t memory_bytes() const override { return method_->memory_bytes(); }
+  [[nodiscard]] std::uint64_t memory_bytes() const override {
+    std::uint64_t kept = 0;
+    if (memory_ != nullptr) {
+      for (const auto* pictures : {&memory_->before, &memory_->now}) {
+        for (const auto& [light, picture] : *pictures) kept += picture.visibility.size() * kBytesKept;
+      }
+    }
+    return method_->memory_bytes() + kept;
+  }
 
  private:
   std::unique_ptr<glm::dvec2> jitter_;
@@ -151,6 +164,9 @@ std::vector<float> History::before(const visibility::Tile& tile) {
 void History::keep(const visibility::Tile& tile) {
   if (memory_ == nullptr) return;
   visibility::KeptPicture& picture = memory_->now[key()];
+  if (picture.visibility.size() != samples_->size())
+    require_memory(samples_->size() * kBytesKept, "V of the frame before, of one more light",
+                   "choose a smaller --size, or leave out reproject=on");
   if (tile.first_row == 0 || picture.visibility.size() != samples_->size()) {
     picture = {*samples_, std::vector<float>(samples_->size(), std::numeric_limits<float>::quiet_NaN())};
   }
