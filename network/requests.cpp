@@ -64,7 +64,7 @@ std::optional<std::string> parameter_of(std::string_view target, std::string_vie
     const bool is_whole = i + 2 < text->size();
     const int high = is_whole ? digit_of((*text)[i + 1]) : -1;
     const int low = is_whole ? digit_of((*text)[i + 2]) : -1;
-    if (high < 0 || low < 0) return std::nullopt;
+    if (high < 0 || low < 0) throw UsageError("{}={}: expected two hexadecimal digits after %", name, *text);
     value += static_cast<char>(16 * high + low);
     i += 2;
   }

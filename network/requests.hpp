@@ -14,8 +14,8 @@ std::string make_token();
 /// Returns the part of a request's target before the question mark.
 std::string_view path_of(std::string_view target);
 
-/// Returns the value of the target's first parameter with this name, %XX and + decoded; nullopt: there is none, or its
-/// value is not well formed.
+/// Returns the value of the target's first parameter with this name, %XX and + decoded; nullopt: there is none. Throws
+/// UsageError for a value that is not well formed.
 std::optional<std::string> parameter_of(std::string_view target, std::string_view name);
 
 /// Returns whether the target has the parameter `token` with this value, in constant time.
