@@ -224,7 +224,7 @@ def encoded_image(image, look):
 
 
 def numbered(vertices, count):
-    """Which of `count` vertices are used, in their order, and the number of each of `vertices` among these."""
+    """Returns which of `count` vertices are used, in their order, and the number of each of `vertices` among these."""
     is_used = numpy.zeros(count, bool)
     is_used[vertices] = True
     used = numpy.flatnonzero(is_used)
