@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """How fast `penumbra view` answers: bare clients drag the camera and a light, one after the other and both at once, and note
-when pictures come, what they cost, and whether each is whole.
+when pictures come, what they cost, and whether each is whole. The same drags are then made by a pointer in the page itself, in headless
+Chromium where it is installed.
   live_latency.py PROGRAM SCENE… [--seconds S] [--minutes M] [--out FILE.json]
 --minutes: the first scene's camera and light are then dragged for so long, and memory is noted each ten seconds. Without --out
 a table is printed; FILE.json is one of bench/results/."""
@@ -10,6 +11,7 @@ import json
 import math
 import os
 import pathlib
+import shutil
 import statistics
 import struct
 import subprocess
@@ -18,7 +20,9 @@ import threading
 import time
 import zlib
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "tests" / "live"))
+TESTS = pathlib.Path(__file__).resolve().parent.parent / "tests"
+sys.path[:0] = [str(TESTS / "live"), str(TESTS / "browser")]
+from browser import Browser  # noqa: E402
 from live_client import Client, Server  # noqa: E402
 
 COLUMNS = ["scene, and what is dragged", "pictures a second (median)", "from input to picture: median, ms", "95 % within, ms",
@@ -96,6 +100,32 @@ class Drag:
                 None if processor is None else 1000 * processor / len(self.came), memory, self.torn]
 
 
+class PageDrag(Drag):
+    """A drag by the pointer on the page, with a move each sixtieth of a second. The page says how long a picture took from its input (data-ms)."""
+
+    NOTES = """(() => { const root = document.documentElement.dataset; window.notes = []; window.released = 0;
+        addEventListener('pointerup', () => { released = performance.now(); }, true);
+        new MutationObserver(() => notes.push([performance.now(), Number(root.ms), root.exact === 'true']))
+          .observe(document.documentElement, { attributeFilter: ['data-frame'] }); })()"""
+
+    def __init__(self, browser, seconds, start, across):
+        x, y = start
+        browser.ask(self.NOTES)
+        browser.pointer("mouseMoved", x, y)
+        browser.pointer("mousePressed", x, y, button="left", buttons=1, clickCount=1)
+        began, moves = time.monotonic(), 0
+        while time.monotonic() < began + seconds:
+            moves += 1
+            browser.pointer("mouseMoved", x + across * math.sin(moves / 60), y, button="left", buttons=1)
+            time.sleep(max(0, began + moves / 60 - time.monotonic()))
+        browser.pointer("mouseReleased", x + across * math.sin(moves / 60), y, button="left", clickCount=1)
+        browser.wait("released && notes.length && notes.at(-1)[2] && notes.at(-1)[0] > released")
+        notes, released = browser.ask("notes"), browser.ask("released")
+        self.came = [when / 1000 for when, _, is_final in notes if not is_final]
+        self.delays = [ms / 1000 for _, ms, is_final in notes if not is_final]
+        self.exact, self.torn = (notes[-1][0] - released) / 1000, None
+
+
 def orbit(state):
     camera = state["camera"]
     away = [a - b for a, b in zip(camera["eye"], camera["target"])]
@@ -148,6 +178,25 @@ def measure_two(program, scene, seconds):
         return [drags[kind].row(f"`{pathlib.Path(scene).name}`, two clients: the one with the {kind}", each if kind == "camera" else None, use.memory()) for kind in kinds]
 
 
+def measure_page(program, scene, seconds):
+    """The page in headless Chromium, which takes its part of the processor, too."""
+    name, rows = pathlib.Path(scene).name, []
+    middle = "(() => { const b = document.querySelector('%s').getBoundingClientRect(); return [b.x + b.width / 2, b.y + b.height / 2]; })()"
+    with Browser() as browser, Server(program, scene, "--size", "512x512") as server:
+        browser.open(server.url)
+        browser.wait("document.documentElement.dataset.exact === 'true'")
+        for what, handle, across in (("camera", "#picture", 150), ("light", "[data-handle=\\'move\\']", 60)):
+            if what == "light":
+                browser.ask("document.getElementById('see-light').click()")
+                time.sleep(0.3)
+                browser.wait("document.documentElement.dataset.exact === 'true'")
+            use = Use(server.process)
+            drag = PageDrag(browser, seconds, browser.ask(middle % handle), across)
+            rows.append(drag.row(f"`{name}`, the page in Chromium, {what}", use.since(), use.memory()))
+        browser.call("Page.navigate", url="about:blank")  # a page whose server ends looks for it
+    return rows
+
+
 def measure_long(program, scene, minutes):
     """Memory, each ten seconds after the first minute."""
     with Server(program, scene, "--size", "512x512") as server:
@@ -177,6 +226,8 @@ def main():
         rows += measure(arguments.program, scene, arguments.seconds)
         loads.append(os.getloadavg()[0])
     rows += measure_two(arguments.program, arguments.scenes[0], arguments.seconds)
+    if shutil.which("chromium"):
+        rows += measure_page(arguments.program, arguments.scenes[0], arguments.seconds)
     if arguments.minutes:
         row, notes, count = measure_long(arguments.program, arguments.scenes[0], arguments.minutes)
         rows.append(row)
@@ -184,6 +235,9 @@ def main():
             said = f" In the long drag {count:,} pictures came; memory after a minute {notes[0]:.0f} MiB, then {min(notes):.0f} to {max(notes):.0f} MiB."
     loads.append(os.getloadavg()[0])
     load = f"{min(loads):.0f} to {max(loads):.0f}"
+    # The program and the clients are in the load: an idle machine shows three at most.
+    busy = [what for what, one in (("", loads[0]), (" in the long drag", loads[-1])) if one > 4]
+    others = f"Other programs were at work on the same threads{busy[0]}: an idle machine does better. " if busy else ""
     if not arguments.out:
         for row in rows:
             print(" | ".join("" if value is None else f"{value:{form or ''}}" for value, form in zip(row, FORMATS)))
@@ -194,7 +248,7 @@ def main():
     result = {"title": "answers of the live view to a drag", "commit": commit, "machine": f"{model}, {os.cpu_count()} threads, load {load}",
               "command": f"bench/live_latency.py build/penumbra {' '.join(f'scenes/{pathlib.Path(scene).name}' for scene in arguments.scenes)} "
                          f"--seconds {arguments.seconds:g} --minutes {arguments.minutes:g}",
-              "conditions": "A bare client sends 60 changes a second, at 512 × 512 pixels. Other programs were at work on the same threads: an idle machine does better. "
+              "conditions": "A bare client sends 60 changes a second, at 512 × 512 pixels. " + others +
                             "Processor time is of all pictures, quick and exact, and depends less on the load: quick pictures are coarser when time is short. Memory is that of the whole process at the end." + said,
               "columns": COLUMNS, "formats": FORMATS, "rows": rows}
     parts = [f' "{key}": {json.dumps(value, ensure_ascii=False)}' for key, value in result.items() if key != "rows"]

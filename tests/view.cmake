@@ -16,4 +16,7 @@ add_test(NAME view.page
 add_test(NAME view.space_page
          COMMAND ${Python3_EXECUTABLE} ${live}/live_space_page.py $<TARGET_FILE:penumbra> ${PROJECT_SOURCE_DIR}/scenes
                  ${PROJECT_BINARY_DIR}/view_photographs)
-set_tests_properties(view.page view.space_page PROPERTIES LABELS full TIMEOUT 900)
+add_test(NAME view.moving
+         COMMAND ${Python_EXECUTABLE} ${live}/live_moving.py $<TARGET_FILE:penumbra> ${PROJECT_SOURCE_DIR}/scenes/bunny.json
+                 ${PROJECT_BINARY_DIR}/view_photographs/moving.webp)
+set_tests_properties(view.page view.space_page view.moving PROPERTIES LABELS full TIMEOUT 900)

@@ -127,7 +127,10 @@ class Browser:
         self.pointer("mousePressed", x, y, button="left", clickCount=1)
         self.pointer("mouseReleased", x, y, button="left", clickCount=1)
 
+    def picture(self, whole=False):
+        """The page as the bytes of a PNG file; `whole`: what is below the window too."""
+        return base64.b64decode(self.call("Page.captureScreenshot", format="png", captureBeyondViewport=whole)["data"])
+
     def photograph(self, path, whole=False):
-        picture = self.call("Page.captureScreenshot", format="png", captureBeyondViewport=whole)
         with open(path, "wb") as file:
-            file.write(base64.b64decode(picture["data"]))
+            file.write(self.picture(whole))

@@ -91,30 +91,33 @@ function onBall({ start, direction }, middle, radius) {
 }
 
 function drawLights() {
-  overlay.replaceChildren();
-  if (byId("frame").hidden || !byId("show-lights").checked || !lights.length || !shown) return;
+  const drawing = document.createDocumentFragment();
+  if (!byId("frame").hidden && byId("show-lights").checked && lights.length && shown) drawInto(drawing);
+  overlay.replaceChildren(drawing);
+}
+function drawInto(drawing) {
   const chosen = chosenLight();
   for (const light of lights) {
     const rim = rimOf(light).map(onStage);
     const classes = `light${light === chosen ? " chosen" : ""}${off.includes(light.name) || (solo && solo !== light.name) ? " off" : ""}`;
     if (rim.length && rim.every(Boolean)) {
-      const path = element("path", { d: "M" + rim.map((p) => `${p.x.toFixed(1)},${p.y.toFixed(1)}`).join("L") + "Z", class: classes + (light === chosen ? "" : " hit") }, overlay);
+      const path = element("path", { d: "M" + rim.map((p) => `${p.x.toFixed(1)},${p.y.toFixed(1)}`).join("L") + "Z", class: classes + (light === chosen ? "" : " hit") }, drawing);
       path.addEventListener("pointerdown", () => { byId("light").value = light.name; byId("light").dispatchEvent(new Event("change")); });
       element("title", {}, path).textContent = light.name;
     }
     const anchor = anchorOf(light), place = anchor && kindOf(light) !== "sun" ? onStage(anchor) : null;
-    if (place) element("text", { x: place.x + 9, y: place.y - 7 }, overlay).textContent = light.name;
+    if (place) element("text", { x: place.x + 9, y: place.y - 7 }, drawing).textContent = light.name;
   }
-  for (const handle of handlesOf(chosen)) drawHandle(handle);
+  for (const handle of handlesOf(chosen)) drawHandle(handle, drawing);
 }
-function drawHandle(handle) {
+function drawHandle(handle, drawing) {
   const at = onStage(handle.at), from = handle.from && onStage(handle.from);
   if (!at) return;
-  if (from) element("line", { x1: from.x, y1: from.y, x2: at.x, y2: at.y, stroke: handle.color }, overlay);
+  if (from) element("line", { x1: from.x, y1: from.y, x2: at.x, y2: at.y, stroke: handle.color }, drawing);
   const s = handle.shape === "disk" ? 8 : 7, { x, y } = at;
   const paths = { arrow: `M${x},${y - s}L${x + s},${y}L${x},${y + s}L${x - s},${y}Z`, diamond: `M${x},${y - s}L${x + s},${y}L${x},${y + s}L${x - s},${y}Z`, square: `M${x - s},${y - s}h${2 * s}v${2 * s}h${-2 * s}Z` };
-  const grip = handle.shape === "dot" || handle.shape === "disk" ? element("circle", { cx: x, cy: y, r: handle.shape === "dot" ? 5 : s }, overlay)
-    : element("path", { d: paths[handle.shape] }, overlay);
+  const grip = handle.shape === "dot" || handle.shape === "disk" ? element("circle", { cx: x, cy: y, r: handle.shape === "dot" ? 5 : s }, drawing)
+    : element("path", { d: paths[handle.shape] }, drawing);
   grip.setAttribute("class", "hit");
   grip.setAttribute("data-handle", handle.name);
   grip.setAttribute("fill", handle.color);

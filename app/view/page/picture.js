@@ -13,8 +13,8 @@ function mode() {
 function draw() {
   if (!shown) return;
   const { header, by } = shown, how = mode(), [width, height] = [header.width, header.height];
-  const wide = how === "side" ? 2 * width : width;
-  if (canvas.width !== wide || canvas.height !== height) {
+  const wide = how === "side" ? 2 * width : width, isAnother = canvas.width !== wide || canvas.height !== height;
+  if (isAnother) {
     canvas.width = wide;
     canvas.height = height;
   }
@@ -37,13 +37,15 @@ function draw() {
   } else {
     pen.drawImage(how === "b" ? by.b : one, 0, 0, width, height);
   }
-  fit();
+  if (isAnother) fit();
 }
 
-/// Gives the canvas as much of the stage as its shape allows.
+/// Gives the canvas as much of the stage as its shape allows. Its size is kept, since asking the browser makes it lay out the page.
+let canvasSize = [canvas.width, canvas.height];
 function fit() {
   const room = byId("frame").getBoundingClientRect(), scale = Math.min(room.width / canvas.width, room.height / canvas.height);
   const width = canvas.width * scale, height = canvas.height * scale;
+  canvasSize = [width, height];
   for (const element of [canvas, overlay]) {
     Object.assign(element.style, { width: `${width}px`, height: `${height}px`, left: `${(room.width - width) / 2}px`, top: `${(room.height - height) / 2}px` });
   }
@@ -52,13 +54,15 @@ function fit() {
 
 /// Width and height of one answer's picture in the page.
 function stageSize() {
-  const box = canvas.getBoundingClientRect();
-  return [mode() === "side" ? box.width / 2 : box.width, box.height];
+  return [mode() === "side" ? canvasSize[0] / 2 : canvasSize[0], canvasSize[1]];
 }
 
-/// Where the pointer is in the picture, 0 to 1 each way, of whichever answer it is over.
+/// Where the pointer is in the picture, 0 to 1 in each direction, of whichever answer it is over. While something is dragged the
+/// canvas stays where it is.
+let canvasBox = null;
 function placeOf(event) {
-  const box = canvas.getBoundingClientRect(), [width, height] = stageSize();
+  if (!canvasBox || (!dragging && !held)) canvasBox = canvas.getBoundingClientRect();
+  const box = canvasBox, [width, height] = stageSize();
   let x = (event.clientX - box.left) / width;
   if (x >= 1 && mode() === "side") x -= 1;
   return [x, (event.clientY - box.top) / height];

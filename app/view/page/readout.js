@@ -28,7 +28,7 @@ on("lost", () => { asking = wanted = null; });
 on("pointed", (place) => {
   if (place.some((part) => part < 0 || part >= 1)) return;
   pointed = place;
-  askPixel(...place);
+  if (!dragging) askPixel(...place);
 });
 on("frame", () => { if (pointed && !pointers.size) askPixel(...pointed); });
 
@@ -113,31 +113,38 @@ byId("show-seen").addEventListener("change", () => {
 });
 
 const phases = ["load", "mesh", "view", "light", "evaluate", "beauty"];
-on("frame", (header) => {
-  const row = (cells, tag) => {
+/// Sets a text where it is another, so that the browser lays out nothing that is as before.
+function say(element, text) { if (element.textContent !== text) element.textContent = text; }
+/// Sets the texts of a table's lines. Cells are made anew only where there is another number of them.
+function showRows(section, rows, tag) {
+  const cells = [...section.querySelectorAll("th, td")], texts = rows.flat();
+  if (cells.length === texts.length && section.rows.length === rows.length) return cells.forEach((cell, i) => say(cell, texts[i]));
+  section.replaceChildren(...rows.map((row) => {
     const line = document.createElement("tr");
-    cells.forEach((cell, i) => line.append(Object.assign(document.createElement(i ? tag : "th"), { textContent: cell })));
+    line.append(...row.map((text, i) => Object.assign(document.createElement(i ? tag : "th"), { textContent: text })));
     return line;
-  };
+  }));
+}
+on("frame", (header) => {
   const two = header.answers.length > 1;
-  byId("times").tHead.replaceChildren(...(two ? [row(["", "A", "B"], "th")] : []));
-  byId("times").tBodies[0].replaceChildren(...phases.map((phase) => row([phase, ...header.answers.map((answer) => (1000 * (answer.seconds[phase] || 0)).toFixed(1))], "td")),
-    row(["all", header.milliseconds.toFixed(1)].concat(two ? [""] : []), "td"));
-  byId("size-facts").textContent = `${header.triangles.toLocaleString("en")} triangles, ${header.width}\u00d7${header.height} pixels`;
+  showRows(byId("times").tHead, two ? [["", "A", "B"]] : [], "th");
+  showRows(byId("times").tBodies[0], [...phases.map((phase) => [phase, ...header.answers.map((answer) => (1000 * (answer.seconds[phase] || 0)).toFixed(1))]),
+    ["all", header.milliseconds.toFixed(1)].concat(two ? [""] : [])], "td");
+  say(byId("size-facts"), `${header.triangles.toLocaleString("en")} triangles, ${header.width}\u00d7${header.height} pixels`);
   frameTimes.push({ at: performance.now(), ms: Number(document.documentElement.dataset.ms), final: header.final });
   if (frameTimes.length > 100) frameTimes.shift();
   drawPlot();
 });
 function drawPlot() {
   const sheet = byId("plot"), pen = sheet.getContext("2d"), most = Math.max(100, ...frameTimes.map((one) => Math.min(one.ms, 1000)));
-  const style = getComputedStyle(document.documentElement);
+  const style = getComputedStyle(document.documentElement), [final, quick, limit] = ["--accent", "--soft", "--bad"].map((name) => style.getPropertyValue(name));
   pen.clearRect(0, 0, sheet.width, sheet.height);
   const high = (ms) => sheet.height * (1 - Math.min(ms, most) / most);
   frameTimes.forEach((one, i) => {
-    pen.fillStyle = style.getPropertyValue(one.final ? "--accent" : "--soft");
+    pen.fillStyle = one.final ? final : quick;
     pen.fillRect(i * 3, high(one.ms), 2, sheet.height - high(one.ms));
   });
-  pen.fillStyle = style.getPropertyValue("--bad");
+  pen.fillStyle = limit;
   pen.fillRect(0, high(67), sheet.width, 1);
   const recent = frameTimes.filter((one) => one.at > performance.now() - 1000).length;
   byId("plot-facts").textContent = `${recent} pictures in the last second; from input to picture, up to ${Math.round(most)} ms; the line is 67 ms`;
