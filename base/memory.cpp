@@ -6,15 +6,19 @@
 
 #include "base/error.hpp"
 #include "base/kept_arrays.hpp"
+#include "base/pages.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <charconv>
+#include <cstdlib>
 #include <fstream>
 #include <limits>
 #include <optional>
 #include <sstream>
 
 #include <malloc.h>
+#include <sys/mman.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -82,6 +86,35 @@ std::uint64_t room_of_groups(const std::filesystem::path& mount, std::string pat
   }
   return room;
 }
+
+#ifdef __GLIBC__
+/// Largest threshold that glibc accepts; larger arrays go through kept_arrays().
+constexpr int kLargestInHeap = 1 << 25;
+std::atomic<bool> heap_lies_in_large_pages = false;
+
+/// Grows the C library's heap by a piece of address space, and asks the system for large pages there, so that a
+/// picture's small arrays do not cost a page fault for each 4 KiB. Memory is taken only where it is written. (glibc
+/// does this itself for a process that is started with GLIBC_TUNABLES=glibc.malloc.hugetlb=1.) Does nothing where
+/// addresses are scarce, since the piece counts.
+void lay_heap_in_large_pages() {
+  constexpr int kPiece = 1 << 27;
+  constexpr rlim_t kPlenty = rlim_t{16} * kPiece;
+  const auto is_scarce = [](__rlimit_resource resource) {
+    rlimit limit{};
+    return ::getrlimit(resource, &limit) != 0 || limit.rlim_cur < kPlenty;
+  };
+  if (is_scarce(RLIMIT_AS) || is_scarce(RLIMIT_DATA)) return;
+  static const auto begin = reinterpret_cast<std::uintptr_t>(::sbrk(0));
+  ::mallopt(M_TOP_PAD, kPiece);
+  // Larger than what the heap has free, and smaller than what does not lie in the heap. (volatile: the compiler keeps
+  // it.)
+  void* volatile more = std::malloc(kLargestInHeap - (1 << 16));
+  std::free(more);
+  const auto end = reinterpret_cast<std::uintptr_t>(::sbrk(0));
+  const std::uintptr_t first = (begin + kLargePage - 1) / kLargePage * kLargePage;
+  if (first < end) static_cast<void>(::madvise(reinterpret_cast<void*>(first), end - first, MADV_HUGEPAGE));
+}
+#endif
 
 std::uint64_t room_of_control_groups(const std::filesystem::path& root) {
   std::uint64_t room = kUnlimited;
@@ -157,15 +190,17 @@ void give_back_memory() {
   kept_arrays().free_all();
 #ifdef __GLIBC__
   ::malloc_trim(0);
+  if (heap_lies_in_large_pages) lay_heap_in_large_pages();  // trimming has taken away what had been laid out
 #endif
 }
 
 void keep_freed_memory() {
   kept_arrays().start_keeping();
 #ifdef __GLIBC__
-  // Largest threshold that glibc accepts; larger arrays go through kept_arrays().
-  ::mallopt(M_MMAP_THRESHOLD, 1 << 25);
+  ::mallopt(M_MMAP_THRESHOLD, kLargestInHeap);
   ::mallopt(M_TRIM_THRESHOLD, std::numeric_limits<int>::max());
+  heap_lies_in_large_pages = true;
+  lay_heap_in_large_pages();
 #endif
 }
 

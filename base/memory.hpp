@@ -27,7 +27,8 @@ void require_memory(std::uint64_t bytes, std::string_view what, std::string_view
 std::uint64_t peak_resident_bytes();
 
 /// Makes the allocator keep freed memory instead of returning it to the system: a picture allocates its arrays again
-/// and again, and page faults would dominate. (Large arrays: kept_arrays.hpp.)
+/// and again, and page faults would dominate. (Large arrays: kept_arrays.hpp.) The C library's heap then lies in large
+/// pages, unless addresses are limited to less than 2 GiB. Call it at the beginning of a process.
 void keep_freed_memory();
 /// Returns kept memory to the system.
 void give_back_memory();

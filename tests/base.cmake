@@ -4,6 +4,6 @@ find_package(JPEG REQUIRED)
 find_package(OpenEXR REQUIRED)
 find_package(TBB REQUIRED)
 penumbra_test(base
-  SOURCES unit/buckets.cpp unit/did_you_mean.cpp unit/exr.cpp unit/image.cpp unit/jpeg.cpp unit/kept_arrays.cpp
+  SOURCES unit/buckets.cpp unit/did_you_mean.cpp unit/exr.cpp unit/image.cpp unit/jpeg.cpp unit/kept_arrays.cpp unit/large_heap.cpp
     unit/parallel.cpp unit/rgbe.cpp
   LIBRARIES penumbra_base JPEG::JPEG OpenEXR::OpenEXR TBB::tbb)
