@@ -2,7 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Measures ratios of time that the papers sell, one method's over another's, into results/time-ratios.json.
 
-  bench/time_ratios.py [PROGRAM]      about twenty minutes on two busy cores; then bench/tables.py writes the table of docs/figures.md
+  bench/time_ratios.py [PROGRAM]      about half an hour on two busy cores; then bench/tables.py writes the table of docs/figures.md
+
+Questions that have a row are left out: delete a row to measure it again. A row says of which commit it is.
 
 A number is processor seconds of a run (`light` and `evaluate`): those of a whole `penumbra compare` of one method with more runs less
 those with one run, a run. So what a program needs to start, to read, to compile shaders and to judge is in neither, and other
@@ -14,6 +16,7 @@ import resource
 import subprocess
 import sys
 import tempfile
+from math import cos, pi, sin
 from pathlib import Path
 from statistics import median
 
@@ -46,6 +49,16 @@ def standing(body, half):
     return world
 
 
+def omni():
+    """A lamp closely surrounded by boxes, which shade a floor and one another."""
+    around = [(round(1.1 * cos(k * pi / 4), 3), round(1.1 * sin(k * pi / 4), 3)) for k in range(8)]
+    bodies = [{"name": f"box {k}", "shape": {"type": "box", "center": [x, 0.5 + 0.2 * (k % 3), z], "halfSize": [0.15, 0.3, 0.15]}} for k, (x, z) in enumerate(around)]
+    world = standing(bodies[0], 0.5)
+    world["meshes"] += bodies[1:]
+    world["lights"] = [{"name": "lamp", "sphere": {"center": [0, 0.8, 0], "radius": 0.3}}]
+    return world
+
+
 def questions():
     """(paper, question, the paper's number, scene, size, options, methods): the ratio is the first method's time over the second's."""
     for count in (1, 2, 4, 8):
@@ -56,6 +69,16 @@ def questions():
         yield ("Schwärzler, section 4", f"`adaptive-light` over `accumulate`, 128 light samples, maps of 512², plate close to the floor, light of half-size {half:g}",
                "0.18 to 0.5, at worst 1.5", world_of("plate", half), 256, ["--light-samples", "128"],
                ("adaptive-light:size=512", "accumulate:size=512"))
+    # Four layers are as many maps as 2 × 2 sub-lights.
+    for other, claimed in (("contour:size=512", "0.33"), ("bitmask:size=512:layers=4", "0.19"), ("backproject-peel:size=512:layers=4", "0.21")):
+        yield ("Yang et al., fig. 11", f"`packet` with 2 × 2 sub-lights over `{other}`, map 512², bunny, light of half-size 1", claimed, standing(bunny(), 1), 96, [],
+               ("packet:sublights=2:size=512", other))
+    yield ("Yang et al., fig. 11", "`packet` with 4 × 4 sub-lights over 2 × 2, map 512², bunny, light of half-size 1", "3.7", standing(bunny(), 1), 96, [],
+           ("packet:sublights=4:size=512", "packet:sublights=2:size=512"))
+    yield ("Yang et al., fig. 1 (c)", "`packet` over `contour`, map 512², a spherical lamp closely surrounded by boxes", "0.05", omni(), 96, [],
+           ("packet:size=512", "contour:size=512"))
+    yield ("Yang et al., fig. 1 (b)", "`packet` over `contour`, map 512², `scenes/textured-light.json`, a window of nine panes", "0.1", "scenes/textured-light.json", 96, [],
+           ("packet:size=512", "contour:size=512"))
     for layers in (2, 3):
         yield ("Bavoil et al., fig. 6", f"`backproject-peel` with {layers} layers over 1, bunny on the floor, map 512²", "1.42 to 1.54 with 3", standing(bunny(), 0.5), 128, [],
                (f"backproject-peel:size=512:layers={layers}", "backproject-peel:size=512:layers=1"))
@@ -75,9 +98,9 @@ def processor_seconds(command):
     return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
 
 
-def of_a_run(program, folder, method, size, more, runs):
+def of_a_run(program, scene_file, folder, method, size, more, runs):
     def whole(count):
-        return processor_seconds([program, "-q", "compare", folder / "scene.json", "-o", folder / "out", "--methods", method, "--size", f"{size}x{size}",
+        return processor_seconds([program, "-q", "compare", scene_file, "-o", folder / "out", "--methods", method, "--size", f"{size}x{size}",
                                   "--reference-samples", "1", "--sample-pixels", "1", "--runs", str(count), *more])
     return (whole(1 + runs) - whole(1)) / runs
 
@@ -87,7 +110,7 @@ def write(program, commit, rows):
     cpu = next(line.partition(":")[2].strip() for line in Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines() if line.startswith("model name"))
     data = {"title": "ratios of time that the papers print, measured again", "commit": commit, "machine": f"{device} on {cpu}, 2 threads that other programs used as well",
             "command": "bench/time_ratios.py", "conditions": f"Processor seconds of a run, `light` and `evaluate`, medians of {TURNS} turns.",
-            "columns": ["paper", "question", "the paper's", "here", "turns", "seconds"]}
+            "columns": ["paper", "question", "the paper's", "here", "turns", "seconds", "commit"]}
     text = json.dumps(data, ensure_ascii=False, indent=1).removesuffix("\n}")
     lines = ",\n".join("  " + json.dumps(row, ensure_ascii=False) for row in rows)
     RESULT.write_text(text + ',\n "rows": [\n' + lines + "\n ]\n}\n", encoding="utf-8")
@@ -100,17 +123,19 @@ def main():
     asked = list(questions())
     rows = {row[1]: row for row in json.loads(RESULT.read_text(encoding="utf-8"))["rows"]} if RESULT.is_file() else {}
     for paper, question, claimed, world, size, more, methods in asked:
-        if question in rows:  # delete a row to measure it again
+        if question in rows:
             continue
         with tempfile.TemporaryDirectory() as name:
             folder = Path(name)
-            (folder / "scene.json").write_text(json.dumps(world), encoding="utf-8")
+            scene_file = folder / "scene.json" if isinstance(world, dict) else ROOT / world
+            if isinstance(world, dict):
+                scene_file.write_text(json.dumps(world), encoding="utf-8")
             # About a second of runs, so that a clock tick counts for nothing.
-            runs = {method: max(1, min(20, round(1 / max(of_a_run(program, folder, method, size, more, 1), 0.05)))) for method in methods}
-            seconds = [[of_a_run(program, folder, method, size, more, runs[method]) for method in methods] for _ in range(TURNS)]
+            runs = {method: max(1, min(20, round(1 / max(of_a_run(program, scene_file, folder, method, size, more, 1), 0.05)))) for method in methods}
+            seconds = [[of_a_run(program, scene_file, folder, method, size, more, runs[method]) for method in methods] for _ in range(TURNS)]
         ratios = sorted(first / second for first, second in seconds)
         first, second = (median(turn[k] for turn in seconds) for k in range(2))
-        rows[question] = [paper, question, claimed, f"{median(ratios):.2f}", f"{ratios[0]:.2f} to {ratios[-1]:.2f}", f"{first:.2g} over {second:.2g}"]
+        rows[question] = [paper, question, claimed, f"{median(ratios):.2f}", f"{ratios[0]:.2f} to {ratios[-1]:.2f}", f"{first:.2g} over {second:.2g}", commit]
         print(" | ".join(rows[question]), flush=True)
         write(program, commit, [rows[one[1]] for one in asked if one[1] in rows])
 

@@ -15,10 +15,12 @@ foreach(test module page)
   set_tests_properties(python.${test} PROPERTIES LABELS quick ENVIRONMENT "PYTHONPATH=${PROJECT_BINARY_DIR}/python;MPLBACKEND=Agg")
 endforeach()
 # Map methods against twins in numpy, written from their papers.
-foreach(twin backprojection filtering layers screen)
+foreach(twin backprojection filtering fits hard layers screen)
   add_test(NAME twins.${twin} COMMAND ${Python_EXECUTABLE} ${CMAKE_CURRENT_SOURCE_DIR}/twins/${twin}.py)
   set_tests_properties(twins.${twin} PROPERTIES LABELS full ENVIRONMENT "PYTHONPATH=${PROJECT_BINARY_DIR}/python")
 endforeach()
+add_test(NAME twins.frames COMMAND ${Python_EXECUTABLE} ${CMAKE_CURRENT_SOURCE_DIR}/twins/frames.py $<TARGET_FILE:penumbra>)
+set_tests_properties(twins.frames PROPERTIES LABELS full ENVIRONMENT "PYTHONPATH=${PROJECT_BINARY_DIR}/python")
 add_test(NAME twins.flip COMMAND ${Python_EXECUTABLE} ${CMAKE_CURRENT_SOURCE_DIR}/twins/flip.py $<TARGET_FILE:penumbra>
                                  ${PROJECT_SOURCE_DIR}/scenes/parallel-square.json)
 set_tests_properties(twins.flip PROPERTIES LABELS full)
