@@ -94,7 +94,7 @@ struct LightResult {
   std::uint64_t judged_pixels = 0, horizon_pixels = 0;
   std::optional<VisibilityError> error, horizon_error;
   std::optional<SameSamples> same_samples;       ///< empty for a method without masks
-  std::optional<ErrorBudget> error_budget = {};  ///< of an image-based method, if requested and if pixels are judged
+  std::optional<ErrorBudget> error_budget = {};  ///< if requested, and if pixels are judged
   std::vector<ClassError> classes = {};          ///< judged pixels by class
   /// Errors of pixels in the penumbra by its width, in pixels and in texels of the method's map (empty: there is no
   /// map), and of shadowed pixels by the distance of the hiding object, in pixels. Empty: unknown.

@@ -10,6 +10,7 @@
 
 #include "base/assert.hpp"
 #include "maps/filters/methods.hpp"
+#include "maps/host/error_repairs.hpp"
 #include "maps/host/options.hpp"
 #include "volumes/soft/methods.hpp"
 
@@ -30,6 +31,16 @@ visibility::MeshVerdict hybrid_volume_verdict(const mesh::Diagnosis& mesh) {
           visibility::reason_with(
               "a hard shadow of the light's centre, exact as such where the map's texels see its outlines", mesh,
               {{mesh.zero_area_triangles.count, "triangles without area, which cast nothing"}})};
+}
+
+visibility::ErrorRepairs hybrid_volume_repairs(const visibility::MethodDescription& method,
+                                               const MethodOptions& given) {
+  return maps::map_repairs(method, given,
+                           {.ends_at_points = true,
+                            .layers = "a point is hidden or not, by one surface or by many",
+                            .fusion = "a point is hidden or not: nothing is added",
+                            .gaps = "volumes are closed: there is nothing between them",
+                            .falloff = "it has no penumbrae"});
 }
 
 class HybridVolume final : public visibility::Method {
@@ -141,7 +152,8 @@ visibility::MethodDescription hybrid_volume_description() {
           .on_request = true,
           .options = {maps::kMapSize.description(), maps::kBias.description(), maps::kRasteriser.description(),
                       maps::kReceiverPlane.description(), kVariant.description(), kJump.description()},
-          .verdict_on = hybrid_volume_verdict};
+          .verdict_on = hybrid_volume_verdict,
+          .repairs = hybrid_volume_repairs};
 }
 
 std::unique_ptr<visibility::Method> make_hybrid_volume(const render::Device& device, const MethodOptions& options) {

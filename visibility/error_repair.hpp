@@ -10,11 +10,12 @@
 /// Causes of a method's error, and runs without each of them: docs/error-budget.md.
 namespace penumbra::visibility {
 
-enum class ErrorCause : std::uint8_t { resolution, view, layers, fusion, gaps, bias };
-inline constexpr ErrorCause kErrorCauses[] = {ErrorCause::resolution, ErrorCause::view, ErrorCause::layers,
-                                              ErrorCause::fusion,     ErrorCause::gaps, ErrorCause::bias};
+enum class ErrorCause : std::uint8_t { resolution, view, layers, fusion, gaps, bias, samples, falloff };
+inline constexpr ErrorCause kErrorCauses[] = {ErrorCause::resolution, ErrorCause::view,   ErrorCause::layers,
+                                              ErrorCause::fusion,     ErrorCause::gaps,   ErrorCause::bias,
+                                              ErrorCause::samples,    ErrorCause::falloff};
 constexpr const char* name_of(ErrorCause cause) {
-  constexpr const char* kNames[] = {"resolution", "view", "layers", "fusion", "gaps", "bias"};
+  constexpr const char* kNames[] = {"resolution", "view", "layers", "fusion", "gaps", "bias", "samples", "falloff"};
   return kNames[static_cast<std::size_t>(cause)];
 }
 

@@ -66,7 +66,7 @@ struct MethodDescription {
   LightSpan span = {};                       ///< supported sizes of lights; by default any size
   /// Returns the verdict on a mesh with these defects, with the reason. Set for every method in the table of methods.
   MeshVerdict (*verdict_on)(const mesh::Diagnosis& mesh) = nullptr;
-  /// Returns runs without each cause of its error, for options that the method has. Set for image-based methods.
+  /// Returns runs without each cause of its error, for options that the method has. Null: its error has no budget.
   ErrorRepairs (*repairs)(const MethodDescription& method, const MethodOptions& given) = nullptr;
   /// Returns the width of a texel of the method's maps at each view sample, across the light's normal, in scene floats;
   /// infinite where no map is used. Null: the method has no maps. Empty result: widths are not defined.

@@ -12,6 +12,7 @@
 
 #include "base/assert.hpp"
 #include "engines/pairs/list_raster.hpp"
+#include "visibility/method_repairs.hpp"
 #include "visibility/pair_truth.hpp"
 #include "visibility/receivers.hpp"
 
@@ -49,7 +50,8 @@ visibility::MethodDescription describe_alias_free() {
           .exact_for = "the hard shadow of the light's centre, of any triangle soup and every kind of light",
           .lights = visibility::kEveryLight - visibility::kDomes,
           .options = {kPerPixel.description()},
-          .verdict_on = alias_free_verdict};
+          .verdict_on = alias_free_verdict,
+          .repairs = visibility::exact_centre_repairs};
 }
 
 /// Projection from the light's centre: through a face of a cube, or along a sun's direction.

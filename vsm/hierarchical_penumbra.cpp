@@ -9,6 +9,7 @@
 #include "vsm/methods.hpp"
 
 #include "engines/pairs/pair_method.hpp"
+#include "visibility/method_repairs.hpp"
 #include "vsm/box_planes.hpp"
 #include "vsm/light_shaft.hpp"
 #include "vsm/light_tree.hpp"
@@ -46,7 +47,8 @@ visibility::MethodDescription describe_hierarchical_penumbra() {
           .lights = visibility::kEveryLight - visibility::kBodies - visibility::kDomes,
           .on_request = true,
           .options = {},
-          .verdict_on = hierarchical_penumbra_verdict};
+          .verdict_on = hierarchical_penumbra_verdict,
+          .repairs = visibility::exact_pair_repairs};
 }
 
 PlaceBox around(const PlaceBox& a, const PlaceBox& b) {

@@ -7,6 +7,7 @@
 #include "engines/engine_by_light.hpp"
 #include "engines/engine_choice.hpp"
 #include "visibility/masks/dome_method.hpp"
+#include "visibility/method_repairs.hpp"
 #include "vsm/vectors/view_sample_vectors.hpp"
 #include "vsm/view_sample_lists.hpp"
 #include "vsm/view_sample_vulkan.hpp"
@@ -50,6 +51,7 @@ visibility::MethodDescription view_sample_description(const visibility::MethodOp
       .options = {engines::kEngine.description(), kVariant.description()},
       .span = visibility::kFloatSpan,
       .verdict_on = view_sample_verdict,
+      .repairs = visibility::exact_pair_repairs,
   };
   const visibility::ParsedOptions options = visibility::parse_options(description, given);
   const bool published = options[kVariant] == Variant::sintorn,

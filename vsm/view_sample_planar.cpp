@@ -13,6 +13,7 @@
 
 #include "engines/pairs/list_raster.hpp"
 #include "engines/pairs/pair_method.hpp"
+#include "visibility/method_repairs.hpp"
 #include "vsm/left_samples.hpp"
 #include "vsm/planar_receiver.hpp"
 
@@ -57,6 +58,19 @@ visibility::MeshVerdict approximate_on(const mesh::Diagnosis& mesh) {
                                   {{mesh.zero_area_triangles.count, "triangles without area, which cast nothing"}})};
 }
 
+visibility::ErrorRepairs view_sample_planar_repairs(const visibility::MethodDescription& method,
+                                                    const visibility::MethodOptions& given) {
+  using visibility::ErrorCause;
+  visibility::ErrorRepairs repairs = visibility::exact_pair_repairs(method, given);
+  if (visibility::complete_options(method, given).at(kLookup.name()) == "exact") return repairs;
+  visibility::repair_of(repairs, ErrorCause::resolution) = {
+      .cause = ErrorCause::resolution,
+      .runs = {{method.name, visibility::options_with(method, given, {{kLookup.name(), "exact"}})}},
+      .words = "what a texel of the left-sample map leaves open decided pair by pair (lookup=exact)"};
+  visibility::repair_of(repairs, ErrorCause::samples) = visibility::more_light_samples(method, given);
+  return repairs;
+}
+
 visibility::MethodDescription describe(const visibility::MethodOptions& given) {
   visibility::MethodDescription description{
       .name = "view-sample-planar",
@@ -67,7 +81,8 @@ visibility::MethodDescription describe(const visibility::MethodOptions& given) {
       .lights = visibility::kEveryLight - visibility::kBodies - visibility::kDomes,
       .on_request = true,
       .options = {kLookup.description(), kMap.description(), kFewest.description()},
-      .verdict_on = exact_on};
+      .verdict_on = exact_on,
+      .repairs = view_sample_planar_repairs};
   if (visibility::parse_options(description, given)[kLookup] == Lookup::nearest)
     description.verdict_on = approximate_on;
   return description;

@@ -156,9 +156,10 @@ class CompareCommand : public Command {
         ->type_name("N")
         ->check(CLI::Range(1, 1000));
     cli_.add_flag("--bits", options_.bits, "also write DIR/<method>.bits: every pair's answer (mask methods)");
-    cli_.add_flag("--error-budget", options_.error_budget,
-                  "why is each image-based method wrong? Runs it again, often: without each cause of error alone, and "
-                  "without all of them");
+    cli_.add_flag(
+        "--error-budget", options_.error_budget,
+        "why is each method wrong? Runs it again, often: without each cause of error alone, and without all of "
+        "them");
     cli_.add_flag("--png", options_.png, "also write DIR/<method>.png: tone-mapped beauty image (sRGB)");
     cli_.add_option("--stats", options_.stats, "write metrics.json here as well")->type_name("FILE.json");
     cli_.add_option("--frame", frame_, "frame of the scene's animation, or a moment between two, such as 12.5")

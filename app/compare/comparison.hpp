@@ -27,7 +27,7 @@ struct ComparisonOptions {
   std::string sample_pixels = "all";
   std::uint32_t runs = 0;  ///< timed runs of each entry; 0: as many as begin within two seconds, at most five
   bool bits = false, png = false;
-  bool error_budget = false;    ///< compute the causes of error of each image-based method
+  bool error_budget = false;    ///< compute the causes of error of each method
   std::filesystem::path stats;  ///< empty: only DIR/metrics.json
   TevPictures* tev = nullptr;   ///< shows each written picture
   bool writes = true;           ///< writes all of DIR; false: writes nothing and only returns the result

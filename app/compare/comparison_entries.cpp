@@ -166,8 +166,8 @@ void require_explainable(std::span<const MethodEntry> methods) {
   if (std::ranges::any_of(methods, [](const MethodEntry& m) { return describe_method(m.name).repairs != nullptr; }))
     return;
   throw UsageError(
-      "--error-budget: none of the chosen methods is image-based; it takes the errors of those apart: name one with "
-      "--methods (see `penumbra methods`)");
+      "--error-budget: the chosen methods are the references of others, whose errors have no causes: name another one "
+      "with --methods (see `penumbra methods`)");
 }
 
 RunPlan plan_of(const Entry& entry, bool is_reference, const ComparisonOptions& options) {

@@ -136,6 +136,12 @@ BudgetAnswer measure_error_budget(const BudgetQuestion& question, double limit, 
         part.words = whole;
         break;
       }
+      if (repair.cause == ErrorCause::samples && run.light_samples != 0 &&
+          run.light_samples <= question.light.sample_count()) {
+        part.words =
+            fmt::format("it has {} light samples, which is as many as the repair has", question.light.sample_count());
+        break;
+      }
       BudgetRun& made = part.runs.emplace_back(BudgetRun{run});
       const auto now = runs.visibility_of(made, stage);
       if (!now) break;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Why each method is wrong: its error without one cause alone, and without all (docs/error-budget.md).
 
-const kCauses = ["resolution", "view", "layers", "fusion", "gaps", "bias"];
+const kCauses = ["resolution", "view", "layers", "fusion", "gaps", "bias", "samples", "falloff"];
 const kAllButView = "all but the view", kAllAtOnce = "all at once";
 
 function budgetBar(from, x, width, kind) {

@@ -24,7 +24,7 @@ struct CompareOptions {
   std::vector<std::string> lights = {};    ///< only these lights; empty: all
   std::string camera = {};
   std::uint32_t runs = 0;          ///< timed runs of each entry; 0: as many as fit into two seconds, at most five
-  bool error_budget = false;       ///< compute the causes of error of each image-based method
+  bool error_budget = false;       ///< compute the causes of error of each method
   std::filesystem::path out = {};  ///< folder for pictures and the report; empty: none are written
 };
 

@@ -37,16 +37,6 @@ std::optional<MethodOptions> multiplied(const MethodDescription& method, MethodO
 
 }  // namespace
 
-MethodOptions options_with(const MethodDescription& method, const MethodOptions& given, const MethodOptions& more) {
-  MethodOptions options = visibility::complete_options(method, given);
-  for (const auto& [key, value] : more) options[key] = value;
-  return options;
-}
-
-ErrorRepair inseparable(ErrorCause cause, std::string words) {
-  return {.cause = cause, .words = std::move(words)};
-}
-
 ErrorRepair finer_maps(const MethodDescription& method, const MethodOptions& given,
                        std::span<const std::string> doubled) {
   const MethodOptions options = visibility::complete_options(method, given);
@@ -67,14 +57,6 @@ ErrorRepair points_of_light(const MethodOptions& options) {
       .cause = ErrorCause::view,
       .runs = {{"accumulate", alike, 1, kRepairSamples}},
       .words = fmt::format("sub-lights without end: hard shadows of {} light samples (accumulate)", kRepairSamples)};
-}
-
-ErrorRepair parted_light(const MethodDescription& method, const MethodOptions& given) {
-  const MethodOptions options = visibility::complete_options(method, given);
-  return {.cause = ErrorCause::view,
-          .end = RepairEnd::limit,
-          .runs = {{method.name, options, 2}, {method.name, options, 4}},
-          .words = "the light in 2 × 2 and 4 × 4 parts with maps from the centre of each, and the limit of that"};
 }
 
 ErrorRepair more_layers(const MethodDescription& method, const MethodOptions& given) {
@@ -135,7 +117,10 @@ ErrorRepairs map_repairs(const MethodDescription& method, const MethodOptions& g
                {.cause = ErrorCause::bias,
                 .runs = {best},
                 .words = fmt::format("a bias of {} texels, which is what rounding needs{}", exact.at("bias"),
-                                     has_depth ? ", behind the nearest surface" : "")}};
+                                     has_depth ? ", behind the nearest surface" : "")},
+               method.counts_light_samples() ? visibility::more_light_samples(method, given)
+                                             : inseparable(ErrorCause::samples, "it has no light samples"),
+               inseparable(ErrorCause::falloff, repairs.falloff)};
   return all;
 }
 

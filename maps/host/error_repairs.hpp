@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "visibility/error_repair.hpp"
-#include "visibility/method.hpp"
+#include "visibility/method_repairs.hpp"
 
 #include <cstdint>
 #include <span>
@@ -10,31 +9,23 @@
 #include <vector>
 
 /// Repairs of the causes of error common to methods of this family: docs/error-budget.md. Throughout, `given` are the
-/// options of the run to be explained, and `more` further options needed by a repair.
+/// options of the run to be explained.
 namespace penumbra::maps {
 
-/// Returns all of a method's options as given, with `more` replacing some of them.
-visibility::MethodOptions options_with(const visibility::MethodDescription& method,
-                                       const visibility::MethodOptions& given, const visibility::MethodOptions& more);
-
-/// Returns the repair of a cause that cannot be separated; `words` give the reason.
-visibility::ErrorRepair inseparable(visibility::ErrorCause cause, std::string words);
+using visibility::inseparable;
+using visibility::kRepairSamples;
+using visibility::options_with;
+using visibility::parted_light;
+using visibility::repair_of;
 
 /// Returns the repair of resolution: texels half and a quarter as wide; `doubled` are the options that determine the
 /// number of texels.
 visibility::ErrorRepair finer_maps(const visibility::MethodDescription& method, const visibility::MethodOptions& given,
                                    std::span<const std::string> doubled);
 
-/// Number of light samples that approximate the whole light: their V is off by about 0.0025 in a penumbra.
-inline constexpr std::uint32_t kRepairSamples = 1024;
-
 /// Returns the repair of view by a map from each of kRepairSamples light samples. Valid for methods whose shadow of a
 /// point light is that of a shadow map: as sub-lights shrink, such a method converges to this repair.
 visibility::ErrorRepair points_of_light(const visibility::MethodOptions& options);
-
-/// Returns the repair of view by the light in 2 × 2 and 4 × 4 parts, each with maps from its own centre.
-visibility::ErrorRepair parted_light(const visibility::MethodDescription& method,
-                                     const visibility::MethodOptions& given);
 
 /// Returns the repair of layers: the option `layers` doubled, up to the largest value.
 visibility::ErrorRepair more_layers(const visibility::MethodDescription& method,
@@ -46,12 +37,13 @@ struct MapRepairs {
   bool ends_at_points = false;                      ///< points_of_light, not parted_light
   std::string many_views = {};                      ///< reason why `view` cannot be separated; empty: separable
   std::string layers = {}, fusion = {}, gaps = {};  ///< reasons why these causes cannot be separated
+  std::string falloff = "V follows from what its texels hold, by no formula of a distance that has another form";
   /// Options that distinguish a caster from the receiver's own surface with no tolerance beyond rounding.
   visibility::MethodOptions bias = {{"bias", "0.015625"}};
 };
 
-/// Returns the repairs of resolution, view and bias, and of all these together; the other causes are inseparable for
-/// the given reasons.
+/// Returns the repairs of resolution, view, bias and, if the method has any, light samples, and of the first three
+/// together; the other causes are inseparable for the given reasons.
 visibility::ErrorRepairs map_repairs(const visibility::MethodDescription& method,
                                      const visibility::MethodOptions& given, const MapRepairs& repairs);
 

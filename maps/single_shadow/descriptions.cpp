@@ -20,7 +20,8 @@ MapRepairs one_edge() {
   return {.ends_at_points = true,
           .layers = "it asks the nearest surfaces; no form of the method asks more",
           .fusion = "one edge alone decides, the nearest: nothing is added or joined",
-          .gaps = "no texel is projected: there is nothing between them"};
+          .gaps = "no texel is projected: there is nothing between them",
+          .falloff = "how light falls across the penumbra of that edge is the method: it has no other form"};
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include "engines/engine_choice.hpp"
 #include "render/compute_pass.hpp"
 #include "visibility/masks/dome_method.hpp"
+#include "visibility/method_repairs.hpp"
 #include "volumes/counters/count_edges.comp.spv.hpp"
 #include "volumes/counters/depth_complexity.shared.h"
 #include "volumes/counters/packed_counters.hpp"
@@ -101,6 +102,42 @@ visibility::ParsedOptions parse(const visibility::MethodDescription& description
                                                    : kAs.name());
   }
   return options;
+}
+
+visibility::ErrorRepairs depth_complexity_repairs(const visibility::MethodDescription& method,
+                                                  const visibility::MethodOptions& given) {
+  using visibility::ErrorCause;
+  using visibility::repair_of;
+  visibility::ErrorRepairs repairs = visibility::exact_pair_repairs(method, given);
+  const visibility::MethodOptions options = visibility::complete_options(method, given);
+  const std::string& variant = options.at(kVariant.name());
+  if (variant == "soup") return repairs;
+  // laine may be wrong on meshes that are not closed: the visible area would repair that, too.
+  repair_of(repairs, ErrorCause::samples) = visibility::more_light_samples(method, given);
+  if (variant == "laine") return repairs;
+  if (options.at(kAs.name()) == "published") {
+    const char* words = "only with as=repaired: counters that overflow are not this cause";
+    repair_of(repairs, ErrorCause::view) = visibility::inseparable(ErrorCause::view, words);
+    repair_of(repairs, ErrorCause::samples) = visibility::inseparable(ErrorCause::samples, words);
+    return repairs;
+  }
+  repair_of(repairs, ErrorCause::view) = {
+      .cause = ErrorCause::view,
+      .runs = {{method.name, {{kVariant.name(), "soup"}}}},
+      .words =
+          "the silhouettes that each view sample sees, not the light's centre, at the same light samples "
+          "(variant=soup)"};
+  const visibility::RepairRun joined{"soft-irregular",
+                                     {{"fusion", "union"}, {"silhouettes", "centre"}, {"umbra", "layers"}},
+                                     1,
+                                     visibility::kRepairSamples};
+  repair_of(repairs, ErrorCause::samples) = {
+      .cause = ErrorCause::samples,
+      .runs = {joined},
+      .words = fmt::format("the same layers at {} light samples, not 16 (soft-irregular:fusion=union)",
+                           visibility::kRepairSamples)};
+  repairs.one_view = {joined};
+  return repairs;
 }
 
 bool is_planar_light(const visibility::Light& light) {
@@ -302,7 +339,8 @@ visibility::MethodDescription depth_complexity_description(const visibility::Met
       .options = {engines::kEngine.description(), kVariant.description(), kSearch.description(), kCrop.description(),
                   kCounterBits.description(), kAs.description()},
       .span = visibility::kFloatSpan,
-      .verdict_on = depth_complexity_verdict};
+      .verdict_on = depth_complexity_verdict,
+      .repairs = depth_complexity_repairs};
   const visibility::ParsedOptions parsed = parse(description, options);
   if (parsed[engines::kEngine] == engines::Engine::vulkan || !can_be_native(parsed) ||
       parsed[kSearch] != Search::hierarchy)

@@ -12,6 +12,7 @@
 #include "render/features.hpp"
 #include "visibility/lights/device_light.hpp"
 #include "visibility/masks/dome_method.hpp"
+#include "visibility/method_repairs.hpp"
 #include "volumes/edges/device/edge_method.hpp"
 #include "volumes/edges/device/edge_scatter.shared.h"
 #include "volumes/scatter/point_rows.hpp"
@@ -271,7 +272,8 @@ visibility::MethodDescription describe() {
           .options = {engines::kEngine.description(), kExactRows.description()},
           .exact_area = visibility::ExactArea{visibility::kEveryLight, {{"rows", "exact"}}},
           .span = visibility::kFloatSpan,
-          .verdict_on = verdict_on};
+          .verdict_on = verdict_on,
+          .repairs = visibility::exact_pair_repairs};
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 
 #include "base/assert.hpp"
 #include "base/error.hpp"
+#include "visibility/method_repairs.hpp"
 #include "volumes/raster/volume_count.hpp"
 #include "volumes/raster/volume_culling.hpp"
 
@@ -50,6 +51,18 @@ CountVariant count_variant(Variant variant) {
                                        : CountVariant::z_fail;
 }
 
+visibility::ErrorRepairs hard_volume_repairs(const visibility::MethodDescription& method,
+                                             const visibility::MethodOptions& given) {
+  using visibility::ErrorCause;
+  visibility::ErrorRepairs repairs = visibility::exact_centre_repairs(method, given);
+  if (visibility::complete_options(method, given).at(kVariant.name()) == "z-pass") {
+    visibility::repair_of(repairs, ErrorCause::view) = visibility::inseparable(
+        ErrorCause::view,
+        "z-pass also counts wrongly where the camera is in shadow, and the repair would count rightly");
+  }
+  return repairs;
+}
+
 }  // namespace
 
 visibility::MethodDescription hard_volume_description() {
@@ -60,7 +73,8 @@ visibility::MethodDescription hard_volume_description() {
           .exact_for = "the hard shadow of the light's centre, of any triangle soup (all variants but z-pass)",
           .lights = visibility::kPlanarLights,
           .options = {kVariant.description()},
-          .verdict_on = hard_volume_verdict};
+          .verdict_on = hard_volume_verdict,
+          .repairs = hard_volume_repairs};
 }
 
 namespace {

@@ -11,6 +11,7 @@
 #include "volumes/soft/hard_and_wedges.hpp"
 #include "volumes/soft/outer_penumbra.hpp"
 #include "volumes/soft/plateaus.frag.spv.hpp"
+#include "volumes/soft/repairs.hpp"
 
 #include <glm/geometric.hpp>
 #include <tbb/parallel_for.h>
@@ -44,7 +45,8 @@ visibility::MethodDescription plateaus_description() {
       .lights = visibility::kPlanarLights,
       .textures = false,
       .options = {},
-      .verdict_on = plateaus_verdict};
+      .verdict_on = plateaus_verdict,
+      .repairs = plateaus_repairs};
 }
 
 namespace {

@@ -6,15 +6,18 @@
 //
 // Departures (docs/soft-irregular.md). Cells of the grid are lists of light pixels without slices of depth: a wedge
 // skips lists that end before it. The umbra is decided by exact predicates, without bias. A view sample outside of the
-// frustum tests every edge. Polygons and textures, which have no arcs, are supported.
+// frustum tests every edge. Polygons and textures, which have no arcs, are supported. Two options take the method's own
+// approximations away: silhouettes=receiver, fusion=union.
 
 #include "volumes/soft/methods.hpp"
 
 #include "base/assert.hpp"
+#include "base/error.hpp"
 #include "engines/pairs/far_plane.hpp"
 #include "engines/pairs/list_raster.hpp"
 #include "visibility/pair_truth.hpp"
 #include "visibility/receivers.hpp"
+#include "volumes/soft/repairs.hpp"
 #include "volumes/wedges/soft_visibility.hpp"
 
 #include <glm/common.hpp>
@@ -24,6 +27,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <limits>
 #include <numeric>
 #include <optional>
 #include <utility>
@@ -48,6 +52,20 @@ constexpr visibility::ChoiceOption kArc{
     "disks and ellipses: the angle of a sector by an arc cosine, as published, or by "
     "arc tangents, which keep small angles"};
 
+constexpr visibility::ChoiceOption kSilhouettes{
+    "silhouettes",
+    {{"centre", Viewer::center}, {"receiver", Viewer::receiver}},
+    Viewer::center,
+    "centre: those that the light's centre sees, for all view samples, as published; receiver: those that each view "
+    "sample sees"};
+enum class Overlap : std::uint8_t { sum, joined };
+constexpr visibility::ChoiceOption kOverlap{
+    "fusion",
+    {{"sum", Overlap::sum}, {"union", Overlap::joined}},
+    Overlap::sum,
+    "sum: what hides the same part of the light counts twice; union: the light samples at which there is no layer, "
+    "with umbra=layers"};
+
 visibility::MeshVerdict soft_irregular_verdict(const mesh::Diagnosis& mesh) {
   return {visibility::Verdict::approximate,
           visibility::reason_with(
@@ -68,8 +86,9 @@ visibility::MethodDescription describe_soft_irregular() {
               "light's centre",
           .lights = visibility::kPlanarLights,
           .on_request = true,
-          .options = {kUmbra.description(), kArc.description()},
-          .verdict_on = soft_irregular_verdict};
+          .options = {kUmbra.description(), kArc.description(), kSilhouettes.description(), kOverlap.description()},
+          .verdict_on = soft_irregular_verdict,
+          .repairs = soft_irregular_repairs};
 }
 
 /// A view sample in front of the light, and its results.
@@ -88,9 +107,14 @@ class SoftIrregular final : public visibility::Method {
     const visibility::ParsedOptions options = visibility::parse_options(description_, given);
     umbra_ = options[kUmbra];
     arc_ = options[kArc];
+    viewer_ = options[kSilhouettes];
+    overlap_ = options[kOverlap];
+    if (overlap_ == Overlap::joined && umbra_ == Umbra::map)
+      throw UsageError("soft-irregular: fusion=union joins all layers, and the map has one: add umbra=layers");
   }
 
   [[nodiscard]] const visibility::MethodDescription& description() const override { return description_; }
+  void want_pixels(std::span<const std::uint32_t> pixels) override { wanted_.emplace(pixels.begin(), pixels.end()); }
   void prepare_mesh(const visibility::SceneFloats& scene) override {
     scene_ = &scene;
     light_ = nullptr;
@@ -142,6 +166,9 @@ class SoftIrregular final : public visibility::Method {
   visibility::MethodDescription description_;
   Umbra umbra_ = Umbra::map;
   Arc arc_ = Arc::cosine;
+  Viewer viewer_ = Viewer::center;
+  Overlap overlap_ = Overlap::sum;
+  std::optional<std::vector<std::uint32_t>> wanted_;  // pixels, ascending; nullopt: all
   const visibility::SceneFloats* scene_ = nullptr;
   const visibility::Light* light_ = nullptr;
   const visibility::ViewSamples* samples_ = nullptr;
@@ -157,18 +184,24 @@ class SoftIrregular final : public visibility::Method {
 void SoftIrregular::evaluate(const visibility::Tile& tile) {
   PENUMBRA_ASSERT(samples_ != nullptr && light_ != nullptr, "prepare_light and prepare_view come first");
   std::vector<Receiver> receivers = receivers_of(tile);
-  timed("irregular shadow map", [&] { draw_umbra(receivers); });
-  timed("wedges", [&] { draw_wedges(receivers); });
+  if (viewer_ == Viewer::center) {
+    timed("irregular shadow map", [&] { draw_umbra(receivers); });
+    timed("wedges", [&] { draw_wedges(receivers); });
+  }
   timed("areas", [&] { resolve(receivers); });
 }
 
-/// Returns the receivers; all other pixels are bright, or dark where the light does not emit.
+/// Returns the receivers; all other pixels are bright, dark where the light does not emit, or not wanted: not a number.
 std::vector<Receiver> SoftIrregular::receivers_of(const visibility::Tile& tile) {
   const std::size_t first = std::size_t{tile.first_row} * samples_->width;
   visibility_.assign(std::size_t{tile.row_count} * samples_->width, 1);
   std::vector<Receiver> receivers;
   for (std::size_t i = 0; i < visibility_.size(); ++i) {
     const std::size_t pixel = first + i;
+    if (wanted_ && !std::ranges::binary_search(*wanted_, static_cast<std::uint32_t>(pixel))) {
+      visibility_[i] = std::numeric_limits<float>::quiet_NaN();
+      continue;
+    }
     if (!visibility::is_receiver(*scene_, *light_, *samples_, pixel)) continue;
     const glm::vec3& p = samples_->p[pixel];
     visibility_[i] = 0;
@@ -273,13 +306,21 @@ void SoftIrregular::draw_wedges(std::vector<Receiver>& receivers) {
 }
 
 void SoftIrregular::resolve(const std::vector<Receiver>& receivers) {
+  const std::vector<glm::dvec2> points =
+      overlap_ == Overlap::joined ? seen_->light_samples() : std::vector<glm::dvec2>();
+  const bool at_most_one = umbra_ == Umbra::map;
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, receivers.size(), 64), [&](const auto& range) {
     for (std::size_t i = range.begin(); i < range.end(); ++i) {
       const Receiver& receiver = receivers[i];
-      const LayerSum sum = seen_->at_center(
-          receiver.at, receiver.tries_all ? std::span(seen_->silhouettes_of_center()) : std::span(receiver.edges),
-          {receiver.layers, umbra_ == Umbra::map});
-      visibility_[receiver.pixel] = static_cast<float>(sum.visibility);
+      const LayerSum sum = viewer_ == Viewer::receiver
+                               ? seen_->at(receiver.at, viewer_, at_most_one)
+                               : seen_->at_center(receiver.at,
+                                                  receiver.tries_all ? std::span(seen_->silhouettes_of_center())
+                                                                     : std::span(receiver.edges),
+                                                  {receiver.layers, at_most_one});
+      const bool joins = overlap_ == Overlap::joined;
+      visibility_[receiver.pixel] =
+          static_cast<float>(joins ? SoftVisibility::visible_share(sum, points, light_->weights) : sum.visibility);
     }
   });
 }

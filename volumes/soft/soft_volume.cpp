@@ -13,6 +13,7 @@
 #include "volumes/soft/coverage_table.hpp"
 #include "volumes/soft/fused_volume.hpp"
 #include "volumes/soft/light_parts.hpp"
+#include "volumes/soft/repairs.hpp"
 #include "volumes/wedges/soft_visibility.hpp"
 #include "volumes/soft/soft_volume.frag.spv.hpp"
 #include "volumes/wedges/texture_weights.hpp"
@@ -102,7 +103,8 @@ visibility::MethodDescription soft_volume_description() {
           .lights = visibility::kPlanarLights - visibility::kPolygons,
           .options = {kSplit.description(), kTable.description(), kConstruction.description(), kWedges.description(),
                       kTests.description(), kFusion.description(), kSides.description()},
-          .verdict_on = soft_volume_verdict};
+          .verdict_on = soft_volume_verdict,
+          .repairs = soft_volume_repairs};
 }
 
 namespace {

@@ -10,6 +10,7 @@
 #include "base/assert.hpp"
 #include "base/parallel.hpp"
 #include "volumes/soft/blended_cover.hpp"
+#include "volumes/soft/repairs.hpp"
 #include "volumes/wedges/soft_visibility.hpp"
 #include "volumes/soft/soft_volume_blend.frag.spv.hpp"
 #include "volumes/soft/soft_volume_blend.shared.h"
@@ -53,7 +54,8 @@ visibility::MethodDescription soft_volume_blend_description() {
           .lights = visibility::kParallelograms,
           .textures = false,
           .options = {kBlendWedges.description()},
-          .verdict_on = soft_volume_blend_verdict};
+          .verdict_on = soft_volume_blend_verdict,
+          .repairs = soft_volume_blend_repairs};
 }
 
 namespace {

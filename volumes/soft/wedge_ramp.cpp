@@ -9,6 +9,7 @@
 #include "base/parallel.hpp"
 #include "volumes/soft/hard_and_wedges.hpp"
 #include "volumes/soft/ramp_wedges.hpp"
+#include "volumes/soft/repairs.hpp"
 #include "volumes/soft/wedge_ramp.frag.spv.hpp"
 
 #include <algorithm>
@@ -38,7 +39,8 @@ visibility::MethodDescription wedge_ramp_description() {
           .lights = visibility::kPlanarLights - visibility::kPolygons,
           .textures = false,
           .options = {},
-          .verdict_on = wedge_ramp_verdict};
+          .verdict_on = wedge_ramp_verdict,
+          .repairs = wedge_ramp_repairs};
 }
 
 namespace {

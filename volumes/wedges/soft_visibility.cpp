@@ -11,6 +11,7 @@
 #include "visibility/pair_truth.hpp"
 #include "visibility/closed_casters.hpp"
 #include "volumes/wedges/layer_areas.hpp"
+#include "volumes/wedges/planar.hpp"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -255,8 +256,46 @@ double SoftVisibility::area_beyond(const Candidate& edge, int side, const Radial
   return texture_->weight_beyond({edge.clipped.from, edge.clipped.to, side}, reference);
 }
 
-LayerSum SoftVisibility::at(const LitPoint& sample, Viewer viewer) const {
-  return sum_of(sample, viewer, silhouettes(sample, viewer), {});
+LayerSum SoftVisibility::at(const LitPoint& sample, Viewer viewer, bool at_most_one) const {
+  return sum_of(sample, viewer, silhouettes(sample, viewer), {.at_most_one = at_most_one});
+}
+
+std::vector<glm::dvec2> SoftVisibility::light_samples() const {
+  PENUMBRA_ASSERT(is_planar(light_.kind), "the samples of a {} have no places in a frame", name_of(light_.kind));
+  const auto [center, u, v] = visibility::light_frame(light_);
+  const double uu = glm::dot(u, u), uv = glm::dot(u, v), vv = glm::dot(v, v), size = uu * vv - uv * uv;
+  std::vector<glm::dvec2> places;
+  places.reserve(light_.points.size());
+  for (const glm::vec3& l : light_.points) {
+    const glm::dvec3 from = glm::dvec3(l) - center;
+    const double on_u = glm::dot(from, u), on_v = glm::dot(from, v);
+    places.emplace_back((on_u * vv - on_v * uv) / size, (on_v * uu - on_u * uv) / size);
+  }
+  return places;
+}
+
+double SoftVisibility::visible_share(const LayerSum& sum, std::span<const glm::dvec2> points,
+                                     std::span<const double> weights) {
+  if (!sum.in_front) return 0;
+  std::vector<std::int32_t> layers(points.size(), sum.constant);
+  for (const CoveredEdge& edge : sum.edges) {
+    // Counter-clockwise around the reference point. Rays through a shared end are decided by the same numbers: a point
+    // on such a ray belongs to the edge that begins there, and to no other.
+    const bool forward = edge.side > 0;
+    const glm::dvec2 first = forward ? edge.clipped.from : edge.clipped.to;
+    const glm::dvec2 last = forward ? edge.clipped.to : edge.clipped.from;
+    const glm::dvec2 begins = first - sum.reference_at, ends = last - sum.reference_at, along = last - first;
+    for (std::size_t j = 0; j < points.size(); ++j) {
+      const glm::dvec2 to = points[j] - sum.reference_at;
+      if (cross2(begins, to) < 0 || !(cross2(ends, to) < 0) || !(cross2(along, points[j] - first) < 0)) continue;
+      layers[j] += edge.change;
+    }
+  }
+  double visible = 0;
+  for (std::size_t j = 0; j < points.size(); ++j) {
+    if (layers[j] == 0) visible += weights.empty() ? 1 : weights[j];
+  }
+  return std::min(weights.empty() ? visible / static_cast<double>(points.size()) : visible, sum.above);
 }
 
 LayerSum SoftVisibility::at_center(const LitPoint& sample, std::span<const Silhouette> edges,
@@ -295,8 +334,8 @@ LayerSum SoftVisibility::sum_of(const LitPoint& sample, Viewer viewer, std::span
         -projection.turn() * visibility::edge_side(sample.p, result.reference, glm::vec3(casters_.positions[a]),
                                                    glm::vec3(casters_.positions[b]), light_);
     const double area = -sense * candidate.multiplicity * area_beyond(candidate, side, coverage, result.reference_at);
-    result.edges.push_back(
-        {candidate.edge, candidate.multiplicity, static_cast<std::int8_t>(side), candidate.clipped, area});
+    result.edges.push_back({candidate.edge, candidate.multiplicity, static_cast<std::int8_t>(side), candidate.clipped,
+                            area, -sense * candidate.multiplicity * side});
     result.sum += area;
   }
   result.blocked = result.constant + result.sum;

@@ -40,8 +40,10 @@ struct CoveredEdge {
   std::int32_t multiplicity = 0;  ///< k_e of the counted triangles, never 0 (closed_casters.hpp)
   std::int8_t side = 0;           ///< +1: the clipped edge turns counter-clockwise around the reference point. Exact
   ClippedEdge clipped;            ///< in frame coordinates
-  double area = 0;  ///< contribution to `blocked`: ± k_e times the area beyond the edge, as a fraction of
-                    ///< |L|, or times its weight
+  double area = 0;          ///< contribution to `blocked`: ± k_e times the area beyond the edge, as a fraction of
+                            ///< |L|, or times its weight
+  std::int32_t change = 0;  ///< layers of the region beyond the edge, as seen from the reference point, less those
+                            ///< before it
 };
 
 struct LayerSum {
@@ -79,7 +81,16 @@ class SoftVisibility {
   SoftVisibility(const visibility::SceneFloats& scene, const visibility::Light& light, const Casters& casters,
                  Arc arc = Arc::tangent);
 
-  [[nodiscard]] LayerSum at(const LitPoint& sample, Viewer viewer) const;
+  /// `at_most_one` clamps the layers at the reference point to one.
+  [[nodiscard]] LayerSum at(const LitPoint& sample, Viewer viewer, bool at_most_one = false) const;
+
+  /// Returns the fraction of these points of the light, given in frame coordinates, at which D is 0: the union of what
+  /// the sum adds, as Forest et al. 2008 take it at their points. With `weights`, the sum of these points' weights.
+  /// `sum` is of at() or at_center(), with all layers.
+  [[nodiscard]] static double visible_share(const LayerSum& sum, std::span<const glm::dvec2> points,
+                                            std::span<const double> weights);
+  /// Returns the light's samples in frame coordinates. Planar lights only (asserted).
+  [[nodiscard]] std::vector<glm::dvec2> light_samples() const;
 
   /// Edge of the counted triangles and its k_e, by index.
   using Silhouette = std::pair<std::uint32_t, std::int32_t>;

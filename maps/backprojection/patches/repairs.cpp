@@ -24,10 +24,6 @@ using visibility::MethodOptions;
 using visibility::RepairEnd;
 using visibility::RepairRun;
 
-ErrorRepair& of(ErrorRepairs& repairs, ErrorCause cause) {
-  return repairs.alone[static_cast<std::size_t>(cause)];
-}
-
 /// Returns the options that patches have in every method.
 MethodOptions patch_options(const MethodOptions& options, const MethodOptions& more) {
   MethodOptions chosen = more;
@@ -71,11 +67,12 @@ ErrorRepairs backproject_repairs(const MethodDescription& method, const MethodOp
                                      {.ends_at_points = true,
                                       .fusion = "spheres are added, and no form of the method joins them",
                                       .gaps = "spheres reach beyond their texels: they only overlap"});
-  of(repairs, ErrorCause::layers) = more_layers(method, given);
+  repair_of(repairs, ErrorCause::layers) = more_layers(method, given);
   if (options.at("form") == "sphere") return repairs;
-  of(repairs, ErrorCause::fusion) = union_of(
+  repair_of(repairs, ErrorCause::fusion) = union_of(
       options, {{"layers", options.at("layers")}, {"fill", options.at("fill")}, {"search", options.at("search")}});
-  of(repairs, ErrorCause::gaps) = shared_borders({method.name, options_with(method, given, {{"fill", "shared"}})});
+  repair_of(repairs, ErrorCause::gaps) =
+      shared_borders({method.name, options_with(method, given, {{"fill", "shared"}})});
   repairs.one_view = patches_of_one_view(options);
   return repairs;
 }
@@ -86,10 +83,10 @@ ErrorRepairs peel_repairs(const MethodDescription& method, const MethodOptions& 
       fmt::format("the same texels cannot be left out of another method; samples=0 leaves out none (here {})",
                   options.at("samples"));
   ErrorRepairs repairs = map_repairs(method, given, {.ends_at_points = true, .fusion = left_out, .gaps = left_out});
-  of(repairs, ErrorCause::layers) = more_layers(method, given);
+  repair_of(repairs, ErrorCause::layers) = more_layers(method, given);
   if (options.at("samples") != "0") {
     // With texels half as wide, the sampling step would be twice as large: the limit is set to all texels.
-    ErrorRepair& resolution = of(repairs, ErrorCause::resolution);
+    ErrorRepair& resolution = repair_of(repairs, ErrorCause::resolution);
     for (RepairRun& run : resolution.runs)
       run.options.insert_or_assign("samples", std::string(1, '0'));  // g++ 12 warns of "0"
     resolution.runs.insert(resolution.runs.begin(), {method.name, options_with(method, given, {{"samples", "0"}})});
@@ -98,8 +95,8 @@ ErrorRepairs peel_repairs(const MethodDescription& method, const MethodOptions& 
     const MethodOptions alike{{"layers", options.at("layers")}, {"search", "none"}};
     MethodOptions adding = patch_options(options, alike);
     adding["fill"] = "shared";
-    of(repairs, ErrorCause::fusion) = union_of(options, alike);
-    of(repairs, ErrorCause::gaps) =
+    repair_of(repairs, ErrorCause::fusion) = union_of(options, alike);
+    repair_of(repairs, ErrorCause::gaps) =
         shared_borders({"backproject", options_with(backproject_description(), adding, {})});
   }
   repairs.one_view = patches_of_one_view(options);
@@ -115,9 +112,9 @@ ErrorRepairs bitmask_repairs(const MethodDescription& method, const MethodOption
        .fusion = "bits are joined: nothing is counted twice",
        .gaps = options.at("occluder") == "rect" ? "rectangles of blocks have no form that fills what is between them"
                                                 : "its occluders share their corners: there is nothing between them"});
-  of(repairs, ErrorCause::layers) = more_layers(method, given);
+  repair_of(repairs, ErrorCause::layers) = more_layers(method, given);
   if (patches) {
-    of(repairs, ErrorCause::gaps) = {
+    repair_of(repairs, ErrorCause::gaps) = {
         .cause = ErrorCause::gaps,
         .runs = {{method.name, options_with(method, given, {{"fill", "diagonal"}})}},
         .words = "patches that reach to their neighbours, the diagonal one too (fill=diagonal); overlaps do no harm"};
@@ -135,7 +132,7 @@ ErrorRepairs layer_ray_repairs(const MethodDescription& method, const MethodOpti
                   {.ends_at_points = true,
                    .fusion = "rays are stopped or not: nothing is added",
                    .gaps = "walls between neighbouring texels close gaps and may close what is open: no form tells"});
-  of(repairs, ErrorCause::layers) = more_layers(method, given);
+  repair_of(repairs, ErrorCause::layers) = more_layers(method, given);
   for (RepairRun& run : repairs.one_view) run.options["layers"] = "16";
   return repairs;
 }

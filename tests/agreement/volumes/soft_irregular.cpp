@@ -2,14 +2,17 @@
 // soft-irregular against the sum over all silhouettes of the light's centre at each view sample (SoftVisibility): its
 // lists lose no edge and no layer. With umbra=layers and arc=tangent the numbers are the same to the last bit. An arc
 // cosine is off by √(2 · 2⁻⁵²) where its angle is near 0 or π (the cosine rounds by 2⁻⁵² at most): an edge's share of
-// the light by half of that over π, 3.4e-9; V is stored in float, 2⁻²⁵.
+// the light by half of that over π, 3.4e-9; V is stored in float, 2⁻²⁵. Layers that are joined (fusion=union) are held
+// against methods that count them at the same light samples by other means.
 
 #include "tests/agreement/lattice.hpp"
 #include "tests/agreement/volumes/soft_stage.hpp"
 #include "tests/property/lattice_truth.hpp"
 
 #include "base/error.hpp"
+#include "volumes/counters/methods.hpp"
 #include "volumes/soft/methods.hpp"
+#include "vsm/methods.hpp"
 
 namespace penumbra::volumes {
 namespace {
@@ -118,6 +121,81 @@ TEST_F(SoftIrregularTwin, StackedBoardsLeak) {
   EXPECT_LE(errors(two, "layers").largest, errors(two, "map").largest);
 }
 
+/// With the silhouettes of each view sample V is the twin's, and of the pixels that nobody wants it is not a number.
+TEST_F(SoftIrregularTwin, SilhouettesOfTheReceiver) {
+  for (const char* name : {"broken", "contact", "fusion", "textured-light"}) {
+    const SoftStage stage(tests::shipped_scene(name), device(), 24, 18);
+    const Casters casters = casters_of(stage.floats, stage.light);
+    const SoftVisibility soft(stage.floats, stage.light, casters);
+    std::vector<std::uint32_t> wanted;
+    for (std::uint32_t i = 3; i < stage.samples.size(); i += 2) wanted.push_back(i);
+    const auto method = make_soft_irregular({{"umbra", "layers"}, {"arc", "tangent"}, {"silhouettes", "receiver"}});
+    method->want_pixels(wanted);
+    const std::vector<float> v = stage.run(*method, 5);
+    for (std::uint32_t i = 0; i < v.size(); ++i) {
+      if (!std::ranges::binary_search(wanted, i)) {
+        EXPECT_TRUE(std::isnan(v[i])) << name << ", pixel " << i;
+      } else if (visibility::is_receiver(stage.floats, stage.light, stage.samples, i)) {
+        EXPECT_EQ(v[i], static_cast<float>(soft.at(stage.lit(i), Viewer::receiver).visibility)) << name << ", " << i;
+      }
+    }
+  }
+}
+
+/// Methods at the light's samples, in judged pixels: what of soft-irregular's V differs from the other's by half a
+/// light sample and more.
+class SoftIrregularUnion : public SoftIrregularTwin {
+ protected:
+  struct Compared {
+    std::size_t penumbra = 0, samples_off = 0;
+  };
+  static Compared compare(const char* scene_name, std::uint32_t light_samples, const char* silhouettes,
+                          visibility::Method& other) {
+    const scenes::Scene scene = tests::shipped_scene(scene_name);
+    const visibility::SceneFloats floats = visibility::make_scene_floats(scene);
+    const visibility::Light light =
+        visibility::make_light(scene, 0, floats.origin, {light_samples, 0, 0, visibility::SamplePattern::rows, 0});
+    const visibility::ViewSamples samples =
+        render::VisibilityBuffer(device(), floats)
+            .render(visibility::make_camera(scene.cameras[0], floats.origin, 40, 40));
+    const auto method = make_soft_irregular({{"umbra", "layers"}, {"fusion", "union"}, {"silhouettes", silhouettes}});
+    const std::vector<float> joined = tests::run(*method, floats, light, samples).visibility;
+    const std::vector<float> expected = tests::run(other, floats, light, samples).visibility;
+    const auto classes = visibility::classify_pixels(floats, samples, light);
+    Compared result;
+    for (std::size_t i = 0; i < joined.size(); ++i) {
+      if (classes[i] != visibility::PixelClass::judged) continue;
+      result.penumbra += expected[i] > 0 && expected[i] < 1 ? 1U : 0U;
+      const double off = std::abs(static_cast<double>(joined[i]) - static_cast<double>(expected[i]));
+      result.samples_off += static_cast<std::size_t>(std::lround(off * light.sample_count()));
+    }
+    fmt::print("{}, {}: {} pixels in penumbra, {} light samples off\n", scene_name, silhouettes, result.penumbra,
+               result.samples_off);
+    return result;
+  }
+};
+
+/// The silhouettes of the centre at 16 points are the counters of Forest et al. 2008. A light sample may be on an edge
+/// within rounding.
+TEST_F(SoftIrregularUnion, OfTheCentreIsForests) {
+  for (const char* name : {"contact", "fusion", "bunny", "large-penumbra"}) {
+    const auto forest = make_depth_complexity(device(), {{"variant", "forest"}});
+    const Compared compared = compare(name, 16, "centre", *forest);
+    EXPECT_GT(compared.penumbra, 20U) << name;
+    EXPECT_LE(compared.samples_off, 1U) << name;
+  }
+}
+
+/// The silhouettes of each view sample are those of the layers that it sees: joined, the truth of each pair.
+TEST_F(SoftIrregularUnion, OfTheReceiverIsTheTruthOfPairs) {
+  for (const char* name : {"contact", "fusion", "broken"}) {
+    const auto exact = vsm::make_hierarchical_penumbra({});
+    const Compared compared = compare(name, 64, "receiver", *exact);
+    EXPECT_GT(compared.penumbra, 20U) << name;
+    EXPECT_LE(compared.samples_off, 1U) << name;
+  }
+}
+
 TEST_F(SoftIrregularTwin, WhatItCannotDoIsRefused) {
   scenes::Scene scene = tests::floor_and_light(0.5);
   for (const scenes::LightShape& shape :
@@ -129,6 +207,7 @@ TEST_F(SoftIrregularTwin, WhatItCannotDoIsRefused) {
   }
   EXPECT_THROW(make_soft_irregular({{"umbra", "both"}}), UsageError);
   EXPECT_THROW(make_soft_irregular({{"bias", "1"}}), UsageError);
+  EXPECT_THROW(make_soft_irregular({{"fusion", "union"}}), UsageError) << "the map has one layer";
 }
 
 }  // namespace

@@ -81,7 +81,7 @@ TEST(ErrorBudget, JsonHasEveryCauseAndTheRemainder) {
   const auto json = to_json(budget);
   EXPECT_EQ(
       json.dump(),
-      R"({"resolution":-0.25,"view":null,"layers":0.25,"fusion":null,"gaps":null,"bias":null,"remainder":0.125})");
+      R"({"resolution":-0.25,"view":null,"layers":0.25,"fusion":null,"gaps":null,"bias":null,"samples":null,"falloff":null,"remainder":0.125})");
   const auto runs = runs_json(budget);
   EXPECT_EQ(runs.at("ifCausesAddedUp"), 0.5);
   EXPECT_EQ(runs.at("together").at("lightParts"), 4);
