@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the families' tables say of their methods is what these do.
+// Tests that methods do what the families' tables say of them.
 #include "app/methods.hpp"
 #include "tests/agreement/support.hpp"
 

@@ -288,7 +288,7 @@ TEST(ExactRadiance, HalfADiskAndHalfASphere) {
   }
 }
 
-/// Under the panel, over a few boards.
+/// Makes a board before the panel.
 scenes::Scene boards_before_a_panel() {
   scenes::Scene scene;
   tests::add_object(scene, "floor", tests::quad({0, 0, 0}, {3, 0, 0}, {0, 0, -3}));

@@ -82,7 +82,7 @@ TEST_F(FarLights, EveryKindIsDone) {
   }
 }
 
-/// Beyond the reach of Embree's float32, too: coordinates end at 1e12, so the scene is small.
+/// Areas work beyond the reach of Embree's float32, too: coordinates end at 1e12, so the scene is small.
 TEST_F(FarLights, BeyondRaysAreAreas) {
   write("small.json", R"({"format": "penumbra-scene/1", "size": [12, 8],
     "camera": {"eye": [0, 0.002, 0.003], "target": [0, 0, 0]},

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whatever a method answers, what is no share of a light goes no further than the host.
+// Tests that answers of a method that are no shares of a light go no further than the host.
 #include "app/process/terminal_progress.hpp"
 #include "app/machine.hpp"
 #include "app/runner.hpp"

@@ -39,7 +39,7 @@ class MethodTable {
 class Row {
  public:
   Row(const std::vector<Factor>& factors, const Choices& choices);
-  /// Empty where nothing is chosen.
+  /// Returns an empty text where nothing is chosen.
   [[nodiscard]] const std::string& operator[](const std::string& factor) const;
   [[nodiscard]] bool has(const std::string& factor) const { return values_.contains(factor); }
 

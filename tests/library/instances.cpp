@@ -181,7 +181,7 @@ TEST_F(LibraryInstances, RefuseWhatCannotBe) {
   EXPECT_THROW(static_cast<void>(Renderer(scene).render(with("some"))), UsageError);
   EXPECT_THROW(static_cast<void>(Renderer(scene).render(with("shared", "pcf"))), UsageError);
   EXPECT_EQ(exact_bytes(Renderer(scene).render(kShared)), before);
-  // What looks at more than lies between gets copies.
+  // Methods that look at more than what lies between p and the light get copies.
   EXPECT_NO_THROW(static_cast<void>(Renderer(scene).render(with("", "pcf"))));
   EXPECT_THAT(wedges_json(scene, {.light = "key"}), HasSubstr("key"));
 }

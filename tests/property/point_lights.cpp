@@ -27,7 +27,7 @@ using tests::PairCounts;
 using tests::PointLight;
 
 constexpr std::uint32_t kMostSamples = 70;
-/// On vector units more than 256 are in rows of several tiles each.
+/// More than 256 light points are in rows of several tiles each on vector units.
 constexpr std::uint32_t kMany = 400;
 
 constexpr std::array kEngines{tests::kEdgeScatter, tests::kNativeEdgeScatter};

@@ -70,7 +70,7 @@ def is_highway(entry):
 
 
 def compile_one(entry, how):
-    """Nothing is kept of it. Returns what the compiler says."""
+    """Compiles one file and keeps nothing of it. Returns what the compiler says."""
     words = shlex.split(entry["command"])
     words[words.index("-o") + 1] = "/dev/null"
     done = subprocess.run([*words, *how], cwd=entry["directory"], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)

@@ -20,7 +20,7 @@ def literals(text):
 
 
 def is_named(literal, names):
-    """Is it a method's name, or a list of names with options, as --methods takes them?"""
+    """Returns whether the literal is a method's name, or a list of names with options, as --methods takes them."""
     return any(entry.partition(":")[0] in names for entry in literal.split(","))
 
 

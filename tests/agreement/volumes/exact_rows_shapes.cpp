@@ -40,8 +40,8 @@ std::uint32_t below(std::mt19937& random, std::uint32_t end) {
   return static_cast<std::uint32_t>(random() % end);
 }
 
-/// In the ellipse of the rectangle's axes: its frame, the first three corners, is at any angle; `many`: corners so
-/// close that it is a needle.
+/// Makes a polygon in the ellipse of the rectangle's axes: its frame, the first three corners, is at any angle. `many`:
+/// corners so close together that the frame is a needle.
 scenes::Polygon polygon_in(const scenes::Rectangle& r, bool many, std::mt19937& random) {
   const std::uint32_t count = many ? 40 + below(random, 60) : 3 + below(random, 5);
   std::vector<double> angles;

@@ -47,7 +47,7 @@ class SpheresThatHold : public ExactRows {
   }
 };
 
-/// In general position double proves nearly all of them.
+/// Double arithmetic proves nearly all areas in general position.
 TEST_F(SpheresThatHold, Balls) {
   Found found;
   for (std::uint32_t seed = 0; seed < 10; ++seed) {
@@ -173,8 +173,7 @@ TEST_F(SpheresThatHold, Halves) {
   expect_right("halves", found);
 }
 
-/// What is found for a view sample alone is what is found for it among others: neither lists nor what they leave out
-/// show.
+/// A view sample alone gets the answer that it gets among others: neither lists nor what they leave out show.
 TEST_F(SpheresThatHold, NeighboursDoNotMatter) {
   std::size_t partly = 0;
   for (std::uint32_t seed = 0; seed < 200; ++seed) {
@@ -202,8 +201,8 @@ TEST_F(SpheresThatHold, NeighboursDoNotMatter) {
   EXPECT_GT(partly, 200U);
 }
 
-/// Where an edge ends at the disk and where its caster's cut does were an ulp apart, on either side of the window's
-/// left side: 0.44 in place of 0.96.
+/// An edge's end at the disk and its caster's cut were an ulp apart, on either side of the window's left side: V was
+/// 0.44 in place of 0.96.
 TEST_F(SpheresThatHold, AnOutlineAtTheLeftSide) {
   scenes::Scene scene;
   scene.origin = glm::dvec3(0);

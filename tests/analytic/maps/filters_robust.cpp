@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What holds of every filter whatever it is given: V in [0, 1] for input that has no meaning, 1 where nothing is near,
-// the same bytes in any order of triangles; and where filters are known to be wrong.
+// Tests what holds of every filter for any input: V in [0, 1] for input without a meaning, 1 where nothing is near, the
+// same bytes for any order of triangles; and where filters are known to be wrong.
 
 #include "base/error.hpp"
 #include "maps/filters/methods.hpp"
@@ -323,7 +323,7 @@ TEST_F(Filters, PcssWeighsTapsByTheTexture) {
   }
 }
 
-// What has no place for weights says so, and names who has.
+// Filters that have no place for weights say so, and name those that have.
 TEST_F(Filters, ATextureIsWeighedOrRefused) {
   const Stage stage(board_under(constant_texture(2, 2, glm::vec3(1))), 8, 8, light_samples(1));
   for (const Filter& filter : all_filters("16")) {

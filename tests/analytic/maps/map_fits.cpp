@@ -61,8 +61,8 @@ class FittedMaps : public MapsTest {
   }
 };
 
-// What a texel says is what its centre sees: of every fit, every texel's answer on the floor is that of the plates in
-// the direction of its centre, but where an outline passes within the rasteriser's 1/256 texel (and rounding) of it.
+// A texel says what its centre sees: for every fit, every texel's answer on the floor is that of the plates in the
+// direction of its centre, except where an outline passes within the rasteriser's 1/256 texel (and rounding) of it.
 TEST_F(FittedMaps, EveryTexelSaysWhatItsCentreSees) {
   const Stage stage(floor_and_plates(), 96, 72, light_samples(1));
   const maps::LightBasis basis = maps::light_basis(stage.light, stage.floats);
@@ -218,7 +218,7 @@ scenes::Scene ball_and_wall(bool two_sided) {
   return scene;
 }
 
-// Whatever a fit, it is the same question: answers differ from those of a window of receivers as much as these do from
+// All fits answer the same question: their answers differ from those of a window of receivers as much as these do from
 // finer ones.
 TEST_F(FittedMaps, HemicubesFiltersAndLayersAgree) {
   for (const bool two_sided : {false, true}) {
@@ -262,9 +262,9 @@ TEST_F(FittedMaps, HemicubesFiltersAndLayersAgree) {
   }
 }
 
-// In a room whose walls reach through the light's plane, and with something above the light, every receiver is in a
-// map, whatever is fitted, and sees what it sees in the maps of all receivers, but at outlines: no more pixels differ
-// than in maps of all receivers with texels four times as wide.
+// Every receiver is in a map, for every fit, in a room whose walls reach through the light's plane, with something
+// above the light. It sees what it sees in the maps of all receivers, except at outlines: no more pixels differ than in
+// maps of all receivers with texels four times as wide.
 TEST_F(FittedMaps, NoReceiverIsOutsideWhereTheLightsPlaneCutsWalls) {
   scenes::Scene scene;
   add_quad(scene, {0, 0, 0}, {4, 0, 0}, {0, 0, -4});   // floor

@@ -46,8 +46,8 @@ TEST_F(Vssm, IsItsTwin) {
         const double v = twin(i).v, is = found.visibility[i];
         soft += v > 0.02 && v < 0.98 ? 1 : 0;
         sum += std::abs(v - is);
-        // Where a mean is at the receiver's own height within rounding, the search says blocked or not by a hair, and V
-        // may be anything between the filter's answer and 1. A series' functions have 12 digits.
+        // The search says blocked or not by a hair where a mean is at the receiver's own height within rounding: V may
+        // then be anything between the filter's answer and 1. A series' functions have 12 digits.
         off += std::abs(v - is) > 2e-4 ? 1 : 0;
       }
       fmt::print("{} {} of light {}: {} receivers, {} in penumbra, {} off, mean {:.2e}\n", settings.moments,
@@ -78,8 +78,8 @@ TEST_F(Vssm, LayersAreTheirTwinsAtAnyHeight) {
   }
 }
 
-// Where a window holds more that is farther than the receiver than what is nearer, exponentials are compared texel by
-// texel: of windows wider than 16 texels some, and of those that reach beside the map what is in it.
+// Exponentials are compared texel by texel where a window holds more that is farther than the receiver than what is
+// nearer: some texels of windows wider than 16, and those inside the map of windows that reach beside it.
 TEST_F(Vssm, TexelByTexelItIsItsTwinAtAnyHeight) {
   const Stage stage(scene_with(scenes::Rectangle{{0, 4, 0}, {0.9, 0, 0}, {0, 0, 0.6}}), 24, 24, light_samples(1),
                     grid_samples(24, {0, 0.6, 0}, {1.9, 0, 0}, {0, 0.58, 0}, {0, 1, 0}));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What means over windows are taken from: summed areas, mip levels and N-buffers against twins, bit by bit.
+// Tests the structures that means over windows are taken from: summed areas, mip levels and N-buffers against twins,
+// bit by bit.
 
 #include "maps/products/map_frame.hpp"
 #include "maps/products/nearest_caster.hpp"
@@ -150,7 +151,7 @@ TEST(LightBox, HasTheLightsOwnMoments) {
   }
 }
 
-// What looks for occluders looks for them between the light's bounds: a light that is wider has unseen ones, a narrower
+// Occluders are looked for between the light's bounds: a wider light would have occluders that are not seen, a narrower
 // one more to look at. Points of the outline are at most 1 - cos(pi / 4096) of its width inside it.
 TEST(LightBounds, HoldTheLightAndNoMore) {
   scenes::Scene scene = scene_of(false);

@@ -91,7 +91,7 @@ TEST_F(MapsSingleShadow, UnderAnEdgeEachPapersFormulaIsAClosedForm) {
         "parker:radius=140", light, height, [&](double x) { return cubic(edge.outside(x)); }, 2 * step);
     expect_line(
         "penumbra-map:filter=nearest", light, height, [&](double x) { return edge.penumbra_map(x); }, 3 * step);
-    // At the mean height of all silhouettes their width is Parker's.
+    // The width of all silhouettes at their mean height is Parker's.
     expect_line(
         "smoothies:filter=nearest", light, height, [&](double x) { return cubic(edge.outside(x)); }, 2 * step);
     // A pixel of the flood is 0.002 as the centre sees it.
@@ -115,7 +115,7 @@ TEST_F(MapsSingleShadow, BothSidesOfAnEdgeAreTheTruthButForTheRadius) {
   }
 }
 
-// What the other falloffs are.
+// The other falloffs are Parker's polynomial and sine.
 TEST_F(MapsSingleShadow, FalloffsAreParkersPolynomialAndSine) {
   const UnderAnEdge edge{0.5, 2};
   const double step = 0.0024 / edge.half_width;

@@ -93,8 +93,8 @@ TEST_F(Vssm, ALitPlaneIsHalfDarkUntilTheSeriesIsScaledOrShifted) {
   }
 }
 
-// Where a board in the air looks past other boards down to the floor, the mean of its window lies behind it, and the
-// bound is 1 whatever stands before. Cut into parts (Yang et al. 2010) it is nearly what counting the same texels says.
+// The mean of a window lies behind a board in the air that looks past other boards down to the floor, and the bound is
+// 1 whatever stands before. Cut into parts (Yang et al. 2010) the answer is nearly that of counting the same texels.
 TEST_F(Vssm, PartsSeeWhatBlocksBeforeADeepFloor) {
   scenes::Scene scene;
   add_quad(scene, {0, 0, 0}, {2, 0, 0}, {0, 0, -2});
@@ -131,7 +131,7 @@ TEST_F(Vssm, PartsSeeWhatBlocksBeforeADeepFloor) {
   EXPECT_LT(adaptive, 0.7 * none);
 }
 
-// Of two depths, one share f of them at the receiver's, the bound of the rising exponential is f, too, wherever their
+// The bound of the rising exponential for two depths, the share f of them at the receiver's, is f, too, wherever their
 // variance is not below the least one, L = (c b)^2, which the bias b stands for; elsewhere no more than L / (1 - f)^2
 // above it. (A bias of the receiver's height would multiply the lit part by exp(c b).)
 TEST_F(Vssm, OfTwoDepthsTheBoundOfExponentialsIsTheShare) {
@@ -159,8 +159,8 @@ TEST_F(Vssm, OfTwoDepthsTheBoundOfExponentialsIsTheShare) {
   }
 }
 
-// Whether a level floor is drawn in the map or not, nothing there is nearer than it: V is the same. (Texels without a
-// caster lay 1/1024 of the depth behind it, which exp(80 t) counted as 1.17 times lit.)
+// V of a level floor is the same whether the floor is drawn in the map or not: nothing there is nearer. (Texels without
+// a caster lay 1/1024 of the depth behind it, which exp(80 t) counted as 1.17 times lit.)
 TEST_F(Vssm, AFloorThatCastsNothingIsNoBrighter) {
   const auto with = [&](bool casts, const VssmSettings& settings) {
     scenes::Scene scene = under_boards(std::vector<Strip>{{2, -0.7, 0.1}});

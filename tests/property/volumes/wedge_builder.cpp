@@ -136,8 +136,8 @@ TEST_F(WedgeBuilderTest, FarFromOneInSize) {
   EXPECT_EQ(tally.on_host, 0U);
 }
 
-/// Nothing depends on the schedule: a second run, another builder, and buffers that take the wedges in batches give the
-/// same bits. Buffers that do not hold the mesh leave everything to the host.
+/// Results do not depend on the schedule: a second run, another builder, and buffers that take the wedges in batches
+/// give the same bits. Buffers that do not hold the mesh leave everything to the host.
 TEST_F(WedgeBuilderTest, TheSameBitsEveryTime) {
   const Lit stage(mesh::make_lattice_soup({200, 64, 7, glm::dvec3(0), 2}), moving(2, 5, 0.7));
   const std::uint64_t triangles = stage.floats.triangles.size(), enough = triangles * sizeof(gpu::FacingTriangle);
