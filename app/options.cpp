@@ -227,7 +227,7 @@ std::vector<MethodEntry> parse_methods(std::string_view text) {
     }
     entries.push_back(std::move(entry));
   };
-  // Unless the method computes nothing else, or the group's options exclude it.
+  // Adds the exact area, unless the method computes nothing else, or the group's options exclude it.
   const auto add_exact_area = [&](const visibility::MethodDescription& method, const visibility::MethodOptions& given) {
     visibility::MethodOptions options = given;
     options.insert(method.exact_area->options.begin(), method.exact_area->options.end());

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""How fast `penumbra view` answers: bare clients drag the camera and a light, one after the other and both at once, and note
+"""Measures how fast `penumbra view` answers: bare clients drag the camera and a light, one after the other and both at once, and note
 when pictures come, what they cost, and whether each is whole.
   live_latency.py PROGRAM SCENE… [--seconds S] [--minutes M] [--out FILE.json]
 --minutes: the first scene's camera and light are then dragged for so long, and memory is noted each ten seconds. Without --out
@@ -27,7 +27,7 @@ FORMATS = [None, ".1f", ".0f", ".0f", ".2f", ".0f", ".0f", None]
 
 
 def is_whole(frame):
-    """Whether each image of a picture is complete: a JPEG from its first to its last marker, a PNG with all checksums right."""
+    """Returns whether each image of a picture is complete: a JPEG from its first to its last marker, a PNG with all checksums right."""
     for image, data in zip(frame["images"], frame["files"]):
         if image["type"] == "image/jpeg":
             if data[:2] != b"\xff\xd8" or data[-2:] != b"\xff\xd9":

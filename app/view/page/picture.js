@@ -3,7 +3,7 @@
 let shown = null;  // header, and bitmaps by what they show
 const canvas = byId("picture"), overlay = byId("overlay");
 let flipped = false;       // of `flip`: B is shown
-/// What is shown of the answers: wipe, side, a or b.
+/// Returns which of the answers is shown: wipe, side, a or b.
 function mode() {
   if (!shown || !shown.by.a || !shown.by.b) return "a";
   const how = byId("compare").value;
@@ -56,7 +56,7 @@ function stageSize() {
   return [mode() === "side" ? box.width / 2 : box.width, box.height];
 }
 
-/// Where the pointer is in the picture, 0 to 1 each way, of whichever answer it is over.
+/// Returns where the pointer is in the picture, 0 to 1 along each axis, of whichever answer it is over.
 function placeOf(event) {
   const box = canvas.getBoundingClientRect(), [width, height] = stageSize();
   let x = (event.clientX - box.left) / width;
