@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tests that each method does to a flawed mesh what `inspect` says it will, for every method of the table and every
-// defect of the generator. A verdict of "" allows no pair that the exact predicates decide otherwise.
+// defect of the generator. A verdict of "exact" allows no pair that the exact predicates decide otherwise.
 
 #include "app/methods.hpp"
 #include "app/pixel_samples.hpp"

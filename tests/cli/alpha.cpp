@@ -91,8 +91,8 @@ TEST_F(AlphaSurfaces, PanesDimLightAndShadow) {
   EXPECT_EQ(stats.at("counters").at("maskPairs"), 0);
 }
 
-/// Exact wherever the pane is certainly not on the way: there a picture is the one without it, bit by bit. Elsewhere it
-/// is the one of light samples.
+/// Pixels are exact wherever the pane is certainly not in between: there a picture is the one without it, bit by bit.
+/// Elsewhere it is the one of light samples.
 TEST_F(AlphaSurfaces, AreasStayExactBesideWhatAPaneMayDim) {
   const json away = {0, 1, 2}, there = {0, 1, 2, 3};
   gltf.at("/nodes/3") = {{"name", "Card"}, {"mesh", 3}, {"translation", {1.5, 2, 0}}, {"scale", {1, 1, 2}}};

@@ -56,7 +56,7 @@ TEST_F(FarLights, AStarIsASun) {
       render(fmt::format(R"({{"name": "sol", "sun": {{"direction": [-0.6, -0.8, 0], "angle": {}}}}})", angle));
   EXPECT_EQ(sun.method, "edge-scatter");
   EXPECT_LT(largest_difference(star.v, sun.v), 1e-5);
-  // Light samples of it are looked at by rays, and their V is that of the area but for their number.
+  // Rays look at its light samples, whose V is that of the area except for their number.
   const Rendered rays = render(R"({"name": "sol", "sphere": {"center": [9e10, 1.2e11, 0], "radius": 6.96e8}})",
                                {"--light-samples", "256"});
   EXPECT_EQ(rays.method, "raytrace");

@@ -87,7 +87,7 @@ TEST(KeptArrays, AreWithThoseInUseNoMoreThanWasInUseAtOnce) {
   arrays.free_all();
 }
 
-/// The sum that is kept is right again once all is given back, whoever took it in between.
+/// The sum that is kept is right again once all is given back, whichever caller took it in between.
 TEST(KeptArrays, MayBeAskedForByAnyThread) {
   KeptArrays arrays;
   arrays.start_keeping();

@@ -72,7 +72,7 @@ TEST_F(SpheresThatHold, Triangles) {
     for (int i = 0; i < 20; ++i) {
       const glm::dvec3 middle = at + glm::dvec3(0, 2.4, 0) + 0.5 * vector();
       const double size = std::exp2(2 * real(random));
-      // Every third one all but in the plane of a disk that is seen from below.
+      // Every third one is nearly in the plane of a disk that is seen from below.
       const double flat = i % 3 == 0 ? 0.02 : 1;
       const auto corner = [&] { return middle + size * glm::dvec3(1, flat, 1) * vector(); };
       const glm::dvec3 a = corner(), b = corner(), c = corner();
@@ -229,7 +229,7 @@ TEST_F(SpheresThatHold, AnOutlineAtTheLeftSide) {
   EXPECT_EQ(found.unproven, 0U);
 }
 
-/// A panel all but in the disk's plane, with a corner within rounding of it: where it passes through is anywhere along
+/// A panel nearly in the disk's plane, with a corner within rounding of it: where it passes through is anywhere along
 /// its sides.
 TEST_F(SpheresThatHold, PanelsInTheDisk) {
   for (const double below : {-1e-12, -3e-13, -2.5e-13, -1e-13, 0.0, 2e-13}) {

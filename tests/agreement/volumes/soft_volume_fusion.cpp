@@ -30,8 +30,8 @@ class SoftVolumeFusion : public tests::DeviceTest {
   }
 };
 
-/// Each rule is what it says, of V with the floor and one of the boards alone, less what the floor hides of itself:
-/// nothing.
+/// Each rule is what its name says, applied to V with the floor and one of the boards alone, less what the floor hides
+/// of itself: nothing.
 TEST_F(SoftVolumeFusion, FusesWhatEachObjectHides) {
   const scenes::Scene scene = boards();
   const SoftStage stage(scene, device(), 48, 36);
@@ -155,7 +155,7 @@ TEST_F(SoftVolumeFusion, SidesByFloatsAreAWholeLayerOff) {
   }
 }
 
-/// One constant is a whole light off there, and the votes of three are right but where a vertex is at the centre.
+/// One constant is a whole light off there; the votes of three are right except where a vertex is at the centre.
 TEST_F(SoftVolumeFusion, VotesRepairSidesThatFloatsGetWrong) {
   const SoftStage stage(edges_at_the_centre(), device(), 65, 65);
   const std::vector<double> right = stage.twin(Viewer::center);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The other ways to measure what lies beyond an edge: a table, and a texture texel by texel.
+// Tests the other measures of what lies beyond an edge: a table, and a texture texel by texel.
 
 #include "tests/agreement/volumes/soft_stage.hpp"
 

@@ -100,7 +100,8 @@ TEST_F(MapsClosedForm, TheUndersideOfTheOccluderIsBelowItsHorizonAndNeverLit) {
   }
 }
 
-/// Pairs at judged pixels that accumulate and the last judge decide differently, as a share.
+/// Returns the share of pairs at judged pixels that accumulate and the last judge, exact arithmetic, decide
+/// differently.
 double disagreement(const Stage& stage, const Masks& result) {
   const auto classes = visibility::classify_pixels(stage.floats, stage.samples, stage.light);
   const std::uint32_t words = stage.light.words_per_mask();

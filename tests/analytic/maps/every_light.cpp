@@ -337,7 +337,7 @@ TEST_F(HalfASun, IsHiddenByAHalfPlaneInEveryMethodFull) {
   expect_segments(soft, 256);
 }
 
-// A disk so far away that its rays are parallel within a degree of the sun's: the maps are the same but for where
+// A disk so far away that its rays are parallel within a degree of the sun's: the maps are the same except for where
 // texels begin, and so are the penumbrae.
 TEST_F(EveryLight, FoilsSeeASunAsAFarDisk) {
   constexpr double kFar = 400, kAngle = 24;

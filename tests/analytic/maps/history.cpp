@@ -135,7 +135,7 @@ TEST_F(Reprojection, FindsTheSameSurface) {
   EXPECT_GT(hidden, 150U);
 }
 
-/// One map a frame, as many frames of a camera that stands still: what history makes of them.
+/// One map a frame, for many frames of a camera that stands still, and what history makes of them.
 TEST_F(Reprojection, OfAStillCameraIsHistory) {
   const Stage stage = seen_from(0.5);
   visibility::FrameMemory memory;

@@ -144,8 +144,8 @@ TEST_F(FittedMaps, EveryTexelSaysWhatItsCentreSees) {
   }
 }
 
-// S4 3.2: fitting spends no texels on what is not seen, slices and warps spend them near the eye, tiles where pixels
-// ask.
+// Eisemann et al. 2009, section 3.2: fitting spends no texels on what is not seen, slices and warps spend them near the
+// eye, tiles where pixels ask.
 TEST_F(FittedMaps, EveryFitAliasesLessThanTheOneBefore) {
   const Stage stage(floor_and_plates(), 96, 72, light_samples(1));
   const auto receivers = counters(stage, options("receivers")), view = counters(stage, options("view"));
@@ -169,7 +169,8 @@ TEST_F(FittedMaps, EveryFitAliasesLessThanTheOneBefore) {
   EXPECT_LT(tiles.at("undersampledPixels"), counters(stage, options("view")).at("undersampledPixels"));
 }
 
-// S4 equation 3.2, its factors one by one, where eye and light are in the plane x = 0 and so is the texel's side.
+// Eisemann et al. 2009, equation 3.2, its factors one by one, where eye and light are in the plane x = 0 and so is the
+// texel's side.
 TEST_F(FittedMaps, TheAliasingErrorIsEquation32) {
   const Stage stage(floor_and_plates(), 96, 72, light_samples(1));
   const maps::LightBasis basis = maps::light_basis(stage.light, stage.floats);

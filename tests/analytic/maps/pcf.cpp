@@ -29,8 +29,8 @@ scenes::Scene under_a_board(double height, double edge, double half_light) {
   return scene;
 }
 
-// S4 4.1.2: the window knows neither occluder nor light. V rises over n texels of t z each on the floor, linearly up to
-// one texel's step, around the hard shadow's edge.
+// Eisemann et al. 2009, section 4.1.2: the window knows neither occluder nor light. V rises over n texels of t z each
+// on the floor, linearly up to one texel's step, around the hard shadow's edge.
 TEST_F(Pcf, ThePenumbraIsTheWindowWhateverTheBlockersHeightAndTheLightsSize) {
   constexpr std::uint32_t kSamples = 2048, kSize = 256;
   for (const std::uint32_t n : {7U, 8U, 21U}) {
@@ -77,7 +77,8 @@ TEST_F(Pcf, ThePenumbraIsTheWindowWhateverTheBlockersHeightAndTheLightsSize) {
   }
 }
 
-// S4 figure 4.3: with the receiver's own depth for every texel, half a tilted plane shades the other half.
+// Eisemann et al. 2009, figure 4.3: with the receiver's own depth for every texel, half a tilted plane shades the other
+// half.
 TEST_F(Pcf, ATiltedReceiverShadesHalfOfItselfUnlessItsPlaneIsFollowed) {
   constexpr std::uint32_t kSide = 40, kSize = 256;
   for (const double tilt : {30.0, 60.0}) {

@@ -28,8 +28,8 @@ TEST_F(Prefilters, SummedAreasAreExactModulo32BitsAtAnySize) {
   }
 }
 
-// S4 5.2.2.3: sums of many values lose precision in float32, so 32-bit integers (fixed point) are used beyond some
-// size.
+// Eisemann et al. 2009, section 5.2.2.3: sums of many values lose precision in float32, so 32-bit integers (fixed
+// point) are used beyond some size.
 TEST(SummedAreaTables, OfFloatsLoseWhatIntegersKeep) {
   constexpr std::uint32_t kSide = 2048, kBits = 10, kBox = 4;  // 2048² digits of 10 bits: 2³²
   std::mt19937 random(2);

@@ -99,8 +99,8 @@ TEST_F(ReceiverPlane, OffWhatIsBelowTheHorizonHidesLight) {
   }
 }
 
-// Hourcade and Nicolas 1985: where a texel says who is nearest no bias is needed, and none can move a shadow. What they
-// pay with: where triangles of several planes share a texel all but one of them are dark.
+// Hourcade and Nicolas 1985: a texel that names the nearest surface needs no bias, and no bias can move a shadow. The
+// price: where triangles of several planes share a texel, all but one of them are dark.
 TEST_F(ReceiverPlane, IdsNeedNoBiasAndLoseWhatSharesATexel) {
   for (const double tilt : {0.0, 30.0, 70.0}) {
     const double angle = tilt * std::numbers::pi / 180;

@@ -244,7 +244,8 @@ TEST_F(SliceMethods, OneFlatBlockerIsExactWithinHalfATexel) {
   EXPECT_GT(soft, 500U);
 }
 
-// S4 5.2.5: slices are multiplied, whatever their shadows have in common: disjoint, half over one another, nested.
+// Eisemann et al. 2009, section 5.2.5: slices are multiplied, whatever their shadows have in common: disjoint, half
+// over one another, nested.
 TEST_F(SliceMethods, TwoBlockersAreMultipliedInEveryLayout) {
   const Blocker upper{2, {-0.2, -0.5}, {0.1, 0.5}};
   for (const double shift : {0.45, 0.15, 0.0}) {
@@ -279,7 +280,8 @@ double error_of(const Stage& stage, const Masks& found, const Masks& truth) {
   return rmse(stage, on_floor, [&](std::size_t i) { return found.visibility[i] - truth.visibility[i]; });
 }
 
-// S4 5.2.5: right for flat blockers alone. The deeper a box reaches below its top, the worse.
+// Eisemann et al. 2009, section 5.2.5: right for flat blockers alone. The deeper a box reaches below its top, the
+// worse.
 TEST_F(SliceMethods, ConvolutionFailsWithTheBlockersExtentInDepth) {
   double before = 0;
   for (const double depth : {0.01, 0.6, 1.2}) {
@@ -304,7 +306,8 @@ TEST_F(SliceMethods, ConvolutionFailsWithTheBlockersExtentInDepth) {
   }
 }
 
-// S4 5.2.5: no shadow inside a slice. A box on a floor that casts, too: near its foot the shadow is missing.
+// Eisemann et al. 2009, section 5.2.5: no shadow inside a slice. A box on a floor that casts, too: near its foot the
+// shadow is missing.
 TEST_F(SliceMethods, WithinASliceOfTheFloorTheShadowIsMissing) {
   scenes::Scene scene;
   add_quad(scene, {0, 0, 0}, {kFloor, 0, 0}, {0, 0, kFloor});

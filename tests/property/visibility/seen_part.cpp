@@ -168,7 +168,7 @@ TEST(PlacedMeshes, KeepTheTreesOfMeshesThatStay) {
     EXPECT_EQ(seen_part(kept, camera, {&light, 1}, {0, 15}).numbers,
               seen_part(anew, camera, {&light, 1}, {0, 15}).numbers);
   };
-  // An instance moves; the meshes are what they were, also if they are read anew.
+  // An instance moves; the meshes are what they were, also if they are read again.
   forest.instances.all[3].placement.to_world[3] += glm::dvec4(0.7, 0.2, -3, 0);
   forest.instances.meshes[1] = std::make_shared<const scenes::SharedMesh>(*forest.instances.meshes[1]);
   kept.place(forest.scene, forest.instances);

@@ -109,7 +109,7 @@ Use use_at_disk(const Case& of) {
   const mpq_class volume = determinant(u, v, n), cells = 8;
   const std::array exact{mpq_class(cells * (1 + determinant(place, v, n) / volume)),
                          mpq_class(cells * (1 + determinant(u, place, n) / volume))};
-  // u × v is against the way to the disk: behind it is below.
+  // The normal u × v points against the direction to the disk: behind it is below.
   const bool first = sgn(heights[0]) < 0;
   const glm::dvec2 computed =
       first ? glm::dvec2(found->edge.x0, found->edge.y0) : glm::dvec2(found->edge.x1, found->edge.y1);

@@ -128,8 +128,8 @@ TEST_F(HardVolumeVariants, CullCastersInShadow) {
   EXPECT_EQ(answers.at("hierarchical").counters.at("culledVolumes"), 2U);  // the floor's two triangles
 }
 
-/// A board's shadow on a floor is a square, here of half-width 5/3. Tiles whose view samples are all on one of both
-/// surfaces are whole but where their box meets the square's outline.
+/// A board's shadow on a floor is a square, here of half-width 5/3. Tiles whose view samples are all on one of the two
+/// surfaces are whole, except where their box meets the square's outline.
 TEST_F(HardVolumeVariants, DecideWholeTiles) {
   scenes::Scene scene = tests::floor_and_light(0.5);
   tests::add_object(scene, "board", tests::quad({0, 2, 0}, {1, 0, 0}, {0, 0, -1}));

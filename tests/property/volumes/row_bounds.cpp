@@ -87,7 +87,8 @@ Use use_of(const Case& of) {
   return worst;
 }
 
-/// A corner of an edge: `share` of the way from p to a place of the light's plane, in half sides from its centre.
+/// A corner of an edge: at `share` of the segment from p to a place of the light's plane, in half sides from its
+/// centre.
 glm::vec3 on_the_way(const Case& of, const glm::dvec2& place, double share) {
   const auto& light = std::get<scenes::Rectangle>(of.scene.lights[0].shape);
   const glm::dvec3 target = light.center + place.x * light.half_u + place.y * light.half_v;

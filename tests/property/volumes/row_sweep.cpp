@@ -22,7 +22,7 @@ double twice_area(const Triangle& t) {
   return (t[1].x - t[0].x) * (t[2].y - t[0].y) - (t[1].y - t[0].y) * (t[2].x - t[0].x);
 }
 
-/// Triangles as layers: whichever way they are wound, inside there is one layer more.
+/// Triangles as layers: inside one, of either winding, there is one layer more.
 std::vector<RowEdge> outlines(std::span<const Triangle> triangles) {
   std::vector<RowEdge> edges;
   for (const Triangle& triangle : triangles) {

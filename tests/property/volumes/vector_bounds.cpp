@@ -69,7 +69,7 @@ class BoundX {
     if (!placed) return {};
     const Cluster cluster = make_cluster(under.grid, *placed);
     const ClusterSample at = complete(under.grid, cluster, placed->front());
-    // A point over p, on the way to somewhere near the light.
+    // A point over p, on the segment to somewhere near the light.
     const glm::dvec3 center = under.scaled(under.light.center);
     const glm::dvec3 target = center + 2 * real() * (under.scaled(under.light.center_u) - center) +
                               2 * real() * (under.scaled(under.light.center_v) - center);

@@ -15,7 +15,7 @@ namespace {
 
 using visibility::MethodOptions;
 
-/// All ways to look for the same contours.
+/// All variants of the search for the same contours.
 std::vector<std::pair<Factory, MethodOptions>> all_ways() {
   std::vector<std::pair<Factory, MethodOptions>> ways;
   for (const char* search : {"none", "hsm", "mssm", "ysm"}) {

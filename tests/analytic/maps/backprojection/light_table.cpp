@@ -13,7 +13,7 @@ namespace {
 
 class MapsLightTable : public MapsTest {
  protected:
-  /// Both methods, of 256² texels, each of which is asked.
+  /// Returns the answers of both methods, with maps of 256² texels, each of which is asked.
   static std::array<Masks, 2> both(const Stage& stage) {
     return {run(maps::make_backproject, stage, {{"size", "256"}}),
             run(maps::make_backproject_peel, stage, {{"size", "256"}, {"samples", "0"}})};
