@@ -137,7 +137,7 @@ def meet(a, b, c, d):
 
 
 def crosses(a, b, c, d):
-    """Do the open segments a b and c d cross?"""
+    """Returns whether the open segments a b and c d cross."""
     def side(x, y, z):
         return det2(sub(y, x), sub(z, x))
     return side(a, b, c) * side(a, b, d) < 0 and side(c, d, a) * side(c, d, b) < 0

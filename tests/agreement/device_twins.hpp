@@ -29,7 +29,7 @@ struct Rounded {
   /// Returns the share of the bound that leaves a wrong sign unnoticed: any smaller bound would trust it. 0 if the sign
   /// is right.
   [[nodiscard]] double wrong() const { return value * exact < 0 ? static_cast<double>(std::abs(value) / bound) : 0; }
-  /// The same, but no more than the number itself is off 0.
+  /// Returns wrong(), but no more than the number itself is off 0.
   [[nodiscard]] double far_wrong() const { return std::min(wrong(), static_cast<double>(std::abs(exact) / bound)); }
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Domes as a user meets them: what `render` gives by default, files that hold their light samples, pictures and which
-// toward these look, refusals.
+// Tests domes as a user meets them: what `render` gives by default, files that hold light samples, the directions in
+// which pictures of the sky look, and refusals.
 
 #include "tests/cli/program.hpp"
 #include "tests/report_json.hpp"

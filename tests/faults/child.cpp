@@ -59,7 +59,7 @@ std::map<std::string, std::string> additions(const Conditions& conditions) {
   return added;
 }
 
-/// May others go through all folders above the file?
+/// Returns whether other users may go through all folders above the file.
 bool is_reachable(const std::filesystem::path& file) {
   for (std::filesystem::path folder = file.parent_path();; folder = folder.parent_path()) {
     const auto allowed = std::filesystem::status(folder).permissions();

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Do all presets configure, and does everything compile as `clang`, `fuzz`, `coverage` and a Debug build would have it? Without
+"""Tests that all presets configure, and that everything compiles as `clang`, `fuzz`, `coverage` and a Debug build have it, without
 building them:
 
     compilers.py SOURCE BUILD

@@ -70,7 +70,7 @@ TEST(CoverageLights, TexturedLayersAddUp) {
     const CoverageStage stage(scene);
     ASSERT_NE(stage.soft.texture(), nullptr);
     // Each edge walks three times, each triangle's polygon has at most seven sides; a walk is off by 2⁻²⁴ · brightest
-    // where it is all but upright (property/volumes/coverage_textures.cpp). At most 16 triangles, so 48 edges.
+    // where it is nearly upright (property/volumes/coverage_textures.cpp). At most 16 triangles, so 48 edges.
     const double walks = 48 * 3 + 16 * 7;
     expect_layers(stage, random, walks * 0x1p-24 * stage.soft.texture()->brightest() + 1e-9, found);
     if (HasFatalFailure()) FAIL() << "scene " << i;

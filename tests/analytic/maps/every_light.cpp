@@ -123,7 +123,7 @@ struct Leaf {
     for (std::uint32_t i = 0; i < kCells * kCells; ++i)
       scene.pictures[0].texels.push_back({0, 0, 0, static_cast<std::uint8_t>((i % kCells + i / kCells) % 2 * 255)});
   }
-  /// The same as solid squares.
+  /// Adds the opaque texels as solid squares.
   void add_cut_out_to(scenes::Scene& scene) const {
     std::vector<Corners> squares;
     for (std::uint32_t i = 0; i < kCells * kCells; ++i) {

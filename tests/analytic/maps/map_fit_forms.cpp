@@ -193,7 +193,7 @@ TEST(MapFits, RaysLeaveAFrustumThroughTheFaceThatSaysSo) {
                               .upward = up / 0.6};
     const double depth = kNear + (kFar - kNear) * share(random);
     const glm::dvec3 x = eye + depth * (forward + 0.8 * anywhere(random) * right + 0.6 * anywhere(random) * up);
-    // The same, as a walk along the ray: where it is in the picture and how deep, and the first of these to end.
+    // Reference: a walk along the ray, which ends where it leaves the picture or the range of depths.
     double leaves = kBeyond;
     glm::dvec2 place(0);
     std::size_t through = 0;

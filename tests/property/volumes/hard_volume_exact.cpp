@@ -117,7 +117,7 @@ class HardVolume : public tests::DeviceTest {
     return counts;
   }
 
-  /// Does a neighbour of the pixel have another count?
+  /// Returns whether a neighbour of the pixel has another count.
   static bool at_boundary(const std::vector<std::int32_t>& counts, const ViewSamples& samples, std::size_t pixel) {
     const std::size_t x = pixel % samples.width, y = pixel / samples.width;
     return (x > 0 && counts[pixel - 1] != counts[pixel]) ||

@@ -39,7 +39,7 @@ std::vector<Case> cases() {
   return result;
 }
 
-/// Another way to describe a soup.
+/// Another description of a soup.
 using Wording = void (*)(mesh::TriangleSoup&, std::mt19937&);
 
 void permute(mesh::TriangleSoup& soup, std::mt19937& random) {
