@@ -9,7 +9,7 @@ source "$root/cmake/bootstrap.sh"
 
 install_packages
 targets=(penumbra)
-# What mends meshes is a program of its own, which takes long to compile.
+# The program that mends meshes is separate: it takes long to compile.
 case " $* " in *" --repair"*) targets+=(penumbra-repair) ;; esac
 build OFF "${targets[@]}"
 if (($# == 0)); then

@@ -3,6 +3,8 @@
 
 #include "app/command_words.hpp"
 
+#include "app/wrapped_lines.hpp"
+
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
@@ -18,7 +20,9 @@ namespace penumbra::app {
 namespace {
 
 constexpr std::array kGroups = {"Input", "Light", "Picture", "Method", "Output", "General"};
-constexpr std::size_t kHelpColumn = 34, kHelpWidth = 100;
+constexpr std::size_t kHelpColumn = 34;       // where descriptions begin
+constexpr std::size_t kNarrowHelpColumn = 8;  // the same on narrow terminals, where a description is below its name
+constexpr std::size_t kTwoColumns = 72;       // least width of a terminal with names and descriptions side by side
 
 /// Returns the group of each option that several commands have, or that is not about output. All other options are
 /// outputs.
@@ -58,26 +62,6 @@ std::string with_default(const CLI::Option& option) {
   return text;
 }
 
-/// Breaks a text at blanks into lines of at most `width` letters; longer words are on lines of their own.
-std::string in_lines(std::string_view text, std::size_t width) {
-  std::string result;
-  std::size_t column = 0;
-  while (!text.empty()) {
-    const std::size_t end = std::min(text.find_first_of(" \n"), text.size());
-    if (column > 0 && column + 1 + end > width) {
-      result += '\n';
-      column = 0;
-    } else if (column > 0) {
-      result += ' ';
-      ++column;
-    }
-    result += text.substr(0, end);
-    column += end;
-    text.remove_prefix(std::min(end + 1, text.size()));
-  }
-  return result;
-}
-
 /// Returns the type of an option's value, without CLI11's description of its checks (":INT in [1 - 4096]").
 std::string value_name(const CLI::Option& option) {
   const std::string name = option.get_type_name();
@@ -87,7 +71,6 @@ std::string value_name(const CLI::Option& option) {
 class GroupedFormatter : public CLI::Formatter {
  public:
   GroupedFormatter() {
-    column_width(kHelpColumn);
     label("Positionals", "Arguments");
     label("Subcommands", "Commands");
     label("SUBCOMMAND", "COMMAND");
@@ -95,20 +78,20 @@ class GroupedFormatter : public CLI::Formatter {
 
   std::string make_help(const CLI::App* app, std::string name, CLI::AppFormatMode mode) const override {
     std::stringstream text;
-    text << make_description(app) << make_usage(app, std::move(name)) << make_positionals(app);
+    text << paragraphs(make_description(app)) << paragraphs(make_usage(app, std::move(name))) << make_positionals(app);
     for (const char* group : kGroups) {
       const auto options = app->get_options(
           [&](const CLI::Option* option) { return option->get_group() == group && option->nonpositional(); });
       if (!options.empty()) text << make_group(group, false, options);
     }
-    text << make_subcommands(app, mode) << '\n' << make_footer(app);
+    text << make_subcommands(app, mode) << '\n' << paragraphs(make_footer(app));
     if (app->get_parent() != nullptr)
-      text << "Every command takes --quiet, --verbose and --threads N, too: `penumbra --help`.\n";
+      text << paragraphs("Every command takes --quiet, --verbose and --threads N, too: `penumbra --help`.\n");
     return text.str();
   }
 
-  std::string make_option_desc(const CLI::Option* option) const override {
-    return in_lines(with_default(*option), kHelpWidth - kHelpColumn);
+  std::string make_option(const CLI::Option* option, bool is_positional) const override {
+    return row(make_option_name(option, is_positional) + make_option_opts(option), with_default(*option));
   }
 
   std::string make_option_opts(const CLI::Option* option) const override {
@@ -119,6 +102,29 @@ class GroupedFormatter : public CLI::Formatter {
     if (option->get_required()) text += " (required)";
     return text;
   }
+
+  std::string make_subcommand(const CLI::App* command) const override {
+    return row(command->get_name(), command->get_description());
+  }
+
+ private:
+  [[nodiscard]] std::string paragraphs(const std::string& text) const {
+    return wrapped_lines(text, {.width = width_, .indent = 2});
+  }
+
+  /// Puts a description to the right of a name; below the name if the name is too long, or the terminal too narrow.
+  [[nodiscard]] std::string row(const std::string& name, const std::string& description) const {
+    const std::size_t column = width_ < kTwoColumns ? kNarrowHelpColumn : kHelpColumn;
+    std::string text = wrapped_lines("  " + name, {.width = width_, .indent = 2});
+    if (!description.empty()) {
+      const bool fits = text.find('\n') == std::string::npos && columns_of(text) < column;
+      text += fits ? std::string(column - columns_of(text), ' ') : '\n' + std::string(column, ' ');
+      text += wrapped_lines(description, {.width = width_, .start = column, .indent = column});
+    }
+    return text + '\n';
+  }
+
+  std::size_t width_ = help_width();
 };
 
 OptionWords words_of(const CLI::Option& option) {

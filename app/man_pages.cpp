@@ -28,6 +28,17 @@ std::string roff(std::string_view text) {
   return result;
 }
 
+/// Returns each line of a text as a line of the page, which man(1) fills to the terminal's width.
+std::string lines_of(std::string_view text) {
+  std::string result;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    result += fmt::format("{}{}\n", result.empty() ? "" : ".br\n", roff(text.substr(0, end)));
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  return result;
+}
+
 std::string upper(std::string text) {
   std::ranges::transform(text, text.begin(), [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
   return text;
@@ -86,7 +97,7 @@ std::string man_page(std::span<const CommandWords> commands, const CommandWords&
       text += fmt::format(".TP\n\\fB{}\\fR\n{}\n", roff(one.name), roff(one.help));
   }
   text += options_of(command);
-  if (!command.footer.empty()) text += fmt::format(".SH NOTES\n.nf\n{}\n.fi\n", roff(command.footer));
+  if (!command.footer.empty()) text += ".SH NOTES\n" + lines_of(command.footer);
   if (!is_program)
     text +=
         ".SH EXIT STATUS\n0 done; 1 the job ran and the answer is no; 2 wrong usage; 3 bad input; 4 device or "

@@ -51,10 +51,11 @@ visibility::SamplePattern parse_pattern(const std::string& text) {
 
 void add_format_options(CLI::App& command, FormatOptions& format) {
   command
-      .add_option("--layers", format.layers,
-                  "what the EXR has: names of layers or channels with commas between, * and ? in them, and beauty for "
-                  "R G B A; such as beauty,V,Z,key,P or 'beauty,*_light' (default: all but <light>_light and "
-                  "<light>_V, which repeat a light's R G B and V as Blender's compositor takes them)")
+      .add_option(
+          "--layers", format.layers,
+          "content of the EXR: names of layers or channels with commas between, * and ? in them, and beauty for "
+          "R G B A; such as beauty,V,Z,key,P or 'beauty,*_light' (default: all but <light>_light and "
+          "<light>_V, which repeat a light's R G B and V as Blender's compositor takes them)")
       ->type_name("NAME,…");
   command.add_flag("--half", format.half, "16 bits in the EXR for colours, V and N; P, Prel, Z, id and mattes keep 32");
   command
@@ -227,7 +228,7 @@ std::vector<MethodEntry> parse_methods(std::string_view text) {
     }
     entries.push_back(std::move(entry));
   };
-  // Unless the method computes nothing else, or the group's options exclude it.
+  // Adds the exact area, unless the method computes nothing else, or the group's options exclude it.
   const auto add_exact_area = [&](const visibility::MethodDescription& method, const visibility::MethodOptions& given) {
     visibility::MethodOptions options = given;
     options.insert(method.exact_area->options.begin(), method.exact_area->options.end());

@@ -99,9 +99,10 @@ void add_studio_options(CLI::App& command, StudioOptions& options) {
       ->type_name("none|auto")
       ->capture_default_str();
   command
-      .add_option("--add-light", options.lights,
-                  "a light more: rectangle:X,Y,Z:SIZE, sphere:X,Y,Z:RADIUS (both in the scene's unit, turned to its "
-                  "middle), sun:X,Y,Z:ANGLE (direction of its light, degrees), dome (all around); may be given again")
+      .add_option(
+          "--add-light", options.lights,
+          "an additional light: rectangle:X,Y,Z:SIZE, sphere:X,Y,Z:RADIUS (both in the scene's unit, turned to its "
+          "middle), sun:X,Y,Z:ANGLE (direction of its light, degrees), dome (all around); may be given again")
       ->type_name("KIND:…")
       ->allow_extra_args(false);
 }

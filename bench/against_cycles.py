@@ -199,7 +199,7 @@ class Line:
         return self.start + self.each * max(1, (self.unit / error) ** 2)
 
     def factor(self, error, ours):
-        """How many times as long as `ours` Cycles takes, as text: for more error than at the fewest measured samples a bound, since
+        """Returns how many times as long as `ours` Cycles takes, as text: for more error than at the fewest measured samples a bound, since
         what a process costs without samples is a small difference of large times."""
         if error > self.most_error:
             return f"≤ {number(self.least_seconds / ours)}"

@@ -37,6 +37,7 @@ std::vector<float> evaluate_once(visibility::Method& method, const Ground& groun
   return visibility;
 }
 
+/// Returns V by many light samples: the mean of several patterns of at most kMostAtOnce samples each.
 std::vector<float> dense_visibility(visibility::Method& rays, const Ground& ground, std::uint32_t samples) {
   std::vector<double> sum(ground.samples.size());
   std::uint32_t seed = 1;
@@ -60,11 +61,12 @@ std::vector<std::uint32_t> penumbra_pixels(visibility::Method& rays, const Groun
   return pixels;
 }
 
+/// Returns whether contestants are asked about pixels of this class.
 bool asks(PixelClass c) {
   return c == PixelClass::judged || c == PixelClass::horizon || c == PixelClass::behind;
 }
 
-/// Returns whether all evaluated view samples of a block (asks) have the same V, 0 or 1.
+/// Returns whether V is the same, 0 or 1, at all view samples of a block that contestants are asked about.
 bool is_trivial(const Question& question, std::uint32_t left, std::uint32_t top) {
   const visibility::ViewSamples& samples = question.ground.samples;
   bool lit = false, dark = false;

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Writes the tables of the pages PAGES from bench/results/*.json, and the list of these files in bench/results/README.md.
+"""Writes the tables of bench/README.md and docs/*.md from bench/results/*.json, and the list of these files in bench/results/README.md.
 
   bench/tables.py            writes them
   bench/tables.py --check    exits 1 if a page is not what this script writes, or if a file of results lacks commit, machine or command
@@ -24,7 +24,7 @@ RESULTS = ROOT / "bench" / "results"
 BLOCK = re.compile(r"(<!-- results/([\w-]+)\.json -->\n).*?(<!-- end -->)", re.S)
 GPU = "nvidia-h100"  # docs/devices.md has its table
 OWN_PAGE = {"against-cycles"}  # another script writes the page
-PAGES = [ROOT / "bench" / "README.md", ROOT / "docs" / "devices.md", ROOT / "docs" / "instances.md", ROOT / "docs" / "figures.md", ROOT / "docs" / "domes.md", ROOT / "docs" / "pictures.md", ROOT / "docs" / "view.md"]
+PAGES = [page for page in (ROOT / "bench" / "README.md", *sorted((ROOT / "docs").glob("*.md"))) if "<!-- results/" in page.read_text(encoding="utf-8")]
 
 
 def read(path):
@@ -79,8 +79,8 @@ def gpu_table(data):
 
 
 def listing(files):
-    lines = ["# Results", "", "Measured figures, a file a question: what was measured at which commit, on which machine, by which command. `bench/tables.py` writes this list, and the tables of",
-             "[bench/README.md](../README.md) from these files; do not edit either.", "", "| file | what | commit | machine |", "| --- | --- | --- | --- |"]
+    lines = ["# Results", "", "Measured figures, a file a question: what was measured at which commit, on which machine, by which command. `bench/tables.py` writes this list, and tables of",
+             "[bench/README.md](../README.md) and of pages in `docs/`, from these files; do not edit either.", "", "| file | what | commit | machine |", "| --- | --- | --- | --- |"]
     for path in files:
         data = read(path)
         machine = data["machine"] if isinstance(data["machine"], str) else data["machine"]["device"]

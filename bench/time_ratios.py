@@ -32,7 +32,7 @@ TURNS = 3
 
 
 def bunnies(count):
-    """So many bunnies in rows of four above a floor, which the camera sees from the front."""
+    """Returns `count` bunnies in rows of four above a floor, which the camera sees from the front."""
     world = scene([], half=0.5, light_y=6.0, floor=4.0, floor_casts=True)
     for k in range(count):
         one = bunny(height=1.2)

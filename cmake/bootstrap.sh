@@ -20,7 +20,7 @@ lively() {
   return "$code"
 }
 
-# What lively says of apt-get, whose output is in $apt_log, and of other things.
+# apt_text, configure_text: what `lively` says while it waits; the output of apt-get is in $apt_log.
 apt_text() {
   printf '%s: %d packages fetched, %d unpacked, %d set up' "$apt_step" "$(grep -c '^Get:' "$apt_log")" \
     "$(grep -c '^Unpacking ' "$apt_log")" "$(grep -c '^Setting up ' "$apt_log")"
@@ -88,7 +88,7 @@ and start this again; or, without this script, in $root:
   rm -f "$apt_log"
 }
 
-# Of install_packages, whose variables they know.
+# update_now, install_now: steps of install_packages, with its variables.
 update_now() { "${sudo[@]}" apt-get -q update >"$apt_log" 2>&1; }
 install_now() {
   "${sudo[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -q -o DPkg::Lock::Timeout=300 install --no-install-recommends -y \

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""What methods get wrong, in PNGs. The strips of README.md (geometry, image): for each method V, and below it how far V is
+"""Makes pictures of what methods get wrong, in PNGs. The strips of README.md (geometry, image): for each method V, and below it how far V is
 off, in docs/images/methods/, out of one comparison a strip. And the error maps of the methods' pages (pages): V, and beside it how
 far it is off where errors are judged, on a scene where that can be seen, in docs/images/errors/. Exact areas judge. Python's standard library is all
 that it needs.
@@ -146,7 +146,7 @@ def render_pages(program, pages):
 
 
 def write_page(page, found):
-    """For each entry V, and beside it how far it is off."""
+    """Writes V of each entry, and beside it how far it is off."""
     size = SIZES.get(PAGES[page][0], PAGE_SIZE)
     rows = [b""] * size
     for k, entry in enumerate(PAGES[page][2]):

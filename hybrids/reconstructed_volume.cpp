@@ -53,7 +53,7 @@ class ReconstructedVolume final : public visibility::Method {
     PENUMBRA_ASSERT(visibility.size() == counts.size(), "{} values for a tile of {} pixels", visibility.size(),
                     counts.size());
     for (std::size_t i = 0; i < counts.size(); ++i) {
-      // In doubt the host has counted triangles.
+      // The host has counted triangles where the device was in doubt.
       const std::int32_t start = eye_in_shadow_ && count_.doubts()[i] == 0 ? 1 : 0;
       const Kind kind = count_.kinds()[i];
       visibility[i] = kind == Kind::lit || (kind == Kind::counted && start + counts[i] == 0) ? 1.0F : 0.0F;

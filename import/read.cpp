@@ -161,7 +161,7 @@ mesh::ImportedMesh read_with_assimp(const mesh::InputFile& input, const std::str
   if (!extension.empty() && !importer.IsExtensionSupported(extension)) {
     throw InputError("{}: no importer for '{}' files; known are {}", file, extension, supported_extensions(importer));
   }
-  // Without post-processing: some of its steps drop faces.
+  // Post-processing is off: some of its steps drop faces.
   const aiScene* scene = importer.ReadFile(shown_to_assimp, 0);
   if (scene == nullptr || scene->mRootNode == nullptr) {
     std::string said = importer.GetErrorString();

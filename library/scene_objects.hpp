@@ -27,7 +27,7 @@ std::pair<std::uint32_t, std::uint32_t> vertices_of(const scenes::Scene& scene, 
 /// Throws if the mesh is the body of a light: a light and its body move together, which the interface does not support.
 void require_no_light(const scenes::Scene& scene, std::uint32_t object, const std::string& name);
 
-/// Returns the positions of the vertices that the scene keeps, of those given anew for a mesh of `count` vertices.
+/// Returns the positions of the vertices that the scene keeps, among those newly given for a mesh of `count` vertices.
 /// Throws InputError for another number than was given with the mesh.
 std::vector<glm::dvec3> kept_positions(const Scene::State& state, std::uint32_t object,
                                        std::span<const Vector> positions, std::size_t count, const std::string& where);
@@ -65,7 +65,7 @@ inline std::span<const scenes::Instance> instances_of(const Scene::State& state,
 /// Prepares a scene that was read for changes of its instances.
 void adopt_instances(Scene::State& state);
 void drop_instances(Scene::State& state, std::uint32_t object);
-/// Counts the soup's triangles before each instance anew.
+/// Counts again the soup's triangles before each instance.
 void number_instances(Scene::State& state);
 
 /// Returns the state in which `fill` has added the triangles of an object to the scene. All others are as they were.

@@ -69,9 +69,9 @@ engines::MethodRow row() {
   return row;
 }
 
-/// For methods with penumbrae drawn along the borders of triangles, which are not the borders of holes.
+/// Methods with penumbrae drawn along the borders of triangles, which are not the borders of holes.
 constexpr Given kWithoutHoles{.suns = true, .spheres = true, .holes = false};
-/// For methods with a flood on the screen, which would end at the border of the next disk of a lamp.
+/// Methods with a flood on the screen, which would end at the border of the next disk of a lamp.
 constexpr Given kWithoutSpheres{.suns = true, .spheres = false, .holes = true};
 
 }  // namespace

@@ -211,7 +211,7 @@ class PageServer::State::Socket : public std::enable_shared_from_this<Socket> {
   void close(websocket::close_code code) {
     if (std::exchange(closing_, true)) return;
     stream_.async_close(code, [self = this->shared_from_this()](beast::error_code) { self->end(); });
-    // A client that does not read does not read this message either. The stream's own timeout begins anew with
+    // A client that does not read does not read this message either. The stream's own timeout begins again with
     // everything that the client sends.
     goodbye_.expires_after(kGoodbye);
     goodbye_.async_wait([self = this->shared_from_this()](beast::error_code error) {

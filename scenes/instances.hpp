@@ -57,7 +57,7 @@ struct Instance {
 /// Triangles of a scene that are not in its soup, because their meshes are shared. Their numbers are those that they
 /// would have in the soup.
 struct Instances {
-  /// Never null. Never changed, so that whoever holds one knows what it is (visibility/seen/ keeps trees over them).
+  /// Never null. Never changed, so that its holders know what it is (visibility/seen/ keeps trees over them).
   std::vector<std::shared_ptr<const SharedMesh>> meshes;
   std::vector<Instance> all;  ///< in the order of their triangles' numbers
 

@@ -16,7 +16,7 @@
 /// then a new row here, and code that depends on properties need not change.
 namespace penumbra::scenes {
 
-/// In the order of LightShape, and of lists in messages.
+/// Kinds of light, in the order of LightShape, and of lists in messages.
 enum class LightKind : std::uint8_t { rectangle, disk, ellipse, polygon, sphere, sun, dome };
 
 /// Location of a light's points.

@@ -11,8 +11,8 @@
 /// Pictures on lights. Internal to scenes/.
 namespace penumbra::scenes {
 
-/// More texels a side than the densest light samples (64 x 64) can resolve, and few enough for every copy of a light to
-/// have its own: 84 MB at most.
+/// Largest side of a light's texture: more texels than the densest light samples (64 x 64) can resolve, and few enough
+/// for every copy of a light to have its own: 84 MB at most.
 inline constexpr std::uint32_t kLargestTextureSide = 2048;
 
 /// Largest side of pictures of the sky, which cover the directions of a sphere: 403 MB at most.

@@ -112,7 +112,7 @@ struct Pieces {
   using Piece = std::variant<Rectangle, Polygon, Sphere>;
   std::vector<Piece> pieces;  ///< at least one; no cones
 };
-/// In the order of LightKind (scenes/light_kind.hpp); Pieces, which mix kinds, last.
+/// Shapes in the order of LightKind (scenes/light_kind.hpp); Pieces, which mix kinds, last.
 using LightShape = std::variant<Rectangle, Disk, Ellipse, Polygon, Sphere, Sun, Dome, Pieces>;
 
 /// A picture on a rectangle light. Upright and unmirrored for a viewer of the emitting side, half_u to the right and

@@ -55,7 +55,7 @@ struct Judged {
 };
 /// `found`: the map's value, 1 for an empty texel.
 Judged judge_nearest(std::span<const Surface> surfaces, double found);
-/// Behind the surface of the previous layer; with the factor of peel.frag.
+/// Judges a layer behind the surface of the previous one; with the factor of peel.frag.
 Judged judge_behind(std::span<const Surface> surfaces, double found, double previous);
 /// 0 for an empty texel.
 Judged judge_farthest(std::span<const Surface> surfaces, double found);

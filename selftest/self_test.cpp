@@ -175,7 +175,7 @@ class SelfTest {
     pass.prepare_mesh({mesh.positions, mesh.triangles, &mesh.graph});
     const std::vector<std::uint32_t> counted(mesh.triangles.size(), volumes::gpu::kBothBits);
     SilhouetteTally tally;
-    // From above, from one of its corners (ties), and from a point where floats decide nothing.
+    // Points above, at one of the mesh's corners (ties), and where floats decide nothing.
     for (const glm::vec3& l : {glm::vec3(0.3F, 4, 0.2F), mesh.positions[17], glm::vec3(0, 1e30F, 0)}) {
       join(all, check_silhouettes(pass, mesh, l, counted, tally));
     }

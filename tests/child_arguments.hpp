@@ -18,7 +18,7 @@ inline std::vector<char*> pointers(std::vector<std::string>& strings) {
   return result;
 }
 
-/// This process's environment ("NAME=value" each) with the given variables set.
+/// Returns this process's environment ("NAME=value" each) with the given variables set.
 inline std::vector<std::string> environment_with(const std::map<std::string, std::string>& more) {
   std::map<std::string, std::string> variables;
   for (char** entry = environ; *entry != nullptr; ++entry) {

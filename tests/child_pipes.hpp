@@ -19,7 +19,7 @@ class ChildPipes {
   ChildPipes(int out, int err, std::string& out_text, std::string& err_text)
       : pipes_{{{out, POLLIN, 0}, {err, POLLIN, 0}}}, texts_{&out_text, &err_text} {}
 
-  /// False when the child has closed both.
+  /// Returns false once the child has closed both.
   [[nodiscard]] bool open() const { return pipes_[0].fd >= 0 || pipes_[1].fd >= 0; }
 
   /// Waits for something to read, no longer than this, and reads some of it.

@@ -27,6 +27,7 @@ penumbra_test(cli FULL *EveryTriple* SHARDS Part/RenderTogether=2 Part/CompareTo
   cli/farm_tasks.cpp
   cli/animated_meshes.cpp cli/frames.cpp
   cli/habit.cpp
+  cli/help_lines.cpp
   cli/image_methods.cpp
   cli/inspect.cpp
   cli/interpolated_areas.cpp

@@ -4,8 +4,9 @@
 # cmake -DSELF_TEST=folder -P layering.cmake: plants one violation of each kind and expects to catch it.
 cmake_minimum_required(VERSION 3.25)
 
-# What each room may include beside itself. A room is a folder; one named with a slash is a room inside another, and a
-# folder that is not named here belongs to the room around it. Families (volumes/…, vsm, maps) never include one another.
+# Rooms that each room may include beside itself. A room is a folder; one named with a slash is a room inside another,
+# and a folder that is not named here belongs to the room around it. Families (volumes/…, vsm, maps) never include one
+# another.
 set(may_base)
 set(may_network base)
 set(may_mesh base)
@@ -89,8 +90,8 @@ set(rooms base network mesh mesh/diagnosis mesh/shapes repair scenes scenes/form
 set(may_tests import ${rooms})
 list(APPEND rooms tests)
 
-# Which rooms, with those inside them, may see a library's headers; everywhere else only plain structs cross. In no .hpp
-# but those that say "Internal to this room" or "Inside <room>/ only".
+# Rooms that may see a library's headers, with the rooms inside them; everywhere else only plain structs cross. No .hpp
+# may, except those that say "Internal to this room" or "Inside <room>/ only".
 set(kept_vulkan render)
 set(kept_spirv_cross render)
 set(kept_EGL render/opengl)

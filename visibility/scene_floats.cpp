@@ -90,8 +90,8 @@ bool is_finite(const glm::vec3& x) {
                    position, at.x, at.y, at.z, owner, origin.x, origin.y, origin.z);
 }
 
-/// Below this, products of coordinates with other numbers of a picture are subnormal on devices, which may flush them
-/// to 0.
+/// Smallest size of a scene: below it, products of coordinates with other numbers of a picture are subnormal on
+/// devices, which may flush them to 0.
 constexpr float kSmallestScene = 0x1p-120F;
 
 void refuse_subnormal(const SceneFloats& floats) {

@@ -58,7 +58,7 @@ glm::dvec3 PlanarReceiver::place(const glm::dvec3& x) const {
 /// Returns −h of the triangle's highest corner: a segment from a lower p rises to its occluder.
 double PlanarReceiver::nearest(const std::array<glm::vec3, 3>& corners) const {
   double highest = -std::numeric_limits<double>::max();
-  // Where a part of the light is below the plane, segments may also fall.
+  // Segments may also fall where a part of the light is below the plane.
   if (!(light_low_ > highest_ + 4 * error_) && !sun_) return highest;
   if (sun_ && !(light_low_ > 0)) return highest;
   for (const glm::vec3& corner : corners) highest = std::max(highest, place(glm::dvec3(corner)).z);

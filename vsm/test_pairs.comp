@@ -92,7 +92,7 @@ bool test_quickly(vec3 a, vec3 e1, vec3 e2, vec2 sizes, bool beyond) {
   if (!clear) return false;
   const float sign = det < 0.0 ? -1.0 : 1.0, spacing = 2.0 / float(push.columns);
   const vec3 x = sign * vec3(ab.x, bc.x, ca.x), y = sign * vec3(ab.y, bc.y, ca.y), z = sign * vec3(ab.z, bc.z, ca.z);
-  // As in mark_rows, for three edges: column k of a row is at s = at.x + spacing · k.
+  // Columns of a row as in mark_rows, for three edges: column k is at s = at.x + spacing · k.
   const vec3 slope = x * spacing;
   const bvec3 rising = greaterThanEqual(slope, vec3(0.0));
   const vec3 least = error / (16.0 * float(push.columns));

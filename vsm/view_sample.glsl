@@ -119,8 +119,8 @@ vec2 row_start(int row) {
   return vec2((1.0 + float(shift) / 32768.0) / float(push.columns) - 1.0, float(2 * row + 1) / float(push.rows) - 1.0);
 }
 
-// Along a row each half-plane is a range of columns: certainly inside beyond x + slack, certainly outside below x −
-// slack (rising), or the reverse (falling). (bound row)
+// Marks, in each row, the columns inside all half-planes. Each half-plane is a range of columns: certainly inside
+// beyond x + slack, certainly outside below x − slack (rising), or the reverse (falling). (bound row)
 void mark_rows(HalfPlanes f, vec4 box, uint triangle) {
   const float last_column = float(push.columns) - 1.0, spacing = 2.0 / float(push.columns);
   const vec4 slope = f.x * spacing;

@@ -78,8 +78,7 @@ class BakeCommand : public Command {
         ->type_name("N");
     cli_.footer(
         "Each texel whose centre lies on the mesh is a view sample there, on the mesh's own triangle, with its "
-        "geometric "
-        "normal;\nV and irradiance are what `render` finds at such a point. docs/bake.md says the rest.\n");
+        "geometric normal; V and irradiance are what `render` finds at such a point. docs/bake.md says the rest.\n");
   }
 
   int run(const GlobalOptions& global) override {

@@ -39,8 +39,9 @@ class ConvertCommand : public Command {
     add_lenient(cli_, lenient_);
     add_gltf_options(cli_, gltf_);
     add_studio_options(cli_, studio_);
-    cli_.add_option("--camera", camera_,
-                    "a camera more, the first: fit for one that sees all, or EX,EY,EZ:TX,TY,TZ[:FOV]")
+    cli_.add_option(
+            "--camera", camera_,
+            "an additional camera, which becomes the first: fit for one that sees all, or EX,EY,EZ:TX,TY,TZ[:FOV]")
         ->type_name("fit|E:T[:FOV]");
   }
 

@@ -97,7 +97,7 @@ class DevicesCommand : public Command {
         "arithmetic and against each other, on this machine's device and drivers; exit 1 if one fails");
     cli_.add_option("--device", device_, "with --self-test: a part of its name, its index, or cpu");
     cli_.footer(
-        "OpenGL needs no display: EGL gives it a context without a surface. It draws the maps of methods with\n"
+        "OpenGL needs no display: EGL gives it a context without a surface. It draws the maps of methods with "
         "rasteriser=opengl; docs/rasterisers.md says what the self-test proves.");
   }
 

@@ -76,7 +76,7 @@ class RenderCommand : public Command {
       spdlog::info("all {} pictures are there", frames.size());
       return 0;
     }
-    // While the scene is read, mostly by another process.
+    // The device is made while the scene is read, mostly by another process.
     machine.begin(!request_.wish.method.empty() && needs_device(request_.wish.method, request_.wish.options));
     ReadScene now = read(frames[at]);
     now.seconds = seconds_since_start();  // no other work has been done yet

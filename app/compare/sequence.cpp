@@ -170,7 +170,7 @@ Json frame_json(std::int64_t number, const compare::Metrics& metrics, std::span<
 compare::Metrics compare_frames(const RunOptions& run, const ComparisonOptions& options,
                                 std::span<const std::int64_t> frames, double fps,
                                 const std::vector<std::string>& arguments, Progress& progress) {
-  // Before any long work; the last frame's comparison claims them again.
+  // Files are claimed before any long work; the last frame's comparison claims them again.
   ComparisonFiles files(run.out, {.png = options.png, .bits = options.bits});
   files.claim(run.scene, options.methods, options.stats);
   compare::Metrics all;

@@ -82,7 +82,7 @@ class SubmitCommand : public Command {
       throw ResourceError("--logs {}: {}", logs_.string(), error.message());
     if (jobs_ > 0) return render_here();
     if (folder_.string().find('\\') != std::string::npos) {
-      // For Slurm, a backslash means that no %A of the name is to be replaced.
+      // A backslash means to Slurm that no %A of the name is to be replaced.
       throw UsageError("{}: Slurm cannot write logs into a folder with a backslash in its name; rename it",
                        folder_.string());
     }

@@ -78,12 +78,11 @@ class InspectCommand : public Command {
         ->type_name("N");
     add_allow_outside(cli_, allow_outside_);
     cli_.footer(
-        "Of one file the whole report is printed, of several (or of a folder) one table, a row a file; --verbose "
-        "prints "
-        "the\nwhole report of each. A file that cannot be read is a row with the reason; the others are done.\n"
-        "JSON: of one FILE \"notes\", \"objects\", their \"total\" and, at the top level, the total's keys: `penumbra "
-        "inspect m.ply\n--json - | jq .boundaryEdges`; of several an array of such entries. In \"lists\", "
-        "\"triangles\" are numbers in the\norder of `convert`, \"faces\" those of the mesh's own file.\n"
+        "Prints the whole report of one file, but one table of several files or of a folder, a row a file; --verbose "
+        "prints the whole report of each. A file that cannot be read is a row with the reason; the others are done.\n"
+        "JSON of one FILE has \"notes\", \"objects\", their \"total\" and, at the top level, the total's keys: "
+        "`penumbra inspect m.ply --json - | jq .boundaryEdges`; JSON of several files is an array of such entries. In "
+        "\"lists\", \"triangles\" are numbers in the order of `convert`, \"faces\" those of the mesh's own file.\n"
         "Exit code 0 if every file could be read, whatever is wrong with it; 3 if not; 1 if --fail-on found "
         "something.\nColours of --export-defects and --png (of two, the lower in this list):\n" +
         defect_legend());

@@ -27,7 +27,7 @@ struct Legend {
   bool point = false;  ///< the first point of a location is a vertex to be marked
 };
 
-/// In increasing order of severity.
+/// Legend in increasing order of severity.
 constexpr std::array<Legend, 9> kLegend = {{
     {&Diagnosis::needles, "needles", "green", {60, 170, 60}, true, false},
     {&Diagnosis::duplicate_faces, "duplicate faces", "blue", {40, 80, 220}, true, false},

@@ -22,7 +22,7 @@ std::atomic<bool> g_interrupted{false};
 std::mutex g_mutex;  // held while the process ends, so that no section that must unwind can begin
 int g_unwinding = 0;
 
-/// Not exit(): its handlers would destroy data used by working threads.
+/// Ends the process without exit(), whose handlers would destroy data used by working threads.
 [[noreturn]] void end_at_once() {
   remove_unfinished_files();
   constexpr char kText[] = "penumbra: interrupted\n";

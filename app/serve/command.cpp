@@ -20,7 +20,7 @@ class ServeCommand : public Command {
     cli_.add_option("--device", run_.device, "Vulkan device: part of its name, its index, or cpu (default: the best)")
         ->type_name("NAME|INDEX|cpu");
     cli_.add_option("--normals", run_.normals,
-                    "of the pictures that are shown: shading or geometric (default: shading)")
+                    "normals of the pictures that are shown: shading or geometric (default: shading)")
         ->type_name("KIND");
   }
 

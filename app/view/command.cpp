@@ -113,7 +113,7 @@ class ViewCommand : public Command {
   }
 
  private:
-  /// Without a display there is no browser to open.
+  /// Returns nullopt without a display: there is no browser to open.
   static std::optional<Child> open_browser(const std::string& address) {
     const bool has_display = std::getenv("DISPLAY") != nullptr || std::getenv("WAYLAND_DISPLAY") != nullptr;
     const std::string opener = has_display ? program_path("xdg-open") : "";

@@ -10,7 +10,7 @@
 namespace penumbra::app {
 namespace {
 
-/// From the best to the lowest.
+/// Levels from the best to the lowest.
 constexpr std::array kLevels{LiveQuality{1, 64}, LiveQuality{1, 16}, LiveQuality{2, 16},
                              LiveQuality{2, 4},  LiveQuality{4, 4},  LiveQuality{8, 4}};
 constexpr double kQuickTime = 28;  // milliseconds; a faster picture leaves time for a better level

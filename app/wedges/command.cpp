@@ -69,10 +69,9 @@ class WedgesCommand : public Command {
     cli_.add_option("--export", export_, "wedges cut by the scene's box, edges, light, offending points")
         ->type_name("FILE.glb|.obj|.ply");
     cli_.add_option("--json", json_, "edges, planes, violations")->type_name("FILE");
-    cli_.add_option(
-            "--explain", explain_,
-            "for this pixel of the picture that `render` makes: the wedges that contain what it sees, what each takes "
-            "from the light or gives back, their sum, and the exact area")
+    cli_.add_option("--explain", explain_,
+                    "explain this pixel of the picture that `render` makes: the wedges that contain what it sees, what "
+                    "each takes from the light or gives back, their sum, and the exact area")
         ->type_name("X,Y");
     cli_.add_option("--size", size_, "size of that picture (default: as in `render`)")->type_name("WxH");
     cli_.add_option("--camera", camera_, "camera of that picture, as in `render` (default: the scene's first)")

@@ -80,7 +80,7 @@ def is_sheared(matrix):
 
 
 def power_of(lamp):
-    """In watts, or of suns as irradiance; what newer Blenders have beside it is in it."""
+    """Returns the power in watts, or irradiance of suns; the exposure of newer Blenders is in it."""
     power = lamp.energy * 2 ** getattr(lamp, "exposure", 0.0)
     return tuple(power * x for x in lamp.color)
 

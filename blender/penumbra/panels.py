@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Where settings are shown: panels of Blender's that say what Penumbra reads, and its own where Blender has none for engines
+"""Shows settings: panels of Blender's that say what Penumbra reads, and its own where Blender has none for engines
 of add-ons."""
 
 import bpy

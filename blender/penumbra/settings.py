@@ -20,7 +20,7 @@ class PenumbraPreferences(bpy.types.AddonPreferences):
 
 class PenumbraSettings(bpy.types.PropertyGroup):
     exactness: EnumProperty(name="Shadows", default=program.EXACT, items=[
-        (program.EXACT, "Exact", "The exact area of each light that is seen, where a method can; else light samples"),
+        (program.EXACT, "Exact", "The exact visible area of each light where a method can compute it; else light samples"),
         (program.SAMPLES, "Light samples", "Points of each light, each of them exactly seen or not")])
     light_samples: IntProperty(name="Light samples", default=256, min=1, max=4096, description="Points of each light")
     method: StringProperty(name="Method", description="A shadow method's name (`penumbra methods` lists them); empty: "
@@ -30,7 +30,7 @@ class PenumbraSettings(bpy.types.PropertyGroup):
     pixel_filter: EnumProperty(name="Pixel filter", default=program.BOX, items=[
         (program.BOX, "Box", "The mean of a pixel's own view samples"),
         (program.BLACKMAN_HARRIS, "Blackman-Harris", "As Cycles has it, neighbours' view samples included")])
-    filter_width: FloatProperty(name="Width", default=1.5, min=1, max=10, description="Of the filter, in pixels")
+    filter_width: FloatProperty(name="Width", default=1.5, min=1, max=10, description="Width of the filter, in pixels")
     light_cutoff: FloatProperty(name="Light cutoff", default=0, min=0, max=1, precision=4, description="Leaves a light out of "
                                 "pixels where, with nothing in between, it would be at most this share of all lights; 0: nowhere")
     shading_normals: BoolProperty(name="Smooth shading", default=True, description="Cosines of smooth faces are those of "
@@ -47,7 +47,7 @@ class PenumbraSettings(bpy.types.PropertyGroup):
     bake_size: IntProperty(name="Size", default=1024, min=4, max=8192, description="Texels a side of the baked image")
     bake_margin: IntProperty(name="Margin", default=8, min=0, max=1024, description="Texels around the mesh's own")
     bake_what: EnumProperty(name="Bake", default="LIGHT", items=[
-        ("LIGHT", "Light", "What a white surface shows; times the base colour it is the picture"),
+        ("LIGHT", "Light", "Light that a white surface reflects; multiplied by the base colour it gives the picture"),
         ("VISIBILITY", "Visibility", "How much of the first light is seen, from 0 to 1")])
     device: StringProperty(name="Device", description="Part of a Vulkan device's name, its number, or cpu; empty: the best")
 

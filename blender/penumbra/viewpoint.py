@@ -20,7 +20,7 @@ _LARGEST = 4096  # pixels a side of a picture that is shown (docs/serve.md)
 
 
 def _fitting(size):
-    """Halved until `serve` shows it; what draws the picture stretches it."""
+    """Returns the size, halved until `serve` shows it; the picture is stretched when it is drawn."""
     while max(size) > _LARGEST:
         size = tuple((side + 1) // 2 for side in size)
     return tuple(size)

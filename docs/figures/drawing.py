@@ -18,7 +18,7 @@ PALE = "#e4e7eb"
 
 
 def number(x):
-    """At most two decimals, no −0: the same text on every machine."""
+    """Returns x with at most two decimals, no −0: the same text on every machine."""
     text = f"{x:.2f}".rstrip("0").rstrip(".")
     return "0" if text in ("-0", "") else text
 

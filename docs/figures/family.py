@@ -31,7 +31,7 @@ METHODS = {
     "deep-penumbra": (2005, (680, 545), "V along rays"),
     "adaptive-light": (None, (680, 612), "maps where they differ"),
 }
-# From, to, what the second repairs of the first.
+# Arrows: from, to, what the second repairs of the first.
 ARROWS = [
     ("shadow-map", "pcf", "soft edges", BLUE), ("pcf", "pcss", "width of penumbrae", BLUE), ("shadow-map", "silhouette-map", "straight edges", BLUE), ("pcss", "vssm", "no taps", BLUE), ("shadow-map", "forward-map", "", BLUE),
     ("shadow-map", "convolution", "areas", GREEN), ("convolution", "occlusion-textures", "several planes", GREEN),

@@ -175,7 +175,7 @@ def adaptive_light_figure():
     depth_most = 3
 
     def shades(s, t):
-        """Whether an edge hides the point (s, t) of the unit light."""
+        """Returns whether an edge hides the point (s, t) of the unit light."""
         return 0.9 * s + 0.35 * t > 0.62
 
     leaves, points = [], {}

@@ -67,7 +67,7 @@ def multiplicities(triangles, p):
     from p, runs from a to b, and −1 where it runs from b to a. Triangles are triples of points."""
     k = {}
     for a, b, c in triangles:
-        # Seen from p a triangle is counter-clockwise if its normal (b − a) × (c − a) points to p.
+        # A triangle is counter-clockwise as seen from p if its normal (b − a) × (c − a) points to p.
         side = dot(cross(sub(b, a), sub(c, a)), sub(p, a))
         if side == 0:
             continue
@@ -132,12 +132,12 @@ def hull(points):
 
 
 def meet(a, b, c, d):
-    """Where the lines a b and c d meet."""
+    """Returns the point where the lines a b and c d meet."""
     return mix(a, b, det2(sub(c, a), sub(d, c)) / det2(sub(b, a), sub(d, c)))
 
 
 def crosses(a, b, c, d):
-    """Do the open segments a b and c d cross?"""
+    """Returns whether the open segments a b and c d cross."""
     def side(x, y, z):
         return det2(sub(y, x), sub(z, x))
     return side(a, b, c) * side(a, b, d) < 0 and side(c, d, a) * side(c, d, b) < 0

@@ -14,7 +14,7 @@ def surface(x):
 
 
 def alias_free_figure():
-    """In a plane: light pixels are intervals of a line, casters segments."""
+    """Draws alias-free in a plane: light pixels are intervals of a line, casters segments."""
     lamp, line, count = (3.6, 6.2), -0.85, 12
     casters = [((1.5, 2.2), (2.9, 2.5)), ((4.3, 2.9), (5.1, 2.5))]
     samples = [(0.55 * i + 0.15, surface(0.55 * i + 0.15)) for i in range(15)]
@@ -72,12 +72,12 @@ def alias_free_figure():
 
 
 def side(p, l, x):
-    """On which side of x the line from p to l passes, in a plane: affine in p and in l."""
+    """Returns the side of x on which the line from p to l passes, in a plane: affine in p and in l."""
     return (l[0] - p[0]) * (x[1] - p[1]) - (l[1] - p[1]) * (x[0] - p[0])
 
 
 def hierarchical_figure():
-    """In a plane: light samples on a line, view samples on another, a caster between; and the product of the two sets."""
+    """Draws hierarchical-penumbra in a plane: light samples on a line, view samples on another, a caster between; and the product of the two sets."""
     lights = [(-1.5 + 3.0 * (i + 0.5) / 16, 5.0) for i in range(16)]
     views = [(-4.0 + 8.0 * (i + 0.5) / 32, 0.0) for i in range(32)]
     caster = ((-0.4, 2.6), (2.1, 3.0))
@@ -143,7 +143,7 @@ DEEP = 5.0
 
 
 def footprint_points():
-    """What the light's corners (height 0) project of the caster's corners on the plane at depth DEEP."""
+    """Projects the caster's corners from the light's corners (height 0) on the plane at depth DEEP."""
     return [(l[0] + (x[0] - l[0]) * DEEP / h, l[1] + (x[1] - l[1]) * DEEP / h) for x, h in CASTER3 for l in LAMP3]
 
 
@@ -163,7 +163,7 @@ def footprint_figure():
             hit = len(clip_to(square, outline)) > 2
             touched += hit
             view.polygon(square, "#f6d9d5" if hit else None, PALE, 0.8)
-    # What a point of the light and one of the triangle project is in the hull.
+    # The hull holds everything that a point of the light and one of the triangle project.
     for i in range(7):
         for j in range(7):
             l = (-1 + i / 3, -0.7 + j * 0.7 / 3)
@@ -255,7 +255,7 @@ def clip_line(a, b, size=1.2):
 
 
 def soft_irregular_figure():
-    """In a plane: the light is a segment, casters are segments, an edge is a caster's end, areas are lengths."""
+    """Draws soft-irregular in a plane: the light is a segment, casters are segments, an edge is a caster's end, areas are lengths."""
     half, centre, line, count = 1.0, (3.6, 6.2), -0.75, 16
     ends = [(centre[0] - half, centre[1]), (centre[0] + half, centre[1])]
     casters = [((2.3, 3.5), (4.2, 3.7)), ((3.3, 1.7), (5.3, 1.6))]
@@ -265,7 +265,7 @@ def soft_irregular_figure():
         return meet(l, x, (0, line), (1, line))[0]
 
     def on_light(p, x):
-        """Where p sees x, −1 … 1 on the light."""
+        """Returns the place, −1 … 1 on the light, where p sees x."""
         return (meet(p, x, *ends)[0] - centre[0]) / half
 
     def beyond(place):
@@ -315,7 +315,7 @@ def soft_irregular_figure():
                             tested.add(i)
                         if beyond(on_light(p, x)) > 0:
                             kept[i].add(x)
-    # What the lists of a footprint find is all that matters.
+    # The lists of a footprint hold all that matters.
     for i, p in enumerate(samples):
         assert abs(visible(p, True) - visible(p, True, kept[i])) < 1e-12
     view.polygon([edge, (far(ends[1], edge), line), (far(ends[0], edge), line)], RED, opacity=0.16)

@@ -47,7 +47,7 @@ def stale_figures(check):
 
 
 def anchor_of(heading):
-    """As GitHub makes it: lower case, spaces to hyphens, punctuation left out."""
+    """Makes an anchor as GitHub does: lower case, spaces to hyphens, punctuation left out."""
     return re.sub(r"[^\w\- ]", "", heading.strip().lower()).replace(" ", "-")
 
 

@@ -81,7 +81,7 @@ def shadow_map_figure():
 
 
 def pcss_case(blockers, p=(0.35, 5.0), half=1.0):
-    """What pcss computes from its map at p = (x, z), and the true V, both in the plane with very many taps."""
+    """Returns what pcss computes from its map at p = (x, z), and the true V, both in the plane with very many taps."""
     x, z = p
     count = 4000
     lamp = [half * (2 * (i + 0.5) / count - 1) for i in range(count)]

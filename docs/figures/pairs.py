@@ -83,7 +83,7 @@ def patterns_figure():
 
 
 def pair_figure():
-    """In a plane: the carrier is a line, so is every triangle."""
+    """Draws a pair in a plane: the carrier is a line, and so is every triangle."""
     p, slope = (0.0, 0.0), 0.3
     light = ((4.6, 0.35), (4.6, 4.1))
     samples = [mix(*light, (k + 0.5) / 8) for k in range(8)]

@@ -68,7 +68,7 @@ def encoded(rows, channels):
 def packed(rows, channels):
     """The compressed lines of a picture."""
     def filtered(line, before):
-        """Of the five filters the one whose differences are smallest in sum."""
+        """Returns the line by the one of five filters whose differences are smallest in sum."""
         choices = []
         for kind in range(5):
             out = bytearray([kind])

@@ -24,7 +24,7 @@ SCENES = ["bunny", "contact", "fusion", "large-penumbra", "self-shadow", "thin",
     f"papers/{name}" for name in ("ball", "bars", "fusion-half", "gap-open", "plate-over-plate", "slopes", "tower", "two-sheets")]
 SIZES = [("small", 0.25), ("as shipped", 1.0), ("large", 2.0)]
 PICTURE, TEXELS, SAMPLES = 72, 128, 64
-# Beside each method as it is by default: the variants that papers compare.
+# Variants that papers compare, beside each method as it is by default.
 VARIANTS = ["vssm:moments=lvsm", "vssm:moments=evsm", "vssm:moments=csm", "vssm:moments=esm", "backproject:layers=4", "bitmask:layers=4",
             "soft-volume:fusion=max", "soft-volume:fusion=product", "soft-volume:fusion=average", "soft-volume:fusion=vote"]
 CLASSES = ["lit", "penumbra", "umbra", "cast", "self"]
@@ -118,7 +118,7 @@ def measure(program, names):
 
 
 def written(kept):
-    """As JSON, a line an entry."""
+    """Returns JSON, a line an entry."""
     lines = []
     for name, found in kept["cells"].items():
         rows = ",\n".join(f"   {json.dumps(entry)}: {json.dumps(numbers)}" for entry, numbers in found["methods"].items())
@@ -138,7 +138,7 @@ def squares(numbers, pixels, name):
 
 
 def reason(cell, pixels, winner, rivals):
-    """Where the winner is better than the next five: the class that their mean squared error loses most in, and its share."""
+    """Returns where the winner is better than the next five: the class that their mean squared error loses most in, and its share."""
     gains = {name: sum(squares(cell[r], pixels, name) for r in rivals) / len(rivals) - squares(cell[winner], pixels, name)
              for name in ("lit", "penumbra", "umbra")}
     whole = sum(max(gain, 0) for gain in gains.values())
@@ -198,7 +198,7 @@ def linked(entry):
 def page(kept):
     families, cells = kept["families"], rows_of(kept)
     pixels = {name: found["pixels"] for name, found in kept["cells"].items()}
-    # What answers every pair, or the area, exactly: the same error everywhere, of the light samples or of none.
+    # Methods that answer every pair, or the area, exactly: the same error everywhere, of the light samples or of none.
     exact = {e for e in families if families[e] == "geometry" and
              all(e not in cell or cell[e]["rmse"] <= 1.1 * cell["edge-scatter"]["rmse"] + 1e-4 for cell in cells.values())}
     images = [e for e in families if families[e] == "image"]

@@ -70,7 +70,7 @@ def rooms_figure():
     for room in sorted(rooms, key=lambda r: -level[r]):
         if users[room]:
             level[room] = min(level[other] for other in users[room]) - 1
-    # Of a row with more boxes than fit, those that nothing keeps there go one lower, and so on down.
+    # A row with more boxes than fit sends those that nothing keeps there one lower, and so on down.
     width, step, margin = 1160, 62, 16
     box = {room: 7.6 * len(room) + 18 for room in rooms}
 

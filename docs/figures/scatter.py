@@ -22,7 +22,7 @@ def solid(corners):
 
 
 def depth(triangles, st):
-    """How many triangles the segment from P to a light point meets, triangle by triangle."""
+    """Returns how many triangles the segment from P to a light point meets, triangle by triangle."""
     return sum(inside(st, counter_clockwise([LAMP.project(P, x) for x in triangle])) for triangle in triangles)
 
 
@@ -131,7 +131,7 @@ def rows_figure():
 
 
 def shaft_figure():
-    """From the side: two clusters of one pixel block, the shaft of one, boxes and cones of edges beside and in it."""
+    """Draws from the side two clusters of one pixel block, the shaft of one, boxes and cones of edges beside and in it."""
     light = [(2.6, 6.0), (4.4, 6.0)]
     table = [(1.62 + 0.16 * i, 1.55) for i in range(4)]
     floor = [(2.3 + 0.38 * i, 0.0) for i in range(4)]
@@ -287,7 +287,7 @@ def scattered_samples(count):
 
 
 def change_in_tiles(edge, q, corner, left=-1.0):
-    """What an edge changes on the way to q: up the left side, along its row's way to its tile's left side, up, and right."""
+    """Returns what an edge changes along a path to q: up the left side, along the path of its row to its tile's left side, up, and right."""
     (x0, y0), (x1, y1), jump = edge
 
     def passed(at, side):
@@ -366,7 +366,7 @@ def upward(a, b, k):
 
 
 def change_on_the_way(edge, q, middle, left=-1.0):
-    """What an edge changes on the way to q: up the left side, along the row's middle, and then straight to q."""
+    """Returns what an edge changes along a path to q: up the left side, along the row's middle, and then straight to q."""
     (x0, y0), (x1, y1), jump = edge
     spans, over = y0 <= middle < y1, x1 - x0
 

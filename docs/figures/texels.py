@@ -11,7 +11,7 @@ FLOOR = 5.0
 
 
 def heights(casters, direction):
-    """Where the way along (direction, 1) from the light's centre meets casters, the nearest first."""
+    """Returns where the ray along (direction, 1) from the light's centre meets casters, the nearest first."""
     found = []
     for (x0, z0), (x1, z1) in casters:
         dx, dz = x1 - x0, z1 - z0

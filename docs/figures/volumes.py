@@ -10,7 +10,7 @@ from scatter import LAMP, P, seen_at, signed, solid
 
 
 def hard_volume_figure():
-    """In a plane: a caster is a segment, its volume has the segment and two rays as faces."""
+    """Draws hard volumes in a plane: a caster is a segment, its volume has the segment and two rays as faces."""
     lamp, eye, bottom = (3.2, 5.6), (-0.9, 1.35), -4.6
     casters = [((2.2, 3.3), (3.5, 3.4)), ((3.15, 1.9), (4.3, 2.1))]
     receivers = [(0.4, 0.35), (3.35, 0.35), (6.2, 0.35)]

@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-/// From pixels to clusters of view samples. Inside engines/vectors/ only.
+/// Turns pixels into clusters of view samples. Inside engines/vectors/ only.
 namespace penumbra::vectors {
 
 /// Classification of a view sample that is certain before any triangle is tested.

@@ -164,7 +164,7 @@ bool mend_uris(json& document, const std::string& file) {
   if (json* const images = array_of(document, "images")) {
     for (json& image : *images) {
       if (mend_uri(image, changed) != 0) continue;
-      // Not a picture that could be decoded; tinygltf would otherwise look for a file of this name.
+      // The URI is no picture that could be decoded; tinygltf would otherwise look for a file of this name.
       image["uri"] = "data:application/octet-stream;base64,AAAA";
       changed = true;
     }

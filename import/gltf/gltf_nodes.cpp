@@ -110,7 +110,7 @@ std::vector<PlacedNode> place_nodes(const tinygltf::Model& model, std::vector<st
     // A tree reaches each node once; this check also ends every cycle.
     if (visited[index]) throw InputError("/nodes/{}: it has two parents or is its own ancestor", node.number);
     visited[index] = true;
-    // Until here `to_world` and `visible` were those of the parent.
+    // The fields `to_world` and `visible` were those of the parent up to here.
     node.to_world = node.to_world * local_transform(model.nodes[index], node.number);
     node.visible = node.visible && is_visible(model.nodes[index]);
     const auto& children = model.nodes[index].children;

@@ -55,7 +55,7 @@ class SurfaceReader {
   Look read(const tinygltf::Primitive& primitive, const std::string& place, const std::string& object,
             std::size_t vertices);
 
-  /// From now on Look::lightmap is read from TEXCOORD_N with N = `set`, regardless of the pictures.
+  /// Makes later calls read Look::lightmap from TEXCOORD_N with N = `set`, regardless of the pictures.
   void read_lightmap(std::uint32_t set) { lightmap_ = set; }
 
   Opacity opacity_of(const Look& look);

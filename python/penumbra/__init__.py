@@ -124,7 +124,7 @@ class Scene:
         return Instance(mesh, self._core.add_instance(mesh, _np.asarray(matrix, float)))
 
     def instance_count(self, mesh):
-        """How many instances a mesh has, by its name or number; 0: the mesh itself is in the scene."""
+        """Returns how many instances a mesh has, by its name or number; 0: the mesh itself is in the scene."""
         return self._core.instance_count(self._mesh(mesh))
 
     def set_positions(self, mesh, vertices):
@@ -253,7 +253,7 @@ class LightPicture:
 
     @property
     def masks(self):
-        """Which light samples each pixel sees, bool (H, W, N); None of areas and of methods without masks."""
+        """Light samples that each pixel sees, bool (H, W, N); None of areas and of methods without masks."""
         words = self._core.mask_words(self._index)
         if words is None:
             return None

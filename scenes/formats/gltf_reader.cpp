@@ -89,7 +89,7 @@ Scene read_gltf(const std::filesystem::path& file, const ReadOptions& options) {
 Scene read_glb(std::span<const std::byte> bytes, const std::string& name, const ReadOptions& options,
                const std::filesystem::path& folder) {
   if (bytes.empty()) throw InputError("{}: it is empty", name);
-  // Without a folder the place of files that the bytes name is one that holds none.
+  // Files that the bytes name are looked for in a place that holds none if there is no folder.
   const std::filesystem::path home = folder.empty() ? "/dev/null" : folder;
   const int flags = O_RDONLY | O_CLOEXEC | (folder.empty() ? 0 : O_DIRECTORY);
   mesh::InputFile input{folder / (name + ".glb"), file_of(bytes, name), Descriptor(::open(home.c_str(), flags))};

@@ -53,7 +53,7 @@ void for_each_mesh(const Scene& scene, const Instances& instances, const TakeRan
   for (; next != instances.all.end(); ++next) take_instance(*next);
 }
 
-/// Returns whether two objects are the same to a format, but for their names.
+/// Returns whether two objects are the same to a format, except for their names.
 inline bool same_surface(const Object& one, const Object& other) {
   return one.color == other.color && one.casts_shadow == other.casts_shadow &&
          one.receives_shadow == other.receives_shadow && one.emits == other.emits && one.lit_by == other.lit_by &&

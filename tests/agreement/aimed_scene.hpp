@@ -65,9 +65,9 @@ class AimedScene {
     scenes::Scene scene;
     // Keeps the origin of scene floats at zero, whatever is added.
     add_object(scene, "anchor", {{glm::dvec3(-16), glm::dvec3(16, 16, -16), glm::dvec3(16)}}).casts_shadow = false;
-    // From a speck to the whole floor: view samples that are near one another, and far from zero.
-    // The bounds of the searched aims are used most where coordinates are no larger than lengths are; that of det,
-    // where the light is a square, and overhead.
+    // Sizes range from a speck to the whole floor: view samples are near one another, and far from zero. The searched
+    // aims use most of their bounds where coordinates are no larger than lengths; det uses most of its bound where the
+    // light is a square, and overhead.
     const double patch = std::exp2(-static_cast<double>(random_() % 8)),
                  size = std::exp2(1 - static_cast<double>(random_() % 6)), askew = aim_ == Aim::det ? 0.05 : 1;
     const glm::dvec3 middle = (aim_ >= Aim::side ? 0.25 : 1.0) * glm::dvec3(4 * real(), real(), 4 * real());
@@ -99,8 +99,8 @@ class AimedScene {
       places.push_back(st);
       const glm::dvec3 a = rounded(carrier[0]), b = rounded(carrier[1]), c = rounded(carrier[2]);
       points.emplace_back(glm::vec3(a + st.x * (b - a) + st.y * (c - a)));
-      // Not at all of them: where view samples are near one another, all triangles are between each of them and the
-      // light.
+      // Only some view samples are aimed at: where they are near one another, all triangles are between each of them
+      // and the light.
       const std::uint32_t every = aim_ == Aim::sliver || aim_ >= Aim::grazing ? 8 : 3;
       if (aim_ == Aim::horizon || i % every != 0) continue;
       const glm::dvec3 p(points.back());
@@ -149,7 +149,7 @@ class AimedScene {
     if (aim_ == Aim::left) l -= (1 + s) * u;
     if (aim_ == Aim::row) l += 2 * real() * u;
     const glm::dvec3 direction = l - p;
-    // As seen from p it covers a few light samples, and sometimes many more.
+    // The triangle covers a few light samples as seen from p, and sometimes many more.
     const double share = 0.05 + 0.9 * positive();
     double size = share * light_size * (random_() % 8 == 0 ? 4 : std::exp2(-0.5 - 2.5 * positive()));
     // An edge that passes the corner matters most if no light row crosses it: half a cell is an eighth of the light.
@@ -197,8 +197,9 @@ class AimedScene {
     const auto make = [&](Numbers numbers) -> Corners {
       const glm::dvec3 e = glm::normalize(glm::cross(direction, numbers.vector())),
                        n = glm::cross(direction, e) / length;
-      // By the length of the way: the foot's height and half its width, p's distance from the plane, l's. The bound of
-      // det grows with the foot, the other one with the distance of the first corner alone, which then must be the top.
+      // Relative to the length of the segment: the foot's height and half its width, p's distance from the plane, and
+      // l's. The bound of det grows with the foot; the other bound grows with the distance of the first corner alone,
+      // which then must be the top.
       const double low = std::exp2(-3 - 10 * numbers.next());
       const auto wide = [&] { return numbers.next() * (on_wide_foot ? 1 : low); };
       const double off = std::exp2((on_wide_foot ? -18 : -23) - 6 * numbers.next()),

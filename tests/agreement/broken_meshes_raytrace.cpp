@@ -14,8 +14,8 @@ namespace {
 
 using tests::Differences;
 
-/// At most this share of all pairs may differ (`allowed`); of those that differ and are judged, the mask method must be
-/// right about every one.
+/// Expects that at most the share `allowed` of all pairs differs, and that the mask method is right about each pair
+/// that differs and is judged.
 void expect_agreement(const std::string& name, const Differences& found, double allowed = 2e-5) {
   EXPECT_GT(found.pairs_all, 0U) << name;
   EXPECT_LE(static_cast<double>(found.differing), allowed * static_cast<double>(found.pairs_all)) << name;

@@ -32,7 +32,8 @@ struct CellOfRow {
   float row = 0, column = 0, shift = 0;
 };
 
-/// From the light sample to where the edge (a, b) crosses its row, in columns, as it is. `step`: from column to column.
+/// Returns the exact distance from the light sample to the place where the edge (a, b) crosses the sample's row, in
+/// columns. `step`: from column to column.
 inline long double exact_crossing(const glm::vec3& p, const glm::vec3& l, const std::array<glm::vec3, 2>& edge,
                                   const glm::dvec3& step) {
   using Exact = glm::tvec3<long double>;
@@ -40,7 +41,8 @@ inline long double exact_crossing(const glm::vec3& p, const glm::vec3& l, const 
   return -glm::dot(normal, Exact(l) - from) / glm::dot(normal, Exact(step));
 }
 
-/// That distance as both engines compute it (docs/edge-scatter.md, Crossing); nothing where the edge ends near the row.
+/// Returns the same distance as both engines compute it (docs/edge-scatter.md, Crossing); nothing if the edge ends near
+/// the row.
 inline Rounded crossing_as_rounded(const PlacedEnds& ends, const glm::vec2& half_cells, const CellOfRow& sample,
                                    long double exact) {
   constexpr float kRound = 0x1p-24F;
@@ -59,8 +61,8 @@ inline Rounded crossing_as_rounded(const PlacedEnds& ends, const glm::vec2& half
   return {(x - sample.shift) - sample.column, exact, static_cast<long double>(bound)};
 }
 
-/// Where a point appears from p as the device computes it, and the bound of that. (docs/edge-scatter.md, X) Nothing
-/// cuts the scene at the light's plane.
+/// Computes where a point appears from p as the device does, and the bound of the error (docs/edge-scatter.md, X).
+/// Nothing cuts the scene at the light's plane.
 class DevicePlaces {
  public:
   DevicePlaces(const visibility::DeviceLight& light, const glm::vec3& p, const glm::vec2& half_cells)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// So many layers between view samples and light that counts of one byte would begin again at 0.
+// Tests stacks with so many layers between view samples and light that a count of one byte would begin again at 0.
 
 #include "tests/agreement/mask_methods.hpp"
 #include "tests/agreement/support.hpp"

@@ -26,9 +26,10 @@ struct Rounded {
   float value = 0;
   long double exact = 0, bound = 1;
 
-  /// How much of the bound it takes to see that the sign is wrong; 0 where it is right.
+  /// Returns the share of the bound that leaves a wrong sign unnoticed: any smaller bound would trust it. 0 if the sign
+  /// is right.
   [[nodiscard]] double wrong() const { return value * exact < 0 ? static_cast<double>(std::abs(value) / bound) : 0; }
-  /// The same, but no more than the number itself is off 0.
+  /// Returns wrong(), but no more than the number itself is off 0.
   [[nodiscard]] double far_wrong() const { return std::min(wrong(), static_cast<double>(std::abs(exact) / bound)); }
 };
 
@@ -116,7 +117,8 @@ struct CornerProducts {
   std::array<Rounded, 3> f;
   int turn = 0;
 
-  /// How much of the bound it takes to see that the triangle is taken for its mirror image, with the segment in it.
+  /// Returns the share of the bounds that leaves it unnoticed that the rounded products have the segment in the
+  /// triangle's mirror image; 0 if they have not.
   [[nodiscard]] double wrong() const {
     double least = 1;
     for (const Rounded& x : f) {

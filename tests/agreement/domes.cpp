@@ -122,7 +122,8 @@ TEST_P(DomeAreas, AgreeWithOneAnotherAndWithManySamples) {
     largest = std::max(largest, std::abs(rows.form_factors[i].x - exact.form_factors[i].x));
     EXPECT_NEAR(v, exact.masks.visibility[i], 2e-7) << i;
     EXPECT_NEAR(rows.form_factors[i].x, exact.form_factors[i].x, 1e-7) << i;
-    // Of half a dome that leans away few light samples are above the plane, and they are few of its light, too.
+    // For half a dome that leans away, few light samples are above the plane, and they carry little of the dome's
+    // light.
     const double whole = visibility::dome_form_factor(stage.light, glm::normalize(glm::dvec3(stage.samples.n[i])));
     EXPECT_NEAR(whole * v, whole * samples.masks.visibility[i], 0.02) << i;
   }

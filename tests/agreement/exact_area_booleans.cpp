@@ -36,7 +36,7 @@ Point3 point_of(const glm::vec3& p) {
   return {p.x, p.y, p.z};
 }
 
-/// What of the polygon is where height(q) ≥ 0.
+/// Returns the part of the polygon where height(q) ≥ 0.
 template <typename Height>
 std::vector<Point3> clipped(const std::vector<Point3>& polygon, Height height) {
   std::vector<Point3> result;

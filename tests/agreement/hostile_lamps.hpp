@@ -156,7 +156,7 @@ class HostileLamp {
   glm::dvec3 center_{0}, u_{0}, v_{0};
 };
 
-/// On corners, edges and quarters of triangles, and anywhere on them.
+/// Makes view samples on corners, edges and quarters of triangles, and anywhere on triangles.
 inline visibility::ViewSamples hostile_samples(const visibility::SceneFloats& floats, std::mt19937& random,
                                                std::uint32_t width, std::uint32_t height) {
   visibility::ViewSamples samples = samples_on_triangles(floats, width, height, random);

@@ -64,14 +64,14 @@ TEST_F(HybridVolume, AsksVolumesWhereTexelsDisagree) {
   }
 }
 
-/// Of a board far from the floor the map is right but at its outline: V is that of volumes everywhere.
+/// A map of a board far from the floor is right except at the board's outline, so V equals that of volumes everywhere.
 TEST_F(HybridVolume, IsExactWhereTheMapSeesEveryOutline) {
   const Answers all = ask(stage_of(shipped_scene("parallel-square")), "64");
   EXPECT_EQ(all.hybrid, all.volumes);
   EXPECT_NE(all.map, all.volumes);
 }
 
-/// What the map does not see at all has no silhouette, as published: a bar between texels' centres.
+/// A thing that the map does not see at all, such as a bar between texels' centres, has no silhouette, as published.
 TEST_F(HybridVolume, WhatNoTexelSeesIsLost) {
   scenes::Scene scene;
   add_object(scene, "floor", quad({0, 0, 0}, {2, 0, 0}, {0, 0, -2}));

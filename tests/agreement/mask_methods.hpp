@@ -45,7 +45,7 @@ std::unique_ptr<visibility::Method> make_edge_scatter(const render::Device& devi
 inline constexpr MaskMethod kEdgeScatter{"edge_scatter", make_edge_scatter<false>, true};
 inline constexpr MaskMethod kNativeEdgeScatter{"native_edge_scatter", make_edge_scatter<true>, true};
 
-/// Their paths for light samples that form no rows.
+/// The same methods on their code paths for light samples that form no rows.
 inline constexpr MaskMethod kEdgeScatterPoints{"edge_scatter_points", make_edge_scatter<false>, true, true};
 inline constexpr MaskMethod kNativeEdgeScatterPoints{"native_edge_scatter_points", make_edge_scatter<true>, true, true};
 

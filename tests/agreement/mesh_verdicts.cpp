@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What `inspect` says that a method makes of a flawed mesh is what it does: each method of the table, on each defect of
-// the generator. A verdict of "exact" allows no pair that the exact predicates decide otherwise.
+// Tests that each method does to a flawed mesh what `inspect` says it will, for every method of the table and every
+// defect of the generator. A verdict of "exact" allows no pair that the exact predicates decide otherwise.
 
 #include "app/methods.hpp"
 #include "app/pixel_samples.hpp"
@@ -142,7 +142,8 @@ std::vector<std::unique_ptr<visibility::Method>> make_methods(const render::Mach
   return methods;
 }
 
-/// How many pairs the method decides differently from the ray caster; or how far its V is from the area.
+/// Returns the number of pairs that the method decides differently from the ray caster; or the difference of its V from
+/// the area.
 double error_of(visibility::Method& method, const FlawedStage& stage, const std::vector<float>& areas) {
   if (method.description().output == Output::mask) {
     const Masks mapped = run(method, stage.floats, stage.light, stage.samples);

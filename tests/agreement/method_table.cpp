@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the families' tables say of their methods is what these do.
+// Tests that methods do what the families' tables say of them.
 #include "app/methods.hpp"
 #include "tests/agreement/support.hpp"
 
@@ -18,7 +18,7 @@ Stage plate_over_floor(std::uint32_t samples, const scenes::AreaLight& light) {
   return Stage(scene, 24, 16, light_samples(samples));
 }
 
-/// Maps small enough that each method takes but an instant.
+/// Returns options for maps so small that each method takes only an instant.
 visibility::MethodOptions small_maps(const visibility::MethodDescription& method) {
   visibility::MethodOptions options;
   for (const char* name : {"size", "receiverSize"}) {
@@ -28,7 +28,7 @@ visibility::MethodOptions small_maps(const visibility::MethodDescription& method
   return options;
 }
 
-/// Does the method refuse lamps?
+/// Returns whether the method takes domes alone.
 bool is_of_domes_alone(const visibility::MethodDescription& method) {
   return !method.lights.contains(visibility::LightKind::rectangle);
 }

@@ -22,7 +22,7 @@ class Numbers {
     const double x = real(), y = real(), z = real();
     return {x, y, z};
   }
-  /// These numbers once more, from the first.
+  /// Returns these numbers again, from the first.
   [[nodiscard]] Numbers again() const {
     Numbers numbers = *this;
     numbers.used_ = 0;

@@ -128,7 +128,7 @@ inline std::string describe_pair(const visibility::SceneFloats& floats, const vi
                      text_of(points[j]), text_of(light));
 }
 
-/// How the pairs of a picture turned out, so that a test can say that it saw what it is about.
+/// Counts of a picture's pairs by outcome, so that a test can say that it saw what it is about.
 struct PairCounts {
   std::size_t pairs = 0, visible = 0, blocked = 0, horizon = 0, behind = 0, zero = 0;
 

@@ -90,7 +90,7 @@ TEST(CoverageClosedForm, ATwoSidedLightLooksTheSameFromBehind) {
 }
 
 TEST(CoverageClosedForm, AnEdgeThroughTheCentreIsDecidedAsTheCountIs) {
-  // From x the board's edge x = 0 at half height appears at −x of the light: through the centre, and an ulp beside it.
+  // The board's edge x = 0 at half height appears from x at −x of the light: through the centre, and an ulp beside it.
   for (const float x : {0.0F, 0x1p-40F, -0x1p-40F, 0x1p-20F, -0x1p-20F}) {
     scenes::Scene scene = half_plane(0);
     scene.lights.push_back(tests::ceiling_light(4, 1));
@@ -138,7 +138,7 @@ TEST(CoverageClosedForm, ASolidIsOneLayerFromOutsideAndFromWithin) {
   room.lights.push_back(tests::ceiling_light(4, 1));
   EXPECT_EQ(CoverageStage(room).center({0, 0, 0}).visibility, 1);
   EXPECT_EQ(CoverageStage(room).receiver({0, 0, 0}).visibility, 1);
-  // From outside of the room the light is behind a wall, once.
+  // The light is behind a wall, once, as seen from outside of the room.
   EXPECT_EQ(CoverageStage(room).center({20, 0, 0}).constant, 1);
   EXPECT_EQ(CoverageStage(room).center({20, 0, 0}).visibility, 0);
 }

@@ -104,7 +104,7 @@ TEST(DomeClosedForm, AWallHidesItsFormFactor) {
   }
 }
 
-/// As the wall becomes long: (1 + cos φ) / 2, φ the angle up to its edge.
+/// V tends to (1 + cos φ) / 2 as the wall becomes long, φ the angle up to its edge.
 TEST(DomeClosedForm, ALongWallLeavesTheCosineOfItsEdge) {
   constexpr double kHeight = 1, kLong = 4096, kAt = 1.5;
   scenes::Scene scene = floor_scene({});
@@ -162,7 +162,7 @@ TEST(DomeClosedForm, HalfADomeFromASideIsHiddenByAWallThere) {
   expect_shares(scene,
                 [&](const glm::dvec3& p) {
                   const double far = kAt - p.x;
-                  // From the edge up to the zenith: cos φ of the half of 1/2 that there is.
+                  // The visible part goes from the edge up to the zenith: cos φ of the half, of 1/2.
                   return far > 0 ? far / std::hypot(far, kHeight) : 1.0;
                 },
                 {1e-5, 0.03, 0.5});

@@ -76,7 +76,7 @@ TEST(ScreenOcclusion, APlaneShadesNothing) {
 
 constexpr double kPixel = 4.0 / 128;  // of valley()
 
-/// How high a valley is at x.
+/// Returns the height of a valley at x.
 double height_at(double x, double left, double right) {
   return x < 0 ? -x * std::tan(left) : x * std::tan(right);
 }
@@ -138,7 +138,7 @@ double below_horizons(double x, double radius, const glm::dvec2& slopes, const S
   return 1 - hidden / search.directions;
 }
 
-/// At the bottom of a valley of angle φ a ball is free in φ/2π of it, so V = φ/π; and the directions between the
+/// A ball at the bottom of a valley of angle φ is free in φ/2π of it, so V = φ/π; and the directions between the
 /// horizons are as many. Light comes by the cosine: the exact V is (1 − cos φ)/2. Pixels' centres are half a pixel from
 /// the bottom, and horizons are those of pixels' centres.
 TEST(ScreenOcclusion, AValleyIsFreeByItsAngle) {

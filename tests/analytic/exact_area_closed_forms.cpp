@@ -85,7 +85,7 @@ TEST(ExactAreaClosedForm, ManyDepthsCountOnceWhereTheyOverlap) {
     const AreaStage stage(scene);
     for (int i = 0; i < 20; ++i) {
       const glm::vec3 p = random_floor_point(random);
-      // On the grid of all sides each cell is in a rectangle or not.
+      // Each cell of the grid of all sides is inside a rectangle or outside.
       std::set<double> xs = {-1, 1}, zs = {-1, 1};
       std::vector<Box2> seen;
       for (const auto& [box, height] : boxes) {
@@ -111,7 +111,7 @@ TEST(ExactAreaClosedForm, ManyDepthsCountOnceWhereTheyOverlap) {
 TEST(ExactAreaClosedForm, AHalfPlaneInAnyDirectionHidesItsSideOfTheLight) {
   std::mt19937 random(3);
   for (int i = 0; i < 100; ++i) {
-    // At height 2, from p = 0, the edge a x + b z = c is seen as a x + b z = 2 c.
+    // The edge a x + b z = c at height 2 is seen as a x + b z = 2 c from p = 0.
     const double a = random_dyadic(random, -1, 1), b = random_dyadic(random, -1, 1),
                  c = random_dyadic(random, -0.5, 0.5);
     if (a * a + b * b < 0.25) continue;  // the triangle is not large enough for an edge that far away
@@ -174,7 +174,7 @@ TEST(ExactAreaClosedForm, PolygonLights) {
   EXPECT_NEAR(AreaStage(scene).visibility({0, 0, 0}), 3.0 / 5, kRounding);
 }
 
-/// What a board between p = 0 and a disk of radius 1 at twice its height leaves of it.
+/// Returns the share of a disk of radius 1 that a board between it and p = 0, at half its height, leaves visible.
 double disk_behind(const Box2& box) {
   scenes::Scene scene = area_scene(board(box, 2));
   scene.lights.emplace_back().shape = scenes::Disk{{0, 4, 0}, {0, -1, 0}, 1};
@@ -187,9 +187,9 @@ double segment_share(double c) {
 }
 
 TEST(ExactAreaClosedForm, DiskAndSphereLightsLoseACircularSegment) {
-  // From p = 0 a board over x ≥ c at half height hides x ≥ 2 c of a disk of radius 1. Through the centre, along a
-  // tangent (all or nothing) and a lattice step beside it. Of a sphere p sees the disk at its tangents; this one is
-  // of radius 1 at the height 4, as the disk is: d − r²/d = 4, r √(1 − r²/d²) = 1.
+  // A board over x ≥ c at half height hides, from p = 0, x ≥ 2 c of a disk of radius 1: through the centre, along a
+  // tangent (all or nothing), and a lattice step beside it. p sees a sphere as the disk at its tangents; this sphere's
+  // disk has radius 1 at height 4, as the light's disk has: d − r²/d = 4, r √(1 − r²/d²) = 1.
   for (const double c : {-0.5, -0.484375, -0.375, 0.0, 0.125, 0.25, 0.484375, 0.5}) {
     const double visible = 1 - segment_share(2 * c);
     EXPECT_NEAR(disk_behind({c, 16 + c, -16, 16}), visible, kRounding) << c;
@@ -203,7 +203,8 @@ TEST(ExactAreaClosedForm, DiskAndSphereLightsLoseACircularSegment) {
 
 TEST(ExactAreaClosedForm, BoardsInsideAndAcrossADisk) {
   using std::numbers::pi;
-  // Inside it, corners on the rim where they can be (¾ and √7/4 cannot: a step inside), across the rim, and around it.
+  // Boards inside the disk, with corners on the rim where that is possible (¾ and √7/4 cannot: a step inside), across
+  // the rim, and around it.
   EXPECT_NEAR(disk_behind({-0.25, 0.25, -0.25, 0.25}), 1 - 1 / pi, kRounding);
   EXPECT_NEAR(disk_behind({-0.25, 0.125, -0.375, 0.0625}), 1 - 0.75 * 0.875 / pi, kRounding);
   for (const double a : {0.75, 0.875, 0.984375})  // a square of half side a: four segments are left

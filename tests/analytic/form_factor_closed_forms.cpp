@@ -53,10 +53,10 @@ TEST(FormFactor, OfAParallelRectangle) {
 }
 
 TEST(FormFactor, OfAnUprightRectangleDownToContact) {
-  // At c → 0 the element touches the light: 1/4 for one corner, 1/2 between two.
+  // The element touches the light as c → 0: 1/4 for one corner, 1/2 between two.
   for (const double c : {5.0, 1.0, 0.1, 1e-3, 1e-6, 1e-12, 1e-20, 1e-30}) {
     const double expected = 2 * upright_corner(1.5, 0.75, c);
-    // It stands at x = c, faces −x; u × v points to +x, away from the element.
+    // The rectangle stands at x = c and faces −x; u × v points to +x, away from the element.
     EXPECT_NEAR(form_factor(quad({c, 0, 0.75}, {0, 0.75, 0}, {0, 0, 0.75}), kUp), expected, 16 * kUlp) << c;
   }
   EXPECT_NEAR(form_factor(quad({1e-30, 0, 0.75}, {0, 0.75, 0}, {0, 0, 0.75}), kUp), 0.5, 1e-12);
@@ -144,7 +144,7 @@ TEST(FormFactor, IsTheIntegralOfTheCosines) {
     const bool above = std::ranges::all_of(corners, [&](const glm::dvec3& q) { return glm::dot(n, q) >= 0; });
     const bool below = std::ranges::all_of(corners, [&](const glm::dvec3& q) { return glm::dot(n, q) <= 0; });
     cut += !above && !below ? 1 : 0;
-    // Along a horizon f has a kink; boxes there stop at a thousandth, where f is small.
+    // The function f has a kink along a horizon; boxes there stop at a thousandth, where f is small.
     EXPECT_NEAR(form_factor(corners, n), integrate(f, {-1, 1, -1, 1}, 1e-10), above ? 1e-9 : 1e-6)
         << "seed " << kSeed << ", round " << round;
   }
@@ -238,7 +238,8 @@ TEST(FormFactor, OfAnEllipseIsThatOfItsPolygon) {
     std::vector<glm::dvec3> corners;
     for (int i = 0; i < kSides; ++i)
       corners.push_back(ellipse.center + reach * (std::cos(i * step) * ellipse.u + std::sin(i * step) * ellipse.v));
-    // As for a disk, of a radius no ellipse's axis reaches; every corner's share may be off by an ulp of its edge.
+    // The bound is that of a disk whose radius no ellipse's axis reaches; every corner's share may be off by an ulp of
+    // its edge.
     const double size = std::hypot(glm::length(ellipse.u), glm::length(ellipse.v));
     const double stray = size * std::pow(pi / kSides, 2) / 2 * (2 * pi * size) / (pi * h * h);
     EXPECT_NEAR(form_factor(ellipse, n), std::abs(form_factor(corners, n)), stray + 1e-13)
@@ -252,14 +253,14 @@ TEST(FormFactor, OfARoundEllipseIsTheDisks) {
     const glm::dvec3 center = distance * glm::normalize(glm::dvec3(0.3, 0.2, 1)), normal(0, 0.6, -0.8);
     const glm::dvec3 n = glm::normalize(glm::dvec3(0.1, 0.5, 1)), u(0.5, 0, 0), v(0, 0.4, 0.3);
     const double disk = form_factor(FormFactorDisk{center, normal, 0.5}, n);
-    // Of ε of the cone's axes, and ε d / a of the disk's own (form_factor.hpp).
+    // Tolerance: in ε of the cone's axes, and ε d / a of the disk's own (form_factor.hpp).
     EXPECT_NEAR(form_factor(FormFactorEllipse{center, u, v}, n) / disk, 1, 64 * kUlp * (1 + distance)) << distance;
     EXPECT_NEAR(form_factor(FormFactorEllipse{center, v, -u}, n) / disk, 1, 64 * kUlp * (1 + distance)) << distance;
   }
 }
 
 TEST(FormFactor, OfADiskHasNoSeams) {
-  // Where formulas change (horizon just touching; B/A = 1/64; ρ² = R² + h²), both sides agree.
+  // Both sides agree where formulas change (horizon just touching; B/A = 1/64; ρ² = R² + h²).
   const auto value = [](double rho, double h, double tilt) {
     return form_factor(FormFactorDisk{{-rho, 0, h}, {0, 0, -1}, 1}, {std::sin(tilt), 0, std::cos(tilt)});
   };

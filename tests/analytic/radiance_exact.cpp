@@ -88,7 +88,7 @@ std::vector<tests::Corners> random_triangles(std::mt19937& random, int count) {
   return triangles;
 }
 
-/// Does the open segment from p to l meet the triangle? In double: only for points that are not on an edge.
+/// Returns whether the open segment from p to l meets the triangle, in double: only for points that are not on an edge.
 bool blocked(const glm::dvec3& p, const glm::dvec3& l, const tests::Corners& t) {
   const glm::dvec3 d = l - p, e = t[1] - t[0], f = t[2] - t[0], h = glm::cross(d, f);
   const double under = glm::dot(e, h);
@@ -288,7 +288,7 @@ TEST(ExactRadiance, HalfADiskAndHalfASphere) {
   }
 }
 
-/// Under the panel, over a few boards.
+/// Makes a board before the panel.
 scenes::Scene boards_before_a_panel() {
   scenes::Scene scene;
   tests::add_object(scene, "floor", tests::quad({0, 0, 0}, {3, 0, 0}, {0, 0, -3}));

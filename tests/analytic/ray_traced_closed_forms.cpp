@@ -67,7 +67,7 @@ std::vector<tests::Corners> sphere(const glm::dvec3& center, double radius, int 
 }
 
 TEST(ClosedForm, ASphereHidesTheDiskOfItsTangentCone) {
-  // From p a ball of radius r at distance d fills a cone with sin(angle) = r / d: on a disk light of radius R at
+  // A ball of radius r at distance d from p fills a cone with sin(angle) = r / d: on a disk light of radius R at
   // distance D on the same axis it hides (D tan(angle) / R)² of the area.
   for (const double radius : {0.1, 0.2, 0.35}) {
     scenes::Scene scene;
@@ -97,7 +97,7 @@ TEST(ClosedForm, HalfOfASphereLightBehindAWall) {
 }
 
 TEST(ClosedForm, ASphereLightBehindAHalfPlaneLosesASegmentOfItsDisk) {
-  // From p at distance d the tangents meet the disk, of radius ρ = r √(1 − r²/d²), at the height (d² − r²) / d. A
+  // The tangents from p at distance d meet the disk, of radius ρ = r √(1 − r²/d²), at the height (d² − r²) / d. A
   // board's edge at half of that height and x = c appears at 2 c on it.
   const double r = 0.75, d = 3, height = (d * d - r * r) / d, rho = r * std::sqrt(1 - r * r / (d * d));
   for (const double share : {-0.75, -0.25, 0.0, 0.5}) {
@@ -160,7 +160,7 @@ TEST(ClosedForm, ASunsPenumbraIsAsWideAsDistanceTimesTangent) {
       const Masks masks = tests::trace(floats, light, one_sample(floats, {-3, 0.5, 0}, at));
       const double s = std::clamp(share, -1.0, 1.0);
       const double hidden = (std::acos(s) - s * std::sqrt(1 - s * s)) / std::numbers::pi;
-      // At ±0.99 a few samples in 4096 are left: hidden is not 0 or 1.
+      // A few samples in 4096 are left at ±0.99: hidden is not 0 or 1.
       EXPECT_NEAR(masks.visibility[0], 1 - hidden, 0.003) << angle << " at " << share;
       if (std::abs(share) > 1) {
         EXPECT_EQ(masks.visibility[0], share > 0 ? 1 : 0) << angle << " at " << share;
@@ -186,7 +186,7 @@ TEST(ClosedForm, ASunOfAngleZeroCastsHardShadows) {
 }
 
 TEST(ClosedForm, TheHorizonCutsASun) {
-  // At the elevation 0 the floor sees the upper half of the disk.
+  // The floor sees the upper half of a disk at the elevation 0.
   scenes::Scene scene;
   tests::add_object(scene, "floor", tests::quad({0, 0, 0}, {4, 0, 0}, {0, 0, -4}));
   scene.lights.emplace_back();

@@ -163,7 +163,7 @@ TEST_P(SkyAreas, OfOneColourAreThoseOfOneRadiance) {
   }
 }
 
-/// Whether a ray meets a triangle, in double.
+/// Returns whether a ray meets a triangle, in double.
 bool meets(const glm::dvec3& p, const glm::dvec3& d, const std::array<glm::vec3, 3>& corners) {
   const glm::dvec3 a = glm::dvec3(corners[0]) - p, b = glm::dvec3(corners[1]) - p, c = glm::dvec3(corners[2]) - p;
   const double x = glm::dot(d, glm::cross(a, b)), y = glm::dot(d, glm::cross(b, c)), z = glm::dot(d, glm::cross(c, a));

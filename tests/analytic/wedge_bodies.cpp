@@ -27,7 +27,7 @@ double volume_of(const WedgeBody& body) {
   return sum;
 }
 
-/// Seen from +y, counter-clockwise.
+/// Returns the area of a section whose corners run counter-clockwise as seen from +y.
 double area_of_section(const std::vector<glm::dvec3>& corners) {
   double doubled = 0;
   for (std::size_t i = 0; i < corners.size(); ++i) {

@@ -107,7 +107,7 @@ INSTANTIATE_TEST_SUITE_P(Kinds, WholeFormFactors,
                            return name;
                          });
 
-/// On the lattice as rows=exact has them, between two heights; now and then without a side, or of no area.
+/// Makes parts on the lattice of rows=exact, between two heights; now and then without a side, or without area.
 FourCorneredParts parts_on_lattice(std::mt19937& random, std::size_t count) {
   std::uniform_real_distribution<double> anywhere(-1, 1);
   FourCorneredParts parts;
@@ -174,7 +174,7 @@ TEST(WholeFormFactor, InTheLightsPlaneThereIsNoLight) {
     scenes::Scene scene;
     scene.lights.push_back(source);
     const Light light = make_light(scene, 0, glm::dvec3(0), {1});
-    // Beside the light, on the side that their normals turn to it from.
+    // Points beside the light, on the side from which their normals turn to it.
     const std::vector<glm::vec3> p{glm::vec3(2.0 * u), glm::vec3(2.0 * u + v), glm::vec3(u + 2.0 * v),
                                    glm::vec3(-2.0 * v)};
     std::vector<glm::vec3> n;
@@ -189,10 +189,10 @@ TEST(WholeFormFactor, InTheLightsPlaneThereIsNoLight) {
 
 TEST(AngleOverSine, IsTheArcTangentToAFewRoundings) {
   if (std::numeric_limits<long double>::digits < 64) GTEST_SKIP() << "long double is no longer than double";
-  // In ε = 2⁻⁵³. Short edges: q is off by 2, of which the series feels a twentieth; its coefficients leave .04, its
-  // last sums 1.7; the division adds 1: 3. Others: the length is off by 1; so the ratio by .5 + 3 · .41 and the arc
-  // by 2.8 absolutely beside a base off by .3 and a sum by 1 at most, of an angle of π/8 or more, 8.5 relatively at its
-  // least; the length and the division add 2: 11. (Beyond, angles are larger and errors are not.)
+  // Errors in ε = 2⁻⁵³. Short edges: q is off by 2, of which the series feels a twentieth; its coefficients leave 0.04,
+  // its last sums 1.7; the division adds 1: 3. Others: the length is off by 1; so the ratio by 0.5 + 3 · 0.41 and the
+  // arc by 2.8 absolutely beside a base off by 0.3 and a sum by 1 at most, of an angle of π/8 or more, 8.5 relatively
+  // at its least; the length and the division add 2: 11. (Beyond, angles are larger and errors are not.)
   constexpr long double kEpsilon = 0x1p-53L;
   std::mt19937_64 random(3);
   std::uniform_real_distribution<double> turn(0, 3.14159), scale(-40, 40);
@@ -211,7 +211,7 @@ TEST(AngleOverSine, IsTheArcTangentToAFewRoundings) {
   EXPECT_LE(worst, 11);
   EXPECT_GT(worst_short, 0);
   for (const double q : {0.0, 0x1p-60, 0.01, 0.1, kArcSeriesEnd}) {
-    // Without the roundings of doubles: 2^−57.8, beside the polynomial's own in long double.
+    // The polynomial's own error, in long double and without the roundings of doubles: 2^−57.8.
     long double sum = 0;
     for (std::size_t k = kArcSeries.size(); k-- > 0;) sum = sum * q + kArcSeries[k];
     const long double root = sqrtl(q), exact = q == 0 ? 1 : atanl(root) / root;

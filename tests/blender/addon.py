@@ -107,7 +107,7 @@ class Space(unittest.TestCase):
         return space.Placed("It", points, numpy.arange(len(points), dtype=numpy.int32), numpy.eye(4))
 
     def test_distances(self):
-        """To the inside, to an edge, to a corner, and of a flat triangle."""
+        """Distances to the inside, to an edge, to a corner, and of a flat triangle."""
         triangle = numpy.array([[(0, 0, 0), (4, 0, 0), (0, 4, 0)], [(0, 0, 1), (2, 0, 1), (4, 0, 1)]], float)
         for point, wanted in (((1, 1, 3), (3, 5 ** 0.5)), ((1, -2, 0), (2, 5 ** 0.5)), ((-3, -4, 0), (5, 26 ** 0.5))):
             numpy.testing.assert_allclose(space.distances(triangle, numpy.array(point, float)), wanted)
@@ -118,7 +118,7 @@ class Space(unittest.TestCase):
         self.assertEqual(space.Surfaces([]).nearest_to((0, 0, 0), 5), (None, 5))
 
     def test_a_camera_is_sharp_where_cycles_has_it(self):
-        """Of f/2 a lens of 50 mm has a radius of 12.5 mm; the object in focus counts along the view axis alone."""
+        """A lens of 50 mm at f/2 has a radius of 12.5 mm; the object in focus counts along the view axis alone."""
         def camera(type="PERSP", **field):
             defaults = dict(use_dof=True, focus_object=None, focus_distance=3.0, aperture_fstop=2.0, aperture_blades=0,
                             aperture_ratio=1.0)
@@ -135,14 +135,14 @@ class Space(unittest.TestCase):
         self.assertEqual(file._document["cameras"][0]["extras"], {"aperture": 0.0125, "focusDistance": 3.0})
 
     def test_what_a_camera_sees(self):
-        """From the origin along −Z, half as wide as far on each side; a triangle around all of it counts, one beside it not."""
+        """A camera at the origin looks along −Z, half as wide as far on each side; a triangle around all of it counts, one beside it not."""
         for lens in (dict(half_angle=0.5), dict(height=4)):
             frustum = space.Frustum(IDENTITY, 1, (0, 0), **lens)
             self.assertTrue(frustum.sees(self.placed((-99, -99, -2), (99, -99, -2), (0, 99, -2)), 1, 3))
             self.assertFalse(frustum.sees(self.placed((-99, -99, -2), (99, -99, -2), (0, 99, -2)), 2.5, 3))
             self.assertFalse(frustum.sees(self.placed((-99, -99, 2), (99, -99, 2), (0, 99, 2)), 1, 3))
             self.assertFalse(frustum.sees(self.placed((2.5, -9, -2), (9, 0, -2), (2.5, 9, -2)), 1, 3))
-            # Beside the picture where it is near, in it where it is far.
+            # Beside the picture where the floor is near, in it where it is far.
             floor = self.placed((-9, -1.5, 1), (9, -1.5, 1), (0, -1.5, -99))
             self.assertEqual((frustum.sees(floor, 0, 2.9), frustum.sees(floor, 0, 3.1)),
                              (False, True) if "half_angle" in lens else (True, True))
@@ -194,7 +194,7 @@ class Pictures(unittest.TestCase):
         cls.folder.cleanup()
 
     def light(self, name):
-        """Of a light alone what pixel (x, y) on the floor reflects, by position."""
+        """Returns what pixel (x, y) on the floor reflects of one light, by position."""
         channels = self.picture.channels
         return channels["P.X"], -channels["P.Z"], channels[f"{name}.R"]
 
@@ -231,7 +231,7 @@ class Pictures(unittest.TestCase):
         self.expect("Spot", spot)
 
     def test_a_lamp_without_shadow_has_none(self):
-        """Under the board, which the camera is below."""
+        """The pixels under the board, which the camera is below, are lit."""
         x, _, _ = self.light("Key")
         under = x > 2.05  # as seen from (0, 0, 2) the board begins over x = 2
         self.assertTrue(under.any())

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: Apache-2.0
-"""What the add-on makes of materials' nodes, without Blender: surfaces, colours that are evaluated, images, and what is refused.
+"""Tests what the add-on makes of materials' nodes, without Blender: surfaces, colours that are evaluated, images, and what is refused.
 
     addon_nodes.py ADDON.zip
 """
@@ -128,7 +128,7 @@ def colored(source, name="Color"):
 
 class Colors(unittest.TestCase):
     def test_constants(self):
-        """By hand: twice the contrast about a half; and a power of what is mixed."""
+        """Values computed by hand: twice the contrast about a half; and a power of what is mixed."""
         mixed = node("MIX_RGB", Fac=0.25, Color1=(0.2, 0.4, 0.8, 1), Color2=(1, 0, 0, 1))
         mixed.blend_type, mixed.use_clamp = "MIX", False
         gamma = node("GAMMA", Color=None, Gamma=2.0)
@@ -220,7 +220,7 @@ class Texels(unittest.TestCase):
         numpy.testing.assert_allclose(texels.linear_of(texels.encoded_of(values)), values, atol=1e-7)
 
     def test_png(self):
-        """Its rows, unpacked by hand."""
+        """The rows of a PNG, unpacked by hand."""
         values = numpy.arange(24, dtype=numpy.uint8).reshape(2, 4, 3)
         data = texels.png(values)
         self.assertEqual(data[:8], b"\x89PNG\r\n\x1a\n")
@@ -231,7 +231,7 @@ class Texels(unittest.TestCase):
 
 
 class Skies(unittest.TestCase):
-    """What a world's nodes say of directions, beside Cycles' own rule: u = 1/2 - atan2(y, x) / 2 pi, v = acos(z) / pi from the top."""
+    """Radiance of a world's nodes by direction, held against Cycles' own rule: u = 1/2 - atan2(y, x) / 2 pi, v = acos(z) / pi from the top."""
 
     def world_of(self, turn=(0, 0, 0), scale=(1, 1, 1), kind="POINT", place=(0, 0, 0)):
         mapping = node("MAPPING", Vector=None, Location=place, Rotation=turn, Scale=scale)
@@ -249,7 +249,7 @@ class Skies(unittest.TestCase):
         return box(use_nodes=True, node_tree=box(get_output_node=lambda _: output))
 
     def looked_up(self, direction, world):
-        """By the dome that is written: the node's +Y is up, -Z the middle column, +X to the right of it."""
+        """Looks a direction up in the dome that is written: the node's +Y is up, -Z the middle column, +X to the right of it."""
         lights, seen = sky.skies_of(world)
         self.assertIs(lights, seen)
         self.assertEqual(lights.radiance, (2, 2, 2))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What Blender's compositor takes from a picture that the program wrote: layers of each light, depth, and objects cut out by
+"""Tests what Blender's compositor takes from a picture that the program wrote: layers of each light, depth, and objects cut out by
 Cryptomatte. Run inside Blender:
 
     run.sh compositor.py ADDON.zip PENUMBRA WORK
@@ -38,7 +38,7 @@ class Compositor(unittest.TestCase):
         cls.picture = inside.read(cls.file).channels
 
     def composite(self, node, prepare, socket, file=None):
-        """What comes out of the node, whose image is the picture, at the compositor's end."""
+        """Returns the output of the node, whose image is the picture, at the compositor's end."""
         bpy.ops.wm.read_factory_settings(use_empty=True)
         bpy.ops.preferences.addon_enable(module="penumbra")
         scene = bpy.context.scene
@@ -70,7 +70,7 @@ class Compositor(unittest.TestCase):
         return self.composite("CompositorNodeImage", prepare, socket, file)
 
     def coverage(self, layer, name):
-        """By the specification: of all ranks those whose number is the name's."""
+        """Coverage by the specification: of all ranks those whose number is the name's."""
         number = numpy.array([murmur3(name)], "<u4")
         exponent = int(number[0]) >> 23 & 255
         if exponent in (0, 255):

@@ -26,10 +26,10 @@ from inside import ARGUMENTS, OUT, channels, fresh  # noqa: E402
 SAMPLES = 256
 SCALE = int(os.environ.get("SCALE", "1"))  # pictures so many times as large, for people to look at
 STANDARD_ERRORS = 5.0
-# What Cycles adds to the ratio of sums, as single-precision sampling of lights has it: measured where nothing is shaded,
+# Bias of Cycles in the ratio of sums, due to its single-precision sampling of lights: measured where nothing is shaded,
 # at up to 65536 samples, 2e-4.
 BIAS = 1e-3
-# Beside an umbra's edge Cycles, whose pixels are a hundredth wide and not points, may see a last bit of light.
+# Pixels beside an umbra's edge may see a last bit of light in Cycles, whose pixels are a hundredth wide and not points.
 EDGE = 1e-2
 # Light that passes holes and panes is counted in light samples: as many as there may be.
 COUNTED = {"translucent", "cut_out", "world_color_counted", "world_and_lamp", "world_picture", "world_picture_turned",
@@ -37,9 +37,10 @@ COUNTED = {"translucent", "cut_out", "world_color_counted", "world_and_lamp", "w
 # Scenes with several view samples a pixel: means are compared at every pixel. Penumbra takes 64, evenly spread; 64 random
 # ones would have twice the noise of Cycles' 256.
 BLURRED = {"depth_of_field", "orthographic_depth_of_field"}
-# Beside that, where another shape is meant: a point lamp of radius r at distance d is a disk to Cycles, a ball here, which
-# gives up to r² / d² more (spots' disks are in their cones); an icosphere of 1280 faces and its sphere differ by 0.25 %; under the tube Cycles is 0.15 % below
-# Lambert's closed form, which ours meets to 1e-6 (both at 509 pixels of the floor).
+# Further differences where Cycles means another shape: a point lamp of radius r at distance d is a disk to Cycles and a
+# ball here, which gives up to r² / d² more (spots' disks are in their cones); an icosphere of 1280 faces and its sphere
+# differ by 0.25 %; under the tube Cycles is 0.15 % below Lambert's closed form, which ours meets to 1e-6 (both at 509
+# pixels of the floor).
 MODEL = {"point": 0.1 ** 2 / 2.5 ** 2, "many_lamps": 0.05 ** 2 / 2 ** 2,
          "shadowless_lamp": 0.1 ** 2 / 2 ** 2, "emissive_sphere": 2.5e-3, "emissive_tube": 2e-3}
 

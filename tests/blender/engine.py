@@ -29,7 +29,7 @@ class Engine(unittest.TestCase):
         return str(caught.exception)
 
     def warnings(self, scene):
-        """What the engine reports while it renders."""
+        """Returns what the engine reports while it renders."""
         from penumbra import engine
         said, own = [], engine.PenumbraEngine._say
 
@@ -137,7 +137,7 @@ class Engine(unittest.TestCase):
             serving.run = own
 
     def test_a_region_is_a_part_of_the_whole(self):
-        """With and without cropping, and of both kinds of lenses."""
+        """A region with and without cropping, for both kinds of lenses."""
         for build in (scenes.camera_shift, scenes.orthographic_shift):
             scene = inside.fresh(build)
             whole = inside.channels(scene, out("whole.exr"))
@@ -195,7 +195,7 @@ class Engine(unittest.TestCase):
             numpy.testing.assert_array_equal(found[f"Combined.{letter}"][~nothing], clear[f"Combined.{letter}"][~nothing])
 
     def test_a_film_that_is_not_transparent_shows_the_worlds_picture(self):
-        """As Cycles does, whichever way the camera looks."""
+        """The background is that of Cycles, in whichever direction the camera looks."""
         for turn, target in (((0, 0, 0), (0, 0, 0)), ((0.4, -0.3, 2.1), (3, 4, 9)), ((0, 0, 0.7), (-9, 0, 2))):
             def build():
                 scenes.translucent()  # whose pane is black here, half in the picture, and the only thing there

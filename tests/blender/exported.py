@@ -21,12 +21,12 @@ import bpy  # noqa: E402
 import scenes  # noqa: E402
 from inside import ARGUMENTS, OUT, PENUMBRA, fresh, read  # noqa: E402
 
-# Its name is that of Cycles' own add-on.
+# This name is that of Cycles' own add-on, so the module is loaded under another.
 _spec = importlib.util.spec_from_file_location("beside_cycles", os.path.join(os.path.dirname(os.path.abspath(__file__)), "cycles.py"))
 cycles = importlib.util.module_from_spec(_spec)
 _spec.loader.exec_module(cycles)
 
-# Not these: lens shift, shadow visibility, worlds and what particles scatter are not in the file, and mixed shaders are not either.
+# Scenes that the file cannot hold: lens shift, shadow visibility, worlds, what particles scatter, and mixed shaders.
 LOST = {name for name in scenes.SCENES if name.startswith("world_")} | {"camera_shift", "orthographic_shift", "depth_of_field", "orthographic_depth_of_field", "shadowless_lamp", "shadowless_object", "translucent", "cut_out", "hidden"}
 # The file has what faces a sun, which is what it gets here; in Cycles a sun of half angle a gives that less about a² / 4.
 cycles.MODEL = {**cycles.MODEL, "sun": radians(4) ** 2 / 4}
@@ -115,7 +115,7 @@ def make_exportable():
 
 
 def make_diffuse():
-    """What a Principled surface is to Penumbra: diffuse, where its image or alpha says that it is there."""
+    """Makes surfaces what a Principled surface is to Penumbra: diffuse, where its image or alpha says that it is there."""
     for material in bpy.data.materials:
         tree = material.node_tree
         old = next((node for node in tree.nodes if node.type == "BSDF_PRINCIPLED"), None) if material.use_nodes else None

@@ -87,7 +87,7 @@ class Farm(unittest.TestCase):
         self.assertEqual(os.listdir(path("tmp")), [])
 
     def test_frames_that_are_not_rendered_are_named(self):
-        """Of several frames on one command line Blender saves none after one that failed."""
+        """Blender saves no frame after one that failed of several on one command line."""
         run, written = self.frames("broken", "-f", "1,2,3")
         self.assertEqual((run.returncode, written), (1, [1]), run.stdout)
         self.assertIn("Frame 3: not rendered, for frame 2 failed", run.stdout)

@@ -36,7 +36,7 @@ def turned_below_a_parent():
 
 
 def make_exportable():
-    """What the exporters write of emission is that of a Principled surface."""
+    """Makes emission that of a Principled surface, which is all that the exporters write."""
     exported.make_exportable()
     for material in bpy.data.materials:
         tree = material.node_tree
@@ -50,7 +50,7 @@ def make_exportable():
 
 
 def make_diffuse():
-    """As exported.make_diffuse, but for what shines."""
+    """Makes surfaces diffuse as exported.make_diffuse does, except those that shine."""
     for material in bpy.data.materials:
         tree = material.node_tree
         old = next((node for node in tree.nodes if node.type == "BSDF_PRINCIPLED"), None) if material.use_nodes else None

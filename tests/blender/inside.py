@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What scripts that run inside Blender share: the add-on, installed from its zip, and an empty scene."""
+"""Shared by scripts that run inside Blender: the add-on, installed from its zip, and an empty scene."""
 
 import os
 import sys

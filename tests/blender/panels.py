@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What can be edited with Penumbra as the engine: the panels of each tab, and what they show. Run inside Blender:
+"""Tests what can be edited with Penumbra as the engine: the panels of each tab, and what they show. Run inside Blender:
 
     run.sh panels.py ADDON.zip PENUMBRA WORK
 """
@@ -46,7 +46,7 @@ class Layout:
 
 
 def context_of(tab, thing=None):
-    """What panels of a tab ask for."""
+    """Returns a context with what panels of a tab ask for."""
     data = thing.data if thing else None
     found = types.SimpleNamespace(
         engine="PENUMBRA", scene=bpy.context.scene, view_layer=bpy.context.view_layer, object=thing, active_object=thing,
@@ -68,7 +68,7 @@ def panels_of(tab):
 
 
 def shown(tab, thing=None):
-    """What the tab's panels of the add-on show, with all that is polled."""
+    """Returns what the tab's panels of the add-on show, with all that is polled."""
     context, layout = context_of(tab, thing), Layout()
     for panel in panels_of(tab):
         if panel.__module__.startswith("penumbra") and panel.poll(context):

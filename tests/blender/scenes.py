@@ -173,7 +173,7 @@ def emissive_sphere():
 
 @scene
 def camera_shift():
-    """On a portrait, whose longer side shifts are counted in."""
+    """Shifts of a portrait, which are counted in its longer side."""
     bpy.context.scene.render.resolution_x, bpy.context.scene.render.resolution_y = 72, 112
     stage(shift_x=0.13, shift_y=-0.071)
     lamp("AREA", (1, -1, 4), (15, 15, 0), energy=300, shape="SQUARE", size=1.2)
@@ -495,7 +495,7 @@ def world_picture_mirrored():
 
 @scene
 def world_camera_apart():
-    """What lights is not what the camera sees."""
+    """A world whose light is not what the camera sees."""
     stage()
     tree, background = world((0.9, 0.7, 0.5))
     seen, mix, path = (tree.nodes.new(f"ShaderNode{name}") for name in ("Background", "MixShader", "LightPath"))

@@ -147,7 +147,7 @@ class Serve(unittest.TestCase):
         return said["text"]
 
     def test_a_picture_is_read_from_the_folder_alone(self):
-        """And not from where the program was started."""
+        """The picture is not read from the folder where the program was started."""
         self.scene.add_sky(self.folder.name, 0.4)
         self.scene.folder = ""
         self.child.kill()
@@ -246,7 +246,7 @@ class Serve(unittest.TestCase):
         self.assertEqual(self.final().rgba.tobytes(), before.rgba.tobytes())
 
     def ends(self, data, code, seconds=20):
-        """What is left of input when this has been written, and nothing after it."""
+        """Expects that the program ends with this code when this has been written, and nothing after it."""
         process = subprocess.Popen([PENUMBRA, "serve"], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
         out, error = process.communicate(data, seconds)
         self.assertEqual(process.returncode, code, error)

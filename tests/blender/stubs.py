@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What stands for Blender's own things where there is no Blender: values by name, sockets, nodes, images."""
+"""Stand-ins for Blender's own things where there is no Blender: values by name, sockets, nodes, images."""
 
 import types
 
@@ -19,13 +19,13 @@ class Socket:
         return bool(self.links)
 
     def link(self, node, name="Color"):
-        """To the node's output of that name."""
+        """Links to the node's output of that name."""
         output = next((one for one in node.outputs if one.name == name), None) or box(name=name, identifier=name)
         self.links = [box(from_node=node, from_socket=output)]
 
 
 class Inputs(dict):
-    """By name and by number, as Blender's."""
+    """Inputs by name and by number, as Blender's."""
 
     def __getitem__(self, key):
         return list(self.values())[key] if isinstance(key, int) else super().__getitem__(key)

@@ -94,7 +94,7 @@ class Tree:
 
 class Colors(unittest.TestCase):
     def beside_cycles(self, build, allowed=2e-3, pixel=0.02):
-        """Where both are lit: sums, channel by channel, and pixel by pixel."""
+        """Compares pixels that both light: sums, channel by channel, and pixel by pixel."""
         scene = inside.fresh(build)
         ours, theirs = colors(inside.channels(scene, out("ours.exr"))), by_cycles(scene)
         self.assertGreater(theirs.sum(), 1)
@@ -205,7 +205,7 @@ class Colors(unittest.TestCase):
 
 class Refusals(unittest.TestCase):
     def said(self, scene):
-        """What is refused and what is mentioned, as sentences."""
+        """Returns what is refused and what is mentioned, as sentences."""
         from penumbra import export, frames, losses
         lost = losses.Losses()
         writer = export.SceneWriter(bpy.context.evaluated_depsgraph_get(), lost, True)
@@ -239,7 +239,7 @@ class Refusals(unittest.TestCase):
         self.assertFalse(numpy.array_equal(found["Clay.Combined.R"], alone["Combined.R"]))
 
     def test_instances_share_a_mesh_in_the_file(self):
-        """What a collection, particles and geometry nodes show many times, and once by itself, is in the file once."""
+        """A mesh that a collection, particles or geometry nodes show many times, and once by itself, is in the file once."""
         from penumbra import export, losses
         for build, name, count in ((scenes.instances, "Stone", 3), (scenes.particles, "Crumb", 21), (scenes.scattered, "Crumb", 5)):
             scene = inside.fresh(build)
@@ -282,7 +282,7 @@ class Refusals(unittest.TestCase):
             self.expect(scene, refused, mentioned)
 
     def shear(self, name):
-        """By a parent that is scaled unevenly, as seen from its turned child."""
+        """Shears a thing by a parent that is scaled unevenly, as seen from its turned child."""
         parent = scenes.add("Parent", None, scale=(1, 3, 1))
         thing = bpy.data.objects[name]
         matrix = thing.matrix_world.copy()

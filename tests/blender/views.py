@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: Apache-2.0
-"""What a 3D view of the add-on sends and says, without Blender: what was refused is sent again; a picture of the world that is
+"""Tests what a 3D view of the add-on sends and says, without Blender: what was refused is sent again; a picture of the world that is
 replaced while it is read.
 
     views.py ADDON.zip PENUMBRA
@@ -27,7 +27,7 @@ WANTED = mock.MagicMock(exactness="EXACT", method="")
 
 
 def viewpoint(x=0.0):
-    """From above, in parallel."""
+    """Returns a parallel view from above."""
     return Viewpoint([[1, 0, 0, x], [0, 1, 0, 0], [0, 0, 1, 4], [0, 0, 0, 1]],
                      [[0.5, 0, 0, 0], [0, 0.5, 0, 0], [0, 0, -0.01, 0], [0, 0, 0, 1]], (40, 40))
 

@@ -75,7 +75,7 @@ class Browser:
         return json.loads(text)
 
     def note(self, event):
-        """Whatever a page should not do: throw, complain, or ask for anything but itself."""
+        """Notes what a page should not do: throw, complain, or ask for anything but itself."""
         name, values = event.get("method"), event.get("params", {})
         if name == "Runtime.exceptionThrown":
             self.problems.append(json.dumps(values["exceptionDetails"]))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What tests of pages and live views claim: all of it is looked at, and what does not hold is printed."""
+"""Claims of tests of pages and live views: all are looked at, and those that do not hold are printed."""
 
 _failed = []
 

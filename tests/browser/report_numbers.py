@@ -161,7 +161,7 @@ def check_texts(page):
 
 
 def check_findings(page):
-    """At a glance: ties are ties, and speeds are given between answers to the same question alone."""
+    """The summary at a glance: ties are ties, and speeds are given between answers to the same question alone."""
     def tie(data):
         for result, rmse in zip(data["metrics"]["methods"], (0.0034, 0.00340001, 0.0035)):
             result["errorAllLights"]["rmse"] = rmse

@@ -63,7 +63,7 @@ class Page:
             seen: row.cells[3].dataset.seen ?? null}))""")
 
     def stage(self):
-        """Where the stage is, and its size."""
+        """Returns the stage's place and size."""
         return self.browser.ask("""(() => { const b = document.querySelector('#viewer-stage canvas').getBoundingClientRect();
             return {x: b.x, y: b.y, width: b.width, height: b.height}; })()""")
 
@@ -74,7 +74,7 @@ class Page:
         return (stage["width"] / 2 + (x + 0.5 - WIDTH / 2) * scale, stage["height"] / 2 + (y + 0.5 - HEIGHT / 2) * scale)
 
     def colors(self, places):
-        """What the stage shows there: [red, green, blue] each."""
+        """Returns what the stage shows at these places: [red, green, blue] each."""
         return self.browser.ask(f"""(() => {{ const c = document.querySelector('#viewer-stage canvas').getContext('2d');
             return {json.dumps(places)}.map(([x, y]) => [...c.getImageData(x, y, 1, 1).data.slice(0, 3)]); }})()""")
 
@@ -146,7 +146,7 @@ def check_keys(page):
     page.look("layer=error&a=3&light=1&view=one&limit=0.2&pixel=5,6")
     page.browser.wait("location.hash.includes('limit=0.2')")
     same((page.title(), page.browser.ask("document.getElementById('viewer-limit').value")), ("Error: pcss", "0.2"), "limit")
-    # What is no view of this report is put right.
+    # An address that names no view of this report is put right.
     page.look("layer=nothing&a=99&b=x&light=-7&view=7&wipe=NaN&zoom=1e9&pixel=1e9,-4&limit=-1&constructor=1")
     same(page.title(), "V: raytrace (reference)", "an address of nonsense")
     page.values()

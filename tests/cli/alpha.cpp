@@ -91,8 +91,8 @@ TEST_F(AlphaSurfaces, PanesDimLightAndShadow) {
   EXPECT_EQ(stats.at("counters").at("maskPairs"), 0);
 }
 
-/// Exact wherever the pane is certainly not on the way: there a picture is the one without it, bit by bit. Elsewhere it
-/// is the one of light samples.
+/// Pixels are exact wherever the pane is certainly not in between: there a picture is the one without it, bit by bit.
+/// Elsewhere it is the one of light samples.
 TEST_F(AlphaSurfaces, AreasStayExactBesideWhatAPaneMayDim) {
   const json away = {0, 1, 2}, there = {0, 1, 2, 3};
   gltf.at("/nodes/3") = {{"name", "Card"}, {"mesh", 3}, {"translation", {1.5, 2, 0}}, {"scale", {1, 1, 2}}};
@@ -117,7 +117,7 @@ TEST_F(AlphaSurfaces, AreasStayExactBesideWhatAPaneMayDim) {
       const ExrFile seen = picture(), open = picture("open.exr"), counted = picture("counted.exr");
       std::size_t pixels_counted = 0;
       for (std::size_t i = 0; i < seen.floats.at("V").size(); ++i) {
-        // At the pane's height the ways from x to the light's x in [-1, 1] are in 0.6 x + [-0.4, 0.4]; the pane begins
+        // Segments from x to the light's x in [-1, 1] are at the pane's height in 0.6 x + [-0.4, 0.4]; the pane begins
         // at 0.5. Four view samples are a pixel's quarters.
         const float border = (0.5f - 0.4f) / 0.6f, pixel = seen.floats.at("P.X")[1] - seen.floats.at("P.X")[0];
         const float beside = (seen.floats.at("P.X")[i] - border) / pixel;
@@ -158,7 +158,7 @@ TEST_F(AlphaSurfaces, LightsOfWhichTheSameIsSaidShareALine) {
     })) << light;
 }
 
-/// Behind the light, below the floor and far beside, or where it casts nothing: nothing is counted.
+/// Panes behind the light, below the floor, far beside it, or that cast nothing are not counted.
 TEST_F(AlphaSurfaces, APaneThatDimsNothingLeavesAreas) {
   translucent(0.3);
   // A mesh that is seen and hides nothing keeps the scene's origin where it is.
@@ -193,7 +193,7 @@ TEST_F(AlphaSurfaces, APaneThatDimsNothingLeavesAreas) {
   EXPECT_EQ(outcome.code, 0) << outcome.err;
 }
 
-/// Seen from above a pane is composited over what it dims: α its own light + (1 − α) the floor's; all else is of the
+/// A pane seen from above is composited over what it dims: α its own light + (1 − α) the floor's; all else is of the
 /// floor.
 TEST_F(AlphaSurfaces, PanesAreCompositedAndCarryNothingElse) {
   look_from_above();
@@ -278,7 +278,7 @@ TEST_F(AlphaSurfaces, TexelsDecideOfHoles) {
   std::size_t different = 0;
   for (std::size_t i = 0; i < mask.size(); ++i) different += mask[i] != half[i] ? 1 : 0;
   EXPECT_LE(different, mask.size() / 100);
-  // Through the hole the floor is seen, and only there.
+  // The floor is seen through the hole, and only there.
   look_from_above();
   half_a_card();
   gltf.at("/nodes/3") = {{"name", "Card"}, {"mesh", 3}, {"translation", {0, 2, 0}}, {"scale", {2, 1, 2}}};
@@ -334,7 +334,7 @@ TEST_F(AlphaSurfaces, MapMethodsDrawHoles) {
       EXPECT_NEAR(seen.floats.at("V")[i], 1 - hidden(seen.floats.at("P.X")[i]), bound) << method << " " << i;
     EXPECT_FALSE(json::parse(read("stats.json")).at("counters").contains("maskPairs")) << method;
   }
-  // Beside a pane whose light is the host's to dim, masks are still not asked about holes.
+  // Masks are still not asked about holes beside a pane whose light the host dims.
   gltf.at("/meshes").push_back(json(gltf.at("/meshes/3")));
   gltf.at("/meshes/4/primitives/0")["material"] = 3;
   gltf.at("/materials").push_back({{"name", "Glass"}, {"alphaMode", "BLEND"}});

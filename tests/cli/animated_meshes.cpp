@@ -67,7 +67,7 @@ class Scene {
     const std::size_t places = vertices([](float x, float z) { return std::array{x, 0.25F * std::sin(9 * x * z), z}; });
     return {{"attributes", {{"POSITION", places}}}, {"indices", indices_}, {"material", 0}};
   }
-  /// By how much a shape key moves each vertex; its weight goes 0, 1, 0 in frames 0, 1, 2.
+  /// Adds a shape key that moves each vertex by `place`; its weight goes 0, 1, 0 in frames 0, 1, 2.
   template <typename Place>
   void shape_key(const Place& place) {
     gltf.at("/meshes/0/primitives/0")["targets"] = {{{"POSITION", vertices(place)}}};
@@ -133,7 +133,7 @@ TEST_F(AnimatedMeshes, ThatBend) {
   }
 }
 
-/// In frame 1 one half lies exactly on the other: vertices meet, and part again.
+/// One half lies exactly on the other in frame 1: vertices meet, and part again.
 TEST_F(AnimatedMeshes, ThatFold) {
   Scene scene;
   const std::size_t flat = scene.vertices([](float x, float z) { return std::array{x, 0.0F, z}; });

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which view samples methods are not asked about, because their answers are known or nobody looks: no bit of a picture
-// depends on it.
+// Tests which view samples methods are not asked about, because their answers are known or nobody looks: no bit of a
+// picture depends on it.
 #include "tests/cli/program.hpp"
 
 #include "base/exr.hpp"
@@ -32,7 +32,7 @@ class AskedSamples : public ProgramTest {
   }
 };
 
-/// If V of a spot lamp is not written, methods evaluate view samples in its cone alone.
+/// Methods evaluate only view samples in the cone of a spot lamp whose V is not written.
 TEST_F(AskedSamples, BesideConesNothingIsAsked) {
   const auto spot = [](double x, bool smooth) {
     return json{{"name", smooth ? "smooth" : "sharp"},
@@ -67,8 +67,8 @@ TEST_F(AskedSamples, BesideConesNothingIsAsked) {
   }
 }
 
-/// At several moments what does not move, nor has anything that moves before its light, is asked once: the picture is
-/// the mean of its moments, each rendered alone.
+/// View samples that do not move, and before whose light nothing moves, are asked about once for several moments: the
+/// picture is the mean of its moments, each rendered alone.
 TEST_F(AskedSamples, WhatIsStillIsAskedOnce) {
   (void)moving_scene();
   const std::vector<std::string> scene = {path("scene.glb"), "--camera", "B.2", "--size", "48x32", "--fps", "10"};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whatever is wrong with what the program is given costs a message that says what and where, and the right exit code:
-// 2 wrong usage, 3 bad input, 4 device or resource. Never a crash, never a file left behind.
+// Tests that each kind of wrong input costs a message that says what is wrong and where, and the right exit code: 2
+// wrong usage, 3 bad input, 4 device or resource. Never a crash, never a file left behind.
 #include "tests/cli/program.hpp"
 
 #include <gmock/gmock.h>

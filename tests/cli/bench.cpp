@@ -78,7 +78,7 @@ TEST_F(Bench, PeersAskWhatTheySay) {
   EXPECT_GT(asked("adaptive-rays"), 0);
   EXPECT_LE(asked("adaptive-rays"), asked("plain-rays"));
   EXPECT_LE(asked("nontrivial-rays"), asked("plain-rays"));
-  // It knows the light samples for which it traces no ray: so its error is at most that of plain rays.
+  // Nontrivial rays know the light samples for which they trace no ray, so their error is at most that of plain rays.
   EXPECT_LE(line_of(all, "scene/size=16/n=256/nontrivial-rays").at("error").at("rmse"),
             line_of(all, "scene/size=16/n=256/plain-rays").at("error").at("rmse"));
 }

@@ -102,7 +102,7 @@ TEST_F(Compare, ExactRowsAreAreasAndHaveErrorsButNoPairs) {
 
 /// A method that fails takes nothing away from the others, and the command ends with its exit code.
 TEST_F(Compare, AMethodThatFailsIsReportedAndTheOthersGoOn) {
-  // Beside the new report there must be no file that an earlier run made; files that are not ours stay.
+  // Files that an earlier run made must not stay beside the new report; files that are not ours stay.
   std::filesystem::create_directories(path("dir"));
   for (const char* ending : {".exr", "-error.png", ".png"})
     write("dir/edge-scatter,engine=vulkan" + std::string(ending), "old");
@@ -146,8 +146,8 @@ TEST_F(Compare, ARefusalLeavesNoFolders) {
   EXPECT_TRUE(std::filesystem::is_empty(path("kept")));
 }
 
-/// If too many pairs differ to decide each of them, an evenly spaced sample of them is decided, and metrics.json
-/// says how large it is.
+/// An evenly spaced sample of differing pairs is decided if they are too many to decide each, and metrics.json says how
+/// large the sample is.
 TEST_F(Compare, VerdictsAreGivenBySamplingWhereTooManyPairsDiffer) {
   const Outcome outcome = compare({"--methods", "accumulate:size=8,raytrace", "--light-samples", "64",
                                    "--reference-samples", "same", "--size", "96x64"});
@@ -211,7 +211,8 @@ TEST_F(Compare, EveryLightIsJudged) {
   }
 }
 
-/// Without being asked: what a method with masks does wrong, apart from what the number of light samples costs.
+/// The report shows, without being asked, what a method with masks does wrong apart from what the number of light
+/// samples costs.
 TEST_F(Compare, ExactnessIsShownWhateverTheReferenceIs) {
   ASSERT_EQ(compare({"--methods", "view-sample,pcss", "--light-samples", "64"}).code, 0);
   const json result = metrics();
@@ -223,7 +224,7 @@ TEST_F(Compare, ExactnessIsShownWhateverTheReferenceIs) {
   EXPECT_EQ(same.at("error").at("max"), 0);
   EXPECT_GT(exact.at("error").at("max"), 0);
   EXPECT_TRUE(scalar.at("lights").at(0).at("sameSamples").is_null());
-  // So all of its error is what 64 light samples cost.
+  // The whole error is therefore what 64 light samples cost.
   EXPECT_EQ(result.at("sameSamples").at("method"), "raytrace");
   EXPECT_EQ(result["sameSamples"]["lightSamples"], 64);
   EXPECT_EQ(result["sameSamples"]["lights"][0]["error"], exact["error"]);

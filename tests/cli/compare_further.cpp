@@ -53,8 +53,8 @@ TEST_F(CompareFurther, ErrorsByClassAddUp) {
   EXPECT_GT(pixels_of("cast"), 0U);
   EXPECT_LE(std::max(pixels_of("cast"), pixels_of("self")), pixels_of("penumbra") + pixels_of("umbra"));
   EXPECT_EQ(method.at("lights").at(0).at("classes"), classes);
-  // Ranges share out the penumbra, and all shadows, where a ray met what hides the light; texels of a map of half the
-  // size are twice as wide but for its border.
+  // Ranges divide the penumbra, and all shadows, where a ray met what hides the light; texels of a map of half the size
+  // are twice as wide, except for its border.
   const auto shared = [](const json& ranges) {
     std::uint64_t known = 0;
     double end = 0;

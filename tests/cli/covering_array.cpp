@@ -23,7 +23,7 @@ bool apart(const Factor& a, const Factor& b) {
   return !a.group.empty() && !b.group.empty() && a.group != b.group;
 }
 
-/// Which factors are in two groups, asked once.
+/// Pairs of factors that are in two groups, asked once.
 class Pairs {
  public:
   explicit Pairs(const std::vector<Factor>& factors) : count_(factors.size()) {
@@ -57,7 +57,7 @@ void for_each_combination(const Pairs& pairs, const Choices& row, std::size_t st
   }
 }
 
-/// Only those that contain the value of `factor`.
+/// Visits only combinations that contain the value of `factor`.
 template <typename Visit>
 void for_each_combination_with(const Pairs& pairs, const Choices& row, std::size_t strength, std::size_t factor,
                                Visit visit) {

@@ -32,12 +32,13 @@ using Allowed = std::function<bool(const Choices&)>;
 /// itself: a greedy covering array (Cohen et al., The AETG system, 1997). The rows are the same on every machine.
 std::vector<Choices> covering_array(const std::vector<Factor>& factors, std::size_t strength, const Allowed& allowed);
 
-/// How many combinations no row has: none, unless an allowed combination cannot be completed to an allowed row.
+/// Returns the number of combinations that no row has: 0, unless an allowed combination cannot be completed to an
+/// allowed row.
 std::size_t uncovered_combinations(const std::vector<Factor>& factors, std::size_t strength, const Allowed& allowed,
                                    const std::vector<Choices>& rows);
 
-/// For each row the groups with a combination, of their factors and those of no group, that no row before it has: all
-/// combinations still occur if a row is tried for these groups alone.
+/// Returns, for each row, the groups with a combination of their factors and those of no group that no earlier row has:
+/// all combinations still occur if a row is tried for these groups alone.
 std::vector<std::set<std::string>> groups_with_news(const std::vector<Factor>& factors, std::size_t strength,
                                                     const std::vector<Choices>& rows);
 

@@ -119,7 +119,7 @@ TEST_F(DepthOfField, APointIsADisk) {
   EXPECT_NEAR(square_y / sum, spread, noise * circle * circle / 4);
 }
 
-/// At the focus distance all of the lens sees one point; what is of the pixel's centre is of the lens's, too.
+/// The whole lens sees one point at the focus distance; the answer of the pixel's centre is the lens's, too.
 TEST_F(DepthOfField, WhatIsInFocusIsSharp) {
   const Card card{-0.1, 0.171, -0.3, 0.222, 2};
   write_scene(card, {{"aperture", 0.2}});  // sharp at the target, one away

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Domes as a user meets them: what `render` gives by default, files that hold their light samples, pictures and which
-// toward these look, refusals.
+// Tests domes as a user meets them: what `render` gives by default, files that hold light samples, the directions in
+// which pictures of the sky look, and refusals.
 
 #include "tests/cli/program.hpp"
 #include "tests/report_json.hpp"
@@ -46,7 +46,7 @@ class DomeCommands : public ProgramTest {
   }
   [[nodiscard]] ExrFile image() const { return read_exr(path("out.exr")); }
   [[nodiscard]] json stats() const { return json::parse(read("stats.json")); }
-  /// A Radiance picture of 8 by 4 black pixels, but for one: 1 in red, green and blue.
+  /// Makes a Radiance picture of 8 by 4 pixels, all black except for one: 1 in red, green and blue.
   void sky(std::size_t column, std::size_t row) const {
     std::string text = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 4 +X 8\n";
     for (std::size_t i = 0; i < 32; ++i)

@@ -73,7 +73,7 @@ TEST_F(ErrorBudget, WhereShadowsAreAddedTwiceItIsFusion) {
   EXPECT_LT(number(result, "fusion"), -0.6 * rmse(result));
   EXPECT_GT(number(result, "resolution"), -0.3 * rmse(result));
   for (const char* cause : {"layers", "gaps", "bias"}) EXPECT_EQ(number(result, cause), 0) << cause;
-  // From each of the light's own points nothing is seen twice: it is the one view that adds what overlaps.
+  // Nothing is seen twice from the light's own points: the single view adds what overlaps.
   EXPECT_LT(number(result, "view"), -0.6 * rmse(result));
 }
 
@@ -337,7 +337,7 @@ TEST_F(ErrorBudget, EachLightIsExplained) {
             json::parse(read("among/metrics.json")).at("methods").at(0).at("lights").at(1).at("errorBudget"));
 }
 
-/// If stderr is no terminal, there is a line every five seconds in place of a bar.
+/// Progress is a line every five seconds, in place of a bar, if stderr is no terminal.
 using ErrorBudgetFull = ErrorBudget;
 TEST_F(ErrorBudgetFull, SaysHowFarItIs) {
   const Outcome outcome =

@@ -56,7 +56,7 @@ TEST_F(FarLights, AStarIsASun) {
       render(fmt::format(R"({{"name": "sol", "sun": {{"direction": [-0.6, -0.8, 0], "angle": {}}}}})", angle));
   EXPECT_EQ(sun.method, "edge-scatter");
   EXPECT_LT(largest_difference(star.v, sun.v), 1e-5);
-  // Light samples of it are looked at by rays, and their V is that of the area but for their number.
+  // Rays look at its light samples, whose V is that of the area except for their number.
   const Rendered rays = render(R"({"name": "sol", "sphere": {"center": [9e10, 1.2e11, 0], "radius": 6.96e8}})",
                                {"--light-samples", "256"});
   EXPECT_EQ(rays.method, "raytrace");
@@ -82,7 +82,7 @@ TEST_F(FarLights, EveryKindIsDone) {
   }
 }
 
-/// Beyond the reach of Embree's float32, too: coordinates end at 1e12, so the scene is small.
+/// Areas work beyond the reach of Embree's float32, too: coordinates end at 1e12, so the scene is small.
 TEST_F(FarLights, BeyondRaysAreAreas) {
   write("small.json", R"({"format": "penumbra-scene/1", "size": [12, 8],
     "camera": {"eye": [0, 0.002, 0.003], "target": [0, 0, 0]},

@@ -170,7 +170,7 @@ SchedulerParameters=sched_interval=2,bf_interval=2
     arguments.insert(arguments.end(), more.begin(), more.end());
     return run(arguments);
   }
-  /// Is it the log of a task or summary? Frames have their own.
+  /// Returns whether the file is the log of a task or summary; frames have their own.
   static bool is_log(const std::filesystem::path& path) {
     return path.extension() == ".log" && !path.filename().string().starts_with("frame-");
   }
@@ -183,7 +183,7 @@ SchedulerParameters=sched_interval=2,bf_interval=2
     return all;
   }
 
-  /// Its daemon, those that watch its jobs, and the jobs, as if its plug were pulled.
+  /// Kills a node's daemon, the processes that watch its jobs, and the jobs, as if its plug were pulled.
   void kill_node(const std::string& node) const {
     const auto environment_has = [](const std::filesystem::path& process, const std::string& variable) {
       return ('\0' + file_text(process / "environ")).find('\0' + variable + '\0') != std::string::npos;

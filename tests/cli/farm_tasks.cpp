@@ -94,7 +94,7 @@ TEST(FarmTasks, SlurmSaysHowManyThereMayBe) {
   EXPECT_THROW((void)app::run_slurm({"no-such-program-of-slurm"}), ResourceError);
 }
 
-/// Whatever is in a word, the shell has the same word, and runs nothing.
+/// Words of any content reach the shell unchanged, and the shell runs nothing in them.
 TEST(ShellWords, AreWhatTheyWere) {
   std::mt19937 random(17);
   const std::string hard = " \t'\"\\$`!*?[]{}()<>|&;#~%=-aZ0\x80\xc3\xbc\x01";

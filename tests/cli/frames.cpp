@@ -155,7 +155,7 @@ TEST_F(Frames, ThatAreTornOrForeignAreMadeAgain) {
   }
 }
 
-/// Between frames, too: the camera is where it is half a frame later.
+/// Moments may lie between frames: the camera is where it is half a frame later.
 TEST_F(Frames, MayBeMoments) {
   ASSERT_EQ(render({"--frame", "5.5", "-o", path("f.exr")}).code, 0);
   const ExrFile image = read_exr(path("f.exr"));

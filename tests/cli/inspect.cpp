@@ -73,7 +73,7 @@ TEST_F(Inspect, JsonHasItsKeys) {
     for (const auto& [key, value] : known) EXPECT_EQ(object.at(key), value) << key;
     EXPECT_EQ(object.at("bounds"), json::parse("[[0, 0, 0], [1, 1, 1]]"));
     EXPECT_EQ(object.at("verdicts").at("view-sample"), "exact");
-    // Seen from the bounds' centre, the pyramid over the missing triangle is missing: a twelfth of the volume.
+    // The pyramid over the missing triangle, seen from the bounds' centre, is missing: a twelfth of the volume.
     EXPECT_DOUBLE_EQ(object.at("volume").get<double>(), 11.0 / 12);
     const json& edges = object.at("lists").at("boundaryEdges");
     ASSERT_EQ(edges.size(), 3u);

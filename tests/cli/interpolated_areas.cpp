@@ -149,7 +149,7 @@ TEST_F(InterpolatedAreas, ErrByNoMoreThanTheTolerance) {
   EXPECT_EQ(asked_, kAll);
 }
 
-/// At a contact of two surfaces, such as a wall on a floor, a shadow may begin between two pixels.
+/// A shadow may begin between two pixels at a contact of two surfaces, such as a wall on a floor.
 TEST_F(InterpolatedAreas, AreContinuedToTheEdgeOfASurfaceUnlessAnotherIsNear) {
   constexpr std::uint32_t kColumn = 3 * kSide + 1;
   const auto both = [](const glm::vec3& p) { return p.z == 0 ? 0.2 + 0.1 * double{p.x} : 0.9 - 0.1 * double{p.x}; };
@@ -172,9 +172,9 @@ TEST_F(InterpolatedAreas, AreOneWhereThereIsNothing) {
 
 using InterpolatedPictures = ProgramTest;
 
-/// On scenes with contacts, thin penumbras and smooth meshes, 16 view samples a pixel, against all of them evaluated.
-/// The error of a pixel is a mean of errors, whose estimates are at most the tolerance: a quarter of it is what they
-/// come to, and 0.03 what a kink between corners does to a pixel.
+/// Scenes with contacts, thin penumbras and smooth meshes, 16 view samples a pixel, are held against pictures with all
+/// view samples evaluated. The error of a pixel is a mean of errors, whose estimates are at most the tolerance:
+/// measured, the mean is a quarter of it, and a kink between corners costs a pixel 0.03.
 TEST_F(InterpolatedPictures, DifferLittleFromThoseWhoseEveryViewSampleIsEvaluated) {
   for (const char* scene : {"contact", "room"}) {
     SCOPED_TRACE(scene);

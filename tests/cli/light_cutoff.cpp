@@ -135,7 +135,7 @@ TEST_F(LightCutoff, HoldsForEachViewSampleOfAPixel) {
       for (const std::size_t at : {first, first + 1, first + 64, first + 65})
         sum += double{fine.floats.at(channel)[at]} / 4;
       ASSERT_NEAR(whole.floats.at(channel)[i], sum, 1e-5 * std::max(sum, 1.0)) << channel << i;
-      // Where a lamp begins to be left out, its V is extrapolated; the lamp is faint there.
+      // V of a lamp is extrapolated where the lamp begins to be left out; it is faint there.
       if (channel[0] == 'R') {
         ASSERT_NEAR(interpolated.floats.at(channel)[i], sum, 2e-3) << channel << i;
       }

@@ -186,7 +186,7 @@ TEST_F(LightKinds, AMeshIsLitByItsLightsAlone) {
   }
 }
 
-/// To glTF and back: lamps keep their sizes and units.
+/// Lamps keep their sizes and units through glTF and back.
 TEST_F(LightKinds, LampsGoThroughGltf) {
   const auto scene =
       scene_with(R"({"name": "sun", "sun": {"direction": [0.2, -1, 0.1], "angle": 20}, "irradiance": [3, 2, 1]},

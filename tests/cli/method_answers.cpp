@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whatever a method answers, what is no share of a light goes no further than the host.
+// Tests that answers of a method that are no shares of a light go no further than the host.
 #include "app/process/terminal_progress.hpp"
 #include "app/machine.hpp"
 #include "app/runner.hpp"
@@ -18,7 +18,7 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::ThrowsMessage;
 
-/// Answers V = 0.5 everywhere, but one value at one view sample.
+/// Answers V = 0.5 everywhere, except for one value at one view sample.
 class OneWrong final : public visibility::Method {
  public:
   OneWrong(float wrong, visibility::Output output, const glm::dvec3& form_factor)

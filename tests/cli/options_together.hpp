@@ -39,7 +39,7 @@ class MethodTable {
 class Row {
  public:
   Row(const std::vector<Factor>& factors, const Choices& choices);
-  /// Empty where nothing is chosen.
+  /// Returns an empty text where nothing is chosen.
   [[nodiscard]] const std::string& operator[](const std::string& factor) const;
   [[nodiscard]] bool has(const std::string& factor) const { return values_.contains(factor); }
 
@@ -51,7 +51,8 @@ class Row {
 /// default is given by its name, too, if `default_by_name`.
 std::vector<std::string> values_to_try(const nlohmann::json& option, bool default_by_name);
 
-/// Do these options of a method exclude one another, or the other choices? Only as far as its page says so.
+/// Returns whether these options of a method exclude one another, or the other choices, as far as the method's page
+/// says so.
 bool options_exclude(const std::string& method, const std::map<std::string, std::string>& options,
                      const LitScene& scene, const Row& row);
 

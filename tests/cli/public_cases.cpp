@@ -88,8 +88,8 @@ TEST_F(PublicCases, EveryMeshIsInTheTableAndInTheReadme) {
   }
 }
 
-/// Also for a method that adds up the shadows of wedges at each edge. The exact area is the judge, and does not look at
-/// edges that way.
+/// A method that adds up the shadows of wedges at each edge is tested, too. The exact area is the judge, and does not
+/// look at edges in that manner.
 TEST_F(PublicCases, StraightCornersChangeNoShadow) {
   const std::string scene = (kCases / "meshes/ngon_straight_corners.json").string();
   const Outcome outcome = run({"compare", scene, "-o", path("out"), "--methods", "soft-volume", "--reference", "exact",

@@ -215,7 +215,7 @@ TEST_F(RenderOnce, ImageMethodsSayHowTheyMakeBeauty) {
       run({"render", path("scene.json"), "-o", path("b.exr"), "--method", "pcss", "--bits", path("out.bits")});
   EXPECT_EQ(bits.code, 2);
   EXPECT_THAT(bits.err, HasSubstr("pcss"));
-  // Without bits, for few pixels: beauty is V times the unshadowed light.
+  // Beauty without bits, for few pixels, is V times the unshadowed light.
   const std::vector<std::string> few = {"render",  path("scene.json"), "-o",      path("few.exr"),   "--method",
                                         "bitmask", "--method-option",  "size=64", "--method-option", "subsample=2"};
   ASSERT_EQ(run(few).code, 0);
@@ -253,7 +253,7 @@ TEST_F(RenderOnce, DefaultMethodCanDoThePattern) {
   const Outcome outcome = run({"render", tiny_scene(), "-o", path("out.exr"), "--sample-pattern", "sobol"});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_EQ(read_exr(path("out.exr")).attributes.at("penumbra.method"), "edge-scatter");
-  // Either engine can: the bits are the same.
+  // Both engines can: the bits are the same.
   std::vector<std::string> bits;
   for (const char* engine : {"engine=vulkan", "engine=native"}) {
     const Outcome named = run({"render", tiny_scene(), "-o", path("out.exr"), "--sample-pattern", "jittered",

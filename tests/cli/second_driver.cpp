@@ -73,7 +73,7 @@ TEST_F(SecondDriver, ARefusedMethodNamesWhatIsMissing) {
   EXPECT_THAT(files(), ElementsAre("scene.json"));
 }
 
-/// Without edge-scatter, whose second pass it compiles for a quarter of a minute.
+/// The list leaves edge-scatter out, whose second pass this driver compiles for a quarter of a minute.
 TEST_F(SecondDriver, ExactMethodsGiveTheSameBits) {
   const std::string scene = tiny_scene();
   for (const char* method : {"view-sample", "depth-complexity"}) expect_the_same(scene, method, {"--size", "24x16"});

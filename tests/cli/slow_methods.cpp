@@ -93,12 +93,12 @@ TEST_F(SlowMethods, EndBetweenTiles) {
   EXPECT_EQ(slow.tiles.front(), 4U);
   for (std::size_t i = 1; i < slow.tiles.size(); ++i) EXPECT_LE(slow.tiles[i], 2 * slow.tiles[i - 1]);
   EXPECT_LE(std::reduce(slow.tiles.begin(), slow.tiles.end()), 100U) << "beyond the limit there is one tile at most";
-  // With the time that it takes, the timed run is in one piece.
+  // The timed run is in one piece if the method is given the time that it takes.
   Slow patient;
   plan.most_seconds = 1e6;
   EXPECT_EQ(app::run_method(patient, session, plan, none, progress).times.runs, 1U);
   EXPECT_THAT(patient.tiles, testing::ElementsAre(4U, 8U, 16U, 32U, 64U, 76U, 200U));
-  // Without a discarded run there is no limit.
+  // A run without a discarded one has no limit.
   Slow first;
   plan.most_seconds = 0;
   plan.discard_first = false;

@@ -48,7 +48,7 @@ TEST_F(StudioCommands, AMeshRendersAsTheSceneThatConvertWrites) {
 }
 
 TEST_F(StudioCommands, OptionsChooseIt) {
-  // From straight above a camera of 90 degrees sees the ground 4 below it from -4 to 4.
+  // A camera of 90 degrees straight above sees the ground 4 below it from -4 to 4.
   ASSERT_EQ(run({"render", path("roof.obj"), "-o", path("out.exr"), "--size", "64x64", "--floor", "none", "--camera",
                  "0,5,0:0,1,0:90", "--add-light", "sun:0,-1,0:0"})
                 .code,

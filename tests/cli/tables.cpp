@@ -86,7 +86,7 @@ TEST_F(Tables, DevicesSayWhatTheyCan) {
   const json devices = json::parse(run({"devices", "--json"}).out).at("devices");
   for (const json& device : devices) {
     EXPECT_FALSE(device.at("name").get<std::string>().empty());
-    // Either it can be used, or it is said why not.
+    // Each device can be used, or the list says why not.
     EXPECT_EQ(device.at("usable").get<bool>(), device.at("refusals").empty()) << device;
   }
   const json contexts = json::parse(run({"devices", "--json"}).out).at("opengl");

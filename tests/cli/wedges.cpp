@@ -114,7 +114,7 @@ TEST_F(WedgesCommand, AnExportIsAGlb) {
   write("shown.json", R"({"format": "penumbra-scene/1",
     "camera": {"eye": [2, 3, 6], "target": [0, 0.5, 0]}, "meshes": [{"name": "wedges", "file": "w.glb"}],
     "lights": [{"name": "key", "rectangle": {"center": [0, 4, 0], "halfU": [0.5, 0, 0], "halfV": [0, 0, 0.5]}}]})");
-  // Its wedges are translucent, which a JSON scene cannot keep.
+  // The scene's wedges are translucent, which a JSON scene cannot keep.
   const Outcome outcome = run({"convert", path("shown.json"), "--lenient", "-o", path("shown.obj")});
   EXPECT_EQ(outcome.code, 0) << outcome.err;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The program on a machine without a Vulkan driver: what runs on the processor gives the bytes that it gives with one,
-// and what does not is refused by name.
+// Tests the program on a machine without a Vulkan driver: methods that run on the processor give the same bytes as with
+// a driver, and the others are refused by name.
 
 #include "app/methods.hpp"
 #include "tests/cli/program.hpp"
@@ -20,7 +20,7 @@ using testing::Not;
 const std::map<std::string, std::string> kNowhere = {{"VK_DRIVER_FILES", "/nowhere.json"},
                                                      {"VK_ICD_FILENAMES", "/nowhere.json"}};
 
-/// Can the method do the lamp of tiny_scene()?
+/// Returns whether the method can do the lamp of tiny_scene().
 bool does_lamps(const visibility::MethodDescription& method) {
   return method.lights.contains(visibility::LightKind::rectangle);
 }

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""What docs/option_tables.py --check finds missing on a method's page: option_tables.py DOCS."""
+"""Tests what docs/option_tables.py --check finds missing on a method's page: option_tables.py DOCS."""
 
 import sys
 import tempfile

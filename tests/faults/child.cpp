@@ -45,8 +45,8 @@ uid_t stranger() {
   return 1'000'000'000 + static_cast<uid_t>(::getpid()) * 100 + serial++ % 100;
 }
 
-/// What is added to the environment. A sanitizer is told of what it could not stand: a library that is loaded before
-/// it, and that it cannot start the process that looks for leaks at the end.
+/// Returns the variables that are added to the environment. A sanitizer is told what it could not stand otherwise: a
+/// library that is loaded before it, and that it cannot start the process that looks for leaks at the end.
 std::map<std::string, std::string> additions(const Conditions& conditions) {
   std::map<std::string, std::string> added = conditions.environment;
   if (!kSanitized) return added;
@@ -59,7 +59,7 @@ std::map<std::string, std::string> additions(const Conditions& conditions) {
   return added;
 }
 
-/// May others go through all folders above the file?
+/// Returns whether other users may go through all folders above the file.
 bool is_reachable(const std::filesystem::path& file) {
   for (std::filesystem::path folder = file.parent_path();; folder = folder.parent_path()) {
     const auto allowed = std::filesystem::status(folder).permissions();
@@ -99,7 +99,7 @@ std::string program_of(const Conditions& conditions) {
   return program.path().string();
 }
 
-/// After fork: only calls that are safe there.
+/// Prepares a stream of the child after fork, with calls that are safe there.
 void set_stream(Stream stream, int number, int captured) {
   switch (stream) {
     case Stream::captured:

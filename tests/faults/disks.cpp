@@ -81,7 +81,7 @@ TEST_P(DiskFaults, EachOutputIsOldOrWholeOrNotThere) {
     if (ending.code == 0 && ++faults > 0) break;
     ++faults;
   }
-  // Only the last run got through; in each one before it a call failed.
+  // A call failed in every run before the last, which alone got through.
   EXPECT_GT(faults, 1) << "no call ever failed";
 }
 

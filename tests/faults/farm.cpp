@@ -46,7 +46,7 @@ class FarmFaults : public FaultTest {
     }
     return all;
   }
-  /// Until so many are there, or the program has ended.
+  /// Waits until so many pictures are there, or the program has ended.
   void wait_for_pictures(Running& program, std::size_t count) const {
     while (pictures().size() < count && !program.has_ended()) std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }
@@ -132,7 +132,7 @@ TEST_F(FarmFaults, NoWorkerOutlivesAKill) {
   expect_whole(before);
 }
 
-/// Nor is it that they end by themselves: a frame takes half a minute here.
+/// Workers do not end by themselves meanwhile: a frame takes half a minute here.
 TEST_F(FarmFaults, NoWorkerFinishesItsFrameAfterAKill) {
   Running program({.arguments = sequence("submit", {"--jobs", "2", "--light-samples", "4096"}, "768x768")});
   while (processes().size() < 3 && !program.has_ended()) std::this_thread::sleep_for(std::chrono::milliseconds(2));

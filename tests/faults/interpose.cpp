@@ -27,7 +27,7 @@ Function next(const char* name) {
   return reinterpret_cast<Function>(dlsym(RTLD_NEXT, name));
 }
 
-/// Whether this call is the one; errno is set then.
+/// Returns whether this call is the one that fails; errno is set then.
 bool fails(const char* call) {
   static std::atomic<long> count{0};
   const char* wanted = std::getenv("PENUMBRA_FAULT_CALL");

@@ -31,7 +31,7 @@ class KillFaults : public FaultTest {
       std::this_thread::sleep_for(moment);
       program.send(signal);
       const Ending ending = program.wait();
-      // Before the program's main begins, signals have the system's default action.
+      // Signals have the system's default action before the program's main begins.
       EXPECT_THAT(ending.code, AnyOf(0, 130, 128 + signal)) << ending.err;
       if (ending.code == 130) {
         expect_no_parts();

@@ -91,7 +91,7 @@ TEST_F(LimitFaults, FewDescriptors) {
   for (const rlim_t files : {4ul, 5ul, 6ul, 8ul, 10ul, 12ul, 16ul, 20ul, 64ul}) {
     if (kSanitized && files < 8) continue;  // of a pipe UBSan learns whether memory can be read
     const Conditions conditions{.arguments = render(), .limits = {{RLIMIT_NOFILE, files}}};
-    // Where this test has files open itself, too few are left to load the program: then there is no answer of ours to
+    // Files that this test itself has open may leave too few to load the program: then there is no answer of ours to
     // check.
     if (files < 8 && run_under(conditions).err.find("while loading shared libraries") != std::string::npos) continue;
     check(conditions, std::to_string(files) + " descriptors");

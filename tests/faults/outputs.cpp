@@ -15,7 +15,7 @@ using testing::HasSubstr;
 
 using Arguments = std::vector<std::string>;
 
-/// Another way to name a file.
+/// Another name of a file.
 struct Alias {
   const char* name;
   std::function<std::string(const std::filesystem::path& file)> make;

@@ -108,7 +108,7 @@ TEST_F(SignalFaults, LongWhileLargePicturesAreWritten) {
   interrupt_writing("4096x4096");
 }
 
-/// Whatever is done with a hundred thousand lights, and when.
+/// Signals at any time while the program handles a hundred thousand lights.
 TEST_F(SignalFaults, LongUnderManyLights) {
   std::ofstream scene(path("many.json"));
   scene << R"({"format": "penumbra-scene/1", "size": [16, 16], "camera": {"eye": [3, 3, 5], "target": [0, 0, 0]},)"

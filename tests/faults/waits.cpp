@@ -39,7 +39,7 @@ TEST_F(WaitFaults, ALimitThatIsNoneIs2) {
   }
 }
 
-/// With Mesa's driver for processors, whose threads here do nothing.
+/// Waits on Mesa's driver for processors, whose threads do nothing here.
 class LongWaitFaults : public WaitFaults {};
 
 TEST_F(LongWaitFaults, ADeviceThatDoesNothingIs4) {

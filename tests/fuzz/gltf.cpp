@@ -18,7 +18,7 @@ namespace {
 
 using namespace penumbra;
 
-/// What comes out; nothing if the file is refused.
+/// Returns the result; nothing if the file is refused.
 template <typename Read>
 auto attempt(Read read) -> std::optional<decltype(read())> {
   try {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What runs inside the import helper, on any file: the first byte chooses the format, the rest is the file's content.
-// All of these are read by our own code; of COLLADA, the part before Assimp.
+// Fuzzes what runs inside the import helper: the first byte chooses the format, the rest is the file's content. Our own
+// code reads all of these formats; of COLLADA, the part before Assimp.
 #include "base/error.hpp"
 #include "import/audit_collada.hpp"
 #include "import/read.hpp"

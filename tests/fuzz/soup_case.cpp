@@ -149,7 +149,7 @@ class Reader {
     scene.objects.back().name = "soup";
   }
 
-  /// On corners, edges and inside: a + s (b − a) + t (c − a) with s and t multiples of ¼.
+  /// Reads view samples on corners, edges and inside: a + s (b − a) + t (c − a) with s and t multiples of ¼.
   void read_samples(SoupCase& made) {
     visibility::ViewSamples& samples = made.samples;
     samples.width = 8;

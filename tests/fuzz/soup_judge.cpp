@@ -19,7 +19,7 @@ int sign_of_determinant(const Point& a, const Point& b, const Point& c) {
   return sgn(value);
 }
 
-/// On which side of the plane through a, b, c the point is: positive where they run counter-clockwise.
+/// Returns the side of the plane through a, b, c that the point is on: positive where they run counter-clockwise.
 int side(const std::array<Point, 3>& abc, const Point& x) {
   return sign_of_determinant(minus(abc[1], abc[0]), minus(abc[2], abc[0]), minus(x, abc[0]));
 }

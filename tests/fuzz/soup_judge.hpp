@@ -18,7 +18,7 @@ class SoupJudge {
  public:
   explicit SoupJudge(const SoupCase& judged);
 
-  /// Does the view sample of this pixel, which is no background, see the light sample?
+  /// Returns whether the view sample of this pixel, which is no background, sees the light sample.
   [[nodiscard]] bool sees(std::size_t pixel, std::uint32_t light_sample) const;
 
  private:

@@ -137,7 +137,7 @@ TEST_F(LibraryInstances, MoveAndLeaveTheMeshesTreesAlone) {
   EXPECT_EQ(exact_bytes(renderer.render(kShared)), exact_bytes(moved));
   renderer.scene().set_transform(InstanceId{mesh, 4}, place(4));
   EXPECT_EQ(exact_bytes(renderer.render(kShared)), exact_bytes(first)) << "the origin stays where it was";
-  // Positions are the mesh's own, of all instances; only its tree is made anew.
+  // Positions are the mesh's own, of all instances; only its tree is made again.
   renderer.scene().set_positions(mesh, tent(1.1));
   const Picture higher = renderer.render(kShared);
   EXPECT_EQ(built(higher), 1);
@@ -181,7 +181,7 @@ TEST_F(LibraryInstances, RefuseWhatCannotBe) {
   EXPECT_THROW(static_cast<void>(Renderer(scene).render(with("some"))), UsageError);
   EXPECT_THROW(static_cast<void>(Renderer(scene).render(with("shared", "pcf"))), UsageError);
   EXPECT_EQ(exact_bytes(Renderer(scene).render(kShared)), before);
-  // What looks at more than lies between gets copies.
+  // Methods that look at more than what lies between p and the light get copies.
   EXPECT_NO_THROW(static_cast<void>(Renderer(scene).render(with("", "pcf"))));
   EXPECT_THAT(wedges_json(scene, {.light = "key"}), HasSubstr("key"));
 }

@@ -74,7 +74,7 @@ class Striped final : public OwnMethod {
   std::uint32_t pattern_, words_ = 0;
 };
 
-/// Once a process, since methods stay.
+/// Adds the method once a process, since methods stay.
 void add_once() {
   static const bool added = [] {
     add_method(

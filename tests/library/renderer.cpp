@@ -114,7 +114,7 @@ TEST_F(Library, MasksAreTheBitsOfTheProgram) {
   ASSERT_EQ(picture.words_per_mask(), words);
   EXPECT_EQ(picture.light_samples(), 100U);
   ASSERT_EQ(picture.masks().size(), pixels * words);
-  // After the line, three doubles and the light points each pixel has p, its triangle and its words.
+  // Each pixel has p, its triangle and its words, after the first line, three doubles and the light points.
   std::size_t at = bits.find('\n') + 1 + 3 * sizeof(double) + 100 * sizeof(Picture::Float3);
   for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
     at += 12 + 4;
@@ -125,7 +125,7 @@ TEST_F(Library, MasksAreTheBitsOfTheProgram) {
   EXPECT_THAT(renderer.render({.method = "edge-scatter", .light_samples = 100, .masks = false}).masks(), IsEmpty());
 }
 
-/// What the renderer keeps must not show: every picture is the one of a renderer that was made for it.
+/// The renderer's kept data must not show: every picture is the one of a renderer that was made for it.
 TEST_F(Library, KeepsNothingThatChanged) {
   Renderer renderer(Scene::load(scene_));
   const auto expect_fresh = [&](const RenderOptions& options, const char* what) {

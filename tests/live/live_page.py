@@ -60,7 +60,7 @@ class Page:
                         "return [b.x, b.y, b.width, b.height]; })()")
 
     def place(self, x, y):
-        """Where a part of the picture is in the window."""
+        """Returns the place in the window of a part of the picture."""
         left, top, width, height = self.box("#picture")
         return left + x * width, top + y * height
 
@@ -99,7 +99,7 @@ class Page:
 
 
 def rendered(page, folder, name, *arguments):
-    """What `render` makes of the saved scene, exposed as the page is."""
+    """Returns what `render` makes of the saved scene, exposed as the page is."""
     scene = folder / f"{name}.json"
     scene.write_bytes(page.server.get("/scene.json")[2])
     stops = page.ask("document.getElementById('stops').dataset.stops")

@@ -23,7 +23,7 @@ SIZE = 64
 
 
 def render(scene, folder, name, *arguments):
-    """What `render` writes: the EXR's channels, and the PNG's pixels."""
+    """Returns what `render` writes: the EXR's channels, and the PNG's pixels."""
     exr, png = folder / f"{name}.exr", folder / f"{name}.png"
     subprocess.run([PROGRAM, "render", str(scene), "-o", str(exr), "--png", str(png), "-q", *map(str, arguments)], check=True)
     return read_exr(exr)[0], png_pixels(png.read_bytes())
@@ -63,7 +63,7 @@ def check_who_is_let_in(server):
 
 
 def check_refusals(server):
-    """What a message cannot say changes nothing, and is answered; what no page would send ends the connection."""
+    """A message whose request is impossible changes nothing, and is answered; one that no page would send ends the connection."""
     client = Client(server).begin()
     client.final()
     rectangle = {"center": [0, 4, 0], "halfU": [0.5, 0, 0], "halfV": [0, 0, 0.5]}
@@ -104,7 +104,7 @@ def check_refusals(server):
 
 
 def check_final_pictures(server, scene, folder):
-    """What is shown in the end is what `render` writes: of the scene as it is, and as it was changed by hand."""
+    """The final picture is the one that `render` writes: of the scene as it is, and as it was changed by hand."""
     client = Client(server).begin()
     frame = client.final()
     exr, png = render(scene, folder, "first", "--exposure", frame["stops"])
@@ -174,14 +174,14 @@ def check_comparing(server, scene, folder):
 
 
 def is_inside(place, polygon):
-    """Of a convex polygon s, t, s, t …, turned either way."""
+    """Returns whether the place is inside a convex polygon s, t, s, t …, of either winding."""
     corners = list(zip(polygon[::2], polygon[1::2]))
     sides = [(b[0] - a[0]) * (place[1] - a[1]) - (b[1] - a[1]) * (place[0] - a[0]) for a, b in zip(corners, corners[1:] + corners[:1])]
     return min(sides) >= 0 or max(sides) <= 0
 
 
 def check_outline(client, exr):
-    """What an outline leaves of a light is V."""
+    """The share of a light that an outline leaves is V."""
     for wanted in (0.3, 0.7):
         i = min(range(SIZE * SIZE), key=lambda i: abs(exr["key.V"][i] - wanted) + (exr["id"][i] == 0xffffffff))
         outline = client.pixel(i % SIZE, i // SIZE)["outline"]
@@ -192,7 +192,7 @@ def check_outline(client, exr):
 
 
 def check_moving(server):
-    """While something moves, quick pictures of newer and newer states; then the final one; for all clients, whether one of
+    """Quick pictures of newer and newer states come while something moves; then the final one; for all clients, whether one of
     them reads or not."""
     client, other = Client(server).begin(), Client(server).begin()
     silent = Client(server, lazy=True)  # never reads again
@@ -205,7 +205,7 @@ def check_moving(server):
         silent.send(type="pixel", x=1, y=1)
         came += client.wait(0.02)
     client.send(type="still")
-    # Of a small scene the final picture may be there before the pointer is let go.
+    # The final picture of a small scene may be there before the pointer is let go.
     frame = next((message for message in came if message["type"] == "frame" and message["final"] and
                   message["stamps"].get(str(client.number)) == 159), None)
     if frame is None:

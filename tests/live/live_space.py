@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""What `penumbra view` answers its page's 3D view, against what `wedges` and `inspect` write.   live_space.py PROGRAM"""
+"""Tests what `penumbra view` answers its page's 3D view, against what `wedges` and `inspect` write.   live_space.py PROGRAM"""
 import json
 import pathlib
 import struct
@@ -42,7 +42,7 @@ def ask(server, what, **parameters):
 
 
 def wedges(scene, folder, *arguments):
-    """What `wedges` writes of the scene."""
+    """Returns what `wedges` writes of the scene."""
     subprocess.run([PROGRAM, "wedges", str(scene), "--json", str(folder / "wedges.json"), *arguments], check=True, stdout=subprocess.DEVNULL)
     return json.loads((folder / "wedges.json").read_text())
 

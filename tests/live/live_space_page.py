@@ -197,7 +197,7 @@ def check_reach(page):
 
 
 def take_pictures(browser):
-    """For the documentation, and to look at."""
+    """Takes pictures for the documentation, and to look at."""
     for name, scene, window in (("space", "contact.json", {"width": 1400, "height": 900}), ("space-dark", "contact.json", {"width": 1400, "height": 900, "dark": True}),
                                 ("space-narrow", "room.json", {"width": 420, "height": 900, "phone": True}),
                                 ("space-broken", "broken.json", {"width": 1400, "height": 900})):

@@ -99,7 +99,7 @@ def main():
         tev.join(10)
         check(tev, "a.exr", folder / "a.exr", ["R", "G", "B", "A", "V", *lights])
         same(tev.focused, ["a.exr"], "the picture comes to the front")
-        # More than fits one packet: the picture comes in stripes.
+        # A picture that does not fit one packet comes in stripes.
         tev = FakeTev()
         same(run("render", scene, "-o", folder / "wide.exr", "--size", "900x300", "--light", "key", "--tev", tev.address).returncode, 0, "in stripes")
         tev.join(10)

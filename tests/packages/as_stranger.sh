@@ -31,13 +31,13 @@ assert v.shape == (32, 32) and 0 < v.mean() < 1, v'
     [[ -s /usr/share/man/man1/penumbra-render.1 || -s /usr/share/man/man1/penumbra-render.1.gz ]] || fail "no manual page"
     ;;
   tarball)
-    # Without a driver the program says what it cannot do, by name.
+    # The program names what it cannot do without a driver.
     code=0
     penumbra render "a room.json" -o none.exr --method pcss --size 32x32 --quiet 2>error.txt || code=$?
     ((code == 4)) && grep -qi 'vulkan' error.txt || fail "pcss without Vulkan: exit $code, $(cat error.txt)"
     ;;
   driver)
-    # At 512x512 alone: a driver for processors is slow.
+    # The size is 512x512 alone: a driver for processors is slow.
     code=0
     bash "$2/gpu.sh" gpu.json cpu 512 2>gpu.txt || code=$?
     python3 - <<'END' || fail "gpu.sh: exit $code, $(cat gpu.txt)"

@@ -54,7 +54,7 @@ swap() {
   FROM=$2 TO=$3 perl -0777 -pi -e 's/\Q$ENV{FROM}\E/$ENV{TO}/' "$1"
 }
 
-# What CMAKE_BUILD_PARALLEL_LEVEL says of the number of jobs holds here.
+# CMAKE_BUILD_PARALLEL_LEVEL chooses the number of jobs here.
 build() { cmake --build "$work/tree/build" --target "$@" >"$work/build.log" 2>&1; }
 # A test executable's quick tests, up to the first that fails; anything but success is a caught fault.
 passes() {

@@ -123,8 +123,8 @@ TEST_P(ExactAreaSoups, PointSamplesAverageToTheArea) {
 INSTANTIATE_TEST_SUITE_P(Seeds, ExactAreaSoups, testing::Range(0u, 8u));
 
 TEST(ExactArea, WhatIsNotBetweenHidesNothing) {
-  // Beyond the light, in its plane, behind p, in p's plane, edge-on to p, without area: and each also as part of a
-  // triangle that crosses. Of the crossing ones the part between p and the light hides.
+  // Triangles beyond the light, in its plane, behind p, in p's plane, edge-on to p, without area: and each also as part
+  // of a triangle that crosses. The part of a crossing one between p and the light hides.
   const auto alone = [](const Corners& corners, const glm::vec3& p = {0, -1, 0}) {
     return AreaStage(soup_scene({corners}, Lamp::flat)).visibility(p);
   };
@@ -137,7 +137,7 @@ TEST(ExactArea, WhatIsNotBetweenHidesNothing) {
   // Upright at x = ¼, from far below to far above both planes: seen from x = 0 it is x = 1 at one quarter of the way;
   // from there up it covers x from ¼ to 1.
   EXPECT_NEAR(alone({{{0.25, -60, 0}, {0.25, 60, -60}, {0.25, 60, 60}}}, {0, -1, 0}), 1 - 0.75 / 2, kAreaRounding);
-  // Through the light's plane at x = 0, rising to the right: its part below, x < 0, is in the way.
+  // A triangle through the light's plane at x = 0, rising to the right: its part below, x < 0, hides light.
   EXPECT_NEAR(alone({{{-16, -13, -29}, {-16, -13, 29}, {16, 19, 0}}}, {0.5, -1, 0}), 0.5, kAreaRounding);
 }
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// Does a way from p meet a triangle? Evaluated literally in GMP's rationals: another library and another formula than
-// the program's predicates. The crossing point with the triangle's plane is computed, and on which side of each edge it
-// is says whether it is on the triangle.
+// Literal truth: does a segment from p meet a triangle? Evaluated in GMP's rationals: another library and another
+// formula than the program's predicates. The crossing point with the triangle's plane is computed, and the side of each
+// edge that it is on says whether it is on the triangle.
 
 #include <glm/vec3.hpp>
 #include <gmpxx.h>

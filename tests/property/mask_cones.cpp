@@ -149,7 +149,7 @@ void AimedSpheres::run(visibility::Method& method, bool in_disk) {
       used = std::max(used, glm::length(glm::dvec3(points[j]) - place) / (2 * 0x1p-24 * reach));
       const double share = in_disk ? 1 : 0.6 + 0.3 * real(random);
       const glm::dvec3 at = glm::dvec3(p) + share * (glm::dvec3(points[j]) - glm::dvec3(p));
-      // In a disk flat, so that much of a caster is within rounding of its plane.
+      // Casters are flat in a disk, so that much of one is within rounding of the disk's plane.
       const auto axis = [&] {
         const glm::dvec3 x = vector() + 0x1p-30, n = glm::normalize(glm::cross(disk.u, disk.v));
         return glm::normalize(in_disk ? x - (1 - 0.02 * real(random)) * glm::dot(x, n) * n : x);
@@ -216,7 +216,7 @@ TEST_P(AimedSpheres, FewPairsAreOpenWhereASphereHoldsCasters) {
 INSTANTIATE_TEST_SUITE_P(Of, AimedSpheres, testing::ValuesIn(tests::kConeMethods),
                          [](const auto& it) { return std::string(it.param.name); });
 
-/// Of a sphere a wrong bit is told with the point that its p sees, of a sun with the direction.
+/// A wrong bit is told with the point that its p sees of a sphere, or the direction of a sun.
 TEST(WrongBits, AreToldWithTheirLightPoints) {
   for (const scenes::LightShape& shape :
        {scenes::LightShape(scenes::Sphere{{0, 4, 0}, 0.5}), scenes::LightShape(scenes::Sun{{0, -1, 0}, 10})}) {

@@ -40,8 +40,8 @@ TEST_P(LatticeSoups, EveryPairIsTheExactDecision) {
   EXPECT_GT(counts.behind, counts.pairs / 100);
 }
 
-/// On a device without the validation layer, which takes most of the time and reports nothing about these soups that it
-/// does not report about the sixty.
+/// The device has no validation layer, which takes most of the time and reports nothing about these soups that it does
+/// not report about the sixty.
 class LatticeSoupsFull : public testing::TestWithParam<std::tuple<int, tests::MaskMethod>> {};
 
 /// 60,000 soups for each engine of each method.

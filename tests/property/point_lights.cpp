@@ -27,7 +27,7 @@ using tests::PairCounts;
 using tests::PointLight;
 
 constexpr std::uint32_t kMostSamples = 70;
-/// On vector units more than 256 are in rows of several tiles each.
+/// More than 256 light points are in rows of several tiles each on vector units.
 constexpr std::uint32_t kMany = 400;
 
 constexpr std::array kEngines{tests::kEdgeScatter, tests::kNativeEdgeScatter};
@@ -164,7 +164,7 @@ TEST_P(PointCounts, AnyNumberOfLightSamples) {
   }
 }
 /// Outlines of edges shorter than a tile, as dense meshes have, of which some are beside all light samples: in a corner
-/// of the rectangle around a disk, where ways to tiles come by. Against another method that promises every bit.
+/// of the rectangle around a disk, where segments to tiles pass. Against another method that promises every bit.
 TEST_P(PointCounts, ShortEdges) {
   std::mt19937 random(8);
   std::uniform_real_distribution<double> real(-1, 1);

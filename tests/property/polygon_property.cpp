@@ -84,7 +84,7 @@ TEST(Polygon, StraightCornersMakeNoSlivers) {
   }
 }
 
-/// In linear time: a square with a hundred thousand corners on one side.
+/// Triangulation takes linear time: a square with a hundred thousand corners on one side.
 TEST(Polygon, ManyStraightCorners) {
   std::vector<glm::dvec3> outline;
   for (int i = 0; i < 100'000; ++i) outline.emplace_back(i, 0, 0);

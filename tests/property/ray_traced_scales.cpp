@@ -55,7 +55,7 @@ scenes::Scene soup_at_scale(std::uint32_t seed) {
   return scene;
 }
 
-/// On the grid, so that scaling it is exact.
+/// Makes a stage on the grid, so that scaling it is exact.
 Stage snapped_stage(std::uint32_t seed) {
   Stage stage(soup_at_scale(seed), 24, 24, {32, 0, 0, visibility::SamplePattern::rows, 0});
   for (glm::vec3& x : stage.floats.positions) x = snapped(x);

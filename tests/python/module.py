@@ -54,7 +54,7 @@ def camp(instances):
 
 
 def crossed_segments(question):
-    """Which segments from p to the light's points no triangle meets, in double: (K, N)."""
+    """Returns which segments from p to the light's points no triangle meets, in double: (K, N)."""
     ends = question.points_of_pixel if question.points_of_pixel is not None else question.light["points"][None]
     p = question.p[:, None].astype(float)
     way = ends - p if question.light["kind"] != "sun" else np.broadcast_to(ends, (len(p), *ends.shape[1:])).astype(float)
@@ -203,8 +203,9 @@ class Module(unittest.TestCase):
         self.assertIsNone(penumbra.render(scene, **{**options, "size": (8, 8)}, masks=False).masks)
 
     def test_exact_half_shadow(self):
-        # Below the board's edge the plane x = 0 through p divides the light: V by the similar triangles of the section, for
-        # the board is as long as the scene. p at x sees the light from x' = -x (the edge at half height mirrors it).
+        # The plane x = 0 through p divides the light below the board's edge: V by the similar triangles of the section,
+        # for the board is as long as the scene. p at x sees the light from x' = -x (the edge at half height mirrors
+        # it).
         picture = penumbra.render(board_over_floor(), size=(64, 64))
         on_floor = (picture.id < 2) & (np.abs(picture.P[..., 0]) < 0.45) & (np.abs(picture.P[..., 2]) < 1)
         self.assertGreater(on_floor.sum(), 50)

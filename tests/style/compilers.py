@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Do all presets configure, and does everything compile as `clang`, `fuzz`, `coverage` and a Debug build would have it? Without
+"""Tests that all presets configure, and that everything compiles as `clang`, `fuzz`, `coverage` and a Debug build have it, without
 building them:
 
     compilers.py SOURCE BUILD
@@ -70,7 +70,7 @@ def is_highway(entry):
 
 
 def compile_one(entry, how):
-    """Nothing is kept of it. Returns what the compiler says."""
+    """Compiles one file and keeps nothing of it. Returns what the compiler says."""
     words = shlex.split(entry["command"])
     words[words.index("-o") + 1] = "/dev/null"
     done = subprocess.run([*words, *how], cwd=entry["directory"], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)

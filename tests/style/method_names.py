@@ -11,16 +11,16 @@ from pathlib import Path
 DEFAULTS = {("app/compare/comparison.hpp", "raytrace"),
             ("bench/options.cpp", "edge-scatter,view-sample"), ("bench/options.cpp", "edge-scatter,edge-scatter:rows=exact")}
 # Measures what papers, or a page, say of methods by name.
-OF_PAPERS = {"bench/time_ratios.py", "bench/domes.py"}
+OF_PAPERS = {"bench/time_ratios.py", "bench/domes.py", "bench/page_tables.py"}
 
 
 def literals(text):
-    """Strings of a line of C++, Python or Bash, but for names of JSON members."""
+    """Returns the strings of a line of C++, Python or Bash, except for names of JSON members."""
     return [a or b for a, b in re.findall(r'''(?<!\[)"((?:[^"\\]|\\.)*)"|(?<!\[)'((?:[^'\\]|\\.)*)\'''', text)]
 
 
 def is_named(literal, names):
-    """Is it a method's name, or a list of names with options, as --methods takes them?"""
+    """Returns whether the literal is a method's name, or a list of names with options, as --methods takes them."""
     return any(entry.partition(":")[0] in names for entry in literal.split(","))
 
 

@@ -136,7 +136,7 @@ def map_of(casters, size):
 
 
 def is_sure(m, p):
-    """Whether no texel that can hide light from p, or is next to one, is left to the rasteriser."""
+    """Returns whether no texel that can hide light from p, or is next to one, is left to the rasteriser."""
     reach = HALF * (1 / m.layer(0).min() - 1 / p[2]) + 2 * max(m.texel)
     near = (np.abs(m.a - p[0] / p[2]) < reach) & (np.abs(m.b - p[1] / p[2]) < reach)
     return not (m.unsure & near).any()
@@ -253,8 +253,8 @@ def contour(m, p, texels=PLAIN):
         on = [shading[q] for q in at]
         if all(on):
             continue
-        # Around each run of shading corners the edge runs from the side after its last to the side before its first, which
-        # leaves the corners on its left.
+        # The edge around each run of shading corners runs from the side after its last to the side before its first,
+        # which leaves the corners on its left.
         for k in range(4):
             if not on[k] or on[k - 1]:
                 continue

@@ -65,7 +65,7 @@ class Map:
         self.t = np.where(np.isfinite(depth), self.normalised(np.where(np.isfinite(depth), depth, TOP)), 1.0)
 
     def depth_of(self, quad):
-        """Of each texel's centre; infinite beside it."""
+        """Returns the depth at each texel's centre; infinite beside the quad."""
         center, rays = in_frame(quad["center"]), self.rays
         u, v = (in_frame(np.add(quad["center"], quad[k])) - center for k in ("halfU", "halfV"))
         # center + a u + b v = z ray
@@ -144,7 +144,7 @@ class Filter:
         self.c = exponent / 2 if moments == "evsm" else exponent
 
     def mean(self, lower, upper, f):
-        """Of f(t) over a window, a texel at its border by its share; beside the map t is 1."""
+        """Returns the mean of f(t) over a window, a texel at its border by its share; beside the map t is 1."""
         x0, y0 = np.maximum(np.floor(lower), 0).astype(int)
         x1, y1 = np.minimum(np.ceil(upper), SIZE).astype(int)
         if x1 <= x0 or y1 <= y0:

@@ -28,7 +28,7 @@ def sample_points():
 
 
 def window(casters, receive, point):
-    """What receives, as a point of the light sees it, and a texel on every side."""
+    """Returns the window of receivers as a point of the light sees them, and a texel on every side."""
     lower, upper = (np.array([sign * FLOOR - c for c in point]) / HEIGHT for sign in (-1, 1))
     if receive:
         seen = tangents(corners_of(casters), point)
@@ -48,7 +48,7 @@ class Layers:
             m.nearest = np.minimum(m.layer(0), np.where(on_floor, HEIGHT, np.inf))
 
     def seen_by(self, texel, depth):
-        """How many samples see the surface at this depth in a texel of the centre's map, and whether that is sure."""
+        """Returns how many samples see the surface at this depth in a texel of the centre's map, and whether that is sure."""
         middle = (self.lower + (texel + 0.5) * self.texel) * depth
         count, sure = 0, True
         for m, point in zip(self.maps, self.points):
@@ -74,7 +74,7 @@ class Layers:
 
 class LayeredAttenuation(unittest.TestCase):
     def compare(self, name, receive, level):
-        """At pixels of one height: those of the floor (0), or of a parallel plate that receives, too."""
+        """Compares pixels of one height: those of the floor (0), or of a parallel plate that receives, too."""
         casters = CASTERS[name]
         scene = scene_of(casters)
         for mesh in scene["meshes"]:

@@ -1,7 +1,7 @@
 #!/bin/bash
 # SPDX-License-Identifier: Apache-2.0
-# Which packages cmake/bootstrap.sh installs, with a dpkg-query and an apt-get of this test's own.
-#   bootstrap.sh SOURCE WORK
+# Tests which packages cmake/bootstrap.sh installs, with a dpkg-query and an apt-get of this test's own. bootstrap.sh
+# SOURCE WORK
 set -euo pipefail
 source=$1 work=$2
 rm -rf -- "$work"
@@ -11,7 +11,7 @@ export WORK
 export PATH=$WORK/bin:$PATH
 
 printf 'there\nheld\nremoved\nhalf\nbroken\nunknown\nthere-too\n\nof-tests\nof-tests-there\n\nof-long-tests\n' >"$work/root/packages.txt"
-# As dpkg-query -W -f='${db:Status-Abbrev} ${Package}\n' prints: what is wanted, what is, what is broken.
+# The format is that of dpkg-query -W -f='${db:Status-Abbrev} ${Package}\n': what is wanted, what is, what is broken.
 cat >"$work/dpkg" <<'END'
 ii  there
 hi  held

@@ -24,7 +24,7 @@ struct CoverageStage {
   CoverageStage(const CoverageStage&) = delete;
   CoverageStage& operator=(const CoverageStage&) = delete;
 
-  /// On the carrier, triangle 0, seen from above.
+  /// Returns p on the carrier, triangle 0, seen from above.
   [[nodiscard]] volumes::LitPoint lit(const glm::vec3& p) const {
     const areas::Receiver receiver = receiver_at(floats, p);
     return {receiver.p, receiver.carrier, receiver.facing};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which name a misspelt one is near to.
+// Tests which name a misspelt one is taken for.
 
 #include "base/did_you_mean.hpp"
 

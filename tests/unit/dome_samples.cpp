@@ -123,7 +123,7 @@ TEST(DomeFacesMade, CoverAllDirectionsOnce) {
   }
 }
 
-/// Light samples are the dome's, whichever way they are asked for: in the order of faces, at their places.
+/// Light samples are the dome's, in whichever form they are asked for: in the order of faces, at their places.
 TEST(DomeFacesMade, ShareTheLightSamples) {
   const Light light = dome_of(tests::dome_light(), 300);
   std::size_t count = 0;
@@ -138,7 +138,7 @@ TEST(DomeFacesMade, ShareTheLightSamples) {
   EXPECT_EQ(count, light.sample_count());
 }
 
-/// A picture of 8 x 4: 1 everywhere but for one texel of `bright`, (5, 1) from the top left.
+/// A picture of 8 x 4: 1 everywhere except for one texel of `bright`, (5, 1) from the top left.
 scenes::AreaLight with_bright_texel(float bright, bool half) {
   scenes::AreaLight source = tests::dome_light({.half = half});
   source.texture = scenes::Texture{"made by hand", 8, 4, std::vector<glm::vec3>(32, glm::vec3(1))};

@@ -75,8 +75,8 @@ TEST(HidingObjects, AreThoseThatExactPredicatesFind) {
   EXPECT_LT(missed, both / 4);
 }
 
-/// The board is a quarter of the way to the light at height 4, the flap three eighths: penumbrae of 1/3 and 3/5 of the
-/// light; a way is as long as the ray to that light sample, times that share.
+/// The board is at a quarter of the segment to the light at height 4, the flap at three eighths: penumbrae of 1/3 and
+/// 3/5 of the light; a segment is as long as the ray to that light sample, times that share.
 TEST(HidingObjects, AreSoFarAwayAndMakeSoWidePenumbrae) {
   const Stage setup(board_and_flap(), 40, 30);
   std::vector<std::uint32_t> pixels;

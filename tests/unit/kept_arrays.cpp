@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which arrays are kept for the next, and how many.
+// Tests which arrays are kept for the next, and how many.
 
 #include "base/kept_arrays.hpp"
 
@@ -21,7 +21,7 @@ namespace {
 
 constexpr std::size_t kEighth = KeptArrays::kLeast / 8;
 
-/// As operator new does.
+/// Allocates as operator new does.
 void* new_or_kept(KeptArrays& arrays, std::size_t bytes) {
   if (void* const kept = arrays.take(bytes)) return kept;
   arrays.settle(bytes, bytes);
@@ -87,7 +87,7 @@ TEST(KeptArrays, AreWithThoseInUseNoMoreThanWasInUseAtOnce) {
   arrays.free_all();
 }
 
-/// The sum that is kept is right again once all is given back, whoever took it in between.
+/// The sum that is kept is right again once all is given back, whichever caller took it in between.
 TEST(KeptArrays, MayBeAskedForByAnyThread) {
   KeptArrays arrays;
   arrays.start_keeping();

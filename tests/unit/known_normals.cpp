@@ -12,7 +12,7 @@
 namespace penumbra::vectors {
 namespace {
 
-/// Triangles, a third of them needles: the edges from their first corner are parallel but for 2⁻³⁰.
+/// Triangles, a third of them needles: the edges from their first corner are parallel except for 2⁻³⁰.
 visibility::SceneFloats some_needles(std::uint32_t count) {
   visibility::SceneFloats floats;
   for (std::uint32_t i = 0; i < count; ++i) {

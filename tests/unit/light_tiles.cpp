@@ -66,7 +66,7 @@ TEST(LightTiles, HoldEachSampleOnce) {
   }
 }
 
-/// Of places in 64 cells, and of few.
+/// Light samples at places in 64 cells, and at few places.
 TEST(LightTiles, AreFoundByStepsToTheRight) {
   std::mt19937 random(5);
   std::uniform_real_distribution<float> across(-0.5F, 63.5F), anywhere(-100.0F, 200.0F);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How --frame moves a light from one frame to the next.
+// Tests how --frame moves a light from one frame to the next.
 
 #include "bench/moved_light.hpp"
 

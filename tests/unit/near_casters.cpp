@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which casters may meet the disks that a few view samples see of a sphere, against the disks themselves.
+// Tests which casters may meet the disks that a few view samples see of a sphere, against the disks themselves.
 
 #include "engines/vectors/disk_plane.hpp"
 #include "engines/vectors/light_grid.hpp"
@@ -17,7 +17,7 @@
 namespace penumbra::vectors {
 namespace {
 
-/// What is seen of a sphere of radius 1 around 0 from p: the disk bounded by the circle along which lines touch it.
+/// Returns the disk that p sees of a sphere of radius 1 around 0: its circle is where lines from p touch the sphere.
 LightCone cone_from(const glm::dvec3& p) {
   const double d = glm::length(p), radius = std::sqrt(1 - 1 / (d * d));
   const glm::dvec3 toward = -p / d, aside = std::abs(toward.x) < 0.5 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);

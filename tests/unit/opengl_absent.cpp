@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a build without OpenGL says.
+// Tests what a build without OpenGL says.
 
 #include "base/error.hpp"
 #include "render/opengl/context.hpp"

@@ -14,7 +14,7 @@
 namespace penumbra::volumes {
 namespace {
 
-/// In [−1, 1]², of so many different numbers.
+/// Returns coordinates in [−1, 1]² with so many different numbers.
 std::vector<glm::vec2> coordinates_of(std::mt19937& random, std::uint32_t count, std::uint32_t different) {
   std::vector<glm::vec2> coordinates(count);
   const auto one = [&] {
@@ -25,7 +25,7 @@ std::vector<glm::vec2> coordinates_of(std::mt19937& random, std::uint32_t count,
   return coordinates;
 }
 
-/// Where the shader looks for light samples no further left than x: places a little right of where a start is.
+/// Tests where the shader looks for light samples no further left than x: places a little right of a start.
 void expect_starts(const PointRows& rows, std::uint32_t row, const std::vector<float>& x) {
   for (std::uint32_t start = 0; start < rows.columns * gpu::kStartsPerCell; ++start) {
     const std::uint32_t four = rows.starts[row * rows.columns * gpu::kStartsPerCell + start];

@@ -1,7 +1,7 @@
 #!/bin/bash
 # SPDX-License-Identifier: Apache-2.0
-# What ctest is told of an executable's tests (cmake/test_suites.cmake): labels, names, parts, what is skipped and what fails.
-#   test_suites.sh SOURCE WORK
+# Tests what ctest is told of an executable's tests (cmake/test_suites.cmake): labels, names, parts, what is skipped and
+# what fails. test_suites.sh SOURCE WORK
 set -euo pipefail
 source=$(cd -- "$1" && pwd)
 rm -rf -- "$2"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Leaves of hierarchies that are made when somebody asks for them.
+// Tests leaves of hierarchies that are made when they are first asked for.
 
 #include "engines/vectors/wide_leaves.hpp"
 

@@ -30,7 +30,7 @@ struct Slice {
   }
 };
 
-/// Where to divide: between two slices along an axis.
+/// Place to divide at: between two slices along an axis.
 struct Cut {
   double cost = std::numeric_limits<double>::infinity();
   int axis = -1;

@@ -39,7 +39,7 @@ std::array<glm::dvec3, 3> from(const glm::vec3& l, const std::array<glm::vec3, 3
   return result;
 }
 
-/// For each cell an upper bound of the depth of a caster that covers the whole cell; infinite if there is none.
+/// Upper bounds, for each cell, of the depth of a caster that covers the whole cell; infinite if there is none.
 class Covers {
  public:
   Covers() : depth_(ReceiverCells::kCells, kUnbounded), most_(ReceiverCells::kCells), state_(ReceiverCells::kCells) {}

@@ -10,9 +10,11 @@ layout(scalar, binding = 14) buffer Questions {
   QuestionHead asked;
   PointQuestion questions[];
 };
-// For each four slots of a row their x and their y, in cells: from left to right, then slots without a light sample.
+// Places of each four slots of a row: their x and their y, in cells, from left to right, then slots without a light
+// sample.
 layout(scalar, binding = 15) readonly buffer Places { vec4 places[]; };
-// For each row and each place along it, left to right: the four slots with the first light sample that is as far right.
+// Starts, for each row and each place along it, left to right: the four slots with the first light sample that is as
+// far right.
 layout(scalar, binding = 16) readonly buffer Starts { uint starts[]; };
 // A bit for each slot, in words of masks: whether it is a light sample, and whether some triangle touches that sample.
 layout(scalar, binding = 17) readonly buffer Slots { uvec2 slots[]; };
@@ -139,8 +141,8 @@ void scatter(vec2 a, vec2 b, int k, float error_a, float error_b) {
     const vec4 x = places[place], y = places[place + 1];
     const vec4 side = (x - low.x) * direction.y - (y - low.y) * direction.x;
     const bool spans = low.y <= middle && middle < high.y;
-    // Whether the place on the row's middle under or over a light sample is right of the edge. If the edge crosses the
-    // middle, this does not matter: its change before that place is reverted after it.
+    // `bend` is 1 if the place on the row's middle under or over a light sample is right of the edge. This does not
+    // matter if the edge crosses the middle: its change before that place is reverted after it.
     const int bend = !spans && (middle < low.y) == (direction.x > 0.0) ? 1 : 0;
     uint changes = 0, near_bits = 0;
     for (uint i = 0; i < kPointsAtOnce; ++i) {

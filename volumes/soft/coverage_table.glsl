@@ -13,7 +13,7 @@ struct TablePoint {
 TablePoint square_point(dvec2 q) {
   const dvec2 place = round((q + 1.0LF) * (0.5LF * double(kTableSide - 1)));
   const ivec2 cell = clamp(ivec2(place), 0, kTableSide - 1);
-  // In steps of half a cell from the centre: integers, so that both sides classify the same points as steep.
+  // Steps are half a cell from the centre: integers, so that both sides classify the same points as steep.
   const ivec2 steps = 2 * cell - (kTableSide - 1);
   return TablePoint(uint(cell.y * kTableSide + cell.x), square_fan(double(steps.y), double(steps.x)));
 }

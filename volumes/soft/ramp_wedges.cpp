@@ -147,7 +147,7 @@ double ramp_sum(const LightWedges& wedges, const visibility::Light& light, const
     if (std::ranges::any_of(at, [](double h) { return h < 0; })) continue;
     const VolumeEdge& edge = wedges.edges[i];
     const bool lit = visibility::edge_side(p, c, edge.a, edge.b, light) < 0;
-    // On the edge, where front and back meet, the wedge has no width: the shadow is the hard one.
+    // The wedge has no width on the edge, where front and back meet: the shadow is the hard one.
     if (!(at[kFront] + at[kBack] > height_error(wedge, p))) continue;
     const double ramp = at[kFront] / (at[kFront] + at[kBack]);
     sum += edge.multiplicity * (lit ? ramp : ramp - 1);

@@ -41,7 +41,7 @@ void main() {
   const double front = height(0, p), back = height(1, p);
   if (front < 0.0LF || back < 0.0LF || height(2, p) < 0.0LF || height(3, p) < 0.0LF) return;
   const Value side = det(dvec3(face_a) - push.c, dvec3(face_b) - push.c, p - push.c);
-  // On the edge, or within height_error() of the twin: the host decides.
+  // The host decides about p on the edge, or within height_error() of the twin.
   const double reach = double(abs(receiver.p.x) + abs(receiver.p.y) + abs(receiver.p.z)) +
                        double(abs(face_a.x) + abs(face_a.y) + abs(face_a.z)) +
                        double(abs(face_b.x) + abs(face_b.y) + abs(face_b.z));

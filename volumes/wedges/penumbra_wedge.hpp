@@ -21,8 +21,8 @@ enum class Construction {
   /// touch the light from either side; left and right plane contain an endpoint and the direction edge × (centre −
   /// endpoint), and touch the light.
   original,
-  /// Not from a paper: the facets of the convex hull of the penumbra, e + cone{x − l}. The wedge is the penumbra's
-  /// closure, since the penumbra is convex (wedge_tightness.hpp).
+  /// Facets of the convex hull of the penumbra, e + cone{x − l}; in no paper. The wedge is the penumbra's closure,
+  /// since the penumbra is convex (wedge_tightness.hpp).
   tight,
 };
 

@@ -63,7 +63,7 @@ std::vector<mesh::Triangle> hull_triangles(const LightHull& light) {
     const auto& c = light.corners;
     return glm::dot(glm::cross(c[j] - c[i], c[k] - c[i]), c[l] - c[i]);
   };
-  // Of a solid, all planes through three corners are tried.
+  // All planes through three corners of a solid are tried.
   for (std::uint32_t i = 0; light.is_solid && i < count; ++i) {
     for (std::uint32_t j = i + 1; j < count; ++j) {
       for (std::uint32_t k = i + 1; k < count; ++k) {

@@ -11,7 +11,8 @@ function frameOf(camera) {
   return { forward, right, up, half, moved, aspect: pictureSize[0] / pictureSize[1] };
 }
 
-/// Where a point is in the picture, (0, 0) its top left and (1, 1) its bottom right, and how deep; null behind the eye.
+/// Returns where a point is in the picture, (0, 0) its top left and (1, 1) its bottom right, and how deep; null behind
+/// the eye.
 function project(point) {
   const f = frameOf(view), flat = view.orthographicHeight;
   const away = sub(point, flat ? add(view.eye, f.moved) : view.eye), depth = dot(away, f.forward);
@@ -22,7 +23,7 @@ function project(point) {
   return { x: (1 + x) / 2, y: (1 - y) / 2, depth: scale };
 }
 
-/// What is seen there: start and direction.
+/// Returns the ray that the picture shows there: start and direction.
 function rayAt(x, y) {
   const f = frameOf(view);
   const aside = add(times(f.right, (2 * x - 1) * f.aspect * f.half), times(f.up, (1 - 2 * y) * f.half));
@@ -42,7 +43,7 @@ function sendCamera(moving) {
   tell("moved");
 }
 
-/// Around the pivot, by angles; never over the pole.
+/// Turns the camera around the pivot, by angles; never over the pole.
 function orbit(across, upward, moving = true) {
   const axis = unit(view.up);
   let away = turn(sub(view.eye, view.target), axis, -across);
@@ -52,7 +53,7 @@ function orbit(across, upward, moving = true) {
   sendCamera(moving);
 }
 
-/// By parts of the picture's height.
+/// Moves the camera by parts of the picture's height.
 function pan(across, upward, moving = true) {
   const f = frameOf(view), high = 2 * f.half * (view.orthographicHeight ? 1 : length(sub(view.target, view.eye)));
   const by = add(times(f.right, -across * high), times(f.up, upward * high));

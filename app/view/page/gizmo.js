@@ -29,9 +29,9 @@ function rimOf(light) {
   } else return [];
   return Array.from({ length: 40 }, (_, i) => add(centre, add(times(u, Math.cos(i * Math.PI / 20)), times(v, Math.sin(i * Math.PI / 20)))));
 }
-/// Where the handles of a light without a place are: at the pivot.
+/// Returns where the handles are; those of a light without a place are at the pivot.
 const anchorOf = (light) => centreOf(light) || (kindOf(light) === "sun" ? view.target : null);
-/// So long is so many pixels of the page there.
+/// Returns the length in the world of so many pixels of the page there.
 function worldOf(point, pixels) {
   const place = onStage(point);
   return place ? pixels * 2 * frameOf(view).half * place.depth / stageSize()[1] : 0;

@@ -12,7 +12,7 @@ function centreOf(light) {
   if (kind === "polygon") return times(light.polygon.reduce(add), 1 / light.polygon.length);
   return light[kind].center;
 }
-/// To where a flat light shines; toward a sun.
+/// Returns the direction in which a flat light shines; toward a sun.
 function axisOf(light) {
   const kind = kindOf(light);
   if (kind === "rectangle" || kind === "ellipse") return unit(cross(light[kind].halfU, light[kind].halfV));

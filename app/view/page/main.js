@@ -81,7 +81,7 @@ byId("copy-camera").addEventListener("click", () => {
   byId("copy-camera").focus();
   trouble(copied ? "The camera is in the clipboard." : `The camera as JSON: ${text}`, !copied, "good");
 });
-/// What was copied here or elsewhere: a camera of a scene file, or a whole scene's `camera`.
+/// The field takes what was copied here or elsewhere: a camera of a scene file, or a whole scene's `camera`.
 byId("paste-camera").addEventListener("change", () => {
   const input = byId("paste-camera");
   if (!input.value.trim()) return;

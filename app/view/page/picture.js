@@ -3,7 +3,7 @@
 let shown = null;  // header, and bitmaps by what they show
 const canvas = byId("picture"), overlay = byId("overlay");
 let flipped = false;       // of `flip`: B is shown
-/// What is shown of the answers: wipe, side, a or b.
+/// Returns which of the answers is shown: wipe, side, a or b.
 function mode() {
   if (!shown || !shown.by.a || !shown.by.b) return "a";
   const how = byId("compare").value;
@@ -57,9 +57,13 @@ function stageSize() {
   return [mode() === "side" ? canvasSize[0] / 2 : canvasSize[0], canvasSize[1]];
 }
 
+<<<<<<< HEAD
 /// Where the pointer is in the picture, 0 to 1 in each direction, of whichever answer it is over. While something is dragged the
 /// canvas stays where it is.
 let canvasBox = null;
+=======
+/// Returns where the pointer is in the picture, 0 to 1 along each axis, of whichever answer it is over.
+>>>>>>> 027a908470b860b79b0cd16809b67de69944fe32
 function placeOf(event) {
   if (!canvasBox || (!dragging && !held)) canvasBox = canvas.getBoundingClientRect();
   const box = canvasBox, [width, height] = stageSize();

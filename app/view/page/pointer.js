@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the pointer and the keys do on the picture.
+// Handles the pointer and the keys on the picture.
 let dragging = null, lastPlace = null, stillTimer = 0;
 const pointers = new Map();
 
@@ -7,7 +7,7 @@ function stopMoving() {
   flush();
   post({ type: "still" });
 }
-/// Of keys and wheel, which do not say when they end.
+/// Ends a movement by keys or wheel, which do not say when they end.
 function soonStill() {
   clearTimeout(stillTimer);
   stillTimer = setTimeout(stopMoving, 250);

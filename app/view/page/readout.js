@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a pixel says, and what pictures cost.
+// Shows what a pixel says, and what pictures cost.
 let asking = null, wanted = null, pointed = null;
 const frameTimes = [];
 

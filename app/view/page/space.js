@@ -44,7 +44,7 @@ function linesOf(points, color, more = {}) {
   if (colors) geometry.setAttribute("color", new space.three.BufferAttribute(colors, 3, true));
   return new space.three.LineSegments(geometry, new space.three.LineBasicMaterial({ color, vertexColors: colors ? space.three.VertexColors : space.three.NoColors, ...material }));
 }
-/// Seen through, from both sides.
+/// Returns a surface that can be seen through, from both sides.
 function veilOf(points, color, opacity, more = {}) {
   if (!points.length) return null;
   const made = new space.three.Mesh(geometryOf(points), new space.three.MeshBasicMaterial({ color, opacity, transparent: true, depthWrite: false, side: space.three.DoubleSide, ...more }));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the 3D view draws, from the server: meshes, their defects, and the shadows of the chosen light, each a header and
-// arrays of numbers. One question at a time, of the newest state.
+// Gets what the 3D view draws from the server: meshes, their defects, and the shadows of the chosen light, each a
+// header and arrays of numbers. One question at a time, about the newest state.
 const spaceArrays = { float32: Float32Array, uint32: Uint32Array, int32: Int32Array };
 
 /// Header of an answer, with its arrays by name.
@@ -32,7 +32,7 @@ function loadThree() {
 
 const spaceNumber = (id, otherwise) => (byId(id).value.trim() === "" || !Number.isFinite(Number(byId(id).value)) ? otherwise : Number(byId(id).value));
 
-/// What is asked of the shadows: the light as it is now, and the controls.
+/// Returns the question about shadows: the light as it is now, and the controls.
 function shadowsWanted() {
   const light = chosenLight(), wanted = { light: light.name, construction: byId("space-construction").value, from: byId("space-from").value,
     s: byId("space-s").value, t: byId("space-t").value };

@@ -28,7 +28,7 @@ def with_speck(y=2.5, half=0.8, x=0.0):
 
 
 def s0_curves(runner, cases, size=128, beside=("contour:size={}:traversal=hierarchy",), receivers=128, pixels=48):
-    """For each (x, scene): the paper's error of one and two passes and of what stands beside them."""
+    """Measures, for each (x, scene), the paper's error of one and two passes and of what stands beside them."""
     rows = []
     for x, world, of in cases:
         entries = methods(of or size, receivers) + [text.format(of or size) for text in beside]

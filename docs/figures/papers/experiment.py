@@ -64,7 +64,7 @@ def dot(a, b):
 
 
 def judged(world, channels):
-    """Of each pixel, whether errors are counted there: something is seen, and under a first light that is a rectangle it is in front
+    """Returns, for each pixel, whether errors are counted there: something is seen, and under a first light that is a rectangle it is in front
     of this, all of which is above its tangent plane."""
     if "dome" in world["lights"][0]:
         return [a > 0 for a in channels["A"]]

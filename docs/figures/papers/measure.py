@@ -20,7 +20,7 @@ from papers import FIGURES, HERE, drawn  # noqa: E402
 
 
 def written(kept, data):
-    """As JSON, a line for each part of the data."""
+    """Returns JSON, a line for each part of the data."""
     text = json.dumps(kept, ensure_ascii=False, indent=1).removesuffix("\n}")
     parts = [f"  {json.dumps(name)}: {json.dumps(part, ensure_ascii=False)}" for name, part in data.items()]
     return text + ',\n "data": {\n' + ",\n".join(parts) + "\n }\n}\n"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""How pictures' cost grows with triangles, pixels and lights: processor seconds (user + system, all cores) of whole runs of
+"""Measures how pictures' cost grows with triangles, pixels and lights: processor seconds (user + system, all cores) of whole runs of
 `penumbra render`, which a busy machine changes less than the clock on the wall, and the largest resident set."""
 
 import json
@@ -41,7 +41,7 @@ def run(runner, scene, size, runs):
 
 
 def penumbra_share(runner, scene, size):
-    """Of so many pixels ("256x256") those with 0 < V < 1."""
+    """Returns the share of pixels with 0 < V < 1, in a picture of this size ("256x256")."""
     with tempfile.TemporaryDirectory() as folder:
         path, out = Path(folder) / "scene.json", Path(folder) / "out.exr"
         path.write_text(json.dumps(scene), encoding="utf-8")

@@ -21,7 +21,7 @@ SIZE, SAMPLES, JUDGED = 128, 256, 1000
 
 
 def measure(runner):
-    """Of each scene rows of method, seconds of `light`, of `evaluate`, RMSE against exact areas. A method that refuses is left
+    """Measures for each scene rows of method, seconds of `light`, of `evaluate`, RMSE against exact areas. A method that refuses is left
     out."""
     data = {"of": f"{SIZE}² pixels, {SAMPLES} light samples, every option as it is by default; RMSE over {JUDGED} view samples in penumbra"}
     for scene in SCENES:
@@ -42,7 +42,7 @@ def measure(runner):
 
 
 def table(data):
-    """As bench/README.md has it."""
+    """Returns the table of bench/README.md."""
     scenes = [name for name in data if name != "of"]
     numbers = {(name, row[0]): row for name in scenes for row in data[name]}
     lines = ["| method | " + " | ".join(f"{name}: s | RMSE" for name in scenes) + " |", "| --- |" + " ---: | ---: |" * len(scenes)]

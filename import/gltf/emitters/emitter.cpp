@@ -135,7 +135,7 @@ std::vector<Component> outward_components(const Welded& mesh, bool two_sided) {
   return seen;
 }
 
-/// Removes one of two triangles that are equal but for their winding: if both emit to both sides, one is enough.
+/// Removes one of two triangles that are equal except for their winding: if both emit to both sides, one is enough.
 Welded without_backs(const Welded& mesh) {
   std::map<std::array<std::uint32_t, 3>, std::size_t> known;
   std::vector<std::size_t> kept;

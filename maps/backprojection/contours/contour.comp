@@ -19,7 +19,7 @@
 // pixel. State of the packet is in this file; outline.glsl has contours, packet_kernel.glsl the cells to search and the
 // grouping of pixels, and outline_walk.glsl the search.
 
-layout(scalar, binding = 4) readonly buffer Nearest { float nearest[2]; };
+layout(scalar, binding = 4) readonly buffer Nearest { float nearest[2]; };  // caster on each side of the light's plane
 layout(scalar, binding = 7) readonly buffer Tree {  // the pyramid used by the search: that of `Pyramid`, or another one
   PyramidHeader header;
   vec2 nodes[];
@@ -35,7 +35,7 @@ shared vec3 pixel_e[kMostPacketPixels], pixel_m[kMostPacketPixels];
 shared uint pixel_state[kMostPacketPixels];
 shared int pixel_sum[kMostPacketPixels];   // inside - sum, in units of 1 / kContourWhole
 shared int pixel_edges[kMostPacketPixels];  // the sum in progress
-shared int pixel_levels[kMostPacketPixels];  // of levels: inside - sum, over the levels processed so far
+shared int pixel_levels[kMostPacketPixels];  // inside - sum, over the levels processed so far
 shared float pixel_wanted[kMostPacketPixels];  // the level requested by the pixel's kernel
 shared uint pixel_inside[kMostPacketPixels];   // 1: the light's centre is seen within a contour
 shared ivec4 pixel_cells[kMostPacketPixels];  // first and last cells of the pixel's kernel on the current face

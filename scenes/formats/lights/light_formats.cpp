@@ -18,7 +18,7 @@
 namespace penumbra::scenes {
 namespace {
 
-/// In the order of LightShape.
+/// Formats in the order of LightShape.
 constexpr std::array kFormats{&kRectangleFormat, &kDiskFormat, &kEllipseFormat, &kPolygonFormat,
                               &kSphereFormat,    &kSunFormat,  &kDomeFormat,    &kPiecesFormat};
 static_assert(kFormats.size() == std::variant_size_v<LightShape>);

@@ -44,7 +44,7 @@ void check_sphere(const LightShape& shape, const std::string& where) {
   const auto& [direction, inner, outer, smooth] = *cone;
   check_position(direction, where, "the cone's direction");
   if (glm::length(direction) == 0)
-    throw InputError("{}: the cone's direction is zero; expected the way it shines", where);
+    throw InputError("{}: the cone's direction is zero; expected the direction in which it shines", where);
   if (!(inner >= 0 && inner <= outer && outer > 0 && outer <= 90)) {
     throw InputError("{}: the cone reaches from {} to {} degrees; expected 0 <= inner <= outer <= 90, outer above 0",
                      where, inner, outer);

@@ -48,7 +48,7 @@ struct Soup {
   std::vector<Polygon> triangles;
 };
 
-/// Nothing if CGAL cannot read it.
+/// Returns nullopt if CGAL cannot read the file.
 std::optional<Soup> read(const std::filesystem::path& file) {
   Soup read;
   if (!CGAL::IO::read_polygon_soup(file.string(), read.points, read.triangles)) return std::nullopt;
@@ -96,7 +96,8 @@ struct Visitor : pmp::Default_orientation_visitor {
   }
 };
 
-/// By the definition: what two triangles share, constructed exactly, is no part of a vertex or edge of both.
+/// Tests the definition: the two triangles share something, constructed exactly, that is no part of a vertex or edge of
+/// both.
 bool meet_elsewhere(const Soup& soup, const Polygon& t, const Polygon& u) {
   std::vector<Exact::Point_3> shared;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -152,10 +153,10 @@ double worst_winding(const Soup& soup, const Diagnosis& diagnosis) {
   return worst;
 }
 
-/// What CGAL counts in addition, and why. CGAL cuts a soup at its non-manifold edges before it makes a mesh of it: for
-/// CGAL the ends of these edges are singular vertices, and the cuts are borders. Our definition is about the soup
-/// without cuts: its fans are linked through such edges, which have too many triangles rather than one, and no cut
-/// opens it.
+/// Counts that CGAL adds, and why: CGAL cuts a soup at its non-manifold edges before it makes a mesh of the soup, so
+/// the ends of these edges are singular vertices to CGAL, and the cuts are borders. Our definition is about the soup
+/// without cuts: fans are linked through such edges, which have too many triangles rather than one, and no cut opens
+/// the fans.
 struct Difference {
   std::uint64_t vertices = 0, border_edges = 0, cycles = 0;
   bool closed_to_us_alone = false;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What goes in comes out: every surface of the files of Debian's assimp-testmodels and of libcgal-demo, against counts
-// by code of this test's own. What the readers refuse is the corpus test's business; what they let through is whole.
+// Tests that readers lose no surface: every file of Debian's assimp-testmodels and of libcgal-demo is held against
+// counts by code of this test's own. Files that the readers refuse are the corpus test's business; files that they
+// accept must be whole.
 #include "mesh/import.hpp"
 
 #include "base/error.hpp"

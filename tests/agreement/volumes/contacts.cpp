@@ -45,7 +45,8 @@ scenes::Scene contact(double near, double far, std::mt19937& random) {
   return scene;
 }
 
-/// Of each block of pixels: one place of one edge of a caster, seen in front of places of the light.
+/// Moves the view samples of each block of pixels so that they see one place of one edge of a caster in front of places
+/// of the light.
 void look_past_edges(ViewSamples& samples, const SceneFloats& floats, const Light& light, std::mt19937& random) {
   std::uniform_real_distribution<double> share(0, 1);
   constexpr std::uint32_t kBlock = 8;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What soft shadow volumes get wrong, predicted and measured: silhouettes of the light's centre, and sums in place of
-// unions. And what they get right, in scenes of several solids that shadow themselves.
+// Predicts and measures the errors of soft shadow volumes: silhouettes are those of the light's centre, and sums stand
+// for unions. Tests what they get right, too, in scenes of several solids that shadow themselves.
 
 #include "mesh/shapes/shapes.hpp"
 #include "tests/unit/coverage_stage.hpp"
@@ -19,7 +19,7 @@ namespace {
 
 using tests::CoverageStage;
 
-/// Of |V − exact| over a grid of floor points that see part of the light.
+/// Errors |V − exact| over a grid of floor points that see part of the light.
 struct Errors {
   double center_mean = 0, center_max = 0;  ///< by the centre's silhouettes
   double receiver_max = 0;                 ///< by the receiver's own
@@ -77,8 +77,8 @@ TEST(CoverageErrors, OfACubeAreLarge) {
       record(fmt::format("cube {}, light of half-size {}", below ? "below" : "beside", half), errors);
       EXPECT_LT(errors.receiver_max, 1e-9);
       EXPECT_GT(errors.partly, 30);
-      // If the cube is right below the light, and the light is no larger than it, the centre's silhouette is the
-      // outline of the cube's top alone, as it is for every p.
+      // The centre's silhouette is the outline of the cube's top alone, as from every p, if the cube is right below the
+      // light and the light is no larger than the cube.
       const bool sees_top_alone = below && half <= 0.5;
       EXPECT_EQ(errors.center_max > 0.05, !sees_top_alone);
       EXPECT_LT(errors.center_max, sees_top_alone ? 1e-9 : 0.35);
@@ -114,8 +114,8 @@ TEST(CoverageErrors, OfConvexSheetsInOnePlaneAreNone) {
   EXPECT_GT(partly, 300);
 }
 
-/// What is hidden by the triangles that p and the light's centre see from the same side, each by itself: of closed
-/// parts once, of open ones twice (docs/coverage.md, Centre silhouettes).
+/// Returns the share hidden by the triangles that p and the light's centre see from the same side, each by itself: of
+/// closed parts once, of open ones twice (docs/coverage.md, Centre silhouettes).
 double predicted_error(const CoverageStage& stage, const glm::vec3& p, int times) {
   std::vector<std::array<glm::vec3, 3>> same_side;
   for (const std::uint32_t triangle : stage.casters.triangle) {

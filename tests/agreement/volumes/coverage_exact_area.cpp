@@ -33,8 +33,8 @@ TEST(CoverageAgreement, TheReceiversSilhouettesAddUpToItsLayers) {
       const auto layers = stage.layers(p);
       const double expected = sum_of_layers(stage.soft.outline(), layers), exact = 1 - stage.exact(p);
       ASSERT_NEAR(sum.blocked, expected, 1e-9) << i << " " << j;
-      // By how much the sum exceeds the union: not at all without an overlap, and never by more than the overlap. The
-      // union's disk is a polygon, off by 7.6e-8 at most.
+      // The sum exceeds the union by nothing without an overlap, and never by more than the overlap. The union's disk
+      // is a polygon, off by 7.6e-8 at most.
       const double overlap = overlap_of_layers(stage.soft.outline(), layers, 100);
       const double tolerance = stage.light.kind == visibility::LightKind::disk ? 1e-7 : 1e-9;
       ASSERT_GE(expected - exact, -tolerance);

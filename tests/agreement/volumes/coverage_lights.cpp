@@ -29,7 +29,7 @@ scenes::Texture random_texture(std::mt19937& random) {
   return texture;
 }
 
-/// Between the floor and the light, which none of them touches.
+/// Makes a soup between the floor and the light, neither of which any triangle touches.
 std::vector<tests::Corners> soup_below(std::mt19937& random, int count) {
   std::vector<tests::Corners> soup = tests::lattice_soup(random, count);
   for (tests::Corners& corners : soup) {
@@ -70,7 +70,7 @@ TEST(CoverageLights, TexturedLayersAddUp) {
     const CoverageStage stage(scene);
     ASSERT_NE(stage.soft.texture(), nullptr);
     // Each edge walks three times, each triangle's polygon has at most seven sides; a walk is off by 2⁻²⁴ · brightest
-    // where it is all but upright (property/volumes/coverage_textures.cpp). At most 16 triangles, so 48 edges.
+    // where it is nearly upright (property/volumes/coverage_textures.cpp). At most 16 triangles, so 48 edges.
     const double walks = 48 * 3 + 16 * 7;
     expect_layers(stage, random, walks * 0x1p-24 * stage.soft.texture()->brightest() + 1e-9, found);
     if (HasFatalFailure()) FAIL() << "scene " << i;
@@ -86,7 +86,7 @@ TEST(CoverageLights, SpheresAreDisksThatFaceTheReceiver) {
   for (int i = 0; i < 60; ++i) {
     const CoverageStage stage(tests::soup_scene(soup_below(random, 2 + i % 7), Lamp::sphere));
     ASSERT_FALSE(stage.soft.something_touches_light());
-    // Of `exact` the disk is a polygon, off by 7.6e-8 at most.
+    // `exact` takes a polygon for the disk, off by 7.6e-8 at most.
     expect_layers(stage, random, 1e-7, found);
     if (HasFatalFailure()) FAIL() << "scene " << i;
   }

@@ -12,7 +12,7 @@
 namespace penumbra::volumes {
 namespace {
 
-/// What a scene's first camera sees under its first light.
+/// View samples of a scene's first camera under the scene's first light.
 struct CropStage {
   CropStage(const render::Device& device, const std::string& name, std::uint32_t size)
       : scene(tests::shipped_scene(name)),

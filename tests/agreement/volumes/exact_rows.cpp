@@ -175,7 +175,7 @@ INSTANTIATE_TEST_SUITE_P(Kinds, ManyHostileLamps,
                            return fmt::format("{}{}", tests::name_of(std::get<0>(it.param)), std::get<1>(it.param));
                          });
 
-/// Where V times the unshadowed integral is wrong: a light that stands on the floor.
+/// V times the unshadowed integral is wrong for a light that stands on the floor; form factors are right.
 TEST_F(ExactRows, FormFactorsBesideALight) {
   const SoftStage stage(tests::things_before_a_panel(), device(), 96, 72);
   Found found;

@@ -40,8 +40,8 @@ std::uint32_t below(std::mt19937& random, std::uint32_t end) {
   return static_cast<std::uint32_t>(random() % end);
 }
 
-/// In the ellipse of the rectangle's axes: its frame, the first three corners, is at any angle; `many`: corners so
-/// close that it is a needle.
+/// Makes a polygon in the ellipse of the rectangle's axes: its frame, the first three corners, is at any angle. `many`:
+/// corners so close together that the frame is a needle.
 scenes::Polygon polygon_in(const scenes::Rectangle& r, bool many, std::mt19937& random) {
   const std::uint32_t count = many ? 40 + below(random, 60) : 3 + below(random, 5);
   std::vector<double> angles;
@@ -55,7 +55,8 @@ scenes::Polygon polygon_in(const scenes::Rectangle& r, bool many, std::mt19937& 
   return polygon;
 }
 
-/// The scene's first light, a rectangle, in another shape: in its plane and about as large. (A sun: shining its way.)
+/// The scene's first light, a rectangle, in another shape: in its plane and about as large. (A sun: shining in its
+/// direction.)
 void reshape(scenes::Scene& scene, Shape shape, std::mt19937& random) {
   scenes::AreaLight& light = scene.lights[0];
   const auto r = std::get<scenes::Rectangle>(light.shape);
@@ -121,7 +122,7 @@ INSTANTIATE_TEST_SUITE_P(Shipped, ExactRowsOfShapes,
                            return std::string(std::get<0>(it.param)) + name_of(std::get<1>(it.param));
                          });
 
-/// Found on the way to V or afterwards, form factors are the same, and V is, too. The rectangle, then all others.
+/// Form factors found together with V, or afterwards, are the same, and V is, too. The rectangle, then all others.
 TEST_F(ExactRows, FormFactorsAreTheSameOnTheWay) {
   const auto same = [](const auto& a, const auto& b) {
     return std::memcmp(a.data(), b.data(), a.size() * sizeof a[0]) == 0;

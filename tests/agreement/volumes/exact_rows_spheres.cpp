@@ -47,7 +47,7 @@ class SpheresThatHold : public ExactRows {
   }
 };
 
-/// In general position double proves nearly all of them.
+/// Double arithmetic proves nearly all areas in general position.
 TEST_F(SpheresThatHold, Balls) {
   Found found;
   for (std::uint32_t seed = 0; seed < 10; ++seed) {
@@ -72,7 +72,7 @@ TEST_F(SpheresThatHold, Triangles) {
     for (int i = 0; i < 20; ++i) {
       const glm::dvec3 middle = at + glm::dvec3(0, 2.4, 0) + 0.5 * vector();
       const double size = std::exp2(2 * real(random));
-      // Every third one all but in the plane of a disk that is seen from below.
+      // Every third one is nearly in the plane of a disk that is seen from below.
       const double flat = i % 3 == 0 ? 0.02 : 1;
       const auto corner = [&] { return middle + size * glm::dvec3(1, flat, 1) * vector(); };
       const glm::dvec3 a = corner(), b = corner(), c = corner();
@@ -173,8 +173,7 @@ TEST_F(SpheresThatHold, Halves) {
   expect_right("halves", found);
 }
 
-/// What is found for a view sample alone is what is found for it among others: neither lists nor what they leave out
-/// show.
+/// A view sample alone gets the answer that it gets among others: neither lists nor what they leave out show.
 TEST_F(SpheresThatHold, NeighboursDoNotMatter) {
   std::size_t partly = 0;
   for (std::uint32_t seed = 0; seed < 200; ++seed) {
@@ -202,8 +201,8 @@ TEST_F(SpheresThatHold, NeighboursDoNotMatter) {
   EXPECT_GT(partly, 200U);
 }
 
-/// Where an edge ends at the disk and where its caster's cut does were an ulp apart, on either side of the window's
-/// left side: 0.44 in place of 0.96.
+/// An edge's end at the disk and its caster's cut were an ulp apart, on either side of the window's left side: V was
+/// 0.44 in place of 0.96.
 TEST_F(SpheresThatHold, AnOutlineAtTheLeftSide) {
   scenes::Scene scene;
   scene.origin = glm::dvec3(0);
@@ -230,7 +229,7 @@ TEST_F(SpheresThatHold, AnOutlineAtTheLeftSide) {
   EXPECT_EQ(found.unproven, 0U);
 }
 
-/// A panel all but in the disk's plane, with a corner within rounding of it: where it passes through is anywhere along
+/// A panel nearly in the disk's plane, with a corner within rounding of it: where it passes through is anywhere along
 /// its sides.
 TEST_F(SpheresThatHold, PanelsInTheDisk) {
   for (const double below : {-1e-12, -3e-13, -2.5e-13, -1e-13, 0.0, 2e-13}) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What methods carry over from one frame's mesh to the next: vertices of lattice soups move, alone or with all that lie
+// Tests what methods keep from one frame's mesh to the next. Vertices of lattice soups move, alone or with all that lie
 // at their place, so that edges, planes and triangles without area come and go; each answer has the bits of a method
 // that never saw another frame.
 
@@ -193,7 +193,7 @@ TEST(KeptEdges, WhatIsFlatByChanceIsTakenInAtOnce) {
   }
 }
 
-/// So many leaves are made when somebody asks, when the list of casters may be that of another light.
+/// A mesh of this size has its leaves made on request, when the list of casters may be that of another light.
 TEST(SceneEdges, OfManyAreThoseThatAreMadeAtOnce) {
   scenes::Scene scene;
   std::vector<std::array<glm::dvec3, 3>> sheet;

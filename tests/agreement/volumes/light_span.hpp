@@ -21,7 +21,8 @@ namespace penumbra::tests {
 inline bool says(const InputError& error, std::string_view words) {
   return std::string_view(error.what()).find(words) != std::string_view::npos;
 }
-/// Is this the refusal of visibility::check_size, of a light that float32 does not span together with the scene?
+/// Returns whether this is visibility::check_size's refusal of a light that float32 does not span together with the
+/// scene.
 inline bool refuses_size(const InputError& error) {
   return says(error, "handles lights between 2^-28 and 2^28 of the scene's size");
 }
@@ -37,9 +38,9 @@ inline bool spans(const visibility::SceneFloats& floats, const visibility::Light
   }
 }
 
-/// What `answer` returns of a method that asks check_size about the frame of make_device_light; nothing where it
-/// refuses the light. It must do so exactly where `spans` says no: throws whatever else is refused, and
-/// std::logic_error if something is not.
+/// Returns what `answer` returns of a method that asks check_size about the frame of make_device_light; nothing if the
+/// method refuses the light, which it must do exactly where `spans` says no. Rethrows other refusals, and throws
+/// std::logic_error if a light that must be refused is not.
 template <typename Answer>
 auto unless_too_far_apart(const visibility::SceneFloats& floats, const visibility::Light& light, Answer&& answer)
     -> std::optional<decltype(answer())> {

@@ -26,8 +26,8 @@ class PackedTwin {
     if (floats.triangles.size() > kMostTried) tree_ = visibility::make_triangle_tree(floats);
   }
 
-  /// The count at the light's centre, and what silhouettes change it by on the straight way to each light sample, as
-  /// variant=forest has it; nothing where a sign is exactly zero.
+  /// The count at the light's centre, and the change of it by silhouettes on the straight segment to each light sample,
+  /// as variant=forest has it; nothing where a sign is exactly zero.
   [[nodiscard]] std::vector<std::optional<std::int16_t>> by_edges(std::size_t pixel) const {
     const glm::dvec3 p(samples_.p[pixel]), c(center_);
     std::int16_t constant = 0;

@@ -99,7 +99,7 @@ TEST_F(Plateaus, IsItsTwin) {
   }
 }
 
-/// What the method is known for: a hard shadow's umbra, so most of what is wrong is too dark.
+/// The method is known for the umbra of a hard shadow, so most of its wrong pixels are too dark.
 TEST_F(Plateaus, UmbraeAreTooLarge) {
   for (const char* name : {"parallel-square", "contact", "fusion"}) {
     const SoftStage stage(tests::shipped_scene(name), device(), 48, 36);

@@ -61,7 +61,7 @@ struct SoftStage : Stage {
   std::vector<visibility::PixelClass> classes;
 };
 
-/// Over the pixels where `truth` is a number.
+/// Errors over the pixels where `truth` is a number.
 struct Errors {
   std::size_t pixels = 0, penumbra = 0, largest_at = 0;
   double largest = 0, squares = 0;

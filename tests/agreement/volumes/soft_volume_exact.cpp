@@ -69,8 +69,8 @@ TEST_F(SoftVolumeExact, ASolidIsOffByWhatItsSilhouettesPredict) {
       fmt::print("{}, light {}: off by {:.4f} at most, as predicted within {:.1e}\n", cube ? "cube" : "sphere", half,
                  largest, worst);
       EXPECT_LE(worst, 1e-3);
-      // Otherwise there was nothing to predict: from wherever a cube is seen, a light no wider than it sees its top
-      // alone.
+      // A cube under a light no wider than itself has nothing to predict: the light sees the cube's top alone from
+      // everywhere.
       EXPECT_GT(largest, !cube || half > 0.5 ? 1e-3 : 0.0);
     }
   }
@@ -84,8 +84,8 @@ TEST_F(SoftVolumeExact, FusionIsAdded) {
   tests::add_object(scene, "high", tests::quad({0, 1.25, 0}, {0.4, 0, 0}, {0, 0, -0.4}));
   const SoftStage stage(scene, device(), 64, 48);
   const std::vector<double> exact = stage.exact();
-  // From p at height 0 a board at height y with half-size r covers [−1, 1]² of the light (half-size s at height h) in
-  // the product of two overlaps.
+  // A board at height y with half-size r covers, as seen from p at height 0, the product of two overlaps of [−1, 1]² of
+  // the light (half-size s at height h).
   const std::vector<double> sum = stage.at_judged([&](std::size_t i) {
     const glm::dvec3 p = glm::dvec3(stage.samples.p[i]) + stage.floats.origin;
     if (p.y > 0.5) return std::numeric_limits<double>::quiet_NaN();

@@ -30,8 +30,8 @@ class SoftVolumeFusion : public tests::DeviceTest {
   }
 };
 
-/// Each rule is what it says, of V with the floor and one of the boards alone, less what the floor hides of itself:
-/// nothing.
+/// Each rule is what its name says, applied to V with the floor and one of the boards alone, less what the floor hides
+/// of itself: nothing.
 TEST_F(SoftVolumeFusion, FusesWhatEachObjectHides) {
   const scenes::Scene scene = boards();
   const SoftStage stage(scene, device(), 48, 36);
@@ -60,7 +60,7 @@ TEST_F(SoftVolumeFusion, FusesWhatEachObjectHides) {
   }
 }
 
-/// Of planar boards each share is right, so what is visible lies between sum and max (course notes, equation 1.5).
+/// Shares of planar boards are each right, so the visible part lies between sum and max (course notes, equation 1.5).
 TEST_F(SoftVolumeFusion, BoundsWhatIsVisible) {
   const SoftStage stage(boards(), device(), 48, 36);
   const std::vector<double> exact = stage.exact();
@@ -98,7 +98,7 @@ TEST_F(SoftVolumeFusion, KeepsTilesPartsAndSingleOccluders) {
   }
 }
 
-/// Below the horizon nothing is hidden: what rules fuse is the share above it.
+/// Nothing below the horizon is hidden: rules fuse shares of what is above it.
 TEST_F(SoftVolumeFusion, SharesAreOfWhatIsAboveTheHorizon) {
   FusedShare share;
   share.add(0.2, 0.5);
@@ -123,7 +123,7 @@ scenes::Scene edges_at_the_centre() {
   return scene;
 }
 
-/// With as=published, floats decide on which side of the centre an edge passes. Where they are wrong, the number of
+/// Floats decide with as=published on which side of the centre an edge passes. Where they are wrong, the number of
 /// layers is off by one, and V by the part of the light on one side of an edge through its centre. Repaired, no pixel
 /// is wrong.
 TEST_F(SoftVolumeFusion, SidesByFloatsAreAWholeLayerOff) {
@@ -155,7 +155,7 @@ TEST_F(SoftVolumeFusion, SidesByFloatsAreAWholeLayerOff) {
   }
 }
 
-/// One constant is a whole light off there, and the votes of three are right but where a vertex is at the centre.
+/// One constant is a whole light off there; the votes of three are right except where a vertex is at the centre.
 TEST_F(SoftVolumeFusion, VotesRepairSidesThatFloatsGetWrong) {
   const SoftStage stage(edges_at_the_centre(), device(), 65, 65);
   const std::vector<double> right = stage.twin(Viewer::center);
@@ -172,7 +172,7 @@ TEST_F(SoftVolumeFusion, VotesRepairSidesThatFloatsGetWrong) {
   EXPECT_LE(wrong, 1U);
 }
 
-/// Where silhouettes are those of the centre, all three agree; where they are not, votes are no worse than one.
+/// All three agree where silhouettes are those of the centre; elsewhere votes are no worse than one method alone.
 TEST_F(SoftVolumeFusion, VotesAgreeOnShippedScenes) {
   for (const char* name : {"parallel-square", "contact", "fusion"}) {
     const SoftStage stage(tests::shipped_scene(name), device(), 48, 36);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The other ways to measure what lies beyond an edge: a table, and a texture texel by texel.
+// Tests the other measures of what lies beyond an edge: a table, and a texture texel by texel.
 
 #include "tests/agreement/volumes/soft_stage.hpp"
 
@@ -85,7 +85,7 @@ TEST_F(SoftVolumeMeasures, TheTableKeepsWithinItsBound) {
         const LayerSum layers = soft.at(stage.lit(i), Viewer::center);
         double swept = 0;
         for (const CoveredEdge& edge : layers.edges) {
-          // Its ends move by `reach` at most: it is no longer than before by more than twice that.
+          // The edge's ends move by `reach` at most, so it grows by no more than twice that.
           const double length = glm::length(edge.clipped.to - edge.clipped.from);
           swept += std::abs(edge.multiplicity) * reach * (length + (length + 2 * reach)) / 2;
         }
@@ -188,7 +188,7 @@ TEST(CoverageTable, NoPlaceIsFartherFromItsPointThanIsSaid) {
 }
 
 TEST(CoverageTable, ALoopLeavesItsAreaOut) {
-  // What lies beyond the three sides is the light without the triangle, and the whole light counts 0 in a closed loop.
+  // The part beyond the three sides is the light without the triangle, and the whole light counts 0 in a closed loop.
   for (const TablePoints& points : {kRectanglePoints, kDiskPoints}) {
     const std::vector<double> table = coverage_table(points.outline, nullptr);
     std::mt19937 random(5);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where soft-volume's silhouettes and wedges are built must not change a bit of V.
+// Tests that V of soft-volume has the same bits wherever silhouettes and wedges are built.
 
 #include "tests/agreement/differences.hpp"
 #include "tests/agreement/lattice.hpp"

@@ -38,8 +38,8 @@ TEST_F(WedgeRamp, IsItsTwin) {
   }
 }
 
-/// Under the middle of a long edge that runs along the light, with front and back at equal angles, the ramp is the
-/// area.
+/// The ramp equals the area under the middle of a long edge that runs along the light, with front and back at equal
+/// angles.
 TEST_F(WedgeRamp, IsExactUnderALongEdge) {
   scenes::Scene scene;
   tests::add_object(scene, "floor", tests::quad({0, 0, 0}, {4, 0, 0}, {0, 0, -4}));
@@ -81,8 +81,7 @@ TEST_F(WedgeRamp, RefusesWhatItCannotDo) {
       InputError);
 }
 
-/// What a ramp for each edge cannot do: corners, where it is not the area, and meshes finer than their penumbra is
-/// wide.
+/// A ramp for each edge fails at corners, where it is not the area, and on meshes finer than their penumbra is wide.
 TEST_F(WedgeRamp, ItsFailuresAreShown) {
   for (const auto& [name, least] : {std::pair{"parallel-square", 0.01}, {"bunny", 0.05}}) {
     const SoftStage stage(tests::shipped_scene(name), device(), 48, 36);

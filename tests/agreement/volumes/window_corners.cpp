@@ -117,7 +117,7 @@ TEST_F(WindowCorners, AreWhereMasksCountFrom) {
 /// Wrong seeds of the first million without what is between the frame's corner and the counted one.
 constexpr std::array<std::uint32_t, 6> kRoundedFrames{17465, 58142, 104227, 142683, 162197, 258853};
 
-/// How many scenes there are; lights of whose shape floats hold nothing are refused.
+/// Returns the number of scenes; lights whose shape floats cannot hold are refused.
 std::size_t are_right(const render::Device& device, std::span<const std::uint32_t> seeds) {
   const std::array methods{tests::kNativeEdgeScatter.make(device, {}), tests::kNativeDepthComplexity.make(device, {})};
   std::size_t scenes = 0;

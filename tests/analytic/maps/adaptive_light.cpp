@@ -214,7 +214,7 @@ TEST_F(AdaptiveLight, GammaIsAShareOfHeightsOrOfAMapsRange) {
 TEST_F(AdaptiveLight, ThePapersWeightsAreNearerToTheTruthThanEqualOnes) {
   scenes::Scene scene;
   add_quad(scene, {0, 0, 0}, {0.4, 0, 0}, {0, 0, -0.4});
-  // From the floor's middle the board hides the light beyond x = 0.8, of 1.
+  // The board hides, as seen from the floor's middle, the light beyond x = 0.8, of 1.
   add_quad(scene, {4.4, 2.5, 0}, {4, 0, 0}, {0, 0, 6}).receives_shadow = false;
   scene.lights.push_back(ceiling_light(5, 1));
   scene.cameras.push_back(camera({0, 1.5, 0}, {0, 0, -0.001}, 20));

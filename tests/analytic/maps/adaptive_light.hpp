@@ -24,7 +24,7 @@ class AdaptiveLight : public MapsTest {
     Masks picture;
     std::uint64_t maps = 0, comparisons = 0;
   };
-  /// With epsilon as published, a share of the map's texels.
+  /// Runs adaptive-light with epsilon as published: a share of the map's texels.
   static Run adaptive(const Stage& stage, MethodOptions options, std::uint32_t rows_at_once = 0) {
     options.emplace("size", "128");
     options.emplace("shareOf", "map");

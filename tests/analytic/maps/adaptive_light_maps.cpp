@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How many maps adaptive-light takes, and what they are refined by.
+// Tests how many maps adaptive-light takes, and what refines them.
 
 #include "tests/analytic/maps/adaptive_light.hpp"
 
@@ -99,7 +99,7 @@ TEST_F(AdaptiveLight, FromFarAwayOnlyTheLightsOwnViewRefines) {
   EXPECT_GT(far_error, 2 * near_error);
 }
 
-// As good as 128 fixed maps with fewer of them where penumbrae are small; more maps for larger lights.
+// Fewer maps than 128 fixed ones are as good where penumbrae are small; larger lights need more maps.
 TEST_F(AdaptiveLight, MapsGrowWithThePenumbraAndAreFewForSmallLights) {
   std::uint64_t last = 4;
   for (const double half : {0.1, 0.5, 2.0}) {
@@ -141,8 +141,8 @@ TEST_F(AdaptiveLight, ATiltedReceiverNeedsMoreMaps) {
   EXPECT_GT(last, 14U);
 }
 
-// What epsilon's default is a share of grows with the picture; of what the paper's is a share of small pictures have
-// too few pixels, and keep their four maps.
+// The default of epsilon is a share of a number that grows with the picture. The paper's is a share of a number that
+// small pictures do not reach: they keep their four maps.
 TEST_F(AdaptiveLight, ByDefaultPicturesOfAnySizeAreRefinedAlike) {
   for (const double half : {0.04, 0.15}) {
     std::vector<std::uint64_t> found, published;

@@ -75,8 +75,8 @@ class Picture {
     }
     return sum / (count.x * count.y);
   }
-  /// Between the two mip levels whose texels' areas the box's lies between, in each between the four texels around its
-  /// middle. For sizes that are powers of two.
+  /// Returns the mean between the two mip levels whose texels' areas enclose the box's, in each between the four texels
+  /// around its middle. For sizes that are powers of two.
   [[nodiscard]] double of_levels(const TexelBox& box) const {
     const glm::dvec2 extent = glm::max(box.extent(), glm::dvec2(1)), middle = 0.5 * (box.lower + box.upper);
     const double level = std::min(0.5 * std::log2(extent.x * extent.y), std::log2(size_));
@@ -105,7 +105,8 @@ class BoxMeans : public MapsTest {
     double mean;
     std::uint32_t fetches;
   };
-  /// Of a picture's bit, `function` of several functions, which buffers of `buffer_bytes` hold (0: as large as may be).
+  /// Returns means of a picture's bit, `function` of several functions, in buffers of `buffer_bytes` (0: as large as
+  /// may be).
   static std::vector<Found> means(const Picture& picture, maps::PrefilterKind kind, const std::vector<TexelBox>& boxes,
                                   std::uint32_t function = 0, std::uint64_t buffer_bytes = 0) {
     scenes::Scene scene;
@@ -235,8 +236,8 @@ TEST_F(BoxMeans, AreTheSameInOneBufferAndInFour) {
   }
 }
 
-// What a receiver on a wall sees of the light's box is, on a sideways face of a hemicube, the box around its four
-// corners. The formula is of first order: of boxes as small as these off by less than 1 %.
+// The window of a receiver on a wall, on a sideways face of a hemicube, is the box around the four corners of the
+// light's box. The formula is of first order: for boxes as small as these it is off by less than 1 %.
 TEST_F(BoxMeans, WindowsOnSidewaysFacesHoldTheCornersOfTheLightsBox) {
   constexpr std::uint32_t kTexels = 8192;
   maps::gpu::LightView view{};

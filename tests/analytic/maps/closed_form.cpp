@@ -40,7 +40,7 @@ TEST_F(MapsClosedForm, AccumulateDiffersOnlyWithinATexelOfTheHalfPlanesEdge) {
   const Stage stage(parallel_square(5, 6), 64, 64, light_samples(64));
   const Masks result = run(maps::make_accumulate, stage, {{"size", "512"}});
   const ParallelSquare exact(stage);
-  // From any light point the floor spans 8 / 5 in tangents: a texel is 8 / 510 wide on it. The map is right at the
+  // The floor spans 8 / 5 in tangents from any light point: a texel is 8 / 510 wide on it. The map is right at the
   // texel's centre, half a texel from p, apart from the rasteriser's own snapping: a whole texel covers both.
   const double texel = 8.0 / 510;
   std::size_t differing = 0, near = 0;
@@ -51,7 +51,7 @@ TEST_F(MapsClosedForm, AccumulateDiffersOnlyWithinATexelOfTheHalfPlanesEdge) {
       if (visible == exact.visible(i, j)) continue;
       ++differing;
       const glm::dvec3 p = stage.samples.p[i], l = stage.light.points[j];
-      // Where the floor sees l past the edge (x = 1 at height 2 of 5, in world units).
+      // Place from which the floor sees l past the edge (x = 1 at height 2 of 5, in world units).
       const double boundary = l.x + (1.0 - stage.floats.origin.x - l.x) * (5.0 / 3.0);
       near += std::abs(p.x - boundary) <= texel ? 1 : 0;
     }
@@ -100,7 +100,8 @@ TEST_F(MapsClosedForm, TheUndersideOfTheOccluderIsBelowItsHorizonAndNeverLit) {
   }
 }
 
-/// Pairs at judged pixels that accumulate and the last judge decide differently, as a share.
+/// Returns the share of pairs at judged pixels that accumulate and the last judge, exact arithmetic, decide
+/// differently.
 double disagreement(const Stage& stage, const Masks& result) {
   const auto classes = visibility::classify_pixels(stage.floats, stage.samples, stage.light);
   const std::uint32_t words = stage.light.words_per_mask();

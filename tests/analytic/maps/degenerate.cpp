@@ -169,7 +169,7 @@ TEST_F(MapsDegenerate, EveryMethodGivesAShareOfTheLight) {
     for (const Given& one : all) {
       if (!can(method(words), one.stage.light)) continue;
       const Masks found = run(method(words), one.stage);
-      // Which no NaN is.
+      // V is in [0, 1], which no NaN is.
       EXPECT_TRUE(std::ranges::all_of(found.visibility, [](float v) { return v >= 0 && v <= 1; }))
           << words << ", " << one.name;
     }

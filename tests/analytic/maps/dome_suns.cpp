@@ -41,7 +41,7 @@ TEST(MedianCut, HalvesTheLongerSide) {
   }
   const auto four = maps::median_cut(directions, kAxes, 4);
   EXPECT_EQ(four, (std::vector<std::vector<std::uint32_t>>{{0, 1}, {2, 3}, {4, 5}, {6, 7}}));
-  // Near the zenith what reaches far around is narrow: the cut is by height, of 67° here, not of 80° around.
+  // Regions near the zenith that reach far around are narrow: the cut is by height, of 67° here, not of 80° around.
   std::vector<glm::vec3> narrow;
   for (const double height : {80.0, 84.0}) {
     for (const double around : {-40.0, 40.0}) {

@@ -123,7 +123,7 @@ struct Leaf {
     for (std::uint32_t i = 0; i < kCells * kCells; ++i)
       scene.pictures[0].texels.push_back({0, 0, 0, static_cast<std::uint8_t>((i % kCells + i / kCells) % 2 * 255)});
   }
-  /// The same as solid squares.
+  /// Adds the opaque texels as solid squares.
   void add_cut_out_to(scenes::Scene& scene) const {
     std::vector<Corners> squares;
     for (std::uint32_t i = 0; i < kCells * kCells; ++i) {
@@ -282,7 +282,7 @@ class Leaves : public EveryLight {
 };
 
 TEST_F(Leaves, ShadeAsTheirSquaresDo) {
-  // Of each that draws: depths alone, layers of them, ids, slices, objects by themselves.
+  // One method of each kind of map: depths alone, layers of depths, ids, slices, objects by themselves.
   const auto some =
       some_methods("96", {"pcss", "backproject-peel", "shadow-map ids", "occlusion-textures", "soft-shadow-map"});
   expect_squares(some, lights[0]);
@@ -299,7 +299,7 @@ TEST_F(Leaves, ShadeAsTheirSquaresDoInEveryMethodFull) {
   for (const scenes::AreaLight& light : lights) expect_squares(all_methods("160"), light);
 }
 
-// From p, directions (σ, −1) cross the height h at x + h σ_x: hidden is the segment of the sun's disk beyond the edge.
+// Directions (σ, −1) from p cross the height h at x + h σ_x: the segment of the sun's disk beyond the edge is hidden.
 class HalfASun : public EveryLight {
  protected:
   static void expect_segments(const std::vector<Entry>& entries, std::uint32_t samples) {
@@ -337,7 +337,7 @@ TEST_F(HalfASun, IsHiddenByAHalfPlaneInEveryMethodFull) {
   expect_segments(soft, 256);
 }
 
-// A disk so far away that its rays are parallel within a degree of the sun's: the maps are the same but for where
+// A disk so far away that its rays are parallel within a degree of the sun's: the maps are the same except for where
 // texels begin, and so are the penumbrae.
 TEST_F(EveryLight, FoilsSeeASunAsAFarDisk) {
   constexpr double kFar = 400, kAngle = 24;
@@ -361,8 +361,8 @@ TEST_F(EveryLight, FoilsSeeASunAsAFarDisk) {
   }
 }
 
-// What SunSpace promises: points on a ray to the sun are on the segment to the disk's point, planes stay planes, and
-// what is linear over a triangle is linear again after weighting.
+// SunSpace promises that points on a ray to the sun are on the segment to the disk's point, that planes stay planes,
+// and that what is linear over a triangle is linear again after weighting.
 TEST_F(EveryLight, SunSpaceTakesRaysToSegments) {
   scenes::Scene scene = floor_under(shaped(scenes::Sun{{0.3, -1, -0.45}, 12}));
   Leaf().add_to(scene);
@@ -393,7 +393,7 @@ TEST_F(EveryLight, SunSpaceTakesRaysToSegments) {
     EXPECT_LT(glm::length(q - from - t * (to - from)), 4e-6);
     const glm::dvec3 aside = glm::normalize(glm::cross(n, glm::dvec3(0.3, 0.1, 1)));
     EXPECT_NEAR(glm::dot(normal, mapped(p + 0.5 * aside, n).first - from), 0, 2e-6);
-    // Above the horizon here is above the horizon there.
+    // Points above the horizon in one space are above it in the other.
     EXPECT_EQ(glm::dot(n, glm::dvec3(stage.light.points[j])) > 0, glm::dot(normal, to - from) > 0);
   }
   // The leaf's first triangle.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What holds of every filter whatever it is given: V in [0, 1] for input that has no meaning, 1 where nothing is near,
-// the same bytes in any order of triangles; and where filters are known to be wrong.
+// Tests what holds of every filter for any input: V in [0, 1] for input without a meaning, 1 where nothing is near, the
+// same bytes for any order of triangles; and where filters are known to be wrong.
 
 #include "base/error.hpp"
 #include "maps/filters/methods.hpp"
@@ -197,7 +197,8 @@ TEST_F(Filters, TilesChangeNoByte) {
   }
 }
 
-// S4 figures 5.3 and 5.4: what a window holds is taken for a blocker wherever it stands, also beside the light.
+// Eisemann et al. 2009, figures 5.3 and 5.4: what a window holds is taken for a blocker wherever it stands, also beside
+// the light.
 TEST_F(Filters, BlockersBesideTheLightDarkenWhatTheyDoNotShade) {
   // A tall wall along x = 1: from the floor beside it the light's every point is in plain view.
   const auto wall = [](scenes::Scene& scene) { add_quad(scene, {1, 1.2, 0}, {0, 1.2, 0}, {0, 0, 2}); };
@@ -215,8 +216,8 @@ TEST_F(Filters, BlockersBesideTheLightDarkenWhatTheyDoNotShade) {
   EXPECT_EQ(sampled, 0);
 }
 
-// S4 figure 5.3: two heights become one mean, whose window is wider than the lower blocker's: light where there is
-// none.
+// Eisemann et al. 2009, figure 5.3: two heights become one mean, whose window is wider than the lower blocker's: light
+// where there is none.
 TEST_F(Filters, BlockersAtTwoHeightsLightTheUmbra) {
   const auto boards = [](scenes::Scene& scene) {
     add_quad(scene, {-0.35, 3, 0}, {0.25, 0, 0}, {0, 0, 3}).receives_shadow = false;
@@ -235,7 +236,7 @@ TEST_F(Filters, BlockersAtTwoHeightsLightTheUmbra) {
   EXPECT_GT(moments, 0.01);
 }
 
-// S4 5.2.2.1: few taps of a search differ from pixel to pixel.
+// Eisemann et al. 2009, section 5.2.2.1: few taps of a search differ from pixel to pixel.
 TEST_F(Filters, FewTapsAreFarFromMany) {
   scenes::Scene scene;
   add_quad(scene, {0, 0, 0}, {4, 0, 0}, {0, 0, 4});
@@ -323,7 +324,7 @@ TEST_F(Filters, PcssWeighsTapsByTheTexture) {
   }
 }
 
-// What has no place for weights says so, and names who has.
+// Filters that have no place for weights say so, and name those that have.
 TEST_F(Filters, ATextureIsWeighedOrRefused) {
   const Stage stage(board_under(constant_texture(2, 2, glm::vec3(1))), 8, 8, light_samples(1));
   for (const Filter& filter : all_filters("16")) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// How tests make a method of maps/ and run it.
+// Makes and runs a method of maps/ in a test.
 
 #include "maps/backprojection/patches/methods.hpp"
 #include "maps/backprojection/contours/methods.hpp"

@@ -85,7 +85,7 @@ TEST_F(PcssFormulas, PenumbraWidthAndFilter) {
 }
 
 TEST_F(PcssFormulas, BlockerSearchOverTwoHeights) {
-  // How many taps of the search meet either board decides the mean height.
+  // The number of taps that meet either board decides the mean height.
   const std::vector<Board> boards{{3.5, 0.3, 6}, {1.5, -6, -0.3}};
   expect_predicted(under_boards(boards), boards, "boards at 3.5 and 1.5");
 }
@@ -176,7 +176,7 @@ class Bias : public MapsTest {
     scene.cameras.push_back(camera({0, 3, 3}, {0, 0, 0}));
     const Bounds window = window_of(along);
     const double texel = window.widest() / (setting.size - 2);
-    // At the middle of the floor the board is where the bias ends: rise / (m · c) there is bias t w (1 + slope).
+    // The board is where the bias ends at the middle of the floor: rise / (m · c) there is bias t w (1 + slope).
     const glm::dvec3 middle(0, -kLight, 0);
     const double rise = share * forgiven(middle, up, texel, setting) * cosine(middle, up);
     add_quad(scene, rise * up, 4.0 * along, {0, 0, -4}).receives_shadow = false;
@@ -247,7 +247,7 @@ class Bias : public MapsTest {
     glm::dvec2 lower{1e30}, upper{-1e30};
     [[nodiscard]] double widest() const { return std::max(upper.x - lower.x, upper.y - lower.y); }
   };
-  /// Of the floor, in tangents from the light's centre.
+  /// Returns the floor's window, in tangents from the light's centre.
   static Bounds window_of(const glm::dvec3& along) {
     Bounds bounds;
     for (const double s : {-2.0, 2.0}) {
@@ -260,7 +260,7 @@ class Bias : public MapsTest {
   }
   /// m · c, m the floor's normal away from the light, for c one long along the light's axis.
   static double cosine(const glm::dvec3& c, const glm::dvec3& up) { return glm::dot(-up, c / -c.y); }
-  /// How fast the plane's depth changes across the map.
+  /// Returns the largest change of the plane's depth across the map.
   static double slope(const glm::dvec3& c, const glm::dvec3& up) {
     return std::min((std::abs(up.x) + std::abs(up.z)) / cosine(c, up), kSteepest);
   }
@@ -279,8 +279,8 @@ TEST_F(Bias, GrowsWithTheSlope) {
   expect_forgiven(-0.8, 1, {});
 }
 
-// At 86 degrees slopes are 9 to 20 on the whole floor, and count as 8. Texels are small enough that the plane's depth
-// is known to a quarter of a percent within one.
+// Slopes at 86 degrees are 9 to 20 on the whole floor, and count as 8. Texels are so small that the plane's depth
+// within one is known to a quarter of a percent.
 TEST_F(Bias, GrowsNoMoreBeyondTheSteepestSlope) {
   for (const double share : {0.985, 1.015}) {
     expect_forgiven(1.5, share, {.size = 4096, .bias = 2, .reach = 0.2, .hard_alone = true});

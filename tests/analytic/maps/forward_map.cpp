@@ -26,8 +26,8 @@ double spline(int degree, double at) {
   return at <= 0.5 ? 0.75 - at * at : at < 1.5 ? 0.5 * (1.5 - at) * (1.5 - at) : 0;
 }
 
-/// Under the edge of a board V is the sum of the splats of texels beside it: a step of one texel, a line over one, and
-/// two parabolas over two.
+/// V under the edge of a board is the sum of the splats of the texels beside it: a step of one texel, a line over one,
+/// and two parabolas over two.
 TEST_F(ForwardMap, AnEdgeFadesAsItsSplatsDo) {
   scenes::Scene scene = bare_floor(0.3);
   const double texel = 4.0 / 62;  // on the floor; the window has one more on either side

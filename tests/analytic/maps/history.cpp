@@ -41,7 +41,7 @@ TEST_F(History, MixesByConfidence) {
   for (std::size_t i = 0; i < places.size(); ++i) {
     double mixed = 0;
     for (std::uint32_t frame = 0; frame < kFrames; ++frame) {
-      // In which axis of the map x runs, and which way, is the light's: here u, along x.
+      // The light's frame decides along which axis of the map x runs, and in which direction: here along u.
       const glm::dvec2 jitter = maps::jitter_of(frame);
       const double x = (places[i] + 2) / texel + 1 - jitter.x, z = (0.013 + 2) / texel + 1 - jitter.y;
       const double centre = std::floor(x) + 0.5, lit = (centre - 1 + jitter.x) * texel - 2 < edge ? 1 : 0;
@@ -135,7 +135,7 @@ TEST_F(Reprojection, FindsTheSameSurface) {
   EXPECT_GT(hidden, 150U);
 }
 
-/// One map a frame, as many frames of a camera that stands still: what history makes of them.
+/// One map a frame, for many frames of a camera that stands still, and what history makes of them.
 TEST_F(Reprojection, OfAStillCameraIsHistory) {
   const Stage stage = seen_from(0.5);
   visibility::FrameMemory memory;

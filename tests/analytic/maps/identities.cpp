@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// What holds of methods on every scene, whatever it is made of: identities and inequalities between the pictures of two
-// ways to run a method, and what no way may do to any picture. One table for all methods; judged on shipped scenes,
-// meshes with every defect and soups on a small lattice, where a camera, a light and triangles coincide. I, B and A are
-// the names of docs/predicates.md.
+// Tests what holds of methods on every scene: identities and inequalities between the pictures of two variants of a
+// method, and what no variant may do to any picture. One table for all methods; judged on shipped scenes, meshes with
+// every defect and soups on a small lattice, where a camera, a light and triangles coincide. I, B and A are the names
+// of docs/predicates.md.
 
 #include "tests/analytic/maps/places.hpp"
 #include "tests/analytic/maps/ways.hpp"
@@ -58,8 +58,8 @@ constexpr Identity kIdentities[] = {
     {"dual", "contour:depth=dual:bias=0", Is::same, "contour:bias=0"},
     {"A9", "bitmask:bias=0", Is::no_brighter, "bitmask:depth=midpoint:bias=0"},
 };
-/// More of the kind, for the long test. (Without a bias a shadow begins, for what is closed and open, at the first
-/// surface or behind it.)
+/// More identities, for the long test. (Without a bias the shadow of closed and open things begins at the first surface
+/// or behind it.)
 constexpr Identity kMoreIdentities[] = {
     {"I1", "soft-shadow-map:passes=2:filter=nearest", Is::no_brighter, "soft-shadow-map:filter=nearest"},
     {"I3", "packet", Is::same, "contour:search=none:traversal=flat"},
@@ -101,7 +101,7 @@ constexpr Identity kMoreIdentities[] = {
     {"A12", "backproject:bias=0.1:search=none", Is::no_brighter, "backproject:bias=2:search=none"},
 };
 
-/// What V is a count of: so many, or the light samples (0).
+/// Number of levels of V: this many, or the number of light samples (0).
 struct Levels {
   const char* way;
   std::uint32_t of;
@@ -110,7 +110,7 @@ constexpr Levels kLevels[] = {{"shadow-map", 1}, {"pcf:window=5", 25},       {"p
                               {"bitmask", 0},    {"layer-rays:layers=2", 0}, {"bitmask:occluder=rect:level=1", 0},
                               {"accumulate", 0}, {"layered-attenuation", 0}, {"deep-penumbra:bound=0", 0}};
 
-/// What a picture must not depend on is asked of all of these.
+/// Variants that are tested for everything that a picture must not depend on.
 constexpr const char* kWays[] = {"shadow-map",
                                  "shadow-map:test=id",
                                  "accumulate",
@@ -167,7 +167,7 @@ class MapsIdentities : public MapsTest {
       if (!made) made = Way(words).with(sizes_of(words)).make(device());
       return *made;
     }
-    /// Nothing if the method refuses the light.
+    /// Returns null if the method refuses the light.
     const Masks* of(const std::string& words, const Place& place) {
       if (place_ != place.name) found_.clear();  // places come and go at one address
       place_ = place.name;

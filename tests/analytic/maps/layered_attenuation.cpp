@@ -108,8 +108,8 @@ TEST_F(LayeredAttenuation, EveryMapCountsOnceAndTheFloorIsCoveredWithoutGaps) {
   EXPECT_EQ(uncovered, 0U);
 }
 
-// Where a board is tilted, images of one map's texels begin at all fractions of the centre's: the middle of a gap of a
-// fiftieth would be met many times.
+// Images of one map's texels begin at all fractions of the centre's where a board is tilted: they would often meet the
+// middle of a gap of a fiftieth.
 TEST_F(LayeredAttenuation, ATiltedBoardIsCoveredWithoutGaps) {
   const Layered found = board_over_floor(0.08);
   const double texel_width = 6.0 / (kBoardSize - 2) * 3 / 5;
@@ -163,7 +163,7 @@ TEST_F(LayeredAttenuation, ATexelEndsWhereTheSurfaceCrossesItsBorder) {
       const glm::dvec2 place = (across - from.lower) / (from.upper - from.lower) * static_cast<double>(kSize);
       const auto x = static_cast<std::uint32_t>(place.x), y = static_cast<std::uint32_t>(place.y);
       const double middle = from.direction(x, y, kSize).x;
-      // From the sample it is at (3 - slope aside) / (1 + slope a) in the direction a.
+      // The surface, as seen from the sample, is at (3 - slope aside) / (1 + slope a) in the direction a.
       const auto depth = [&](double a) { return (3 - kAside * slope) / (1 + slope * a); };
       const glm::dvec2 beside = glm::abs(place - glm::round(place));
       if (std::min(beside.x, beside.y) < 0.01) {
@@ -190,9 +190,9 @@ TEST_F(LayeredAttenuation, ATexelEndsWhereTheSurfaceCrossesItsBorder) {
   EXPECT_LT(10 * on_borders, compared);
 }
 
-// On a slope whose neighbouring texels' depths differ by more than the tolerance, but by less than twice that, their
-// images from beside the centre overlap where it falls away from the sample, and both may be near one layer. Samples
-// weigh 1, 4, 16 and 64: of one that counts twice, an odd bit is set.
+// A slope whose neighbouring texels' depths differ by more than the tolerance, but by less than twice that: their
+// images from beside the centre overlap where the slope falls away from the sample, and both may be near one layer.
+// Samples weigh 1, 4, 16 and 64: one that counts twice sets an odd bit.
 TEST_F(LayeredAttenuation, OnASteepSurfaceAMapCountsOnce) {
   constexpr std::uint32_t kSize = 40;
   std::size_t all = 0;
@@ -231,8 +231,8 @@ TEST_F(LayeredAttenuation, VCountsSamplesAndTendsToAccumulate) {
   EXPECT_LT(last, 0.015);
 }
 
-// Too small a tolerance parts what samples see of a curved surface into layers of their own, each seen by a part of
-// them; too large a one takes what lies just below an occluder for the occluder. (Of one plane all maps hold the same
+// A tolerance that is too small divides what samples see of a curved surface into layers, each seen by a part of them;
+// one that is too large takes what lies just below an occluder for the occluder. (All maps of one plane hold the same
 // places: their windows end where the receivers end.)
 TEST_F(LayeredAttenuation, EpsilonTradesSpeckleOnCurvedSurfacesForLeaksAtContact) {
   scenes::Scene round, contact;
@@ -273,7 +273,7 @@ TEST_F(LayeredAttenuation, EpsilonTradesSpeckleOnCurvedSurfacesForLeaksAtContact
   EXPECT_GT(shares(contact, "0.06").leak, 0.5);
 }
 
-// Of a surface parallel to the light all depths are the same except for rounding, which no epsilon leaves out.
+// All depths of a surface parallel to the light are the same except for rounding, which no epsilon excludes.
 TEST_F(LayeredAttenuation, WithoutEpsilonOrBiasAParallelFloorIsFound) {
   const Stage stage(parallel_square(), 32, 32, light_samples(16));
   const auto visibility = [&](const char* epsilon) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Layers of a map: what depth peeling finds, against every triangle at every texel in double, and what the option
+// Tests layers of a map: what depth peeling finds, against every triangle at every texel in double, and what the option
 // `depth` makes of the first two.
 
 #include "maps/filters/methods.hpp"

@@ -54,7 +54,7 @@ TEST_F(MapsLeftOut, NothingThatIsSeenOnTheLightsBorder) {
   for (int step = 0; step < 8; ++step) {
     scenes::Scene scene = bare_floor(1, 0.5);
     scene.lights.front() = rectangle_light({0, 5, 0}, {2, 0, 0}, {0, 0, 0.05});
-    // From a floor at 5 below, the light's border is seen 1 below it at x / 5 - 1.6.
+    // The light's border is seen from a floor at 5 below, 1 below the light, at x / 5 - 1.6.
     const double edge = -1.6 + step * kTexel;
     add_quad(scene, {edge - 0.25, 4, 0}, {0.25, 0, 0}, {0, 0, -0.5}).receives_shadow = false;
     const Stage stage = along_floor(scene, places, light_samples(1));

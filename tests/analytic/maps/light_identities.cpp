@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What holds on every scene between one light and its parts or its corners (docs/predicates.md: I4, I19, I20).
+// Tests what holds on every scene between one light and its parts or its corners (docs/predicates.md: I4, I19, I20).
 
 #include "maps/backprojection/contours/methods.hpp"
 #include "tests/analytic/maps/adaptive_light.hpp"

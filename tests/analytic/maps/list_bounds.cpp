@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What bounds of lists of depths a texel do, to the last step: how few steps deep-penumbra keeps, from where on its
-// rays are walked, from what difference on layered-attenuation takes two surfaces for one.
+// Tests bounds of lists of depths of a texel to the last step: how few steps deep-penumbra keeps, where its rays begin,
+// and from which difference on layered-attenuation takes two surfaces for one.
 
 #include "maps/products/lists/penumbra_events.hpp"
 #include "maps/sampling/methods.hpp"
@@ -17,8 +17,8 @@ namespace {
 
 class MapListBounds : public MapsTest {};
 
-// As few steps as the bound allows, and that by weights of 64 samples: a piece goes on while its values lie within
-// twice the bound, within the bound if one of them is all of the light or nothing of it.
+// Lists have as few steps as the bound allows, by weights of 64 samples: a piece goes on while its values lie within
+// twice the bound, or within the bound if one of them is all of the light or nothing of it.
 TEST_F(MapListBounds, StepsAreAsFewAsTheBoundAllows) {
   constexpr std::uint32_t kSize = 24, kSamples = 64;
   const Stage stage(selftest::crowd(false, false), 4, 4, light_samples(kSamples));

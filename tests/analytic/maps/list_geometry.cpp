@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where lists of depths are right to a texel's hundredth or to a light sample: where a hemicube's faces meet, and at
-// receivers' horizons.
+// Tests lists of depths where they are right to a texel's hundredth or to a light sample: at borders of a hemicube's
+// faces, and at receivers' horizons.
 
 #include "tests/analytic/maps/fixture.hpp"
 
@@ -44,7 +44,8 @@ TEST_F(LayeredHemicubes, AWallIsAsFarAsItIsFromWhicheverFaceItWasSeen) {
     const auto face = maps::face_of(made.centre.views.front(), made.basis, texel / (kSize * kSize));
     if (glm::dot(face.w, glm::dvec3(1, 0, 0)) < 0.9) continue;
     const glm::dvec3 at = kWall * face.direction(texel % kSize, texel / kSize % kSize, kSize);
-    // Below 45 degrees from the sample, above from the centre; with room for the images of texels that reach across.
+    // Texels below 45 degrees as the sample sees them, above as the centre does; with room for the images of texels
+    // that reach across.
     const double below = -at.y;
     if (below < kWall - kAside + 0.15 || below > kWall || std::abs(at.z) > below - 0.15) continue;
     for (std::size_t e = 0; e < product.layers(); ++e) {
@@ -58,7 +59,7 @@ TEST_F(LayeredHemicubes, AWallIsAsFarAsItIsFromWhicheverFaceItWasSeen) {
   EXPECT_GT(compared, 100U);
 }
 
-// Where nothing casts, each receiver sees the light samples above its own plane, and no others: on a ball under a wide
+// Each receiver sees the light samples above its own plane, and no others, where nothing casts: on a ball under a wide
 // light planes cut the light everywhere.
 TEST_F(ListHorizons, WhereNothingCastsTheSamplesAboveTheHorizonAreCounted) {
   constexpr int kSamples = 64;
@@ -82,7 +83,7 @@ TEST_F(ListHorizons, WhereNothingCastsTheSamplesAboveTheHorizonAreCounted) {
       }
       if (nearest < 1e-5) continue;  // floats may say either
       cut += above > 0 && above < kSamples ? 1 : 0;
-      // Of a surface that is seen from beside it some maps know nothing: layered attenuation may count fewer.
+      // Some maps know nothing of a surface that is seen from beside it: layered attenuation may count fewer.
       EXPECT_LE(found.visibility[i] * kSamples, above) << "pixel " << i;
       all += found.visibility[i] * kSamples == static_cast<float>(above) ? 1 : 0;
       ++compared;

@@ -49,7 +49,7 @@ TEST_F(DeepPenumbra, CompressedStepsStayWithinTheBoundEverywhere) {
     double worst = 0;
     for (std::size_t texel = 0; texel < kTexels; ++texel) {
       for (std::uint32_t k = all[texel]; k < all[texel + 1]; ++k) {
-        // Between two events V is constant: ask just behind each.
+        // V is constant between two events: ask just behind each.
         const float t = std::nextafter(std::bit_cast<float>(all[kTexels + 1 + 2 * std::size_t{k}]), 1e30F);
         const float exact = selftest::stepped(all, kTexels, texel, t),
                     found = selftest::stepped(words, kTexels, texel, t);

@@ -21,7 +21,7 @@ namespace {
 
 constexpr double kBeyond = std::numeric_limits<double>::infinity();
 
-// S4 3.2.3.1: C_i = z_n (z_f / z_n)^(i/m); Zhang et al. 2006 mix it with equal slices.
+// Eisemann et al. 2009, section 3.2.3.1: C_i = z_n (z_f / z_n)^(i/m); Zhang et al. 2006 mix it with equal slices.
 TEST(MapFits, SlicesEndWhereThePapersSay) {
   maps::ViewFit fit{.fit = maps::Fit::cascades, .split_share = 0.5};
   EXPECT_EQ(fit.slices(), 4U);
@@ -45,13 +45,14 @@ TEST(MapFits, DistancesAreThePapers) {
   // Wimmer et al. 2004: z_n + sqrt(z_n z_f), over the sine.
   EXPECT_DOUBLE_EQ(maps::lispsm_distance(1, 16, 1), 5);
   EXPECT_DOUBLE_EQ(maps::lispsm_distance(1, 16, 0.5), 10);
-  // Martin and Tan 2004: what is in focus comes to four fifths: 0.8 = (n + d)/d · f/(f + n).
+  // Martin and Tan 2004: the focus region fills four fifths: 0.8 = (n + d)/d · f/(f + n).
   const double n = maps::tsm_distance(8, 2);
   EXPECT_NEAR((n + 8) / 8 * 2 / (2 + n), 0.8, 1e-12);
   EXPECT_EQ(maps::tsm_distance(8, 6.4), kBeyond);
 }
 
-/// An overhead light so far away that its rays are parallel, over an eye at 0 that looks along b: S4 figure 3.7.
+/// An overhead light so far away that its rays are parallel, over an eye at 0 that looks along b: Eisemann et al. 2009,
+/// figure 3.7.
 class Overhead : public testing::Test {
  protected:
   static constexpr double kHeight = 1e5, kNear = 1, kFar = 25;
@@ -82,7 +83,7 @@ class Overhead : public testing::Test {
     }
     return {.to_face = unit * warp.matrix, .ratio = warp.ratio};
   }
-  /// S4 equation 3.1 with cos α / cos β = 1, across the view and along it: 1/z · dz/ds.
+  /// Eisemann et al. 2009, equation 3.1 with cos α / cos β = 1, across the view and along it: 1/z · dz/ds.
   static glm::dvec2 errors(const maps::FittedFace& face, double z) {
     const glm::dvec3 at(0, z, kHeight);
     const glm::dvec2 across = face.moves(at, {1, 0, 0}), along = face.moves(at, {0, 1, 0});
@@ -192,7 +193,7 @@ TEST(MapFits, RaysLeaveAFrustumThroughTheFaceThatSaysSo) {
                               .upward = up / 0.6};
     const double depth = kNear + (kFar - kNear) * share(random);
     const glm::dvec3 x = eye + depth * (forward + 0.8 * anywhere(random) * right + 0.6 * anywhere(random) * up);
-    // The same, as a walk along the ray: where it is in the picture and how deep, and the first of these to end.
+    // Reference: a walk along the ray, which ends where it leaves the picture or the range of depths.
     double leaves = kBeyond;
     glm::dvec2 place(0);
     std::size_t through = 0;

@@ -61,8 +61,8 @@ class FittedMaps : public MapsTest {
   }
 };
 
-// What a texel says is what its centre sees: of every fit, every texel's answer on the floor is that of the plates in
-// the direction of its centre, but where an outline passes within the rasteriser's 1/256 texel (and rounding) of it.
+// A texel says what its centre sees: for every fit, every texel's answer on the floor is that of the plates in the
+// direction of its centre, except where an outline passes within the rasteriser's 1/256 texel (and rounding) of it.
 TEST_F(FittedMaps, EveryTexelSaysWhatItsCentreSees) {
   const Stage stage(floor_and_plates(), 96, 72, light_samples(1));
   const maps::LightBasis basis = maps::light_basis(stage.light, stage.floats);
@@ -144,8 +144,8 @@ TEST_F(FittedMaps, EveryTexelSaysWhatItsCentreSees) {
   }
 }
 
-// S4 3.2: fitting spends no texels on what is not seen, slices and warps spend them near the eye, tiles where pixels
-// ask.
+// Eisemann et al. 2009, section 3.2: fitting spends no texels on what is not seen, slices and warps spend them near the
+// eye, tiles where pixels ask.
 TEST_F(FittedMaps, EveryFitAliasesLessThanTheOneBefore) {
   const Stage stage(floor_and_plates(), 96, 72, light_samples(1));
   const auto receivers = counters(stage, options("receivers")), view = counters(stage, options("view"));
@@ -169,7 +169,8 @@ TEST_F(FittedMaps, EveryFitAliasesLessThanTheOneBefore) {
   EXPECT_LT(tiles.at("undersampledPixels"), counters(stage, options("view")).at("undersampledPixels"));
 }
 
-// S4 equation 3.2, its factors one by one, where eye and light are in the plane x = 0 and so is the texel's side.
+// Eisemann et al. 2009, equation 3.2, its factors one by one, where eye and light are in the plane x = 0 and so is the
+// texel's side.
 TEST_F(FittedMaps, TheAliasingErrorIsEquation32) {
   const Stage stage(floor_and_plates(), 96, 72, light_samples(1));
   const maps::LightBasis basis = maps::light_basis(stage.light, stage.floats);
@@ -218,7 +219,7 @@ scenes::Scene ball_and_wall(bool two_sided) {
   return scene;
 }
 
-// Whatever a fit, it is the same question: answers differ from those of a window of receivers as much as these do from
+// All fits answer the same question: their answers differ from those of a window of receivers as much as these do from
 // finer ones.
 TEST_F(FittedMaps, HemicubesFiltersAndLayersAgree) {
   for (const bool two_sided : {false, true}) {
@@ -262,9 +263,9 @@ TEST_F(FittedMaps, HemicubesFiltersAndLayersAgree) {
   }
 }
 
-// In a room whose walls reach through the light's plane, and with something above the light, every receiver is in a
-// map, whatever is fitted, and sees what it sees in the maps of all receivers, but at outlines: no more pixels differ
-// than in maps of all receivers with texels four times as wide.
+// Every receiver is in a map, for every fit, in a room whose walls reach through the light's plane, with something
+// above the light. It sees what it sees in the maps of all receivers, except at outlines: no more pixels differ than in
+// maps of all receivers with texels four times as wide.
 TEST_F(FittedMaps, NoReceiverIsOutsideWhereTheLightsPlaneCutsWalls) {
   scenes::Scene scene;
   add_quad(scene, {0, 0, 0}, {4, 0, 0}, {0, 0, -4});   // floor

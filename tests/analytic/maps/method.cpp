@@ -14,7 +14,7 @@ using visibility::MethodOptions;
 
 class MapsMethod : public MapsTest {
  protected:
-  /// On small maps, unless the test says how large: what is asked of all of them does not depend on it.
+  /// Makes methods with small maps, unless the test says how large: the tests' questions do not depend on the size.
   static Factory small(const Factory& make) {
     return [make](const render::Device& device, MethodOptions options) {
       options.try_emplace("size", "64");
@@ -74,7 +74,7 @@ TEST_F(MapsMethod, OptionsThatCannotBeMeantAreRefused) {
 }
 
 TEST_F(MapsMethod, MapsThatFitIntoNoBufferAreRefusedWithTheSizeThatDoes) {
-  // As many faces as just fit, and one more: on every device, however large its buffers are.
+  // Largest number of faces that fits, and one more: on every device, however large its buffers are.
   constexpr std::uint32_t kSize = 1024;
   const auto most = static_cast<std::uint32_t>(maps::faces_per_buffer(device(), kSize));
   EXPECT_NO_THROW(maps::check_faces_fit(device(), kSize, most));
@@ -189,7 +189,7 @@ TEST_F(MapsMethod, WhatCastsNoShadowShadesNothingAndWhatReceivesNoneIsLit) {
   scene.objects[1].casts_shadow = true;
   const Stage no_receiver(scene, 32, 32, light_samples(5));
   for (const Factory& factory : all_) {
-    // Its splats end where the floor does.
+    // Splats of forward-map end where the floor does.
     if (factory(device(), {})->description().name == "forward-map") continue;
     for (const Stage* stage : {&no_caster, &no_receiver}) {
       const Masks result = run(factory, *stage);

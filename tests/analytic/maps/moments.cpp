@@ -46,8 +46,8 @@ TEST_F(Vssm, IsItsTwin) {
         const double v = twin(i).v, is = found.visibility[i];
         soft += v > 0.02 && v < 0.98 ? 1 : 0;
         sum += std::abs(v - is);
-        // Where a mean is at the receiver's own height within rounding, the search says blocked or not by a hair, and V
-        // may be anything between the filter's answer and 1. A series' functions have 12 digits.
+        // The search says blocked or not by a hair where a mean is at the receiver's own height within rounding: V may
+        // then be anything between the filter's answer and 1. A series' functions have 12 digits.
         off += std::abs(v - is) > 2e-4 ? 1 : 0;
       }
       fmt::print("{} {} of light {}: {} receivers, {} in penumbra, {} off, mean {:.2e}\n", settings.moments,
@@ -78,8 +78,8 @@ TEST_F(Vssm, LayersAreTheirTwinsAtAnyHeight) {
   }
 }
 
-// Where a window holds more that is farther than the receiver than what is nearer, exponentials are compared texel by
-// texel: of windows wider than 16 texels some, and of those that reach beside the map what is in it.
+// Exponentials are compared texel by texel where a window holds more that is farther than the receiver than what is
+// nearer: some texels of windows wider than 16, and those inside the map of windows that reach beside it.
 TEST_F(Vssm, TexelByTexelItIsItsTwinAtAnyHeight) {
   const Stage stage(scene_with(scenes::Rectangle{{0, 4, 0}, {0.9, 0, 0}, {0, 0, 0.6}}), 24, 24, light_samples(1),
                     grid_samples(24, {0, 0.6, 0}, {1.9, 0, 0}, {0, 0.58, 0}, {0, 1, 0}));
@@ -122,8 +122,8 @@ Stage floor_stage(const std::vector<Strip>& boards, double light = 0.5) {
           grid_samples(48, {0, 0, 0}, {1.2, 0, 0}, {0, 0, 1.2}, {0, 1, 0})};
 }
 
-// S4 4.2.1: one flat blocker and one flat receiver, both parallel to the light, are two depths, and of those the bound
-// is the share itself.
+// Eisemann et al. 2009, section 4.2.1: one flat blocker and one flat receiver, both parallel to the light, are two
+// depths, and of those the bound is the share itself.
 TEST_F(Vssm, OfTwoDepthsTheBoundIsTheShare) {
   const Stage stage = floor_stage({{2, -4, 0.1}});
   const VssmSettings settings{.moments = "vsm", .bias = 0};
@@ -143,7 +143,7 @@ TEST_F(Vssm, OfTwoDepthsTheBoundIsTheShare) {
   EXPECT_GT(soft, 300U);
 }
 
-// S4 4.2.1: "the correct shadow could be darker, but never brighter".
+// Eisemann et al. 2009, section 4.2.1: "the correct shadow could be darker, but never brighter".
 TEST_F(Vssm, TheBoundIsNeverDarkerThanCountingTheSameTexels) {
   for (const char* moments : {"vsm", "lvsm", "evsm"}) {
     const Stage stage(scene_with(scenes::Rectangle{{0, 4, 0}, {0.6, 0, 0}, {0, 0, 0.4}}), 32, 32, light_samples(1));
@@ -164,9 +164,9 @@ TEST_F(Vssm, TheBoundIsNeverDarkerThanCountingTheSameTexels) {
   }
 }
 
-// S4 figure 4.5 as a closed form. Of a sheet at z1 over one at z2 that covers all, seen from z3, with Δ = z2 − z1 and
-// D = z3 − z2: the bound is q (1 − q) Δ² / (q (1 − q) Δ² + (D + q Δ)²) where the upper sheet fills q of the window,
-// largest at q = D / (Δ + 2 D), where it is 1 / (1 + 2 D / Δ)².
+// Eisemann et al. 2009, figure 4.5 as a closed form. Of a sheet at z1 over one at z2 that covers all, seen from z3,
+// with Δ = z2 − z1 and D = z3 − z2: the bound is q (1 − q) Δ² / (q (1 − q) Δ² + (D + q Δ)²) where the upper sheet fills
+// q of the window, largest at q = D / (Δ + 2 D), where it is 1 / (1 + 2 D / Δ)².
 TEST_F(Vssm, TheWorstLeakUnderTwoSheetsIsTheClosedForm) {
   for (const auto& [upper, lower] : {std::pair(2.5, 1.25), std::pair(2.5, 2.5 / 3), std::pair(2.0, 1.5)}) {
     const double delta = upper - lower, below = lower, worst = 1 / std::pow(1 + 2 * below / delta, 2);

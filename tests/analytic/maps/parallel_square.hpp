@@ -30,7 +30,7 @@ class ParallelSquare {
     const std::int32_t triangle = stage_->samples.triangle[pixel];
     return triangle >= 0 && stage_->floats.object[static_cast<std::size_t>(triangle)] == 0;
   }
-  /// Does light sample j see the floor at this pixel?
+  /// Returns whether light sample j sees the floor at this pixel.
   [[nodiscard]] bool visible(std::size_t pixel, std::size_t j) const {
     const glm::dvec3 p = stage_->samples.p[pixel], l = stage_->light.points[j];
     const glm::dvec3 at = p + (l - p) * ((lower_.y - p.y) / (l.y - p.y));

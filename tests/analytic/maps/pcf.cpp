@@ -29,8 +29,8 @@ scenes::Scene under_a_board(double height, double edge, double half_light) {
   return scene;
 }
 
-// S4 4.1.2: the window knows neither occluder nor light. V rises over n texels of t z each on the floor, linearly up to
-// one texel's step, around the hard shadow's edge.
+// Eisemann et al. 2009, section 4.1.2: the window knows neither occluder nor light. V rises over n texels of t z each
+// on the floor, linearly up to one texel's step, around the hard shadow's edge.
 TEST_F(Pcf, ThePenumbraIsTheWindowWhateverTheBlockersHeightAndTheLightsSize) {
   constexpr std::uint32_t kSamples = 2048, kSize = 256;
   for (const std::uint32_t n : {7U, 8U, 21U}) {
@@ -77,7 +77,8 @@ TEST_F(Pcf, ThePenumbraIsTheWindowWhateverTheBlockersHeightAndTheLightsSize) {
   }
 }
 
-// S4 figure 4.3: with the receiver's own depth for every texel, half a tilted plane shades the other half.
+// Eisemann et al. 2009, figure 4.3: with the receiver's own depth for every texel, half a tilted plane shades the other
+// half.
 TEST_F(Pcf, ATiltedReceiverShadesHalfOfItselfUnlessItsPlaneIsFollowed) {
   constexpr std::uint32_t kSide = 40, kSize = 256;
   for (const double tilt : {30.0, 60.0}) {
@@ -154,7 +155,7 @@ TEST_F(Pcf, LevelsAreWholeTexelsOfTheWindow) {
   }
 }
 
-// In a hemicube a window goes on on the next face: the seams do not show on a floor that nothing shades.
+// A window in a hemicube goes on on the next face: the seams do not show on a floor that nothing shades.
 TEST_F(Pcf, WindowsGoOnAcrossTheFacesOfAHemicube) {
   scenes::Scene scene = sphere_and_wall(5, false);
   scene.objects[1].casts_shadow = false;
@@ -164,7 +165,7 @@ TEST_F(Pcf, WindowsGoOnAcrossTheFacesOfAHemicube) {
   for (std::size_t i = 0; i < stage.samples.size(); ++i) {
     const std::int32_t triangle = stage.samples.triangle[i];
     if (triangle < 0 || stage.floats.object[static_cast<std::size_t>(triangle)] != 0) continue;
-    // Within the window of the wall's foot the wall stands nearer than the floor's plane goes on.
+    // The wall stands nearer than the continued floor's plane within the window of the wall's foot.
     const glm::dvec3 p = glm::dvec3(stage.samples.p[i]) + stage.floats.origin;
     if (p.x > 2) continue;
     ++floor;
@@ -173,7 +174,7 @@ TEST_F(Pcf, WindowsGoOnAcrossTheFacesOfAHemicube) {
   EXPECT_GT(floor, 300U);
 }
 
-// Where a board's straight edge runs along the texels V is a sum of weights: of all columns beyond the edge.
+// V is a sum of weights, of all columns beyond the edge, where a board's straight edge runs along the texels.
 TEST_F(Pcf, WeightsAreThoseOfTheirNames) {
   constexpr std::uint32_t kSamples = 512, kSize = 64;
   const auto line = [](const visibility::SceneFloats& floats, const visibility::PinholeCamera& /*camera*/) {
@@ -303,7 +304,7 @@ TEST_F(Pcf, APolygonOffsetKeepsATiltedPlaneLit) {
     least["depth"] = "dual";
     EXPECT_THROW(maps::make_shadow_map(device(), least), UsageError);
   }
-  // It is no more than that: a board 0.3 over a floor shades it.
+  // The tolerance forgives no more than that: a board 0.3 over a floor shades it.
   const auto grid = grid_samples(16, {0.6, 0, 0}, {0.3, 0, 0}, {0, 0, 0.3}, {0, 1, 0});
   const Stage stage(under_a_board(0.3, 0.05, 0.1), 16, 16, light_samples(1), grid);
   const Masks found =

@@ -16,7 +16,7 @@
 
 namespace penumbra::tests {
 
-/// In the light's frame (centre 0, z the distance from its plane).
+/// Caster in the light's frame (centre 0, z the distance from its plane).
 struct ParallelCaster {
   double z = 0;
   glm::dvec2 lower{0}, upper{0};
@@ -44,7 +44,7 @@ class PcssPrediction {
         filter_(maps::light_pattern(light, basis_, taps.filter)),
         weights_(weights_of(light)) {}
 
-  /// For a receiver on a plane parallel to the light, farther than all casters.
+  /// Predicts V of a receiver on a plane parallel to the light, farther than all casters.
   [[nodiscard]] Between operator()(const glm::dvec3& receiver) const {
     const glm::dvec3 d = basis_.local(receiver);
     const glm::dvec2 at(d.x / d.z, d.y / d.z);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What papers and algebra say of the image-based family on every scene, or on every scene of a class, where no other
-// file of this room has it. docs/predicates.md lists all, with their names and what is measured.
+// Tests what papers and algebra say of the image-based family on every scene, or on every scene of a class, where no
+// other file of this folder does. docs/predicates.md lists all claims, with their names and what is measured.
 
 #include "maps/filters/methods.hpp"
 #include "tests/analytic/maps/predicates.hpp"
@@ -160,7 +160,7 @@ TEST_F(MapsPredicates, LayersOfNestedShellsBringTheShadowBack) {
   }
 }
 
-/// Along a line of places outward over a shadow's edge: where V leaves 0, passes 1/2 and reaches 1.
+/// Places along a line outward over a shadow's edge at which V leaves 0, passes 1/2 and reaches 1.
 struct Edge {
   double inner = 0, middle = 0, outer = 0;
 };
@@ -212,7 +212,7 @@ TEST_F(MapsPredicates, OutlinesJumpWhereDepthsAtThemDo) {
   double contour_jump = 0, quad_jump = 0;
   for (int step = 0; step <= 12; ++step) {
     scenes::Scene scene = bare_floor(0.6, 3.5);
-    // As the light's centre sees them the small plate's edge passes over the large one's, at x/z = 0.457.
+    // The small plate's edge passes over the large plate's, at x/z = 0.457, as the light's centre sees them.
     add_quad(scene, {0.31 + 0.012 * step, 3.5, 0}, {0.3, 0, 0}, {0, 0, -0.3}).receives_shadow = false;
     add_quad(scene, {0, 1.5, 0}, {1.6, 0, 0}, {0, 0, -1.6}).receives_shadow = false;
     const Stage stage = on_floor(scene, 18, request);
@@ -245,7 +245,7 @@ TEST_F(MapsPredicates, NarrowPenumbraeStayAliasedUnderSubLights) {
       const Stage stage = on_floor(scene, 160, light_samples(1));
       const Masks truth = exact(stage),
                   found = run(maps::make_packet, stage, {{"size", "128"}, {"sublights", sub_lights}});
-      // On the floor a penumbra is height / (5 - height) wide, of which a texel is 5 (4 / 5 + 2 beside) / 126 at most.
+      // A penumbra on the floor is height / (5 - height) wide, of which a texel is 5 (4 / 5 + 2 beside) / 126 at most.
       double penumbra = 0, picture = 0, pixels = 0;
       for (std::size_t i = 0; i < truth.visibility.size(); ++i) {
         const double square = std::pow(static_cast<double>(found.visibility[i] - truth.visibility[i]), 2);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What means over windows are taken from: summed areas, mip levels and N-buffers against twins, bit by bit.
+// Tests the structures that means over windows are taken from: summed areas, mip levels and N-buffers against twins,
+// bit by bit.
 
 #include "maps/products/map_frame.hpp"
 #include "maps/products/nearest_caster.hpp"
@@ -27,8 +28,8 @@ TEST_F(Prefilters, SummedAreasAreExactModulo32BitsAtAnySize) {
   }
 }
 
-// S4 5.2.2.3: sums of many values lose precision in float32, so 32-bit integers (fixed point) are used beyond some
-// size.
+// Eisemann et al. 2009, section 5.2.2.3: sums of many values lose precision in float32, so 32-bit integers (fixed
+// point) are used beyond some size.
 TEST(SummedAreaTables, OfFloatsLoseWhatIntegersKeep) {
   constexpr std::uint32_t kSide = 2048, kBits = 10, kBox = 4;  // 2048² digits of 10 bits: 2³²
   std::mt19937 random(2);
@@ -150,7 +151,7 @@ TEST(LightBox, HasTheLightsOwnMoments) {
   }
 }
 
-// What looks for occluders looks for them between the light's bounds: a light that is wider has unseen ones, a narrower
+// Occluders are looked for between the light's bounds: a wider light would have occluders that are not seen, a narrower
 // one more to look at. Points of the outline are at most 1 - cos(pi / 4096) of its width inside it.
 TEST(LightBounds, HoldTheLightAndNoMore) {
   scenes::Scene scene = scene_of(false);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What maps are made of and made into, against a few lines of C++: the depths of two planes, and products against their
+// Tests maps and what is made of them, against a few lines of C++: the depths of two planes, and products against their
 // twins on maps read back from the device.
 
 #include "maps/host/caster.frag.spv.hpp"
@@ -75,11 +75,11 @@ TEST_F(MapsProducts, PcssSeesCastersBesideTheReceiversOwnDirections) {
   for (std::size_t i = 0; i < stage.samples.size(); ++i) {
     if (stage.samples.triangle[i] < 0 || stage.samples.triangle[i] > 1) continue;
     ++receivers;
-    // From p the light is hidden from x = 2 · 0.3 − p.x on. Of n evenly spread points the share beside a line is off by
-    // log₂ n / n at most. The window is no wider than the receiver (0.05) and what pcss taps beside it (half the
-    // light's side over the radius of a disk of its area, 0.886, each way): 1.83 in 254 texels at the board's height 1,
-    // so half a texel moves the board's edge by 0.0036, its shadow on the light by twice that, and V, of a light 2
-    // wide, by 0.0036.
+    // The light is hidden, as seen from p, from x = 2 · 0.3 − p.x on. The share of n evenly spread points beside a line
+    // is off by log₂ n / n at most. The window is no wider than the receiver (0.05) and pcss's taps beside it (half the
+    // light's side over the radius of a disk of its area, 0.886, on each side): 1.83 in 254 texels at the board's
+    // height 1, so half a texel moves the board's edge by 0.0036, its shadow on the light by twice that, and V, of a
+    // light 2 wide, by 0.0036.
     const double x = stage.floats.origin.x + static_cast<double>(stage.samples.p[i].x);
     const double exact = (1 + 0.6 - x) / 2;
     EXPECT_NEAR(static_cast<double>(result.visibility[i]), exact, 10.0 / 1024 + 0.0036);
@@ -139,7 +139,7 @@ TEST_F(TwoPlanes, TheDepthTestKeepsTheNearestOrTheFarthest) {
 }
 
 TEST_F(TwoPlanes, CullingLeavesOneSideOut) {
-  // Seen with y down, the nearer plane's corners run clockwise: it shows its back.
+  // The nearer plane's corners run clockwise as seen with y down: it shows its back.
   EXPECT_EQ(depth(render::DepthCompare::less, render::Cull::back), kFar);
   EXPECT_EQ(depth(render::DepthCompare::less, render::Cull::front), kNear);
   EXPECT_EQ(depth(render::DepthCompare::greater, render::Cull::back), kFar);

@@ -114,7 +114,7 @@ TEST(RasterTwin, JudgesWhatAMapHolds) {
   EXPECT_NEAR(selftest::largest_disagreement(surfaces, true), 0.02, 1e-12);
 }
 
-/// Also loose triangles among them.
+/// Makes a crowd with loose triangles among its things.
 scenes::Scene crowd_with_needles(bool wall, bool two_sided) {
   scenes::Scene scene = selftest::crowd(wall, two_sided);
   std::mt19937 random(8);

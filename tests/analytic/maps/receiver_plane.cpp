@@ -36,7 +36,7 @@ class ReceiverPlane : public MapsTest {
   }
 };
 
-// What receives parallel to the light has one depth wherever its plane is asked.
+// A receiver parallel to the light has one depth at every place where its plane is asked.
 TEST_F(ReceiverPlane, MakesNoDifferenceToWhatIsParallelToTheLight) {
   const Stage stage = on_floor(square_above_plate(), 10, light_samples(16));
   for (const char* words : kWays) {
@@ -99,15 +99,16 @@ TEST_F(ReceiverPlane, OffWhatIsBelowTheHorizonHidesLight) {
   }
 }
 
-// Hourcade and Nicolas 1985: where a texel says who is nearest no bias is needed, and none can move a shadow. What they
-// pay with: where triangles of several planes share a texel all but one of them are dark.
+// Hourcade and Nicolas 1985: a texel that names the nearest surface needs no bias, and no bias can move a shadow. The
+// price: where triangles of several planes share a texel, all but one of them are dark.
 TEST_F(ReceiverPlane, IdsNeedNoBiasAndLoseWhatSharesATexel) {
   for (const double tilt : {0.0, 30.0, 70.0}) {
     const double angle = tilt * std::numbers::pi / 180;
     const glm::dvec3 along(std::cos(angle), std::sin(angle), 0), up(-std::sin(angle), std::cos(angle), 0);
     scenes::Scene scene;
     add_quad(scene, {0, 0, 0}, 2.0 * along, {0, 0, -2});
-    // As near above the plane as floats allow: the bias that forgives a plane its slope would forgive this, too.
+    // The quad is as near above the plane as floats allow: the bias that forgives a plane its slope would forgive this,
+    // too.
     add_quad(scene, 1e-4 * up, 0.5 * along, {0, 0, -0.5}).receives_shadow = false;
     scene.lights.push_back(ceiling_light(5, 0.25));
     scene.cameras.push_back(camera({0, 3, 3}, {0, 0, 0}));
@@ -119,7 +120,7 @@ TEST_F(ReceiverPlane, IdsNeedNoBiasAndLoseWhatSharesATexel) {
       if (std::abs(s - 0.5) < 0.05 || std::abs(t - 0.5) < 0.05) continue;  // within texels of the board's edge
       EXPECT_EQ(ids.visibility[i], s < 0.5 && t < 0.5 ? 0.0F : 1.0F) << tilt << " degrees, pixel " << i;
     }
-    // From below the plane its own triangles stand before the light, and are the nearest.
+    // The plane's own triangles, as seen from below it, stand before the light, and are the nearest.
     const Stage below(scene, 8, 8, light_samples(1), grid_samples(8, {0, 0, 0}, 1.5 * along, {0, 0, 1.5}, -up));
     for (const float v : picture(below, "shadow-map", {{"test", "id"}}).visibility) EXPECT_EQ(v, 0.0F) << tilt;
   }

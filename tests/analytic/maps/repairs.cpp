@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the error budget relies on: methods that are to differ in one thing alone do.
+// Tests what the error budget relies on: methods that are to differ in one thing alone do.
 
 #include "tests/analytic/maps/backprojection_scenes.hpp"
 #include "tests/analytic/maps/parallel_square.hpp"
@@ -55,9 +55,9 @@ TEST_F(MapsRepairs, SharedBordersAreTheNeighbours) {
   }
 }
 
-// On a plate tilted about one axis of the map, patches with shared borders tile a rectangle of the light: the sum is
-// the union. Of 64 × 64 samples a rectangle's count is off by a row at its lower and upper side together, and by a
-// sample in each row: 2 / 64. Without shared borders gaps and overlaps make the two differ.
+// Patches with shared borders tile a rectangle of the light on a plate tilted about one axis of the map: the sum is the
+// union. A rectangle's count of 64 × 64 samples is off by a row at its lower and upper side together, and by a sample
+// in each row: 2 / 64. Without shared borders gaps and overlaps make the two differ.
 TEST_F(MapsRepairs, WithSharedBordersTheSumIsTheUnion) {
   scenes::Scene scene = bare_floor(0.6);
   add_quad(scene, {0, 2.5, 0}, {0.8, 1.2, 0}, {0, 0, -0.9}).receives_shadow = false;
@@ -75,7 +75,7 @@ TEST_F(MapsRepairs, WithSharedBordersTheSumIsTheUnion) {
   EXPECT_GT(apart("none"), 0.1);
 }
 
-// What nobody will look at is left out, and what is wanted is the same to the bit.
+// Pixels that nobody will look at are left out, and the wanted ones are the same to the bit.
 TEST_F(MapsRepairs, WantedPixelsAreTheSameAndOthersAreLeftOut) {
   const Stage stage(parallel_square(), 24, 24, light_samples(16));
   std::vector<std::uint32_t> wanted;

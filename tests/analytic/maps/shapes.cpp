@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where maps look and from where, in closed form: points of a light, windows, receivers and blockers apart.
+// Tests in closed form where maps look from and to: points of a light, windows, receivers and blockers apart.
 
 #include "maps/backprojection/soft_shadow_map/soft_scene.hpp"
 #include "maps/host/map_fit.hpp"

@@ -26,7 +26,7 @@ TEST(SilhouettePoints, AreEndsOrLieOnDiagonals) {
   EXPECT_NEAR(glm::length(at(1, 1).at - glm::dvec2(0.5 + 1.0 / 3, 1.0 / 6)), 0, 1e-12);
   EXPECT_EQ(at(3, 3).depth, 0);
   EXPECT_EQ(at(3, 3).at, glm::dvec2(0.5));
-  // Where both diagonals are crossed, midway: x = 2.4 crosses them at 0.4 and 0.6.
+  // A silhouette that crosses both diagonals has its point midway: x = 2.4 crosses them at 0.4 and 0.6.
   std::vector<SilhouettePoint> upright(kCount * kCount);
   maps::add_silhouette({{2.4, -3}, 1}, {{2.4, 9}, 3}, kCount, upright);
   for (std::uint32_t y = 0; y < kCount; ++y)

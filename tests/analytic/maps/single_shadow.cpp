@@ -91,7 +91,7 @@ TEST_F(MapsSingleShadow, UnderAnEdgeEachPapersFormulaIsAClosedForm) {
         "parker:radius=140", light, height, [&](double x) { return cubic(edge.outside(x)); }, 2 * step);
     expect_line(
         "penumbra-map:filter=nearest", light, height, [&](double x) { return edge.penumbra_map(x); }, 3 * step);
-    // At the mean height of all silhouettes their width is Parker's.
+    // The width of all silhouettes at their mean height is Parker's.
     expect_line(
         "smoothies:filter=nearest", light, height, [&](double x) { return cubic(edge.outside(x)); }, 2 * step);
     // A pixel of the flood is 0.002 as the centre sees it.
@@ -115,7 +115,7 @@ TEST_F(MapsSingleShadow, BothSidesOfAnEdgeAreTheTruthButForTheRadius) {
   }
 }
 
-// What the other falloffs are.
+// The other falloffs are Parker's polynomial and sine.
 TEST_F(MapsSingleShadow, FalloffsAreParkersPolynomialAndSine) {
   const UnderAnEdge edge{0.5, 2};
   const double step = 0.0024 / edge.half_width;
@@ -128,8 +128,9 @@ TEST_F(MapsSingleShadow, FalloffsAreParkersPolynomialAndSine) {
       "brabec-seidel:falloff=cubic", 0.5, 2, [&](double x) { return cubic(edge.both_sides(x)); }, 2 * step);
 }
 
-// S0 1, S4 5.3.1: with outer penumbrae alone the umbra is the whole hard shadow. Under a plate that a large light sees
-// past there is little of it, and methods that know both sides have no more (docs/predicates.md, E12).
+// Atty et al. 2006, section 1, Eisemann et al. 2009, section 5.3.1: with outer penumbrae alone the umbra is the whole
+// hard shadow. Under a plate that a large light sees past there is little of it, and methods that know both sides have
+// no more (docs/predicates.md, E12).
 TEST_F(MapsSingleShadow, OuterPenumbraeOverestimateTheUmbraAndInnerOnesLoseIt) {
   scenes::Scene scene = bare_floor(0.6);
   add_quad(scene, {0, 2, 0}, {0.55, 0, 0}, {0, 0, -0.55}).receives_shadow = false;
@@ -164,7 +165,7 @@ TEST_F(MapsSingleShadow, SmoothiesAreRightAtOneHeight) {
       width, 0.5, 3, [&](double x) { return cubic(2 * far.outside(x)); }, 0.0096 / far.half_width);
 }
 
-// S4 5.2.1: the search's radius is bounded, and penumbrae with it.
+// Eisemann et al. 2009, section 5.2.1: the search's radius is bounded, and penumbrae with it.
 TEST_F(MapsSingleShadow, AShortSearchEndsPenumbrae) {
   const scenes::Scene scene = half_plane(2, 0.5);
   const Stage stage = along_floor(scene, places(), light_samples(1));
@@ -186,7 +187,8 @@ TEST_F(MapsSingleShadow, AShortSearchEndsPenumbrae) {
   EXPECT_GT(cut, 30U);
 }
 
-// S4 5.2.1: what is flooded begins in the picture. The same places with the border outside have no penumbra.
+// Eisemann et al. 2009, section 5.2.1: what is flooded begins in the picture. The same places with the border outside
+// have no penumbra.
 TEST_F(MapsSingleShadow, AFloodKnowsNoBorderOutsideOfThePicture) {
   std::vector<double> beside;
   for (const double x : places()) {
@@ -202,7 +204,8 @@ TEST_F(MapsSingleShadow, AFloodKnowsNoBorderOutsideOfThePicture) {
   EXPECT_GT(lost, 30U);
 }
 
-// Object ids need no bias and know no shadow of an object on itself (Hourcade and Nicolas 1985; S4 4.1.2).
+// Object ids need no bias and know no shadow of an object on itself (Hourcade and Nicolas 1985; Eisemann et al. 2009,
+// section 4.1.2).
 TEST_F(MapsSingleShadow, ObjectIdsNeedNoBiasAndLoseSelfShadows) {
   scenes::Scene scene = bare_floor(0.3);
   const auto lower = quad({0, 1.5, 0}, {0.5, 0.2, 0}, {0, 0, -0.5}),

@@ -75,7 +75,7 @@ double nearest_surface(const Stage& stage, const maps::LightBasis& basis, const 
   return std::isinf(nearest) ? 0 : nearest;
 }
 
-/// What an edge leaves in a texel: how far out it is and how high the edge, or nothing.
+/// Trace of an edge in a texel: how far out it is and how high the edge, or nothing.
 struct Left {
   double kept, height;
 };
@@ -87,7 +87,7 @@ void each_part(const TwinEdge& edge, const glm::dvec2& outward, const glm::dvec2
   const double s = across(seen - a, outward) / across(b - a, outward),
                t = across(b - a, seen - a) / across(b - a, outward);
   if (s >= 0 && s <= 1 && t >= 0) keep(t, 1 / ((1 - s) / edge.a.z + s / edge.b.z));
-  // Around an end, between `outward` and the way on beyond it.
+  // Keeps the part around an end, between `outward` and the continuation of the edge.
   const auto around = [&](const glm::dvec2& end, const glm::dvec2& on, double height) {
     const double p = across(seen - end, on) / across(outward, on),
                  q = across(outward, seen - end) / across(outward, on);
@@ -127,7 +127,7 @@ class MapsOuterMap : public MapsTest {
       const glm::dvec3 way = face.direction(texel % kSize, texel / kSize % kSize, kSize);
       const glm::dvec3 local(glm::dot(way, maps.basis.u), glm::dot(way, maps.basis.v), glm::dot(way, maps.basis.n));
       const glm::dvec2 seen = glm::dvec2(local) / local.z;
-      // What a twin says whose texel lies `off` beside.
+      // Returns the answer of a twin whose texel lies `off` beside this one.
       const auto least = [&](const glm::dvec2& off) {
         Left left{1, std::numeric_limits<double>::infinity()};
         const double surface = nearest_surface(stage, maps.basis, seen + off);

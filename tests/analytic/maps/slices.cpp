@@ -60,7 +60,7 @@ TEST_F(SliceProducts, TheNearestSurfaceIsInTheSliceWhereItsShadowBegins) {
     std::vector<std::uint32_t> found(std::size_t{kSize} * kSize);
     product.buffer().read<std::uint32_t>(found);
     const auto at = [&](double tangent) {
-      // Along the basis' first axis, whichever way it runs.
+      // Direction along the basis' first axis, in whichever sense that runs.
       const glm::dvec3 d = glm::dvec3(tangent, -1, 0);
       const glm::dvec2 place =
           (glm::dvec2(glm::dot(d, maps.basis.u), glm::dot(d, maps.basis.v)) - glm::dvec2(side.lower)) /
@@ -102,7 +102,7 @@ TEST_F(SliceProducts, MovedSurfacesAreTheirTwin) {
       }
       return 0U;
     };
-    // Within rounding of a slice's end.
+    // Returns whether the height is within rounding of a slice's end.
     const auto unsure = [&](double height) { return slice_of(height * (1 - 1e-6)) != slice_of(height * (1 + 1e-6)); };
     const std::vector<std::uint32_t> marked = words_of(maps::DepthUse::first);
     const glm::dvec2 extent = hemicube ? glm::dvec2(2) : glm::dvec2(view.side[0].upper - view.side[0].lower);
@@ -181,7 +181,7 @@ Stage floor_stage(const std::vector<Blocker>& boards, std::uint32_t n = 32) {
           grid_samples(n, {0, 0, 0}, {0.97, 0, 0}, {0, 0, 0.97}, {0, 1, 0})};
 }
 
-/// What `board` hides of the light from p on the floor, as intervals on the light.
+/// Part of the light that `board` hides from p on the floor, as intervals on the light.
 struct Shadow {
   glm::dvec2 lower, upper;  // on the light, −0.5 … 0.5
   [[nodiscard]] double share() const {
@@ -196,8 +196,8 @@ Shadow shadow_of(const Blocker& board, const glm::dvec3& p) {
   return {glm::clamp(on_light(board.lower), -0.5, 0.5), glm::clamp(on_light(board.upper), -0.5, 0.5)};
 }
 
-/// How far off a share can be because a board's four edges are known to half a texel, and corners to 1/256: each edge
-/// moves by so much of the window's width, which is the light's.
+/// Returns the largest error of a share whose board's four edges are known to half a texel, and corners to 1/256: each
+/// edge moves by so much of the window's width, which is the light's.
 double half_texels(const CentreMaps& maps, double height) {
   const auto& side = maps.fitted.views.front().side[0];
   const glm::dvec2 texel = glm::dvec2(side.upper - side.lower) / static_cast<double>(maps.size);
@@ -244,7 +244,8 @@ TEST_F(SliceMethods, OneFlatBlockerIsExactWithinHalfATexel) {
   EXPECT_GT(soft, 500U);
 }
 
-// S4 5.2.5: slices are multiplied, whatever their shadows have in common: disjoint, half over one another, nested.
+// Eisemann et al. 2009, section 5.2.5: slices are multiplied, whatever their shadows have in common: disjoint, half
+// over one another, nested.
 TEST_F(SliceMethods, TwoBlockersAreMultipliedInEveryLayout) {
   const Blocker upper{2, {-0.2, -0.5}, {0.1, 0.5}};
   for (const double shift : {0.45, 0.15, 0.0}) {
@@ -279,7 +280,8 @@ double error_of(const Stage& stage, const Masks& found, const Masks& truth) {
   return rmse(stage, on_floor, [&](std::size_t i) { return found.visibility[i] - truth.visibility[i]; });
 }
 
-// S4 5.2.5: right for flat blockers alone. The deeper a box reaches below its top, the worse.
+// Eisemann et al. 2009, section 5.2.5: right for flat blockers alone. The deeper a box reaches below its top, the
+// worse.
 TEST_F(SliceMethods, ConvolutionFailsWithTheBlockersExtentInDepth) {
   double before = 0;
   for (const double depth : {0.01, 0.6, 1.2}) {
@@ -304,7 +306,8 @@ TEST_F(SliceMethods, ConvolutionFailsWithTheBlockersExtentInDepth) {
   }
 }
 
-// S4 5.2.5: no shadow inside a slice. A box on a floor that casts, too: near its foot the shadow is missing.
+// Eisemann et al. 2009, section 5.2.5: no shadow inside a slice. A box on a floor that casts, too: near its foot the
+// shadow is missing.
 TEST_F(SliceMethods, WithinASliceOfTheFloorTheShadowIsMissing) {
   scenes::Scene scene;
   add_quad(scene, {0, 0, 0}, {kFloor, 0, 0}, {0, 0, kFloor});

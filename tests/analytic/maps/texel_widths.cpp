@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How wide a map's texels are where shadows fall.
+// Tests the widths of a map's texels at the places of shadows.
 #include "maps/host/texel_widths.hpp"
 
 #include "tests/analytic/maps/parallel_square.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// vssm: what each kind of moments promises of a window, cut or whole, and of a fixed one.
+// Tests what each kind of moments promises of a window, cut or whole, and of a fixed one.
 
 #include "maps/filters/methods.hpp"
 
@@ -10,8 +10,8 @@
 namespace penumbra::tests {
 namespace {
 
-// S4 4.2.3: shifted to its first maximum and damped, the series comes closer to counting the same texels with each
-// term.
+// Eisemann et al. 2009, section 4.2.3: shifted to its first maximum and damped, the series comes closer to counting the
+// same texels with each term.
 TEST_F(Vssm, MoreTermsOfTheSeriesComeCloserToCounting) {
   constexpr std::uint32_t kTexels = 64;
   const Stage stage(scene_with(scenes::Rectangle{{0, 4, 0}, {0.6, 0, 0}, {0, 0, 0.4}}), 24, 24, light_samples(1));
@@ -41,8 +41,8 @@ TEST_F(Vssm, MoreTermsOfTheSeriesComeCloserToCounting) {
 }
 
 // The nearest caster's shadow on the deepest receiver: their heights are as far apart as heights are, and the series
-// must not have jumped back there. It swings: beyond its first maximum a sum of sines is never further below a step of
-// 1 than 1/2 - Si(2 pi) / pi = 0.0486 (Gibbs). Were heights to span all of half a period, 0.37 would be left.
+// must not have jumped back there. The series swings: beyond its first maximum a sum of sines is never further below a
+// step of 1 than 1/2 - Si(2 pi) / pi = 0.0486 (Gibbs). 0.37 would be left if heights spanned all of half a period.
 TEST_F(Vssm, TheSeriesEndsBeforeItJumpsBack) {
   const Stage stage = floor_stage({{2, -4, 0.1}});
   for (const std::uint32_t terms : {1U, 2U, 4U, 16U}) {
@@ -59,8 +59,8 @@ TEST_F(Vssm, TheSeriesEndsBeforeItJumpsBack) {
   }
 }
 
-// S4 figure 4.8: at a plane's own height the series is exactly a half: of a filter of texels, which its scale makes 1,
-// and of a light, whose search its scale or its offset tells that nothing blocks.
+// The series is exactly a half at a plane's own height (S4, figure 4.8), unless its scale makes that 1 in a filter of
+// texels, or its scale or its offset tells a light's search that nothing blocks.
 TEST_F(Vssm, ALitPlaneIsHalfDarkUntilTheSeriesIsScaledOrShifted) {
   const Stage stage = floor_stage({{2, -4, 0.1}});
   struct Way {
@@ -93,8 +93,8 @@ TEST_F(Vssm, ALitPlaneIsHalfDarkUntilTheSeriesIsScaledOrShifted) {
   }
 }
 
-// Where a board in the air looks past other boards down to the floor, the mean of its window lies behind it, and the
-// bound is 1 whatever stands before. Cut into parts (Yang et al. 2010) it is nearly what counting the same texels says.
+// The mean of a window lies behind a board in the air that looks past other boards down to the floor, and the bound is
+// 1 whatever stands before. Cut into parts (Yang et al. 2010) the answer is nearly that of counting the same texels.
 TEST_F(Vssm, PartsSeeWhatBlocksBeforeADeepFloor) {
   scenes::Scene scene;
   add_quad(scene, {0, 0, 0}, {2, 0, 0}, {0, 0, -2});
@@ -131,7 +131,7 @@ TEST_F(Vssm, PartsSeeWhatBlocksBeforeADeepFloor) {
   EXPECT_LT(adaptive, 0.7 * none);
 }
 
-// Of two depths, one share f of them at the receiver's, the bound of the rising exponential is f, too, wherever their
+// The bound of the rising exponential for two depths, the share f of them at the receiver's, is f, too, wherever their
 // variance is not below the least one, L = (c b)^2, which the bias b stands for; elsewhere no more than L / (1 - f)^2
 // above it. (A bias of the receiver's height would multiply the lit part by exp(c b).)
 TEST_F(Vssm, OfTwoDepthsTheBoundOfExponentialsIsTheShare) {
@@ -159,8 +159,8 @@ TEST_F(Vssm, OfTwoDepthsTheBoundOfExponentialsIsTheShare) {
   }
 }
 
-// Whether a level floor is drawn in the map or not, nothing there is nearer than it: V is the same. (Texels without a
-// caster lay 1/1024 of the depth behind it, which exp(80 t) counted as 1.17 times lit.)
+// V of a level floor is the same whether the floor is drawn in the map or not: nothing there is nearer. (Texels without
+// a caster lay 1/1024 of the depth behind it, which exp(80 t) counted as 1.17 times lit.)
 TEST_F(Vssm, AFloorThatCastsNothingIsNoBrighter) {
   const auto with = [&](bool casts, const VssmSettings& settings) {
     scenes::Scene scene = under_boards(std::vector<Strip>{{2, -0.7, 0.1}});
@@ -181,9 +181,9 @@ TEST_F(Vssm, AFloorThatCastsNothingIsNoBrighter) {
   }
 }
 
-// S4 chapter 4: as filters of a fixed window the moments stand for pcf. Of two depths bounds and exponentials are the
-// count, but for the least variance L: no more than L / (1 - f)^2 above it, 1 - f a 49th or more. Of vsm L is 2^-22, of
-// four layers 16 times that, of evsm (40 b)^2 with b a twentieth of a texel's depth, 1.3e-4 of the range. The series
+// Moments as filters of a fixed window stand for pcf (S4, chapter 4). Bounds and exponentials of two depths are the
+// count, except for the least variance L: no more than L / (1 - f)^2 above it, 1 - f a 49th or more. L of vsm is 2^-22,
+// of four layers 16 times that, of evsm (40 b)^2 with b a twentieth of a texel's depth, 1.3e-4 of the range. The series
 // swings.
 TEST_F(Vssm, AFilterOfTexelsIsPcf) {
   const Stage stage = floor_stage({{2, -4, 0.1}});
@@ -242,8 +242,8 @@ TEST_F(Vssm, TheSlopeOfATexelWidensTheBound) {
                 {"slope", slope}})
         .visibility;
   };
-  // One texel: a receiver at the share x of the texel's height change behind its centre has V = 1/4 / (1/4 + x²), x up
-  // to 1/2: no less than a half. Without slope V is 0 there, but for the least variance.
+  // A window of one texel: a receiver at the share x of the texel's height change behind its centre has V = 1/4 / (1/4
+  // + x²), x up to 1/2: no less than a half. Without slope V is 0 there, except for the least variance.
   const std::vector<float> with_slope = with("on"), without = with("off");
   std::size_t dark = 0, still_dark = 0;  // these at the plane's border
   for (std::size_t i = 0; i < without.size(); ++i) {
@@ -255,8 +255,8 @@ TEST_F(Vssm, TheSlopeOfATexelWidensTheBound) {
   EXPECT_LT(still_dark, dark / 20);
 }
 
-// S4 4.2.4: a texel behind the receiver makes the exponential more than 1. There are none over a level floor, and there
-// are on a tilted one and where a caster's outline lets the floor behind it be seen.
+// Eisemann et al. 2009, section 4.2.4: a texel behind the receiver makes the exponential more than 1. There are none
+// over a level floor, and there are on a tilted one and where a caster's outline lets the floor behind it be seen.
 TEST_F(Vssm, TheExponentialFailsWhereTexelsLieBehindTheReceiver) {
   const auto differing = [](const Stage& stage) {
     const VssmSettings with{.moments = "esm"}, without{.moments = "esm", .fallback = false};

@@ -109,7 +109,7 @@ TEST(BrokenMeshes, LargeOnesFull) {
   EXPECT_TRUE(has_what_it_was_made_to_have({names(), 64}));
 }
 
-/// At any place and of any size, also ones that nobody would choose, the lattice is exact.
+/// The lattice is exact at any place and of any size, also ones that nobody would choose.
 TEST(BrokenMeshes, AnywhereAtAnyScale) {
   for (const double half_extent : {0.1, 1.7, 3e-5, 1e6}) {
     for (const glm::dvec3& center : {glm::dvec3(0.1, 0.7, -0.3), glm::dvec3(1000.0 / 3, -77.7, 1e-3)}) {

@@ -41,7 +41,7 @@ bool has_corner(const Corners& t, const Point& p) {
 bool has_edge(const Corners& t, const Segment& e) {
   return has_corner(t, e.first) && has_corner(t, e.second);
 }
-/// Does the triangle run along the edge from its first end to its second?
+/// Returns whether the triangle runs along the edge from its first end to its second.
 bool runs_along(const Corners& t, const Segment& e) {
   for (std::size_t i = 0; i < 3; ++i) {
     if (t[i] == e.first) return t[(i + 1) % 3] == e.second;

@@ -36,7 +36,8 @@ std::ostream& operator<<(std::ostream& out, const Counts& counts);
 /// The sum of the signed solid angles of the triangles, over 4π (van Oosterom, Strackee 1983).
 double winding_number(const std::vector<Corners>& soup, const glm::dvec3& q);
 
-/// By exact constructions: what the triangles share, and whether that is part of a vertex or edge of both.
+/// Counts self-intersections by exact constructions: what the triangles share, and whether that is part of a vertex or
+/// edge of both.
 std::uint64_t count_self_intersections(const std::vector<Corners>& soup);
 
 }  // namespace penumbra::mesh::oracle

@@ -96,7 +96,7 @@ TEST_P(Predicates, Lattice) {
 }
 
 TEST_P(Predicates, LatticesOfEveryScale) {
-  // Such ties where products of three coordinates leave the range of doubles, below and above.
+  // Ties where products of three coordinates leave the range of doubles, below and above.
   for (const int exponent : {-1074, -1060, -700, -360, -150, 126, 340, 700, 1020}) {
     Tally tally;
     const double unit = std::ldexp(1.0, exponent);

@@ -143,8 +143,8 @@ RC_GTEST_PROP(SignedMultiplicity, OppositeFacesOnlyAddUp, ()) {
   RC_ASSERT(computed(soup, p) == twice);
 }
 
-/// From points around and inside a closed surface: only 0 and ±2; loops, since as much arrives at each vertex as leaves
-/// it; none where all triangles show the same side.
+/// Silhouettes from points around and inside a closed surface have only 0 and ±2; they are loops, since as much arrives
+/// at each vertex as leaves it; there are none where all triangles show the same side.
 TEST(Silhouettes, OfClosedSurfacesAreTwofold) {
   for (const TriangleSoup& soup :
        {make_sphere({}), make_torus({}), make_blob({.subdivisions = 3}), make_box({0, 0, 0}, {1, 2, 3})}) {
@@ -234,8 +234,7 @@ RC_GTEST_PROP(PossibleSilhouettes, FromOnePointAreItsSilhouettes, ()) {
 }
 
 RC_GTEST_PROP(PossibleSilhouettes, AreTightWhereNoTriangleIsSeenFromBothSides, ()) {
-  // If all triangles of an edge show the whole hull one side, the edge is in the list iff it is a silhouette from each
-  // point.
+  // An edge whose triangles each show the whole hull one side is in the list iff it is a silhouette from each point.
   const LatticeSoup soup = draw_soup();
   const EdgeGraph graph = build_edge_graph(soup.view());
   const std::vector<glm::dvec3> corners = draw_corners(4);
@@ -287,7 +286,7 @@ TEST(PossibleSilhouettes, PagesOfAFlatBookCancelInPairs) {
 }
 
 TEST(PossibleSilhouettes, OfABlobFromASmallLightAreFew) {
-  // From a light much smaller than its distance nearly all triangles show one side: the list is little longer than the
+  // Nearly all triangles show one side to a light much smaller than its distance: the list is little longer than the
   // silhouette from its centre, and far from all edges.
   const TriangleSoup soup = make_blob({.subdivisions = 4});
   const MeshView view{soup.positions, soup.triangles};

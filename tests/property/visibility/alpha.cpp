@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What surfaces that let light through make of pairs, against docs/definitions.md evaluated literally: crossing points,
-// texture coordinates and texels in GMP's rationals, on lattices where coincidences are the rule; and closed forms.
+// Tests what surfaces that let light through do to pairs, against docs/definitions.md evaluated literally: crossing
+// points, texture coordinates and texels in GMP's rationals, on lattices where coincidences are the rule; and closed
+// forms.
 #include "visibility/alpha/alpha_filter.hpp"
 
 #include "tests/property/literal_truth.hpp"
@@ -79,7 +80,7 @@ struct Leaves {
   }
 };
 
-/// Is there a texel where the way meets the triangle's plane? Nothing on a border.
+/// Returns whether there is a texel where the segment meets the triangle's plane; nullopt on a border.
 std::optional<bool> literal_is_there(const scenes::Scene& scene, const SceneFloats& floats, std::uint32_t triangle,
                                      const Vector& p, const Vector& direction) {
   const auto corners = floats.corners(triangle);
@@ -124,7 +125,7 @@ TEST_P(AlphaOnLattice, TexelsDecide) {
     }
     samples.width = static_cast<std::uint32_t>(samples.size());
     samples.height = 1;
-    // What a method would say that knows nothing of leaves.
+    // Answer of a method that knows nothing of leaves.
     SceneFloats solids = floats;
     solids.alphas.casters.clear();
     std::vector<std::uint32_t> masks(samples.size());

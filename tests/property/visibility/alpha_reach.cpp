@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where what lets light through may take part: specks that reach into the pyramid from p to a light by a ten-thousandth
-// of it, or stay out of it by as much; and light samples that are met, which must all be foreseen.
+// Tests where surfaces that let light through may take part: specks that reach into the pyramid from p to a light by a
+// ten-thousandth of it, or stay out of it by as much; and light samples that are met, which must all be foreseen.
 #include "visibility/alpha/alpha_reach.hpp"
 
 #include "tests/unit/visibility/scenes.hpp"
@@ -41,7 +41,7 @@ struct Floor {
     samples.width = width;
     samples.height = static_cast<std::uint32_t>(points.size()) / width;
   }
-  /// With these specks alone.
+  /// Returns what is reached with these specks alone.
   [[nodiscard]] std::vector<std::uint8_t> reached(const std::vector<tests::Corners>& specks) const {
     scenes::Scene with = scene;
     tests::add_object(with, "specks", specks).alpha = {Alpha::Mode::blend, 0.5, 0.5};
@@ -106,7 +106,7 @@ TEST(AlphaReaches, SpecksThatReachIntoThePyramidByATenThousandth) {
   }
 }
 
-/// Between p and the light: neither below the floor, nor behind the light, nor what lies in p's plane.
+/// Specks between p and the light count: neither those below the floor, nor behind the light, nor in p's plane.
 TEST(AlphaReaches, FromTheFloorToTheLight) {
   const auto at = [](double height) {
     return tests::Corners{glm::dvec3(-1, height, -1), glm::dvec3(1, height, -1), glm::dvec3(0, height, 1)};
@@ -125,12 +125,12 @@ TEST(AlphaReaches, FromTheFloorToTheLight) {
     for (const double height : {0.001, 1.0, 0.9999 * top}) EXPECT_TRUE(floor.reached_by(at(height))) << height;
     EXPECT_EQ(floor.reached_by(at(1.0001 * top)), endless);
     EXPECT_EQ(floor.reached_by(at(100)), endless);
-    // Through the floor: what is above it counts.
+    // The part above the floor counts of a triangle through the floor.
     EXPECT_TRUE(floor.reached_by({glm::dvec3(0, 0.1, 0), glm::dvec3(1, -9, 1), glm::dvec3(-1, -9, 1)}));
   }
 }
 
-/// Whatever a light sample meets was foreseen, in any pixel of any block.
+/// Everything that a light sample meets was foreseen, in any pixel of any block.
 TEST(AlphaReaches, WhateverALightSampleMeets) {
   std::mt19937 random(17);
   std::uniform_real_distribution<double> real(-1, 1);

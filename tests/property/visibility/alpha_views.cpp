@@ -73,8 +73,8 @@ TEST(ViewsThroughHoles, AreOfWhatIsBehind) {
   }
 }
 
-/// Only what may be behind a hole is looked at again: nothing that is may be forgotten, wherever in the picture, or
-/// beside or behind the eye, a small card with holes and all others are.
+/// Only pixels that may be behind a hole are looked at again. None of them may be forgotten, wherever a small card with
+/// holes and everything else are: in the picture, beside the eye or behind it.
 TEST(ViewsThroughHoles, AreFoundWhereverTheyAre) {
   std::size_t looked_through = 0;
   for (std::uint32_t seed = 0; seed < 120; ++seed) {

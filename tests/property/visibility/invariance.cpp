@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What must not change anything: the order of triangles, their winding and first vertex, doubled vertices; and what
-// must change nothing but the unit: a scale by a power of two.
+// Tests what must not change anything: the order of triangles, their winding and first vertex, doubled vertices; and
+// what must change nothing but the unit: a scale by a power of two.
 
 #include "tests/unit/mesh/shuffled.hpp"
 #include "tests/unit/visibility/scenes.hpp"

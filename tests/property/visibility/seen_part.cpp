@@ -145,7 +145,7 @@ TEST(SeenPart, OfSomeRowsIsNoMoreThanTheWhole) {
   const std::vector<std::uint32_t> seen = numbers({}, {0, 15});
   EXPECT_TRUE(std::ranges::includes(together, seen));
   EXPECT_LT(seen.size(), all.size());
-  // What is seen needs no second search when its parts are known.
+  // A picture whose parts are known needs no second search for what is seen.
   std::vector<std::uint64_t> viewed;
   for (const Tile& rows : {Tile{0, 4}, Tile{4, 7}, Tile{11, 4}}) {
     const SeenPart part = seen_part(meshes, camera, {&light, 1}, rows, &viewed);
@@ -168,7 +168,7 @@ TEST(PlacedMeshes, KeepTheTreesOfMeshesThatStay) {
     EXPECT_EQ(seen_part(kept, camera, {&light, 1}, {0, 15}).numbers,
               seen_part(anew, camera, {&light, 1}, {0, 15}).numbers);
   };
-  // An instance moves; the meshes are what they were, also if they are read anew.
+  // An instance moves; the meshes are what they were, also if they are read again.
   forest.instances.all[3].placement.to_world[3] += glm::dvec4(0.7, 0.2, -3, 0);
   forest.instances.meshes[1] = std::make_shared<const scenes::SharedMesh>(*forest.instances.meshes[1]);
   kept.place(forest.scene, forest.instances);

@@ -30,7 +30,7 @@ std::string text(const glm::vec3& v) {
   return out.str();
 }
 
-/// What happened in the runs, so that a test can say that it covered what it is about.
+/// Counts of cases in the runs, so that a test can say that it covered what it is about.
 struct Tally {
   int pairs = 0, met = 0, several = 0, zeros = 0, cut_at_light = 0, cut_at_p = 0, cancelled = 0;
 };

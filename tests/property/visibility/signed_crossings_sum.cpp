@@ -79,7 +79,7 @@ class Frame {
   int handedness_ = 0;
 };
 
-/// Where a point is along the slab: what is on a bounding plane is outside of it.
+/// Place of a point along the slab; a point on a bounding plane is outside.
 enum class Place { at_p_or_behind, between, at_light_or_beyond };
 
 struct Corner {
@@ -94,7 +94,7 @@ Corner place_corner(const Frame& frame, const glm::dvec3& x) {
   return corner;
 }
 
-/// Where the edge a→b passes the height `w`, which lies between theirs; times a positive number.
+/// Returns the place where the edge a→b passes the height `w`, which lies between theirs; times a positive number.
 Seen cut(const Seen& a, const Seen& b, const Exact& w) {
   const Exact of_a = b.w - w, of_b = w - a.w;
   Seen seen{of_a * a.s + of_b * b.s, of_a * a.t + of_b * b.t, of_a * a.w + of_b * b.w};

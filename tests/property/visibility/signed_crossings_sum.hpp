@@ -28,8 +28,8 @@ struct SignedCrossings {
   [[nodiscard]] int total() const { return edges + cuts_at_light + cuts_at_p; }
 };
 
-/// How many triangles stand between p and l, counted from edges alone: every edge once with its signed multiplicity
-/// k_e(p), every triangle's facing once. Exact on the numbers as stored; derivation and tie rules in
+/// Returns how many triangles stand between p and l, counted from edges alone: every edge once with its signed
+/// multiplicity k_e(p), every triangle's facing once. Exact on the numbers as stored; derivation and tie rules in
 /// docs/signed-crossings.md. The slab is that between the plane through l along the light's frame and the parallel one
 /// through p: a light point that rounding put beside its light's plane is no special case.
 ///

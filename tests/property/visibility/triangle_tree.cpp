@@ -33,7 +33,7 @@ struct Walk {
     if (!tree.nodes.empty()) node(0, 1, {});
   }
 
-  /// `around`: all boxes on the way here.
+  /// `around`: all boxes from the root to here.
   void node(std::uint32_t index, std::uint32_t depth, const std::vector<TriangleTree::Child>& around) {
     ASSERT_LT(index, tree.nodes.size());
     ++node_seen[index];

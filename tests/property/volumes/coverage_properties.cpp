@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What must not change the coverage integral: the point from which a closed loop is looked at, the place where an edge
-// is cut, mirrors, scale, and the order and winding of triangles.
+// Tests what must not change the coverage integral: the point from which a closed loop is looked at, the place where an
+// edge is cut, mirrors, scale, and the order and winding of triangles.
 //
 //
 // Points of the light are multiples of 2⁻⁴ and reference points odd multiples of 2⁻¹⁰ (none is on an edge's line except
@@ -71,7 +71,7 @@ double beyond(const LightOutline& outline, const glm::dvec2& c, const glm::dvec2
   return edge && side != 0 ? RadialCoverage(outline, c).beyond(*edge, side) : 0;
 }
 
-/// How often the loop runs around c: crossings of the ray to the right.
+/// Returns the winding number of the loop around c: crossings of the ray to the right.
 int winding(const Loop& loop, const glm::dvec2& c) {
   int sum = 0;
   for (std::size_t i = 0; i < loop.size(); ++i) {
@@ -137,7 +137,7 @@ RC_GTEST_PROP(Coverage, TurningAnEdgeOverOrSeeingItInAMirrorChangesTheSign, ()) 
   RC_ASSERT(std::abs(area + beyond(mirrored, mirror(c), mirror(a), mirror(b))) < kShareRounding);
 }
 
-/// By definition: the share of a grid of points whose segment from c crosses the edge.
+/// Definition: the share of a grid of points whose segment from c crosses the edge.
 RC_GTEST_PROP(Coverage, IsTheAreaThatSegmentsFromTheReferencePointReachAcrossTheEdge, ()) {
   const LightOutline outline = {{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}, 4};
   const Loop ends = draw_loop();

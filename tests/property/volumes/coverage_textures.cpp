@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What lies beyond one edge of a textured light, against its texels one by one.
+// Tests the part of a textured light beyond one edge, against its texels one by one.
 //
 // Points are multiples of 2⁻⁴ and reference points odd multiples of 2⁻¹⁰, as in coverage_properties.cpp: signs are
 // exact.
@@ -49,7 +49,7 @@ double cross_of(const glm::dvec2& a, const glm::dvec2& b) {
   return a.x * b.y - a.y * b.x;
 }
 
-/// What is left of a convex polygon on the left of a → b.
+/// Returns the part of a convex polygon on the left of a → b.
 Polygon cut(const Polygon& polygon, const glm::dvec2& a, const glm::dvec2& b) {
   Polygon left;
   for (std::size_t i = 0; i < polygon.size(); ++i) {

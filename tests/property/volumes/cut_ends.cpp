@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where edges pass through a light's plane, and normals, against rationals.
+// Tests against rationals where edges pass through a light's plane, and normals.
 
 #include "tests/agreement/hostile_lamps.hpp"
 #include "volumes/edges/cut_ends.hpp"

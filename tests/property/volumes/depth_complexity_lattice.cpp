@@ -81,7 +81,7 @@ TEST_P(DepthSearch, ALightSeenEdgeOn) {
     constexpr double kHalf = 0.005;
     const double height = 2e-5 * (1 + 0.2 * real(random)), side = seed % 2 == 0 ? 1 : -1;
     const auto at = [&](double x, double y, double z) { return center + x * d + y * w + z * n; };
-    // Over half the way, as high as what a way from p to just beside the light's rim has there.
+    // The patch is halfway, as high there as a segment from p to a point just beside the light's rim.
     const double beside = side * kHalf * (1.002 + 0.074 * (1 + real(random)));
     const double p_height = height * (1 - beside) / (0.5 - beside), patch = 2e-5;
     scenes::Scene scene;
@@ -112,9 +112,9 @@ TEST_P(DepthSearch, ALightSeenEdgeOn) {
   EXPECT_GT(counts.visible, 1000u);
   EXPECT_GT(counts.blocked, 1000u);
 }
-/// Along a fold between a floor and a wall, which is no silhouette as the light sees it, view samples on another
-/// triangle of the floor's plane: within a few roundings of the fold and off that plane, so that some see the fold
-/// above the plane, with light below it, which no triangle hides, and above it, which the wall hides.
+/// A fold between a floor and a wall, which is no silhouette as the light sees it, and view samples on another triangle
+/// of the floor's plane, within a few roundings of the fold and off that plane: some see the fold above the plane, with
+/// light below it, which no triangle hides, and above it, which the wall hides.
 TEST_P(DepthSearch, AFoldInTheCarriersPlaneByAHair) {
   tests::MethodsByLayout methods([&] { return make_depth_complexity(device(), {{"search", GetParam()}}); });
   PairCounts counts;
@@ -171,7 +171,7 @@ INSTANTIATE_TEST_SUITE_P(Structure, DepthSearch, testing::Values("kd-tree", "hem
   return std::string(it.param).starts_with("kd") ? "kd_tree" : "hemicube";
 });
 
-/// Without the validation layer, which takes most of the time.
+/// These run without the validation layer, which takes most of the time.
 class DepthLatticeFull : public testing::TestWithParam<RangeAndEngine> {};
 TEST_P(DepthLatticeFull, EveryPairIsTheExactDecision) {
   const auto& [of, engine] = GetParam();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where rows=exact cuts edges and casters at the disk that a view sample sees of a sphere: how much of the bound of
-// that place is ever used, and that all that ends there has the same numbers.
+// Measures how much of its bound rows=exact uses of the places where it cuts edges and casters at the disk that a view
+// sample sees of a sphere, and tests that all that ends there has the same numbers.
 
 #include "engines/vectors/cone_light.hpp"
 #include "engines/vectors/disk_plane.hpp"
@@ -93,7 +93,7 @@ class AtADisk {
   GridSample at_;
 };
 
-/// As use_of, of where an edge passes through a sphere's disk. (bound pass)
+/// Returns use_of of the place where an edge passes through a sphere's disk (bound pass).
 Use use_at_disk(const Case& of) {
   AtADisk rows(of, {});
   const auto found = rows.place(of.edge);
@@ -109,7 +109,7 @@ Use use_at_disk(const Case& of) {
   const mpq_class volume = determinant(u, v, n), cells = 8;
   const std::array exact{mpq_class(cells * (1 + determinant(place, v, n) / volume)),
                          mpq_class(cells * (1 + determinant(u, place, n) / volume))};
-  // u × v is against the way to the disk: behind it is below.
+  // The normal u × v points against the direction to the disk: behind it is below.
   const bool first = sgn(heights[0]) < 0;
   const glm::dvec2 computed =
       first ? glm::dvec2(found->edge.x0, found->edge.y0) : glm::dvec2(found->edge.x1, found->edge.y1);
@@ -152,7 +152,7 @@ TEST(DiskBounds, EdgesAndCutsEndAtTheSamePlace) {
            {glm::dvec2(placed->edge.x0, placed->edge.y0), glm::dvec2(placed->edge.x1, placed->edge.y1)})
         ends_there += static_cast<int>(std::ranges::count(cut_ends, end));
     }
-    // Beyond a window of twice the light edges end at the window.
+    // Edges that leave a window of twice the light end at the window.
     const auto on_light = [](const glm::dvec2& x) { return glm::length(x - 8.0) < 17; };
     if (!std::ranges::all_of(cut_ends, on_light)) continue;
     EXPECT_EQ(ends_there, 2) << round;

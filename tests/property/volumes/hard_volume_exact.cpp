@@ -45,7 +45,7 @@ struct Picture {
   ViewSamples samples;
 };
 
-/// How a picture turned out.
+/// Counts of a picture's pixels by outcome.
 struct Tally {
   std::size_t counted = 0, boundary = 0, doubtful = 0, shadowed = 0;
   std::int32_t largest = 0;
@@ -117,7 +117,7 @@ class HardVolume : public tests::DeviceTest {
     return counts;
   }
 
-  /// Does a neighbour of the pixel have another count?
+  /// Returns whether a neighbour of the pixel has another count.
   static bool at_boundary(const std::vector<std::int32_t>& counts, const ViewSamples& samples, std::size_t pixel) {
     const std::size_t x = pixel % samples.width, y = pixel / samples.width;
     return (x > 0 && counts[pixel - 1] != counts[pixel]) ||
@@ -243,7 +243,7 @@ scenes::Scene stack(int layers, const glm::dvec3& eye) {
   return scene;
 }
 
-/// What is drawn is looked for where a shifted lens shows it.
+/// Volumes are looked for where a shifted lens shows them.
 TEST_F(HardVolume, AShiftedLens) {
   for (const glm::dvec2& shift : {glm::dvec2(0.35, -0.2), glm::dvec2(-0.5, 0.15)}) {
     scenes::Scene scene = stack(3, {2, 1.5, 2});
@@ -304,8 +304,8 @@ TEST_F(HardVolume, TheFarEndIsCounted) {
   }
 }
 
-/// So close that p, rounded to float32, moves by a part of a pixel and often past an edge of its triangle: the carrier
-/// and what is coplanar with it must still not be counted, and its neighbours must be counted exactly.
+/// Meshes so close that p, rounded to float32, moves by a part of a pixel and often past an edge of its triangle: the
+/// carrier and what is coplanar with it must still not be counted, and its neighbours must be counted exactly.
 TEST_F(HardVolume, CloseUpsWhereRoundingMovesPoints) {
   for (const double cell : {1.6e-5, 4e-6}) {
     const glm::dvec3 middle(1.3, 0.7, -0.4);

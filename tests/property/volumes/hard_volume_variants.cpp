@@ -37,7 +37,7 @@ class HardVolumeVariants : public tests::DeviceTest {
     DeviceTest::TearDownTestSuite();
   }
 
-  /// Of all variants, with the default first.
+  /// Returns the answers of all variants, with the default first.
   static std::map<std::string, Answer> expect_same(const std::string& name, const SoftStage& stage) {
     std::map<std::string, Answer> answers{{"z-fail", run(stage, "z-fail")}};
     for (const char* variant : kVariants) {
@@ -77,7 +77,7 @@ TEST_F(HardVolumeVariants, HideWhatTheDefaultHidesFull) {
   }
 }
 
-/// Nothing is closed, and triangles lie on one another, in planes of the light, the eye and the receivers.
+/// Soups where nothing is closed, and triangles lie on one another, in planes of the light, the eye and the receivers.
 TEST_F(HardVolumeVariants, HideTheSameOfOpenSoups) {
   for (const char* defect : {"hole", "flipped-patch", "duplicate-face"}) {
     const scenes::Scene scene = tests::with_a_floor(mesh::make_broken_mesh({{defect}, 2, {0, 1, 0}, 1}).soup);
@@ -124,12 +124,12 @@ TEST_F(HardVolumeVariants, CullCastersInShadow) {
   EXPECT_EQ(cc.at("culledVolumes"), 2U);  // the hidden board's and, as nothing is below it, the floor's
   EXPECT_EQ(cc.at("clampedVolumes"), 2U);
   EXPECT_EQ(cc.at("silhouetteEdges"), 8U * cc.at("stretches") / 2);
-  // By the view samples alone the hidden board still hides something: floor below it.
+  // The hidden board still hides something if view samples alone decide: floor below it.
   EXPECT_EQ(answers.at("hierarchical").counters.at("culledVolumes"), 2U);  // the floor's two triangles
 }
 
-/// A board's shadow on a floor is a square, here of half-width 5/3. Tiles whose view samples are all on one of both
-/// surfaces are whole but where their box meets the square's outline.
+/// A board's shadow on a floor is a square, here of half-width 5/3. Tiles whose view samples are all on one of the two
+/// surfaces are whole, except where their box meets the square's outline.
 TEST_F(HardVolumeVariants, DecideWholeTiles) {
   scenes::Scene scene = tests::floor_and_light(0.5);
   tests::add_object(scene, "board", tests::quad({0, 2, 0}, {1, 0, 0}, {0, 0, -1}));
@@ -167,8 +167,8 @@ TEST_F(HardVolumeVariants, DecideWholeTiles) {
   EXPECT_LT(counters.at("countUpdates"), answers.at("z-fail").counters.at("countUpdates"));
 }
 
-/// What the papers promise, in sums over scenes: fewer changes of counts between the eye and p than beyond it, or on
-/// the side that suits p; fewer fragments where volumes are culled and clamped.
+/// Promises of the papers, in sums over scenes: fewer changes of counts between the eye and p than beyond it, or on the
+/// side that suits p; fewer fragments where volumes are culled and clamped.
 TEST_F(HardVolumeVariants, FillLess) {
   std::map<std::string, std::uint64_t> fragments, updates;
   for (const char* name : {"fusion", "room"}) {

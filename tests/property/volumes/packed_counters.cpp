@@ -60,7 +60,7 @@ TEST_F(Packed, CountersEqualTheTwinsOnEveryDefect) {
   EXPECT_GT(totals_.several, totals_.pairs / 100);
 }
 
-/// Is this the refusal of a scene in which a triangle reaches through the light?
+/// Returns whether this is the refusal of a scene in which a triangle reaches through the light.
 bool reaches_through(const InputError& error) {
   return tests::says(error, "reaches through it, which depth-complexity variant=forest cannot count");
 }
@@ -155,7 +155,7 @@ scenes::Scene boards() {
   std::vector<tests::Corners> doubled = tests::quad({-1.2, 0.9, 0.4}, {0.5, 0, 0}, {0, 0, -0.5});
   for (const auto& [a, b, c] : std::vector(doubled)) doubled.push_back({a, c, b});
   tests::add_object(scene, "closed and flat", doubled);
-  // Its three upper faces turn to every point of the light, its base to none.
+  // The tetrahedron's three upper faces turn to every point of the light, its base to none.
   const glm::dvec3 top{1.5, 1.1, -0.8}, a{1.1, 0.9, -0.5}, b{1.9, 0.9, -0.5}, c{1.5, 0.9, -1.3};
   tests::add_object(scene, "tetrahedron", {{a, b, top}, {b, c, top}, {c, a, top}, {a, c, b}});
   scene.lights.push_back(tests::rectangle_light({0.2, 5, 0.1}, {0.6, 0.02, 0.05}, {0.01, 0.03, 0.6}));
@@ -243,8 +243,8 @@ TEST_F(Packed, OverflowIsSeenAndSetRight) {
   expect_overflow(device(), 6, 24);
   expect_overflow(device(), 8, 24);
 }
-/// As published a counter that edges change by 2^bits is what it was: where the light's centre is seen all of the light
-/// is. Where nothing overflows both are the same.
+/// A counter with as=published that edges change by 2^bits is what it was: all of the light is visible where the
+/// light's centre is. Both variants are the same where nothing overflows.
 TEST_F(Packed, AsPublishedOverflowLetsLightThrough) {
   for (const std::uint32_t bits : {6U, 8U}) {
     const auto published = make_packed_counters(device(), bits, true), repaired = make_packed_counters(device(), bits);

@@ -201,7 +201,7 @@ TEST(WedgeOutcomes, TheTightWedgeOfAParallelEdgeIsItsPenumbra) {
   EXPECT_FALSE(is_inside(wedges[0], {0, 0.01, 0}));
 }
 
-/// Whatever is inside tight is inside original: both contain the hull, and tight is it.
+/// Every point inside the tight wedge is inside the original: both contain the hull, and the tight wedge equals it.
 TEST(WedgeOutcomes, TightLiesInOriginal) {
   Random random(3);
   std::size_t inside = 0, more = 0;

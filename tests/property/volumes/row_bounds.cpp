@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How much of its bounds rows=exact ever uses of where an edge's ends appear: searches for the input that uses most,
-// held against exact places (rational numbers).
+// Measures how much rows=exact ever uses of its bounds of the places of an edge's ends: searches for the input that
+// uses most, held against exact places (rational numbers).
 
 #include "tests/property/volumes/row_cases.hpp"
 #include "tests/property/volumes/under_a_light.hpp"
@@ -40,7 +40,8 @@ class ExactLight {
     squared_ = 2 * dot(normal_, normal_);
   }
 
-  /// Where x appears to p, in cells from the corner; nothing if it is not above p and below the light.
+  /// Returns the place at which x appears to p, in cells from the corner; nothing if it is not above p and below the
+  /// light.
   [[nodiscard]] std::optional<std::array<mpq_class, 2>> operator()(const glm::dvec3& p, const glm::dvec3& x) const {
     const Rational from = rational(p) - corner_, direction = rational(x) - rational(p);
     const mpq_class height = dot(normal_, from), over = -dot(normal_, direction);
@@ -76,7 +77,7 @@ Use use_of(const Case& of) {
     const auto place = exact(glm::dvec3(p), glm::dvec3(end == 0 ? a : b));
     if (!place) return {};
     for (std::size_t axis = 0; axis < 2; ++axis) {
-      // What is outside of a window of twice the light is cut to it.
+      // Edges outside of a window of twice the light are cut to it.
       if (abs((*place)[axis] - 8) > 17) return {};
       const mpq_class off = mpq_class(computed.at(end)[static_cast<glm::length_t>(axis)]) - (*place)[axis];
       const double error = std::abs(off.get_d());
@@ -86,7 +87,8 @@ Use use_of(const Case& of) {
   return worst;
 }
 
-/// A corner of an edge: `share` of the way from p to a place of the light's plane, in half sides from its centre.
+/// A corner of an edge: at `share` of the segment from p to a place of the light's plane, in half sides from its
+/// centre.
 glm::vec3 on_the_way(const Case& of, const glm::dvec2& place, double share) {
   const auto& light = std::get<scenes::Rectangle>(of.scene.lights[0].shape);
   const glm::dvec3 target = light.center + place.x * light.half_u + place.y * light.half_v;

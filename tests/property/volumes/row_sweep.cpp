@@ -22,7 +22,7 @@ double twice_area(const Triangle& t) {
   return (t[1].x - t[0].x) * (t[2].y - t[0].y) - (t[1].y - t[0].y) * (t[2].x - t[0].x);
 }
 
-/// Triangles as layers: whichever way they are wound, inside there is one layer more.
+/// Triangles as layers: inside one, of either winding, there is one layer more.
 std::vector<RowEdge> outlines(std::span<const Triangle> triangles) {
   std::vector<RowEdge> edges;
   for (const Triangle& triangle : triangles) {
@@ -56,8 +56,8 @@ std::vector<Triangle> quarter_turned(std::vector<Triangle> triangles) {
   return triangles;
 }
 
-/// On a lattice nearly everything coincides with something: corners with edges, edges with edges, three lines in one
-/// point. Off it, needles of every width.
+/// Nearly everything coincides with something on a lattice: corners with edges, edges with edges, three lines in one
+/// point. Off the lattice, needles have every width.
 TEST(RowSweep, TheWayThatRowsRunDoesNotMatter) {
   std::mt19937 random(1);
   double least = 1, most = 0;
@@ -128,7 +128,7 @@ TEST(RowSweep, EdgesOnOneLine) {
   }
 }
 
-/// Of these, two lines crossed far below where they begin, by the quotient of two roundings: 73.08 in place of 63.97.
+/// Two of these lines crossed far below where they begin, by the quotient of two roundings: 73.08 in place of 63.97.
 TEST(RowSweep, LinesThatCrossedLongAgo) {
   std::vector<RowEdge> edges{
       {0x1.9bb14642ea861p+2, 0x1.c905bb0a32929p+2, 0x1.b76300bbcf031p+2, 0x1.e6e8a4ae8fd7cp+2, 1},

@@ -26,7 +26,7 @@ class SilhouettePassTest : public tests::DeviceTest {
  protected:
   SilhouettePassTest() : pass_(device()) {}
 
-  /// From all points: first every side that a triangle is seen from counts, then only some.
+  /// Expects exact silhouettes from all points: first every side that a triangle is seen from counts, then only some.
   void expect_exact(const std::string& name, const Mesh& mesh, const std::vector<glm::vec3>& points) {
     ASSERT_TRUE(pass_.prepare_mesh({mesh.positions, mesh.triangles, &mesh.graph}));
     std::vector<std::uint32_t> all(mesh.triangles.size(), gpu::kBothBits), some(all);
@@ -164,7 +164,7 @@ std::vector<glm::vec3> many(std::size_t count, const std::function<glm::vec3()>&
 }
 
 TEST_F(SilhouettePassTest, FacingsWithMagnitudesMixedInOneMesh) {
-  // From the least subnormal to the largest float side by side, in corners and points alike.
+  // Values from the least subnormal to the largest float side by side, in corners and points alike.
   const std::array<float, 14> values = {0,       -0.0F, 1,      -1,       1.5F,      1 + 0x1p-23F, 1e-20F,
                                         -1e-20F, 1e15F, -1e15F, 0x1p-80F, 0x1p-126F, 0x1p-149F,    3e38F};
   std::mt19937 random(5);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How much of a bound of error is ever used on vector units: a search for the input that uses most of it. Exact values
-// come from long double, 2⁻⁶⁴ beside bounds of 2⁻²⁴.
+// Measures how much of a bound of error is ever used on vector units: searches for the input that uses most of it.
+// Exact values come from long double, 2⁻⁶⁴ beside bounds of 2⁻²⁴.
 
 #include "tests/agreement/crossings.hpp"
 #include "tests/agreement/most_used.hpp"
@@ -26,7 +26,7 @@ struct Use {
   double of_bound = 0, error = 0, bound = 0;
 };
 
-/// Where a point appears as the tables and Projection compute it: one order, nothing fused.
+/// Place at which a point appears as the tables and Projection compute it: one order, nothing fused.
 struct Appears {
   glm::vec2 at{0};
   float bound = 0;  ///< of either coordinate's error; 0: the point is not well above p
@@ -69,7 +69,7 @@ class BoundX {
     if (!placed) return {};
     const Cluster cluster = make_cluster(under.grid, *placed);
     const ClusterSample at = complete(under.grid, cluster, placed->front());
-    // A point over p, on the way to somewhere near the light.
+    // A point over p, on the segment to somewhere near the light.
     const glm::dvec3 center = under.scaled(under.light.center);
     const glm::dvec3 target = center + 2 * real() * (under.scaled(under.light.center_u) - center) +
                               2 * real() * (under.scaled(under.light.center_v) - center);
@@ -140,7 +140,7 @@ class AimedCrossing {
     is_placed_ = under_->floats.origin == glm::dvec3(0) && under_->place({p_}).has_value();
   }
 
-  /// From the light sample to the crossing; nothing where the edge is not well above p.
+  /// Returns the distance from the light sample to the crossing; nothing where the edge is not well above p.
   [[nodiscard]] tests::Rounded crossing() {
     if (!is_placed_) return {};
     const std::vector<GridSample> placed = *under_->place({p_});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Wedges that the device builds: proved by the exact signs that prove the host's, and hardly looser than they.
+// Tests wedges that the device builds: proved by the exact signs that prove the host's, and hardly looser.
 
 #include "tests/agreement/support.hpp"
 #include "tests/property/volumes/wedge_cases.hpp"
@@ -40,7 +40,7 @@ struct Lit {
   std::vector<visibility::Light> lights;
 };
 
-/// A square and a disk light at each place along a path, turned on the way.
+/// A square and a disk light at each place along a path, turned from place to place.
 std::vector<scenes::AreaLight> moving(std::size_t frames, double height, double half, double scale = 1) {
   std::vector<scenes::AreaLight> lights;
   for (std::size_t i = 0; i < frames; ++i) {
@@ -136,8 +136,8 @@ TEST_F(WedgeBuilderTest, FarFromOneInSize) {
   EXPECT_EQ(tally.on_host, 0U);
 }
 
-/// Nothing depends on the schedule: a second run, another builder, and buffers that take the wedges in batches give the
-/// same bits. Buffers that do not hold the mesh leave everything to the host.
+/// Results do not depend on the schedule: a second run, another builder, and buffers that take the wedges in batches
+/// give the same bits. Buffers that do not hold the mesh leave everything to the host.
 TEST_F(WedgeBuilderTest, TheSameBitsEveryTime) {
   const Lit stage(mesh::make_lattice_soup({200, 64, 7, glm::dvec3(0), 2}), moving(2, 5, 0.7));
   const std::uint64_t triangles = stage.floats.triangles.size(), enough = triangles * sizeof(gpu::FacingTriangle);

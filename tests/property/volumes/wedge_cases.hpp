@@ -51,7 +51,7 @@ inline std::string text_of(const Violation& violation) {
          std::to_string(violation.distance);
 }
 
-/// How much was checked, so that a test can say that it checked something.
+/// Counts of what was checked, so that a test can say that it checked something.
 struct Total {
   std::uint64_t wedges = 0, planes = 0, crops = 0;
 };

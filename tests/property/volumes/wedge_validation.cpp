@@ -120,7 +120,7 @@ TEST(WedgeValidation, EveryFaultIsCaught) {
   }
 }
 
-/// Where the construction must split: an edge that points at the light, beside its middle.
+/// The construction must split an edge that points at the light, beside its middle.
 TEST(WedgeValidation, APlaneOfAnUnsplitEdgeIsCaught) {
   const Casters casters = casters_of(soup_of({{0.25, 3.9, 0}, {0.25, -3, 0}, {2, 0, 1}}, {{0, 1, 2}}));
   const LightHull light{{{-1, 4, -1}, {1, 4, -1}, {1, 4, 1}, {-1, 4, 1}}, {0, 4, 0}, 0, false};

@@ -31,7 +31,7 @@ struct Tally {
   }
 };
 
-/// Is the light's centre visible? Each triangle by itself.
+/// Returns whether the light's centre is visible, by each triangle alone.
 bool sees_center(const SceneFloats& floats, const ViewSamples& samples, std::size_t pixel, const Light& light) {
   const auto carrier = static_cast<std::uint32_t>(samples.triangle[pixel]);
   const glm::vec3 &p = samples.p[pixel], l = visibility::center_of(light);
@@ -65,7 +65,7 @@ Tally compare(const SceneFloats& floats, const Light& light, const ViewSamples& 
   return tally;
 }
 
-/// Of one kind of light, in turn rectangle, sphere, sun and those of point_lights.
+/// Compares a soup under one kind of light, in turn rectangle, sphere, sun and those of point_lights.
 Tally compare_soup(std::uint32_t seed, int range) {
   tests::LatticeSoup soup(seed, range);
   visibility::SampleRequest request;

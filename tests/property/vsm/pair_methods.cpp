@@ -99,7 +99,7 @@ class PairMethods : public testing::TestWithParam<PairMethodUnderTest> {
     EXPECT_GT(counts.blocked, counts.pairs / 20);
   }
 
-  /// Against the ray caster; where they differ, the method must be right.
+  /// Compares with the ray caster; where the two differ, the method must be right.
   static tests::Differences look_at(const tests::Stage& stage) {
     const tests::Masks mapped = tests::run(*GetParam().make({}), stage.floats, stage.light, stage.samples),
                        traced = tests::run(*reference::make_ray_traced({}), stage.floats, stage.light, stage.samples);
@@ -220,7 +220,7 @@ TEST(HierarchicalPenumbra, BoxesDecideMostPairs) {
   EXPECT_LT(counters.at("pairsByExactPredicates"), counters.at("pairsTried") / 100);
 }
 
-/// What the published look-up says is wrong near outlines, and less so as the map gets finer.
+/// The published look-up is wrong near outlines, and less so as the map gets finer.
 TEST(ViewSamplePlanar, FinerMapsAreLessWrong) {
   scenes::Scene scene;
   tests::add_object(scene, "floor", tests::quad({0, 0, 0}, {4, 0, 0}, {0, 0, -4})).casts_shadow = false;

@@ -124,7 +124,7 @@ TEST(ClosedParts, WhatCountsAsOne) {
 // A triangle without area casts no shadow, so a T-junction that only it closes leaves the part open.
 TEST(ClosedParts, NeedleWithoutAreaOpensItsPart) {
   mesh::TriangleSoup sphere = mesh::make_icosphere(glm::dvec3(0), 1, 2);
-  // On a coarse grid, so that the middle of an edge is exact.
+  // Positions are on a coarse grid, so that the middle of an edge is exact.
   for (glm::dvec3& position : sphere.positions) position = glm::round(position * 1024.0) / 1024.0;
   ASSERT_EQ(find_closed_parts(floats_of(sphere)).parts.size(), 1U);
   const auto [a, b, c] = sphere.triangles[0];

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What must not change a single bit of view-sample mapping: the order, winding and first vertex of triangles, doubled
-// vertices and faces, the size of tiles, a second run, a scale by a power of two. And what may change almost nothing:
-// another scale, another place in the world.
+// Tests what must not change a single bit of view-sample mapping: the order, winding and first vertex of triangles,
+// doubled vertices and faces, the size of tiles, a second run, a scale by a power of two. Tests also what may change
+// almost nothing: another scale, another place in the world.
 
 #include "tests/agreement/lattice.hpp"
 #include "tests/agreement/support.hpp"

@@ -39,7 +39,7 @@ std::vector<Case> cases() {
   return result;
 }
 
-/// Another way to describe a soup.
+/// Another description of a soup.
 using Wording = void (*)(mesh::TriangleSoup&, std::mt19937&);
 
 void permute(mesh::TriangleSoup& soup, std::mt19937& random) {
@@ -194,7 +194,7 @@ glm::dvec3 normal(const std::array<glm::vec3, 3>& corners) {
   return glm::cross(glm::dvec3(corners[1]) - a, glm::dvec3(corners[2]) - a);
 }
 
-/// How far inside the triangle the point is, in units of area, seen along the triangle's normal.
+/// Returns how far inside the triangle the point is, in units of area, seen along the triangle's normal.
 double inside(const std::array<glm::vec3, 3>& corners, const glm::dvec3& p) {
   const glm::dvec3 n = glm::normalize(normal(corners));
   double least = std::numeric_limits<double>::max();
@@ -253,7 +253,7 @@ TEST_P(Metamorphic, CutAtPointsExactlyOnThem) {
     const Picture exact = picture(before, scene, tests::samples_on_triangles(before, 16, 12, random));
     const Picture exact_cut = picture(after, cut, on_pieces(exact.samples, before, after, whole));
     EXPECT_EQ(tests::differing_bits(exact.masks, exact_cut.masks), 0U) << name;
-    // Seen again by the camera: p is rounded from the pieces' corners.
+    // A camera that sees the cut scene again has p rounded from the pieces' corners.
     const Picture anew = picture(after, cut);
     differing += tests::differing_bits(plain.masks, anew.masks);
     for (const std::int32_t triangle : plain.samples.triangle) pairs += triangle < 0 ? 0 : 256;

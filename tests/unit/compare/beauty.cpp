@@ -87,13 +87,13 @@ TEST(Beauty, ALightToOneSide) {
   Floor floor({{3, 0, 0}});
   floor.lights = {rectangle(4, 1, 1, 1, 1)};
   const std::vector<std::uint32_t> seen{1};
-  // From 2 to 4 beside the element: the rectangle up to 4 minus the one up to 2, twice.
+  // The strip from 2 to 4 beside the element: the rectangle up to 4 minus the one up to 2, twice.
   const double expected = 2 * (corner_form_factor(4, 1, 4) - corner_form_factor(2, 1, 4));
   EXPECT_FLOAT_EQ(floor.shade({{seen, {}}})[0].r, static_cast<float>(0.5 * 10 * expected));
 }
 
 TEST(Beauty, IsTheRectanglesFormFactor) {
-  // Under the middle, and under the corner (±2, ±1): E = π · radiance · F, beauty = colour · radiance · F.
+  // Points under the middle, and under the corner (±2, ±1): E = π · radiance · F, beauty = colour · radiance · F.
   Floor floor({{0, 0, 0}, {2, 0, 1}});
   floor.lights = {rectangle(3, 2, 1, 4, 8)};
   const std::vector<std::uint32_t> seen(2, 0xffffffffu);

@@ -38,7 +38,7 @@ TEST(ErrorBudget, WhereChangesDoNotHalveTheLastRunCounts) {
   EXPECT_EQ(limit_of(0.3, 0.2, 0.2).value, 0.2);
   EXPECT_EQ(limit_of(1, 0.5, 0.1).value, 0.1) << "a change of 0.4 after one of 0.5";
   EXPECT_EQ(limit_of(1, 0.4, 0.05).value, 0) << "no mean of squares is below 0";
-  // It swings around 0.25: + 0.08, − 0.04, + 0.02.
+  // The sequence swings around 0.25: + 0.08, − 0.04, + 0.02.
   EXPECT_NEAR(limit_of(0.33, 0.21, 0.27).value, 0.25, 1e-14);
 }
 
@@ -63,7 +63,7 @@ TEST(ErrorBudget, ARepairIsTheChangeToWhereItsRunsLead) {
   const auto limit = change(part_of({std::sqrt(0.0052), std::sqrt(0.0028)}), RepairEnd::limit);
   EXPECT_NEAR(limit.first.value(), 0.02 - base, 1e-12);
   EXPECT_TRUE(limit.second);
-  // With a first run of its own: of the last three.
+  // The limit with a first run of its own is that of the last three.
   const auto own = change(part_of({0.2, std::sqrt(0.02), 0.1}), RepairEnd::limit);
   EXPECT_NEAR(own.first.value(), 0 - base, 1e-7) << "the root of a rounding error";
   // Runs that failed end the sequence.

@@ -23,7 +23,8 @@ TEST(EyeErrorTest, CountsWhatAByteShowsAndStepsBetweenNeighbours) {
   const Errors e;
   const EyeError eye = eye_error({e.v, e.reference, e.judged}, e.penumbra, 3).value();
   EXPECT_DOUBLE_EQ(eye.over255, 3.0 / 6) << "1/512 is below a byte's step";
-  // Beside: 0–1, 1–2, 3–4. Below: 0–3, 1–4; 2–5 has one end out of the penumbra, and 2–3 are in two rows.
+  // Pairs beside one another: 0–1, 1–2, 3–4. Pairs one below the other: 0–3, 1–4; 2–5 has one end out of the penumbra,
+  // and 2–3 are in two rows.
   const double squares =
       std::pow(1 / 8.0, 2) + 0 + std::pow(1 / 512.0 + 1 / 8.0, 2) + std::pow(1 / 512.0, 2) + 1 / 16.0;
   EXPECT_DOUBLE_EQ(*eye.banding, std::sqrt(squares / 5));

@@ -43,7 +43,7 @@ TEST(Report, HasAllOfMetricsJson) {
   EXPECT_EQ(tests::report_json(report_html(in)).at("metrics"), nlohmann::json(to_json(in.metrics)));
 }
 
-/// What the page says beside the numbers.
+/// The page describes the run beside the numbers.
 TEST(Report, DescribesSceneMethodsAndMachine) {
   ReportInput in = touchable_input(2);
   in.sampled_pixels = 400;
@@ -73,7 +73,8 @@ TEST(Report, DescribesSceneMethodsAndMachine) {
   EXPECT_TRUE(method["repairs"][0][0].at("png").get<std::string>().starts_with("data:image/png;base64,"));
 }
 
-/// What the script works on is there, by name, for every entry and light; a method that failed is not among them.
+/// The data that the script works on is there, by name, for every entry and light; a method that failed is not among
+/// them.
 TEST(Report, CarriesTheNumbersOfEachPicture) {
   ReportInput in = touchable_input(3, 2);
   in.methods[1] = {};
@@ -166,7 +167,7 @@ TEST(Report, EscapesEverythingThatCameFromOutside) {
   EXPECT_EQ(occurrences(html, "<script"), scripts);
   EXPECT_EQ(tests::report_json(html).at("lights").at(1).at("name"), evil);
   EXPECT_EQ(tests::report_json(html).at("metrics").at("methods").at(1).at("failure").at("message"), evil);
-  // In the title, and nowhere else outside the JSON.
+  // The text is in the title, and nowhere else outside the JSON.
   EXPECT_EQ(occurrences(html, "alert(&quot;1&quot;)"), 1u);
   EXPECT_EQ(unbalanced_tag(html), "");
 }

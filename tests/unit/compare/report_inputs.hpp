@@ -93,7 +93,7 @@ inline std::string unbalanced_tag(const std::string& html) {
   return open.empty() ? "" : open.back();
 }
 
-/// With numbers for the script: 2 × 2 pixels, masks of four light samples, `lights` lights.
+/// Returns input with numbers for the script: 2 × 2 pixels, masks of four light samples, `lights` lights.
 inline ReportInput touchable_input(std::size_t method_count, std::size_t light_count = 1) {
   ReportInput in = input_with(method_count);
   in.metrics.reference.width = in.metrics.reference.height = 2;

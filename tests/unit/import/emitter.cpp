@@ -39,7 +39,8 @@ struct AddCorners {
   void operator()(const auto& /*round*/) const {}
 };
 
-/// Its pieces' corners, counter-clockwise; of a light in one piece that one's. None of a sphere.
+/// Returns the corners of the emitter's pieces, counter-clockwise; of a light in one piece, that piece's. None of a
+/// sphere.
 std::vector<std::vector<glm::dvec3>> outlines_of(const import::Emitter& emitter) {
   std::vector<std::vector<glm::dvec3>> all;
   std::visit(AddCorners{all}, emitter.shape);

@@ -61,8 +61,8 @@ TEST_F(GltfAnimation, LinearStepAndCubic) {
   EXPECT_EQ(corner(step, 1.99), glm::dvec3(1, 0, 0));
   EXPECT_EQ(corner(step, 2), glm::dvec3(2, 0, 0));
   EXPECT_EQ(corner(step, 3), glm::dvec3(5, 0, 0));
-  // In-tangent, value, out-tangent of two keys two seconds apart. Without slopes it is 3 t² − 2 t³; with the line's own
-  // slope the line; with one slope m at the beginning that and 2 m (t³ − 2 t² + t).
+  // Fields are in-tangent, value, out-tangent of two keys two seconds apart. The curve without slopes is 3 t² − 2 t³;
+  // with the line's own slope it is the line; with one slope m at the beginning, that and 2 m (t³ − 2 t² + t).
   const auto cubic = [&](float out, float in, double time) {
     Gltf gltf;
     gltf.animate(0, "translation", {1, 3}, {0, 0, 0, 0, 0, 0, out, 0, 0, in, 0, 0, 8, 0, 0, 0, 0, 0}, "CUBICSPLINE");
@@ -150,7 +150,7 @@ TEST_F(GltfAnimation, SkinsFollowTheirJointsAlone) {
   EXPECT_EQ(scene.soup.positions[1], glm::dvec3(5, 0, 0));
   EXPECT_EQ(scene.soup.positions[2], glm::dvec3(2, 1, 0));
   EXPECT_THAT(scene.warnings, IsEmpty());
-  // At rest, where its skin does not bend it, the mesh is where its node is.
+  // The mesh at rest, where its skin does not bend it, is where its node is.
   EXPECT_EQ(scene.origin, glm::dvec3((51 - 1) / 2.0, (61 + 5) / 2.0, (70 + 1) / 2.0 - 1));
 }
 

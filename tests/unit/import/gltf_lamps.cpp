@@ -125,8 +125,8 @@ TEST_F(GltfReader, LampsWithoutASizeTakeTheUsersOrAWarning) {
   }
 }
 
-/// Before version 3.4.36 Blender's exporter wrote a lamp's power as Blender has it: watts, of a sun watts a square
-/// metre.
+/// Blender's exporter before version 3.4.36 wrote a lamp's power as Blender has it: in watts, for a sun in watts a
+/// square metre.
 TEST_F(GltfReader, LampsOfOlderBlendersAreInWatts) {
   const auto radiance = [&](const std::string& version, const json& lamp) {
     Gltf gltf = with_lamp(lamp);
@@ -201,7 +201,7 @@ Gltf with_area_lamp(const json& lamp) {
   return gltf;
 }
 
-/// Beside KHR_lights_punctual: what glTF has no word for.
+/// Extras hold lamps that KHR_lights_punctual has no word for.
 TEST_F(GltfReader, AreaLampsOfExtras) {
   Gltf gltf = with_area_lamp({{"shape", "rectangle"}, {"size", {1, 0.5}}, {"radiance", {4, 2, 1}}});
   const Scene scene = read(gltf);

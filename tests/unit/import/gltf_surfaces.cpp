@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How glTF surfaces look: colours, pictures, normals, and what lets light through.
+// Tests the looks of glTF surfaces: colours, pictures, normals, and what lets light through.
 #include "scenes/formats/gltf_reader.hpp"
 
 #include "base/image.hpp"
@@ -251,7 +251,7 @@ TEST_F(GltfSurfaces, ShineWithTheMeanOfTheirPictureWhereItLies) {
   EXPECT_LT(glm::distance(radiance(lit({0, 1, 0.6666667f, 1, 0, 0, 0.6666667f, 0})),
                           glm::dvec3(20 * (0.75 * dark + 0.25), 10 * 0.25, 0)),
             1e-6);
-  // Its right half alone: the places say so, or KHR_texture_transform does.
+  // The right half of the picture alone: texture coordinates say so, or KHR_texture_transform does.
   EXPECT_EQ(radiance(lit({0.5f, 1, 1, 1, 0.5f, 0, 1, 0})), glm::dvec3(20, 10, 0));
   EXPECT_EQ(radiance(lit(whole, {{"scale", {0.5, 1}}, {"offset", {0.5, 0}}})), glm::dvec3(20, 10, 0));
   // One place for all corners, as of a palette.
@@ -293,7 +293,7 @@ TEST_F(GltfSurfaces, ExtrasSayWhoCastsAndReceives) {
   EXPECT_THAT(foreign.warnings, Contains(AllOf(HasSubstr("'Lamp'"), HasSubstr("\"body\" of another tool"))));
 }
 
-/// What glTF has no word for: extras of cameras and spot lamps.
+/// Extras of cameras and spot lamps hold what glTF has no word for.
 TEST_F(GltfSurfaces, ExtrasShiftLensesAndSmoothCones) {
   Gltf gltf;
   gltf.at("/cameras/0")["extras"] = {{"shift", {0.25, -1}}};

@@ -120,7 +120,7 @@ TEST_F(InputFiles, NobodyCanExchangeANameMeanwhile) {
     }
   });
   int read = 0, refused = 0;
-  // At least twenty thousand turns, and on a busy machine more until both have been met.
+  // The loop takes at least twenty thousand turns, and on a busy machine more until both outcomes have been met.
   for (int i = 0; i < 20000 || ((read == 0 || refused == 0) && i < 20'000'000); ++i) {
     for (const char* name : {"flip", "turn/secret"}) {
       const OpenedBeneath file = open(name);

@@ -63,7 +63,7 @@ inline LampMesh cube_lamp(const glm::dvec3& center, double half, int side = 1) {
   return lamp;
 }
 
-/// Along x, open at both ends or closed by polygons.
+/// Makes a tube along x, open at both ends or closed by polygons.
 inline LampMesh tube_lamp(const glm::dvec3& center, double radius, double half, int sides, bool closed) {
   const auto at = [&](int i, double x) {
     const double angle = 2 * std::numbers::pi * (i % sides) / sides;
@@ -80,7 +80,7 @@ inline LampMesh tube_lamp(const glm::dvec3& center, double radius, double half, 
   return lamp;
 }
 
-/// With so many points, facing down; triangles from its middle.
+/// Makes a star with so many points, facing down; triangles from its middle.
 inline LampMesh star_lamp(const glm::dvec3& center, double outer, double inner, int points) {
   LampMesh lamp;
   lamp.points.push_back(center);

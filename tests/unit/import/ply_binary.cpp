@@ -105,7 +105,8 @@ std::vector<std::string> files() {
     all.push_back(
         mixed.put<std::uint16_t>({1}).put<std::int8_t>({3}).put<std::uint32_t>({1, 3, 1}).put<float>({1}).str());
 
-    // More corners than are taken at once, between two triangles; and faces before their vertices.
+    // The file has a face with more corners than are read at once, between two triangles; and faces before their
+    // vertices.
     PlyText large(big, "element face 3\nproperty list int uint vertex_index\n" + places);
     large.put<std::int32_t>({3}).put<std::uint32_t>({0, 1, 2}).put<std::int32_t>({40});
     for (std::uint32_t i = 0; i < 40; ++i) large.put<std::uint32_t>({i % 4});

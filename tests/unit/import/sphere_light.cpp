@@ -25,7 +25,7 @@ struct Ball {
   }
 };
 
-/// As Blender's UV sphere: rings of quads, a fan at each pole, in single precision around (5, -3, 2).
+/// Makes Blender's UV sphere: rings of quads, a fan at each pole, in single precision around (5, -3, 2).
 Ball uv_sphere(std::uint32_t segments, std::uint32_t rings, double stretch = 1) {
   Ball ball;
   for (std::uint32_t r = 0; r <= rings; ++r) {

@@ -107,7 +107,7 @@ TEST(Diagnosis, SelfIntersections) {
       diagnosis_of(soup({{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {1, 1, 0}, {1, 1, 1}, {2, 1, 1}}, {{0, 1, 2}, {3, 4, 5}}))
           .self_intersections->count,
       1);
-  // From the common vertex through the other's inside.
+  // An edge from the common vertex through the other triangle's inside.
   EXPECT_EQ(diagnosis_of(soup({{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {2, 2, -1}, {2, 2, 1}}, {{0, 1, 2}, {0, 3, 4}}))
                 .self_intersections->count,
             1);
@@ -128,7 +128,7 @@ TEST(Diagnosis, ManyTrianglesInOnePlaceAreCountedAsOneSurface) {
 }
 
 TEST(Diagnosis, FarFromTheOriginAndTinyDetailsAreLostInFloat) {
-  // Around 2²⁵ with a spread of 2: relative to the centre nothing is lost.
+  // The box is around 2²⁵ with a spread of 2: relative to the centre nothing is lost.
   const glm::dvec3 far(0x1p25, 0, 0);
   const Diagnosis moved_far = diagnosis_of(moved(unit_box(), far));
   EXPECT_EQ(moved_far.largest_coordinate, 0x1p25 + 1);

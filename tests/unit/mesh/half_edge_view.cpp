@@ -27,7 +27,7 @@ std::size_t count(const HalfEdgeView& surface, NotHeld why) {
   return static_cast<std::size_t>(std::ranges::count(surface.listed(), why, &ListedFace::why));
 }
 
-/// How often the loops run along each edge: from a to b, minus from b to a.
+/// Returns the number of times that the loops run along each edge: from a to b, minus from b to a.
 std::map<std::uint32_t, int> runs(const HalfEdgeView& surface, const EdgeGraph& graph,
                                   const std::vector<SurfaceLoop>& loops) {
   std::map<std::uint32_t, int> runs;

@@ -41,7 +41,7 @@ const std::multiset<FileCorners> kTetrahedron = [] {
   const std::array<double, 3> o{0, 0, 0}, x{2, 0, 0}, y{0, 3, 0}, z{0, 0, 5};
   return std::multiset<FileCorners>{{o, y, x}, {o, x, z}, {o, z, y}, {z, x, y}};
 }();
-// In the multiset's own form each triangle starts at its least corner; z x y does: (0 0 5) is the least of the three.
+// Triangles in the multiset's own form start at their least corner; z x y does: (0 0 5) is the least of the three.
 
 class MeshImport : public penumbra::test::FileTest {
  protected:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the program does when the import helper does not: crashes, hangs, floods, lies. The helpers here are shell
+// Tests what the program does when the import helper fails: crashes, hangs, floods, lies. The helpers here are shell
 // scripts that do so on purpose.
 #include "mesh/import_helper.hpp"
 

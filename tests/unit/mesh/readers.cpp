@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What Assimp reads wrongly, or not at all, and our own readers read.
+// Tests files that Assimp reads wrongly, or not at all, and our own readers read.
 #include "mesh/import.hpp"
 
 #include "tests/unit/mesh/import_files.hpp"

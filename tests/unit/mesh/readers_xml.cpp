@@ -193,7 +193,7 @@ TEST_F(XmlReaders, X3dTransformsInTheirOrder) {
                            triangle_shape() + "<Transform scale=\"-1 1 1\">" + triangle_shape("ccw=\"false\"") +
                            "</Transform></Transform>"));
   ASSERT_EQ(mesh.soup.triangles.size(), 2u);
-  // Seen from the centre the corners are (0 0), (1 0), (0 1); twice as wide and turned by 90°, (0 0), (0 2), (-1 0).
+  // The corners are (0 0), (1 0), (0 1) as seen from the centre; twice as wide and turned by 90°, (0 0), (0 2), (-1 0).
   EXPECT_LT(distance(corner(mesh.soup, 0, 0), {2, 2, 3}), 1e-15);
   EXPECT_LT(distance(corner(mesh.soup, 0, 1), {2, 4, 3}), 1e-15);
   EXPECT_LT(distance(corner(mesh.soup, 0, 2), {1, 2, 3}), 1e-15);
@@ -247,7 +247,7 @@ TEST_F(XmlReaders, X3dRefusalsSayTheLine) {
 }
 
 TEST_F(XmlReaders, X3dPrototypesHaveNamesOfTheirOwn) {
-  // What stands behind an inner prototype is of the outer one's names again, and no name of theirs is one of the scene.
+  // Names behind an inner prototype are the outer one's again, and no prototype's name is one of the scene.
   const std::string inner =
       "<ProtoDeclare><ProtoBody><Group DEF=\"A\"><Shape><Box/></Shape></Group></ProtoBody></ProtoDeclare>";
   const std::string outer =

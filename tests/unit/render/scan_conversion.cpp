@@ -88,7 +88,7 @@ TEST(ScanConversion, CornersOnTheRaysOfPixelsAreNotLost) {
 }
 
 TEST(ScanConversion, ManyTrianglesAPixel) {
-  // From outside, from within, from just above the surface, from so far that all of it is in one pixel.
+  // Cameras outside, within, just above the surface, and so far that the whole sphere is in one pixel.
   scenes::Scene scene;
   tests::add_object(scene, "sphere", sphere(90, 1));
   scene.cameras.push_back(tests::camera({0.3, 0.4, 3}, {0, 0, 0}, 50));

@@ -20,7 +20,7 @@ using visibility::ViewSamples;
 
 class VisibilityBufferTest : public tests::DeviceTest {
  protected:
-  /// By both rasterisers and by the processor. Returns how many pixels see something.
+  /// Compares both rasterisers and the processor. Returns the number of pixels that see something.
   static std::size_t check(const scenes::Scene& scene, std::uint32_t width, std::uint32_t height,
                            const std::string& what) {
     const visibility::SceneFloats floats = visibility::make_scene_floats(scene);
@@ -58,7 +58,7 @@ TEST_F(VisibilityBufferTest, EqualsItsDefinitionOnCrossingSoups) {
     scenes::Scene scene;
     std::vector<tests::Corners> soup;
     for (int i = 0; i < 200; ++i) {
-      // From specks below a pixel to ones that reach far behind the eye.
+      // Sizes range from specks below a pixel to triangles that reach far behind the eye.
       const glm::dvec3 center = point(1);
       const double size = std::ldexp(4.0, -static_cast<int>(random() % 12));
       soup.push_back({center + point(size), center + point(size), center + point(size)});
@@ -82,8 +82,8 @@ TEST_F(VisibilityBufferTest, EqualsItsDefinitionOnTheBunny) {
 }
 
 TEST_F(VisibilityBufferTest, TheProcessorFindsTheSameWhereMuchIsHidden) {
-  // More triangles than one batch of the scan conversion, from specks to ones larger than the picture, which is no
-  // whole number of tiles; the device answers, as every triangle at every pixel would take minutes.
+  // The scene has more triangles than one batch of the scan conversion, from specks to ones larger than the picture,
+  // which is no whole number of tiles; the device answers, as every triangle at every pixel would take minutes.
   std::mt19937 random(7);
   std::uniform_real_distribution<double> real(-1, 1);
   const auto point = [&](double size) { return size * glm::dvec3(real(random), real(random), real(random)); };

@@ -14,7 +14,7 @@ SKIPPED = 77
 
 
 def is_gpl_alone(header, known={}):
-    """Under the GPL without the choice of LGPL or of a free licence beside it, and without an exception as Linux has."""
+    """Returns whether the file is under the GPL without the choice of LGPL or of a free licence beside it, and without an exception as Linux has."""
     if header not in known:
         try:
             with open(header, encoding="utf-8", errors="replace") as file:

@@ -47,7 +47,7 @@ TEST(AtomicFile, WithoutCommitNothingIsLeftAndTheOldFileStays) {
   EXPECT_EQ(folder.names().size(), 1u);
 }
 
-/// As on a file system without nameless files, while this object lives.
+/// Makes files as on a file system without nameless files, while this object lives.
 class NamedParts {
  public:
   NamedParts() { ::setenv("PENUMBRA_TEST_NAMED_PARTS", "1", 1); }

@@ -9,7 +9,7 @@
 #include <string>
 #include <variant>
 
-/// What a scene file says, and how the program understands it.
+/// Tests what a scene file says, and how the program understands it.
 namespace penumbra::test {
 namespace {
 

@@ -20,7 +20,7 @@ scenes::Scene read_shipped(const std::string& name) {
   return scenes::read_scene(kScenes / name);
 }
 
-/// Also those in folders.
+/// Returns all shipped scenes, those in folders, too.
 std::vector<std::filesystem::path> shipped_files() {
   std::vector<std::filesystem::path> files;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(kScenes)) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is put around meshes and scenes without lights.
+// Tests the studio that is put around meshes and scenes without lights.
 
 #include "scenes/formats/reader.hpp"
 #include "scenes/studio.hpp"
@@ -57,13 +57,13 @@ TEST(Studio, AMeshGetsALightAFloorAndACamera) {
   const double sine = std::sqrt(3.0) / glm::distance(camera.eye, middle);  // of half the box's diagonal
   EXPECT_NEAR(std::asin(sine) * 180 / std::numbers::pi, camera.vertical_fov / 2, 1e-9);
 
-  // Of a picture half as wide as high, within the cone of half the width.
+  // A picture half as wide as high holds the mesh within the cone of half the width.
   const scenes::Camera upright = read(kTetrahedron, {.aspect = 0.5}).cameras[0];
   EXPECT_NEAR(std::asin(std::sqrt(3.0) / glm::distance(upright.eye, middle)),
               std::atan(0.5 * std::tan(camera.vertical_fov / 360 * std::numbers::pi)), 1e-12);
 }
 
-// Between keys the floor and the camera stay where they are at rest.
+// The floor and the camera stay between keys where they are at rest.
 TEST(Studio, StandsStillWhileASceneMoves) {
   const scenes::Scene rest = read(kTetrahedron, {.never = true, .fit_camera = "fit"});
   scenes::Scene moved = rest;

@@ -84,7 +84,7 @@ inline std::string scene_text(const std::string& mesh = kMesh, const std::string
   return fmt::format(R"({{"format": "penumbra-scene/1", {}, "meshes": [{}], "lights": [{}]}})", camera, mesh, light);
 }
 
-/// For writers: shapes and lights of every kind, and numbers that are hard to write.
+/// Scene for tests of writers: shapes and lights of every kind, and numbers that are hard to write.
 inline constexpr const char* kEverything = R"({ "format": "penumbra-scene/1", "size": [640, 360],
   "cameras": [{"name": "main", "eye": [0.1, 2, 6.3], "target": [0, 1, 0], "verticalFov": 37.7}, {"eye": [1, 2, 3], "target": [0, 0, 0], "up": [1, 0, 0.2], "shift": [0.3, -0.1], "aperture": 0.07, "focusDistance": 2.3}],
   "meshes": [

@@ -15,7 +15,7 @@
 #include <string>
 #include <variant>
 
-/// What is written reads back: to the last bit from JSON, triangle by triangle from OBJ. GLB: writer_glb.cpp.
+/// Tests that written scenes read back: to the last bit from JSON, triangle by triangle from OBJ. GLB: writer_glb.cpp.
 namespace penumbra::test {
 namespace {
 

@@ -11,7 +11,7 @@
 #include <string>
 #include <variant>
 
-/// What is written as GLB reads back in single precision, and what glTF cannot hold is said.
+/// Tests that scenes written as GLB read back in single precision, and that a warning names what glTF cannot hold.
 namespace penumbra::test {
 namespace {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What messages make of the state, and what a file that changes makes of it.
+// Tests what messages, and a file that changes, do to the state.
 #include "app/view/live_state.hpp"
 
 #include "app/view/light_json.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which requests the page's server answers.
+// Tests which requests the page's server answers.
 #include "network/requests.hpp"
 
 #include <gtest/gtest.h>

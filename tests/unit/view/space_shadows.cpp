@@ -124,14 +124,15 @@ TEST(SpaceShadows, MessageHasTheLibrarysOwnSilhouettesAndWedges) {
 
 TEST(SpaceShadows, SilhouettesAreThoseOfThePoint) {
   const Built built;
-  // Above the block its top has four silhouettes, the floor its own four. Its sides are seen from beyond them alone.
+  // The block's top has four silhouettes as seen from above it, the floor its own four. The block's sides are seen from
+  // beyond them alone.
   const SpaceAnswer above = built.answer({});
   EXPECT_EQ(above.header["silhouettes"], 8);
   const std::vector<std::int32_t> counts = above.numbers<std::int32_t>("multiplicities");
   EXPECT_EQ(std::ranges::count_if(counts, [](int k) { return std::abs(k) == 2; }), 4);
   EXPECT_EQ(std::ranges::count_if(counts, [](int k) { return std::abs(k) == 1; }), 4);
   EXPECT_EQ(above.header["floor"], 0);
-  // On the floor, 6 below the light, the top's edges, 4 below it, are at 0.5 · 6 / 4.
+  // The top's edges, 4 below the light, are at 0.5 · 6 / 4 on the floor, 6 below it.
   const std::vector<float> lines = above.floats("shadowLines");
   ASSERT_EQ(lines.size(), 8U * 6);
   int of_block = 0;
@@ -152,7 +153,7 @@ TEST(SpaceShadows, WedgesOfAPointAreThoseThatContainIt) {
   const Built built;
   SpaceShadows request;
   request.wedges.construction = "tight";
-  // From the light's sides the edge of the top, at x 0.5, is cast to x 0.25 and 1.25 on the floor.
+  // The edge of the top at x 0.5 is cast by the light's sides to x 0.25 and 1.25 on the floor.
   for (const auto& [x, count] : {std::pair{0.2, 0}, std::pair{0.3, 1}, std::pair{1.2, 1}, std::pair{1.3, 0}}) {
     request.point = glm::dvec3(x, 0, 0) - built.floats.origin;
     EXPECT_EQ(built.answer(request).header["inside"]["count"], count) << x;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What trees are built of: groups of boxes that lie together, and halves of the last dozens.
+// Tests the parts that trees are built of: groups of boxes that lie together, and halves of the last dozens.
 
 #include "visibility/tree/box_groups.hpp"
 
@@ -67,8 +67,8 @@ TEST(BoxGroups, AreCompactAndNotMuchSmallerThanTheyMayBe) {
   EXPECT_LT(made.groups.size(), 40000 / 5U);
   for (const BoxGroup& group : made.groups) {
     const glm::vec3 size = group.upper - group.lower;
-    // At most sixteen of a cell that is halved above that: 8 · 16 · 200 places are 30 a side; a cell's halves may be
-    // four times as long as another side, and chance is on top.
+    // A group has at most sixteen boxes of a cell that is halved above that: 8 · 16 · 200 places are 30 a side; a
+    // cell's halves may be four times as long as another side, and chance is on top.
     EXPECT_LT(std::max({size.x, size.y, size.z}), 110);
   }
 }

@@ -48,7 +48,7 @@ glm::dvec3 doubled_area(const std::vector<glm::dvec3>& loop) {
   return sum;
 }
 
-/// What bounds the light as p sees it, with `sides` sides where it is round.
+/// Returns the bounds of the light as p sees it, with `sides` sides where it is round.
 std::vector<glm::dvec3> rim_of(const Light& light, const glm::vec3& p, int sides) {
   if (!is_round(light.kind)) return {light.outline.begin(), light.outline.end()};
   const auto [center, u, v] = light_frame_from(light, p);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which light samples something in the light's plane touches.
+// Tests which light samples are touched by something in the light's plane.
 
 #include "tests/unit/visibility/scenes.hpp"
 #include "visibility/lights/light_touch.hpp"
@@ -28,7 +28,7 @@ visibility::LightTouch touch_of(const scenes::AreaLight& light, const std::vecto
 TEST(LightTouch, NothingNearTouchesNothing) {
   const scenes::AreaLight light = tests::rectangle_light(kCenter, kU, kV);
   EXPECT_TRUE(touch_of(light, tests::quad({0, 1, 0}, {1, 0, 0}, {0, 0, -1})).empty());
-  // Behind the light and in front of it, by a quarter of the normal.
+  // Quads behind the light and in front of it, by a quarter of the normal.
   const glm::dvec3 n = glm::cross(kU, kV);
   EXPECT_TRUE(touch_of(light, tests::quad(kCenter - 0.25 * n, kU, kV)).empty());
   EXPECT_TRUE(touch_of(light, tests::quad(kCenter + 0.25 * n, kU, kV)).empty());
@@ -37,12 +37,12 @@ TEST(LightTouch, NothingNearTouchesNothing) {
 TEST(LightTouch, PanelOfATiltedLightTouchesWhatItCovers) {
   const scenes::AreaLight light = tests::rectangle_light(kCenter, kU, kV);
   EXPECT_EQ(touch_of(light, tests::quad(kCenter, 2.0 * kU, 2.0 * kV)).samples.size(), 256U);
-  // Over its left half: eight columns, and those that touch its border.
+  // A quad over the light's left half touches eight columns, and those at its border.
   const visibility::LightTouch half = touch_of(light, tests::quad(kCenter - kU, kU, 2.0 * kV));
   EXPECT_GE(half.samples.size(), 120U);
   EXPECT_LE(half.samples.size(), 136U);
   for (const std::uint32_t sample : half.samples) EXPECT_LE(sample % 16, 8U);
-  // Beside the light: it touches no sample, but flat ways to samples may meet it.
+  // A quad beside the light touches no sample, but flat segments to samples may meet it.
   const visibility::LightTouch beside = touch_of(light, tests::quad(kCenter + 2.5 * kU, kU, kV));
   EXPECT_TRUE(beside.samples.empty());
   EXPECT_TRUE(beside.any_near);

@@ -159,7 +159,7 @@ TEST(Lights, RoundingChoosesNoPolygonsPlane) {
         light_of(scenes::Polygon{{a, 0.5 * a + 0.5 * b, b, c + size * u + size * v, c - size * u + size * v}});
     const glm::dvec3 stored(light.center),
         normal = glm::cross(glm::dvec3(light.center_u) - stored, glm::dvec3(light.center_v) - stored);
-    // Its corners are off by √3 2⁻²⁵, and its triangles are over half of `size` high.
+    // The light's corners are off by √3 2⁻²⁵, and its triangles are over half of `size` high.
     EXPECT_GT(glm::dot(glm::normalize(normal), n), std::cos(std::min(0.3, 8 * 0x1p-25 * std::sqrt(3) / size))) << i;
     // The first three that are well apart: a judge who asks for three that are not exactly on a line finds the same.
     const Light plain = light_of(scenes::Polygon{{a, b, c + size * u + size * v, c - size * u + size * v}});
@@ -186,7 +186,8 @@ TEST(Lights, PolygonSamplesKeepAreasAndStayInside) {
   EXPECT_NEAR(static_cast<double>(left) / 4096, 0.5, 0.005);
 }
 
-/// What p sees of a sphere is the cone of angle asin(r / d), and the disk's rim touches the sphere and that cone.
+/// The part of a sphere that p sees is the cone of angle asin(r / d), and the disk's rim touches the sphere and that
+/// cone.
 TEST(Lights, SphereShowsEachPointTheDiskThatItsTangentsBound) {
   const double r = 0.5;
   const Light light = light_of(scenes::Sphere{{0, 4, 2}, r}, {256, 0, 0, SamplePattern::grid, 0});
@@ -224,7 +225,7 @@ TEST(Lights, SphereShowsEachPointTheDiskThatItsTangentsBound) {
   }
 }
 
-/// With cosines 0.8 and 0.6 of the cone's ends and 0.65 of p's direction, a quarter of the way in from the rim.
+/// Cosines are 0.8 and 0.6 of the cone's ends and 0.65 of p's direction, a quarter of the distance in from the rim.
 TEST(Lights, ConesFallAsTheirLampsSay) {
   const double inner = glm::degrees(std::acos(0.8)), outer = glm::degrees(std::acos(0.6));
   const glm::vec3 p(static_cast<float>(std::sqrt(1 - 0.65 * 0.65)), -0.65F, 0), up(0, 1, 0);
@@ -237,7 +238,8 @@ TEST(Lights, ConesFallAsTheirLampsSay) {
   EXPECT_EQ(spot_share(light, {1, -0.7F, 0}, up), 0);
 }
 
-/// What p gets of a disk that faces it, over what it would get if all the light came from its middle: over a fine grid.
+/// Returns the light that p gets from a disk that faces it, over what it would get if all the light came from the
+/// disk's middle: over a fine grid.
 double share_by_grid(const scenes::Sphere& lamp, const glm::dvec3& p, const glm::dvec3& n) {
   const glm::dvec3 axis = lamp.cone->direction, middle = lamp.center - p, away = glm::normalize(middle);
   const glm::dvec3 u = glm::normalize(glm::cross(away, glm::dvec3(0.3, 0.5, 0.7))), v = glm::cross(away, u);

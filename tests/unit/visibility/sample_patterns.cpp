@@ -22,7 +22,7 @@ std::vector<glm::dvec2> samples(std::uint32_t count, SamplePattern pattern, std:
   return unit_square_samples({count, 0, 0, pattern, seed});
 }
 
-/// How many of columns × rows equal cells hold exactly one point.
+/// Returns how many of columns × rows equal cells hold exactly one point.
 std::size_t cells_with_one(const std::vector<glm::dvec2>& points, std::uint32_t columns, std::uint32_t rows) {
   std::vector<int> hits(std::size_t{columns} * rows, 0);
   for (const glm::dvec2& q : points) {

@@ -7,8 +7,8 @@
 
 namespace penumbra::tests {
 
-/// So many small triangles anywhere around the origin, over a tilted floor that receives their shadows. Nothing of it
-/// is parallel to an axis.
+/// Makes so many small triangles anywhere around the origin, over a tilted floor that receives their shadows. No
+/// triangle is parallel to an axis.
 inline scenes::Scene soup_over_tilted_floor(std::mt19937& random, int triangles) {
   std::uniform_real_distribution<double> real(-1, 1);
   const auto point = [&](double size) { return size * glm::dvec3(real(random), real(random), real(random)); };

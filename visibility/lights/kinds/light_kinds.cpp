@@ -10,7 +10,7 @@
 namespace penumbra::visibility {
 namespace {
 
-/// In the order of scenes::kLightTraits.
+/// Behaviours in the order of scenes::kLightTraits.
 constexpr std::array kBehaviours{&kRectangleBehaviour, &kDiskBehaviour, &kEllipseBehaviour, &kPolygonBehaviour,
                                  &kSphereBehaviour,    &kSunBehaviour,  &kDomeBehaviour};
 static_assert(kBehaviours.size() == scenes::kLightTraits.size());

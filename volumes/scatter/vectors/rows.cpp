@@ -147,7 +147,7 @@ int RowSum::multiplicity(const WideEdges& leaf, std::size_t lane) const {
   return k;
 }
 
-/// Returns the vector to a point, with its error. (bound way)
+/// Returns the vector to a point, with its error (bound way).
 RowSum::Direction RowSum::direction_to(const glm::dvec3& point) const {
   const glm::dvec3 d = point - p_;
   const double length = std::abs(d.x) + std::abs(d.y) + std::abs(d.z), error = kUnit * skew_ * length;

@@ -110,8 +110,8 @@ TEST_F(MapsBackproject, IsTheSumOfAllTexelsOneByOne) {
   }
 }
 
-// On sideways faces the sides of a texel stand where the middle of its row sees them: exact in the mean of a row, so
-// what remains are corners of the outline, each a fraction of a texel's square.
+// Sides of texels on sideways faces stand where the middle of the texel's row sees them: exact in the mean of a row, so
+// that only corners of the outline remain, each a fraction of a texel's square.
 TEST_F(MapsBackproject, AHemicubesFacesTooToASquareTexel) {
   const Stage stage(boards_in_a_room(), 24, 24, light_samples(1));
   const PatchTwin twin(device(), stage, 48);
@@ -159,8 +159,8 @@ TEST_F(MapsBackproject, NoSearchChangesALevel) {
   EXPECT_GT(partly, 400U);
 }
 
-// With a budget each pixel looks at one level, or at two of which the coarser counts for a part (Guennebaud et al.
-// 2007).
+// Each pixel with a budget looks at one level, or at two levels of which the coarser counts for a part (Guennebaud et
+// al. 2007).
 TEST_F(MapsBackproject, ABudgetChoosesLevelsAndBlendsThem) {
   const Stage stage(boards_over_floor(), 24, 24, light_samples(1));
   for (const char* form : {"patch", "sphere"}) {
@@ -218,7 +218,7 @@ TEST_F(MapsBackproject, SearchesChangeNothingButPatchesThatCoverTheKernel) {
     for (const char* search : {"hsm", "mssm", "ysm"}) {
       const Masks found = run(maps::make_backproject, stage, options_of({{"fill", fill}, {"search", search}}, 48));
       for (std::size_t i = 0; i < stage.samples.size(); ++i) {
-        // What all texels hide is nearly dark without the search, except for the gaps between them.
+        // A pixel that all texels hide is nearly dark without the search, except for the gaps between texels.
         EXPECT_TRUE(found.visibility[i] == plain.visibility[i] ||
                     (found.visibility[i] == 0 && plain.visibility[i] < 0.5F))
             << search << ", pixel " << i << ": " << found.visibility[i] << " for " << plain.visibility[i];
@@ -227,7 +227,7 @@ TEST_F(MapsBackproject, SearchesChangeNothingButPatchesThatCoverTheKernel) {
   }
 }
 
-// On parallel rectangles nothing is lost but half a texel at each of an axis's two edges, f / w_l texels on the light.
+// Parallel rectangles lose nothing except half a texel at each of an axis's two edges, f / w_l texels on the light.
 TEST_F(MapsBackproject, IsWithinATexelOfTheAreaUnderAParallelSquare) {
   for (const std::uint32_t size : {16U, 31U, 33U, 128U}) {
     const Stage stage(parallel_square(), 32, 32, light_samples(1));
@@ -247,7 +247,7 @@ TEST_F(MapsBackproject, IsWithinATexelOfTheAreaUnderAParallelSquare) {
   }
 }
 
-// What is exact is exact to the bit: no caster in the kernel, and a plate that covers it.
+// Two cases are exact to the bit: no caster in the kernel, and a plate that covers it.
 TEST_F(MapsBackproject, UmbraAndFullLightAreExact) {
   scenes::Scene scene = parallel_square();
   scene.objects[0].casts_shadow = false;

@@ -167,7 +167,7 @@ TEST_F(MapsBitmask, ASearchChangesNoBit) {
   }
 }
 
-// What the light's centre cannot know: two scenes with one map have one image.
+// Two scenes with one map have one image: the light's centre cannot tell them apart.
 TEST_F(MapsBitmask, OneMapOneImage) {
   const Stage gap = on_floor(plates_with_gap(true), 16, light_samples(64)),
               whole = on_floor(plates_with_gap(false), 16, light_samples(64));
@@ -319,7 +319,7 @@ TEST_F(MapsBitmask, ALightWithoutExtentGivesTheShadowMap) {
 // B11 (Schwarz and Stamminger 2008): under a budget neighbours look at different levels, and where they do V has a
 // step. Between two levels samples are shared out, and the step is gone.
 TEST_F(MapsBitmask, BlendedLevelsHaveSmallerSteps) {
-  // So close to one another that their own errors hardly differ.
+  // Places are so close to one another that their own errors hardly differ.
   std::vector<double> places;
   for (int i = 0; i < 250; ++i) places.push_back(-2.5 + i / 50.0);
   const Stage stage = along_floor(sphere_over_floor(1, 16), places, light_samples(256));

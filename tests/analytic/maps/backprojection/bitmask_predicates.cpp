@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What papers say of bitmask on every scene of a class; the rest of docs/predicates.md is in predicates.cpp.
+// Tests what papers say of bitmask on every scene of a class; predicates.cpp has the rest of docs/predicates.md.
 
 #include "tests/analytic/maps/predicates.hpp"
 
@@ -9,7 +9,7 @@
 namespace penumbra::tests {
 namespace {
 
-/// Of the pixels in the umbra those that are brighter than 0.05.
+/// Returns the share of the umbra's pixels that are brighter than 0.05.
 double leak(const Masks& found, const Masks& truth) {
   double umbra = 0, lit = 0;
   for (std::size_t i = 0; i < found.visibility.size(); ++i) {

@@ -153,7 +153,7 @@ TEST_F(MapsContour, NothingInTheKernelIsLitAndAnUmbraIsDark) {
     std::size_t lit = 0, dark = 0;
     for (std::size_t i = 0; i < stage.samples.size(); ++i) {
       if (!square.on_floor(i)) continue;
-      // Where the twin is further than the areas' rounding inside either.
+      // V must be the closed form where the twin is farther inside either than the areas' rounding.
       const double expected = twin.visibility(i);
       if (expected == 1) {
         ++lit;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What papers say of contours, hierarchies, packets and sub-lights, on scenes of the class they say it of: signs and
-// rough sizes. docs/contour.md and docs/packet.md have the measured numbers.
+// Tests what papers say of contours, hierarchies, packets and sub-lights, on scenes of the class that they speak of:
+// signs and rough sizes. docs/contour.md and docs/packet.md have the measured numbers.
 
 #include "tests/analytic/maps/backprojection/contour_scenes.hpp"
 
@@ -86,7 +86,7 @@ TEST_F(MapsContourClaims, PartsAreAddedAsIfTheyNeverOverlapped) {
   EXPECT_EQ(added, overlap);
 }
 
-// What one map does not show no method that asks it can know.
+// A method that asks one map cannot know what this map does not show.
 TEST_F(MapsContourClaims, AGapThatTheCentreDoesNotSeeIsNotThere) {
   const Stage whole(plates_alike(false), 40, 40, light_samples(1)), gap(plates_alike(true), 40, 40, light_samples(1));
   const visibility::MethodOptions options{{"size", "128"}};
@@ -189,7 +189,7 @@ TEST_F(MapsContourClaims, SubLightsLookAtAsManyTexels) {
         counted(maps::make_packet, stage, {{"size", "128"}, {"sublights", fmt::format("{:.0f}", parts)}});
     const double ratio = some.count("kernelCells") / one.count("kernelCells");
     record(fmt::format("C8 kernel cells, S = {:.0f} over 1", parts), ratio);
-    // At least a kernel of this scene is 8 cells wide: (8 + 2 S)² / (8 + 2)² at most.
+    // A kernel of this scene is at least 8 cells wide: (8 + 2 S)² / (8 + 2)² at most.
     EXPECT_LT(ratio, (8 + 2 * parts) * (8 + 2 * parts) / 100);
   }
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What holds of contours on every scene: the way in which they are looked for never changes a bit of V (Yang et al.
-// 2009, sections 1 and 4.3).
+// Tests what holds of contours on every scene: the search for them never changes a bit of V (Yang et al. 2009, sections
+// 1 and 4.3).
 
 #include "mesh/shapes/broken_meshes.hpp"
 #include "scenes/formats/reader.hpp"
@@ -15,7 +15,7 @@ namespace {
 
 using visibility::MethodOptions;
 
-/// All ways to look for the same contours.
+/// All variants of the search for the same contours.
 std::vector<std::pair<Factory, MethodOptions>> all_ways() {
   std::vector<std::pair<Factory, MethodOptions>> ways;
   for (const char* search : {"none", "hsm", "mssm", "ysm"}) {
@@ -119,8 +119,8 @@ TEST_F(MapsContourWays, OneImageOfBrokenMeshesAndLatticeSoups) {
   expect_one_image(broken, "32", "broken mesh");
 }
 
-// Below nodes outlines alone are looked at, which grow as a map's side does, 4 times; areas would, 16 times. The
-// light's plane cuts the floor: most of the floor is seen in a hemicube's sideways faces, and beside the light.
+// Nodes are entered for outlines alone, which grow as a map's side does, 4 times; areas would grow 16 times. The
+// light's plane cuts the floor: a hemicube's sideways faces see most of the floor, and what is beside the light.
 TEST_F(MapsContourWays, HierarchiesFollowOutlinesInHemicubes) {
   scenes::Scene scene = contour_floor(0.6);
   add_object(scene, "ball", sphere({0, 1, 0}, 0.5, 24));

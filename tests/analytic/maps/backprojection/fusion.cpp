@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How parts of a shadow come together: sums, unions, and the deepest layer alone, where all parts are rectangles
+// Tests how parts of a shadow are joined: sums, unions, and the deepest layer alone, where all parts are rectangles
 // parallel to the light and known in closed form.
 
 #include "tests/analytic/maps/backprojection_scenes.hpp"
@@ -25,7 +25,7 @@ struct OnLight {
   [[nodiscard]] bool has(const glm::dvec2& at) const {
     return glm::all(glm::greaterThan(at, lower)) && glm::all(glm::lessThan(at, upper));
   }
-  /// Its share of a light of this half-size.
+  /// Returns the rectangle's share of a light of this half-size.
   [[nodiscard]] double share(double half) const {
     const glm::dvec2 extent =
         glm::max(glm::min(upper, glm::dvec2(half)) - glm::max(lower, glm::dvec2(-half)), glm::dvec2(0));
@@ -50,8 +50,9 @@ class MapsFusion : public MapsTest {
     const glm::dvec3 p = glm::dvec3(stage.samples.p[pixel]) + stage.floats.origin;
     return {p.x, p.z};
   }
-  /// What the map has of a plate, seen from the floor: its texels end up to half a texel, and what corners are snapped
-  /// by, beside it. `out`: 1 the largest, -1 the smallest, 0 the plate itself.
+  /// Returns the part of the light that the map's texels of a plate hide from a point of the floor: the texels end
+  /// beside the plate by up to half a texel, and by the snapping of corners. `out`: 1 the largest, -1 the smallest, 0
+  /// the plate itself.
   static OnLight seen(const Plate& plate, const glm::dvec2& from, double texel, int out) {
     const double f = plate.depth * kHeight / (kHeight - plate.depth), beside = out * (0.5 + 1.0 / 256) * texel;
     return {(plate.lower - beside - from / kHeight) * f, (plate.upper + beside - from / kHeight) * f};
@@ -110,9 +111,8 @@ TEST_F(MapsFusion, WhatPartsHideBoundsWhatTheWholeHides) {
   EXPECT_LT(nearest_to_sum, 0.01);
 }
 
-// What our own methods make of three plates that are apart as the light's centre sees them and overlap as the floor
-// does: patches and outlines are their sum, bits their union, each between what the smallest and the largest texels
-// leave open.
+// Three plates are apart as the light's centre sees them and overlap as the floor sees them. Our own methods make sums
+// of them (patches, outlines) or unions (bits), each between what the smallest and the largest texels leave visible.
 TEST_F(MapsFusion, SumsAreSumsAndUnionsUnions) {
   constexpr std::uint32_t kSize = 128, kSamples = 256;
   const std::vector<Plate> plates{
@@ -192,7 +192,7 @@ TEST_F(MapsFusion, ADeepPatchThatIsHalfOnTheLightHidesTheOneBeforeIt) {
   for (std::size_t i = 0; i < places.size(); ++i) {
     const glm::dvec2 from = on_floor_at(stage, i);
     const double f = lower.depth * kHeight / (kHeight - lower.depth);
-    // Of columns and rows whose deeper patch is on the light the nearer one does not count: a texel more or less.
+    // Columns and rows whose deeper patch is on the light do not count the nearer one: a texel more or less.
     double low = 1, high = 0;
     for (const double texels : {-1.0, 1.0}) {
       const glm::dvec2 reach(kHalf / f + texels * texel);
@@ -210,7 +210,7 @@ TEST_F(MapsFusion, ADeepPatchThatIsHalfOnTheLightHidesTheOneBeforeIt) {
     EXPECT_GE(hidden, low - 5e-5) << places[i];
     EXPECT_LE(hidden, high + 5e-5) << places[i];
     EXPECT_LT(high - low, 0.06);
-    // In a row of 32 light samples an edge passes one.
+    // An edge passes one light sample in a row of 32.
     EXPECT_NEAR(joined.visibility[i], truth.visibility[i], 4.0 / 32 / 2 + (high - low)) << places[i];
     leak = std::max(leak, static_cast<double>(peeled.visibility[i] - truth.visibility[i]));
     fmt::print("at {}: peeled {:.4f}, exact {:.4f}\n", places[i], peeled.visibility[i], truth.visibility[i]);

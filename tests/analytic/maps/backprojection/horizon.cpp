@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// At a receiver's horizon: what hides light is above the receiver's plane, so that V is the share of the light above
-// the horizon less what of it is hidden.
+// Tests V at a receiver's horizon: only what is above the receiver's plane hides light, so that V is the share of the
+// light above the horizon less the hidden part of it.
 
 #include "reference/methods.hpp"
 #include "tests/analytic/maps/backprojection_scenes.hpp"
@@ -61,8 +61,9 @@ TEST_F(MapsHorizon, WhatIsHiddenIsTakenFromWhatIsAbove) {
   }
 }
 
-// Nothing stands before the wall. It casts: from below its horizon the light's centre sees its back, which hides
-// nothing. (bitmask's and soft-shadow-map's answers are above; those never counted what is below the horizon.)
+// Nothing stands before the wall, which casts: from below the wall's horizon the light's centre sees its back, which
+// hides nothing. (Answers of bitmask and soft-shadow-map are above; those methods never counted what is below the
+// horizon.)
 TEST_F(MapsHorizon, TheWallsOwnBackHidesNothing) {
   for (const double aside : {-0.4, -0.1, 0.1}) {
     scenes::Scene scene = wall(aside, 4, 5, true);

@@ -33,7 +33,7 @@ class RayTwin {
     }
   }
 
-  /// Is light sample j, moved by `off`, hidden from pixel i?
+  /// Returns whether light sample j, moved by `off`, is hidden from pixel i.
   [[nodiscard]] bool hidden(std::size_t i, std::uint32_t j, const glm::dvec2& off) const {
     const glm::dvec3 e = basis_.local(stage_.samples.p[i]);
     const glm::dvec3 way = basis_.local(stage_.light.points[j]) + glm::dvec3(off, 0) - e;
@@ -60,7 +60,7 @@ class RayTwin {
     });
   }
 
-  /// What of the ray lies in the pyramid of a texel, between the column's ends.
+  /// Returns whether the ray passes through the pyramid of a texel, between the column's ends.
   [[nodiscard]] bool meets_column(const glm::dvec3& e, const glm::dvec3& way, std::uint32_t x, std::uint32_t y) const {
     const glm::dvec2 from = corner(x, y), to = corner(x + 1, y + 1);
     const std::vector<double>& depths = at({x, y});
@@ -186,8 +186,8 @@ TEST_F(MapsLayerRays, EachBitIsWhatALongWayThroughAllTexelsSays) {
   EXPECT_GT(by_columns, 10U) << "no column hides anything";
 }
 
-// Without walls a texel hides what bitmask's patch does: two ways to the same set of light samples, also in a
-// hemicube's upper face. (Sideways, patches take a texel's slanted sides where its middle sees them.)
+// A texel without walls hides what bitmask's patch hides: two methods find the same set of light samples, in a
+// hemicube's upper face, too. (Patches on sideways faces take a texel's slanted sides where its middle sees them.)
 TEST_F(MapsLayerRays, WithoutWallsTheyAreJoinedPatches) {
   for (const scenes::Scene& scene : {sphere_over_floor(), square_above_plate(), oblique_quad(0.5), box_over_floor()}) {
     const Stage stage = on_floor(scene, 16, light_samples(64));
@@ -204,8 +204,8 @@ TEST_F(MapsLayerRays, WithoutWallsTheyAreJoinedPatches) {
   }
 }
 
-// Of one closed body all layers converge to the truth, about like texels; one layer does not: what the centre does not
-// see is not there (docs/predicates.md, E1).
+// All layers of one closed body converge to the truth, about as texels do; one layer does not, since it has nothing
+// that the centre does not see (docs/predicates.md, E1).
 TEST_F(MapsLayerRays, AllLayersConvergeAndOneDoesNot) {
   const Stage stage = on_floor(sphere_over_floor(1, 16), 14, light_samples(256));
   std::map<std::string, std::array<double, 3>> errors;
@@ -224,7 +224,7 @@ TEST_F(MapsLayerRays, AllLayersConvergeAndOneDoesNot) {
   EXPECT_LT(errors["2"][2], 0.2 * errors["1"][2]);
 }
 
-// What one layer cannot know, two do: a lower plate, whole or half, under half a plate.
+// Two layers know what one cannot: a lower plate, whole or half, under half a plate.
 TEST_F(MapsLayerRays, OneLayerHasOneImageAndTwoTellTheScenesApart) {
   const Stage gap = on_floor(plates_with_gap(true), 16, light_samples(64)),
               whole = on_floor(plates_with_gap(false), 16, light_samples(64));
@@ -243,7 +243,7 @@ TEST_F(MapsLayerRays, TheSidesOfABoardAreItsInside) {
   EXPECT_LT(full, 0.4 * surfaces);
 }
 
-// In a hemicube a ray goes on from face to face.
+// A ray in a hemicube goes on from face to face.
 TEST_F(MapsLayerRays, InAHemicubeTheyAgreeWithTheExactPairs) {
   scenes::Scene scene = bare_floor(0.5, 1.5);
   add_quad(scene, {-1.5, 2.5, 0}, {0, 0, 1.5}, {0, 2.5, 0}).casts_shadow = false;  // a wall up to the light's plane

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a patch covers of a light of any shape, and the receiver's horizon across it, against closed forms and exact
-// areas.
+// Tests the share of a light of any shape that a patch covers, and the receiver's horizon across it, against closed
+// forms and exact areas.
 
 #include "maps/backprojection/light_table.hpp"
 #include "reference/methods.hpp"
@@ -13,7 +13,7 @@ namespace {
 
 class MapsLightTable : public MapsTest {
  protected:
-  /// Both methods, of 256² texels, each of which is asked.
+  /// Returns the answers of both methods, with maps of 256² texels, each of which is asked.
   static std::array<Masks, 2> both(const Stage& stage) {
     return {run(maps::make_backproject, stage, {{"size", "256"}}),
             run(maps::make_backproject_peel, stage, {{"size", "256"}, {"samples", "0"}})};
@@ -35,8 +35,8 @@ class MapsLightTable : public MapsTest {
   }
 };
 
-// Against a million points of the light's bounding rectangle, a regular grid: within a row of it, 1e-3. A cell of the
-// table has 1/256² of the rectangle and is off by less than that.
+// The reference is a regular grid of a million points of the light's bounding rectangle: right to a row of it, 1e-3. A
+// cell of the table has 1/256² of the rectangle and is off by less than that.
 TEST_F(MapsLightTable, HoldsTheShareOfEveryCorner) {
   scenes::Scene scene = bare_floor(1);
   const auto inside_disk = [](const glm::dvec2& at) { return glm::length(2.0 * at - 1.0) <= 1; };
@@ -86,7 +86,7 @@ TEST_F(MapsLightTable, HoldsTheShareOfEveryCorner) {
   }
 }
 
-/// Of its texels' sum, 24, the columns have 5, 7 and 12, the rows from below 18 and 6.
+/// The columns have 5, 7 and 12 of the texels' sum, 24; the rows from below 18 and 6.
 scenes::Texture three_by_two() {
   scenes::Texture texture;
   texture.width = 3;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which packets look for contours together (Yang et al. 2009, section 4.3, equations 4 to 6), each decided here by the
-// kernels of its pixels. V is the same either way (MapsContourWays): only what is counted shows whether a cost or a
+// Tests which packets look for contours together (Yang et al. 2009, section 4.3, equations 4 to 6); the kernels of a
+// packet's pixels decide here. V is the same in both cases (MapsContourWays): only counters show whether a cost or a
 // chance is off.
 
 #include "maps/host/map_fit.hpp"
@@ -70,8 +70,8 @@ class Kernels {
   glm::dvec2 half_{0}, lower_{0}, texel_{1};
 };
 
-/// Of equation 6 what the packet costs over what its pixels cost; of equations 4 and 5 the chance that some texel parts
-/// it.
+/// Ratio of the packet's cost to its pixels' costs (equation 6), and the chance that some texel separates the packet
+/// (equations 4 and 5).
 struct Odds {
   double cost = 0, apart = 0;
 };
@@ -98,7 +98,7 @@ class PacketCosts : public ContourTest {
  protected:
   static constexpr std::uint32_t kSize = 128, kColumns = 20, kRows = 20;
 
-  /// As many packets as there are, from `make` (random, all alike in the light's frame) those that `fits`.
+  /// Returns as many packets as the picture has, from `make` (random, all alike in the light's frame), that `fits`.
   template <typename Make, typename Fits>
   static std::vector<Packet> choose(const Kernels& kernels, const Make& make, const Fits& fits) {
     std::vector<Packet> packets;

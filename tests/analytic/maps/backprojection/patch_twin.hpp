@@ -92,7 +92,8 @@ class PatchTwin {
     return found;
   }
 
-  /// How far inside a convex polygon a point is, at least; negative outside. In either winding.
+  /// Returns the least distance of a point from the sides of a convex polygon of either winding; negative if it is
+  /// outside.
   static double inside(const Polygon& polygon, const glm::dvec2& at) {
     double least = 1e30, most = -1e30;
     for (std::size_t i = 0; i < polygon.size(); ++i) {

@@ -10,7 +10,7 @@ namespace {
 
 using visibility::MethodOptions;
 
-/// Against the exact area: the mean error, and the share of the umbra's pixels that are lit by more than 0.05.
+/// Errors against the exact area: the mean, and the share of the umbra's pixels that are lit by more than 0.05.
 struct Quality {
   double bias = 0, rmse = 0, leak = 0, dark = 0;
 };
@@ -51,7 +51,7 @@ class MapsPeel : public MapsTest {
   }
 };
 
-// Of one layer and all samples peel is backproject without fill.
+// Peel with one layer and all samples is backproject without fill.
 TEST_F(MapsPeel, OneLayerIsBackproject) {
   for (const scenes::Scene& scene : {sphere_over_floor(), square_above_plate(), oblique_quad(0.4)}) {
     const Stage stage = on_floor(scene, 12, light_samples(1));
@@ -223,8 +223,8 @@ TEST_F(MapsPeel, MidpointsRemoveAcneOfClosedSolids) {
   scene.cameras.push_back(camera({0, 4, 2}, {0, 1, 0}, 50));
   const Stage stage(scene, 32, 32, light_samples(1));
   const Masks truth = exact(stage);
-  // On the ball alone: the floor is one open sheet, whose shadow begins at its only surface, and the bias there is 0,
-  // too.
+  // Pixels of the ball alone count: the floor is one open sheet, whose shadow begins at its only surface, and the bias
+  // there is 0, too.
   Quality first, midpoint;
   const Masks with_first = project(stage, {{"fill", "none"}, {"bias", "0"}, {"depth", "first"}}),
               with_midpoint = project(stage, {{"fill", "none"}, {"bias", "0"}, {"depth", "midpoint"}});

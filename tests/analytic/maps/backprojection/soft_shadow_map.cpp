@@ -135,7 +135,7 @@ TEST_F(SoftShadowMap, ScatteredAndGatheredSumsAreTheSameBits) {
   EXPECT_THROW(maps::make_soft_shadow_map(device(), {{"form", "scatter"}, {"precision", "fp16"}}), UsageError);
 }
 
-// What an occluder's texel reaches ends 160 texels of the receivers' map from it: 2 % of that are more than the two
+// The reach of an occluder's texel ends 160 texels of the receivers' map from it: 2 % of that are more than the two
 // that rounding adds.
 TEST_F(SoftShadowMap, AWideKernelIsScatteredWhole) {
   scenes::Scene scene = floor_and_light(4);
@@ -209,9 +209,9 @@ std::vector<glm::dvec2> texel_centres(int size, int step) {
   return places;
 }
 
-// Of the same map, at a texel of the receivers' map, it is the sum that backproject makes: only the loops are turned
-// round. Four small boards make the occluders' window the receivers'. Any planar light, plain or with a texture; and
-// both forms are the same bits.
+// The sum at a texel of the receivers' map is the one that backproject makes of the same map: only the loops are
+// exchanged. Four small boards make the occluders' window that of the receivers. Any planar light, plain or with a
+// texture; and both forms have the same bits.
 TEST_F(SoftShadowMap, AtATexelOfTheReceiversItIsBackproject) {
   scenes::Scene scene = ball(0.5);
   scene.objects[0].casts_shadow = false;
@@ -277,7 +277,7 @@ TEST_F(SoftShadowMap, OccludersSeeWhatIsAboveTheirHorizonAndReceiversAreChosen) 
   }
   EXPECT_GT(lit, 20U);
   EXPECT_GT(half, 5U);
-  // What only receives is the receiver, however small; then the floor shades it.
+  // A table that only receives is the receiver, however small; otherwise the floor shades it.
   scenes::Scene table = ball(0.5);
   add_quad(table, {0, -1, 0}, {0.5, 0, 0}, {0, 0, 0.5}).casts_shadow = false;
   table.cameras.front() = camera({0, -0.5, 1.5}, {0, -1, 0}, 60);
@@ -292,7 +292,7 @@ TEST_F(SoftShadowMap, OccludersSeeWhatIsAboveTheirHorizonAndReceiversAreChosen) 
   EXPECT_GT(dark, 5U);
 }
 
-// What the paper leaves out is another method's: on occluders its bytes, elsewhere one's own.
+// Another method answers where the paper does not: occluders have that method's bytes, other pixels this method's own.
 TEST_F(SoftShadowMap, OnOccludersBackprojectMayAnswer) {
   scenes::Scene scene = ball(0.5);
   add_quad(scene, {0.3, 3.6, 0.3}, {0.4, 0, 0}, {0, 0, 0.4});  // shades the ball

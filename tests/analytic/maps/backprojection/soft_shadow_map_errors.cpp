@@ -12,7 +12,8 @@
 namespace penumbra::tests {
 namespace {
 
-/// What these tests ask shows at a quarter of the default's texels on the receivers, too, in a quarter of the time.
+/// Options with a quarter of the default's texels for receivers, too: these tests find the same with them in a quarter
+/// of the time.
 MethodOptions few_receivers(MethodOptions options = {}) {
   options["receiverSize"] = "128";
   return options;
@@ -62,7 +63,7 @@ TEST_F(SoftShadowMap, TwoPassesOverAThinSolidCostTwice) {
   EXPECT_LT(work, 2.0);
 }
 
-// What is left of the error beyond some resolution is the silhouette; it grows as the solid nears the light.
+// The error that remains beyond some resolution is that of the silhouette; it grows as the solid nears the light.
 TEST_F(SoftShadowMap, TheErrorStopsFallingWithResolutionAndGrowsTowardTheLight) {
   const Stage stage(ball(0.5), 64, 64, light_samples(1));
   const Masks truth = exact(stage);

@@ -27,7 +27,7 @@ double shared_cap(double a, double b, double apart) {
               cb * angle((ca - cd * cb) / (sd * sb)));
 }
 
-/// Of a disk of radius 1 what lies on the one side of a line, t from its middle on the other.
+/// Returns the area of a disk of radius 1 on one side of a line, t from its middle.
 double segment(double t) {
   t = std::clamp(t, -1.0, 1.0);
   return 0.5 + (t * std::sqrt(1 - t * t) + std::asin(t)) / kPi;
@@ -43,12 +43,12 @@ class SphereTwin {
         radius_(std::sqrt(stage.light.area / kPi)) {
     EXPECT_EQ(maps_.fitted.faces, 1U);
   }
-  /// Of a texel at depth 1, the larger of its sides.
+  /// Returns the larger side of a texel at depth 1.
   [[nodiscard]] double texel() const {
     const glm::dvec2 extent = maps_.fitted.views.front().side[0].upper - maps_.fitted.views.front().side[0].lower;
     return std::max(extent.x, extent.y) / maps_.size;
   }
-  /// For receivers below all casters.
+  /// Returns V of a receiver below all casters.
   [[nodiscard]] double visibility(std::size_t pixel) const {
     const auto& side = maps_.fitted.views.front().side[0];
     const double far = maps_.fitted.views.front().far;
@@ -175,7 +175,7 @@ TEST_F(SphereForm, AHalfPlaneHidesASegmentTimesHalfPi) {
     }
     const Stage stage = along_floor(scene, places, light_samples(1024));
     const SphereTwin twin(device(), stage, 64);
-    // On the light a texel is f = 2.5 · 5 / 2.5 times as wide; the edge is half a texel off, a chord of 2 r long.
+    // A texel is f = 2.5 · 5 / 2.5 times as wide on the light; the edge is half a texel off, a chord of 2 r long.
     // Spheres on the light's border, of which there are 2 pi r / texel in a ring two texels wide, are counted by a rule
     // that is off by no more than a tenth of each. The cosine differs by 0.1 · tan over the light, at |x| <= 0.4 of 5.
     const double texel = twin.texel() * 62 / (kSize - 2) * 5;
@@ -192,7 +192,7 @@ TEST_F(SphereForm, AHalfPlaneHidesASegmentTimesHalfPi) {
       const double hidden = segment(-std::tan(angle) / seen_under), grown = kPi / 2 * away / 5;
       const double v = found.visibility[i];
       worst = std::max(worst, std::abs(v - std::max(0.0, 1 - grown * hidden)));
-      // Of 1024 samples in rows an edge passes a row, a 32nd of the disk's width.
+      // An edge passes one row of 1024 samples, a 32nd of the disk's width.
       const double by_rays = std::max(0.0, 1 - grown * (1 - static_cast<double>(traced.visibility[i])));
       rays = std::max(rays, std::abs(v - by_rays));
       partly += v > 0 && v < 1 ? 1 : 0;
@@ -243,7 +243,7 @@ TEST_F(SphereForm, ALampShinesAllAround) {
   scene.lights.push_back(ceiling_light(5, 1));
   scene.lights.front().shape = scenes::Sphere{{0, 2.5, 0}, 0.3};
   scene.cameras.push_back(camera({0, 2.5, 7}, {0, 2.5, 0}));
-  // From below, from above, beside the lamp at its own height, within it.
+  // Places below the lamp, above it, beside it at its own height, and within it.
   const auto places = [&](const visibility::SceneFloats& floats, const visibility::PinholeCamera& /*camera*/) {
     visibility::ViewSamples samples;
     samples.width = 24;
@@ -309,7 +309,7 @@ TEST_F(SphereForm, TheHorizonCutsALampAsItIsSeen) {
   EXPECT_GT(cut, 20U);
 }
 
-// What caps cannot weigh, and what has no plane for patches, is refused.
+// Textures that caps cannot weigh, and spheres, which have no plane for patches, are refused.
 TEST_F(SphereForm, PatchesRefuseSpheresAndSpheresTextures) {
   scenes::Scene scene = under_a_half_plane();
   scene.lights.front().texture = scenes::Texture{"", 2, 1, {{0, 0, 0}, {1, 1, 1}}};

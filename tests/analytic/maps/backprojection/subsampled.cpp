@@ -114,8 +114,8 @@ TEST_F(MapsSubsampled, TheNarrowestPenumbraIsThatOfTheFarthestCaster) {
   EXPECT_GT(narrows, 10U);
 }
 
-// Where penumbrae are wide on the screen few pixels are computed, and all where they are narrow: the picture is nearer
-// to the whole one than by a grid.
+// Few pixels are computed where penumbrae are wide on the screen, and all where they are narrow: the picture is nearer
+// to the whole one than a grid's.
 TEST_F(MapsSubsampled, PixelsAreLeftOutWherePenumbraeAreWide) {
   std::vector<double> shares;
   for (const double half : {0.3, 1.5}) {
@@ -153,8 +153,8 @@ TEST_F(MapsSubsampled, PixelsAreLeftOutWherePenumbraeAreWide) {
   EXPECT_LT(shares[1], shares[0]);
 }
 
-// Which pixels: of each the largest step, a power of two, that leaves four computed pixels across its narrowest
-// penumbra, as wide as it is seen on the picture.
+// Each pixel has the largest step, a power of two, that leaves four computed pixels across its narrowest penumbra, as
+// wide as that is on the picture.
 TEST_F(MapsSubsampled, PixelsAreChosenByThePenumbrasWidthOnThePicture) {
   constexpr std::uint32_t kMost = 16;
   scenes::Scene scene = bare_floor(0.6, 6);
@@ -231,8 +231,8 @@ TEST(MapsFillIn, BetweenFourPixelsIsBilinear) {
   }
 }
 
-// Of a row's pixels 0 to 3 all but 1 are known. The coarser level has 0 at its own place, and 2 and 3 at 2.5: from 1
-// they are 1 and 1.5 away, and tents 2 wide weigh them by 1 / 2 and 1 / 4.
+// All of a row's pixels 0 to 3 but pixel 1 are known. The coarser level has 0 at its own place, and 2 and 3 at 2.5:
+// from 1 these are 1 and 1.5 away, and tents 2 wide weigh them by 1 / 2 and 1 / 4.
 TEST(MapsFillIn, TentsAreTwoPixelsOfTheirLevelWide) {
   std::vector<KnownPixel> row(4, KnownPixel{0, true, 1});
   row[0].v = 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where all of the light is hidden nothing of it is left, however many texels it takes: whatever is looked for in too
-// narrow a part of a map leaves some at the light's ends.
+// Tests umbrae: nothing is left of a light that is all hidden, however many texels that takes. A search in too narrow a
+// part of a map would leave light at the light's ends.
 
 #include "tests/analytic/maps/backprojection_scenes.hpp"
 
@@ -11,8 +11,7 @@ using visibility::MethodOptions;
 
 class MapsUmbra : public MapsTest {
  protected:
-  /// Of the first two objects' pixels that are no farther than 2 beside the plane z = 0 none sees more than `most` of
-  /// the light.
+  /// Expects that no pixel of the first two objects within 2 of the plane z = 0 sees more than `most` of the light.
   static void expect_dark(const Stage& stage, const Factory& factory, const MethodOptions& options, double most = 0) {
     const Masks found = run(factory, stage, options);
     std::size_t pixels = 0, lit = 0;
@@ -72,9 +71,9 @@ TEST_F(MapsUmbra, ABoxOfTheHemicubesShapeHidesTheWholeLight) {
   }
 }
 
-// What stands so little before a wall that it is hardly higher than what it shades: it is in front of its plane, and
-// above it, by less than 2 % of the way to the light. (By half a row of texels at least, so far below the light: a
-// texel stands as high as its centre.)
+// Things that stand so little before a wall that they are hardly higher than what they shade are still in front of its
+// plane and above it, by less than 2 % of the distance to the light. (By at least half a row of texels, so far below
+// the light: a texel stands as high as its centre.)
 TEST_F(MapsUmbra, WhatStandsJustBeforeAWallShadesIt) {
   static constexpr std::uint32_t kSide = 16;
   scenes::Scene scene = floor_and_wall();
