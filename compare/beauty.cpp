@@ -78,6 +78,7 @@ void add_light(const BeautyScene& in, const VisibleLight& visible, const LightVi
   const visibility::Light& light = visible.light();
   const std::size_t words = light.words_per_mask();
   const auto add = [&](std::size_t i, const glm::dvec3& form_factor) {
+    if (form_factor == glm::dvec3(0)) return;
     const auto triangle = static_cast<std::size_t>(in.samples.triangle[i]);
     const glm::dvec3 color = in.pixel_colors.empty() ? in.colors[in.scene.object[triangle]] : in.pixel_colors[i];
     const glm::vec3& normal = in.normals.empty() ? in.samples.n[i] : in.normals[i];

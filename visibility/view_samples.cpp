@@ -22,7 +22,6 @@
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <tuple>
 #include <utility>
 
 namespace penumbra::visibility {
@@ -102,7 +101,8 @@ bool cone_above(const std::array<glm::vec3, 3>& carrier, std::int8_t facing, con
   return CGAL::sign(middle * middle - tangent * tangent * (u * u + v * v)) == CGAL::POSITIVE;
 }
 
-/// Classifies pixels for one light.
+/// Classifies pixels for one light. Neighbours mostly have the same carrier, and most of a class is that of the
+/// carrier.
 class Classifier {
  public:
   Classifier(const SceneFloats& scene, const ViewSamples& samples, const Light& light)
@@ -110,7 +110,14 @@ class Classifier {
     if (is_planar(light.kind)) plane_.emplace(light.center, light.center_u, light.center_v);
   }
 
-  [[nodiscard]] PixelClass operator()(std::size_t pixel) const;
+  /// The carrier of the view sample classified last, from the side that it was seen from.
+  struct Carrier {
+    std::int32_t triangle = ViewSamples::kBackground;
+    std::int8_t facing = 0;
+    PixelClass anywhere = PixelClass::background;  ///< judged: p's place decides
+    std::optional<PixelClass> in_front = {};       ///< for p in front of the light; nullopt: not yet asked
+  };
+  [[nodiscard]] PixelClass operator()(std::size_t pixel, Carrier& last) const;
 
  private:
   [[nodiscard]] bool in_front(const glm::vec3& p) const {
@@ -118,6 +125,8 @@ class Classifier {
     const Side side = (*plane_)(p);
     return light_.two_sided ? side != Side::on : side == Side::front;
   }
+  [[nodiscard]] PixelClass class_anywhere(std::int32_t triangle) const;
+  [[nodiscard]] PixelClass class_in_front(std::uint32_t carrier, std::int8_t facing) const;
 
   const SceneFloats& scene_;
   const ViewSamples& samples_;
@@ -125,36 +134,55 @@ class Classifier {
   std::optional<mesh::SidesOfPlane> plane_;
 };
 
-PixelClass Classifier::operator()(std::size_t pixel) const {
-  const auto& [scene, samples, light] = std::tie(scene_, samples_, light_);
-  if (samples.triangle[pixel] == ViewSamples::kBackground) return PixelClass::background;
-  const auto carrier = static_cast<std::uint32_t>(samples.triangle[pixel]);
-  if (scene.emits[carrier] == light.index) return PixelClass::emitter;
-  if (!is_lit_by(scene, light, carrier)) return PixelClass::unlit;
-  if (!is_receiver(scene, light, carrier)) return PixelClass::unshadowed;
-  if (!in_front(samples.p[pixel])) return PixelClass::behind;
-  if (scene.emits[carrier] >= 0) return PixelClass::other_body;
-  if (is_dome(light.kind)) return PixelClass::judged;  // a dome's V depends only on the part above the plane
-  const std::array<glm::vec3, 3> corners = scene.corners(carrier);
-  if (light.sun) {
-    return cone_above(corners, samples.facing[pixel], light) ? PixelClass::judged : PixelClass::horizon;
-  }
-  if (is_body(light.kind)) {
-    return sphere_above(corners, samples.facing[pixel], light) ? PixelClass::judged : PixelClass::horizon;
-  }
+PixelClass Classifier::class_anywhere(std::int32_t triangle) const {
+  if (triangle == ViewSamples::kBackground) return PixelClass::background;
+  const auto carrier = static_cast<std::uint32_t>(triangle);
+  if (scene_.emits[carrier] == light_.index) return PixelClass::emitter;
+  if (!is_lit_by(scene_, light_, carrier)) return PixelClass::unlit;
+  return is_receiver(scene_, light_, carrier) ? PixelClass::judged : PixelClass::unshadowed;
+}
+
+PixelClass Classifier::class_in_front(std::uint32_t carrier, std::int8_t facing) const {
+  if (scene_.emits[carrier] >= 0) return PixelClass::other_body;
+  if (is_dome(light_.kind)) return PixelClass::judged;  // a dome's V depends only on the part above the plane
+  const std::array<glm::vec3, 3> corners = scene_.corners(carrier);
+  if (light_.sun) return cone_above(corners, facing, light_) ? PixelClass::judged : PixelClass::horizon;
+  if (is_body(light_.kind)) return sphere_above(corners, facing, light_) ? PixelClass::judged : PixelClass::horizon;
   const mesh::SidesOfPlane sides(corners[0], corners[1], corners[2]);
-  const Side above = samples.facing[pixel] > 0 ? Side::front : Side::back;
-  const bool all = std::ranges::all_of(light.outline, [&](const glm::vec3& corner) { return sides(corner) == above; });
+  const Side above = facing > 0 ? Side::front : Side::back;
+  const bool all = std::ranges::all_of(light_.outline, [&](const glm::vec3& corner) { return sides(corner) == above; });
   return all ? PixelClass::judged : PixelClass::horizon;
 }
 
-template <typename Body>
+PixelClass Classifier::operator()(std::size_t pixel, Carrier& last) const {
+  const std::int32_t triangle = samples_.triangle[pixel];
+  const std::int8_t facing = samples_.facing[pixel];
+  if (triangle != last.triangle || facing != last.facing) last = {triangle, facing, class_anywhere(triangle)};
+  if (last.anywhere != PixelClass::judged) return last.anywhere;
+  if (!in_front(samples_.p[pixel])) return PixelClass::behind;
+  if (!last.in_front) last.in_front = class_in_front(static_cast<std::uint32_t>(triangle), facing);
+  return *last.in_front;
+}
+
+/// Calls `body` for each pixel, with a `Last` of neighbouring pixels that come one after the other.
+template <typename Last, typename Body>
 void for_each_pixel(const ViewSamples& samples, const Body& body) {
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, samples.size(), 256),
                     [&](const tbb::blocked_range<std::size_t>& range) {
-                      for (std::size_t pixel = range.begin(); pixel != range.end(); ++pixel) body(pixel);
+                      Last last;
+                      for (std::size_t pixel = range.begin(); pixel != range.end(); ++pixel) body(pixel, last);
                     });
 }
+
+/// The plane that carried the last view sample, what was seen of it, and from where.
+struct CarrierPlane {
+  std::int32_t triangle = ViewSamples::kBackground;
+  glm::dvec3 corner{0};
+  std::optional<mesh::SidesOfPlane> sides;
+  glm::dvec3 start{0};
+  std::int8_t facing = 0;  ///< from `start`; 0: not yet asked
+  glm::vec3 n{0};          ///< on that side
+};
 
 }  // namespace
 
@@ -271,23 +299,33 @@ ViewSamples complete_view_samples(const SceneFloats& scene, const PinholeCamera&
   resize_on_all_cores(samples.n, pixels);
   resize_on_all_cores(samples.depth, pixels);
   samples.facing.assign(pixels, 0);
-  for_each_pixel(samples, [&](std::size_t pixel) {
+  for_each_pixel<CarrierPlane>(samples, [&](std::size_t pixel, CarrierPlane& last) {
     std::int32_t& triangle = samples.triangle[pixel];
     if (triangle == ViewSamples::kBackground) return;
-    const std::array<glm::vec3, 3> corners = scene.corners(static_cast<std::uint32_t>(triangle));
+    if (triangle != last.triangle) {
+      const std::array<glm::vec3, 3> corners = scene.corners(static_cast<std::uint32_t>(triangle));
+      last.triangle = triangle;
+      last.corner = corners[0];
+      last.sides.emplace(corners[0], corners[1], corners[2]);
+      last.facing = 0;
+    }
     const auto x = static_cast<std::uint32_t>(pixel % camera.width),
                y = static_cast<std::uint32_t>(pixel / camera.width);
     const ViewRay ray = camera.ray(x, y);
-    const mesh::SidesOfPlane sides(corners[0], corners[1], corners[2]);
-    const std::optional<PlaneHit> hit = meet_plane(ray, corners[0], sides.normal());
+    const std::optional<PlaneHit> hit = meet_plane(ray, last.corner, last.sides->normal());
     const glm::vec3 p = hit ? glm::vec3(ray.start + hit->t * ray.direction) + 0.0f : glm::vec3(0);
     if (!hit || !std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) {
       triangle = ViewSamples::kBackground;  // a rasteriser's proposal that the ray only meets at infinity: edge-on
       return;
     }
+    if (last.facing == 0 || last.start != ray.start) {  // rays of a lens, and parallel ones, start apart
+      last.start = ray.start;
+      last.facing = facing_of(ray, *last.sides, hit->eye_height);
+      last.n = glm::vec3(glm::normalize(last.sides->normal() * static_cast<double>(last.facing))) + 0.0f;
+    }
     samples.p[pixel] = p;
-    samples.facing[pixel] = facing_of(ray, sides, hit->eye_height);
-    samples.n[pixel] = glm::vec3(glm::normalize(sides.normal() * static_cast<double>(samples.facing[pixel]))) + 0.0f;
+    samples.facing[pixel] = last.facing;
+    samples.n[pixel] = last.n;
     samples.depth[pixel] = static_cast<float>(hit->t);
   });
   return samples;
@@ -321,7 +359,8 @@ ViewSamples brute_force_view_samples(const SceneFloats& scene, const PinholeCame
 std::vector<PixelClass> classify_pixels(const SceneFloats& scene, const ViewSamples& samples, const Light& light) {
   std::vector<PixelClass> classes(samples.size());
   const Classifier classify(scene, samples, light);
-  for_each_pixel(samples, [&](std::size_t pixel) { classes[pixel] = classify(pixel); });
+  for_each_pixel<Classifier::Carrier>(
+      samples, [&](std::size_t pixel, Classifier::Carrier& last) { classes[pixel] = classify(pixel, last); });
   return classes;
 }
 
