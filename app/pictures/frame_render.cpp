@@ -325,7 +325,7 @@ compare::Stats FrameRenderer::write(const FrameFiles& files, Exposure& exposure)
   compare::Stats stats = this->stats();
   compare::Seconds& seconds = stats.seconds;
   seconds.write = write.seconds() + spent_.bits;
-  // From the last picture to this one: the seconds of a sequence's pictures add up to the total.
+  // Seconds from the last picture to this one: those of a sequence's pictures add up to the total.
   const double now = seconds_since_start();
   seconds.total = now - std::exchange(written_, now);
   if (!files.stats.empty()) {

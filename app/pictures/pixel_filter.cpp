@@ -44,7 +44,8 @@ std::vector<FilterTaps> filter_taps(const PixelFilter& filter, std::size_t pixel
     const std::ptrdiff_t first = std::max<std::ptrdiff_t>(pixel * step - reach, 0);
     const std::ptrdiff_t end = std::min((pixel + 1) * step + reach, samples);
     for (std::ptrdiff_t i = first; i < end; ++i) {
-      // In halves of a view sample's distance, which are integers: both sides of the centre get the same weight.
+      // Distances are in halves of a view sample's distance, which are integers: both sides of the centre get the same
+      // weight.
       const std::ptrdiff_t halves = 2 * i + 1 - (2 * pixel + 1) * step;
       const double share = filter.share(static_cast<double>(halves) / static_cast<double>(2 * side));
       if (share <= 0) continue;

@@ -13,8 +13,8 @@ namespace penumbra::app {
 struct PixelFilter {
   enum class Kind : std::uint8_t { box, blackman_harris };
   Kind kind = Kind::box;
-  /// In pixels. A box is one pixel wide; Blackman-Harris reaches this far to each side of the centre, as Cycles' filter
-  /// of that width does.
+  /// Width in pixels. A box is one pixel wide; Blackman-Harris reaches this far to each side of the centre, as Cycles'
+  /// filter of that width does.
   double width = 1;
 
   /// Returns the distance from the centre, in pixels, from which on weights are 0.

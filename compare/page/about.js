@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the page says in words: the findings at a glance, the question, scene, methods, machine and warnings.
+// Writes the page's words: the findings at a glance, the question, scene, methods, machine and warnings.
 
 const place = (id) => document.getElementById(id);
 const referenceIsMask = report.reference.output === "mask";
@@ -12,7 +12,7 @@ function namesText(named) {
   return named.length > 3 ? `${names} and ${named.length - 3} more` : names;
 }
 
-// Those that answer every pair as rays do, or else those with the fewest differences.
+// Returns the methods that answer every pair as rays do, or else those with the fewest differences.
 function exactnessCard() {
   const sums = results.map((result) => {
     const same = result.lights.map((light) => light.sameSamples).filter(Boolean);
@@ -75,7 +75,7 @@ function showQuestion() {
 const factsTable = (facts) => make("div", { class: "scroll" }, make("table", { class: "facts" }, make("tbody", {}, facts.map(([name, value]) =>
   make("tr", {}, make("th", { scope: "row" }, name), make("td", {}, value))))));
 
-// What a method is: where links to it lead.
+// Describes a method; links to it lead here.
 function methodText(name, method) {
   return make("details", { id: methodPlace(name) }, make("summary", {}, name),
     make("p", {}, `${method.family}-based; after ${method.paper}. Exact for ${method.exactFor}. Answers with ${method.output}.`,

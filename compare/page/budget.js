@@ -9,7 +9,7 @@ function budgetBar(from, x, width, kind) {
     drawn("path", { class: "frame", d: `M${from} 0V10` }),
     drawn("rect", { class: kind, x: x.toFixed(1), y: 2, width: width.toFixed(1), height: 6 }));
 }
-// To the left of the middle the error gets smaller; 38 is the largest change of all.
+// The error gets smaller to the left of the middle; 38 is the largest change of all.
 function changeBar(change, largest) {
   const length = largest > 0 ? 38 * Math.abs(change) / largest : 0;
   return budgetBar(40, change < 0 ? 40 - length : 40, length, change < 0 ? "better" : "worse");
@@ -50,7 +50,7 @@ function runsTable(name, runs) {
   return tableOf(`What was run for ${name}`, ["Repaired", "How, or why not", "RMSE without it", "Pixels that it changes", "Runs"], rows);
 }
 
-// Where a repair changes V: pictures that grow to the window.
+// Shows where a repair changes V: pictures that grow to the window.
 function repairPictures(name, pictures, { errorBudget: budget, errorBudgetRuns: runs }) {
   if (pictures.length === 0) return [];
   const figures = pictures.map(({ repaired, png }) => {

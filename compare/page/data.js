@@ -80,7 +80,7 @@ function radianceCodesOf(entry) {
 
 const linearOfCode = (code) => (code === 0 ? 0 : 2 ** ((code - 1) / 256 - 64));
 
-// Which light samples a pixel sees: an array of booleans.
+// Returns which light samples a pixel sees: an array of booleans.
 function seenSamples(masks, pixel, count) {
   const first = pixel * 4 * Math.ceil(count / 32);
   return Array.from({ length: count }, (_, j) => (masks[first + (j >> 3)] >> (j & 7) & 1) === 1);

@@ -16,7 +16,7 @@ const shadowOf = (stats) => stats.seconds.shadow;
 const methodOf = (result) => report.methods[results.indexOf(result)];
 const methodPlace = (name) => `method-${name}`;
 
-// Those with the smallest number, compared as the page shows it: a tie that is displayed has no winner.
+// Returns the entries with the smallest number, compared as the page shows it: a tie that is displayed has no winner.
 function smallest(numberOf, textOf) {
   const known = results.filter((result) => numberOf(result) !== null);
   const best = textOf(Math.min(...known.map(numberOf)));
@@ -86,7 +86,7 @@ function partsTable(caption, partsOf, samePixels) {
     numberCell(rmse, () => `${rmse.toFixed(4)} (${signed(bias)})${samePixels ? "" : ` of ${countText(pixels)}`}`))]));
 }
 
-// By class of pixel, width of the penumbra, and distance of what hides the light.
+// Writes errors by class of pixel, width of the penumbra, and distance of what hides the light.
 function classTables() {
   const classes = (of) => of && Object.entries(of).map(([name, part]) => ({ name, ...part }));
   const ranges = (of) => of?.map((part) => ({ name: part.to === null ? `from ${part.from}` : `${part.from} … ${part.to}`, ...part }));

@@ -20,7 +20,7 @@ function pictureOf(what, look) {
   const { layer, entry, light } = what;
   const setting = layer === "beauty" ? look.stops : layer === "error" ? look.limit : 0;
   const place = `picture ${layer} ${entry} ${layer === "beauty" ? 0 : light}`;
-  // Of each picture the last setting alone is kept: a slider would otherwise fill the memory.
+  // The last setting alone of each picture is kept: a slider would otherwise fill the memory.
   if (kept.get(place)?.setting !== setting) {
     const promise = paint(what, look);
     promise.setting = setting;

@@ -12,7 +12,7 @@ function cellOf(cell, isFirst) {
 
 let captions = 0;
 
-// Nothing if there are no rows; the first cell of a row is its header.
+// Returns nothing if there are no rows; the first cell of a row is its header.
 function tableOf(caption, headers, rows) {
   if (rows.length === 0) return null;
   const id = `caption-${++captions}`;

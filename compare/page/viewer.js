@@ -29,7 +29,7 @@ function next(list, current, step) {
 
 // --- Where things are on the canvas -----------------------------------------------------------------------------------
 
-// What the canvas shows: boxes in canvas pixels, each with its picture and the part of it that is not covered.
+// Boxes that the canvas shows, in canvas pixels, each with its picture and the part of it that is not covered.
 function panes() {
   const { width, height } = canvas;
   const whole = { x: 0, y: 0, width, height };
@@ -164,7 +164,7 @@ function showControls() {
   stage.setAttribute("aria-label", title);
 }
 
-// What a link to this view must say, and how to read it.
+// Writes and reads the settings of a link to this view.
 const kKept = { layer: String, light: Number, view: String, a: Number, b: Number, bLayer: String, wipe: Number,
   stops: Number, limit: Number, zoom: Number, x: Number, y: Number };
 

@@ -339,40 +339,76 @@ TEST_P(CompareThree, EveryTriple) {
 INSTANTIATE_TEST_SUITE_P(Part, RenderThree, testing::Range<std::size_t>(0, kParts));
 INSTANTIATE_TEST_SUITE_P(Part, CompareThree, testing::Range<std::size_t>(0, kCompareParts));
 
-/// Impossible combinations are refused with a documented code and a reason, whatever is wrong.
-TEST_F(OptionsTogether, WhatCannotBeIsRefused) {
-  scenes_ = write_lit_scenes(folder_, false);
-  std::size_t tried = 0;
-  for (const json& method : table_.all()) {
-    const auto name = method.at("name").get<std::string>();
-    for (const LitScene& scene : scenes_) {
-      const bool can = table_.can_do(method, scene, "sobol");
-      const bool masks = method.at("output") == "mask" && scene.lights.front() != "sphere";
-      if (can && masks) continue;
-      const std::vector<std::string> arguments = {"render", scene.file, "-o",           path("a.exr"),      "--method",
-                                                  name,     "--bits",   path("a.bits"), "--sample-pattern", "sobol"};
-      SCOPED_TRACE(text_of(arguments));
-      const Outcome outcome = run(arguments);
-      expect_exit(outcome, can ? testing::Matcher<int>(2) : testing::Matcher<int>(AnyOf(2, 3)));
-      EXPECT_FALSE(std::filesystem::exists(path("a.exr")));
-    }
-    // The program gets one wrong value of each option; its parser gets all of them.
-    for (const json& option : method.at("options")) {
-      const std::string key = option.at("name");
-      const std::vector<std::string> wrong = {"", "no such value", "-1", "1e400", "nan"};
-      for (std::size_t i = 0; i < wrong.size(); ++i) {
-        const std::string entry = fmt::format("{}:{}={}", name, key, wrong[i]);
-        EXPECT_THAT([&] { app::parse_methods(entry); }, ThrowsMessage<UsageError>(HasSubstr(key))) << entry;
-        if (i != tried % wrong.size()) continue;
-        const std::vector<std::string> arguments = {"compare", scenes_[0].file, "-o", path("out"), "--methods", entry};
-        SCOPED_TRACE(text_of(arguments));
-        const Outcome outcome = run(arguments);
-        expect_exit(outcome, 2);
-        EXPECT_THAT(outcome.err, HasSubstr(key));
+class Refusals : public OptionsTogether {
+ protected:
+  /// Renders what a method cannot do, or masks of a method that has none, with each scene, or with one scene a method:
+  /// impossible combinations are refused with a documented code and a reason, whatever is wrong.
+  void expect_scenes_refused(bool every_scene) {
+    scenes_ = write_lit_scenes(folder_, false);
+    std::size_t number = 0, refused = 0;
+    for (const json& method : table_.all()) {
+      std::vector<const LitScene*> impossible;
+      for (const LitScene& scene : scenes_) {
+        if (!can_have_masks(method, scene)) impossible.push_back(&scene);
       }
-      ++tried;
+      // One scene a method: another kind of light for the next method.
+      if (!every_scene && !impossible.empty()) impossible = {impossible[number++ % impossible.size()]};
+      for (const LitScene* scene : impossible) expect_refused(method, *scene);
+      refused += impossible.size();
     }
+    EXPECT_GT(refused, table_.all().size() / 2);
   }
+  /// Gives wrong values of each option to the parser, and to the program one of each option, or of each method.
+  void expect_values_refused(bool every_option) {
+    scenes_ = write_lit_scenes(folder_, false);
+    const std::vector<std::string> wrong = {"", "no such value", "-1", "1e400", "nan"};
+    std::size_t tried = 0;
+    for (const json& method : table_.all()) {
+      bool given = false;
+      for (const json& option : method.at("options")) {
+        const std::string key = option.at("name");
+        for (const std::string& value : wrong) {
+          const std::string entry = fmt::format("{}:{}={}", method.at("name").get<std::string>(), key, value);
+          EXPECT_THAT([&] { app::parse_methods(entry); }, ThrowsMessage<UsageError>(HasSubstr(key))) << entry;
+          if (value != wrong[tried % wrong.size()] || (given && !every_option)) continue;
+          given = true;
+          const std::vector<std::string> arguments = {"compare",   scenes_[0].file, "-o",
+                                                      path("out"), "--methods",     entry};
+          SCOPED_TRACE(text_of(arguments));
+          const Outcome outcome = run(arguments);
+          expect_exit(outcome, 2);
+          EXPECT_THAT(outcome.err, HasSubstr(key));
+        }
+        ++tried;
+      }
+    }
+    EXPECT_GT(tried, 100U);
+  }
+
+ private:
+  [[nodiscard]] bool can_have_masks(const json& method, const LitScene& scene) const {
+    return table_.can_do(method, scene, "sobol") && method.at("output") == "mask" && scene.lights.front() != "sphere";
+  }
+  void expect_refused(const json& method, const LitScene& scene) {
+    const auto name = method.at("name").get<std::string>();
+    const std::vector<std::string> arguments = {"render", scene.file, "-o",           path("a.exr"),      "--method",
+                                                name,     "--bits",   path("a.bits"), "--sample-pattern", "sobol"};
+    SCOPED_TRACE(text_of(arguments));
+    const bool can = table_.can_do(method, scene, "sobol");
+    expect_exit(run(arguments), can ? testing::Matcher<int>(2) : testing::Matcher<int>(AnyOf(2, 3)));
+    EXPECT_FALSE(std::filesystem::exists(path("a.exr")));
+  }
+};
+
+TEST_F(Refusals, OfScenesAMethodCannotDo) {
+  expect_scenes_refused(false);
+}
+TEST_F(Refusals, OfWrongValues) {
+  expect_values_refused(false);
+}
+TEST_F(Refusals, OfEverySceneAndOptionFull) {
+  expect_scenes_refused(true);
+  expect_values_refused(true);
 }
 
 TEST(CoveringArray, HasEveryAllowedCombination) {
