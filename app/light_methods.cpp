@@ -19,6 +19,7 @@ namespace penumbra::app {
 namespace {
 
 using visibility::Light;
+using visibility::LightKind;
 using visibility::MethodDescription;
 using visibility::MethodOptions;
 using visibility::SceneFloats;
@@ -60,7 +61,7 @@ std::string note_of_span(const Light& light, const std::string& method, const st
                      light.name, method, chosen);
 }
 
-LightMethod choose(const Light& light, const SceneFloats& scene, const MethodWish& wish) {
+LightMethod choose(const Light& light, const SceneFloats& scene, const MethodWish& wish, std::uint64_t triangles) {
   if (!wish.samples) {
     std::string first;  // name of the method for lights of this kind that are nearer
     for (const MethodDescription* method : all_methods()) {
@@ -74,7 +75,8 @@ LightMethod choose(const Light& light, const SceneFloats& scene, const MethodWis
       if (first.empty()) first = method->name;
     }
   }
-  const MethodDescription& method = wish.method.empty() ? default_method(light, &scene) : describe_method(wish.method);
+  const MethodDescription& method =
+      wish.method.empty() ? default_method(light, &scene, triangles) : describe_method(wish.method);
   MethodOptions options = options_for(method, wish);
   LightMethod chosen{describe_method(method.name, options), std::move(options), {}};
   const MethodDescription* nearer = nullptr;  // method for lights of this kind that are nearer
@@ -116,9 +118,9 @@ void unite(const std::vector<Light>& lights, const SceneFloats& scene, const Who
 }  // namespace
 
 std::vector<LightMethod> choose_light_methods(const std::vector<Light>& lights, const SceneFloats& scene,
-                                              const MethodWish& wish) {
+                                              const MethodWish& wish, std::uint64_t triangles) {
   std::vector<LightMethod> all;
-  for (const Light& light : lights) all.push_back(choose(light, scene, wish));
+  for (const Light& light : lights) all.push_back(choose(light, scene, wish, triangles));
   for (const WholeLight& whole : whole_lights(lights)) unite(lights, scene, whole, all);
   for (std::size_t i = 0; i < lights.size(); ++i) check_light(all[i].description, lights[i]);
   for (const auto& option : wish.options) {
@@ -130,6 +132,13 @@ std::vector<LightMethod> choose_light_methods(const std::vector<Light>& lights, 
                      fmt::format("{}", fmt::join(names, ", ")));
   }
   return all;
+}
+
+bool counts_dome_samples(const MethodWish& wish) {
+  if (wish.method.empty()) return wish.samples && wish.options.empty();  // an option may ask for areas
+  const MethodDescription method = describe_method(wish.method, wish.options);
+  const bool may_give_areas = method.exact_area && method.exact_area->lights.contains(LightKind::dome);
+  return method.output == visibility::Output::mask && (wish.samples || !may_give_areas);
 }
 
 std::vector<std::vector<std::size_t>> same_methods(const std::vector<LightMethod>& chosen) {

@@ -5,6 +5,7 @@
 #include "visibility/scene_floats.hpp"
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -28,9 +29,14 @@ struct LightMethod {
 /// table that computes a light's exact area (`exact_area`) and supports its distance and size relative to the scene
 /// (`span`), with the options needed for this; if a method was named, only that one, if possible. If there is none, or
 /// light samples were requested: the default method for light samples. An option applies to the chosen methods that
-/// have it. Throws UsageError for an option that none has, and the exceptions of describe_method.
+/// have it. `triangles`: of the whole scene, of which `scene` may be a part. Throws UsageError for an option that none
+/// has, and the exceptions of describe_method.
 std::vector<LightMethod> choose_light_methods(const std::vector<visibility::Light>& lights,
-                                              const visibility::SceneFloats& scene, const MethodWish& wish);
+                                              const visibility::SceneFloats& scene, const MethodWish& wish,
+                                              std::uint64_t triangles);
+
+/// Returns whether the method of a dome will certainly answer for each of its light samples, and give no areas.
+bool counts_dome_samples(const MethodWish& wish);
 
 /// Returns the lights (indices) with one method and the same options, in the order of the first of each.
 std::vector<std::vector<std::size_t>> same_methods(const std::vector<LightMethod>& chosen);

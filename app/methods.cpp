@@ -161,6 +161,10 @@ bool needs_device(std::string_view name, const MethodOptions& options) {
   return find_row(name).on_device(render::Machine({.wanted = "cpu"}), options, Light{});
 }
 
+bool passes_triangles(std::string_view name, const visibility::MethodOptions& options) {
+  return maps::passes_triangles(name, options);
+}
+
 bool can_do(const MethodDescription& method, const std::vector<Light>& lights) {
   return std::ranges::all_of(lights, [&](const Light& light) {
     return method.lights.contains(light.kind) && (method.textures || !light.texture) &&
@@ -174,15 +178,16 @@ namespace {
 /// Returns whether rays are faster than geometry. Never for a light with an image on a plane. All around p a mesh has
 /// edges on every side, whatever the number of light samples, while the cost of rays is proportional to that number:
 /// measured, the two are equal at about 40 triangles for each light sample (docs/domes.md).
-bool rays_are_quicker(const Light& light, const visibility::SceneFloats* scene) {
-  constexpr std::size_t kTriangles = 32;  // for each light sample
-  return light.dome && scene != nullptr && scene->triangles.size() > kTriangles * light.sample_count();
+bool rays_are_quicker(const Light& light, std::uint64_t triangles) {
+  constexpr std::uint64_t kTriangles = 32;  // for each light sample
+  return light.dome && triangles > kTriangles * light.sample_count();
 }
 
 }  // namespace
 
-const MethodDescription& default_method(const Light& light, const visibility::SceneFloats* scene) {
-  const bool by_rays = rays_are_quicker(light, scene);
+const MethodDescription& default_method(const Light& light, const visibility::SceneFloats* scene,
+                                        std::uint64_t triangles) {
+  const bool by_rays = rays_are_quicker(light, triangles);
   const MethodDescription *rays = nullptr, *areas = nullptr;
   bool refused = false;  // a method would support the light if it were nearer
   for (const MethodDescription* method : all_methods()) {

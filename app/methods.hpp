@@ -53,13 +53,18 @@ bool needs_device(std::string_view name, const visibility::MethodOptions& option
 std::unique_ptr<visibility::Method> make_method(std::string_view name, const visibility::MethodOptions& options,
                                                 const render::Machine& machine);
 
+/// Returns whether a method, with these options, looks at each triangle once, and keeps none: of planar lights and
+/// suns, in scenes without holes and translucent surfaces (visibility::PassesTriangles).
+bool passes_triangles(std::string_view name, const visibility::MethodOptions& options);
+
 bool can_do(const visibility::MethodDescription& method, const std::vector<visibility::Light>& lights);
 
 /// Returns the best method for the light's samples: the first geometry-based one that supports the light; rays, for a
 /// light beyond that method's range (LightSpan), or of an unsupported kind; and `exact`, which computes areas of any
 /// light, if rays do not support it either. Throws InputError if there is no method. `scene`: null for a light of no
-/// size.
+/// size; else `triangles` is the number of triangles of the whole, of which it may be a part.
 const visibility::MethodDescription& default_method(const visibility::Light& light,
-                                                    const visibility::SceneFloats* scene = nullptr);
+                                                    const visibility::SceneFloats* scene = nullptr,
+                                                    std::uint64_t triangles = 0);
 
 }  // namespace penumbra::app

@@ -142,8 +142,9 @@ void SessionMaker::show(scenes::Scene scene, const std::string& camera, std::uin
   show(std::move(scene), changed, camera, runs, progress);
 }
 
-void SessionMaker::look_into(const scenes::Scene& scene, const scenes::Instances& instances) {
+void SessionMaker::look_into(const scenes::Scene& scene, const scenes::Instances& instances, bool dome_samples) {
   viewed_.clear();
+  dome_samples_ = dome_samples;
   placed_.place(scene, instances);
 }
 
@@ -154,10 +155,23 @@ void SessionMaker::show_part(const visibility::Tile& rows, const std::string& ca
   const auto [width, height] = picture_size(scene, camera);
   const std::size_t number =
       camera.empty() ? 0 : find_named(scene.cameras, camera, "--camera", options_.scene.string());
-  visibility::SeenPart part = visibility::seen_part(
-      placed_, visibility::make_camera(scene.cameras[number], placed_.origin(), width, height),
-      make_lights(scene, placed_.origin(), nullptr), rows, rows.row_count < height ? &viewed_ : nullptr);
+  visibility::SeenPart part =
+      visibility::seen_part(placed_, visibility::make_camera(scene.cameras[number], placed_.origin(), width, height),
+                            make_lights(scene, placed_.origin(), nullptr), rows,
+                            {.dome_samples = dome_samples_, .viewed = rows.row_count < height ? &viewed_ : nullptr});
   show_part(std::move(part), rows, camera, watch.seconds(), progress);
+}
+
+void SessionMaker::show_seen(const std::string& camera, Progress& progress) {
+  progress.begin("what is seen", 1);
+  const Stopwatch watch;
+  const scenes::Scene& scene = placed_.scene();
+  const auto [width, height] = picture_size(scene, camera);
+  const std::size_t number =
+      camera.empty() ? 0 : find_named(scene.cameras, camera, "--camera", options_.scene.string());
+  visibility::SeenPart part = visibility::seen_part(
+      placed_, visibility::make_camera(scene.cameras[number], placed_.origin(), width, height), {}, {0, height});
+  show_part(std::move(part), {0, height}, camera, watch.seconds(), progress);
 }
 
 void SessionMaker::show_viewed(const std::string& camera, Progress& progress) {

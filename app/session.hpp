@@ -11,6 +11,7 @@
 #include "visibility/bounds.hpp"
 #include "visibility/light_samples.hpp"
 #include "visibility/scene_floats.hpp"
+#include "visibility/seen/all_placed.hpp"
 #include "visibility/seen/seen_part.hpp"
 #include "visibility/view_samples.hpp"
 
@@ -105,12 +106,17 @@ class SessionMaker {
   /// show_part().
   void look_at_rows(std::optional<visibility::Tile> rows) { band_ = rows; }
   /// Sets the scene without copies of its instances, for following calls of show_part() and show_viewed(). `scene` and
-  /// `instances` must outlive these calls. Trees over meshes are kept from one scene to the next.
-  void look_into(const scenes::Scene& scene, const scenes::Instances& instances);
+  /// `instances` must outlive these calls. Trees over meshes are kept from one scene to the next. `dome_samples`:
+  /// methods ask about the light samples of domes alone (counts_dome_samples).
+  void look_into(const scenes::Scene& scene, const scenes::Instances& instances, bool dome_samples);
   void look_away() { placed_.leave(); }
   /// Makes the session from the part of the scene that matters to some rows of its picture (visibility/seen/): what is
   /// seen, and what may lie between that and the lights. Pixels of other rows are background.
   void show_part(const visibility::Tile& rows, const std::string& camera, Progress& progress);
+  /// Makes the session from what pixels see alone, for methods that all_triangles() pass.
+  void show_seen(const std::string& camera, Progress& progress);
+  /// Returns all triangles of the scene that is looked into; valid until look_away() and the next look_into().
+  [[nodiscard]] const visibility::AllTriangles& all_triangles() const { return all_; }
   /// Makes the session from what the pixels of all shown parts see, without what shades that.
   void show_viewed(const std::string& camera, Progress& progress);
   /// Returns the number of trees over shared meshes that look_into() built.
@@ -149,6 +155,8 @@ class SessionMaker {
   std::optional<engines::ViewSampler> sampler_;
   std::optional<visibility::Lens> lens_share_;
   visibility::PlacedMeshes placed_;
+  visibility::AllPlaced all_{placed_};
+  bool dome_samples_ = false;                      // of look_into()
   std::vector<std::uint64_t> viewed_;              // triangles of placed_ that pixels of shown parts see
   visibility::Bounds whole_;                       // box of the whole scene's floats, if session_.numbers is filled
   std::optional<visibility::Tile> rows_;           // pixels of other rows are background

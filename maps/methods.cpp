@@ -14,9 +14,11 @@
 #include "maps/screen/methods.hpp"
 #include "maps/single_shadow/methods.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <string_view>
 #include <utility>
 
 namespace penumbra::maps {
@@ -75,6 +77,16 @@ constexpr Given kWithoutHoles{.suns = true, .spheres = true, .holes = false};
 constexpr Given kWithoutSpheres{.suns = true, .spheres = false, .holes = true};
 
 }  // namespace
+
+bool passes_triangles(std::string_view name, const visibility::MethodOptions& options) {
+  constexpr std::array kMethods{"shadow-map", "pcf", "pcss"};
+  // With others the camera, or the triangles that texels belong to, decide what is drawn, or OpenGL draws.
+  constexpr std::array kOptions{"size",        "bias",     "depth",          "receiverPlane", "offsetFactor",
+                                "offsetUnits", "suns",     "window",         "weights",       "taps",
+                                "stages",      "softness", "blockerSamples", "filterSamples"};
+  const auto is_known = [&](const auto& option) { return std::ranges::find(kOptions, option.first) != kOptions.end(); };
+  return std::ranges::find(kMethods, name) != kMethods.end() && std::ranges::all_of(options, is_known);
+}
 
 std::span<const engines::MethodRow> methods() {
   static const std::array rows{

@@ -26,6 +26,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <bit>
 #include <cmath>
@@ -43,11 +44,11 @@ using visibility::ViewSamples;
 constexpr std::uint64_t kMaxMaskBytes = std::uint64_t{64} << 20;  // of one tile: an interrupt waits for the tile's end
 constexpr std::uint32_t kNeverMet = SceneFloats::kNoPlane;        // plane index of the light's own body
 
-/// The ray's pixel, for the filter function; Embree passes the address of the first member.
+/// The rays' pixels, for the filter function; Embree passes the address of the first member.
 struct PixelContext {
   RTCIntersectContext embree;
   const std::uint32_t* plane_of_primitive;
-  std::uint32_t carrier_plane;
+  const std::uint32_t* carrier_planes;  ///< for each number (`id`) of a ray
 };
 
 void ignore_own_plane(const RTCFilterFunctionNArguments* hits) {
@@ -55,7 +56,8 @@ void ignore_own_plane(const RTCFilterFunctionNArguments* hits) {
   for (unsigned i = 0; i < hits->N; ++i) {
     if (hits->valid[i] == 0) continue;
     const std::uint32_t plane = context.plane_of_primitive[RTCHitN_primID(hits->hit, hits->N, i)];
-    if (plane == context.carrier_plane || plane == kNeverMet) hits->valid[i] = 0;
+    const std::uint32_t own = context.carrier_planes[RTCRayN_id(hits->ray, hits->N, i)];
+    if (plane == own || plane == kNeverMet) hits->valid[i] = 0;
   }
 }
 
@@ -92,13 +94,27 @@ class RayTraced final : public visibility::Method {
   struct Workspace {
     std::vector<glm::vec3> points, scaled;  // points of a sphere
     std::vector<std::uint32_t> above;
+    std::vector<std::uint32_t> above_all;  // of all pixels of a packet
   };
 
+  [[nodiscard]] PixelContext context_of(const std::uint32_t* carrier_planes) const {
+    PixelContext context{};
+    rtcInitIntersectContext(&context.embree);
+    context.embree.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    context.embree.filter = ignore_own_plane;
+    context.plane_of_primitive = plane_of_primitive_.data();
+    context.carrier_planes = carrier_planes;
+    return context;
+  }
   /// Removes the light samples too near to p for Embree from `above`, and decides them exactly.
   void decide_short_rays(std::size_t pixel, const std::vector<glm::vec3>& scaled, std::vector<std::uint32_t>& above,
                          std::span<std::uint32_t> visible);
   template <int kWidth>
   void trace_pixel(std::size_t pixel, Workspace& work, std::span<std::uint32_t> visible);
+  /// Traces rays to a dome, a ray of each of some neighbouring pixels at once: in one direction they stay together in
+  /// the tree, where the rays of one pixel part at its root. `pixels`: indices into the tile; at most kWidth.
+  template <int kWidth>
+  void trace_neighbours(const Tile& tile, std::span<const std::size_t> pixels, Workspace& work);
   template <int kWidth>
   void trace_tile(const Tile& tile);
 
@@ -236,12 +252,8 @@ void RayTraced::trace_pixel(std::size_t pixel, Workspace& work, std::span<std::u
   // The largest float below 1; the rays of a sun have no end.
   const float end = light_->sun ? std::numeric_limits<float>::infinity() : 0x1.fffffep-1f;
 
-  PixelContext context{};
-  rtcInitIntersectContext(&context.embree);
-  context.embree.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-  context.embree.filter = ignore_own_plane;
-  context.plane_of_primitive = plane_of_primitive_.data();
-  context.carrier_plane = scene_->plane[carrier];
+  const std::uint32_t own_plane = scene_->plane[carrier];
+  PixelContext context = context_of(&own_plane);  // all rays have the number 0
   typename Packet<kWidth>::Rays rays{};
   alignas(64) int valid[kWidth];
   for (std::size_t lane = 0; lane < kWidth; ++lane) {
@@ -275,12 +287,80 @@ void RayTraced::trace_pixel(std::size_t pixel, Workspace& work, std::span<std::u
 }
 
 template <int kWidth>
+void RayTraced::trace_neighbours(const Tile& tile, std::span<const std::size_t> pixels, Workspace& work) {
+  const std::size_t words = light_->words_per_mask();
+  const auto mask_of = [&](std::size_t lane) { return std::span(masks_).subspan(pixels[lane] * words, words); };
+  std::array<std::uint32_t, kWidth> planes{};
+  typename Packet<kWidth>::Rays rays{};
+  work.above_all.assign(kWidth * words, 0);
+  std::uint64_t above_count = 0, pairs = 0;
+  for (std::size_t lane = 0; lane < pixels.size(); ++lane) {
+    const std::size_t pixel = std::size_t{tile.first_row} * samples_->width + pixels[lane];
+    if (!visibility::is_receiver(*scene_, *light_, *samples_, pixel)) {
+      std::ranges::copy(full_mask_, mask_of(lane).begin());
+      continue;
+    }
+    const auto carrier = static_cast<std::uint32_t>(samples_->triangle[pixel]);
+    visibility::HorizonTest(*light_, scene_->corners(carrier), samples_->facing[pixel], bounds_)
+        .mask(light_->points, work.above);
+    std::ranges::copy(work.above, work.above_all.begin() + static_cast<std::ptrdiff_t>(lane * words));
+    for (const std::uint32_t word : work.above) above_count += static_cast<std::uint64_t>(std::popcount(word));
+    pairs += light_->points.size();
+    const glm::vec3 origin = embree_->range().scaled(samples_->p[pixel]);
+    lanes(rays.org_x)[lane] = origin.x;
+    lanes(rays.org_y)[lane] = origin.y;
+    lanes(rays.org_z)[lane] = origin.z;
+    lanes(rays.mask)[lane] = 0xffffffffu;
+    lanes(rays.id)[lane] = static_cast<unsigned>(lane);
+    planes[lane] = scene_->plane[carrier];
+  }
+  counts_.horizon_pairs.fetch_add(pairs - above_count, std::memory_order_relaxed);
+  counts_.rays.fetch_add(above_count, std::memory_order_relaxed);
+
+  PixelContext context = context_of(planes.data());
+  alignas(64) int valid[kWidth] = {};
+  for (std::size_t sample = 0; sample < scaled_points_.size(); ++sample) {
+    const std::size_t word = sample / 32;
+    const std::uint32_t bit = 1U << (sample % 32);
+    int alive = 0;
+    for (std::size_t lane = 0; lane < kWidth; ++lane) {
+      valid[lane] = (work.above_all[lane * words + word] & bit) != 0 ? -1 : 0;
+      alive |= valid[lane];
+      lanes(rays.dir_x)[lane] = scaled_points_[sample].x;
+      lanes(rays.dir_y)[lane] = scaled_points_[sample].y;
+      lanes(rays.dir_z)[lane] = scaled_points_[sample].z;
+      lanes(rays.tfar)[lane] = std::numeric_limits<float>::infinity();
+    }
+    if (alive == 0) continue;
+    Packet<kWidth>::occluded(valid, embree_->handle(), &context.embree, &rays);
+    for (std::size_t lane = 0; lane < pixels.size(); ++lane) {
+      if (valid[lane] != 0 && lanes(rays.tfar)[lane] != kOccluded) mask_of(lane)[word] |= bit;
+    }
+  }
+}
+
+template <int kWidth>
 void RayTraced::trace_tile(const Tile& tile) {
   const std::size_t words = light_->words_per_mask();
   const tbb::blocked_range2d<std::size_t> pixels(0, tile.row_count, 8, 0, samples_->width, 32);
   tbb::parallel_for(pixels, [&](const tbb::blocked_range2d<std::size_t>& block) {
     const std::vector<glm::vec3> room(is_body(light_->kind) ? light_->sample_count() : 0);
-    Workspace work{room, room, std::vector<std::uint32_t>(words)};
+    Workspace work{room, room, std::vector<std::uint32_t>(words), {}};
+    if (light_->dome) {
+      constexpr std::size_t kRows = kWidth >= 16 ? 4 : kWidth >= 4 ? 2 : 1, kColumns = kWidth / kRows;
+      std::vector<std::size_t> neighbours;
+      for (std::size_t top = block.rows().begin(); top < block.rows().end(); top += kRows) {
+        for (std::size_t left = block.cols().begin(); left < block.cols().end(); left += kColumns) {
+          neighbours.clear();
+          for (std::size_t row = top; row < std::min(top + kRows, block.rows().end()); ++row) {
+            for (std::size_t x = left; x < std::min(left + kColumns, block.cols().end()); ++x)
+              neighbours.push_back(row * samples_->width + x);
+          }
+          trace_neighbours<kWidth>(tile, neighbours, work);
+        }
+      }
+      return;
+    }
     for (std::size_t row = block.rows().begin(); row != block.rows().end(); ++row) {
       for (std::size_t x = block.cols().begin(); x != block.cols().end(); ++x) {
         const std::size_t in_tile = row * samples_->width + x;

@@ -105,7 +105,9 @@ Scene copied(Scene scene, const Instances& instances) {
   for (const Instance& instance : instances.all) positions += instances.meshes[instance.mesh]->soup.positions.size();
   const auto what = fmt::format("a scene of {} triangles, {} instances of meshes among them, each as a copy", triangles,
                                 instances.all.size());
-  constexpr std::string_view kRemedy = "make its meshes smaller or fewer, or render it by a method that leaves them be";
+  constexpr std::string_view kRemedy =
+      "make its meshes smaller or fewer, or render it by a method that "
+      "leaves them be (under a dome: with --light-samples)";
   if (positions >= kNone) throw ResourceError("{}: {} vertices are more than 2^32; {}", what, positions, kRemedy);
   require_memory(mesh::soup_bytes(triangles, positions), what, kRemedy);
   Scene from;

@@ -179,7 +179,7 @@ class RenderCommand : public Command {
     if (is_sequence_) run.scene = frame_path(run.scene, std::llround(*frame));
     ReadScene read;
     read.scene = scene_at(run, time, &read.instances);
-    if (needs_copies(read.scene, read.instances, request_.instances, request_.pixel_side))
+    if (needs_copies(read.scene, read.instances, request_.instances, request_.wish, request_.pixel_side))
       read.scene = copied(std::move(read.scene), std::exchange(read.instances, {}));
     read.seconds = watch.seconds();
     return read;

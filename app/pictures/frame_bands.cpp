@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Part of FrameRenderer: pictures of scenes with instances, rendered in bands of rows.
 
+#include "app/methods.hpp"
 #include "app/pictures/frame_render.hpp"
 #include "app/process/stopwatch.hpp"
+#include "base/assert.hpp"
+#include "visibility/all_triangles.hpp"
 
 #include <algorithm>
 #include <cstddef>
@@ -41,12 +44,37 @@ bool FrameRenderer::shows_in_bands(const std::filesystem::path& bits) const {
          bits.empty();
 }
 
+bool FrameRenderer::passes_triangles() const {
+  const Frame& frame = picture_.frame;
+  return frame.instances != nullptr && !frame.instances->empty() && app::passes_triangles(wish_.method, wish_.options);
+}
+
+void FrameRenderer::render_passing(const scenes::Scene& scene, const std::filesystem::path& bits) {
+  PENUMBRA_ASSERT(picture_.frame.moments.empty() && picture_.frame.pixel_side == 1,
+                  "{} looks at the triangles of one moment, for pixels' centres", wish_.method);
+  Stopwatch watch;
+  maker_.look_into(scene, *picture_.frame.instances, false);
+  spent_.load += watch.seconds();
+  maker_.show_seen(picture_.frame.camera, progress_);
+  note_seconds(maker_);
+  check_wanted_layers();
+  picture_.all = &maker_.all_triangles();
+  run_methods(bits);
+  for (Kept& kept : kept_) {
+    visibility::pass(*kept.method, nullptr);
+    kept.prepared = nullptr;  // what was not seen may move until the next picture
+  }
+  picture_.all = nullptr;
+  maker_.look_away();
+  picture_.run.counters["meshTreesBuilt"] = maker_.mesh_trees_built();
+}
+
 void FrameRenderer::render_in_bands(const scenes::Scene& scene) {
   picture_.in_bands = true;
   done_.lights_something.clear();
   const auto [width, height] = maker_.picture_size(scene, picture_.frame.camera);
   Stopwatch watch;
-  maker_.look_into(scene, *picture_.frame.instances);
+  maker_.look_into(scene, *picture_.frame.instances, counts_dome_samples(wish_));
   spent_.load += watch.seconds();
   std::vector<std::vector<float>> visibility;
   std::vector<std::vector<glm::vec3>> beauty;

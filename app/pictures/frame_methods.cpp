@@ -61,10 +61,16 @@ void FrameRenderer::choose_methods(const Session& session) {
     light.filtered_by.clear();
     light.dimmed_by.clear();
   }
-  plan_.chosen = choose_light_methods(plan_.lights, session.floats, wish_);
+  plan_.chosen = choose_light_methods(plan_.lights, session.floats, wish_, session.triangle_count());
+  for (std::size_t i = 0; i < lights.size(); ++i) {
+    const bool has_blockers_of_samples = !session.numbers.empty() && lights[i].dome && counts_dome_samples(wish_);
+    PENUMBRA_ASSERT(!has_blockers_of_samples || !plan_.chosen[i].description.gives_area(),
+                    "light {}: areas by {} of a part for light samples", lights[i].name,
+                    plan_.chosen[i].description.name);
+  }
   plan_.counting.assign(lights.size(), std::nullopt);
   if (std::ranges::all_of(lights, [](const auto& light) { return light.filtered_by.empty(); })) return;
-  std::vector<LightMethod> counting = choose_light_methods(lights, session.floats, wish_);
+  std::vector<LightMethod> counting = choose_light_methods(lights, session.floats, wish_, session.triangle_count());
   for (std::size_t i = 0; i < lights.size(); ++i) {
     if (lights[i].filtered_by.empty()) continue;
     if (plan_.chosen[i].description.gives_area()) plan_.counting[i] = counting[i];
@@ -243,6 +249,7 @@ MethodRun FrameRenderer::run_lights(BeautyAccumulator& beauty, BitsOutput* bits)
     plan.band_rows = picture_.frame.band_rows;
     plan.shades = true;
     visibility::remember(*kept.method, memory());
+    visibility::pass(*kept.method, picture_.all);
     std::unique_ptr<visibility::Method> around;  // asks the method about fewer view samples, or in another order
     if (method.description.gives_area() && lit().camera.lens)
       around = std::make_unique<LensAreas>(*kept.method);

@@ -137,7 +137,7 @@ void FrameRenderer::say_idle_lights() {
 void FrameRenderer::show(SessionMaker& maker, scenes::Scene scene) {
   if (const scenes::Instances* const instances = picture_.frame.instances;
       instances != nullptr && !instances->empty()) {
-    maker.look_into(scene, *instances);
+    maker.look_into(scene, *instances, counts_dome_samples(wish_));
     maker.show_part({0, maker.picture_size(scene, picture_.frame.camera).second}, picture_.frame.camera, progress_);
     maker.look_away();
   } else if (picture_.frame.same_meshes) {
@@ -242,7 +242,10 @@ void FrameRenderer::render(scenes::Scene scene, const Frame& frame, const std::f
     kept_.clear();  // kept methods refer to the session that is replaced
     fine_.reset();
   }
-  if (shows_in_bands(bits)) {
+  picture_.all = nullptr;
+  if (passes_triangles()) {
+    render_passing(scene, bits);
+  } else if (shows_in_bands(bits)) {
     render_in_bands(scene);
   } else if (frame.moments.empty() && frame.pixel_side == 1) {
     show(maker_, std::move(scene));

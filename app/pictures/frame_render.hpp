@@ -13,6 +13,7 @@
 #include "app/pictures/tev_pictures.hpp"
 #include "app/runner.hpp"
 #include "app/session.hpp"
+#include "visibility/all_triangles.hpp"
 #include "visibility/frame_memory.hpp"
 
 #include <glm/vec3.hpp>
@@ -152,6 +153,10 @@ class FrameRenderer {
   [[nodiscard]] bool shows_in_bands(const std::filesystem::path& bits) const;
   /// Renders bands of rows, each with as many rows as memory allows for the part of the scene that matters to them.
   void render_in_bands(const scenes::Scene& scene);
+  /// Returns whether the picture is of a scene with instances whose triangles all pass the method.
+  [[nodiscard]] bool passes_triangles() const;
+  /// Renders what pixels see, by methods that all triangles pass.
+  void render_passing(const scenes::Scene& scene, const std::filesystem::path& bits);
   /// Throws UsageError for requested layers that the current picture will not have.
   void check_wanted_layers() const;
   void render_mean(scenes::Scene scene, bool by_lens);
@@ -215,6 +220,7 @@ class FrameRenderer {
     std::vector<std::vector<glm::vec3>> beauty;     // of each light
     bool in_bands = false;                          // the current view samples are those of some rows alone
     std::optional<visibility::Tile> own_rows;       // of them, those that no other band has; nullopt: all
+    const visibility::AllTriangles* all = nullptr;  // the session has a part of them, which all pass methods
     bool layers = false;                            // translucent surfaces are evaluated, not the surfaces behind them
     std::vector<std::vector<std::uint32_t>> masks;  // of each light
     std::vector<float> alpha;                       // of each pixel

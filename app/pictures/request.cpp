@@ -114,7 +114,8 @@ InstanceUse parse_instances(const std::string& text, const MethodWish& wish) {
   if (text == "copies") return InstanceUse::copies;
   if (!text.empty() && text != "auto" && text != "shared")
     throw UsageError("--instances {}: expected auto, copies or shared", text);
-  if (wish.method.empty() || answers_apart(describe_method(wish.method, wish.options)))
+  if (wish.method.empty() || answers_apart(describe_method(wish.method, wish.options)) ||
+      passes_triangles(wish.method, wish.options))
     return text == "shared" ? InstanceUse::shared : InstanceUse::automatic;
   if (text == "shared")
     throw UsageError(
@@ -124,19 +125,36 @@ InstanceUse parse_instances(const std::string& text, const MethodWish& wish) {
   return InstanceUse::copies;
 }
 
+/// Returns the reason why triangles of the scene cannot pass one after the other; null: there is none.
+const char* cannot_pass(const scenes::Scene& scene, std::uint32_t pixel_side) {
+  const auto is_round = [](const scenes::AreaLight& light) {
+    return std::holds_alternative<scenes::Sphere>(light.shape) || std::holds_alternative<scenes::Dome>(light.shape) ||
+           std::holds_alternative<scenes::Pieces>(light.shape);
+  };
+  if (std::ranges::any_of(scene.lights, is_round)) return "takes suns and lights in one plane alone";
+  if (std::ranges::any_of(scene.lights, [](const auto& light) { return !light.unshaded_by.empty(); }))
+    return "takes no lights with casters of their own";
+  const auto is_open = [](const scenes::Object& object) { return object.alpha.mode != scenes::Alpha::Mode::opaque; };
+  if (std::ranges::any_of(scene.objects, is_open)) return "takes no surfaces with holes and no translucent ones";
+  return pixel_side > 1 ? "takes one view sample a pixel" : nullptr;
+}
+
 bool needs_copies(const scenes::Scene& scene, const scenes::Instances& instances, InstanceUse use,
-                  std::uint32_t pixel_side) {
+                  const MethodWish& wish, std::uint32_t pixel_side) {
   if (instances.empty()) return false;
   const bool lens = pixel_side > 1 && std::ranges::any_of(scene.cameras, [](const auto& camera) {
                       return camera.lens && camera.lens->radius > 0;
                     });
+  const bool passes = passes_triangles(wish.method, wish.options);
+  const char* const why = passes ? cannot_pass(scene, pixel_side) : nullptr;
   if (use == InstanceUse::shared) {
+    if (why != nullptr) throw UsageError("--instances shared: {} {} there", wish.method, why);
     if (lens) throw UsageError("--instances shared: not through a lens; --aperture 0 makes all of the picture sharp");
     return false;
   }
   const auto is_dome = [](const scenes::AreaLight& light) { return std::holds_alternative<scenes::Dome>(light.shape); };
-  return lens || use == InstanceUse::copies || triangle_count(scene, instances) <= kFewTriangles ||
-         std::ranges::any_of(scene.lights, is_dome);
+  return lens || why != nullptr || use == InstanceUse::copies || triangle_count(scene, instances) <= kFewTriangles ||
+         (std::ranges::any_of(scene.lights, is_dome) && !counts_dome_samples(wish));
 }
 
 bool answers_apart(const visibility::MethodDescription& method) {
@@ -223,7 +241,7 @@ void add_picture_options(CLI::App& command, PictureOptions& options) {
           "--instances", options.instances,
           "meshes that the scene has several times: copies, shared (stored once; only visible triangles and those that "
           "may shade them are copied), or auto (shared if copies would exceed 500000 triangles, and the method is "
-          "exact for each pair or area) (default: auto)")
+          "exact for each pair or area, or draws one map) (default: auto)")
       ->type_name("NAME");
   command.add_flag("--skip-existing", options.skip_existing,
                    "leave out pictures whose files are all there: resumes a sequence");

@@ -63,11 +63,12 @@ bool answers_apart(const visibility::MethodDescription& method);
 /// Parses --instances, for a method. Throws UsageError for "shared" with a method that needs all triangles.
 InstanceUse parse_instances(const std::string& text, const MethodWish& wish);
 
-/// Returns whether the scene's instances become copies: if copies are requested or cheap, under a dome, whose
-/// directions pass all triangles, and with a lens, whose points see other triangles than its middle. Throws UsageError
-/// if `use` is shared and cannot be.
+/// Returns whether the scene's instances become copies: if copies are requested or cheap, under a dome of which areas
+/// may be asked, since its directions pass all triangles, with a lens, whose points see other triangles than its
+/// middle, and for a method that looks at each triangle once, where the scene makes it look again. Throws UsageError if
+/// `use` is shared and cannot be.
 bool needs_copies(const scenes::Scene& scene, const scenes::Instances& instances, InstanceUse use,
-                  std::uint32_t pixel_side);
+                  const MethodWish& wish, std::uint32_t pixel_side);
 
 /// Parses the options. Throws UsageError; throws InputError if --exposure names a picture without an exposure
 /// attribute.

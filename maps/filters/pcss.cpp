@@ -48,6 +48,7 @@ class PcssTaps final : public MapProduct {
     taps_.write<glm::vec3>(taps);
   }
   [[nodiscard]] const render::Buffer& buffer() const override { return taps_; }
+  [[nodiscard]] bool leaves_triangles() const override { return true; }
 
  private:
   void weigh(const MapSet& maps, std::span<glm::vec3> taps) const {

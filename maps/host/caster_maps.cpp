@@ -99,7 +99,17 @@ CasterMaps::CasterMaps(const render::Device& device, std::uint32_t size, Rasteri
   }
 }
 
+void CasterMaps::pass(const visibility::AllTriangles& all, visibility::PassTimes& times) {
+  PENUMBRA_ASSERT(!opengl_, "OpenGL draws triangles of a whole scene");
+  all_ = &all;
+  times_ = &times;
+  batches_.clear();
+  emits_.clear();
+}
+
 void CasterMaps::upload(const visibility::SceneFloats& scene) {
+  all_ = nullptr;
+  passing_.reset();
   std::vector<std::uint32_t> casters;
   for (std::uint32_t i = 0; i < scene.triangles.size(); ++i) {
     if (scene.casts_shadow[i] != 0) casters.push_back(i);
@@ -191,6 +201,7 @@ void CasterMaps::record_on_device(render::Commands& commands, MapLayer layer, co
                                   std::int32_t light_index, std::uint32_t face, const Destination& to) const {
   const std::uint64_t face_texels = std::uint64_t{size_} * size_, face_bytes = face_texels * sizeof(float);
   const auto previous = static_cast<std::uint32_t>((to.previous_face + face) * face_texels);
+  if (all_ != nullptr) return record_passing(commands, layer, push, light_index, face, to);
   bool clear = true;
   for (const Batch& batch : batches_) {
     for (const Range& range : ranges(batch, light_index)) {
@@ -223,6 +234,52 @@ void CasterMaps::record_on_device(render::Commands& commands, MapLayer layer, co
                   face_bytes);
   } else {
     target_->copy_to(commands, to.maps, (to.first_face + face) * face_bytes);
+  }
+}
+
+/// Depths are minima, or maxima, which do not depend on the order of triangles.
+void CasterMaps::record_passing(render::Commands& commands, MapLayer layer, const FacePush& push,
+                                std::int32_t light_index, std::uint32_t face, const Destination& to) const {
+  PENUMBRA_ASSERT(!push.logarithmic, "logarithmic faces of triangles that pass");
+  constexpr std::size_t kMost = std::size_t{1} << 20;  // triangles of one draw: 36 MiB
+  const std::uint64_t face_texels = std::uint64_t{size_} * size_;
+  std::vector<glm::vec3> corners;
+  bool clear = true;
+  passed_ = 0;
+  const auto draw = [&] {
+    if (corners.empty()) return;
+    render::grow(*device_, passing_, "passing casters", corners.size() * sizeof(glm::vec3));
+    passing_->write<glm::vec3>(corners);
+    gpu::PeelPush words{offset(push.plain), static_cast<std::uint32_t>((to.previous_face + face) * face_texels), size_};
+    words.face.first_vertex = 0;
+    const auto push_bytes = std::as_bytes(std::span(&words, 1))
+                                .first(layer == MapLayer::behind ? sizeof(gpu::PeelPush) : sizeof(gpu::CasterPush));
+    std::vector<render::BufferReference> buffers{*passing_};
+    if (layer == MapLayer::behind) buffers.emplace_back(to.maps);
+    solid_->of(layer).record(commands, push_bytes, buffers,
+                             {.width = size_,
+                              .height = size_,
+                              .vertices = static_cast<std::uint32_t>(corners.size()),
+                              .depth = &*target_,
+                              .clear = clear});
+    times_->add(commands.submit());  // the buffer is written again
+    clear = false;
+    passed_ += corners.size() / 3;
+    corners.clear();
+  };
+  all_->for_each_run([&](const visibility::AllTriangles::Run& run) {
+    if (!run.casts_shadow || run.emits == light_index) return;
+    for (const std::array<glm::vec3, 3>& triangle : run.corners) {
+      corners.insert(corners.end(), triangle.begin(), triangle.end());
+      if (corners.size() >= 3 * kMost) draw();
+    }
+  });
+  draw();
+  if (clear) {
+    commands.fill(to.maps, std::bit_cast<std::uint32_t>(nothing(layer)),
+                  (to.first_face + face) * face_texels * sizeof(float), face_texels * sizeof(float));
+  } else {
+    target_->copy_to(commands, to.maps, (to.first_face + face) * face_texels * sizeof(float));
   }
 }
 

@@ -9,6 +9,8 @@
 #include "render/commands.hpp"
 #include "render/device.hpp"
 #include "render/raster_pass.hpp"
+#include "visibility/all_triangles.hpp"
+#include "visibility/pass_times.hpp"
 #include "visibility/scene_floats.hpp"
 
 #include <algorithm>
@@ -40,6 +42,9 @@ class CasterMaps {
     offset_units_ = units;
   }
   void upload(const visibility::SceneFloats& scene);
+  /// Draws these triangles in place of uploaded ones, each as it passes, by Vulkan; both must outlive all draws. Such
+  /// draws submit what is recorded, as often as the buffer is full, and add the times. Casters have no holes.
+  void pass(const visibility::AllTriangles& all, visibility::PassTimes& times);
 
   /// Records the faces of one light point of the light with index `light_index` and copies them, one after the other,
   /// to `maps`, the first at `first_face` · size² floats.
@@ -60,7 +65,8 @@ class CasterMaps {
   void record_farthest(render::Commands& commands, const gpu::LightView& view, const LightBasis& basis,
                        std::int32_t light_index, const render::Buffer& maps, std::uint64_t first_face) const;
 
-  [[nodiscard]] std::uint64_t caster_count() const { return emits_.size(); }
+  /// Returns the number of uploaded casters, or of those that passed in the last draw.
+  [[nodiscard]] std::uint64_t caster_count() const { return all_ != nullptr ? passed_ : emits_.size(); }
   [[nodiscard]] bool have_holes() const { return std::ranges::any_of(batches_, &Batch::holes); }
   [[nodiscard]] std::uint64_t memory_bytes() const;
 
@@ -99,6 +105,8 @@ class CasterMaps {
                     std::int32_t light_index, const Destination& to) const;
   void record_on_device(render::Commands& commands, MapLayer layer, const FacePush& push, std::int32_t light_index,
                         std::uint32_t face, const Destination& to) const;
+  void record_passing(render::Commands& commands, MapLayer layer, const FacePush& push, std::int32_t light_index,
+                      std::uint32_t face, const Destination& to) const;
   void draw_by_opengl(MapLayer layer, const gpu::CasterPush& push, std::int32_t light_index, std::uint32_t face,
                       const Destination& to) const;
 
@@ -111,6 +119,10 @@ class CasterMaps {
   std::unique_ptr<OpenGlMaps> opengl_;      // used with OpenGL
   std::vector<Batch> batches_;
   std::vector<std::int32_t> emits_;  // of each uploaded caster, ascending in a batch: a light's body is one range
+  const visibility::AllTriangles* all_ = nullptr;  // drawn in place of batches
+  visibility::PassTimes* times_ = nullptr;         // of draws of all_
+  mutable std::unique_ptr<render::Buffer> passing_;
+  mutable std::uint64_t passed_ = 0;
 };
 
 /// Returns the number of faces of size² floats in one storage buffer of this device.

@@ -7,6 +7,7 @@
 
 #include "base/assert.hpp"
 #include "maps/host/median_cut.hpp"
+#include "visibility/all_triangles.hpp"
 #include "visibility/axes_around.hpp"
 #include "visibility/masks/visible_share.hpp"
 
@@ -80,7 +81,7 @@ std::optional<DomeSun> sun_of(const Light& dome, std::vector<std::uint32_t> samp
   return sun;
 }
 
-class DomeOfSuns final : public visibility::Method {
+class DomeOfSuns final : public visibility::Method, public visibility::PassesTriangles {
  public:
   DomeOfSuns(std::unique_ptr<Method> method, std::uint32_t suns)
       : method_(std::move(method)), count_(suns), description_(with_dome_suns(method_->description())) {}
@@ -89,6 +90,7 @@ class DomeOfSuns final : public visibility::Method {
   void want_pixels(std::span<const std::uint32_t> pixels) override { method_->want_pixels(pixels); }
   void want_form_factors(bool wanted) override { method_->want_form_factors(wanted); }
   void expect_frames() override { method_->expect_frames(); }
+  void pass(const visibility::AllTriangles* all) override { visibility::pass(*method_, all); }
   void prepare_mesh(const visibility::SceneFloats& scene) override { method_->prepare_mesh(scene); }
   void prepare_light(const Light& light) override;
   void prepare_view(const ViewSamples& samples) override;

@@ -7,6 +7,7 @@
 #include "maps/host/holes.hpp"
 #include "maps/host/lamp_disks.hpp"
 #include "maps/host/sun_space.hpp"
+#include "visibility/all_triangles.hpp"
 #include "visibility/frame_memory.hpp"
 #include "visibility/receivers.hpp"
 
@@ -24,7 +25,9 @@ using visibility::SceneFloats;
 using visibility::Tile;
 using visibility::ViewSamples;
 
-class EveryLight final : public visibility::Method, public visibility::RemembersFrames {
+class EveryLight final : public visibility::Method,
+                         public visibility::RemembersFrames,
+                         public visibility::PassesTriangles {
  public:
   EveryLight(std::unique_ptr<Method> method, Given given)
       : method_(std::move(method)), given_(given), description_(for_every_light(method_->description(), given)) {}
@@ -34,6 +37,7 @@ class EveryLight final : public visibility::Method, public visibility::Remembers
   void want_form_factors(bool wanted) override { method_->want_form_factors(wanted); }
   void expect_frames() override { method_->expect_frames(); }
   void remember(visibility::FrameMemory* memory) override { visibility::remember(*method_, memory); }
+  void pass(const visibility::AllTriangles* all) override { all_ = all; }
   void prepare_mesh(const SceneFloats& scene) override;
   void prepare_light(const Light& light) override;
   void prepare_view(const ViewSamples& samples) override;
@@ -61,6 +65,7 @@ class EveryLight final : public visibility::Method, public visibility::Remembers
   Given given_;
   visibility::MethodDescription description_;
   const SceneFloats* scene_ = nullptr;
+  const visibility::AllTriangles* all_ = nullptr;  // of which the scene has a part; null: it is whole
   std::optional<SceneFloats> drawn_;               // with holes as casters, if any
   const SceneFloats* shown_ = nullptr;             // scene that the method has
   const Light* light_ = nullptr;                   // light given by the host
@@ -88,11 +93,13 @@ void EveryLight::prepare_mesh(const SceneFloats& scene) {
   sun_.reset();
   drawn_.reset();
   if (given_.holes) drawn_ = with_holes_drawn(scene);
+  in_sun_space_ = false;
   show(drawn());
 }
 
 void EveryLight::show(const SceneFloats& scene) {
   if (shown_ == &scene) return;
+  visibility::pass(*method_, in_sun_space_ && all_ != nullptr ? &*sun_ : all_);
   method_->prepare_mesh(scene);
   shown_ = &scene;
 }
@@ -110,10 +117,11 @@ void EveryLight::prepare_light(const Light& light) {
   if (in_sun_space_) {
     if (!sun_ || !sun_->take(light)) {
       shown_ = nullptr;  // a new scene of a sun may have the same address as the previous one
-      sun_.emplace(drawn(), light);
+      sun_.emplace(drawn(), light, all_);
     }
     own_ = sun_->light();
   } else if (!knows) {
+    PENUMBRA_ASSERT(all_ == nullptr, "{}: a lamp's disks look at triangles more than once", description_.name);
     lamp_.emplace(light);
     disk_ = 0;
     looked_ = kNoDisk;

@@ -10,6 +10,7 @@
 
 #include "maps/host/map_fit.hpp"
 
+#include "base/assert.hpp"
 #include "visibility/receivers.hpp"
 
 #include <glm/common.hpp>
@@ -142,6 +143,58 @@ SideTriangles triangles_on_side(const visibility::SceneFloats& scene, const std:
   return side;
 }
 
+/// Points of a hull in (x, z) at which bounds of the quotient of both, seen from one point, and bounds of z are
+/// reached.
+class Extremes {
+ public:
+  Extremes(double origin, double origin_z) : origin_(origin), origin_z_(origin_z) {}
+
+  void add(const glm::dvec2& at) {
+    const double quotient = (at.x - origin_) / (at.y - origin_z_);  // as in tangents()
+    if (!any_ || quotient < least_) least_ = quotient, points_[0] = at;
+    if (!any_ || quotient > greatest_) greatest_ = quotient, points_[1] = at;
+    if (!any_ || at.y < points_[2].y) points_[2] = at;
+    if (!any_ || at.y > points_[3].y) points_[3] = at;
+    any_ = true;
+  }
+  [[nodiscard]] std::vector<glm::dvec2> points() const {
+    return any_ ? std::vector<glm::dvec2>(points_.begin(), points_.end()) : std::vector<glm::dvec2>();
+  }
+
+ private:
+  double origin_, origin_z_, least_ = 0, greatest_ = 0;
+  std::array<glm::dvec2, 4> points_{};
+  bool any_ = false;
+};
+
+/// Returns the same data as triangles_on_side(), for maps of one point, of triangles that are not in the scene.
+template <typename Counts>
+SideTriangles passing_on_side(const visibility::AllTriangles& all, const LightBasis& basis, const glm::vec3& point,
+                              double sign, const Counts& counts) {
+  const glm::dvec3 origin = basis.local(point);
+  SideTriangles side;
+  Extremes along_x(origin.x, sign * origin.z), along_y(origin.y, sign * origin.z);
+  all.for_each_run([&](const visibility::AllTriangles::Run& run) {
+    if (!counts(run)) return;
+    for (const std::array<glm::vec3, 3>& corners : run.corners) {
+      const std::array<glm::dvec3, 3> local{basis.local(corners[0]), basis.local(corners[1]), basis.local(corners[2])};
+      const auto in_front = std::ranges::count_if(local, [&](const glm::dvec3& at) { return sign * at.z > 0; });
+      if (in_front == 0) continue;
+      side.any = true;
+      if (in_front < 3) side.reach_plane = true;
+      if (side.reach_plane) continue;
+      for (const glm::dvec3& at : local) {
+        along_x.add({at.x, sign * at.z});
+        along_y.add({at.y, sign * at.z});
+      }
+    }
+  });
+  if (!side.any || side.reach_plane) return side;
+  side.hull_x = along_x.points();
+  side.hull_y = along_y.points();
+  return side;
+}
+
 /// Returns the same data of the receivers seen by a camera: none of them reaches the light's plane.
 SideTriangles body_on_side(std::span<const BodyPoint> body, const LightBasis& basis, double sign) {
   SideTriangles side;
@@ -232,6 +285,8 @@ glm::dvec2 reach_of_all(const visibility::SceneFloats& scene) {
 
 FittedViews fit_views(const visibility::SceneFloats& scene, const visibility::Light& light, const LightBasis& basis,
                       std::span<const glm::vec3> points, const FitOptions& options) {
+  PENUMBRA_ASSERT(options.all == nullptr || (points.size() == 1 && options.body == nullptr && !light.beam),
+                  "light {}: maps of {} points of triangles that pass", light.name, points.size());
   std::vector<glm::dvec3> local(scene.positions.size());
   std::transform(scene.positions.begin(), scene.positions.end(), local.begin(),
                  [&](const glm::vec3& x) { return basis.local(x); });
@@ -249,12 +304,19 @@ FittedViews fit_views(const visibility::SceneFloats& scene, const visibility::Li
     const SideTriangles receivers =
         options.body != nullptr ? body_on_side(*options.body, basis, sign)
         : light.beam            ? receivers_in(scene, light, basis, local)
-                     : triangles_on_side(scene, local, sign, [&](std::size_t i) { return receives(scene, light, i); });
+        : options.all != nullptr
+            ? passing_on_side(*options.all, basis, points.front(), sign,
+                              [&](const auto& run) { return run.receives_shadow && run.emits != light.index; })
+            : triangles_on_side(scene, local, sign, [&](std::size_t i) { return receives(scene, light, i); });
     if (!receivers.any) continue;
     const bool beside = options.beside != glm::dvec2(0) || options.reach != glm::dvec2(0);
-    const SideTriangles casters = triangles_on_side(scene, local, sign, [&](std::size_t i) {
-      return beside && scene.casts_shadow[i] != 0 && scene.emits[i] != light.index;
-    });
+    const SideTriangles casters =
+        options.all != nullptr && beside
+            ? passing_on_side(*options.all, basis, points.front(), sign,
+                              [&](const auto& run) { return run.casts_shadow && run.emits != light.index; })
+            : triangles_on_side(scene, local, sign, [&](std::size_t i) {
+                return beside && scene.casts_shadow[i] != 0 && scene.emits[i] != light.index;
+              });
     glm::dvec2 margin = options.beside + beside_of(options.reach, receivers, casters);
     if (options.body_reach != glm::dvec2(0))
       margin = glm::min(margin, beside_of(options.body_reach, receivers, casters));

@@ -4,6 +4,7 @@
 #include "maps/host/light_basis.hpp"
 #include "maps/host/map_view.shared.h"
 #include "maps/host/view_fit.hpp"
+#include "visibility/all_triangles.hpp"
 #include "visibility/light_samples.hpp"
 #include "visibility/scene_floats.hpp"
 
@@ -44,6 +45,9 @@ struct FitOptions {
   /// `body_reach`; and `snap` keeps texels at the same positions for any body.
   glm::dvec2 body_reach{0};
   bool snap = false;
+  /// All triangles, of which the scene has a part; null: the scene is whole. Only for maps of one point, for receivers
+  /// of any planar light.
+  const visibility::AllTriangles* all = nullptr;
   bool hemicube = false;  ///< five faces, even if a window would suffice
   glm::dvec2 jitter{0};   ///< displacement of windows in their texels, up to a half; contents stay inside them
 };

@@ -12,6 +12,7 @@
 #include "maps/host/queried_tiles.hpp"
 #include "maps/host/receivers.hpp"
 #include "render/compute_pass.hpp"
+#include "visibility/all_triangles.hpp"
 #include "visibility/lights/light_parts.hpp"
 #include "visibility/masks/visible_share.hpp"
 #include "visibility/receivers.hpp"
@@ -33,7 +34,7 @@ constexpr std::uint32_t kBitsPerWord = 32;
 /// Memory limits of a batch of several light points, and of a tile's masks.
 constexpr std::uint64_t kBatchBytes = std::uint64_t{128} << 20, kMaskBytes = std::uint64_t{256} << 20;
 
-class MapMethod final : public visibility::Method {
+class MapMethod final : public visibility::Method, public visibility::PassesTriangles {
  public:
   MapMethod(const render::Device& device, MapRecipe recipe, const MapOptions& options)
       : device_(&device),
@@ -59,6 +60,7 @@ class MapMethod final : public visibility::Method {
 
   [[nodiscard]] const visibility::MethodDescription& description() const override { return recipe_.description; }
   void want_pixels(std::span<const std::uint32_t> pixels) override { receivers_.want(pixels); }
+  void pass(const visibility::AllTriangles* all) override { all_ = all; }
   void prepare_mesh(const visibility::SceneFloats& scene) override;
   void prepare_light(const visibility::Light& light) override;
   void prepare_view(const visibility::ViewSamples& samples) override;
@@ -141,6 +143,7 @@ class MapMethod final : public visibility::Method {
   visibility::PassTimes times_;
   std::map<std::string, std::uint64_t> counters_;
   const visibility::SceneFloats* scene_ = nullptr;
+  const visibility::AllTriangles* all_ = nullptr;  ///< of which the scene has a part; null: it is whole
   const visibility::Light* light_ = nullptr;
   const visibility::ViewSamples* samples_ = nullptr;
   LightBasis basis_;
@@ -178,7 +181,13 @@ render::ComputePass MapMethod::make_look_up() const {
 
 void MapMethod::prepare_mesh(const visibility::SceneFloats& scene) {
   scene_ = &scene;
-  casters_.upload(scene);
+  if (all_ == nullptr) return casters_.upload(scene);
+  PENUMBRA_ASSERT(
+      recipe_.points == MapPoints::centre && recipe_.sub_lights == 1 &&
+          std::ranges::all_of(recipe_.products, [](const auto& product) { return product->leaves_triangles(); }) &&
+          !options_.fit.sees_camera() && !options_.fit.has_faces(),
+      "{} looks at triangles more than once", recipe_.description.name);
+  casters_.pass(*all_, times_);
 }
 
 void MapMethod::prepare_light(const visibility::Light& light) {
@@ -213,6 +222,7 @@ void MapMethod::fit_maps() {
   if (recipe_.all_casters) fit.reach = reach_of_all(*scene_);
   if (options_.fit.sees_camera()) return fit_to_camera(fit, centres.front());
   fit.hemicube = options_.fit.projection == Projection::cube;
+  fit.all = all_;
   fitted_ =
       fit_views(*scene_, light, basis_, many ? std::span(light.points) : std::span<const glm::vec3>(centres), fit);
   if (options_.fit.projection == Projection::paraboloid) {
@@ -333,6 +343,7 @@ void MapMethod::make_centre_maps(std::uint32_t part) {
                                recipe_.layers.count, options_.fit.has_faces() ? &faces_.table() : nullptr});
   }
   times_.add(commands.submit());
+  counters_["casters"] = casters_.caster_count();
 }
 
 void MapMethod::prepare_view(const visibility::ViewSamples& samples) {

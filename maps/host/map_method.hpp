@@ -88,6 +88,8 @@ class MapProduct {
                                                              [[maybe_unused]] std::uint32_t faces) const {
     return {};
   }
+  /// Returns whether it is made from maps and light alone, so that triangles may pass once (visibility::AllTriangles).
+  [[nodiscard]] virtual bool leaves_triangles() const { return false; }
   [[nodiscard]] virtual std::uint64_t memory_bytes() const { return buffer().bytes(); }
   /// Adds the counts of its look-ups so far (Method::counters).
   virtual void add_counters([[maybe_unused]] std::map<std::string, std::uint64_t>& counters) const {}

@@ -5,13 +5,17 @@
 #include "maps/host/sun_space.hpp"
 
 #include "base/assert.hpp"
+#include "base/parallel.hpp"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <array>
+#include <cstddef>
 #include <limits>
 #include <numbers>
+#include <vector>
 
 namespace penumbra::maps {
 namespace {
@@ -24,7 +28,9 @@ constexpr double kLeastTangent = 0x1p-20;
 
 }  // namespace
 
-SunSpace::SunSpace(const visibility::SceneFloats& scene, const visibility::Light& sun) : scene_(scene) {
+SunSpace::SunSpace(const visibility::SceneFloats& scene, const visibility::Light& sun,
+                   const visibility::AllTriangles* all)
+    : scene_(scene), all_(all) {
   PENUMBRA_ASSERT(sun.sun.has_value(), "light \"{}\" is no sun", sun.name);
   way_ = *sun.sun;
   n_ = glm::normalize(glm::cross(glm::dvec3(sun.sun->axis_u), glm::dvec3(sun.sun->axis_v)));
@@ -42,12 +48,43 @@ SunSpace::SunSpace(const visibility::SceneFloats& scene, const visibility::Light
     scene_.lower = glm::min(scene_.lower, position);
     scene_.upper = glm::max(scene_.upper, position);
   }
+  if (all_ != nullptr) {
+    for_each_positions([&](std::span<const glm::vec3> positions) {
+      for (const glm::vec3& position : positions) {
+        scene_.lower = glm::min(scene_.lower, position);
+        scene_.upper = glm::max(scene_.upper, position);
+      }
+    });
+  }
   if (!scene_.alphas.empty()) {
     for (const glm::vec3& position : scene.positions)
       scene_.alphas.weights.push_back(scale_ / (below_ - local(position).z));
   }
 
   make_light(sun);
+}
+
+void SunSpace::for_each_run(const std::function<void(const Run&)>& take) const {
+  std::vector<std::array<glm::vec3, 3>> corners;
+  all_->for_each_run([&](const Run& run) {
+    corners.resize(run.corners.size());
+    for_each_index(corners.size(), [&](std::size_t i) {
+      const auto& [a, b, c] = run.corners[i];
+      corners[i] = {mapped(a), mapped(b), mapped(c)};
+    });
+    Run here = run;
+    here.corners = corners;
+    take(here);
+  });
+}
+
+void SunSpace::for_each_positions(const std::function<void(std::span<const glm::vec3>)>& take) const {
+  std::vector<glm::vec3> mapped_positions;
+  all_->for_each_positions([&](std::span<const glm::vec3> positions) {
+    mapped_positions.resize(positions.size());
+    for_each_index(positions.size(), [&](std::size_t i) { mapped_positions[i] = mapped(positions[i]); });
+    take(mapped_positions);
+  });
 }
 
 bool SunSpace::take(const visibility::Light& sun) {

@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "visibility/all_triangles.hpp"
 #include "visibility/light_samples.hpp"
 #include "visibility/scene_floats.hpp"
 #include "visibility/view_samples.hpp"
 
 #include <glm/vec3.hpp>
+
+#include <functional>
+#include <span>
 
 namespace penumbra::maps {
 
@@ -18,16 +22,21 @@ namespace penumbra::maps {
 /// widths of penumbrae, (z_r − z_o) / z_o times the light, are tangent times distance. b is so far below the scene that
 /// the map is close to a translation: lengths change by up to 12 %, so that biases and mean depths have nearly the same
 /// meaning as elsewhere.
-class SunSpace {
+class SunSpace final : public visibility::AllTriangles {
  public:
-  /// `sun` must be a sun.
-  SunSpace(const visibility::SceneFloats& scene, const visibility::Light& sun);
+  /// `sun` must be a sun. `all`: all triangles, of which the scene has a part; null: it is whole. Must outlive this
+  /// object.
+  SunSpace(const visibility::SceneFloats& scene, const visibility::Light& sun,
+           const visibility::AllTriangles* all = nullptr);
 
   /// Changes to another sun with the same direction, of any angle and radiance, and keeps the scene. Returns false if
   /// the direction differs.
   bool take(const visibility::Light& sun);
 
   [[nodiscard]] const visibility::SceneFloats& scene() const { return scene_; }
+  /// All triangles, mapped; if the constructor was given any.
+  void for_each_run(const std::function<void(const Run&)>& take) const override;
+  void for_each_positions(const std::function<void(std::span<const glm::vec3>)>& take) const override;
   /// Returns the disk. A sun of one direction is replaced by a disk with a tangent of 2⁻²⁰, less than a texel of any
   /// map.
   [[nodiscard]] const visibility::Light& light() const { return light_; }
@@ -45,6 +54,7 @@ class SunSpace {
   glm::dvec3 u_{0}, v_{0}, n_{0}, middle_{0};
   double scale_ = 1, below_ = 1;  // S, and b from the scene's middle
   visibility::SceneFloats scene_;
+  const visibility::AllTriangles* all_ = nullptr;
   visibility::Light light_;
 };
 

@@ -15,6 +15,7 @@ class NearestCaster final : public MapProduct {
   explicit NearestCaster(const render::Device& device);
   void record(render::Commands& commands, const MapSet& maps) override;
   [[nodiscard]] const render::Buffer& buffer() const override { return nearest_; }
+  [[nodiscard]] bool leaves_triangles() const override { return true; }
 
  private:
   const render::Device* device_;

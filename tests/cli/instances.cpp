@@ -8,9 +8,11 @@
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -30,6 +32,68 @@ class Instances : public ProgramTest {
   }
   json tree() const {
     return json::parse(R"({"name": "tree", "shape": {"type": "sphere", "radius": 0.4, "segments": 8}})");
+  }
+
+  /// Writes scene.json: thirty trees and a pole.
+  void write_grove(const std::string& lights) {
+    std::vector<json> places;
+    for (int i = 0; i < 30; ++i) {
+      places.push_back(
+          {{"translate", {0.45 * (i % 6) - 1.1, 0.3, 0.5 * (i / 6) - 1.2}},  // NOLINT(bugprone-integer-division)
+           {"rotate", {10 * i, 37 * i, 0}},
+           {"scale", {i % 4 == 0 ? -0.5 : 0.4, 0.6, 0.5}}});
+    }
+    json trees = tree();
+    trees["instances"] = places;
+    const json pole = json::parse(
+        R"({"shape": {"type": "box", "center": [0, 0, 0], "halfSize": [0.1, 0.5, 0.1]}, "transform": {"translate": [0, 0.5, 0]}})");
+    json whole = scene({trees, pole});
+    whole["lights"] = json::parse(lights);
+    write("scene.json", whole.dump());
+  }
+
+  /// Renders scene.json with copies and without. Masks are compared, too, where a method is named.
+  void expect_same_picture(const std::vector<std::string>& direction, bool masks = true) {
+    SCOPED_TRACE(testing::PrintToString(direction));
+    const bool has_bits = masks && direction.size() >= 2 && direction[0] == "--method";
+    for (const std::string use : {"copies", "shared"}) {
+      std::vector<std::string> words = {
+          "render",  path("scene.json"),       "-o", path(use + ".exr"), "--quiet", "--instances", use,
+          "--stats", path(use + ".stats.json")};
+      words.insert(words.end(), direction.begin(), direction.end());
+      if (std::ranges::find(direction, "--size") == direction.end()) words.insert(words.end(), {"--size", "48x36"});
+      const Outcome outcome = run(words);
+      ASSERT_EQ(outcome.code, 0) << outcome.err;
+      if (!has_bits) continue;
+      words.insert(words.end(), {"--bits", path(use + ".bits")});
+      words[3] = path("bits.exr");
+      words[8] = path("bits.stats.json");
+      ASSERT_EQ(run(words).code, 0);
+    }
+    const ExrFile one = read_exr(path("shared.exr")), other = read_exr(path("copies.exr"));
+    EXPECT_EQ(one.integers.at("id"), other.integers.at("id"));
+    ASSERT_EQ(one.floats.size(), other.floats.size());
+    for (const auto& [name, values] : other.floats) {
+      if (name.ends_with(".R") || name.ends_with(".G") || name.ends_with(".B") || name.size() == 1) {
+        ASSERT_EQ(one.floats.at(name).size(), values.size());
+        for (std::size_t i = 0; i < values.size(); ++i)
+          ASSERT_NEAR(one.floats.at(name)[i], values[i], 1e-6 * (1 + std::abs(values[i]))) << name << " " << i;
+      }
+      if (name.size() > 1 || name == "V") {
+        EXPECT_EQ(one.floats.at(name), values) << name;
+      }
+    }
+    if (has_bits) {
+      EXPECT_EQ(read("shared.bits"), read("copies.bits"));
+    }
+  }
+
+  /// Triangles of the last picture of expect_same_picture(), and of its largest part where nothing was copied.
+  [[nodiscard]] std::uint64_t triangles() const {
+    return json::parse(read("shared.stats.json")).at("triangles").get<std::uint64_t>();
+  }
+  [[nodiscard]] std::uint64_t triangles_of_part() const {
+    return json::parse(read("shared.stats.json")).at("counters").at("trianglesOfLargestPart").get<std::uint64_t>();
   }
 };
 
@@ -75,57 +139,58 @@ TEST_F(Instances, AreTheMeshOnceForEach) {
 
 /// Pictures of instances with copies and without are the same to the last bit.
 TEST_F(Instances, GiveTheSamePictureWithoutCopies) {
-  std::vector<json> places;
-  for (int i = 0; i < 30; ++i) {
-    places.push_back(
-        {{"translate", {0.45 * (i % 6) - 1.1, 0.3, 0.5 * (i / 6) - 1.2}},  // NOLINT(bugprone-integer-division)
-         {"rotate", {10 * i, 37 * i, 0}},
-         {"scale", {i % 4 == 0 ? -0.5 : 0.4, 0.6, 0.5}}});
-  }
-  json trees = tree();
-  trees["instances"] = places;
-  const json pole = json::parse(
-      R"({"shape": {"type": "box", "center": [0, 0, 0], "halfSize": [0.1, 0.5, 0.1]}, "transform": {"translate": [0, 0.5, 0]}})");
-  json lights = json::parse(R"([
+  write_grove(R"([
     {"name": "area", "rectangle": {"center": [0.5, 3, 1], "halfU": [0.4, 0, 0], "halfV": [0, 0, 0.3]}},
     {"name": "bulb", "sphere": {"center": [-2, 2, 1], "radius": 0.2}},
     {"name": "day", "sun": {"direction": [0.4, -1, 0.3], "angle": 5}}])");
-  json whole = scene({trees, pole});
-  whole["lights"] = lights;
-  write("scene.json", whole.dump());
-  const std::vector<std::vector<std::string>> directions = {{},
-                                                            {"--method", "edge-scatter", "--light-samples", "64"},
-                                                            {"--method", "view-sample"},
-                                                            {"--pixel-samples", "4"},
-                                                            {"--light", "bulb", "--camera", "0.2,0.4,0.3:1,0.2,-1"}};
-  for (const std::vector<std::string>& direction : directions) {
-    SCOPED_TRACE(direction.empty() ? "" : direction.back());
-    const bool has_bits = direction.size() >= 2 && direction[0] == "--method";
-    for (const std::string use : {"copies", "shared"}) {
-      std::vector<std::string> words = {
-          "render", path("scene.json"), "-o", path(use + ".exr"), "--quiet", "--instances", use, "--size", "48x36"};
-      words.insert(words.end(), direction.begin(), direction.end());
-      if (has_bits) words.insert(words.end(), {"--bits", path(use + ".bits")});
-      const Outcome outcome = run(words);
-      ASSERT_EQ(outcome.code, 0) << outcome.err;
-    }
-    const ExrFile one = read_exr(path("shared.exr")), other = read_exr(path("copies.exr"));
-    EXPECT_EQ(one.integers.at("id"), other.integers.at("id"));
-    ASSERT_EQ(one.floats.size(), other.floats.size());
-    for (const auto& [name, values] : other.floats) {
-      if (name.ends_with(".R") || name.ends_with(".G") || name.ends_with(".B") || name.size() == 1) {
-        ASSERT_EQ(one.floats.at(name).size(), values.size());
-        for (std::size_t i = 0; i < values.size(); ++i)
-          ASSERT_NEAR(one.floats.at(name)[i], values[i], 1e-6 * (1 + std::abs(values[i]))) << name << " " << i;
-      }
-      if (name.size() > 1 || name == "V") {
-        EXPECT_EQ(one.floats.at(name), values) << name;
-      }
-    }
-    if (has_bits) {
-      EXPECT_EQ(read("shared.bits"), read("copies.bits"));
-    }
+  expect_same_picture({});
+  expect_same_picture({"--method", "edge-scatter", "--light-samples", "64"});
+  expect_same_picture({"--method", "view-sample"});
+  expect_same_picture({"--pixel-samples", "4"});
+  expect_same_picture({"--light", "bulb", "--camera", "0.2,0.4,0.3:1,0.2,-1"});
+}
+
+/// So are those of light samples of a dome, of which every direction needs a blocker; areas need all triangles.
+TEST_F(Instances, GiveTheSamePictureUnderADome) {
+  write_grove(R"([
+    {"name": "sky", "dome": {"half": true}, "radiance": [0.5, 0.7, 1]},
+    {"name": "day", "sun": {"direction": [0.4, -1, 0.3], "angle": 5}}])");
+  for (const char* method : {"edge-scatter", "view-sample", "depth-complexity"}) {
+    expect_same_picture({"--method", method, "--light-samples", "64"});
+    EXPECT_LT(triangles_of_part(), triangles()) << method;
   }
+  expect_same_picture({"--light-samples", "36"});  // by rays
+  expect_same_picture({"--light-samples", "16", "--pixel-samples", "4"});
+  expect_same_picture({"--light", "sky", "--size", "12x9"});
+  EXPECT_EQ(triangles_of_part(), triangles());
+}
+
+/// Of one map from the light's centre triangles pass: windows, depths and pictures are those of the whole scene.
+TEST_F(Instances, GiveTheSamePictureByMaps) {
+  write_grove(R"([
+    {"name": "area", "rectangle": {"center": [0.5, 3, 1], "halfU": [0.4, 0, 0], "halfV": [0, 0, 0.3]}},
+    {"name": "low", "rectangle": {"center": [-3, 0.6, 1], "halfU": [0, 0.3, 0], "halfV": [0, 0, 0.3]}, "twoSided": true},
+    {"name": "day", "sun": {"direction": [0.4, -1, 0.3], "angle": 5}}])");
+  expect_same_picture({"--method", "shadow-map"}, false);
+  expect_same_picture({"--method", "shadow-map", "--method-option", "depth=midpoint", "--method-option", "size=64"},
+                      false);
+  expect_same_picture({"--method", "pcf", "--method-option", "window=5"}, false);
+  expect_same_picture({"--method", "pcss", "--method-option", "size=200"}, false);
+}
+
+TEST_F(Instances, AreCopiedForMapsThatLookTwice) {
+  write_grove(R"([{"name": "bulb", "sphere": {"center": [-2, 2, 1], "radius": 0.2}}])");
+  const auto refused = [&](std::vector<std::string> more) {
+    std::vector<std::string> words = {"render", path("scene.json"), "-o", path("out.exr"), "--instances", "shared"};
+    words.insert(words.end(), more.begin(), more.end());
+    const Outcome outcome = run(words);
+    EXPECT_EQ(outcome.code, 2);
+    return outcome.err;
+  };
+  EXPECT_THAT(refused({"--method", "pcss"}), HasSubstr("--instances shared: pcss takes suns and lights in one plane"));
+  EXPECT_THAT(refused({"--method", "vssm"}), HasSubstr("--instances shared: vssm looks at more"));
+  EXPECT_THAT(refused({"--method", "shadow-map", "--method-option", "fit=view"}),
+              HasSubstr("shadow-map looks at more"));
 }
 
 /// Nodes that share a mesh, and EXT_mesh_gpu_instancing, are what the same file says in world space, copy by copy.
@@ -243,8 +308,11 @@ TEST_F(InstancesFull, GiveTheSamePictureOfAForest) {
          {"scale", {0.4, 0.5 + 0.01 * (i % 13), 0.5}}});
   }
   write("scene.json", scene({trees}).dump());
-  const std::vector<std::vector<std::string>> directions = {
-      {}, {"--bits", "FILE"}, {"--method", "view-sample", "--bits", "FILE"}};
+  const std::vector<std::vector<std::string>> directions = {{},
+                                                            {"--bits", "FILE"},
+                                                            {"--method", "view-sample", "--bits", "FILE"},
+                                                            {"--add-light", "dome", "--light-samples", "36"},
+                                                            {"--method", "pcss"}};
   for (const std::vector<std::string>& direction : directions) {
     for (const std::string use : {"copies", "auto"}) {
       std::vector<std::string> words = {
@@ -257,7 +325,7 @@ TEST_F(InstancesFull, GiveTheSamePictureOfAForest) {
     EXPECT_EQ(one.integers.at("id"), other.integers.at("id"));
     for (const char* channel : {"V", "P.X", "P.Y", "P.Z", "Z", "N.X"})
       EXPECT_EQ(one.floats.at(channel), other.floats.at(channel)) << channel;
-    if (!direction.empty()) {
+    if (std::ranges::find(direction, "--bits") != direction.end()) {
       EXPECT_EQ(read("auto.bits"), read("copies.bits"));
     }
   }

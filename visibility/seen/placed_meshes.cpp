@@ -166,14 +166,16 @@ void PlacedMeshes::put_in_world() {
   tree_ = BoxTree(boxes, kPartsOfLeaf);
 }
 
+glm::vec3 PlacedMeshes::position(const Part& part, std::size_t number) const {
+  const glm::dvec3& own = part.soup->positions[number];
+  const glm::dvec3 world = part.instance != nullptr ? part.instance->placement(own) : own;
+  return glm::vec3(world - origin_) + 0.0f;  // as in make_scene_floats
+}
+
 std::array<glm::vec3, 3> PlacedMeshes::corners(const Part& part, std::uint32_t triangle) const {
   std::array<glm::vec3, 3> corners;
   const mesh::Triangle& of = part.soup->triangles[triangle];
-  for (std::size_t i = 0; i < 3; ++i) {
-    const glm::dvec3& own = part.soup->positions[of[i]];
-    const glm::dvec3 world = part.instance != nullptr ? part.instance->placement(own) : own;
-    corners[i] = glm::vec3(world - origin_) + 0.0f;  // as in make_scene_floats
-  }
+  for (std::size_t i = 0; i < 3; ++i) corners[i] = position(part, of[i]);
   const auto put_in_order = [](glm::vec3& a, glm::vec3& b) {
     const bool less = b.x != a.x ? b.x < a.x : b.y != a.y ? b.y < a.y : b.z < a.z;
     if (less) std::swap(a, b);

@@ -73,6 +73,8 @@ class PlacedMeshes {
   /// Returns the approximate size of four neighbouring triangles of the meshes.
   [[nodiscard]] double grain() const { return grain_; }
 
+  /// Returns the scene floats of a part's position.
+  [[nodiscard]] glm::vec3 position(const Part& part, std::size_t number) const;
   /// Returns a triangle's scene floats, in the order of SceneFloats::triangles.
   [[nodiscard]] std::array<glm::vec3, 3> corners(const Part& part, std::uint32_t triangle) const;
   [[nodiscard]] std::uint32_t object(const Part& part, std::uint32_t triangle) const {

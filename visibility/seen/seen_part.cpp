@@ -3,6 +3,7 @@
 
 #include "base/memory.hpp"
 #include "mesh/soup_memory.hpp"
+#include "visibility/seen/dome_rays.hpp"
 #include "visibility/seen/light_shafts.hpp"
 #include "visibility/seen/view_rays.hpp"
 
@@ -14,6 +15,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <iterator>
 #include <mutex>
 #include <vector>
 
@@ -165,15 +167,23 @@ SeenPart part_of(const PlacedMeshes& meshes, TriangleBits& seen) {
 }  // namespace
 
 SeenPart seen_part(const PlacedMeshes& meshes, const PinholeCamera& camera, std::span<const Light> lights,
-                   const Tile& rows, std::vector<std::uint64_t>* viewed) {
+                   const Tile& rows, const PartOptions& options) {
   TriangleBits seen(meshes.triangles());
-  const bool all = std::ranges::any_of(lights, [](const Light& light) { return light.dome.has_value(); });
+  std::vector<Light> others;  // beside domes
+  std::vector<DomeRays> domes;
+  const auto is_dome = [](const Light& light) { return light.dome.has_value(); };
+  const bool any_dome = std::ranges::any_of(lights, is_dome), all = any_dome && !options.dome_samples;
   if (all) {
     for (std::uint64_t bit = 0; bit < meshes.triangles(); ++bit) seen.set(bit);
+  } else if (any_dome) {
+    std::ranges::remove_copy_if(lights, std::back_inserter(others), is_dome);
+    for (const Light& light : lights) {
+      if (light.dome) domes.emplace_back(meshes, light);
+    }
   }
-  if (!all || viewed != nullptr) {
+  if (!all || options.viewed != nullptr) {
     const ViewRays rays(meshes, camera);
-    const Shafts shafts(meshes, all ? std::span<const Light>() : lights, seen);
+    const Shafts shafts(meshes, any_dome ? others : lights, seen);
     const std::uint32_t end = rows.first_row + rows.row_count;
     const std::uint32_t across = (camera.width + kBlock - 1) / kBlock, down = (rows.row_count + kBlock - 1) / kBlock;
     std::mutex adding;
@@ -185,11 +195,12 @@ SeenPart seen_part(const PlacedMeshes& meshes, const PinholeCamera& camera, std:
         for (std::uint32_t x = left; x < std::min(left + kBlock, camera.width); ++x) rays.look(x, y, bits, points);
       }
       for (const std::uint64_t bit : bits) seen.set(bit);
-      if (viewed != nullptr) {
+      if (options.viewed != nullptr) {
         const std::lock_guard lock(adding);
-        viewed->insert(viewed->end(), bits.begin(), bits.end());
+        options.viewed->insert(options.viewed->end(), bits.begin(), bits.end());
       }
       shafts.add(points);
+      for (const DomeRays& dome : domes) dome.add(points, seen);
     });
   }
   return part_of(meshes, seen);

@@ -25,12 +25,19 @@ struct SeenPart {
   glm::vec3 lower{0}, upper{0};        ///< bounding box of the whole scene's scene floats
 };
 
+struct PartOptions {
+  /// A dome's directions go everywhere, so that its areas need all triangles. True: its light samples alone are asked
+  /// about, and need what blocks each of them.
+  bool dome_samples = false;
+  /// Receives the triangles that the rows' pixels see, for viewed_part(), beside those that it has; null: not
+  /// requested.
+  std::vector<std::uint64_t>* viewed = nullptr;
+};
+
 /// Finds the part for the view samples in some rows of the picture. `lights`: all lights that shine on these, pieces of
-/// one light side by side. A dome's directions go everywhere, so that a dome needs all triangles. `viewed`: receives
-/// the triangles that the rows' pixels see, for viewed_part(), beside those that it has; null: not requested. Throws
-/// ResourceError, with the figures, if memory does not suffice.
+/// one light side by side. Throws ResourceError, with the figures, if memory does not suffice.
 SeenPart seen_part(const PlacedMeshes& meshes, const PinholeCamera& camera, std::span<const Light> lights,
-                   const Tile& rows, std::vector<std::uint64_t>* viewed = nullptr);
+                   const Tile& rows, const PartOptions& options = {});
 
 /// Returns the part that pixels see: what is in it is nearest in its pixel. `viewed`: as seen_part() gives it.
 SeenPart viewed_part(const PlacedMeshes& meshes, std::span<const std::uint64_t> viewed);

@@ -2,17 +2,14 @@
 #include "visibility/seen/view_rays.hpp"
 
 #include "mesh/predicates.hpp"
+#include "visibility/seen/tree_ray.hpp"
 
-#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
-#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
-#include <limits>
 #include <optional>
-#include <utility>
 
 namespace penumbra::visibility {
 
@@ -44,8 +41,6 @@ namespace {
 /// forest, and hold every leaf of a tree.
 constexpr double kPixels = 0x1p-4;
 
-constexpr double kEndless = std::numeric_limits<double>::infinity();
-
 }  // namespace
 
 /// Traversal of one pixel's ray, nearest nodes first.
@@ -59,10 +54,14 @@ class ViewRays::Walk {
 
   void run(std::vector<std::uint64_t>& bits, std::vector<SeenPoint>& points) {
     const PlacedMeshes& meshes = rays_.meshes_;
-    const Line line(ray_.start, ray_.direction, glm::dvec3(everywhere_), pixel_);
-    walk(
-        meshes.tree(), [&](const MiddleBox& box) { return line.enter(box); },
-        [&](std::uint32_t part) { walk_part(meshes.parts()[part], line); });
+    const TreeRay ray(ray_.start, ray_.direction, glm::dvec3(everywhere_), pixel_);
+    walk_nearest(
+        meshes.tree(), nearest_, [&](const MiddleBox& box) { return ray.enter(box); },
+        [&](std::uint32_t number) {
+          const PlacedMeshes::Part& part = meshes.parts()[number];
+          walk_part(part, ray_.start, ray_.direction, everywhere_, pixel_, nearest_,
+                    [&](std::uint32_t triangle) { take(part, triangle); });
+        });
     for (const Met& met : met_) {
       if (met.t > nearest_) continue;
       bits.push_back(met.bit);
@@ -71,89 +70,11 @@ class ViewRays::Walk {
       const glm::dvec3 a = met.corners[0], b = met.corners[1], c = met.corners[2];
       glm::dvec3 n = glm::normalize(glm::cross(b - a, c - a));
       if (glm::dot(n, ray_.direction) > 0) n = -n;
-      points.push_back({p, glm::vec3(n)});
+      points.push_back({p, glm::vec3(n), met.corners});
     }
   }
 
  private:
-  /// A ray in a space in which boxes are axis-aligned: the world, or a part's own.
-  struct Line {
-    glm::dvec3 start, inverse;
-    glm::dvec3 room;   ///< by which boxes are enlarged
-    double pixel = 0;  ///< by which boxes are enlarged as well, times their distance
-
-    Line(const glm::dvec3& from, const glm::dvec3& direction, const glm::dvec3& around, double pixels)
-        : start(from), room(around), pixel(pixels) {
-      // For a ray parallel to planes: a finite slope that moves all boxes beside the ray very far away.
-      constexpr double kSteep = 1e200;
-      for (int axis = 0; axis < 3; ++axis) {
-        inverse[axis] = 1 / direction[axis];
-        if (!(std::abs(inverse[axis]) < kSteep)) inverse[axis] = std::copysign(kSteep, inverse[axis]);
-      }
-    }
-
-    /// Returns the parameter at which the ray enters the box, enlarged by the rounding of cover(); infinite if the ray
-    /// misses.
-    [[nodiscard]] double enter(const MiddleBox& box) const {
-      const glm::dvec3 to = box.middle - start;
-      const glm::dvec3 half = box.half + room + pixel * (sum_of_sides(to) + box.half.x + box.half.y + box.half.z);
-      const glm::dvec3 one = (to - half) * inverse, other = (to + half) * inverse;
-      const glm::dvec3 into = glm::min(one, other), out = glm::max(one, other);
-      const double first = std::max({0.0, into.x, into.y, into.z}), last = std::min({out.x, out.y, out.z});
-      return first <= last * (1 + 0x1p-40) ? first * (1 - 0x1p-40) : kEndless;
-    }
-  };
-
-  struct Waiting {
-    double enter;
-    std::uint32_t node;
-  };
-
-  /// `enter`: parameter at which the ray enters a node's box.
-  template <typename Enter, typename Take>
-  void walk(const BoxTree& tree, const Enter& enter, const Take& take) {
-    if (tree.empty()) return;
-    std::array<Waiting, BoxTree::kDepth> stack;
-    std::uint32_t top = 0;
-    const auto wait = [&](std::uint32_t node, double at) {
-      if (at <= nearest_ && at < kEndless) stack[top++] = {at, node};
-    };
-    wait(0, enter(tree.root().box));
-    while (top > 0) {
-      const Waiting waiting = stack[--top];
-      if (waiting.enter > nearest_) continue;
-      const BoxTree::Node& node = tree.node(waiting.node);
-      if (node.count > 0) {
-        for (const std::uint32_t item : tree.items(node)) take(item);
-        continue;
-      }
-      const std::uint32_t first = waiting.node + 1, second = node.first;
-      const double at_first = enter(tree.node(first).box), at_second = enter(tree.node(second).box);
-      if (at_first < at_second)
-        wait(second, at_second), wait(first, at_first);
-      else
-        wait(first, at_first), wait(second, at_second);
-    }
-  }
-
-  void walk_part(const PlacedMeshes::Part& part, const Line& line) {
-    const auto take = [&](std::uint32_t triangle) { this->take(part, triangle); };
-    if (!part.has_own) {
-      walk(
-          *part.tree, [&](const MiddleBox& own) { return line.enter(part.box(own)); }, take);
-      return;
-    }
-    // In the part's own space, boxes need no transform. A distance d in the world is at most own_reach · d along each
-    // axis there; distances to all of the part's boxes are at most `far`, and the rounding of the transform is less
-    // than 2⁻³⁰ of them.
-    const glm::dvec3 from = ray_.start - part.offset;
-    const double far = sum_of_sides(part.in_world.middle - ray_.start) + 2 * sum_of_sides(part.in_world.half);
-    const double room = everywhere_ + pixel_ * far + part.room + 0x1p-30 * (sum_of_sides(from) + far);
-    const Line own(part.to_own * from, part.to_own * ray_.direction, part.own_reach * room, 0);
-    walk(
-        *part.tree, [&](const MiddleBox& box) { return own.enter(box); }, take);
-  }
-
   void take(const PlacedMeshes::Part& part, std::uint32_t triangle) {
     const std::array<glm::vec3, 3> corners = rays_.meshes_.corners(part, triangle);
     const std::optional<double> t = cover(ray_, corners);
@@ -165,7 +86,7 @@ class ViewRays::Walk {
   const ViewRays& rays_;
   const ViewRay& ray_;
   double pixel_ = 0, everywhere_ = 0;
-  double nearest_ = kEndless;  // distance of the nearest opaque triangle
+  double nearest_ = TreeRay::kEndless;  // distance of the nearest opaque triangle
   std::vector<Met> met_;
 };
 

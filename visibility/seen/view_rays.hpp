@@ -35,7 +35,8 @@ class TriangleBits {
 
 /// A point at which lights may be evaluated.
 struct SeenPoint {
-  glm::vec3 p{0}, n{0};  ///< scene floats; the surface's normal toward the viewer, of any length
+  glm::vec3 p{0}, n{0};              ///< scene floats; the surface's normal toward the viewer, of any length
+  std::array<glm::vec3, 3> carrier;  ///< corners of the surface
 };
 
 /// Finds what pixels see of placed meshes: along each ray, the nearest opaque triangle, and the translucent ones in

@@ -148,7 +148,7 @@ TEST(SeenPart, OfSomeRowsIsNoMoreThanTheWhole) {
   // A picture whose parts are known needs no second search for what is seen.
   std::vector<std::uint64_t> viewed;
   for (const Tile& rows : {Tile{0, 4}, Tile{4, 7}, Tile{11, 4}}) {
-    const SeenPart part = seen_part(meshes, camera, {&light, 1}, rows, &viewed);
+    const SeenPart part = seen_part(meshes, camera, {&light, 1}, rows, {.viewed = &viewed});
     EXPECT_GT(part.numbers.size(), viewed_part(meshes, viewed).numbers.size());
   }
   EXPECT_EQ(viewed_part(meshes, viewed).numbers, seen);
@@ -185,7 +185,68 @@ TEST(PlacedMeshes, KeepTheTreesOfMeshesThatStay) {
   expect_as_anew();
 }
 
-TEST(SeenPart, OfADomeIsEverything) {
+/// Every pair with a dome's light sample is decided as in the whole scene, and translucent triangles are there where
+/// nothing opaque is in between.
+TEST(SeenPart, HasABlockerOfEachPairWithADome) {
+  std::mt19937 random(17);
+  std::size_t left_out = 0, blocked = 0, visible = 0, filtered = 0;
+  for (int round = 0; round < 8; ++round) {
+    SCOPED_TRACE(testing::Message() << "round " << round);
+    scenes::Dome dome;
+    dome.half = round % 2 == 1;
+    if (round % 4 > 1) dome.up = glm::normalize(glm::dvec3(0.3, 1, -0.2));
+    Forest forest = visibility::forest(random, dome);
+    if (round >= 2) forest.scene.objects[4].alpha = {scenes::Alpha::Mode::blend, 0.5, 0.5};
+    if (round >= 3) forest.scene.objects[5].casts_shadow = false;
+    if (round >= 5) {  // a sun beside the dome
+      forest.scene.lights.push_back(forest.scene.lights[0]);
+      forest.scene.lights[1].shape = shapes()[3];
+    }
+    const SceneFloats whole = make_scene_floats(copied(forest.scene, forest.instances));
+    const PlacedMeshes meshes(forest.scene, forest.instances);
+    const SampleRequest request{100, 0, 0, SamplePattern::sobol, 3};
+    std::vector<Light> lights;
+    for (std::uint32_t i = 0; i < forest.scene.lights.size(); ++i)
+      lights.push_back(make_light(forest.scene, i, whole.origin, request));
+    if (round >= 6) {  // an object that is none of the dome's casters
+      lights[0].unshaded_by.assign(forest.scene.objects.size(), 0);
+      lights[0].unshaded_by[7] = 1;
+    }
+    const PinholeCamera camera = make_camera(forest.scene.cameras[0], whole.origin, 20, 15);
+    const SeenPart part = seen_part(meshes, camera, lights, {0, camera.height}, {.dome_samples = true});
+    left_out += whole.triangles.size() - part.numbers.size();
+    const SceneFloats some = make_scene_floats(part.scene);
+    const ViewSamples all = brute_force_view_samples(whole, camera), seen = brute_force_view_samples(some, camera);
+    ASSERT_EQ(seen.p, all.p);
+    for (const Light& light : lights) {
+      const SceneFloats of_whole = cast_for(whole, light), of_some = cast_for(some, light);
+      for (std::size_t pixel = 0; pixel < all.size(); ++pixel) {
+        if (all.triangle[pixel] == ViewSamples::kBackground) continue;
+        for (std::uint32_t sample = 0; sample < light.sample_count(); ++sample) {
+          const PairOutcome outcome = decide_pair(of_whole, all, pixel, light, sample).outcome;
+          ASSERT_EQ(decide_pair(of_some, seen, pixel, light, sample).outcome, outcome) << pixel << ", " << sample;
+          blocked += outcome == PairOutcome::blocked ? 1 : 0;
+          if (outcome != PairOutcome::visible) continue;
+          ++visible;
+          for (const std::uint32_t triangle : of_whole.alphas.casters) {
+            const auto carrier = static_cast<std::uint32_t>(all.triangle[pixel]);
+            if (!may_filter(whole, light, carrier, triangle) ||
+                !segment_meets_triangle(all.p[pixel], light.points[sample], whole.corners(triangle), light).meets)
+              continue;
+            ++filtered;
+            ASSERT_TRUE(std::ranges::binary_search(part.numbers, triangle)) << pixel << ", " << sample;
+          }
+        }
+      }
+    }
+  }
+  EXPECT_GT(left_out, 100U);
+  EXPECT_GT(blocked, 20000U);
+  EXPECT_GT(visible, 20000U);
+  EXPECT_GT(filtered, 100U);
+}
+
+TEST(SeenPart, OfADomeIsEverythingForAreas) {
   std::mt19937 random(1);
   const Forest forest = visibility::forest(random, scenes::Dome{});
   const PlacedMeshes meshes(forest.scene, forest.instances);

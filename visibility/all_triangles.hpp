@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "visibility/method.hpp"
+
+#include <glm/vec3.hpp>
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <span>
+
+namespace penumbra::visibility {
+
+/// All triangles of a scene of which SceneFloats hold a part alone (visibility/seen/): for methods that look at each
+/// triangle, one after the other, and keep none.
+class AllTriangles {
+ public:
+  /// Triangles of one object, each with its corners as in SceneFloats. Valid until the call that takes the run ends.
+  struct Run {
+    std::span<const std::array<glm::vec3, 3>> corners;
+    bool casts_shadow = true, receives_shadow = true;
+    std::int32_t emits = -1;
+  };
+
+  virtual ~AllTriangles() = default;
+  /// Calls take(run) for all triangles that have an area.
+  virtual void for_each_run(const std::function<void(const Run&)>& take) const = 0;
+  /// Calls take(positions) for all positions, also those of no triangle.
+  virtual void for_each_positions(const std::function<void(std::span<const glm::vec3>)>& take) const = 0;
+};
+
+/// A method that can be given all triangles apart from the scene.
+class PassesTriangles {
+ public:
+  /// Gives all triangles of the scenes that prepare_mesh receives next, which have what the view samples are on; `all`
+  /// must outlive its use. Null: these scenes are whole.
+  virtual void pass(const AllTriangles* all) = 0;
+
+ protected:
+  ~PassesTriangles() = default;
+};
+
+/// Gives the triangles to a method that takes them; others are as they are.
+inline void pass(Method& method, const AllTriangles* all) {
+  if (auto* const passes = dynamic_cast<PassesTriangles*>(&method)) passes->pass(all);
+}
+
+}  // namespace penumbra::visibility
