@@ -237,6 +237,9 @@ MethodRun FrameRenderer::run_lights(BeautyAccumulator& beauty, BitsOutput* bits)
       bits != nullptr ? std::vector<std::vector<std::uint8_t>>()
                       : samples_beside_cones(lit().samples, lit().lights, lights_without_v());
   const FaintLights faint = leave_out_faint(beauty);
+  std::optional<std::uint64_t> beside_cones;
+  for (const std::vector<std::uint8_t>& one : beside)
+    beside_cones = beside_cones.value_or(0) + static_cast<std::uint64_t>(std::ranges::count(one, std::uint8_t{1}));
   const std::vector<std::vector<std::uint8_t>> dark = either(std::move(beside), faint.dark);
   spent_.view += find.seconds();
   const auto run_with = [&](const LightMethod& method, RunPlan plan) {
@@ -305,8 +308,7 @@ MethodRun FrameRenderer::run_lights(BeautyAccumulator& beauty, BitsOutput* bits)
     all.times.evaluate += lit().filtered_seconds[i];
     all.times.lights[i].evaluate += lit().filtered_seconds[i];
   }
-  for (const std::vector<std::uint8_t>& one : beside)
-    all.counters["viewSamplesBesideCones"] += static_cast<std::uint64_t>(std::ranges::count(one, std::uint8_t{1}));
+  if (beside_cones) all.counters["viewSamplesBesideCones"] += *beside_cones;
   spent_.view += all.times.view;
   return of_whole_lights(std::move(all), lit());
 }
