@@ -161,7 +161,8 @@ class Host {
         const double left = plan_.most_seconds - whole.seconds();
         const double all = estimate.of_all(whole.seconds(), times.mesh, most);
         if (!estimate.is_done() && left < 0 && all > plan_.most_seconds) throw TakesTooLong(all);
-        if (growing == session_.height / kFirstShare + 1 || estimate.of_tile(2 * growing) < left) growing *= 2;
+        const bool is_second = growing == session_.height / kFirstShare + 1;
+        if (is_second || all <= plan_.most_seconds || estimate.of_tile(2 * growing) < left) growing *= 2;
       }
       // Counters start again with each light; the result has their sum.
       for (const auto& [name, count] : method_.counters()) result.counters[name] += count;

@@ -60,7 +60,7 @@ TEST(WrappedLines, LoseNoWordAndFitWhereWordsDo) {
 using HelpLines = ProgramTest;
 
 TEST_F(HelpLines, EndWhereTheTerminalDoes) {
-  std::vector<std::string> commands = lines_in(run({"completion", "commands"}).out);
+  std::vector<std::string> commands = words_in(run({"completion", "commands"}).out);
   ASSERT_GT(commands.size(), 10u);
   commands.insert(commands.begin(), "");
   // Standard output is no terminal here: without COLUMNS its width is unknown.
