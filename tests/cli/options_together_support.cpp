@@ -190,6 +190,7 @@ bool options_exclude(const std::string& method, const std::map<std::string, std:
   }
   if (method == "bitmask") return options.contains("subsample") && !is("subsample", "1") && !row["bits"].empty();
   if (method == "backproject") return is("form", "sphere") && scene.texture;
+  if (method == "soft-irregular") return is("fusion", "union") && !is("umbra", "layers");
   if (method == "soft-shadow-map")
     return (is("form", "scatter") && is("precision", "fp16")) ||
            (is("patches", "bottom") && (is("passes", "2") || (options.contains("depth") && !is("depth", "first"))));

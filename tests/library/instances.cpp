@@ -179,10 +179,10 @@ TEST_F(LibraryInstances, RefuseWhatCannotBe) {
   EXPECT_THROW(scene.set_transform(mesh, far), InputError);
   EXPECT_THROW(scene.set_positions(mesh, std::vector<Vector>(4)), InputError);
   EXPECT_THROW(static_cast<void>(Renderer(scene).render(with("some"))), UsageError);
-  EXPECT_THROW(static_cast<void>(Renderer(scene).render(with("shared", "pcf"))), UsageError);
+  EXPECT_THROW(static_cast<void>(Renderer(scene).render(with("shared", "vssm"))), UsageError);
   EXPECT_EQ(exact_bytes(Renderer(scene).render(kShared)), before);
   // Methods that look at more than what lies between p and the light get copies.
-  EXPECT_NO_THROW(static_cast<void>(Renderer(scene).render(with("", "pcf"))));
+  EXPECT_NO_THROW(static_cast<void>(Renderer(scene).render(with("", "vssm"))));
   EXPECT_THAT(wedges_json(scene, {.light = "key"}), HasSubstr("key"));
 }
 

@@ -125,8 +125,8 @@ TEST(MetricsJson, HasTheNamesOfTheInterface) {
   failed.failure = MethodFailure{4, "out of memory"};
   metrics.methods = {result, MethodResult{}, sampled, failed};
   const auto json = to_json(metrics);
-  EXPECT_EQ(keys_of(json),
-            (std::vector<std::string>{"reference", "judgedPixels", "horizonPixels", "sameSamples", "methods"}));
+  EXPECT_EQ(keys_of(json), (std::vector<std::string>{"reference", "judgedPixels", "horizonPixels", "sameSamples",
+                                                     "methods", "leftOut"}));
   EXPECT_TRUE(json["sameSamples"].is_null()) << "the reference looked at the methods' own";
   EXPECT_EQ(json["reference"]["method"], "pcss");
   const auto& first = json["methods"][0];
