@@ -104,15 +104,16 @@ void lay_heap_in_large_pages() {
     return ::getrlimit(resource, &limit) != 0 || limit.rlim_cur < kPlenty;
   };
   if (is_scarce(RLIMIT_AS) || is_scarce(RLIMIT_DATA)) return;
-  static const auto begin = reinterpret_cast<std::uintptr_t>(::sbrk(0));
+  static char* const begin = static_cast<char*>(::sbrk(0));
   ::mallopt(M_TOP_PAD, kPiece);
   // Larger than what the heap has free, and smaller than what does not lie in the heap. (volatile: the compiler keeps
   // it.)
   void* volatile more = std::malloc(kLargestInHeap - (1 << 16));
   std::free(more);
-  const auto end = reinterpret_cast<std::uintptr_t>(::sbrk(0));
-  const std::uintptr_t first = (begin + kLargePage - 1) / kLargePage * kLargePage;
-  if (first < end) static_cast<void>(::madvise(reinterpret_cast<void*>(first), end - first, MADV_HUGEPAGE));
+  char* const end = static_cast<char*>(::sbrk(0));
+  const std::size_t to_page = (kLargePage - reinterpret_cast<std::uintptr_t>(begin) % kLargePage) % kLargePage;
+  if (begin + to_page < end)
+    static_cast<void>(::madvise(begin + to_page, static_cast<std::size_t>(end - begin) - to_page, MADV_HUGEPAGE));
 }
 #endif
 
