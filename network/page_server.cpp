@@ -134,6 +134,7 @@ class PageServer::State::Socket : public std::enable_shared_from_this<Socket> {
     if (closing_) return;
     if (texts_.size() >= server_.options_.limits.waiting_texts) return close(websocket::close_code::policy_error);
     texts_.push_back(std::move(text));
+    is_greeted_ = true;
     write();
   }
   void send_newest(std::string text) {
@@ -187,11 +188,11 @@ class PageServer::State::Socket : public std::enable_shared_from_this<Socket> {
       going_ = std::make_shared<const std::string>(std::move(texts_.front()));
       texts_.pop_front();
       stream_.text(true);
-    } else if (newest_) {
+    } else if (is_greeted_ && newest_) {
       going_ = std::make_shared<const std::string>(std::move(*newest_));
       newest_.reset();
       stream_.text(true);
-    } else if (frame_ && !has_frame_) {
+    } else if (is_greeted_ && frame_ && !has_frame_) {
       going_ = std::move(frame_);
       frame_.reset();
       has_frame_ = true;
@@ -238,6 +239,9 @@ class PageServer::State::Socket : public std::enable_shared_from_this<Socket> {
   std::optional<std::string> newest_;
   std::shared_ptr<const std::string> frame_, going_;
   bool writing_ = false, closing_ = false;
+  // What opened() sends comes first. What another thread posts meanwhile may run before it: asio keeps what its own
+  // thread posts aside until the handler returns.
+  bool is_greeted_ = false;
   bool has_frame_ = false;  // a frame not yet taken by the client
 };
 
