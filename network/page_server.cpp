@@ -239,8 +239,9 @@ class PageServer::State::Socket : public std::enable_shared_from_this<Socket> {
   std::optional<std::string> newest_;
   std::shared_ptr<const std::string> frame_, going_;
   bool writing_ = false, closing_ = false;
-  // What opened() sends comes first. What another thread posts meanwhile may run before it: asio keeps what its own
-  // thread posts aside until the handler returns.
+  // The first text, opened()'s greeting, has been queued; nothing else is sent before. A picture that another thread
+  // posts while opened() runs may be handled sooner than the greeting: asio queues the posts of its own thread only
+  // when a handler returns.
   bool is_greeted_ = false;
   bool has_frame_ = false;  // a frame not yet taken by the client
 };

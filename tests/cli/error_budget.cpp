@@ -132,8 +132,8 @@ TEST_F(ErrorBudget, WhereTheShadowIsForgivenItIsBias) {
   EXPECT_NEAR(number(result, "fusion"), 0, 0.01);
 }
 
-/// Of volumes: where shadows overlap as seen from the floor, and not from the light's centre, sums are wrong, and
-/// silhouettes right: the strips are parallel to the light.
+/// Volumes that add what two strips hide are wrong where the strips overlap as seen from the floor. The strips are
+/// parallel to the light, so their silhouettes are right.
 TEST_F(ErrorBudget, WhereVolumesAreAddedTwiceItIsFusion) {
   const json result = explain(scene_with(plate("-0.225, 3.5, 0", "0.175, 0, 0", "0, 0, -3") +
                                          plate("0.125, 1.5, 0", "0.075, 0, 0", "0, 0, -3")),

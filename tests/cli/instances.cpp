@@ -165,7 +165,8 @@ TEST_F(Instances, GiveTheSamePictureUnderADome) {
   EXPECT_EQ(triangles_of_part(), triangles());
 }
 
-/// Of one map from the light's centre triangles pass: windows, depths and pictures are those of the whole scene.
+/// Maps from the light's centre get all triangles, one instance after another: their windows, depths and pictures are
+/// those of the scene of copies.
 TEST_F(Instances, GiveTheSamePictureByMaps) {
   write_grove(R"([
     {"name": "area", "rectangle": {"center": [0.5, 3, 1], "halfU": [0.4, 0, 0], "halfV": [0, 0, 0.3]}},

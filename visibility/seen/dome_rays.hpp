@@ -28,7 +28,7 @@ class DomeRays {
  private:
   struct Ray;
   class Walk;
-  /// What the triangles of an object do to this light.
+  /// Effect of an object's triangles on this light.
   enum class Role : std::uint8_t { none, blocks, filters };
 
   const PlacedMeshes& meshes_;
