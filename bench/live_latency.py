@@ -1,13 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-<<<<<<< HEAD
-"""How fast `penumbra view` answers: bare clients drag the camera and a light, one after the other and both at once, and note
+"""Measures how fast `penumbra view` answers: bare clients drag the camera and a light, one after the other and both at once, and note
 when pictures come, what they cost, and whether each is whole. The same drags are then made by a pointer in the page itself, in headless
 Chromium where it is installed.
-=======
-"""Measures how fast `penumbra view` answers: bare clients drag the camera and a light, one after the other and both at once, and note
-when pictures come, what they cost, and whether each is whole.
->>>>>>> 027a908470b860b79b0cd16809b67de69944fe32
   live_latency.py PROGRAM SCENE… [--seconds S] [--minutes M] [--out FILE.json]
 --minutes: the first scene's camera and light are then dragged for so long, and memory is noted each ten seconds. Without --out
 a table is printed; FILE.json is one of bench/results/."""

@@ -134,13 +134,13 @@ struct SampleCost {
   std::optional<VisibilityError> all_lights_error;  ///< over all lights' judged pixels together
 };
 
-/// Contents of metrics.json.
 /// Method of a group that was not compared, since it would have taken longer than its limit.
 struct LeftOut {
   std::string entry;
   double seconds = 0, limit = 0;  ///< of a run, as estimated; and the limit
 };
 
+/// Contents of metrics.json.
 struct Metrics {
   Stats reference;
   std::uint64_t judged_pixels = 0, horizon_pixels = 0;  ///< of the first light

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "base/assert.hpp"
 #include "visibility/method.hpp"
 
 #include <glm/vec3.hpp>
@@ -41,9 +42,12 @@ class PassesTriangles {
   ~PassesTriangles() = default;
 };
 
-/// Gives the triangles to a method that takes them; others are as they are.
+/// Gives the triangles to a method that takes them. Null may be given to all methods.
 inline void pass(Method& method, const AllTriangles* all) {
-  if (auto* const passes = dynamic_cast<PassesTriangles*>(&method)) passes->pass(all);
+  auto* const passes = dynamic_cast<PassesTriangles*>(&method);
+  PENUMBRA_ASSERT(passes != nullptr || all == nullptr, "{} takes no triangles apart from the scene's",
+                  method.description().name);
+  if (passes != nullptr) passes->pass(all);
 }
 
 }  // namespace penumbra::visibility

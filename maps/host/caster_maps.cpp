@@ -264,11 +264,12 @@ void CasterMaps::record_passing(render::Commands& commands, MapLayer layer, cons
                               .clear = clear});
     times_->add(commands.submit());  // the buffer is written again
     clear = false;
-    passed_ += corners.size() / 3;
     corners.clear();
   };
   all_->for_each_run([&](const visibility::AllTriangles::Run& run) {
-    if (!run.casts_shadow || run.emits == light_index) return;
+    if (!run.casts_shadow) return;
+    passed_ += run.corners.size();  // those of the light's own body count, as in batches
+    if (run.emits == light_index) return;
     for (const std::array<glm::vec3, 3>& triangle : run.corners) {
       corners.insert(corners.end(), triangle.begin(), triangle.end());
       if (corners.size() >= 3 * kMost) draw();
@@ -338,7 +339,8 @@ std::uint64_t CasterMaps::memory_bytes() const {
     const std::uint64_t place = batch.holes ? gpu::kPlaceWords * sizeof(std::uint32_t) : 0;
     return sum + std::uint64_t{batch.count} * 3 * (sizeof(glm::vec3) + place);
   };
-  return std::accumulate(batches_.begin(), batches_.end(), std::uint64_t{size_} * size_ * sizeof(float), add);
+  const std::uint64_t passing = passing_ ? passing_->bytes() : 0;
+  return std::accumulate(batches_.begin(), batches_.end(), std::uint64_t{size_} * size_ * sizeof(float) + passing, add);
 }
 
 std::uint64_t faces_per_buffer(const render::Device& device, std::uint32_t size) {

@@ -63,9 +63,12 @@ void AllPlaced::for_each_run(const std::function<void(const Run&)>& take) const 
 void AllPlaced::for_each_positions(const std::function<void(std::span<const glm::vec3>)>& take) const {
   std::vector<glm::vec3> positions;
   for (const PlacedMeshes::Part& part : meshes_.parts()) {
-    positions.resize(part.soup->positions.size());
-    for_each_index(positions.size(), [&](std::size_t i) { positions[i] = meshes_.position(part, i); });
-    take(positions);
+    const std::size_t all = part.soup->positions.size();
+    for (std::size_t first = 0; first < all; first += positions.size()) {
+      positions.resize(std::min<std::size_t>(all - first, kMostOfRun));
+      for_each_index(positions.size(), [&](std::size_t i) { positions[i] = meshes_.position(part, first + i); });
+      take(positions);
+    }
   }
 }
 

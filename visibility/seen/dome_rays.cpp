@@ -22,6 +22,9 @@ using Corners = std::array<glm::vec3, 3>;
 /// 2⁻²² of the terms (a ray of Embree: three differences, six products, their sums), so that they, too, meet what
 /// surely blocks. (ray_certainly_meets, in certain_meeting.hpp, decides all that double can.)
 constexpr double kDoubt = 0x1p-18;
+/// Share of a box's distance by which a ray may pass beside the box and still be asked about its triangles: four times
+/// what float32 rays are off at that distance, 2⁻²².
+constexpr double kBeside = 0x1p-20;
 
 /// x × y with all terms added up.
 glm::dvec3 wide_cross(const glm::dvec3& x, const glm::dvec3& y) {
@@ -62,9 +65,14 @@ struct DomeRays::Ray {
     const glm::dvec3 a = glm::dvec3(corners[0]) - start, b = glm::dvec3(corners[1]) - start,
                      c = glm::dvec3(corners[2]) - start;
     const glm::dvec3 wide_a = glm::abs(a) + room, wide_b = glm::abs(b) + room, wide_c = glm::abs(c) + room;
+    // On which side of the edge from x to y the ray passes: d · (x × y) = d · (x × (y − x)). Its terms are those of
+    // d · ((y − x) × (y + x)), which Embree's robust rays compute; moving the start by δ changes it by d · ((x − y) ×
+    // δ), which the room in `wide_x` and `wide_y` covers.
     const auto side = [&](const glm::dvec3& x, const glm::dvec3& y, const glm::dvec3& wide_x,
                           const glm::dvec3& wide_y) {
-      return sign_beyond(glm::dot(direction, glm::cross(x, y)), kDoubt * glm::dot(wide, wide_cross(wide_x, wide_y)));
+      const glm::dvec3 edge = y - x;
+      return sign_beyond(glm::dot(direction, glm::cross(x, edge)),
+                         kDoubt * glm::dot(wide, wide_cross(glm::abs(edge), wide_x + wide_y)));
     };
     const int ab = side(a, b, wide_a, wide_b), bc = side(b, c, wide_b, wide_c);
     if (ab * bc < 0) return Meets::no;
@@ -94,12 +102,13 @@ class DomeRays::Walk {
     candidates_.clear();
     nearest_ = TreeRay::kEndless;
     const PlacedMeshes& meshes = rays_.meshes_;
-    const TreeRay ray(ray_->start, ray_->direction, glm::dvec3(0), 0);
+    const double around = kDoubt * ray_->room;  // by which the point that methods have may be elsewhere
+    const TreeRay ray(ray_->start, ray_->direction, glm::dvec3(around), kBeside);
     walk_nearest(
         meshes.tree(), nearest_, [&](const MiddleBox& box) { return ray.enter(box); },
         [&](std::uint32_t number) {
           const PlacedMeshes::Part& part = meshes.parts()[number];
-          walk_part(part, ray_->start, ray_->direction, 0, 0, nearest_,
+          walk_part(part, ray_->start, ray_->direction, around, kBeside, nearest_,
                     [&](std::uint32_t triangle) { take(part, triangle); });
         });
     if (nearest_ < 0) return;

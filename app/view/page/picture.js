@@ -57,13 +57,9 @@ function stageSize() {
   return [mode() === "side" ? canvasSize[0] / 2 : canvasSize[0], canvasSize[1]];
 }
 
-<<<<<<< HEAD
-/// Where the pointer is in the picture, 0 to 1 in each direction, of whichever answer it is over. While something is dragged the
-/// canvas stays where it is.
+/// Returns where the pointer is in the picture, 0 to 1 along each axis, of whichever answer it is over. The canvas stays where it is
+/// while something is dragged.
 let canvasBox = null;
-=======
-/// Returns where the pointer is in the picture, 0 to 1 along each axis, of whichever answer it is over.
->>>>>>> 027a908470b860b79b0cd16809b67de69944fe32
 function placeOf(event) {
   if (!canvasBox || (!dragging && !held)) canvasBox = canvas.getBoundingClientRect();
   const box = canvasBox, [width, height] = stageSize();
