@@ -67,7 +67,8 @@ class Use:
 
 
 class Drag:
-    """Sends a change each sixtieth of a second, and notes what comes: times of pictures, and what each took from its input."""
+    """Sends a change each sixtieth of a second, and notes what comes: times of pictures, and how long each change waited for the first
+    picture that shows it or a later one."""
 
     def __init__(self, client, seconds, message, each=lambda: None):
         sent, self.came, self.delays, self.torn, number = {}, [], [], 0, 0
@@ -81,14 +82,15 @@ class Drag:
                     continue
                 self.torn += not is_whole(answer)
                 stamp = answer["stamps"].get(str(client.number))
-                if stamp in sent:
-                    self.came.append(time.monotonic())
-                    self.delays.append(self.came[-1] - sent[stamp])
-                    sent = {later: when for later, when in sent.items() if later >= stamp}
+                if stamp is None:
+                    continue
+                self.came.append(time.monotonic())
+                self.delays += [self.came[-1] - sent.pop(earlier) for earlier in [change for change in sent if change <= stamp]]
             each()
+        ended = time.monotonic()
         client.send(type="still")
         client.final(number)
-        self.exact = time.monotonic() - sent[number]
+        self.exact = time.monotonic() - ended
 
     def row(self, name, processor, memory):
         ordered, first = sorted(self.delays), self.came[0]
@@ -101,11 +103,12 @@ class Drag:
 
 
 class PageDrag(Drag):
-    """A drag by the pointer on the page, with a move each sixtieth of a second. The page says how long a picture took from its input (data-ms)."""
+    """A drag by the pointer on the page, with a move each sixtieth of a second. The page says which input a picture shows (data-stamp)."""
 
-    NOTES = """(() => { const root = document.documentElement.dataset; window.notes = []; window.released = 0;
+    NOTES = """(() => { const root = document.documentElement.dataset; window.notes = []; window.moves = []; window.released = 0;
+        addEventListener('pointermove', (event) => { if (event.buttons) moves.push(event.timeStamp); }, true);
         addEventListener('pointerup', () => { released = performance.now(); }, true);
-        new MutationObserver(() => notes.push([performance.now(), Number(root.ms), root.exact === 'true']))
+        new MutationObserver(() => notes.push([performance.now(), Number(root.stamp), root.exact === 'true']))
           .observe(document.documentElement, { attributeFilter: ['data-frame'] }); })()"""
 
     def __init__(self, browser, seconds, start, across):
@@ -120,9 +123,11 @@ class PageDrag(Drag):
             time.sleep(max(0, began + moves / 60 - time.monotonic()))
         browser.pointer("mouseReleased", x + across * math.sin(moves / 60), y, button="left", clickCount=1)
         browser.wait("released && notes.length && notes.at(-1)[2] && notes.at(-1)[0] > released")
-        notes, released = browser.ask("notes"), browser.ask("released")
-        self.came = [when / 1000 for when, _, is_final in notes if not is_final]
-        self.delays = [ms / 1000 for _, ms, is_final in notes if not is_final]
+        notes, released, waiting = browser.ask("notes"), browser.ask("released"), browser.ask("moves")
+        self.came, self.delays = [when / 1000 for when, _, _ in notes if when < released], []
+        for when, stamp, _ in notes:
+            self.delays += [(when - move) / 1000 for move in waiting if move <= stamp]
+            waiting = [move for move in waiting if move > stamp]
         self.exact, self.torn = (notes[-1][0] - released) / 1000, None
 
 

@@ -6,8 +6,9 @@
 
 namespace penumbra::app {
 
-/// Milliseconds of one picture at about fifteen pictures a second.
-inline constexpr double kPictureTime = 62;
+/// Milliseconds of one picture. A move that comes just after a picture began waits for two, and is to be seen within
+/// 120 ms.
+inline constexpr double kPictureTime = 45;
 
 /// Quality of a picture during changes.
 struct LiveQuality {
@@ -15,7 +16,7 @@ struct LiveQuality {
   std::uint32_t light_samples = 16;  ///< at most, for methods with light samples
 };
 
-/// Chooses the best quality with about fifteen pictures a second.
+/// Chooses the best quality with pictures of at most kPictureTime, about twenty a second.
 class LivePace {
  public:
   [[nodiscard]] LiveQuality quality() const;

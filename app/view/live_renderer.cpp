@@ -117,6 +117,12 @@ void LiveRenderer::show_again() {
   wake_.notify_all();
 }
 
+void LiveRenderer::shown() {
+  const std::lock_guard lock(mutex_);
+  is_awaited_ = false;
+  wake_.notify_all();
+}
+
 void LiveRenderer::reload() {
   const std::lock_guard lock(mutex_);
   wants_reload_ = true;

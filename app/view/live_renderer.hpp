@@ -32,6 +32,8 @@ struct LiveEvents {
   std::function<void(std::string_view level, const std::string& text)> say;
   std::function<void()> reloaded;  ///< the state is that of another version of the file
   std::function<void(std::shared_ptr<const LivePicture>)> picture = {};  ///< numbers of the displayed picture
+  /// Whether LiveRenderer::shown() is called for frames. The next picture of a drag then waits for the last frame.
+  bool says_shown = false;
 };
 
 /// Scene that replaces the displayed one.
@@ -74,6 +76,8 @@ class LiveRenderer {
   [[nodiscard]] nlohmann::ordered_json state() const;
   /// Shows the current picture again, for a new client.
   void show_again();
+  /// Records that a client has shown the last frame.
+  void shown();
   /// Reads the scene's file again.
   void reload();
   /// Returns all files that the scene was read from.
@@ -121,6 +125,7 @@ class LiveRenderer {
   mutable std::mutex mutex_;
   mutable std::condition_variable wake_, ended_;
   bool ending_ = false, wants_reload_ = false, wants_show_ = false;
+  bool is_awaited_ = false;  // the last frame has not yet been shown
   LiveState state_;
   std::uint64_t revision_ = 1;                         // of state_; a different number requires another picture
   std::map<std::uint64_t, double> stamps_;             // of each client, of its last change

@@ -28,6 +28,8 @@ constexpr std::uint32_t kSmallestSide = 32;  // of a reduced picture
 constexpr std::uint32_t kMaskSamples = 256;
 /// Number of rows of a band of a final picture; the picture can be cancelled after each band.
 constexpr std::uint32_t kBand = 64;
+/// Longest time that a picture waits for the last frame to be shown during a drag.
+constexpr std::chrono::milliseconds kLongestShow{250};
 /// Time that a final picture waits for further changes during a drag.
 constexpr std::chrono::milliseconds kPause{90};
 
@@ -67,6 +69,13 @@ void LiveRenderer::work_on(std::unique_lock<std::mutex>& lock) {
     read_again();
     lock.lock();
     return;
+  }
+  // A frame made while a slow page still draws the last one would be old when its turn comes, and takes the page's
+  // processor time.
+  if (state_.moving && !wants_show_) {
+    wake_.wait_for(lock, kLongestShow,
+                   [this] { return !is_awaited_ || ending_ || wants_reload_ || wants_show_ || !state_.moving; });
+    if (ending_ || wants_reload_) return;
   }
   const bool has_any = picture_ && picture_->revision == revision_;
   Order order{state_, whole_, revision_, pace_.quality(), has_any || final_milliseconds_ < kPictureTime, stamps_};
@@ -293,6 +302,7 @@ void LiveRenderer::show() {
   {
     const std::lock_guard lock(mutex_);
     if (!picture_) return;
+    is_awaited_ = events_.says_shown;
     picture = picture_;
     display = state_.display;
     for (const auto& [client, stamp] : picture->stamps) stamps[fmt::format("{}", client)] = stamp;

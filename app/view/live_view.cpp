@@ -49,7 +49,8 @@ LiveView::LiveView(RunOptions options, scenes::Scene scene, network::ServerPlace
       LiveEvents{.frame = [this](std::shared_ptr<const std::string> frame) { server_->send_frame(std::move(frame)); },
                  .say = [this](std::string_view level,
                                const std::string& text) { server_->send_to_all(message_text(saying(level, text))); },
-                 .reloaded = [this] { send_state(0); }});
+                 .reloaded = [this] { send_state(0); },
+                 .says_shown = true});
   space_ = std::make_unique<SpaceView>(*renderer_);
 }
 
@@ -76,7 +77,10 @@ void LiveView::message(network::ClientId client, std::string_view text) {
 
 void LiveView::do_message(network::ClientId client, const json& message) {
   const auto type = message.find("type");
-  if (message.is_object() && type != message.end() && *type == "taken") return server_->taken(client);
+  if (message.is_object() && type != message.end() && *type == "taken") {
+    server_->taken(client);
+    return renderer_->shown();
+  }
   if (message.is_object() && type != message.end() && *type == "pixel") {
     const auto place = [&](const char* key) {
       const auto found = message.find(key);

@@ -81,6 +81,23 @@ def check_never_reads(server):
     deaf.socket.close()
 
 
+def check_pace(server):
+    """While a client has not shown the last picture of a drag, the next begins after a quarter of a second."""
+    slow, moves, seconds = Client(server).begin(), 120, 2
+    first = slow.final()["frame"]
+    slow.lazy = True
+    for i in range(moves):
+        slow.send(type="camera", camera=camera(0.001 * i), moving=True, stamp=i)
+        time.sleep(seconds / moves)
+    slow.send(type="still")
+    slow.lazy = False
+    slow.send(type="taken")
+    made = slow.final(moves - 1)["frame"] - first
+    # The first, one each quarter of a second, and the final one, before which a quick one may come.
+    expect(3 <= made <= 4 * seconds + 3, f"{made} pictures of {seconds} seconds were made for a client that takes none")
+    slow.socket.close()
+
+
 def check_too_many(server):
     """Eight clients; a ninth is told so, and when one goes, another may come."""
     clients = [Client(server).begin() for _ in range(8)]
@@ -138,6 +155,7 @@ def main():
         with Server(PROGRAM, scene) as server:
             check_gone_in_a_drag(server)
             check_never_reads(server)
+            check_pace(server)
             check_too_many(server)
             check_many_requests(server)
             expect(server.process.poll() is None, "the server is still there")

@@ -20,16 +20,18 @@ def comment_of(path):
     return f"/* {LINE} */\n" if path.suffix == ".css" else None
 
 
-def main():
-    source = pathlib.Path(sys.argv[1])
+def source_files(source):
+    """The repository's files; of one unpacked from an archive, all but what was built."""
     names = subprocess.run(["git", "-C", source, "ls-files", "-z"], capture_output=True, text=True)
     if names.returncode == 0:
-        files = [source / name for name in names.stdout.split("\0") if name]
-    else:  # unpacked from an archive: all but what was built
-        built = [cache.parent for cache in source.rglob("CMakeCache.txt")]
-        files = [path for path in source.rglob("*") if not any(folder in path.parents for folder in built)]
-    missing = 0
-    for path in files:
+        return [source / name for name in names.stdout.split("\0") if name]
+    built = [cache.parent for cache in source.rglob("CMakeCache.txt")]
+    return [path for path in source.rglob("*") if not any(folder in path.parents for folder in built)]
+
+
+def main():
+    source, missing = pathlib.Path(sys.argv[1]), 0
+    for path in source_files(source):
         comment = comment_of(path)
         if comment is None or not path.is_file():
             continue

@@ -94,6 +94,7 @@ on("frame", (header, images) => {
   const root = document.documentElement.dataset, stamp = header.stamps[clientId];
   root.frame = String(Number(root.frame || 0) + 1);
   root.exact = String(header.final && !(sentStamp > (stamp ?? 0)));
+  root.stamp = String(stamp ?? "");
   root.ms = (stamp === undefined ? header.milliseconds : performance.now() - stamp).toFixed(1);
   root.method = header.answers.map((answer) => answer.method).join(" | ");
   const reduced = header.images[0].width < header.width ? `, ${header.images[0].width}\u00d7${header.images[0].height}` : "";
