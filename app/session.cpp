@@ -286,6 +286,7 @@ void SessionMaker::show(scenes::Scene scene, bool changed, const std::string& ca
   session_.load_seconds += load.seconds();
 
   const bool is_seen = runs == 0 && !changed && seen_ == session_.camera;
+  if (!is_seen) forget_view();  // before others take their memory
   progress.begin("view samples", runs + 1);
   std::vector<double> view_seconds = {0};
   for (std::uint32_t run = is_seen ? 1 : 0; run <= runs; ++run) {
@@ -305,6 +306,12 @@ void SessionMaker::show(scenes::Scene scene, bool changed, const std::string& ca
   progress.advance();
   session_.receiver_seconds = receivers.seconds() - session_.filtering_seconds();
   is_whole_ = true;
+}
+
+void SessionMaker::forget_view() {
+  seen_.reset();
+  session_.samples = {};
+  session_.classes.clear();
 }
 
 visibility::ViewSamples SessionMaker::look_at(visibility::ViewSamples samples) {

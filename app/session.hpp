@@ -127,6 +127,8 @@ class SessionMaker {
   /// Returns whether the last show() was completed.
   [[nodiscard]] bool is_whole() const { return is_whole_; }
   [[nodiscard]] const Session& session() const { return session_; }
+  /// Frees the session's view samples and their classes, which the next show() finds again.
+  void forget_view();
   /// Replaces the session's view samples by others of the same camera. Returns the previous ones.
   visibility::ViewSamples look_at(visibility::ViewSamples samples);
   /// Returns the session by move: this object must not be used afterwards.

@@ -57,41 +57,39 @@ void Cryptomatte::take_names(std::span<const std::string> names) {
 }
 
 Cryptomatte::Cryptomatte(std::string layer, std::span<const std::string> names, NameOf name_of)
-    : layer_(std::move(layer)), name_of_(std::move(name_of)), ranks_(2) {
+    : layer_(std::move(layer)), name_of_(std::move(name_of)) {
   take_names(names);
 }
 
-Cryptomatte::Cryptomatte(std::string layer, const MatteShares& shares) : layer_(std::move(layer)), ranks_(kRanks) {
+Cryptomatte::Cryptomatte(std::string layer, const MatteShares& shares) : layer_(std::move(layer)), shares_(&shares) {
   take_names(shares.names());
-  const std::vector<float> nothing(shares.pixel_count(), 0.0f);
-  for (std::size_t i = 0; i < shares.pixel_count(); ++i) {
-    const std::vector<MatteShares::Share> here = shares.of_pixel(i);
-    for (std::size_t rank = 0; rank < std::min(here.size(), kRanks); ++rank) {
-      if (ranks_[rank].ids.empty()) ranks_[rank] = {nothing, nothing};
-      ranks_[rank].ids[i] = numbers_[here[rank].name];
-      ranks_[rank].coverage[i] = here[rank].part;
-    }
-  }
 }
 
 ExrValues Cryptomatte::channel(std::size_t rank, bool is_coverage) const {
-  if (name_of_ && rank == 0) {
-    return [this, is_coverage](std::size_t first, std::span<float> values) {
-      for (std::size_t i = 0; i < values.size(); ++i) {
-        const std::uint32_t name = name_of_(first + i);
-        values[i] = name == Surfaces::kNothing ? 0.0f : is_coverage ? 1.0f : numbers_[name];
+  if (shares_ != nullptr) {
+    return [this, rank, is_coverage](std::size_t first, std::span<float> values) {
+      std::size_t x = first % shares_->width(), y = first / shares_->width();
+      for (float& value : values) {
+        const std::span<const MatteShares::Share> here = shares_->of_pixel(x, y);
+        value = rank >= here.size() ? 0.0f : is_coverage ? here[rank].part : numbers_[here[rank].name];
+        if (++x < shares_->width()) continue;
+        x = 0;
+        ++y;
       }
     };
   }
-  const std::vector<float>& all = is_coverage ? ranks_[rank].coverage : ranks_[rank].ids;
-  if (all.empty()) return [](std::size_t /*first*/, std::span<float> values) { std::ranges::fill(values, 0.0f); };
-  return [&all](std::size_t first, std::span<float> values) {
-    std::ranges::copy(std::span(all).subspan(first, values.size()), values.begin());
+  if (rank != 0) return [](std::size_t /*first*/, std::span<float> values) { std::ranges::fill(values, 0.0f); };
+  return [this, is_coverage](std::size_t first, std::span<float> values) {
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      const std::uint32_t name = name_of_(first + i);
+      values[i] = name == Surfaces::kNothing ? 0.0f : is_coverage ? 1.0f : numbers_[name];
+    }
   };
 }
 
 void Cryptomatte::add_to(ExrImage& image) const {
-  for (std::size_t rank = 0; rank < ranks_.size(); ++rank) {
+  const std::size_t ranks = shares_ != nullptr ? kRanks : 2;
+  for (std::size_t rank = 0; rank < ranks; ++rank) {
     const char* const letters = rank % 2 == 0 ? "RG" : "BA";
     const std::string group = fmt::format("{}{:02}.", layer_, rank / 2);
     image.channels.push_back({group + letters[0], channel(rank, false)});

@@ -35,24 +35,22 @@ class Cryptomatte {
   /// `name_of` must stay valid for the lifetime of this object. Equal names are one matte.
   Cryptomatte(std::string layer, std::span<const std::string> names, NameOf name_of);
   /// Makes a layer of the six mattes with the largest coverage of each pixel; other mattes of a pixel are left out.
+  /// `shares`, which are settled, must outlive this object.
   Cryptomatte(std::string layer, const MatteShares& shares);
 
   /// Adds channels, which refer to this object, and the attributes required by the specification.
   void add_to(ExrImage& image) const;
 
  private:
-  struct Rank {
-    std::vector<float> ids, coverage;  // of each pixel
-  };
   /// Computes the numbers of names for the manifest.
   void take_names(std::span<const std::string> names);
   /// Returns one of the two channels of a rank.
   [[nodiscard]] ExrValues channel(std::size_t rank, bool is_coverage) const;
 
   std::string layer_, manifest_;
-  std::vector<float> numbers_;  // of names
-  NameOf name_of_;              // for one view sample a pixel
-  std::vector<Rank> ranks_;     // for several; an even number; empty ranks are 0 everywhere
+  std::vector<float> numbers_;           // of names
+  NameOf name_of_;                       // for one view sample a pixel
+  const MatteShares* shares_ = nullptr;  // for several
 };
 
 }  // namespace penumbra::app

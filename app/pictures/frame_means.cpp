@@ -99,13 +99,16 @@ void FrameRenderer::render_mean(scenes::Scene scene, bool by_lens) {
     if (picture_.in_bands)
       picture_.own_rows = {band.pixels.first_row * side - band.samples.first_row, band.pixels.row_count * side};
     MethodRun before = std::exchange(picture_.run, {});
+    before.visibility.clear();  // the last band's view samples, which are in the mean
+    picture_.beauty.clear();
     run_methods({});
     const Stopwatch watch;
     const PictureBand rows =
         is_fine ? PictureBand{band.pixels, band.samples.first_row} : PictureBand{{0, session().height}, 0};
     if (!picture_.mean) {
       const std::uint32_t width = session().width, height = session().height;
-      picture_.mean.emplace(width, height, picture_.frame.filter);
+      picture_.mean.emplace(width, height, picture_.frame.filter,
+                            moments == 1 ? PictureMean::Adds::once : PictureMean::Adds::often);
       picture_.mattes =
           Mattes{MatteShares(width, height, picture_.frame.filter), MatteShares(width, height, picture_.frame.filter)};
     }
@@ -150,8 +153,14 @@ void FrameRenderer::render_mean(scenes::Scene scene, bool by_lens) {
     add(std::move(then));
   }
   picture_.still.reset();
-  picture_.in_bands = false;
   picture_.own_rows.reset();
+  picture_.mattes->objects.settle();
+  picture_.mattes->materials.settle();
+  // The mean has all that the view samples were for.
+  picture_.run.visibility.clear();
+  picture_.beauty.clear();
+  picture_.alpha.clear();
+  if (std::exchange(picture_.in_bands, false)) fine_->maker.forget_view();
   if (!is_fine) {
     show(maker_, std::move(scene));
     spent_.view += session().filtering_seconds();

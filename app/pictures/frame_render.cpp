@@ -262,15 +262,15 @@ void FrameRenderer::render(scenes::Scene scene, const Frame& frame, const std::f
 RenderedFrame FrameRenderer::take() {
   const std::vector<std::string> own = whole_names(session().lights);
   RenderedFrame frame;
-  frame.beauty = picture_.mean ? picture_.mean->beauty(own) : std::move(picture_.beauty);
-  frame.visibility = picture_.mean ? picture_.mean->visibility(own) : std::move(picture_.run.visibility);
-  frame.alpha = picture_.mean ? picture_.mean->alpha() : std::move(picture_.alpha);
+  frame.beauty = picture_.mean ? picture_.mean->take_beauty(own) : std::move(picture_.beauty);
+  frame.visibility = picture_.mean ? picture_.mean->take_visibility(own) : std::move(picture_.run.visibility);
+  frame.alpha = picture_.mean ? picture_.mean->take_alpha() : std::move(picture_.alpha);
   frame.masks = std::move(picture_.masks);
   frame.sum = sum_of(frame.beauty, session().pixel_count());
   if (!picture_.mean) return frame;
   std::vector<std::string> others = picture_.mean->lights();  // lights of other moments only
   std::erase_if(others, [&](const std::string& light) { return std::ranges::find(own, light) != own.end(); });
-  const std::vector<glm::vec3> more = sum_of(picture_.mean->beauty(others), frame.sum.size());
+  const std::vector<glm::vec3> more = sum_of(picture_.mean->take_beauty(others), frame.sum.size());
   for (std::size_t i = 0; i < more.size(); ++i) frame.sum[i] += more[i];
   return frame;
 }

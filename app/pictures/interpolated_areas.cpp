@@ -60,7 +60,8 @@ void InterpolatedAreas::prepare_view(const ViewSamples& samples) {
 }
 
 std::uint32_t InterpolatedAreas::max_tile_rows() const {
-  return std::max(AskedAreas::max_tile_rows() / side_, 1u) * side_;
+  constexpr std::uint32_t kMostSamples = 1u << 18;  // whose answers, 32 bytes each, stay in the processor's caches
+  return std::max(std::min(AskedAreas::max_tile_rows(), kMostSamples / fine_->width) / side_, 1u) * side_;
 }
 
 /// Returns the view sample in the middle of a pixel, or to the lower right of its middle.
@@ -251,15 +252,18 @@ std::vector<std::size_t> InterpolatedAreas::answer(const Tile& tile, std::span<A
     // Rows and columns of cells, from −1; the border around all corners has no cells.
     const std::int64_t row = (std::int64_t{y} - half + side_) / side_ - 1;
     const double down = static_cast<double>((y + side_ - half) % side_) / side_;
+    const bool is_corner_row = (y + side_ - half) % side_ == 0;
     std::uint64_t here = 0;
-    for (std::uint32_t x = 0; x < fine_->width; ++x) {
+    std::int64_t column = -1;
+    for (std::uint32_t x = 0, step = side_ - half; x < fine_->width; ++x, ++step) {
+      if (step == side_) {
+        step = 0;
+        ++column;
+      }
       const std::size_t at = std::size_t{i} * fine_->width + x;
       if (fine_->triangle[std::size_t{y} * fine_->width + x] == ViewSamples::kBackground) continue;
-      const std::int64_t column = (std::int64_t{x} - half + side_) / side_ - 1;
-      const std::uint32_t step = (x + side_ - half) % side_;
       const double across = static_cast<double>(step) / side_;
-      const bool is_corner = step == 0 && (y + side_ - half) % side_ == 0;
-      if (is_corner) {
+      if (step == 0 && is_corner_row) {
         answers[at] = corners_[static_cast<std::size_t>(row) * width_ + static_cast<std::size_t>(column)];
         continue;
       }

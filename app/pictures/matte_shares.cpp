@@ -3,7 +3,6 @@
 
 #include "app/pictures/matte_shares.hpp"
 
-#include "app/pictures/surfaces.hpp"
 #include "base/assert.hpp"
 
 #include <tbb/parallel_for.h>
@@ -25,6 +24,22 @@ void add_share(std::vector<Share>& shares, std::size_t first, std::uint32_t name
   shares.push_back({name, static_cast<float>(part)});
 }
 
+/// Rows and columns of a block of view samples, and how many view samples a row of the picture has.
+struct Block {
+  std::size_t rows, columns, step;
+};
+
+/// Returns whether all view samples of the block that begins at `corner` have the same name.
+bool is_one_name(std::span<const std::uint32_t> of_sample, std::size_t corner, const Block& block) {
+  const std::uint32_t name = of_sample[corner];
+  for (std::size_t y = 0; y < block.rows; ++y) {
+    std::uint32_t others = 0;  // without a branch for each view sample
+    for (const std::uint32_t other : of_sample.subspan(corner + y * block.step, block.columns)) others |= other ^ name;
+    if (others != 0) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 MatteShares::MatteShares(std::uint32_t width, std::uint32_t height, const PixelFilter& filter)
@@ -42,7 +57,7 @@ void MatteShares::add(std::span<const std::string> names, std::span<const std::u
   }
   std::vector<std::uint32_t> numbered;
   numbered.reserve(of_sample.size());
-  for (const std::uint32_t name : of_sample) numbered.push_back(name == Surfaces::kNothing ? name : known[name]);
+  for (const std::uint32_t name : of_sample) numbered.push_back(name == kNothing ? name : known[name]);
   const std::vector<FilterTaps> across = filter_taps(filter_, width_, side),
                                 down = filter_taps(filter_, rows_.size(), side);
   const auto first = std::size_t{band.rows.first_row};
@@ -60,14 +75,32 @@ void MatteShares::add_row(std::size_t y, std::span<const std::uint32_t> of_sampl
                           const FilterTaps& down, std::span<const FilterTaps> across) {
   const Row before = std::exchange(rows_[y], Row{});
   Row& row = rows_[y];
+  row.ends.reserve(width_);
+  row.shares.reserve(width_);
+  // A pixel that shows one name alone, as most do, gets the same sum as its neighbour with the same weights.
+  float whole = 0;
+  std::span<const double> whole_of;
   std::size_t begin = 0;
   for (std::size_t x = 0; x < width_; ++x) {
-    const std::size_t first = row.shares.size();
+    const std::size_t first = row.shares.size(), corner = down.first * width_ * side + across[x].first;
+    const bool is_new = before.ends[x] == begin;
+    if (is_new && is_one_name(of_sample, corner, {down.shares.size(), across[x].shares.size(), width_ * side})) {
+      if (!std::ranges::equal(whole_of, across[x].shares)) {
+        whole_of = across[x].shares;
+        whole = 0;
+        for (const double share : down.shares) {
+          for (const double other : whole_of) whole += static_cast<float>(share * other);
+        }
+      }
+      row.shares.push_back({of_sample[corner], whole});
+      row.ends.push_back(static_cast<std::uint32_t>(row.shares.size()));
+      continue;
+    }
     row.shares.insert(row.shares.end(), before.shares.begin() + static_cast<std::ptrdiff_t>(begin),
                       before.shares.begin() + before.ends[x]);
     begin = before.ends[x];
     for (std::size_t i = 0; i < down.shares.size(); ++i) {
-      const std::size_t from = (down.first + i) * width_ * side + across[x].first;
+      const std::size_t from = corner + i * width_ * side;
       for (std::size_t k = 0; k < across[x].shares.size(); ++k)
         add_share(row.shares, first, of_sample[from + k], down.shares[i] * across[x].shares[k]);
     }
@@ -75,17 +108,21 @@ void MatteShares::add_row(std::size_t y, std::span<const std::uint32_t> of_sampl
   }
 }
 
-std::vector<Share> MatteShares::of_pixel(std::size_t pixel) const {
-  const Row& row = rows_[pixel / width_];
-  const std::size_t x = pixel % width_;
-  std::vector<Share> shares(row.shares.begin() + (x == 0 ? 0 : row.ends[x - 1]), row.shares.begin() + row.ends[x]);
-  float all = 0;
-  for (const Share& share : shares) all += share.part;
-  std::erase_if(shares, [](const Share& share) { return share.name == Surfaces::kNothing; });
-  std::ranges::stable_sort(
-      shares, [](const Share& a, const Share& b) { return a.part != b.part ? a.part > b.part : a.name < b.name; });
-  for (Share& share : shares) share.part /= all;
-  return shares;
+void MatteShares::settle() {
+  tbb::parallel_for(std::size_t{0}, rows_.size(), [&](std::size_t y) {
+    std::size_t begin = 0;
+    for (const std::uint32_t end : rows_[y].ends) {
+      const auto shares = std::span(rows_[y].shares).subspan(begin, end - begin);
+      begin = end;
+      float all = 0;
+      for (const Share& share : shares) all += share.part;
+      std::ranges::stable_sort(shares, [](const Share& a, const Share& b) {
+        if (a.name == kNothing || b.name == kNothing) return b.name == kNothing && a.name != kNothing;
+        return a.part != b.part ? a.part > b.part : a.name < b.name;
+      });
+      for (Share& share : shares) share.part /= all;
+    }
+  });
 }
 
 }  // namespace penumbra::app

@@ -3,6 +3,7 @@
 
 #include "app/pictures/picture_mean.hpp"
 #include "app/pictures/pixel_filter.hpp"
+#include "app/pictures/surfaces.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -29,12 +30,23 @@ class MatteShares {
 
   [[nodiscard]] std::span<const std::string> names() const& { return names_; }
   std::span<const std::string> names() const&& = delete;
-  [[nodiscard]] std::size_t pixel_count() const { return std::size_t{width_} * rows_.size(); }
-  /// Returns the names in a pixel, the largest first; background is not included.
-  [[nodiscard]] std::vector<Share> of_pixel(std::size_t pixel) const;
+  /// Orders each pixel's names, and makes their parts fractions; to be called once, after all calls of add().
+  void settle();
+  /// Returns the names in a pixel, the largest first; background is not included. To be called after settle().
+  [[nodiscard]] std::span<const Share> of_pixel(std::size_t x, std::size_t y) const& {
+    const Row& row = rows_[y];
+    const std::size_t begin = x == 0 ? 0 : row.ends[x - 1];
+    const auto shares = std::span(row.shares).subspan(begin, row.ends[x] - begin);
+    return shares.first(shares.size() - (shares.back().name == kNothing ? 1 : 0));
+  }
+  std::span<const Share> of_pixel(std::size_t, std::size_t) const&& = delete;
+  [[nodiscard]] std::uint32_t width() const { return width_; }
 
  private:
-  /// Row of pixels: the shares of pixel x are shares[ends[x − 1]] to before shares[ends[x]]; running sums.
+  static constexpr std::uint32_t kNothing = Surfaces::kNothing;  ///< comes last in settled shares
+
+  /// Row of pixels: the shares of pixel x, at least one, are shares[ends[x − 1]] to before shares[ends[x]]; running
+  /// sums until settle().
   struct Row {
     std::vector<std::uint32_t> ends;
     std::vector<Share> shares;

@@ -4,6 +4,7 @@
 #include "app/pictures/picture_mean.hpp"
 
 #include "base/assert.hpp"
+#include "base/pages.hpp"
 
 #include <tbb/parallel_for.h>
 
@@ -11,19 +12,34 @@
 
 namespace penumbra::app {
 
-PictureMean::PictureMean(std::uint32_t width, std::uint32_t height, const PixelFilter& filter)
-    : width_(width),
-      height_(height),
-      filter_(filter),
-      shares_(std::size_t{width} * height, 0),
-      alpha_(std::size_t{width} * height, 0) {}
+PictureMean::PictureMean(std::uint32_t width, std::uint32_t height, const PixelFilter& filter, Adds adds)
+    : width_(width), height_(height), filter_(filter), adds_(adds) {
+  const std::size_t pixels = std::size_t{width} * height;
+  if (adds_ == Adds::once) {
+    means_.alpha.resize(pixels);
+    return;
+  }
+  sums_.shares.resize(pixels);
+  sums_.alpha.resize(pixels);
+}
+
+std::optional<std::size_t> PictureMean::known_number_of(const std::string& light) const {
+  const auto known = std::ranges::find(lights_, light);
+  if (known == lights_.end()) return std::nullopt;
+  return static_cast<std::size_t>(known - lights_.begin());
+}
 
 std::size_t PictureMean::number_of(const std::string& light) {
-  const auto known = std::ranges::find(lights_, light);
-  if (known != lights_.end()) return static_cast<std::size_t>(known - lights_.begin());
+  if (const auto known = known_number_of(light)) return *known;
+  const std::size_t pixels = std::size_t{width_} * height_;
   lights_.push_back(light);
-  visibility_.emplace_back(alpha_.size(), 0);
-  beauty_.emplace_back(alpha_.size(), glm::dvec3(0));
+  if (adds_ == Adds::once) {
+    resize_on_all_cores(means_.visibility.emplace_back(), pixels);
+    resize_on_all_cores(means_.beauty.emplace_back(), pixels);
+  } else {
+    resize_on_all_cores(sums_.visibility.emplace_back(), pixels);
+    resize_on_all_cores(sums_.beauty.emplace_back(), pixels);
+  }
   return lights_.size() - 1;
 }
 
@@ -43,49 +59,100 @@ void PictureMean::add(std::span<const float> alpha, const std::vector<std::strin
                       last_taps.first + last_taps.shares.size() <= band.first_sample_row + rows,
                   "rows {} to {} from {} rows of view samples from {} on", first_row, end_row, rows,
                   band.first_sample_row);
+  // Sums stay in registers from tap to tap; each is added up in the order of its taps, whatever is summed beside it.
   tbb::parallel_for(first_row, end_row, [&](std::size_t y) {
+    const FilterTaps& rows_of = down[y];
+    const auto for_each_tap = [&](std::size_t x, auto add) {
+      for (std::size_t row = 0; row < rows_of.shares.size(); ++row) {
+        const std::size_t from = (rows_of.first + row - band.first_sample_row) * width + across[x].first;
+        for (std::size_t column = 0; column < across[x].shares.size(); ++column)
+          add(rows_of.shares[row] * across[x].shares[column], from + column);
+      }
+    };
+    const bool once = adds_ == Adds::once;
+    std::vector<double> shares_of(once ? width_ : 0);  // of each pixel of the row
     for (std::size_t x = 0; x < width_; ++x) {
       const std::size_t pixel = y * width_ + x;
-      for (std::size_t row = 0; row < down[y].shares.size(); ++row) {
-        const std::size_t first = (down[y].first + row - band.first_sample_row) * width + across[x].first;
-        for (std::size_t column = 0; column < across[x].shares.size(); ++column) {
-          const double share = down[y].shares[row] * across[x].shares[column];
-          const std::size_t from = first + column;
-          shares_[pixel] += share;
-          alpha_[pixel] += share * double{alpha[from]};
-          for (std::size_t light = 0; light < visibility.size(); ++light) {
-            visibility_[numbers[light]][pixel] += share * double{visibility[light][from]};
-            if (!beauty[light].empty()) beauty_[numbers[light]][pixel] += share * glm::dvec3(beauty[light][from]);
-          }
+      double shares = once ? 0 : sums_.shares[pixel], covered = once ? 0 : sums_.alpha[pixel];
+      for_each_tap(x, [&](double share, std::size_t from) {
+        shares += share;
+        covered += share * double{alpha[from]};
+      });
+      if (once) {
+        shares_of[x] = shares;
+        means_.alpha[pixel] = static_cast<float>(covered / shares);
+      } else {
+        sums_.shares[pixel] = shares;
+        sums_.alpha[pixel] = covered;
+      }
+    }
+    for (std::size_t light = 0; light < visibility.size(); ++light) {
+      const std::span<const float> seen = visibility[light];
+      const std::span<const glm::vec3> lit = beauty[light];
+      const std::size_t number = numbers[light];
+      for (std::size_t x = 0; x < width_; ++x) {
+        const std::size_t pixel = y * width_ + x;
+        double share_seen = once ? 0 : sums_.visibility[number][pixel];
+        glm::dvec3 arriving = once ? glm::dvec3(0) : sums_.beauty[number][pixel];
+        if (lit.empty()) {
+          for_each_tap(x, [&](double share, std::size_t from) { share_seen += share * double{seen[from]}; });
+        } else {
+          for_each_tap(x, [&](double share, std::size_t from) {
+            share_seen += share * double{seen[from]};
+            arriving += share * glm::dvec3(lit[from]);
+          });
+        }
+        if (once) {
+          means_.visibility[number][pixel] = static_cast<float>(share_seen / shares_of[x]);
+          means_.beauty[number][pixel] = glm::vec3(arriving / shares_of[x]);
+        } else {
+          sums_.visibility[number][pixel] = share_seen;
+          sums_.beauty[number][pixel] = arriving;
         }
       }
     }
   });
 }
 
-std::vector<std::vector<float>> PictureMean::visibility(std::span<const std::string> lights) const {
-  std::vector<std::vector<float>> means(lights.size(), std::vector<float>(alpha_.size(), 0));
+std::vector<std::vector<float>> PictureMean::take_visibility(std::span<const std::string> lights) {
+  const std::size_t pixels = std::size_t{width_} * height_;
+  std::vector<std::vector<float>> means(lights.size());
   for (std::size_t light = 0; light < lights.size(); ++light) {
-    const auto number = static_cast<std::size_t>(std::ranges::find(lights_, lights[light]) - lights_.begin());
-    for (std::size_t i = 0; number < lights_.size() && i < alpha_.size(); ++i)
-      means[light][i] = static_cast<float>(visibility_[number][i] / shares_[i]);
+    const auto number = known_number_of(lights[light]);
+    if (number && adds_ == Adds::once) {
+      means[light] = std::move(means_.visibility[*number]);
+      continue;
+    }
+    means[light].resize(pixels);
+    if (!number) continue;
+    const std::vector<double> sums = std::move(sums_.visibility[*number]);
+    for (std::size_t i = 0; i < pixels; ++i) means[light][i] = static_cast<float>(sums[i] / sums_.shares[i]);
   }
   return means;
 }
 
-std::vector<std::vector<glm::vec3>> PictureMean::beauty(std::span<const std::string> lights) const {
-  std::vector<std::vector<glm::vec3>> means(lights.size(), std::vector<glm::vec3>(alpha_.size(), glm::vec3(0)));
+std::vector<std::vector<glm::vec3>> PictureMean::take_beauty(std::span<const std::string> lights) {
+  const std::size_t pixels = std::size_t{width_} * height_;
+  std::vector<std::vector<glm::vec3>> means(lights.size());
   for (std::size_t light = 0; light < lights.size(); ++light) {
-    const auto number = static_cast<std::size_t>(std::ranges::find(lights_, lights[light]) - lights_.begin());
-    for (std::size_t i = 0; number < lights_.size() && i < alpha_.size(); ++i)
-      means[light][i] = glm::vec3(beauty_[number][i] / shares_[i]);
+    const auto number = known_number_of(lights[light]);
+    if (number && adds_ == Adds::once) {
+      means[light] = std::move(means_.beauty[*number]);
+      continue;
+    }
+    means[light].assign(pixels, glm::vec3(0));
+    if (!number) continue;
+    const std::vector<glm::dvec3> sums = std::move(sums_.beauty[*number]);
+    for (std::size_t i = 0; i < pixels; ++i) means[light][i] = glm::vec3(sums[i] / sums_.shares[i]);
   }
   return means;
 }
 
-std::vector<float> PictureMean::alpha() const {
+std::vector<float> PictureMean::take_alpha() {
+  if (adds_ == Adds::once) return std::move(means_.alpha);
   std::vector<float> mean;
-  for (std::size_t i = 0; i < alpha_.size(); ++i) mean.push_back(static_cast<float>(alpha_[i] / shares_[i]));
+  for (std::size_t i = 0; i < sums_.alpha.size(); ++i)
+    mean.push_back(static_cast<float>(sums_.alpha[i] / sums_.shares[i]));
   return mean;
 }
 

@@ -286,8 +286,8 @@ TEST(PictureMean, KnowsLightsByTheirNames) {
   mean.add(alpha, {"B", "C"}, Values{{0.25f}, {1}}, Colors{{glm::vec3(1)}, {glm::vec3(8)}}, 1, {{0, 1}, 0});
   EXPECT_THAT(mean.lights(), ElementsAre("A", "B", "C"));
   const std::vector<std::string> asked = {"C", "B", "A", "D"};
-  EXPECT_EQ(mean.visibility(asked), (Values{{0.5f}, {0.375f}, {0.5f}, {0}}));
-  EXPECT_EQ(mean.beauty(asked), (Colors{{glm::vec3(4)}, {glm::vec3(1.5f)}, {glm::vec3(2)}, {glm::vec3(0)}}));
+  EXPECT_EQ(mean.take_visibility(asked), (Values{{0.5f}, {0.375f}, {0.5f}, {0}}));
+  EXPECT_EQ(mean.take_beauty(asked), (Colors{{glm::vec3(4)}, {glm::vec3(1.5f)}, {glm::vec3(2)}, {glm::vec3(0)}}));
 }
 
 /// Two moments of a shutter that is open for 0.4 frames: 0.1 frames before and after.

@@ -3,6 +3,8 @@
 #include "tests/cli/program.hpp"
 
 #include "app/pictures/cryptomatte.hpp"
+#include "app/pictures/matte_shares.hpp"
+#include "app/pictures/picture_mean.hpp"
 #include "app/pictures/pixel_filter.hpp"
 #include "app/pictures/surfaces.hpp"
 #include "base/exr.hpp"
@@ -15,6 +17,7 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <random>
 
 namespace penumbra::tests {
 namespace {
@@ -159,13 +162,82 @@ TEST(MatteShares, KnowNamesOfAllPictures) {
   shares.add(std::vector<std::string>{"a", "b", "a"}, std::vector<std::uint32_t>{0, 1, 2, 1}, 2, {{0, 1}, 0});
   shares.add(std::vector<std::string>{"b", "c"}, std::vector<std::uint32_t>{0, 0, 1, nothing}, 2, {{0, 1}, 0});
   EXPECT_THAT(shares.names(), testing::ElementsAre("a", "b", "c"));
-  const auto here = shares.of_pixel(0);
+  shares.settle();
+  const auto here = shares.of_pixel(0, 0);
   ASSERT_EQ(here.size(), 3u);
   EXPECT_EQ(here[0].name, 1u);
   EXPECT_FLOAT_EQ(here[0].part, 4.0f / 8);
   EXPECT_EQ(here[1].name, 0u);
   EXPECT_FLOAT_EQ(here[1].part, 2.0f / 8);
   EXPECT_FLOAT_EQ(here[2].part, 1.0f / 8);
+}
+
+/// A pixel of one name gets the sum of its taps as any other does, added up in their order: the same float.
+TEST(MatteShares, OfOneNameAreSumsOfTaps) {
+  constexpr std::uint32_t kSide = 3, kAcross = 9, kDown = 7, kSamples = kSide * kAcross;
+  app::PixelFilter filter;
+  filter.kind = app::PixelFilter::Kind::blackman_harris;
+  filter.width = 1.5;
+  std::mt19937 random(5);
+  std::vector<std::uint32_t> of_sample(std::size_t{kSamples} * kSide * kDown);
+  for (std::size_t i = 0; i < of_sample.size(); ++i) {  // one name on the left, two and the background on the right
+    const std::uint32_t name = i % kSamples < kSamples / 2 ? 0 : static_cast<std::uint32_t>(random() % 3);
+    of_sample[i] = name == 2 ? app::Surfaces::kNothing : name;
+  }
+  app::MatteShares shares(kAcross, kDown, filter);
+  shares.add(std::vector<std::string>{"a", "b"}, of_sample, kSide, {{0, kDown}, 0});
+  shares.settle();
+  const auto across = app::filter_taps(filter, kAcross, kSide), down = app::filter_taps(filter, kDown, kSide);
+  std::size_t alone = 0, mixed = 0;
+  for (std::size_t y = 0; y < kDown; ++y) {
+    for (std::size_t x = 0; x < kAcross; ++x) {
+      std::map<std::uint32_t, float> sums;
+      std::vector<std::uint32_t> in_order;
+      for (std::size_t i = 0; i < down[y].shares.size(); ++i) {
+        for (std::size_t k = 0; k < across[x].shares.size(); ++k) {
+          const std::uint32_t name = of_sample[(down[y].first + i) * kSamples + across[x].first + k];
+          if (!sums.contains(name)) in_order.push_back(name);
+          sums[name] += static_cast<float>(down[y].shares[i] * across[x].shares[k]);
+        }
+      }
+      float all = 0;
+      for (const std::uint32_t name : in_order) all += sums[name];
+      const auto here = shares.of_pixel(x, y);
+      ASSERT_EQ(here.size(), sums.size() - sums.count(app::Surfaces::kNothing)) << x << " " << y;
+      for (const auto& share : here) ASSERT_EQ(share.part, sums.at(share.name) / all) << x << " " << y;
+      ++(sums.size() == 1 ? alone : mixed);
+    }
+  }
+  EXPECT_GT(alone, 10u);
+  EXPECT_GT(mixed, 10u);
+}
+
+/// Rows that are added once have the bits of sums that are kept in double.
+TEST(PictureMean, OfRowsAddedOnceIsTheSame) {
+  constexpr std::uint32_t kSide = 2, kAcross = 6, kDown = 8, kSamples = kSide * kAcross;
+  app::PixelFilter filter;
+  filter.kind = app::PixelFilter::Kind::blackman_harris;
+  filter.width = 1.5;
+  std::mt19937 random(6);
+  std::uniform_real_distribution<float> real(0, 1);
+  const std::size_t samples = std::size_t{kSamples} * kSide * kDown;
+  std::vector<float> alpha(samples);
+  std::vector<std::vector<float>> seen(2, std::vector<float>(samples));
+  std::vector<std::vector<glm::vec3>> lit(2);
+  lit[0].resize(samples);  // the second light has no results
+  for (std::size_t i = 0; i < samples; ++i) {
+    alpha[i] = real(random);
+    for (auto& of_light : seen) of_light[i] = real(random);
+    lit[0][i] = {real(random), real(random), real(random)};
+  }
+  const std::vector<std::string> names = {"A", "B"};
+  using Adds = app::PictureMean::Adds;
+  app::PictureMean often(kAcross, kDown, filter), once(kAcross, kDown, filter, Adds::once);
+  often.add(alpha, names, seen, lit, kSide, {{0, kDown}, 0});
+  for (std::uint32_t row = 0; row < kDown; row += 4) once.add(alpha, names, seen, lit, kSide, {{row, 4}, 0});
+  EXPECT_EQ(once.take_visibility(names), often.take_visibility(names));
+  EXPECT_EQ(once.take_beauty(names), often.take_beauty(names));
+  EXPECT_EQ(once.take_alpha(), often.take_alpha());
 }
 
 TEST_F(FilteredPictures, AreRefusedWhereThereIsNothingToWeigh) {
