@@ -1,11 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """A forest of copies of one tree, and what a picture of it costs:
-python3 bench/forest.py PROGRAM FOLDER [TREES ...] [--size PIXELS] [--results FILE.json --machine TEXT --conditions TEXT]
+python3 bench/forest.py PROGRAM FOLDER [TREES ...] [--size PIXELS] [--peer build/embree_forest --runs N]
+                        [--results FILE.json --machine TEXT --conditions TEXT]
 
 Writes FOLDER/tree.ply (20,000 triangles: a trunk, branches and leaves of two triangles), and for each number of trees
 FOLDER/forest-N.json, in which it stands N times. Renders each and prints triangles, processor seconds, seconds and the
-largest resident set of the program and what it starts; --results writes them for bench/tables.py. Uses Python's standard
+largest resident set of the program and what it starts. With --peer, each is also rendered with 256 light samples, by
+this program and by the peer on Embree, in turns; medians of --runs count. --results writes them for bench/tables.py. Uses Python's standard
 library alone; the same bytes each time.
 """
 import argparse
@@ -14,6 +16,7 @@ import math
 import os
 import pathlib
 import random
+import statistics
 import struct
 import subprocess
 import time
@@ -114,7 +117,7 @@ def forest(trees, seed=11, size=512):
 def measure(command):
     """Processor seconds, seconds and the largest resident set in bytes of a program."""
     begin = time.monotonic()
-    process = subprocess.Popen(command)
+    process = subprocess.Popen(command, stdout=subprocess.DEVNULL)
     _, status, usage = os.wait4(process.pid, 0)
     if status != 0:
         raise SystemExit(f"{' '.join(map(str, command))}: {os.waitstatus_to_exitcode(status)}")
@@ -125,13 +128,15 @@ def write_results(path, rows, given):
     commit = subprocess.run(["git", "rev-parse", "--short=8", "HEAD"], cwd=pathlib.Path(__file__).parent, check=True,
                             capture_output=True, text=True).stdout.strip()
     sizes = " ".join(str(row[0]) for row in rows)
+    peer = f" --peer {given.peer} --runs {given.runs}" if given.peer else ""
     path.write_text(json.dumps({
         "title": "memory and processor seconds of forests of one tree, stored once",
         "commit": commit,
         "machine": given.machine,
-        "command": f"bench/forest.py build/penumbra FOLDER {sizes}",
+        "command": f"bench/forest.py build/penumbra FOLDER {sizes}{peer}",
         "conditions": given.conditions,
-        "columns": ["trees", "triangles", "processor seconds", "resident, GiB", "parts", "triangles of the largest"],
+        "columns": ["trees", "triangles", "processor seconds", "resident, GiB", "parts", "triangles of the largest",
+                    *(["the same with 256 light samples", "Embree with 256", "ratio"] if given.peer else [])],
         "rows": rows,
     }, indent=1) + "\n", encoding="utf-8")
 
@@ -142,6 +147,8 @@ def main():
     parser.add_argument("folder", type=pathlib.Path)
     parser.add_argument("trees", type=int, nargs="*", default=[100, 1000, 10000])
     parser.add_argument("--size", type=int, default=512)
+    parser.add_argument("--peer")
+    parser.add_argument("--runs", type=int, default=1)
     parser.add_argument("--results", type=pathlib.Path)
     parser.add_argument("--machine", default="")
     parser.add_argument("--conditions", default="")
@@ -154,12 +161,20 @@ def main():
     for trees in given.trees:
         scene, stats = folder / f"forest-{trees}.json", folder / f"forest-{trees}.stats.json"
         scene.write_text(json.dumps(forest(trees, size=given.size)), encoding="utf-8")
-        busy, wall, resident = measure([given.program, "render", scene, "-o", folder / f"forest-{trees}.exr", "--png",
-                                        folder / f"forest-{trees}.png", "--stats", stats, "--quiet"])
-        print(trees, TRIANGLES * trees + 2, f"{busy:.1f} {wall:.1f} {resident / 2**20:.0f}", flush=True)
+        runs, counted, peers = [], [], []
+        for _ in range(given.runs):
+            command = [given.program, "render", scene, "--png", folder / f"forest-{trees}.png", "--quiet", "-o"]
+            runs.append(measure([*command, folder / f"forest-{trees}.exr", "--stats", stats]))
+            if given.peer:
+                counted.append(measure([*command, folder / f"forest-{trees}-counted.exr", "--light-samples", "256"])[0])
+                peers.append(measure([given.peer, scene, str(given.size), "256"])[0])
+        busy, wall, resident = (statistics.median(values) for values in zip(*runs))
+        compared = [round(statistics.median(counted), 1), round(statistics.median(peers), 1),
+                    round(statistics.median(ours / embree for ours, embree in zip(counted, peers)), 2)] if peers else []
+        print(trees, TRIANGLES * trees + 2, f"{busy:.1f} {wall:.1f} {resident / 2**20:.0f}", *compared, flush=True)
         counters = json.loads(stats.read_text(encoding="utf-8"))["counters"]
         rows.append([trees, TRIANGLES * trees + 2, round(busy, 1), round(resident / 2**30, 2), counters.get("partsOfPicture", 1),
-                     counters.get("trianglesOfLargestPart", TRIANGLES * trees + 2)])
+                     counters.get("trianglesOfLargestPart", TRIANGLES * trees + 2), *compared])
         if given.results:
             write_results(given.results, rows, given)
 

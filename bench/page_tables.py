@@ -39,6 +39,8 @@ class Table:
     conditions: str
     scenes: tuple
     columns: tuple
+    size: str = SIZE
+    light_samples: int | None = None
 
 
 @dataclass(frozen=True)
@@ -67,6 +69,19 @@ def wedge_columns(entry):
             rmse("RMSE", entry), largest("largest error", entry))
 
 
+VARIANTS = ("z-fail", "zp+", "cc", "split", "hierarchical", "tiles")
+SPLITS = ("soft-volume", "soft-volume:split=2", "soft-volume:split=3")
+EIGHT = ("parallel-square", "contact", "broken", "fusion", "large-penumbra", "room", "self-shadow", "bunny")
+
+
+def variants(name):
+    return tuple(count(f"`{variant}`", f"hard-volume:variant={variant}", name) for variant in VARIANTS)
+
+
+def errors(head, entry):
+    return (rmse(f"{head}: RMSE", entry), largest("largest error", entry))
+
+
 ERRORS = "128 × 128 pixels; errors of V over judged pixels against exact areas (`edge-scatter:rows=exact`)."
 
 TABLES = {
@@ -86,13 +101,42 @@ TABLES = {
     "soft-irregular": Table("soft-irregular: errors, with leaks and with layers", ERRORS, ("contact", "fusion", "room"),
                             (rmse("RMSE", "soft-irregular"), Compared("mean error", "soft-irregular", ("error", "bias"), "+.4f"), largest("largest error", "soft-irregular"),
                              rmse("`umbra=layers`: RMSE", "soft-irregular:umbra=layers"), largest("largest error", "soft-irregular:umbra=layers"))),
+    "hard-volume-fragments": Table("fragments of hard-volume's variants", "512 × 512 pixels. A fragment is a pixel of the box that a face of a volume covers.",
+                                   ("fusion", "room", "thin", "bunny"), variants("fragments"), "512x512"),
+    "hard-volume-updates": Table("changes of counts by hard-volume's variants", "512 × 512 pixels. A change is what a stencil would be written for.",
+                                 ("fusion", "room", "thin", "bunny"), variants("countUpdates"), "512x512"),
+    "hard-volume-culled": Table("what hard-volume's variants leave out", "512 × 512 pixels.", ("fusion", "room", "thin", "bunny"),
+                                (count("`cc`: volumes", "hard-volume:variant=cc", "volumes"), count("culled", "hard-volume:variant=cc", "culledVolumes"),
+                                 count("cut", "hard-volume:variant=cc", "clampedVolumes"), count("`hierarchical`: triangles", "hard-volume:variant=hierarchical", "volumes"),
+                                 count("culled", "hard-volume:variant=hierarchical", "culledVolumes"), count("`tiles`: tiles", "hard-volume:variant=tiles", "tiles"),
+                                 count("whole", "hard-volume:variant=tiles", "wholeTiles")), "512x512"),
+    "soft-volume-split": Table("soft-volume: errors with a split light", ERRORS, EIGHT,
+                               (*(column for entry, head in zip(SPLITS, ("`split=1`", "`split=2`", "`split=3`")) for column in errors(head, entry)),
+                                rmse("`coverage=table`: RMSE", "soft-volume:coverage=table"), rmse("hard-volume: RMSE", "hard-volume"))),
+    "layer-rays": Table("layer-rays beside other methods of one map", "64 × 64 pixels, 64 light samples, maps of 1024²; RMSE of V over judged pixels against exact areas (`edge-scatter:rows=exact`).",
+                        ("bunny", "contact", "fusion"),
+                        tuple(rmse(f"`{entry}`", entry) for entry in ("layer-rays:layers=1", "layer-rays:layers=4", "bitmask", "contour", "backproject", "shadow-map")), "64x64", 64),
+    "hierarchical-penumbra": Table("errors of 256 light samples, and of view-sample-planar's table",
+                                   "128 × 128 pixels, 256 light samples in rows; errors of V over judged pixels against exact areas (`edge-scatter:rows=exact`).",
+                                   ("broken", "contact", "fusion", "parallel-square", "thin"),
+                                   (*errors("`hierarchical-penumbra`", "hierarchical-penumbra"), *errors("`view-sample:variant=sintorn`", "view-sample:variant=sintorn"),
+                                    *errors("`view-sample-planar:lookup=nearest`", "view-sample-planar:lookup=nearest")), SIZE, 256),
+    "depth-complexity-forest": Table("errors of depth-complexity's silhouettes from the light's centre",
+                                     "256 × 256 pixels, 16 light samples in rows; errors of V over judged pixels against exact areas (`edge-scatter:rows=exact`). Every bit of "
+                                     "`depth-complexity` is right: its errors are those of 16 light samples.",
+                                     ("parallel-square", "contact", "broken", "fusion", "large-penumbra", "room", "self-shadow", "thin", "bunny"),
+                                     (count("silhouette edges", "depth-complexity:variant=forest", "silhouetteEdges"), *errors("`variant=forest`", "depth-complexity:variant=forest"),
+                                      Compared("mean error", "depth-complexity:variant=forest", ("error", "bias"), "+.4f"), *errors("`depth-complexity`", "depth-complexity"),
+                                      *(count(f"pixels that overflow {bits} bits", f"depth-complexity:variant=forest:counter-bits={bits}", "overflowPixels") for bits in (16, 8, 6))),
+                                     "256x256", 16),
 }
 
 
-def compared(program, folder, scene, entries):
+def compared(program, folder, scene, entries, size, light_samples):
     """The entries of metrics.json by one run with all methods that any column asks of this scene."""
     out = folder / "compared"
-    subprocess.run([program, "compare", ROOT / "scenes" / f"{scene}.json", "-o", out, "--methods", ",".join(entries), "--reference", AREAS, "--size", SIZE, "--quiet"],
+    subprocess.run([program, "compare", ROOT / "scenes" / f"{scene}.json", "-o", out, "--methods", ",".join(entries), "--reference", AREAS, "--size", size, "--quiet",
+                    "--runs", "1", *(["--light-samples", str(light_samples), "--sample-pattern", "rows"] if light_samples else [])],
                    check=True, stdout=subprocess.DEVNULL)
     return dict(zip(entries, json.loads((out / "metrics.json").read_text(encoding="utf-8"))["methods"], strict=True))
 
@@ -142,17 +186,17 @@ def main():
 
 
 def measure(tables, program, folder):
-    """Runs each scene once, with the methods of all these tables."""
+    """Runs each scene once a size and number of light samples, with the methods of all these tables."""
     entries = {}
     for table in tables.values():
         for scene in table.scenes:
-            entries.setdefault(scene, {}).update(dict.fromkeys(column.entry for column in table.columns))
+            entries.setdefault((scene, table.size, table.light_samples), {}).update(dict.fromkeys(column.entry for column in table.columns))
     metrics = {}
-    for scene, methods in entries.items():
+    for (scene, size, light_samples), methods in entries.items():
         print(f"{scene}: {', '.join(methods)}", flush=True)
-        metrics[scene] = compared(program, folder, scene, list(methods))
+        metrics[scene, size, light_samples] = compared(program, folder, scene, list(methods), size, light_samples)
     for name, table in tables.items():
-        save(name, measured_table(table, metrics))
+        save(name, measured_table(table, {scene: metrics[scene, table.size, table.light_samples] for scene in table.scenes}))
 
 
 main()
