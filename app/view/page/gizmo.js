@@ -135,7 +135,7 @@ function drawHandle(handle, drawing) {
 window.addEventListener("pointermove", (event) => {
   if (!held) return;
   setLight(held.handle.drag(held.start, rayAt(...placeOf(event))), true);
-  showNumbers(chosenLight(), byId("light-numbers"));
+  showNumbersSoon();
 });
 for (const type of ["pointerup", "pointercancel"]) window.addEventListener(type, () => {
   if (!held) return;

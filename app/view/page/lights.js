@@ -151,7 +151,15 @@ function showLight() {
 }
 function showNumbers(light, box) {
   const values = numbersOf(light).flatMap((row) => row.values);
-  [...box.querySelectorAll("input")].forEach((input, i) => { input.value = Number(values[i].toPrecision(6)); });
+  [...box.querySelectorAll("input")].forEach((input, i) => {
+    const text = String(Number(values[i].toPrecision(6)));
+    if (input.value !== text) input.value = text;  // each written field costs the browser a layout
+  });
+}
+let numbersTimer = 0;
+/// Shows the chosen light's numbers five times a second at most: during a drag pictures matter more.
+function showNumbersSoon() {
+  if (!numbersTimer) numbersTimer = setTimeout(() => { numbersTimer = 0; showNumbers(chosenLight(), byId("light-numbers")); }, 200);
 }
 
 async function save() {
