@@ -180,7 +180,7 @@ class RenderCommand : public Command {
     ReadScene read;
     read.scene = scene_at(run, time, &read.instances);
     if (needs_copies(read.scene, read.instances, request_.instances, request_.wish, request_.pixel_side))
-      read.scene = copied(std::move(read.scene), std::exchange(read.instances, {}));
+      read.scene = copied(std::move(read.scene), std::exchange(read.instances, {}), bytes_per_copy(request_.wish));
     read.seconds = watch.seconds();
     return read;
   }
