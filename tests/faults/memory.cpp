@@ -82,9 +82,10 @@ TEST_F(MemoryFaults, CopiesThatDoNotFitAreRefusedBeforeTheyAreMade) {
     places += fmt::format(R"({}{{"translate": [{}, 0, {}]}})", i == 0 ? "" : ", ", i % 80, i / 80);
   const std::string scene = write("forest.json", R"({"format": "penumbra-scene/1", "size": [24, 16],
     "camera": {"eye": [-3, 3, -3], "target": [9, 0, 9]}, "lights": [{"dome": {}}], "meshes": [
-    {"shape": {"type": "sphere", "radius": 0.4, "segments": 32}, "instances": [)" + places + "]}]}");
-  const Ending ending = run_under(
-      {.arguments = {"render", scene, "-o", path("out.exr")}, .limits = {{RLIMIT_AS, rlim_t{1} << 30}}});
+    {"shape": {"type": "sphere", "radius": 0.4, "segments": 32}, "instances": [)" +
+                                                     places + "]}]}");
+  const Ending ending =
+      run_under({.arguments = {"render", scene, "-o", path("out.exr")}, .limits = {{RLIMIT_AS, rlim_t{1} << 30}}});
   EXPECT_EQ(ending.code, 4) << ending.err;
   EXPECT_THAT(ending.err, AllOf(HasSubstr("4000 instances of meshes among them, each as a copy"), HasSubstr("GiB"),
                                 HasSubstr("--light-samples"), HasSubstr("\"sampled\"")));
