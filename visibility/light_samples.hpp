@@ -92,7 +92,6 @@ struct Light {
     bool half = false;                    ///< only the part above the plane of the first two axes
     std::shared_ptr<const Sky> sky = {};  ///< the picture, of this light, its copies and its faces; null: one radiance
     double power = 1;        ///< for radiance 1, 1/π ∫ luminance dω: that of all samples, which have equal parts
-    bool sampled = false;    ///< counted in light samples where a method is free to give areas
     std::int32_t face = -1;  ///< −1: the whole dome
     std::array<std::uint32_t, 7> first{};  ///< for the whole dome: face i has the samples from first[i] to first[i + 1]
   };

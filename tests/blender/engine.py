@@ -71,6 +71,13 @@ class Engine(unittest.TestCase):
                 self.assertEqual(lights["Key"]["quantity"], "area")
         self.assertEqual(self.warnings(scene), [])
 
+    def test_a_forest_is_not_copied(self):
+        stats = self.stats(inside.fresh(scenes.forest))
+        self.assertGreater(stats["triangles"], 500_000)
+        self.assertEqual([light["quantity"] for light in sorted(stats["lights"], key=lambda light: light["name"])], ["count", "area"])
+        self.assertLess(stats["counters"]["trianglesOfLargestPart"], stats["triangles"] / 2)
+        self.assertEqual(stats["counters"]["meshTreesBuilt"], 2)  # bark and leaves
+
     def test_an_animation_is_its_frames(self):
         scene = inside.fresh(scenes.animated)
         scene.frame_start, scene.frame_end = 6, 8

@@ -61,7 +61,6 @@ void make_dome(const scenes::LightShape& shape, const LightBuilder& to) {
   // right-handed: right × ahead is up
   light.dome->axes = {glm::vec3(frame.right) + 0.0f, glm::vec3(frame.ahead) + 0.0f, glm::vec3(frame.up) + 0.0f};
   light.dome->half = dome.half;
-  light.dome->sampled = dome.sampled;
   if (to.picture != nullptr)
     light.dome->sky =
         std::make_shared<const Sky>(*to.picture, stored_frame(*light.dome).turned(dome.rotate), *light.dome);
