@@ -14,6 +14,7 @@
 #include <optional>
 #include <set>
 #include <utility>
+#include <variant>
 
 namespace penumbra::app {
 namespace {
@@ -61,14 +62,21 @@ std::string note_of_span(const Light& light, const std::string& method, const st
                      light.name, method, chosen);
 }
 
-LightMethod choose(const Light& light, const SceneFloats& scene, const MethodWish& wish, std::uint64_t triangles) {
-  if (!wish.samples) {
+/// Returns whether the light's source asks for its light samples.
+bool is_sampled(const scenes::AreaLight& source) {
+  const auto* const dome = std::get_if<scenes::Dome>(&source.shape);
+  return dome != nullptr && dome->sampled;
+}
+
+LightMethod choose(const Light& light, const LightScene& scene, const MethodWish& wish) {
+  const bool samples = wish.samples || is_sampled(scene.sources.at(static_cast<std::size_t>(light.index)));
+  if (!samples) {
     std::string first;  // name of the method for lights of this kind that are nearer
     for (const MethodDescription* method : all_methods()) {
       if (!wish.method.empty() && method->name != wish.method) continue;
       auto found = area_method(*method, light, wish);
       if (!found) continue;
-      if (!wish.method.empty() || can_span(method->span, light, scene)) {
+      if (!wish.method.empty() || can_span(method->span, light, scene.floats)) {
         if (!first.empty()) found->note = note_of_span(light, first, method->name);
         return *std::move(found);
       }
@@ -76,18 +84,18 @@ LightMethod choose(const Light& light, const SceneFloats& scene, const MethodWis
     }
   }
   const MethodDescription& method =
-      wish.method.empty() ? default_method(light, &scene, triangles) : describe_method(wish.method);
+      wish.method.empty() ? default_method(light, &scene.floats, scene.triangles) : describe_method(wish.method);
   MethodOptions options = options_for(method, wish);
   LightMethod chosen{describe_method(method.name, options), std::move(options), {}};
   const MethodDescription* nearer = nullptr;  // method for lights of this kind that are nearer
-  if (wish.samples && wish.method.empty()) nearer = &default_method(light);
-  if (nearer != nullptr && nearer->name != method.name && !can_span(nearer->span, light, scene)) {
+  if (samples && wish.method.empty()) nearer = &default_method(light);
+  if (nearer != nullptr && nearer->name != method.name && !can_span(nearer->span, light, scene.floats)) {
     chosen.note = note_of_span(
         light, nearer->name, chosen.description.gives_area() ? method.name + ", without light samples," : method.name);
   } else if (!wish.samples && !chosen.description.counts_light_samples() && !chosen.description.gives_area()) {
     chosen.note = fmt::format("light \"{}\": {} gives an estimate of V without light samples; it is exact for {}",
                               light.name, method.name, method.exact_for);
-  } else if (!wish.samples && !chosen.description.gives_area()) {
+  } else if (!samples && !chosen.description.gives_area()) {
     const std::string through =
         light.filtered_by.empty() ? "" : fmt::format(" through \"{}\" (alphaMode MASK or BLEND)", light.filtered_by);
     chosen.note =
@@ -115,13 +123,22 @@ void unite(const std::vector<Light>& lights, const SceneFloats& scene, const Who
   std::fill(chosen.begin() + first, chosen.begin() + end, one);
 }
 
+/// Returns whether the method of a dome will certainly answer for each of its light samples. `samples`: they were
+/// requested.
+bool counts_samples_of_dome(const MethodWish& wish, bool samples) {
+  if (wish.method.empty()) return samples && wish.options.empty();  // an option may ask for areas
+  const MethodDescription method = describe_method(wish.method, wish.options);
+  const bool may_give_areas = method.exact_area && method.exact_area->lights.contains(LightKind::dome);
+  return method.output == visibility::Output::mask && (samples || !may_give_areas);
+}
+
 }  // namespace
 
-std::vector<LightMethod> choose_light_methods(const std::vector<Light>& lights, const SceneFloats& scene,
-                                              const MethodWish& wish, std::uint64_t triangles) {
+std::vector<LightMethod> choose_light_methods(const std::vector<Light>& lights, const LightScene& scene,
+                                              const MethodWish& wish) {
   std::vector<LightMethod> all;
-  for (const Light& light : lights) all.push_back(choose(light, scene, wish, triangles));
-  for (const WholeLight& whole : whole_lights(lights)) unite(lights, scene, whole, all);
+  for (const Light& light : lights) all.push_back(choose(light, scene, wish));
+  for (const WholeLight& whole : whole_lights(lights)) unite(lights, scene.floats, whole, all);
   for (std::size_t i = 0; i < lights.size(); ++i) check_light(all[i].description, lights[i]);
   for (const auto& option : wish.options) {
     const std::string& key = option.first;
@@ -134,11 +151,11 @@ std::vector<LightMethod> choose_light_methods(const std::vector<Light>& lights, 
   return all;
 }
 
-bool counts_dome_samples(const MethodWish& wish) {
-  if (wish.method.empty()) return wish.samples && wish.options.empty();  // an option may ask for areas
-  const MethodDescription method = describe_method(wish.method, wish.options);
-  const bool may_give_areas = method.exact_area && method.exact_area->lights.contains(LightKind::dome);
-  return method.output == visibility::Output::mask && (wish.samples || !may_give_areas);
+bool counts_dome_samples(const MethodWish& wish, const std::vector<scenes::AreaLight>& lights) {
+  return std::ranges::all_of(lights, [&](const scenes::AreaLight& light) {
+    return !std::holds_alternative<scenes::Dome>(light.shape) ||
+           counts_samples_of_dome(wish, wish.samples || is_sampled(light));
+  });
 }
 
 std::vector<std::vector<std::size_t>> same_methods(const std::vector<LightMethod>& chosen) {

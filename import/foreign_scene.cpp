@@ -116,9 +116,7 @@ class ForeignScene {
       return std::nullopt;
     }
     auto& emitter = std::get<Emitter>(found);
-    if (emitter.hides_itself)
-      losses_.mention("is an emitter with parts that stand in one another's light; a light's own mesh hides none of it",
-                      name);
+    if (emitter.hides_itself) losses_.refuse(kHidesItself, name);
     scene_.lights.push_back({.name = lights_.take(name),
                              .shape = std::move(emitter.shape),
                              .radiance = radiance,

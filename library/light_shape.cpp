@@ -44,7 +44,7 @@ scenes::LightShape to_scene(const LightShape& shape) {
       return scenes::Sun{unit(s.direction, "direction of a sun"), s.angle};
     }
     scenes::LightShape operator()(const Dome& d) const {
-      return scenes::Dome{unit(d.up, "up of a dome"), d.rotate, d.half, d.image.string()};
+      return scenes::Dome{unit(d.up, "up of a dome"), d.rotate, d.half, d.sampled, d.image.string()};
     }
   };
   return std::visit(Convert(), shape);
@@ -69,7 +69,7 @@ std::optional<LightShape> from_scene(const scenes::LightShape& shape) {
     std::optional<LightShape> operator()(const scenes::Sphere& s) const { return Sphere{from_glm(s.center), s.radius}; }
     std::optional<LightShape> operator()(const scenes::Sun& s) const { return Sun{from_glm(s.direction), s.angle}; }
     std::optional<LightShape> operator()(const scenes::Dome& d) const {
-      return Dome{from_glm(d.up), d.rotate, d.half, d.image};
+      return Dome{from_glm(d.up), d.rotate, d.half, d.image, d.sampled};
     }
     std::optional<LightShape> operator()(const scenes::Pieces&) const { return std::nullopt; }
   };

@@ -255,7 +255,7 @@ Picture Renderer::render(const RenderOptions& options) {
   }
   try {
     state.frames->render(same_meshes ? app::without_meshes(scene.scene)
-                         : copies    ? scenes::copied(scene.scene, scene.instances)
+                         : copies    ? scenes::copied(scene.scene, scene.instances, app::bytes_per_copy(state.wish))
                                      : scene.scene,
                          frame, {}, 0);
     state.rendered = meshes;

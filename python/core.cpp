@@ -91,7 +91,7 @@ py::dict dict_of(const LightShape& shape) {
     }
     py::dict operator()(const Dome& d) const {
       return py::dict(py::arg("kind") = "dome", py::arg("up") = d.up, py::arg("rotate") = d.rotate,
-                      py::arg("half") = d.half, py::arg("image") = d.image.string());
+                      py::arg("half") = d.half, py::arg("image") = d.image.string(), py::arg("sampled") = d.sampled);
     }
   };
   return std::visit(Convert(), shape);
@@ -125,6 +125,7 @@ LightShape shape_of(const std::string& kind, const py::dict& d) {
     if (d.contains("rotate")) dome.rotate = wanted<double>(d, "rotate");
     if (d.contains("half")) dome.half = wanted<bool>(d, "half");
     if (d.contains("image")) dome.image = wanted<std::string>(d, "image");
+    if (d.contains("sampled")) dome.sampled = wanted<bool>(d, "sampled");
     return dome;
   }
   throw UsageError("light of kind \"" + kind + "\": expected rectangle, disk, ellipse, polygon, sphere, sun or dome");

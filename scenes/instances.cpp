@@ -98,7 +98,7 @@ void SoupBuilder::add(const Instance& instance, std::uint32_t triangle) {
   to_.soup.source_face.push_back(soup.source_face[triangle]);
 }
 
-Scene copied(Scene scene, const Instances& instances) {
+Scene copied(Scene scene, const Instances& instances, std::uint64_t more_bytes) {
   if (instances.empty()) return scene;
   const std::uint64_t triangles = triangle_count(scene, instances);
   std::uint64_t positions = scene.soup.positions.size();
@@ -107,9 +107,9 @@ Scene copied(Scene scene, const Instances& instances) {
                                 instances.all.size());
   constexpr std::string_view kRemedy =
       "make its meshes smaller or fewer, or render it by a method that "
-      "leaves them be (under a dome: with --light-samples)";
+      "leaves them be (under a dome: with --light-samples, or a dome that is \"sampled\")";
   if (positions >= kNone) throw ResourceError("{}: {} vertices are more than 2^32; {}", what, positions, kRemedy);
-  require_memory(mesh::soup_bytes(triangles, positions), what, kRemedy);
+  require_memory(mesh::soup_bytes(triangles, positions) + triangles * more_bytes, what, kRemedy);
   Scene from;
   from.soup = std::exchange(scene.soup, {});
   from.looks = std::exchange(scene.looks, {});

@@ -67,6 +67,9 @@ struct Instances {
   }
 };
 
+/// Number of triangles up to which instances are copied by default: copies cost less than doing without them.
+inline constexpr std::uint64_t kFewCopies = 500'000;
+
 /// Returns the number of the scene's triangles, those of instances included.
 std::uint64_t triangle_count(const Scene& scene, const Instances& instances);
 
@@ -98,8 +101,8 @@ class SoupBuilder {
   bool mirrors_ = false;
 };
 
-/// Returns the scene with every instance's triangles in its soup. Throws ResourceError, with the figures, if memory
-/// does not suffice.
-Scene copied(Scene scene, const Instances& instances);
+/// Returns the scene with every instance's triangles in its soup. `more_bytes`: memory for each triangle that is needed
+/// afterwards, beside the scene. Throws ResourceError, with the figures, if memory does not suffice.
+Scene copied(Scene scene, const Instances& instances, std::uint64_t more_bytes = 0);
 
 }  // namespace penumbra::scenes

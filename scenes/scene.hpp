@@ -105,6 +105,7 @@ struct Dome {
   glm::dvec3 up{0, 1, 0};  ///< unit length
   double rotate = 0;       ///< degrees, right-handed about `up`
   bool half = false;
+  bool sampled = false;    ///< counted in light samples where a method is free to give areas
   std::string image = {};  ///< file name of the picture in the scene; empty: constant radiance
 };
 /// Several pieces that form one light: an emitter with bends or separate parts, cut into pieces.

@@ -37,7 +37,7 @@ auto fields_of(Is<Sun> auto& shape) {
   return std::tie(shape.direction, shape.angle);
 }
 auto fields_of(Is<Dome> auto& shape) {
-  return std::tie(shape.up, shape.rotate, shape.half, shape.image);
+  return std::tie(shape.up, shape.rotate, shape.half, shape.sampled, shape.image);
 }
 auto fields_of(Is<Pieces> auto& shape) {
   return std::tie(shape.pieces);

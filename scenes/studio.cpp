@@ -106,14 +106,14 @@ void add_light(Scene& scene, const std::string& name, LightShape shape, const gl
   scene.lights.push_back(std::move(light));
 }
 
-LightShape shape_of(const AddedLight& light, const glm::dvec3& target) {
+LightShape shape_of(const AddedLight& light, const glm::dvec3& target, bool sampled_domes) {
   switch (light.kind) {
     case AddedLight::Kind::rectangle:
       return facing_square(light.at, target, light.size);
     case AddedLight::Kind::sphere:
       return Sphere{light.at, light.size};
     case AddedLight::Kind::dome:
-      return Dome{};
+      return Dome{.sampled = sampled_domes};
     case AddedLight::Kind::sun:
       break;
   }
@@ -137,15 +137,16 @@ const char* name_of(AddedLight::Kind kind) {
 }  // namespace
 
 void put_in_studio(Scene& scene, const Scene& rest, const StudioWish& wish) {
-  // Computed before the scene changes: `rest` may be the same object. Without positions only a camera was requested, in
-  // full.
+  // Computed before the scene changes: `rest` may be the same object. Without positions, or with instances beside them,
+  // only what has no place was requested: a camera in full, domes.
   const Bounds bounds = rest.soup.positions.empty() ? Bounds() : bounds_of(rest.soup.positions);
   const bool on_floor = has_floor(rest, bounds);
   const glm::dvec3 middle = bounds.middle();
   const bool was_dark = scene.lights.empty(), was_unseen = scene.cameras.empty();
   std::string built;
   const auto put_in = [&](const char* what) { built += (built.empty() ? "" : ", ") + std::string(what); };
-  for (const AddedLight& light : wish.lights) add_light(scene, name_of(light.kind), shape_of(light, middle), middle);
+  for (const AddedLight& light : wish.lights)
+    add_light(scene, name_of(light.kind), shape_of(light, middle, wish.sampled_domes), middle);
   if (!wish.never && (was_dark || wish.always)) {
     if (wish.lights.empty()) {
       const double radius = bounds.radius();

@@ -23,10 +23,16 @@ struct AddedLight {
   double size = 0;   ///< side of a square, radius of a sphere, apparent diameter of a sun in degrees
 };
 
+/// Returns whether the light is placed by what is in the scene.
+constexpr bool has_place(const AddedLight& light) {
+  return light.kind != AddedLight::Kind::dome;
+}
+
 struct StudioWish {
   bool always = false;                  ///< also around a scene that has lights
   bool never = false;                   ///< a scene without lights is an error
   bool floor = true;                    ///< whether a studio has a floor; a scene that already has one gets none
+  bool sampled_domes = false;           ///< added domes are counted in light samples (Dome::sampled)
   double aspect = 1;                    ///< aspect of the picture, width over height, for cameras that see all
   std::vector<AddedLight> lights = {};  ///< added also to a scene that has others
   std::string fit_camera = {};          ///< name of an added first camera that sees all; empty: none

@@ -7,6 +7,7 @@
 #include "app/methods.hpp"
 #include "app/pictures/frame_render.hpp"
 #include "app/pictures/frames.hpp"
+#include "app/pictures/picture_scene.hpp"
 #include "app/pictures/request.hpp"
 #include "app/pictures/tev_pictures.hpp"
 #include "app/process/interrupt.hpp"
@@ -31,13 +32,6 @@
 
 namespace penumbra::app {
 namespace {
-
-/// Scene and the time of reading it.
-struct ReadScene {
-  scenes::Scene scene;
-  scenes::Instances instances = {};
-  double seconds = 0;
-};
 
 class RenderCommand : public Command {
  public:
@@ -78,7 +72,7 @@ class RenderCommand : public Command {
     }
     // The device is made while the scene is read, mostly by another process.
     machine.begin(!request_.wish.method.empty() && needs_device(request_.wish.method, request_.wish.options));
-    ReadScene now = read(frames[at]);
+    PictureScene now = read(frames[at]);
     now.seconds = seconds_since_start();  // no other work has been done yet
     if (all_cameras) {
       cameras.clear();
@@ -109,7 +103,7 @@ class RenderCommand : public Command {
       if (at != last + 1) renderer.forget_frames();  // the frames between were made by another run
       last = at;
       // The next scene is read while this one is rendered, by a process of its own.
-      std::future<ReadScene> coming;
+      std::future<PictureScene> coming;
       if (moves && next < frames.size())
         coming = std::async(std::launch::async, [this, frame = frames[next]] { return read(frame); });
       for (const std::string& camera : cameras) {
@@ -166,31 +160,17 @@ class RenderCommand : public Command {
     for (std::uint32_t i = 0; i < request_.moments; ++i) {
       const double offset = request_.shutter_frames * ((i + 0.5) / request_.moments - 0.5);
       const double time = (*frame + offset) * request_.seconds_per_frame;
-      all.emplace_back([this, time] { return scene_at(options_.run, time); });
+      all.emplace_back([this, time] { return read_moment(options_.run, time, request_); });
     }
     return all;
   }
 
-  [[nodiscard]] ReadScene read(std::optional<double> frame) const {
-    const Stopwatch watch;
+  [[nodiscard]] PictureScene read(std::optional<double> frame) const {
     std::optional<double> time;
     if (frame && !is_sequence_) time = *frame * request_.seconds_per_frame;
     RunOptions run = options_.run;
     if (is_sequence_) run.scene = frame_path(run.scene, std::llround(*frame));
-    ReadScene read;
-    read.scene = scene_at(run, time, &read.instances);
-    if (needs_copies(read.scene, read.instances, request_.instances, request_.wish, request_.pixel_side))
-      read.scene = copied(std::move(read.scene), std::exchange(read.instances, {}));
-    read.seconds = watch.seconds();
-    return read;
-  }
-
-  /// `instances`: receives meshes that the scene has several times; null: they become copies.
-  [[nodiscard]] scenes::Scene scene_at(const RunOptions& run, std::optional<double> time,
-                                       scenes::Instances* instances = nullptr) const {
-    scenes::Scene scene = read_session_scene(run, time, {.instances = instances});
-    set_lens(scene, request_, run.camera);
-    return scene;
+    return read_picture_scene(run, time, request_);
   }
 
   [[nodiscard]] OutputFiles claim(const std::vector<std::string>& cameras) const {

@@ -74,7 +74,7 @@ void FrameRenderer::render_in_bands(const scenes::Scene& scene) {
   done_.lights_something.clear();
   const auto [width, height] = maker_.picture_size(scene, picture_.frame.camera);
   Stopwatch watch;
-  maker_.look_into(scene, *picture_.frame.instances, counts_dome_samples(wish_));
+  maker_.look_into(scene, *picture_.frame.instances, counts_dome_samples(wish_, scene.lights));
   spent_.load += watch.seconds();
   std::vector<std::vector<float>> visibility;
   std::vector<std::vector<glm::vec3>> beauty;

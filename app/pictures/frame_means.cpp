@@ -31,8 +31,8 @@ constexpr std::uint32_t kRowsInterpolated = 3;
 
 std::vector<FrameRenderer::MeanBand> FrameRenderer::mean_bands() const {
   const std::uint32_t side = picture_.frame.pixel_side, width = session().width, height = session().height;
-  const std::vector<LightMethod> chosen =
-      choose_light_methods(session().lights, session().floats, wish_, session().triangle_count());
+  const std::vector<LightMethod> chosen = choose_light_methods(
+      session().lights, {session().floats, session().scene.lights, session().triangle_count()}, wish_);
   const bool are_areas = std::ranges::all_of(chosen, [](const auto& one) { return one.description.gives_area(); });
   const bool has_instances = picture_.frame.instances != nullptr && !picture_.frame.instances->empty();
   std::uint32_t count = 1;

@@ -61,16 +61,17 @@ void FrameRenderer::choose_methods(const Session& session) {
     light.filtered_by.clear();
     light.dimmed_by.clear();
   }
-  plan_.chosen = choose_light_methods(plan_.lights, session.floats, wish_, session.triangle_count());
+  const LightScene scene{session.floats, session.scene.lights, session.triangle_count()};
+  plan_.chosen = choose_light_methods(plan_.lights, scene, wish_);
+  const bool has_blockers_of_samples = !session.numbers.empty() && counts_dome_samples(wish_, session.scene.lights);
   for (std::size_t i = 0; i < lights.size(); ++i) {
-    const bool has_blockers_of_samples = !session.numbers.empty() && lights[i].dome && counts_dome_samples(wish_);
-    PENUMBRA_ASSERT(!has_blockers_of_samples || !plan_.chosen[i].description.gives_area(),
+    PENUMBRA_ASSERT(!has_blockers_of_samples || !lights[i].dome || !plan_.chosen[i].description.gives_area(),
                     "light {}: areas by {} of a part for light samples", lights[i].name,
                     plan_.chosen[i].description.name);
   }
   plan_.counting.assign(lights.size(), std::nullopt);
   if (std::ranges::all_of(lights, [](const auto& light) { return light.filtered_by.empty(); })) return;
-  std::vector<LightMethod> counting = choose_light_methods(lights, session.floats, wish_, session.triangle_count());
+  std::vector<LightMethod> counting = choose_light_methods(lights, scene, wish_);
   for (std::size_t i = 0; i < lights.size(); ++i) {
     if (lights[i].filtered_by.empty()) continue;
     if (plan_.chosen[i].description.gives_area()) plan_.counting[i] = counting[i];

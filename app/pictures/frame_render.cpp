@@ -137,7 +137,7 @@ void FrameRenderer::say_idle_lights() {
 void FrameRenderer::show(SessionMaker& maker, scenes::Scene scene) {
   if (const scenes::Instances* const instances = picture_.frame.instances;
       instances != nullptr && !instances->empty()) {
-    maker.look_into(scene, *instances, counts_dome_samples(wish_));
+    maker.look_into(scene, *instances, counts_dome_samples(wish_, scene.lights));
     maker.show_part({0, maker.picture_size(scene, picture_.frame.camera).second}, picture_.frame.camera, progress_);
     maker.look_away();
   } else if (picture_.frame.same_meshes) {

@@ -105,9 +105,6 @@ void refuse_numbered_moments(const PictureOptions& options, const PictureRequest
   }
 }
 
-/// Number of triangles up to which instances are copied by default: copies cost less than rendering without them.
-constexpr std::uint64_t kFewTriangles = 500'000;
-
 }  // namespace
 
 InstanceUse parse_instances(const std::string& text, const MethodWish& wish) {
@@ -152,9 +149,16 @@ bool needs_copies(const scenes::Scene& scene, const scenes::Instances& instances
     if (lens) throw UsageError("--instances shared: not through a lens; --aperture 0 makes all of the picture sharp");
     return false;
   }
-  const auto is_dome = [](const scenes::AreaLight& light) { return std::holds_alternative<scenes::Dome>(light.shape); };
-  return lens || why != nullptr || use == InstanceUse::copies || triangle_count(scene, instances) <= kFewTriangles ||
-         (std::ranges::any_of(scene.lights, is_dome) && !counts_dome_samples(wish));
+  return lens || why != nullptr || use == InstanceUse::copies ||
+         triangle_count(scene, instances) <= scenes::kFewCopies || !counts_dome_samples(wish, scene.lights);
+}
+
+std::uint64_t bytes_per_copy(const MethodWish& wish) {
+  if (!wish.method.empty()) return describe_method(wish.method, wish.options).bytes_per_triangle;
+  const auto methods = all_methods();
+  const auto areas = std::ranges::find_if(methods, [](const auto* method) { return method->exact_area.has_value(); });
+  return wish.samples || areas == methods.end() ? visibility::MethodDescription().bytes_per_triangle
+                                                : (*areas)->bytes_per_triangle;
 }
 
 bool answers_apart(const visibility::MethodDescription& method) {

@@ -70,6 +70,9 @@ InstanceUse parse_instances(const std::string& text, const MethodWish& wish);
 bool needs_copies(const scenes::Scene& scene, const scenes::Instances& instances, InstanceUse use,
                   const MethodWish& wish, std::uint32_t pixel_side);
 
+/// Returns the memory that a method needs for each triangle of a copy, beside the scene's.
+std::uint64_t bytes_per_copy(const MethodWish& wish);
+
 /// Parses the options. Throws UsageError; throws InputError if --exposure names a picture without an exposure
 /// attribute.
 PictureRequest parse_request(const PictureOptions& options);

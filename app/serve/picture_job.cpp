@@ -4,8 +4,7 @@
 #include "app/machine.hpp"
 #include "app/options.hpp"
 #include "app/output.hpp"
-#include "app/process/stopwatch.hpp"
-#include "app/session.hpp"
+#include "app/pictures/picture_scene.hpp"
 #include "base/error.hpp"
 
 #include <CLI/CLI.hpp>
@@ -57,21 +56,20 @@ void PictureJob::run(const std::vector<std::string>& arguments) {
   kept_->request = std::move(request);
   const PictureRequest& now = kept_->request;
   try {
-    const Stopwatch watch;
-    scenes::Scene scene = read_session_scene(kept_->options.run, std::nullopt);
-    outputs.refuse_inputs(scene.sources);
+    PictureScene read = read_picture_scene(kept_->options.run, std::nullopt, now);
+    outputs.refuse_inputs(read.scene.sources);
     const FrameFiles files = files_of(kept_->options, now.frames.front(), kept_->options.run.camera);
-    kept_->renderer->render(std::move(scene),
+    kept_->renderer->render(std::move(read.scene),
                             {now.frames.front(),
                              kept_->options.run.camera,
                              now.pixel_side,
                              now.filter,
                              now.pixel_tolerance,
                              {},
-                             nullptr,
+                             &read.instances,
                              false,
                              now.light_cutoff},
-                            files.bits, watch.seconds());
+                            files.bits, read.seconds);
     Exposure exposure = now.exposure;
     progress_.info(summary(kept_->renderer->write(files, exposure)));
   } catch (...) {

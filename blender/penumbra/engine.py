@@ -10,9 +10,6 @@ from . import background, exr, frames, losses, passes, program, serving, setting
 from .export import SceneWriter
 
 
-_TOO_BRIGHT = "stand in one another's light"
-
-
 class Refused(Exception):
     """An error that the user can act on."""
 
@@ -56,12 +53,7 @@ class PenumbraEngine(viewport.ShownInViews, bpy.types.RenderEngine):
             self._say(lost, wanted.lenient)
             self.update_stats("", "Rendering")
             command = program.arguments(binary, glb, picture, region.size, wanted)
-
-            def refuse(line):
-                """Reports the program's warnings about surfaces that are too bright at once, not after the render."""
-                if _TOO_BRIGHT in line and not wanted.lenient:
-                    raise Refused(f"{program.messages(line, glb)[0][0]}: it would be too bright. Close it, or tick 'Lenient'")
-            code, printed = serving.run(command, self.test_break, workspace, refuse)
+            code, printed = serving.run(command, self.test_break, workspace)
             if code is None:
                 return
             warnings, error = program.messages(printed, glb)

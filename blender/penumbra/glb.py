@@ -133,11 +133,11 @@ class Glb:
         extras = {"areaLamp": {"shape": shape, "size": list(size), "radiance": list(radiance)}}
         self.node(name, matrix, {**extras, **_shadow(casts_shadow)})
 
-    def dome(self, name, matrix, radiance, image=None, visible=False):
+    def dome(self, name, matrix, radiance, image=None, visible=False, sampled=False):
         """Adds the sky: +Y of the matrix is up, -Z the direction of the picture's middle column; the picture is a
-        separate file."""
+        separate file. `sampled`: counted in light samples, not as exact areas."""
         self.has_lamps = True
-        dome = {"radiance": list(radiance), "visible": visible}
+        dome = {"radiance": list(radiance), "visible": visible, "sampled": sampled}
         if image is not None:
             dome["image"] = image
         self.node(name, matrix, {"dome": dome})

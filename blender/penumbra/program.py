@@ -127,9 +127,8 @@ class Workspace:
         shutil.rmtree(self.folder, ignore_errors=True)
 
 
-def run(command, cancelled, workspace=None, hears=lambda line: None):
-    """Returns (exit code, printed text); the code is None if `cancelled()` became true, which ends the program, as does an
-    exception of `hears`, which gets each line as soon as it is printed."""
+def run(command, cancelled, workspace=None):
+    """Returns (exit code, printed text); the code is None if `cancelled()` became true, which ends the program."""
     with subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
                           text=True, errors="replace") as process:
         note = workspace.note_program if workspace is not None else lambda number: None
@@ -149,7 +148,6 @@ def run(command, cancelled, workspace=None, hears=lambda line: None):
                 if line is None:
                     return process.wait(), "".join(printed)
                 printed.append(line)
-                hears(line)
         finally:
             if process.poll() is None:
                 process.terminate()

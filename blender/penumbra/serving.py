@@ -124,7 +124,7 @@ class Child:
 _kept = {}  # the process that renders pictures of a sequence, by its program
 
 
-def run(command, cancelled, workspace=None, hears=lambda line: None):
+def run(command, cancelled, workspace=None):
     """Renders as program.run does, in a child process that is kept for the next picture. `command`: PROGRAM render ARGUMENT…"""
     program, _, *arguments = command
     # A child that hangs does not notice that its input has ended: the workspace's keeper ends the child then.
@@ -150,7 +150,6 @@ def run(command, cancelled, workspace=None, hears=lambda line: None):
                 return head["code"], "".join(printed)
             if head["type"] == "say":
                 printed.append(f"penumbra: {_LEVELS.get(head['level'], head['level'])}: {head['text']}\n")
-                hears(printed[-1])
             if cancelled():
                 forget(now=True)
                 return None, ""

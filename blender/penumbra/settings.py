@@ -37,8 +37,8 @@ class PenumbraSettings(bpy.types.PropertyGroup):
                                   "their normals, as in Cycles; shadows are always those of the triangles")
     world: EnumProperty(name="World", default=sky.SAMPLED, items=[
         (sky.SAMPLED, "Light samples", "The world lights the scene, from so many directions: quick"),
-        (sky.EXACT, "Exact", "The exact share of a world of one colour that is seen; slow where there are many triangles. "
-         "A picture is counted in light samples"),
+        (sky.EXACT, "Exact", "The exact share of the world that is seen, of one colour or a picture, unless Shadows are light "
+         "samples; slow where there are many triangles, and every instance is copied"),
         (sky.SEEN, "Background only", "The world lights nothing")])
     lenient: BoolProperty(name="Lenient", description="Leave out what would change shadows and cannot be done, with a "
                           "warning, instead of refusing")

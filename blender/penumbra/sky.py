@@ -187,12 +187,10 @@ def _write(lights, seen, name, wanted, glb, folder, losses):
     if not lights.is_dark and wanted != SEEN:
         if lights.image is None:
             file, matrix = None, numpy.eye(4).tolist()
-            if wanted == SAMPLED:  # one texel: a dome with a picture is computed from light samples
-                file = _save(numpy.ones((1, 1, 3)), folder)
         else:
             matrix, mirrored = placed(looked_up(lights))
             file = _save(picture(lights, mirrored), folder)
-        glb.dome(name, matrix, lights.radiance, file, seen.image is not None)
+        glb.dome(name, matrix, lights.radiance, file, seen.image is not None, wanted == SAMPLED)
     return seen.radiance if seen.image is None else (0.0, 0.0, 0.0)
 
 

@@ -49,6 +49,7 @@ std::optional<scenes::AreaLight> dome_of(const tinygltf::Node& node, const Place
   dome.up = glm::normalize(axes[1]);
   dome.rotate = turn_of(dome.up, glm::normalize(axes[0] - glm::dot(axes[0], dome.up) * dome.up));
   dome.half = is_true(value, "half", place);
+  dome.sampled = is_true(value, "sampled", place);
   if (value.Has("image")) {
     if (!value.Get("image").IsString()) throw InputError("{}/image: expected the name of a file", place);
     dome.image = value.Get("image").Get<std::string>();

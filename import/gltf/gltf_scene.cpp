@@ -362,9 +362,7 @@ class GltfScene {
       return std::nullopt;
     }
     auto& emitter = std::get<Emitter>(recognised);
-    if (emitter.hides_itself)
-      losses_.mention("is an emitter with parts that stand in one another's light; a light's own mesh hides none of it",
-                      name);
+    if (emitter.hides_itself) losses_.refuse(kHidesItself, name);
     scene_.lights.push_back({.name = light_names_.take(flags_.light_name.empty() ? name : flags_.light_name),
                              .shape = std::move(emitter.shape),
                              .radiance = radiance,

@@ -57,6 +57,7 @@ struct Dome {
   double rotate = 0;  ///< degrees about `up`: direction of the picture's middle column, by default -z
   bool half = false;
   std::filesystem::path image = {};  ///< Radiance (.hdr), OpenEXR or PNG; empty: uniform radiance
+  bool sampled = false;              ///< counted in light samples by default, instead of exact areas: quicker
 };
 using LightShape = std::variant<Rectangle, Disk, Ellipse, Polygon, Sphere, Sun, Dome>;
 

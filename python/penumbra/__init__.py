@@ -39,7 +39,7 @@ _SHAPES = {
     "polygon": ("vertices",),
     "sphere": ("center", "radius"),
     "sun": ("direction", "angle"),
-    "dome": ("up", "rotate", "half", "image"),
+    "dome": ("up", "rotate", "half", "image", "sampled"),
 }
 _SPELLINGS = {"halfU": "half_u", "halfV": "half_v", "twoSided": "two_sided"}  # of scene files
 
@@ -145,7 +145,8 @@ class Scene:
 
     def add_light(self, name, kind, *, radiance=(10, 10, 10), two_sided=False, **shape):
         """Adds a light of a kind: rectangle(center, half_u, half_v), disk(center, normal, radius), ellipse(center, half_u,
-        half_v), polygon(vertices), sphere(center, radius), sun(direction, angle) or dome(up, rotate, half, image), whose parts all have defaults."""
+        half_v), polygon(vertices), sphere(center, radius), sun(direction, angle) or dome(up, rotate, half, image, sampled), whose
+        parts all have defaults."""
         self._core.add_light(name, kind, _shape(kind, shape), tuple(radiance), two_sided)
 
     def set_light(self, name, **changes):

@@ -44,6 +44,18 @@ Scene read_mesh_file(const std::filesystem::path& file, const ReadOptions& optio
   return scene;
 }
 
+/// Makes added domes count light samples where exact areas would need copies of many triangles (docs/instances.md),
+/// with a warning.
+void sample_added_domes(Scene& scene, const Instances& instances, StudioWish& studio) {
+  const std::uint64_t triangles = triangle_count(scene, instances);
+  if (instances.empty() || triangles <= kFewCopies || std::ranges::all_of(studio.lights, has_place)) return;
+  studio.sampled_domes = true;
+  scene.warnings.push_back(
+      fmt::format("the added dome is counted in light samples: for exact areas every instance would be a copy, {} "
+                  "triangles in all (--method edge-scatter:rows=exact asks for them)",
+                  triangles));
+}
+
 }  // namespace
 
 Scene read_scene(const std::filesystem::path& file, const ReadOptions& options) {
@@ -70,9 +82,12 @@ Scene read_scene(const std::filesystem::path& file, const ReadOptions& options) 
   studio.never |= !options.needs_light;
   const bool wishes = studio.always || !studio.lights.empty() || studio.camera || !studio.fit_camera.empty();
   const bool lacks = !is_json && (scene.cameras.empty() || (scene.lights.empty() && !studio.never));
-  const bool is_around = lacks || studio.always || !studio.lights.empty() || !studio.fit_camera.empty();
+  const bool gets_floor = !studio.lights.empty() && scene.lights.empty() && !studio.never;
+  const bool is_around = lacks || studio.always || gets_floor || std::ranges::any_of(studio.lights, has_place) ||
+                         !studio.fit_camera.empty();
   if (is_around && options.instances != nullptr)  // a studio encloses all instances, to the last bit
     scene = copied(std::move(scene), std::exchange(*options.instances, {}));
+  if (options.instances != nullptr && !studio.lights.empty()) sample_added_domes(scene, *options.instances, studio);
   const bool has_triangles =
       !scene.soup.triangles.empty() || (options.instances != nullptr && !options.instances->empty());
   const bool has_room = std::ranges::all_of(scene.soup.positions, [](const glm::dvec3& p) {
@@ -80,9 +95,10 @@ Scene read_scene(const std::filesystem::path& file, const ReadOptions& options) 
   });
   if ((lacks || wishes) && has_room && has_triangles) {
     std::optional<Scene> rest;
-    if (options.rest == nullptr && options.time && scene.motion) {
+    if (is_around && options.rest == nullptr && options.time && scene.motion) {
       ReadOptions at_rest = options;
       at_rest.lightmap = nullptr;
+      at_rest.instances = nullptr;
       at_rest.time.reset();
       rest = read_gltf(file, at_rest);
     }

@@ -15,8 +15,6 @@ namespace penumbra::scenes {
 /// (.json, .glb). automatic: shared where reading the file back gives the same scene, in .glb always, else copies, but
 /// shared where copies would be many (kFewCopies).
 enum class WriteInstances : std::uint8_t { automatic, copies, shared };
-/// Number of triangles, in all, up to which copies are few.
-constexpr std::uint64_t kFewCopies = 500'000;
 
 struct WriteOptions {
   bool lenient = false;  ///< leaves out parts that the format cannot hold and that change shadows, with a warning

@@ -33,7 +33,7 @@ BIAS = 1e-3
 EDGE = 1e-2
 # Light that passes holes and panes is counted in light samples: as many as there may be.
 COUNTED = {"translucent", "cut_out", "world_color_counted", "world_and_lamp", "world_picture", "world_picture_turned",
-           "world_picture_texture_mapping", "world_picture_mirrored", "world_and_translucent"}
+           "world_picture_texture_mapping", "world_picture_mirrored", "world_and_translucent", "forest"}
 # Scenes with several view samples a pixel: means are compared at every pixel. Penumbra takes 64, evenly spread; 64 random
 # ones would have twice the noise of Cycles' 256.
 BLURRED = {"depth_of_field", "orthographic_depth_of_field"}

@@ -4,6 +4,7 @@
     run.sh engine.py ADDON.zip PENUMBRA WORK
 """
 
+import json
 import os
 import sys
 import unittest
@@ -42,6 +43,40 @@ class Engine(unittest.TestCase):
         finally:
             engine.PenumbraEngine._say = own
         return said
+
+    def stats(self, scene):
+        """Returns what the program's --stats says of a render."""
+        from penumbra import serving
+        own = serving.run
+        serving.run = lambda command, *rest: own([*command, "--stats", out("stats.json")], *rest)
+        try:
+            inside.channels(scene, out("counted.exr"))
+        finally:
+            serving.run = own
+        with open(out("stats.json")) as file:
+            return json.load(file)
+
+    def test_worlds_are_counted_by_default(self):
+        def build(add_world):
+            scenes.area_square()
+            add_world()
+        for add_world in (scenes.world, scenes.pictured_world):
+            scene = inside.fresh(lambda: build(add_world))
+            for wanted, quantity, samples in (("SAMPLED", "count", 256), ("EXACT", "area", 0)):
+                if wanted == "SAMPLED":
+                    self.assertEqual(scene.penumbra.world, wanted)
+                scene.penumbra.world = wanted
+                lights = {light["name"]: light for light in self.stats(scene)["lights"]}
+                self.assertEqual((lights["Sky"]["quantity"], lights["Sky"]["lightSamples"]), (quantity, samples))
+                self.assertEqual(lights["Key"]["quantity"], "area")
+        self.assertEqual(self.warnings(scene), [])
+
+    def test_a_forest_is_not_copied(self):
+        stats = self.stats(inside.fresh(scenes.forest))
+        self.assertGreater(stats["triangles"], 500_000)
+        self.assertEqual([light["quantity"] for light in sorted(stats["lights"], key=lambda light: light["name"])], ["count", "area"])
+        self.assertLess(stats["counters"]["trianglesOfLargestPart"], stats["triangles"] / 2)
+        self.assertEqual(stats["counters"]["meshTreesBuilt"], 2)  # bark and leaves
 
     def test_an_animation_is_its_frames(self):
         scene = inside.fresh(scenes.animated)

@@ -393,21 +393,30 @@ def particles():
     lamp("AREA", (1, -1, 4), (15, 15, 0), energy=300, shape="SQUARE", size=1.2)
 
 
+def scatter(thing, sower, turned=False):
+    """Geometry nodes that put an object on the corners of a mesh, each turned about Z by chance if wanted."""
+    nodes = bpy.data.node_groups.new("Scatter", "GeometryNodeTree")
+    nodes.inputs.new("NodeSocketGeometry", "Geometry"), nodes.outputs.new("NodeSocketGeometry", "Geometry")
+    begin, end = nodes.nodes.new("NodeGroupInput"), nodes.nodes.new("NodeGroupOutput")
+    what, put = nodes.nodes.new("GeometryNodeObjectInfo"), nodes.nodes.new("GeometryNodeInstanceOnPoints")
+    what.inputs["Object"].default_value, what.inputs["As Instance"].default_value = thing, True
+    nodes.links.new(begin.outputs[0], put.inputs["Points"])
+    nodes.links.new(what.outputs["Geometry"], put.inputs["Instance"])
+    nodes.links.new(put.outputs["Instances"], end.inputs[0])
+    if turned:
+        chance = nodes.nodes.new("FunctionNodeRandomValue")
+        chance.data_type = "FLOAT_VECTOR"
+        chance.inputs["Min"].default_value, chance.inputs["Max"].default_value = (0, 0, 0), (0, 0, 2 * pi)
+        nodes.links.new(chance.outputs["Value"], put.inputs["Rotation"])
+    sower.modifiers.new("Scatter", "NODES").node_group = nodes
+
+
 def scattered():
     """Objects that geometry nodes put on the corners of a mesh; Blender's own glTF exporter leaves them out."""
     add("Floor", quad("Floor", half=4))
     camera()
     crumb = add("Crumb", cube("Crumb", half=0.2), (0, 0, -5))
-    sower = add("Sower", quad("Sower", half=1.2), (0, 0, 0.5))
-    nodes = bpy.data.node_groups.new("Scatter", "GeometryNodeTree")
-    nodes.inputs.new("NodeSocketGeometry", "Geometry"), nodes.outputs.new("NodeSocketGeometry", "Geometry")
-    begin, end = nodes.nodes.new("NodeGroupInput"), nodes.nodes.new("NodeGroupOutput")
-    what, put = nodes.nodes.new("GeometryNodeObjectInfo"), nodes.nodes.new("GeometryNodeInstanceOnPoints")
-    what.inputs["Object"].default_value, what.inputs["As Instance"].default_value = crumb, True
-    nodes.links.new(begin.outputs[0], put.inputs["Points"])
-    nodes.links.new(what.outputs["Geometry"], put.inputs["Instance"])
-    nodes.links.new(put.outputs["Instances"], end.inputs[0])
-    sower.modifiers.new("Scatter", "NODES").node_group = nodes
+    scatter(crumb, add("Sower", quad("Sower", half=1.2), (0, 0, 0.5)))
     lamp("AREA", (1, -1, 4), (15, 15, 0), energy=300, shape="SQUARE", size=1.2)
 
 
@@ -511,3 +520,40 @@ def world_and_translucent():
     """A pane before the sky and the floor."""
     translucent()
     world((0.3, 0.5, 0.9), 1.5)
+
+
+def tree(leaves=750):
+    """A trunk of six sides, and a crown of square leaves, two triangles each."""
+    random = numpy.random.default_rng(11)
+    ring = [(numpy.cos(turn), numpy.sin(turn)) for turn in numpy.arange(6) * pi / 3]
+    corners = [(0.06 * x, 0.06 * y, 0) for x, y in ring] + [(0.02 * x, 0.02 * y, 1.4) for x, y in ring]
+    faces = [(i, (i + 1) % 6, 6 + (i + 1) % 6, 6 + i) for i in range(6)]
+    for _ in range(leaves):
+        place = random.normal(size=3)
+        place *= random.uniform(0.4, 1) / numpy.linalg.norm(place)
+        across, along = random.normal(size=(2, 3))
+        across /= numpy.linalg.norm(across)
+        along = numpy.cross(across, along)
+        along /= numpy.linalg.norm(along)
+        middle = numpy.array((0, 0, 1.2)) + place * (0.45, 0.45, 0.8)
+        faces.append(tuple(range(len(corners), len(corners) + 4)))
+        corners += [tuple(middle + 0.06 * (s * across + t * along)) for s, t in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
+    data = mesh("Tree", corners, faces, diffuse((0.3, 0.2, 0.1), "Bark"))
+    data.materials.append(diffuse((0.25, 0.5, 0.15), "Leaf"))
+    data.polygons.foreach_set("material_index", [0] * 6 + [1] * leaves)
+    return data
+
+
+@scene
+def forest():
+    """A glade, and around it some 450 trees of 1512 triangles, more than are copied without need, under a sun and the sky."""
+    add("Floor", quad("Floor", diffuse((0.5, 0.5, 0.45)), half=24))
+    camera((2, -17, 9), (0, -7, 0))
+    random = numpy.random.default_rng(5)
+    places = [(1.4 * (i % 22 - 10.5) + x, 1.4 * (i // 22 - 10.5) + y, 0) for i, (x, y) in enumerate(random.uniform(-0.6, 0.6, (484, 2)))]
+    places = [place for place in places if place[0] ** 2 + (place[1] + 8) ** 2 > 4.5 ** 2]
+    ground = bpy.data.meshes.new("Places")
+    ground.from_pydata(places, [], [])
+    scatter(add("Tree", tree(), (0, 0, -5)), add("Places", ground), turned=True)
+    lamp("SUN", (0, 0, 9), (-35, 30, 0), name="Sun", energy=2, angle=radians(2))
+    world((0.4, 0.6, 1), 0.4)

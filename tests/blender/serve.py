@@ -6,6 +6,7 @@ the whole scene, byte for byte; what is refused; how it ends.
     serve.py ADDON.zip PENUMBRA
 """
 
+import json
 import os
 import signal
 import struct
@@ -314,21 +315,46 @@ class Serve(unittest.TestCase):
         self.assertLess(time.monotonic(), end, "the child lives on")
         self.assertEqual([name for name in os.listdir(self.folder.name) if "exr" in name], [])
 
+    def test_a_forest_is_not_copied(self):
+        """As by render, and between pictures of scenes without instances."""
+        places = [{"translate": [0.5 * (i % 20) - 5, 0.3, 0.5 * (i // 20) - 8]} for i in range(600)]
+        tree = {"name": "tree", "shape": {"type": "sphere", "radius": 0.4, "segments": 32}}
+        scene = {"format": "penumbra-scene/1", "size": [24, 16], "camera": {"eye": [0, 3, 6], "target": [0, 0, 0]},
+                 "meshes": [{"name": "floor", "quad": {"center": [0, 0, 0], "halfU": [9, 0, 0], "halfV": [0, 0, -9]}}],
+                 "lights": [{"name": "day", "sun": {"direction": [0.4, -1, 0.3], "angle": 2}}, {"name": "sky", "dome": {"sampled": True}}]}
+        try:
+            for name, meshes in (("small", [tree]), ("forest", [{**tree, "instances": places}]), ("again", [tree])):
+                with open(self.path("scene.json"), "w") as file:
+                    json.dump({**scene, "meshes": scene["meshes"] + meshes}, file)
+                command = [PENUMBRA, "render", self.path("scene.json"), "-o", self.path("kept.exr"), "--stats", self.path("stats.json")]
+                code, printed = serving.run(command, lambda: False)
+                self.assertEqual(code, 0, printed)
+                with open(self.path("stats.json")) as file:
+                    stats = json.load(file)
+                self.assertEqual([light["quantity"] for light in stats["lights"]], ["area", "count"])
+                self.assertEqual("trianglesOfLargestPart" in stats["counters"], name == "forest")
+                subprocess.run([*command[:3], "-q", "-o", self.path("alone.exr")], check=True)
+                with open(self.path("kept.exr"), "rb") as kept, open(self.path("alone.exr"), "rb") as alone:
+                    self.assertEqual(kept.read(), alone.read(), name)
+            self.assertEqual(len(serving._kept), 1)
+        finally:
+            serving.forget(now=True)
+
     def test_pictures_of_a_sequence_are_those_of_render(self):
-        viewpoint, heard = seen_from(0.1), []
+        viewpoint = seen_from(0.1)
         try:
             for frame in range(3):
                 self.scene.things["Block"] = self.scene.block(at(0.2 * frame, 0, 1, 1, 0.3 * frame))
                 self.scene.write(self.path("frame.glb"), viewpoint)
                 command = [PENUMBRA, "render", self.path("frame.glb"), "-o", self.path("kept.exr"), "--no-studio", "--size", "48x32"]
-                code, printed = serving.run(command, lambda: False, hears=heard.append)
+                code, printed = serving.run(command, lambda: False)
                 self.assertEqual(code, 0, printed)
+                self.assertIn("48x32", printed)
                 subprocess.run([*command[:3], "-q", "-o", self.path("alone.exr"), *command[5:]], check=True)
                 with open(self.path("kept.exr"), "rb") as kept, open(self.path("alone.exr"), "rb") as alone:
                     self.assertEqual(kept.read(), alone.read())
                 numbers = {child.process.pid for child in serving._kept.values()}
                 self.assertEqual(len(numbers), 1)
-            self.assertIn("48x32", "".join(heard))
             code, printed = serving.run([PENUMBRA, "render", self.path("none.glb"), "-o", self.path("none.exr")], lambda: False)
             self.assertEqual(code, 3)
             self.assertIn("penumbra: error: ", printed)

@@ -14,6 +14,7 @@
 #include <cstring>
 #include <numbers>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace penumbra::tests {
@@ -131,6 +132,95 @@ TEST_F(Bake, TexelsHaveTheVOfPixelsThatSeeTheSamePoints) {
     }
     EXPECT_GT(shadowed, 20u);
     EXPECT_EQ(differing, 0u);
+  }
+}
+
+/// Returns the form factor of a rectangle that stands on the plane of a differential area, from over the area's foot on
+/// it along z to `width`, at `distance`; odd in `width`.
+double standing_form_factor(double distance, double width, double height) {
+  const double slant = std::hypot(distance, height);
+  return (std::atan(width / distance) - distance / slant * std::atan(width / slant)) / (2 * std::numbers::pi);
+}
+
+/// A wall stands on the floor, from z = -2 to 2.5 and 3 high, under half a dome: closed form where areas are exact,
+/// and pixels that see the same points where directions are counted.
+TEST_F(Bake, UnderADomeAWallHidesItsFormFactor) {
+  json scene = baked_floor(false);
+  scene["meshes"].push_back(json::parse(
+      R"({"name": "wall", "quad": {"center": [3, 1.5, 0.25], "halfU": [0, 0, 2.25], "halfV": [0, 1.5, 0]}})"));
+  for (const bool sampled : {false, true}) {
+    scene["lights"] = {{{"name", "sky"}, {"dome", {{"half", true}, {"sampled", sampled}}}, {"radiance", {2, 2, 2}}}};
+    write("scene.json", scene.dump());
+    const ExrFile map = bake({});
+    ASSERT_EQ(run({"render", path("scene.json"), "-o", path("seen.exr"), "--quiet"}).code, 0);
+    const ExrFile seen = read_exr(path("seen.exr"));
+    double farthest = 0;
+    for (std::size_t i = 0; i < 256; ++i) {
+      const double x = -4 + 8 * (static_cast<double>(i % 16) + 0.5) / 16,
+                   z = -4 + 8 * (static_cast<double>(i / 16) + 0.5) / 16, distance = std::abs(x - 3);
+      EXPECT_EQ(map.floats.at("V")[i], seen.floats.at("V")[i]) << i;
+      const double hidden = standing_form_factor(distance, 2.5 - z, 3) - standing_form_factor(distance, -2 - z, 3);
+      const double off = std::abs(double{map.floats.at("V")[i]} - (1 - hidden));
+      farthest = std::max(farthest, off);
+      if (sampled) continue;
+      EXPECT_LT(off, 1e-5) << x << ' ' << z;
+      EXPECT_NEAR(map.floats.at("G")[i], 2 * std::numbers::pi * (1 - hidden), 1e-5 * 2 * std::numbers::pi);
+    }
+    EXPECT_EQ(farthest > 1e-4, sampled) << "256 directions are no closed form";
+  }
+}
+
+/// A mesh that is there several times is baked where it stands, and shades as copies do.
+TEST_F(Bake, AnInstancedMeshIsBakedWhereItStands) {
+  json scene = baked_floor(true);
+  json card = scene["meshes"][1];
+  scene["meshes"][1]["instances"] =
+      json::parse(R"([{"translate": [-2, 0, 0]}, {"translate": [1, -0.5, 1], "rotate": [0, 40, 0]}])");
+  write("scene.json", scene.dump());
+  const ExrFile shared = bake({});
+  json copies = baked_floor(false);
+  for (const json& place : scene["meshes"][1]["instances"]) {
+    copies["meshes"].push_back(card);
+    copies["meshes"].back()["transform"] = place;
+  }
+  write("scene.json", copies.dump());
+  EXPECT_EQ(bake({}).floats, shared.floats);
+  EXPECT_GT(std::ranges::count_if(shared.floats.at("V"), [](float v) { return v > 0 && v < 1; }), 40);
+
+  // Several floors have one map: the first one's, and a warning counts the others.
+  scene["meshes"][0]["instances"] = json::parse(R"([{}, {"translate": [0, -3, 0]}])");
+  write("scene.json", scene.dump());
+  const ExrFile first = bake({});
+  for (const char* channel : {"V", "R", "P.Y"}) {  // the scene's centre moves: other floats, rounded by 2⁻²⁴ of 8
+    for (std::size_t i = 0; i < 256; ++i)
+      EXPECT_NEAR(first.floats.at(channel)[i], shared.floats.at(channel)[i], 2e-5) << channel << ' ' << i;
+  }
+  EXPECT_THAT(run({"bake", path("scene.json"), "--mesh", "floor", "--size", "16", "-o", path("map.exr")}).err,
+              HasSubstr("another triangle"));
+
+  // Nodes of glTF that share a mesh have names of their own.
+  test::Gltf gltf;
+  gltf.at("/meshes").push_back(json::parse(R"({"primitives": [{"attributes": {}, "material": 0}]})"));
+  auto& attributes = gltf.at("/meshes/2/primitives/0/attributes");
+  attributes["POSITION"] = gltf.add_floats("VEC3", {-1, 0, 1, 1, 0, 1, 1, 0, -1});
+  attributes["TEXCOORD_0"] = gltf.add_floats("VEC2", {0, 1, 1, 1, 1, 0});
+  for (const auto& [name, x] : {std::pair("One", -3.0), {"Other", 2.5}}) {
+    gltf.at("/nodes").push_back({{"name", name}, {"mesh", 2}, {"translation", {x, 0.5, 0}}});
+    gltf.at("/scenes/0/nodes").push_back(gltf.at("/nodes").size() - 1);
+  }
+  write("scene.glb", gltf.glb());
+  for (const auto& [name, x] : {std::pair("One", -3.0), {"Other", 2.5}}) {
+    ASSERT_EQ(run({"bake", path("scene.glb"), "--mesh", name, "--size", "8", "--margin", "0", "-o", path("map.exr"),
+                   "--quiet"})
+                  .code,
+              0);
+    const ExrFile map = read_exr(path("map.exr"));
+    for (std::size_t i = 0; i < 64; ++i) {
+      EXPECT_EQ(map.floats.at("A")[i], i % 8 + i / 8 >= 7 ? 1 : 0) << name;
+      if (map.floats.at("A")[i] == 1) {
+        EXPECT_NEAR(map.floats.at("P.X")[i], x - 1 + 2 * (static_cast<double>(i % 8) + 0.5) / 8, 1e-6) << name;
+      }
+    }
   }
 }
 

@@ -169,6 +169,43 @@ TEST_F(DomeCommands, APictureLooksWhereItIsTurned) {
   }
 }
 
+/// A dome may ask for its light samples; beside it other lights keep their exact areas. A named method has its say.
+TEST_F(DomeCommands, SampledOnesAreCountedByDefault) {
+  sky(6, 1);
+  for (const char* parts : {R"("half": true)", R"("image": "sky.hdr")"}) {
+    const auto with = [&](const char* more) {
+      scene(fmt::format(R"({{"name": "sky", "dome": {{{}{}}}}},
+        {{"name": "day", "sun": {{"direction": [0.4, -1, 0.3], "angle": 5}}}})",
+                        parts, more));
+    };
+    with(R"(, "sampled": true)");
+    const Outcome outcome = render({});
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_EQ(outcome.err.find("gives its exact area"), std::string::npos) << "nobody must be told what the scene says";
+    const json lights = stats().at("lights");
+    EXPECT_EQ(lights.at(0).at("quantity"), "count");
+    EXPECT_EQ(lights.at(0).at("lightSamples"), 256);
+    EXPECT_EQ(lights.at(1).at("quantity"), "area");
+    const std::vector<float> counted = image().floats.at("sky.V");
+    for (const char* method : {"exact", "edge-scatter:rows=exact"}) {
+      ASSERT_EQ(render({"--method", method}).code, 0);
+      EXPECT_EQ(stats().at("lights").at(0).at("quantity"), "area") << method;
+    }
+    EXPECT_NE(image().floats.at("sky.V"), counted);
+    ASSERT_EQ(render({"--method", "edge-scatter"}).code, 0);
+    EXPECT_EQ(stats().at("lights").at(0).at("quantity"), "count");
+    ASSERT_EQ(run({"convert", path("scene.json"), "-o", path("again.json")}).code, 0);
+    EXPECT_EQ(json::parse(read("again.json")).at("lights").at(0).at("dome").at("sampled"), true);
+    with("");
+    ASSERT_EQ(render({}).code, 0);
+    EXPECT_EQ(stats().at("lights").at(0).at("quantity"), "area");
+    ASSERT_EQ(render({"--light-samples", "256"}).code, 0);
+    EXPECT_EQ(image().floats.at("sky.V"), counted);
+    ASSERT_EQ(run({"convert", path("scene.json"), "-o", path("again.json")}).code, 0);
+    EXPECT_FALSE(json::parse(read("again.json")).at("lights").at(0).at("dome").contains("sampled"));
+  }
+}
+
 TEST_F(DomeCommands, AVisibleOneIsTheBackground) {
   scene(R"({"name": "sky", "dome": {}, "radiance": [3, 2, 1], "visible": true})");
   ASSERT_EQ(run({"render", path("scene.json"), "-o", path("out.exr"), "--camera", "0,6,0.01:0,0,0:100"}).code, 0);

@@ -14,6 +14,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace penumbra::tests {
@@ -163,6 +164,63 @@ TEST_F(Instances, GiveTheSamePictureUnderADome) {
   expect_same_picture({"--light-samples", "16", "--pixel-samples", "4"});
   expect_same_picture({"--light", "sky", "--size", "12x9"});
   EXPECT_EQ(triangles_of_part(), triangles());
+}
+
+/// A dome that is `sampled` needs no option for that, and the sun beside it keeps its exact area.
+TEST_F(Instances, GiveTheSamePictureUnderASampledDome) {
+  write_grove(R"([
+    {"name": "sky", "dome": {"half": true, "sampled": true}, "radiance": [0.5, 0.7, 1]},
+    {"name": "day", "sun": {"direction": [0.4, -1, 0.3], "angle": 5}}])");
+  expect_same_picture({});
+  EXPECT_LT(triangles_of_part(), triangles());
+  expect_same_picture({"--method", "view-sample"});
+  EXPECT_LT(triangles_of_part(), triangles());
+  expect_same_picture({"--method", "edge-scatter:rows=exact", "--size", "12x9"}, false);
+  EXPECT_EQ(triangles_of_part(), triangles());
+  write_grove(R"([{"name": "sky", "dome": {"half": true, "sampled": true}}, {"name": "other", "dome": {}}])");
+  expect_same_picture({"--size", "12x9"});
+  EXPECT_EQ(triangles_of_part(), triangles()) << "the other dome's areas are exact";
+}
+
+/// More triangles than are copied without need: a sampled dome needs none, and one that is added is sampled, which is
+/// said in one line.
+TEST_F(Instances, OfAForestStayUnderASampledDome) {
+  json trees = tree();
+  trees["shape"]["segments"] = 32;
+  for (int i = 0; i < 600; ++i)
+    trees["instances"].push_back(
+        {{"translate", {0.5 * (i % 20) - 5, 0.3, 0.5 * (i / 20) - 8}}});  // NOLINT(bugprone-integer-division)
+  json forest = scene({trees});
+  const json suns = json::parse(R"([{"name": "day", "sun": {"direction": [0.4, -1, 0.3], "angle": 2}}])");
+  const auto render = [&](const json& lights, std::vector<std::string> more) {
+    forest["lights"] = lights;
+    write("scene.json", forest.dump());
+    more.insert(more.begin(), {"render", path("scene.json"), "-o", path("out.exr"), "--stats", path("stats.json")});
+    const Outcome outcome = run(more);
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    return std::pair(json::parse(read("stats.json")), outcome.err);
+  };
+  const auto expect_counted_without_copies = [](const json& stats, std::size_t dome) {
+    EXPECT_GT(stats.at("triangles"), 500'000);
+    EXPECT_EQ(stats.at("lights").at(dome).at("quantity"), "count");
+    EXPECT_EQ(stats.at("lights").at(1 - dome).at("quantity"), "area");
+    ASSERT_TRUE(stats.at("counters").contains("trianglesOfLargestPart")) << "all became copies";
+    EXPECT_LT(stats.at("counters").at("trianglesOfLargestPart"), stats.at("triangles").get<double>() / 2);
+  };
+  json lights = suns;
+  lights.push_back(json::parse(R"({"name": "sky", "dome": {"sampled": true}})"));
+  const auto [counted, quiet] = render(lights, {});
+  expect_counted_without_copies(counted, 1);
+  EXPECT_THAT(quiet, testing::Not(HasSubstr("counted in light samples")));
+  const auto [added, said] = render(suns, {"--add-light", "dome"});
+  expect_counted_without_copies(added, 1);
+  EXPECT_THAT(said,
+              HasSubstr("the added dome is counted in light samples: for exact areas every instance would be a copy"));
+  trees["instances"].erase(trees["instances"].begin() + 2, trees["instances"].end());
+  forest = scene({trees});
+  const auto [few, nothing] = render(suns, {"--add-light", "dome"});
+  EXPECT_EQ(few.at("lights").at(1).at("quantity"), "area");
+  EXPECT_THAT(nothing, testing::Not(HasSubstr("counted in light samples")));
 }
 
 /// Maps from the light's centre get all triangles, one instance after another: their windows, depths and pictures are
@@ -354,6 +412,25 @@ TEST_F(Instances, StandOnAFit) {
   EXPECT_EQ(report.at("bounds").at(1).at(1), 2);
   EXPECT_NEAR(report.at("bounds").at(1).at(0).get<double>(), -report.at("bounds").at(0).at(0).get<double>(), 1e-12);
   EXPECT_EQ(report.at("components"), 2);
+}
+
+/// A studio stands around the scene at rest, whose instances are not there beside those of the frame.
+TEST_F(Instances, OfAnAnimationInAStudioAreThereOnce) {
+  test::Gltf gltf;
+  gltf.at("/nodes").push_back({{"name", "Other"}, {"mesh", 0}, {"translation", {2, 0, 0}}});
+  gltf.at("/scenes/0/nodes") = {0, 2, 3};
+  const std::size_t times = gltf.add_floats("SCALAR", {0, 1}), places = gltf.add_floats("VEC3", {0, 0, 0, 0, 1, 0});
+  json move =
+      json::parse(R"({"channels": [{"sampler": 0, "target": {"node": 0, "path": "translation"}}], "samplers": [{}]})");
+  move["samplers"][0] = {{"input", times}, {"output", places}};
+  gltf.document["animations"] = json::array({move});
+  write("scene.glb", gltf.glb());
+  for (const char* use : {"copies", "shared"}) {
+    const Outcome outcome = run({"render", path("scene.glb"), "-o", path("out.exr"), "--frame", "12", "--size", "24x16",
+                                 "--stats", path("stats.json"), "--instances", use});
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_EQ(json::parse(read("stats.json")).at("triangles"), 2 + 2) << "two bodies and a floor";
+  }
 }
 
 TEST_F(Instances, WhatCannotBeMeantIsRefused) {

@@ -4,6 +4,7 @@
 #include "base/memory.hpp"
 #include "tests/faults/child.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 namespace penumbra::tests {
@@ -71,6 +72,24 @@ TEST_F(MemoryFaults, WhatDoesNotFitIsRefusedWithFigures) {
                                   .limits = {{RLIMIT_AS, kGibi}}});
   EXPECT_EQ(image.code, 4);
   EXPECT_THAT(image.err, AllOf(HasSubstr("16000x8000 pixels"), HasSubstr("GiB"), HasSubstr("--size")));
+}
+
+/// Exact areas of a dome need a copy of each instance: with what the method takes of it, before any is made.
+TEST_F(MemoryFaults, CopiesThatDoNotFitAreRefusedBeforeTheyAreMade) {
+  if (kSanitized) GTEST_SKIP() << "a sanitizer takes terabytes of addresses when it starts";
+  std::string places;
+  for (int i = 0; i < 4000; ++i)
+    places += fmt::format(R"({}{{"translate": [{}, 0, {}]}})", i == 0 ? "" : ", ", i % 80, i / 80);
+  const std::string scene = write("forest.json", R"({"format": "penumbra-scene/1", "size": [24, 16],
+    "camera": {"eye": [-3, 3, -3], "target": [9, 0, 9]}, "lights": [{"dome": {}}], "meshes": [
+    {"shape": {"type": "sphere", "radius": 0.4, "segments": 32}, "instances": [)" +
+                                                     places + "]}]}");
+  const Ending ending =
+      run_under({.arguments = {"render", scene, "-o", path("out.exr")}, .limits = {{RLIMIT_AS, rlim_t{1} << 30}}});
+  EXPECT_EQ(ending.code, 4) << ending.err;
+  EXPECT_THAT(ending.err, AllOf(HasSubstr("4000 instances of meshes among them, each as a copy"), HasSubstr("GiB"),
+                                HasSubstr("--light-samples"), HasSubstr("\"sampled\"")));
+  EXPECT_LT(ending.peak_bytes, 200u << 20) << "3.8 million triangles would take 120 MB alone";
 }
 
 TEST_F(MemoryFaults, ControlGroupsCount) {

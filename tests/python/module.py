@@ -254,6 +254,12 @@ class Module(unittest.TestCase):
         with self.assertRaisesRegex(penumbra.InputError, "none.hdr"):
             renderer.set_light("sky", image="none.hdr")
         self.assertEqual(renderer.scene.light("sky")["image"], "")
+        self.assertEqual(renderer.scene.light("sky")["sampled"], False)
+        renderer.set_light("sky", sampled=True)
+        self.assertEqual(renderer.scene.light("sky")["sampled"], True)
+        counted = renderer.render(size=(24, 16), light="sky").V
+        np.testing.assert_array_equal(counted, renderer.render(size=(24, 16), light="sky", light_samples=256).V)
+        self.assertTrue((counted != v).any())
 
     def test_arrays_are_placed_as_the_file_places_them(self):
         turn = {"translate": [0.1, 0.2, 0.3], "rotate": [10, 20, 37], "scale": [0.7, 0.3, 1.1]}

@@ -22,6 +22,11 @@ struct Emitter {
   bool hides_itself = false;
 };
 
+/// What a reader says of an emitter that hides itself.
+inline constexpr const char* kHidesItself =
+    "is an emitter with parts that stand in one another's light, which its own mesh would not hide: it would be too "
+    "bright (make its parts objects of their own)";
+
 /// Meshes with more pieces are refused: each piece costs as much as a light.
 inline constexpr std::size_t kMostPieces = 1024;
 

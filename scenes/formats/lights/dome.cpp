@@ -18,19 +18,21 @@ LightShape read_dome(const nlohmann::json& value) {
   if (value.contains("up")) dome.up = unit_direction(read_vector(value["up"]));
   dome.rotate = value.value("rotate", 0.0);
   dome.half = value.value("half", false);
+  dome.sampled = value.value("sampled", false);
   dome.image = value.value("image", std::string());
   return dome;
 }
 
 void write_dome(const LightShape& shape, TextStream& text) {
-  const auto& [up, rotate, half, image] = std::get<Dome>(shape);
+  const auto& [up, rotate, half, sampled, image] = std::get<Dome>(shape);
   text.print("{{");
   if (!image.empty())
     text.print(R"("image": {}, )",
                nlohmann::json(image).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
   text.print(R"("rotate": )").number(rotate);
   text.print(R"(, "up": )").array(up);
-  text.print(R"(, "half": {}}})", half);
+  text.print(R"(, "half": {})", half);
+  text.print("{}}}", sampled ? R"(, "sampled": true)" : "");
 }
 
 void check_dome(const LightShape& shape, const std::string& where) {

@@ -105,6 +105,17 @@ TEST_F(ForeignScenes, EmissiveMeshesAreLights) {
   EXPECT_NEAR(glm::distance(scene.lights[0].radiance, glm::dvec3(4, 2, 1)), 0, 1e-6);
   EXPECT_TRUE(std::holds_alternative<Rectangle>(scene.lights[0].shape));
   EXPECT_EQ(scene.objects.at(0).emits, 0u);
+
+  std::string bent = collada("<emission><color>4 2 1 1</color></emission>", "", "");
+  bent.replace(bent.find("1 1 0 0 1 0"), 5, "1 1 1");  // into two triangles, of which each shines at the other's back
+  const auto file = write("bent.dae", bent);
+  EXPECT_THAT(test::input_error([&] { read_scene(file); }),
+              HasSubstr("'Card' is an emitter with parts that stand in one another's light"));
+  ReadOptions lenient;
+  lenient.lenient = true;
+  const Scene bright = read_scene(file, lenient);
+  EXPECT_EQ(std::get<Pieces>(bright.lights.at(0).shape).pieces.size(), 2u);
+  EXPECT_THAT(bright.warnings, Contains(HasSubstr("'Card' is an emitter with parts")));
 }
 
 TEST_F(ForeignScenes, WhatCannotBeDoneIsRefusedByName) {

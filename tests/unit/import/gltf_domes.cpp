@@ -35,7 +35,7 @@ const Dome& dome_of(const Scene& scene) {
 }
 
 TEST_F(GltfReader, DomesOfExtras) {
-  Gltf gltf = with_dome({{"radiance", {1, 2, 3}}, {"half", true}, {"visible", true}});
+  Gltf gltf = with_dome({{"radiance", {1, 2, 3}}, {"half", true}, {"visible", true}, {"sampled", true}});
   const Scene scene = read(gltf);
   ASSERT_EQ(scene.lights.size(), 1u);
   EXPECT_EQ(scene.lights[0].name, "Body");
@@ -43,10 +43,12 @@ TEST_F(GltfReader, DomesOfExtras) {
   EXPECT_TRUE(scene.lights[0].visible);
   EXPECT_FALSE(scene.lights[0].texture);
   EXPECT_TRUE(dome_of(scene).half);
+  EXPECT_TRUE(dome_of(scene).sampled);
   EXPECT_EQ(dome_of(scene).up, glm::dvec3(0, 1, 0));
   EXPECT_EQ(dome_of(scene).rotate, 0);
   Gltf plain = with_dome({{"radiance", {1, 1, 1}}});
   EXPECT_FALSE(dome_of(read(plain)).half);
+  EXPECT_FALSE(dome_of(read(plain)).sampled);
   EXPECT_FALSE(read(plain).lights[0].visible);
 }
 

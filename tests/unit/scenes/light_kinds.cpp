@@ -27,7 +27,7 @@ constexpr std::array kValues{
     R"([[0, 5, 0], [1, 5, 0], [1.25, 5, 1], [0, 5, 1]])",
     R"({"center": [0, 4, -2], "radius": 0.1, "cone": {"direction": [0, -1, 0], "inner": 10, "outer": 25}})",
     R"({"direction": [0, -0.6, -0.8], "angle": 0.53})",
-    R"({"rotate": 30, "up": [0.6, 0.8, 0], "half": true})",
+    R"({"rotate": 30, "up": [0.6, 0.8, 0], "half": true, "sampled": true})",
 };
 static_assert(kValues.size() == scenes::kLightTraits.size(), "a value for each kind");
 

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/pictures/picture_scene.hpp"
+
+#include "app/process/stopwatch.hpp"
+#include "app/session.hpp"
+
+#include <utility>
+
+namespace penumbra::app {
+
+PictureScene read_picture_scene(const RunOptions& run, std::optional<double> time, const PictureRequest& request) {
+  const Stopwatch watch;
+  PictureScene read;
+  read.scene = read_session_scene(run, time, {.instances = &read.instances});
+  set_lens(read.scene, request, run.camera);
+  if (needs_copies(read.scene, read.instances, request.instances, request.wish, request.pixel_side))
+    read.scene = copied(std::move(read.scene), std::exchange(read.instances, {}), bytes_per_copy(request.wish));
+  read.seconds = watch.seconds();
+  return read;
+}
+
+scenes::Scene read_moment(const RunOptions& run, std::optional<double> time, const PictureRequest& request) {
+  scenes::Scene scene = read_session_scene(run, time);
+  set_lens(scene, request, run.camera);
+  return scene;
+}
+
+}  // namespace penumbra::app
