@@ -80,8 +80,13 @@ class LiveRenderer {
   [[nodiscard]] std::vector<std::filesystem::path> sources() const;
   [[nodiscard]] LiveScenery scenery() const;
   [[nodiscard]] nlohmann::ordered_json pixel(std::uint32_t x, std::uint32_t y) const;
-  /// Returns the changed scene, in the form of `convert`; lights that are off have no radiance.
+  /// Returns the name of the file that the changed scene is saved as.
+  [[nodiscard]] std::string saved_name() const;
+  /// Returns the changed scene, in the form of `convert`; lights that are off have no radiance. The text names each
+  /// light's picture as state() does under `saved`.
   [[nodiscard]] std::string scene_text() const;
+  /// Returns the picture of a light, as an EXR file. Throws UsageError if there is none.
+  [[nodiscard]] std::string light_picture(const std::string& light) const;
   /// Waits for this time. Throws the exception that ended the thread, if any.
   void watch(std::chrono::milliseconds time) const;
 

@@ -39,6 +39,10 @@ LiveView::LiveView(RunOptions options, scenes::Scene scene, network::ServerPlace
   constexpr const char* kNumbers = "application/octet-stream";
   serving.files = {
       {"/scene.json", "application/json", "scene.json", [this](std::string_view) { return renderer_->scene_text(); }},
+      {"/scene/picture", "image/x-exr", "picture.exr",
+       [this](std::string_view target) {
+         return renderer_->light_picture(network::parameter_of(target, "light").value_or(""));
+       }},
       {"/three.js", "text/javascript", "", [](std::string_view) { return std::string(kThreeScript); }},
       {"/space/meshes", kNumbers, "", [this](std::string_view) { return space_->meshes(); }},
       {"/space/defects", kNumbers, "", [this](std::string_view) { return space_->defects(); }},

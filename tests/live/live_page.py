@@ -270,6 +270,25 @@ def check_report(page):
     page.choose("light-samples", "0")
 
 
+def check_saving(browser, folder):
+    """The button saves the scene and the picture of its light, and `render` makes of them what the page shows."""
+    into = folder / "saved"
+    into.mkdir()
+    with Server(PROGRAM, SCENES / "textured-light.json", "--size", "64x64") as server:
+        page = Page(browser, server, width=1400, height=900)
+        browser.call("Browser.setDownloadBehavior", behavior="allow", downloadPath=str(into))
+        page.ask("document.getElementById('save').click()")
+        wanted = ["textured-light-view-light0.exr", "textured-light-view.json"]
+        end = time.monotonic() + 20
+        while sorted(file.name for file in into.iterdir()) != wanted and time.monotonic() < end:
+            time.sleep(0.1)
+        same(sorted(file.name for file in into.iterdir()), wanted, "the files that are saved")
+        stops = page.ask("document.getElementById('stops').dataset.stops")
+        subprocess.run([PROGRAM, "render", str(into / wanted[1]), "-o", str(into / "a.exr"), "--png", str(into / "a.png"), "-q", "--exposure", stops], check=True)
+        same(page.canvas(), png_pixels((into / "a.png").read_bytes()), "`render` of them is what the page shows")
+        browser.call("Page.navigate", url="about:blank")
+
+
 def check_reach(page):
     """Tab reaches every control, and each has a name."""
     page.ask("document.activeElement.blur()")
@@ -299,6 +318,7 @@ def main():
             check_reach(page)
             check_report(page)
             browser.call("Page.navigate", url="about:blank")  # a page whose server ends looks for it, and complains
+        check_saving(browser, folder)
         if PHOTOGRAPHS:
             with Server(PROGRAM, SCENES / "room.json") as server:
                 for name, window in (("wide", {"width": 1400, "height": 900}), ("dark", {"width": 1400, "height": 900, "dark": True}),

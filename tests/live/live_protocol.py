@@ -19,6 +19,7 @@ from exr import read_bits, read_exr  # noqa: E402
 from live_client import LIGHTS, Client, Closed, Server, png_pixels  # noqa: E402
 
 PROGRAM = sys.argv[1]
+SCENES = pathlib.Path(__file__).parents[2] / "scenes"
 SIZE = 64
 
 
@@ -133,6 +134,29 @@ def check_final_pictures(server, scene, folder):
     subprocess.run([PROGRAM, "convert", str(file), "-o", str(folder / "again.json"), "-q"], check=True)
     client.send(type="lights", off=[], solo="", stamp=5)
     client.final(5)
+
+
+def check_saved_pictures(folder):
+    """Lights with pictures are saved with them, of rectangles and of domes: `render` makes of that what is shown."""
+    for name, light in (("textured-light.json", "window"), ("skies/knot.json", "evening")):
+        into = folder / name.replace("/", "-").replace(".json", "")
+        into.mkdir()
+        with Server(PROGRAM, SCENES / name, "--size", f"{SIZE}x{SIZE}") as server:
+            client = Client(server).begin()
+            same(list(client.state["saved"]["pictures"]), [light], f"lights with pictures of {name}")
+            client.send(type="camera", camera={"eye": [3, 3, 4], "target": [0, 0.5, 0], "up": [0, 1, 0], "verticalFov": 40}, stamp=1)
+            words = next(one for one in client.state["lights"] if one["name"] == light)
+            words = {key: value for key, value in words.items() if key not in ("fixed", "textured")}
+            client.send(type="light", name=light, light={**words, "radiance": [9, 8, 7]})
+            client.send(type="lights", off=[], solo=light, stamp=2)
+            frame = client.final(2)
+            saved = client.save(server, into)
+            same([one["radiance"] for one in json.loads(saved.read_text())["lights"] if one["name"] == light], [[9, 8, 7]], "its radiance")
+            same(len(list(into.iterdir())), 2, "the scene and a picture beside it")
+            same(render(saved, into, "saved", "--exposure", frame["stops"])[1], png_pixels(frame["files"][0]),
+                 f"what is saved of {name} is what is shown")
+            same(server.get("/scene/picture", parameters={"light": "none"})[0], 400, "no such light")
+            same(server.get("/scene/picture", token="", parameters={"light": light})[0], 403, "a picture without the token")
 
 
 def check_comparing(server, scene, folder):
@@ -298,6 +322,7 @@ def main():
             server.process.send_signal(signal.SIGTERM)
             out, _ = server.process.communicate(timeout=10)
             same(out, "", "nothing but the address is on stdout")
+        check_saved_pictures(folder)
         check_host(scene)
         check_beginning(scene)
         check_ending(folder)

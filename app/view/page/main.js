@@ -44,6 +44,7 @@ on("state", (state) => {
     solo = state.solo;
     if (firstState) lightsBefore = snapshot();
   }
+  saved = state.saved;
   if (firstState) takeReport(state);
   firstState = false;
   byId("channel").value = state.display.channel;
