@@ -108,6 +108,12 @@ class LiveRenderer {
   void read_again();
   void make_picture(const Order& order);
   void make_masks(const Order& order);
+  /// Returns whether masks are requested that do not exist.
+  [[nodiscard]] bool needs_masks() const;
+  /// Returns whether pictures are to tell the number of the mesh's edges, which is unknown.
+  [[nodiscard]] bool needs_edges() const { return events_.frame && counted_ != whole_; }
+  /// Counts the edges of the displayed mesh, and shows the picture again with their number.
+  void count_edges(const std::shared_ptr<const scenes::Scene>& whole);
   /// Returns whether a change has made the current picture obsolete.
   [[nodiscard]] bool is_overtaken(std::uint64_t revision) const;
   LiveAnswer answer(const Order& order, const std::string& entry, scenes::Scene& scene);
@@ -133,7 +139,9 @@ class LiveRenderer {
   std::uint64_t meshes_ = 1;                           // of whole_; a different number: other meshes
   std::shared_ptr<const LivePicture> picture_;
   std::shared_ptr<const LiveMasks> masks_;
-  std::uint64_t failed_ = 0, masks_failed_ = 0;  // revision that could not be shown
+  std::shared_ptr<const scenes::Scene> counted_;  // scene whose edges were counted
+  std::optional<std::size_t> edges_;              // of counted_
+  std::uint64_t failed_ = 0, masks_failed_ = 0;   // revision that could not be shown
   std::exception_ptr thrown_;
 
   // Used only by the thread:

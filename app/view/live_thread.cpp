@@ -8,6 +8,7 @@
 #include "app/view/live_renderer.hpp"
 #include "app/view/live_steps.hpp"
 #include "app/whole_lights.hpp"
+#include "mesh/edge_graph.hpp"
 #include "render/device.hpp"
 #include "scenes/picture_size.hpp"
 
@@ -38,12 +39,15 @@ bool LiveRenderer::is_overtaken(std::uint64_t revision) const {
   return revision_ != revision || wants_reload_ || ending_;
 }
 
+bool LiveRenderer::needs_masks() const {
+  const bool has_masks = masks_ && masks_->revision == revision_ && masks_->light == state_.display.light;
+  return state_.masks && !has_masks && masks_failed_ != revision_;
+}
+
 bool LiveRenderer::has_work() const {
   if (ending_ || wants_reload_ || (wants_show_ && picture_)) return true;
   const bool is_done = failed_ == revision_ || (picture_ && picture_->revision == revision_ && picture_->is_final);
-  if (!is_done) return true;
-  const bool has_masks = masks_ && masks_->revision == revision_ && masks_->light == state_.display.light;
-  return state_.masks && !has_masks && masks_failed_ != revision_ && failed_ != revision_;
+  return !is_done || (failed_ != revision_ && (needs_masks() || needs_edges()));
 }
 
 void LiveRenderer::work() {
@@ -71,12 +75,14 @@ void LiveRenderer::work_on(std::unique_lock<std::mutex>& lock) {
   const bool has_any = picture_ && picture_->revision == revision_;
   Order order{state_, whole_, revision_, pace_.quality(), has_any || final_milliseconds_ < kPictureTime, stamps_};
   if (failed_ == revision_ || (has_any && picture_->is_final) || wants_show_) {
-    const bool shows = std::exchange(wants_show_, false);
+    const bool shows = std::exchange(wants_show_, false), masks = needs_masks();
     lock.unlock();
     if (shows)
       show();
-    else
+    else if (masks)
       make_masks(order);
+    else
+      count_edges(order.whole);
     lock.lock();
     return;
   }
@@ -277,6 +283,18 @@ void LiveRenderer::make_masks(const Order& order) {
   }
 }
 
+void LiveRenderer::count_edges(const std::shared_ptr<const scenes::Scene>& whole) {
+  std::optional<std::size_t> edges;
+  if (frames_ && frames_->has_meshes() && rendered_ == whole) {
+    const visibility::SceneFloats& floats = frames_->session().floats;
+    edges = mesh::build_edge_graph({mesh::widened(floats.positions), floats.triangles}).edges.size();
+  }
+  const std::lock_guard lock(mutex_);
+  counted_ = whole;
+  edges_ = edges;
+  wants_show_ = wants_show_ || edges.has_value();
+}
+
 void LiveRenderer::publish(std::shared_ptr<LivePicture> picture) {
   {
     const std::lock_guard lock(mutex_);
@@ -289,15 +307,16 @@ void LiveRenderer::publish(std::shared_ptr<LivePicture> picture) {
 void LiveRenderer::show() {
   std::shared_ptr<const LivePicture> picture;
   LiveDisplay display;
-  ordered_json stamps = ordered_json::object();
+  ordered_json stamps = ordered_json::object(), edges;
   {
     const std::lock_guard lock(mutex_);
     if (!picture_) return;
     picture = picture_;
     display = state_.display;
+    if (counted_ == whole_ && edges_) edges = *edges_;
     for (const auto& [client, stamp] : picture->stamps) stamps[fmt::format("{}", client)] = stamp;
   }
-  const ordered_json more = {{"frame", ++frame_}, {"stamps", std::move(stamps)}};
+  const ordered_json more = {{"frame", ++frame_}, {"stamps", std::move(stamps)}, {"edges", std::move(edges)}};
   if (events_.frame) events_.frame(std::make_shared<const std::string>(frame_message(*picture, display, more)));
   if (events_.picture) events_.picture(std::move(picture));
 }

@@ -233,6 +233,7 @@ def check_methods(page, folder):
 
 
 def check_pixel(page, folder):
+    page.browser.wait("document.getElementById('size-facts').textContent.includes(' edges, ')", 20)
     exr, _ = rendered(page, folder, "pixel")
     for x, y in ((20, 40), (40, 50)):
         page.browser.pointer("mouseMoved", *page.place((x + 0.5) / 64, (y + 0.5) / 64))

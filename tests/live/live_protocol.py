@@ -7,6 +7,7 @@ import math
 import pathlib
 import signal
 import socket
+import struct
 import subprocess
 import sys
 import tempfile
@@ -104,6 +105,14 @@ def check_refusals(server):
     client.pixel(1, 1)  # the others are still there
 
 
+def edges_of(scene):
+    """The number of edges in scene floats: float32 of positions relative to the middle of their box."""
+    triangles = [mesh["triangles"][i] for mesh in scene["meshes"] for i in range(len(mesh["triangles"]))]
+    middle = [(min(min(t[k::3]) for t in triangles) + max(max(t[k::3]) for t in triangles)) / 2 for k in range(3)]
+    corner = lambda t, i: struct.pack("3f", *(t[3 * i + k] - middle[k] + 0.0 for k in range(3)))  # noqa: E731
+    return len({frozenset((corner(t, i), corner(t, (i + 1) % 3))) for t in triangles for i in range(3)})
+
+
 def check_final_pictures(server, scene, folder):
     """The final picture is the one that `render` writes: of the scene as it is, and as it was changed by hand."""
     client = Client(server).begin()
@@ -111,6 +120,9 @@ def check_final_pictures(server, scene, folder):
     exr, png = render(scene, folder, "first", "--exposure", frame["stops"])
     same(frame["images"][0]["type"], "image/png", "the final picture is lossless")
     same(png_pixels(frame["files"][0]), png, "the picture of the scene")
+    if frame["edges"] is None:  # they are counted when the picture is there
+        frame = client.until(lambda message: message["type"] == "frame" and message["edges"] is not None)
+    same(frame["edges"], edges_of(json.loads(server.get("/scene.json")[2])), "the number of edges")
     for x, y in ((5, 60), (30, 40), (40, 20), (0, 0), (63, 63)):
         answer = client.pixel(x, y)["answers"][0]
         for light in ("key", "ball", "sun"):

@@ -130,7 +130,7 @@ on("frame", (header) => {
   showRows(byId("times").tHead, two ? [["", "A", "B"]] : [], "th");
   showRows(byId("times").tBodies[0], [...phases.map((phase) => [phase, ...header.answers.map((answer) => (1000 * (answer.seconds[phase] || 0)).toFixed(1))]),
     ["all", header.milliseconds.toFixed(1)].concat(two ? [""] : [])], "td");
-  say(byId("size-facts"), `${header.triangles.toLocaleString("en")} triangles, ${header.width}\u00d7${header.height} pixels`);
+  say(byId("size-facts"), `${header.triangles.toLocaleString("en")} triangles, ${header.edges === null ? "" : `${header.edges.toLocaleString("en")} edges, `}${header.width}\u00d7${header.height} pixels`);
   frameTimes.push({ at: performance.now(), ms: Number(document.documentElement.dataset.ms), final: header.final });
   if (frameTimes.length > 100) frameTimes.shift();
   drawPlot();
