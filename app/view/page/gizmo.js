@@ -92,6 +92,7 @@ function onBall({ start, direction }, middle, radius) {
 
 function drawLights() {
   const drawing = document.createDocumentFragment();
+  drawTypedPixel(drawing);
   if (!byId("frame").hidden && byId("show-lights").checked && lights.length && shown) drawInto(drawing);
   overlay.replaceChildren(drawing);
 }
