@@ -175,7 +175,19 @@ def check_lights(page, folder):
     length = lambda v: sum(value ** 2 for value in v) ** 0.5  # noqa: E731
     sized = page.state()["lights"][0]["rectangle"]
     expect(length(sized["halfU"]) > 1.3 * length(aimed["halfU"]) and sized["halfV"] == aimed["halfV"], "one side has grown")
-    for wanted in (aimed, moved[0]["rectangle"], before[0]["rectangle"]):
+    # Roll: by a sixth of a circle about the middle, as the picture shows it.
+    handle, middle = page.box("[data-handle='roll']"), page.box("[data-handle='move']")
+    start, centre = (handle[0] + handle[2] / 2, handle[1] + handle[3] / 2), (middle[0] + middle[2] / 2, middle[1] + middle[3] / 2)
+    x, y = start[0] - centre[0], start[1] - centre[1]
+    page.drag(start, (centre[0] + 0.5 * x - 0.87 * y, centre[1] + 0.87 * x + 0.5 * y))
+    rolled = page.state()["lights"][0]["rectangle"]
+    cross = lambda a, b: [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]  # noqa: E731
+    apart = lambda a, b: max(abs(p - q) for p, q in zip(a, b))  # noqa: E731
+    expect(rolled["center"] == sized["center"] and apart(cross(rolled["halfU"], rolled["halfV"]), cross(sized["halfU"], sized["halfV"])) < 1e-6,
+           "a roll keeps the middle, the axis and the area")
+    expect(abs(length(rolled["halfU"]) - length(sized["halfU"])) < 1e-6 and apart(rolled["halfU"], sized["halfU"]) > 0.3 * length(sized["halfU"]),
+           f"and turns the sides: {rolled['halfU']}, was {sized['halfU']}")
+    for wanted in (sized, aimed, moved[0]["rectangle"], before[0]["rectangle"]):
         page.tick("undo")
         same(page.state()["lights"][0]["rectangle"], wanted, "undone")
     expect(page.ask("document.getElementById('undo').disabled"), "nothing more to undo")
@@ -185,6 +197,16 @@ def check_lights(page, folder):
     page.type("[aria-label='position x']", "1.25")
     same(page.state()["lights"][0]["rectangle"]["center"][0], 1.25, "a number that was typed")
     page.choose("light", "sun")
+    page.browser.wait("document.querySelector(\"[data-handle='angle of the sun']\") !== null")
+    handle, tip = page.box("[data-handle='angle of the sun']"), page.box("[data-handle='direction of the sun']")
+    start, away = (handle[0] + handle[2] / 2, handle[1] + handle[3] / 2), [handle[i] + handle[i + 2] / 2 - tip[i] - tip[i + 2] / 2 for i in (0, 1)]
+    page.drag(start, (start[0] + away[0], start[1] + away[1]))
+    sun = page.state()["lights"][2]
+    expect(sun["sun"]["angle"] > 1.5 * before[2]["sun"]["angle"], f"the angle of the sun has grown: {sun['sun']}")
+    same(sun["sun"]["direction"], before[2]["sun"]["direction"], "in the same direction")
+    expect(apart(sun["irradiance"], before[2]["irradiance"]) < 1e-9, f"and as much light comes from it: {sun['irradiance']}")
+    page.tick("undo")
+    expect(abs(page.state()["lights"][2]["sun"]["angle"] - before[2]["sun"]["angle"]) < 1e-9, "undone")
     page.type("input[aria-label='by stops']", "1")
     same(page.state()["lights"][2]["irradiance"], [2 * value for value in before[2]["irradiance"]], "a stop more")
     page.tick("light-solo")
