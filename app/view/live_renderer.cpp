@@ -195,8 +195,7 @@ std::string LiveRenderer::scene_text() const {
   scenes::Scene scene;
   {
     const std::lock_guard lock(mutex_);
-    scene = *whole_;
-    scene.lights = state_.scene.lights;
+    scene = with_meshes(state_.scene, *whole_);
     const std::vector<std::string> on = lights_on(state_);
     for (scenes::AreaLight& light : scene.lights) {
       if (std::ranges::find(on, light.name) == on.end()) light.radiance = glm::dvec3(0);

@@ -50,7 +50,7 @@ struct LiveUpdate {
 
 /// Scene as displayed.
 struct LiveScenery {
-  std::shared_ptr<const scenes::Scene> whole;  ///< with meshes; lights and cameras as in the file
+  std::shared_ptr<const scenes::Scene> whole;  ///< with meshes; lights and cameras may be of an earlier file
   scenes::Scene lights;                        ///< without meshes; lights as changed
   std::shared_ptr<const LivePicture> picture;  ///< may be null, or of an earlier state
 };
@@ -135,7 +135,7 @@ class LiveRenderer {
   LiveState state_;
   std::uint64_t revision_ = 1;                         // of state_; a different number requires another picture
   std::map<std::uint64_t, double> stamps_;             // of each client, of its last change
-  std::shared_ptr<const scenes::Scene> whole_, file_;  // with meshes, as read; without meshes
+  std::shared_ptr<const scenes::Scene> whole_, file_;  // with the meshes displayed; as read, without meshes
   std::uint64_t meshes_ = 1;                           // of whole_; a different number: other meshes
   std::shared_ptr<const LivePicture> picture_;
   std::shared_ptr<const LiveMasks> masks_;

@@ -112,12 +112,20 @@ void LiveRenderer::read_again() {
   try {
     scenes::Scene scene = read_session_scene(options_, {});
     auto file = std::make_shared<const scenes::Scene>(without_meshes(scene));
+    std::shared_ptr<const scenes::Scene> whole;
+    {
+      const std::lock_guard lock(mutex_);
+      whole = whole_;
+    }
+    const bool same = same_meshes(*whole, scene);
     {
       const std::lock_guard lock(mutex_);
       state_ = reloaded(state_, *file_, without_meshes(scene));
       file_ = std::move(file);
-      whole_ = std::make_shared<const scenes::Scene>(std::move(scene));
-      ++meshes_;
+      if (!same || whole != whole_) {
+        whole_ = std::make_shared<const scenes::Scene>(std::move(scene));
+        ++meshes_;
+      }
       ++revision_;
     }
     events_.reloaded();
@@ -131,9 +139,7 @@ void LiveRenderer::read_again() {
 scenes::Scene LiveRenderer::scene_of(const Order& order) const {
   const LiveState& state = order.state;
   const bool same_meshes = frames_ && frames_->has_meshes() && rendered_ == order.whole;
-  scenes::Scene scene = same_meshes ? state.scene : *order.whole;
-  scene.objects = state.scene.objects;  // lights' bodies may have changed without the meshes
-  scene.lights = state.scene.lights;
+  scenes::Scene scene = same_meshes ? state.scene : with_meshes(state.scene, *order.whole);
   scene.cameras = {state.camera};
   return scene;
 }

@@ -289,6 +289,44 @@ def check_beginning(scene):
     same((wrong.returncode, wrong.stdout), (2, ""), f"no such method: {wrong.stderr}")
 
 
+def check_watching(folder):
+    """A lamp that is edited in the file costs no mesh; a mesh file that is edited costs the meshes."""
+    into = folder / "edited"
+    into.mkdir()
+    mesh, scene = into / "tent.obj", into / "scene.json"
+
+    def write(height, lamp, color):
+        mesh.write_text(f"v -1 0 -1\nv 1 0 -1\nv 1 0 1\nv -1 0 1\nv 0 {height} 0\nf 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\n")
+        document = json.loads(LIGHTS)
+        document["meshes"][1] = {"name": "tent", "file": "tent.obj", "color": color}
+        document["lights"] = [{"name": "key", "rectangle": {"center": lamp, "halfU": [0.5, 0, 0], "halfV": [0, 0, 0.5]}, "radiance": [10, 10, 10]}]
+        text = json.dumps(document)
+        if not scene.exists() or scene.read_text() != text:
+            scene.write_text(text)
+
+    def shown_is_rendered(what):
+        frame = client.until(lambda message: message["type"] == "frame" and message["final"] and message["edges"] is not None)
+        same(png_pixels(frame["files"][0]), render(scene, folder, "edited", "--exposure", frame["stops"])[1], what)
+        return frame
+
+    write(1, [0, 4, 0], [0.5, 0.5, 0.5])
+    with Server(PROGRAM, scene, "--watch") as server:
+        client = Client(server).begin()
+        meshes = client.state["meshes"]
+        first = shown_is_rendered("the scene")
+        write(1, [1, 4, 1], [0.5, 0.5, 0.5])
+        state = client.until(lambda message: message["type"] == "state" and message["lights"][0]["rectangle"]["center"] == [1, 4, 1])
+        same(state["meshes"], meshes, "another lamp: the meshes are kept")
+        frame = shown_is_rendered("the lamp of the file")
+        same(frame["edges"], first["edges"], "and their edges")
+        write(1.5, [1, 4, 1], [0.5, 0.5, 0.5])
+        state = client.until(lambda message: message["type"] == "state" and message["meshes"] != meshes)
+        shown_is_rendered("the mesh of the file")
+        write(1.5, [1, 4, 1], [0.9, 0.2, 0.1])
+        client.until(lambda message: message["type"] == "state" and message["meshes"] != state["meshes"])
+        shown_is_rendered("the colour of the file")
+
+
 def check_ending(folder):
     scene = folder / "watched.json"
     scene.write_text(LIGHTS)
@@ -337,6 +375,7 @@ def main():
         check_saved_pictures(folder)
         check_host(scene)
         check_beginning(scene)
+        check_watching(folder)
         check_ending(folder)
     return verdict()
 
