@@ -151,6 +151,8 @@ class LiveRenderer {
   std::unique_ptr<FrameRenderer> frames_;          // refers to run_, wish_ and steps_
   std::shared_ptr<const scenes::Scene> rendered_;  // scene whose meshes frames_ has
   LivePace pace_;
+  SlowMethods slow_;                              // of slow_of_
+  std::shared_ptr<const scenes::Scene> slow_of_;  // with meshes
   double final_milliseconds_ = 1000;
   float automatic_stops_ = 0;
   bool has_stops_ = false;

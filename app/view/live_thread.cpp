@@ -31,6 +31,7 @@ constexpr std::uint32_t kMaskSamples = 256;
 constexpr std::uint32_t kBand = 64;
 /// Time that a final picture waits for further changes during a drag.
 constexpr std::chrono::milliseconds kPause{90};
+constexpr std::chrono::milliseconds kPauseOfSlow{1000};  // of a slow method, which is cancelled late
 
 }  // namespace
 
@@ -90,7 +91,9 @@ void LiveRenderer::work_on(std::unique_lock<std::mutex>& lock) {
     const auto something_came = [&] {
       return ending_ || wants_reload_ || wants_show_ || revision_ != order.revision || !state_.moving;
     };
-    if (wake_.wait_for(lock, kPause, something_came)) {
+    const bool is_slow =
+        slow_.contains(order.state.method) || (order.state.other && slow_.contains(*order.state.other));
+    if (wake_.wait_for(lock, is_slow ? kPauseOfSlow : kPause, something_came)) {
       // The drag ended, or there is a newer state: checks again.
       if (revision_ != order.revision || ending_ || wants_reload_ || wants_show_) return;
     }
@@ -159,7 +162,8 @@ void LiveRenderer::render(const Order& order, scenes::Scene scene, bool keeps_ma
   frames_->render(std::move(scene), frame, {}, 0);
 }
 
-/// Quick pictures of areas use light samples of the default method for light samples.
+/// Quick pictures of areas, and of methods that are too slow for them, use light samples of the default method for
+/// light samples.
 MethodWish LiveRenderer::wish_for(const Order& order, const std::string& entry) {
   NamedMethod method = parse_method(entry);
   const std::uint32_t asked = order.state.light_samples;
@@ -169,6 +173,8 @@ MethodWish LiveRenderer::wish_for(const Order& order, const std::string& entry) 
     samples = std::min(order.quality.light_samples, asked != 0 ? asked : kMaskSamples);
     if (wish.method.empty()) {
       wish.samples = true;
+    } else if (slow_.contains(entry)) {
+      wish = {{}, {}, true};
     } else if (const auto description = describe_method(wish.method, wish.options); description.gives_area()) {
       wish = {{}, {}, true};
     } else if (description.counts_light_samples()) {
@@ -182,8 +188,13 @@ MethodWish LiveRenderer::wish_for(const Order& order, const std::string& entry) 
 }
 
 LiveAnswer LiveRenderer::answer(const Order& order, const std::string& entry, scenes::Scene& scene) {
+  const Stopwatch watch;
   wish_ = wish_for(order, entry);
   render(order, std::move(scene), false);
+  if (order.is_final)
+    slow_.took_final(entry, 1000 * watch.seconds());
+  else if (!wish_.method.empty())
+    slow_.took(entry, 1000 * watch.seconds(), pace_.is_lowest());
   const compare::Stats stats = frames_->stats();
   LiveAnswer made;
   made.method = stats.method;
@@ -198,6 +209,7 @@ LiveAnswer LiveRenderer::answer(const Order& order, const std::string& entry, sc
 void LiveRenderer::make_picture(const Order& order) {
   const Stopwatch watch;
   const LiveState& state = order.state;
+  if (std::exchange(slow_of_, order.whole) != order.whole) slow_.clear();
   try {
     std::uint32_t width = state.width, height = state.height;
     if (width == 0) std::tie(width, height) = scenes::picture_size(state.scene, state.camera);

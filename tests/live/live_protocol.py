@@ -289,6 +289,27 @@ def check_beginning(scene):
     same((wrong.returncode, wrong.stdout), (2, ""), f"no such method: {wrong.stderr}")
 
 
+def check_slow_method(folder):
+    """A method that takes long at any size holds up a drag for few pictures; then light samples of another stand in, until the end."""
+    document, scene, slow = json.loads(LIGHTS), folder / "slow.json", "layered-attenuation"
+    document["lights"] = document["lights"][:1]
+    scene.write_text(json.dumps(document))
+    with Server(PROGRAM, scene, "--method", slow) as server:
+        client = Client(server).begin()
+        client.until(lambda message: message["type"] == "frame" and message["final"], 100)
+        stamp, quick, end = 0, [], time.monotonic() + 100
+        while len(quick) < 20 and time.monotonic() < end:
+            stamp += 1
+            client.send(type="light", name="key", moving=True, stamp=stamp, light={
+                "rectangle": {"center": [0.01 * (stamp % 50), 4, 0], "halfU": [0.5, 0, 0], "halfV": [0, 0, 0.5]}, "radiance": [10, 10, 10]})
+            quick += [message["answers"][0]["method"].split(":")[0] for message in client.wait(0.05) if message["type"] == "frame" and not message["final"]]
+        expect(len(quick) == 20 and quick.count(slow) <= 3 and slow not in quick[-10:], f"methods of the pictures of a drag: {quick}")
+        client.send(type="still")
+        frame = client.until(lambda message: message["type"] == "frame" and message["final"] and
+                             message["stamps"].get(str(client.number)) == stamp, 100)
+        same(frame["answers"][0]["method"].split(":")[0], slow, "the final picture is by the method that was chosen")
+
+
 def check_watching(folder):
     """A lamp that is edited in the file costs no mesh; a mesh file that is edited costs the meshes."""
     into = folder / "edited"
@@ -375,6 +396,7 @@ def main():
         check_saved_pictures(folder)
         check_host(scene)
         check_beginning(scene)
+        check_slow_method(folder)
         check_watching(folder)
         check_ending(folder)
     return verdict()
