@@ -60,7 +60,7 @@ on("say", (message) => {
   if (message.level === "error") trouble(message.text);
   else if (message.level === "warning") trouble(message.text, false);
 });
-on("frame", (header) => { if (header.final) trouble(byId("trouble").textContent, false); });
+on("frame", (header) => { if (header.final) trouble(byId("trouble").textContent, false, byId("trouble").className); });
 on("connected", () => trouble(""));
 on("lost", () => trouble("The connection to `penumbra view` is lost; trying again."));
 
