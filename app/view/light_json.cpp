@@ -64,6 +64,11 @@ scenes::Scene read_alone(json light, json camera) {
   return scenes::read_json_text(scene.dump(-1, ' ', false, json::error_handler_t::replace), "view", {});
 }
 
+bool has_shape(const json& light) {
+  constexpr std::array kShapes = {"rectangle", "ellipse", "disk", "polygon", "sphere", "sun"};
+  return std::ranges::any_of(kShapes, [&](const char* shape) { return light.contains(shape); });
+}
+
 const json& require_object(const json& value, const char* what) {
   if (!value.is_object()) throw InputError("the message has no {}", what);
   return value;
@@ -102,14 +107,19 @@ scenes::AreaLight changed_light(const scenes::AreaLight& light, const json& chan
     if (std::ranges::find(kKnown, key) == kKnown.end())
       throw InputError("light \"{}\": the page does not change \"{}\"", light.name, key);
   }
+  const bool has_own_shape = has_shape(light_json(light));
+  const bool is_same_kind = has_own_shape == has_shape(own);
+  if (!has_own_shape) own["sphere"] = {{"center", {0, 0, 0}}, {"radius", 1}};  // a stand-in: files have a shape each
   const scenes::AreaLight read = read_alone(std::move(own), {{"eye", {0, 0, 1}}, {"target", {0, 0, 0}}}).lights.front();
-  if (read.shape.index() != light.shape.index())
+  if (!is_same_kind || (has_own_shape && read.shape.index() != light.shape.index()))
     throw InputError("light \"{}\": its kind stays what it is", light.name);
   scenes::AreaLight made = light;
-  std::optional<scenes::Cone> cone;
-  if (const auto* before = std::get_if<scenes::Sphere>(&light.shape)) cone = before->cone;
-  made.shape = read.shape;
-  if (auto* after = std::get_if<scenes::Sphere>(&made.shape)) after->cone = cone;
+  if (has_own_shape) {
+    std::optional<scenes::Cone> cone;
+    if (const auto* before = std::get_if<scenes::Sphere>(&light.shape)) cone = before->cone;
+    made.shape = read.shape;
+    if (auto* after = std::get_if<scenes::Sphere>(&made.shape)) after->cone = cone;
+  }
   made.radiance = read.radiance;
   made.two_sided = read.two_sided;
   return made;

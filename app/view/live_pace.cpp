@@ -15,19 +15,38 @@ constexpr std::array kLevels{LiveQuality{1, 64}, LiveQuality{1, 16}, LiveQuality
                              LiveQuality{2, 4},  LiveQuality{4, 4},  LiveQuality{8, 4}};
 constexpr double kQuickTime = 20;  // milliseconds; a faster picture leaves time for a better level
 
+/// Milliseconds; a picture that takes longer is followed by one of the lowest quality.
+constexpr double kSlowTime = 8 * kPictureTime;
+
 constexpr int kLongestPatience = 256;  // in pictures
 
 }  // namespace
 
+void SlowMethods::took(const std::string& entry, double milliseconds, bool lowest) {
+  if (lowest && milliseconds > kPictureTime) entries_.insert(entry);
+}
+
+void SlowMethods::took_final(const std::string& entry, double milliseconds) {
+  if (milliseconds <= kPictureTime) entries_.erase(entry);
+}
+
 LiveQuality LivePace::quality() const {
   return kLevels.at(level_);
+}
+
+bool LivePace::is_lowest() const {
+  return level_ + 1 == kLevels.size();
 }
 
 /// A level that was too slow is tried again after twice as many quick pictures as before.
 void LivePace::took(double milliseconds) {
   const bool was_raised = std::exchange(raised_, false);
   if (milliseconds > kPictureTime) {
-    level_ = std::min(level_ + (milliseconds > 2 * kPictureTime && !was_raised ? 2 : 1), kLevels.size() - 1);
+    const std::size_t steps = was_raised                        ? 1
+                              : milliseconds > kSlowTime        ? kLevels.size()
+                              : milliseconds > 2 * kPictureTime ? 2
+                                                                : 1;
+    level_ = std::min(level_ + steps, kLevels.size() - 1);
     patience_ = was_raised ? std::min(2 * patience_, kLongestPatience) : patience_;
     quick_ = 0;
     return;

@@ -3,6 +3,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <set>
+#include <string>
 
 namespace penumbra::app {
 
@@ -16,10 +18,25 @@ struct LiveQuality {
   std::uint32_t light_samples = 16;  ///< at most, for methods with light samples
 };
 
+/// Methods that are too slow for pictures during changes, even at the lowest quality.
+class SlowMethods {
+ public:
+  /// Records the duration of a method's part of a picture. `lowest`: the picture has the lowest quality.
+  void took(const std::string& entry, double milliseconds, bool lowest);
+  /// Records the duration of a method's part of a final picture: a method that is fast there is not slow.
+  void took_final(const std::string& entry, double milliseconds);
+  [[nodiscard]] bool contains(const std::string& entry) const { return entries_.contains(entry); }
+  void clear() { entries_.clear(); }
+
+ private:
+  std::set<std::string> entries_;
+};
+
 /// Chooses the best quality with pictures of at most kPictureTime, about twenty a second.
 class LivePace {
  public:
   [[nodiscard]] LiveQuality quality() const;
+  [[nodiscard]] bool is_lowest() const;
   /// Records the duration of a picture with the current quality.
   void took(double milliseconds);
 

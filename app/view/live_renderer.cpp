@@ -9,6 +9,7 @@
 #include "app/view/live_steps.hpp"
 #include "base/error.hpp"
 #include "scenes/formats/writer.hpp"
+#include "scenes/light_texture.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -43,6 +44,26 @@ class ScratchFolder {
  private:
   std::string path_;
 };
+
+/// Returns what `write` writes to a file of this name.
+template <typename Write>
+std::string written(const std::string& name, Write write) {
+  const UnwindsAfterSignals unwinds;
+  const ScratchFolder folder;
+  const std::filesystem::path file = folder.path() / name;
+  write(file);
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// Returns the name without characters that browsers replace in names of files that they save.
+std::string plain_name(std::string name) {
+  for (char& c : name) {
+    const bool is_plain = (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || c == '-';
+    if (!is_plain) c = '_';
+  }
+  return name;
+}
 
 }  // namespace
 
@@ -108,6 +129,12 @@ ordered_json LiveRenderer::state() const {
   const std::lock_guard lock(mutex_);
   ordered_json state = to_json(state_);
   state["meshes"] = meshes_;
+  auto pictures = ordered_json::object();
+  const std::vector<std::filesystem::path> files = scenes::texture_files(state_.scene, saved_name());
+  for (const scenes::AreaLight& light : state_.scene.lights) {
+    if (light.texture) pictures[light.name] = files[pictures.size()].string();
+  }
+  state["saved"] = {{"scene", saved_name()}, {"pictures", std::move(pictures)}};
   return state;
 }
 
@@ -166,12 +193,15 @@ ordered_json LiveRenderer::pixel(std::uint32_t x, std::uint32_t y) const {
   return made;
 }
 
+std::string LiveRenderer::saved_name() const {
+  return plain_name(options_.scene.stem().string()) + "-view.json";
+}
+
 std::string LiveRenderer::scene_text() const {
   scenes::Scene scene;
   {
     const std::lock_guard lock(mutex_);
-    scene = *whole_;
-    scene.lights = state_.scene.lights;
+    scene = with_meshes(state_.scene, *whole_);
     const std::vector<std::string> on = lights_on(state_);
     for (scenes::AreaLight& light : scene.lights) {
       if (std::ranges::find(on, light.name) == on.end()) light.radiance = glm::dvec3(0);
@@ -184,12 +214,19 @@ std::string LiveRenderer::scene_text() const {
       scene.cameras.front().aspect.reset();
     }
   }
-  const UnwindsAfterSignals unwinds;
-  const ScratchFolder folder;
-  const std::filesystem::path file = folder.path() / "scene.json";
-  scenes::write_scene(scene, file);
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
+  return written(saved_name(), [&](const std::filesystem::path& file) { scenes::write_scene(scene, file); });
+}
+
+std::string LiveRenderer::light_picture(const std::string& light) const {
+  std::optional<scenes::Texture> texture;
+  {
+    const std::lock_guard lock(mutex_);
+    const auto& lights = state_.scene.lights;
+    const auto found = std::ranges::find(lights, light, &scenes::AreaLight::name);
+    if (found != lights.end()) texture = found->texture;
+  }
+  if (!texture) throw UsageError("light={}: the scene has no light of this name with a picture", light);
+  return written("light.exr", [&](const std::filesystem::path& file) { scenes::write_texture(*texture, file); });
 }
 
 void LiveRenderer::watch(std::chrono::milliseconds time) const {

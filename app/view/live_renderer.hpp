@@ -52,7 +52,7 @@ struct LiveUpdate {
 
 /// Scene as displayed.
 struct LiveScenery {
-  std::shared_ptr<const scenes::Scene> whole;  ///< with meshes; lights and cameras as in the file
+  std::shared_ptr<const scenes::Scene> whole;  ///< with meshes; lights and cameras may be of an earlier file
   scenes::Scene lights;                        ///< without meshes; lights as changed
   std::shared_ptr<const LivePicture> picture;  ///< may be null, or of an earlier state
 };
@@ -84,8 +84,13 @@ class LiveRenderer {
   [[nodiscard]] std::vector<std::filesystem::path> sources() const;
   [[nodiscard]] LiveScenery scenery() const;
   [[nodiscard]] nlohmann::ordered_json pixel(std::uint32_t x, std::uint32_t y) const;
-  /// Returns the changed scene, in the form of `convert`; lights that are off have no radiance.
+  /// Returns the name of the file that the changed scene is saved as.
+  [[nodiscard]] std::string saved_name() const;
+  /// Returns the changed scene, in the form of `convert`; lights that are off have no radiance. The text names each
+  /// light's picture as state() does under `saved`.
   [[nodiscard]] std::string scene_text() const;
+  /// Returns the picture of a light, as an EXR file. Throws UsageError if there is none.
+  [[nodiscard]] std::string light_picture(const std::string& light) const;
   /// Waits for this time. Throws the exception that ended the thread, if any.
   void watch(std::chrono::milliseconds time) const;
 
@@ -107,6 +112,12 @@ class LiveRenderer {
   void read_again();
   void make_picture(const Order& order);
   void make_masks(const Order& order);
+  /// Returns whether masks are requested that do not exist.
+  [[nodiscard]] bool needs_masks() const;
+  /// Returns whether pictures are to tell the number of the mesh's edges, which is unknown.
+  [[nodiscard]] bool needs_edges() const { return events_.frame && counted_ != whole_; }
+  /// Counts the edges of the displayed mesh, and shows the picture again with their number.
+  void count_edges(const std::shared_ptr<const scenes::Scene>& whole);
   /// Returns whether a change has made the current picture obsolete.
   [[nodiscard]] bool is_overtaken(std::uint64_t revision) const;
   LiveAnswer answer(const Order& order, const std::string& entry, scenes::Scene& scene);
@@ -129,11 +140,13 @@ class LiveRenderer {
   LiveState state_;
   std::uint64_t revision_ = 1;                         // of state_; a different number requires another picture
   std::map<std::uint64_t, double> stamps_;             // of each client, of its last change
-  std::shared_ptr<const scenes::Scene> whole_, file_;  // with meshes, as read; without meshes
+  std::shared_ptr<const scenes::Scene> whole_, file_;  // with the meshes displayed; as read, without meshes
   std::uint64_t meshes_ = 1;                           // of whole_; a different number: other meshes
   std::shared_ptr<const LivePicture> picture_;
   std::shared_ptr<const LiveMasks> masks_;
-  std::uint64_t failed_ = 0, masks_failed_ = 0;  // revision that could not be shown
+  std::shared_ptr<const scenes::Scene> counted_;  // scene whose edges were counted
+  std::optional<std::size_t> edges_;              // of counted_
+  std::uint64_t failed_ = 0, masks_failed_ = 0;   // revision that could not be shown
   std::exception_ptr thrown_;
 
   // Used only by the thread:
@@ -143,6 +156,8 @@ class LiveRenderer {
   std::unique_ptr<FrameRenderer> frames_;          // refers to run_, wish_ and steps_
   std::shared_ptr<const scenes::Scene> rendered_;  // scene whose meshes frames_ has
   LivePace pace_;
+  SlowMethods slow_;                              // of slow_of_
+  std::shared_ptr<const scenes::Scene> slow_of_;  // with meshes
   double final_milliseconds_ = 1000;
   float automatic_stops_ = 0;
   bool has_stops_ = false;

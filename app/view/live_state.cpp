@@ -18,6 +18,7 @@
 #include <cmath>
 #include <map>
 #include <string_view>
+#include <tuple>
 #include <utility>
 
 namespace penumbra::app {
@@ -257,6 +258,27 @@ LiveState reloaded(const LiveState& state, const scenes::Scene& before, scenes::
   if (named(now.lights, made.display.light) == nullptr) made.display.light = now.lights.front().name;
   made.scene = std::move(now);
   return made;
+}
+
+bool same_meshes(const scenes::Scene& a, const scenes::Scene& b) {
+  const auto soup = [](const scenes::Scene& scene) {
+    return std::tie(scene.soup.triangles, scene.soup.object, scene.soup.source_face, scene.soup.positions);
+  };
+  const auto looks = [](const scenes::Scene& scene) {
+    return std::tie(scene.looks.normals, scene.looks.colors, scene.looks.places, scene.pictures, scene.origin);
+  };
+  const auto object = [](const scenes::Object& one) {
+    return std::tie(one.name, one.color, one.casts_shadow, one.receives_shadow, one.emits, one.lit_by, one.material,
+                    one.picture, one.alpha);
+  };
+  return std::ranges::equal(a.objects, b.objects, {}, object, object) && soup(a) == soup(b) && looks(a) == looks(b);
+}
+
+scenes::Scene with_meshes(scenes::Scene scene, const scenes::Scene& meshes) {
+  scene.soup = meshes.soup;
+  scene.looks = meshes.looks;
+  scene.pictures = meshes.pictures;
+  return scene;
 }
 
 }  // namespace penumbra::app

@@ -57,4 +57,9 @@ std::vector<std::string> lights_on(const LiveState& state);
 /// from the new one, all others as changed by the user. `before`: the file's previous scene, without meshes.
 LiveState reloaded(const LiveState& state, const scenes::Scene& before, scenes::Scene now);
 
+/// Returns whether the scenes differ in lights and cameras alone.
+bool same_meshes(const scenes::Scene& a, const scenes::Scene& b);
+/// Returns a scene that is without_meshes() with the meshes of another.
+scenes::Scene with_meshes(scenes::Scene scene, const scenes::Scene& meshes);
+
 }  // namespace penumbra::app

@@ -8,6 +8,7 @@
 #include "app/view/live_renderer.hpp"
 #include "app/view/live_steps.hpp"
 #include "app/whole_lights.hpp"
+#include "mesh/edge_graph.hpp"
 #include "render/device.hpp"
 #include "scenes/picture_size.hpp"
 
@@ -32,6 +33,7 @@ constexpr std::uint32_t kBand = 64;
 constexpr std::chrono::milliseconds kLongestShow{250};
 /// Time that a final picture waits for further changes during a drag.
 constexpr std::chrono::milliseconds kPause{90};
+constexpr std::chrono::milliseconds kPauseOfSlow{1000};  // of a slow method, which is cancelled late
 
 }  // namespace
 
@@ -40,12 +42,15 @@ bool LiveRenderer::is_overtaken(std::uint64_t revision) const {
   return revision_ != revision || wants_reload_ || ending_;
 }
 
+bool LiveRenderer::needs_masks() const {
+  const bool has_masks = masks_ && masks_->revision == revision_ && masks_->light == state_.display.light;
+  return state_.masks && !has_masks && masks_failed_ != revision_;
+}
+
 bool LiveRenderer::has_work() const {
   if (ending_ || wants_reload_ || (wants_show_ && picture_)) return true;
   const bool is_done = failed_ == revision_ || (picture_ && picture_->revision == revision_ && picture_->is_final);
-  if (!is_done) return true;
-  const bool has_masks = masks_ && masks_->revision == revision_ && masks_->light == state_.display.light;
-  return state_.masks && !has_masks && masks_failed_ != revision_ && failed_ != revision_;
+  return !is_done || (failed_ != revision_ && (needs_masks() || needs_edges()));
 }
 
 void LiveRenderer::work() {
@@ -80,12 +85,14 @@ void LiveRenderer::work_on(std::unique_lock<std::mutex>& lock) {
   const bool has_any = picture_ && picture_->revision == revision_;
   Order order{state_, whole_, revision_, pace_.quality(), has_any || final_milliseconds_ < kPictureTime, stamps_};
   if (failed_ == revision_ || (has_any && picture_->is_final) || wants_show_) {
-    const bool shows = std::exchange(wants_show_, false);
+    const bool shows = std::exchange(wants_show_, false), masks = needs_masks();
     lock.unlock();
     if (shows)
       show();
-    else
+    else if (masks)
       make_masks(order);
+    else
+      count_edges(order.whole);
     lock.lock();
     return;
   }
@@ -93,7 +100,9 @@ void LiveRenderer::work_on(std::unique_lock<std::mutex>& lock) {
     const auto something_came = [&] {
       return ending_ || wants_reload_ || wants_show_ || revision_ != order.revision || !state_.moving;
     };
-    if (wake_.wait_for(lock, kPause, something_came)) {
+    const bool is_slow =
+        slow_.contains(order.state.method) || (order.state.other && slow_.contains(*order.state.other));
+    if (wake_.wait_for(lock, is_slow ? kPauseOfSlow : kPause, something_came)) {
       // The drag ended, or there is a newer state: checks again.
       if (revision_ != order.revision || ending_ || wants_reload_ || wants_show_) return;
     }
@@ -115,12 +124,20 @@ void LiveRenderer::read_again() {
   try {
     scenes::Scene scene = read_session_scene(options_, {});
     auto file = std::make_shared<const scenes::Scene>(without_meshes(scene));
+    std::shared_ptr<const scenes::Scene> whole;
+    {
+      const std::lock_guard lock(mutex_);
+      whole = whole_;
+    }
+    const bool same = same_meshes(*whole, scene);
     {
       const std::lock_guard lock(mutex_);
       state_ = reloaded(state_, *file_, without_meshes(scene));
       file_ = std::move(file);
-      whole_ = std::make_shared<const scenes::Scene>(std::move(scene));
-      ++meshes_;
+      if (!same || whole != whole_) {
+        whole_ = std::make_shared<const scenes::Scene>(std::move(scene));
+        ++meshes_;
+      }
       ++revision_;
     }
     events_.reloaded();
@@ -134,9 +151,7 @@ void LiveRenderer::read_again() {
 scenes::Scene LiveRenderer::scene_of(const Order& order) const {
   const LiveState& state = order.state;
   const bool same_meshes = frames_ && frames_->has_meshes() && rendered_ == order.whole;
-  scenes::Scene scene = same_meshes ? state.scene : *order.whole;
-  scene.objects = state.scene.objects;  // lights' bodies may have changed without the meshes
-  scene.lights = state.scene.lights;
+  scenes::Scene scene = same_meshes ? state.scene : with_meshes(state.scene, *order.whole);
   scene.cameras = {state.camera};
   return scene;
 }
@@ -156,7 +171,8 @@ void LiveRenderer::render(const Order& order, scenes::Scene scene, bool keeps_ma
   frames_->render(std::move(scene), frame, {}, 0);
 }
 
-/// Quick pictures of areas use light samples of the default method for light samples.
+/// Quick pictures of areas, and of methods that are too slow for them, use light samples of the default method for
+/// light samples.
 MethodWish LiveRenderer::wish_for(const Order& order, const std::string& entry) {
   NamedMethod method = parse_method(entry);
   const std::uint32_t asked = order.state.light_samples;
@@ -166,6 +182,8 @@ MethodWish LiveRenderer::wish_for(const Order& order, const std::string& entry) 
     samples = std::min(order.quality.light_samples, asked != 0 ? asked : kMaskSamples);
     if (wish.method.empty()) {
       wish.samples = true;
+    } else if (slow_.contains(entry)) {
+      wish = {{}, {}, true};
     } else if (const auto description = describe_method(wish.method, wish.options); description.gives_area()) {
       wish = {{}, {}, true};
     } else if (description.counts_light_samples()) {
@@ -179,8 +197,13 @@ MethodWish LiveRenderer::wish_for(const Order& order, const std::string& entry) 
 }
 
 LiveAnswer LiveRenderer::answer(const Order& order, const std::string& entry, scenes::Scene& scene) {
+  const Stopwatch watch;
   wish_ = wish_for(order, entry);
   render(order, std::move(scene), false);
+  if (order.is_final)
+    slow_.took_final(entry, 1000 * watch.seconds());
+  else if (!wish_.method.empty())
+    slow_.took(entry, 1000 * watch.seconds(), pace_.is_lowest());
   const compare::Stats stats = frames_->stats();
   LiveAnswer made;
   made.method = stats.method;
@@ -195,6 +218,7 @@ LiveAnswer LiveRenderer::answer(const Order& order, const std::string& entry, sc
 void LiveRenderer::make_picture(const Order& order) {
   const Stopwatch watch;
   const LiveState& state = order.state;
+  if (std::exchange(slow_of_, order.whole) != order.whole) slow_.clear();
   try {
     std::uint32_t width = state.width, height = state.height;
     if (width == 0) std::tie(width, height) = scenes::picture_size(state.scene, state.camera);
@@ -286,6 +310,18 @@ void LiveRenderer::make_masks(const Order& order) {
   }
 }
 
+void LiveRenderer::count_edges(const std::shared_ptr<const scenes::Scene>& whole) {
+  std::optional<std::size_t> edges;
+  if (frames_ && frames_->has_meshes() && rendered_ == whole) {
+    const visibility::SceneFloats& floats = frames_->session().floats;
+    edges = mesh::build_edge_graph({mesh::widened(floats.positions), floats.triangles}).edges.size();
+  }
+  const std::lock_guard lock(mutex_);
+  counted_ = whole;
+  edges_ = edges;
+  wants_show_ = wants_show_ || edges.has_value();
+}
+
 void LiveRenderer::publish(std::shared_ptr<LivePicture> picture) {
   {
     const std::lock_guard lock(mutex_);
@@ -298,16 +334,17 @@ void LiveRenderer::publish(std::shared_ptr<LivePicture> picture) {
 void LiveRenderer::show() {
   std::shared_ptr<const LivePicture> picture;
   LiveDisplay display;
-  ordered_json stamps = ordered_json::object();
+  ordered_json stamps = ordered_json::object(), edges;
   {
     const std::lock_guard lock(mutex_);
     if (!picture_) return;
     is_awaited_ = events_.says_shown;
     picture = picture_;
     display = state_.display;
+    if (counted_ == whole_ && edges_) edges = *edges_;
     for (const auto& [client, stamp] : picture->stamps) stamps[fmt::format("{}", client)] = stamp;
   }
-  const ordered_json more = {{"frame", ++frame_}, {"stamps", std::move(stamps)}};
+  const ordered_json more = {{"frame", ++frame_}, {"stamps", std::move(stamps)}, {"edges", std::move(edges)}};
   if (events_.frame) events_.frame(std::make_shared<const std::string>(frame_message(*picture, display, more)));
   if (events_.picture) events_.picture(std::move(picture));
 }

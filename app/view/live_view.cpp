@@ -7,6 +7,7 @@
 #include "app/view/message_text.hpp"
 #include "app/view/page.hpp"
 #include "base/error.hpp"
+#include "compare/error_picture.hpp"
 #include "network/requests.hpp"
 
 #include <fmt/format.h>
@@ -18,6 +19,19 @@ namespace penumbra::app {
 
 using nlohmann::json;
 using nlohmann::ordered_json;
+
+namespace {
+
+/// Returns the colours of signed errors from the darkest to the brightest, evenly spaced in depth.
+ordered_json error_scale() {
+  auto colors = ordered_json::array();
+  const auto dark = compare::error_colors(false), bright = compare::error_colors(true);
+  for (std::size_t i = dark.size(); i-- > 1;) colors.push_back(dark[i]);
+  for (const Color8& color : bright) colors.push_back(color);
+  return colors;
+}
+
+}  // namespace
 
 std::string view_page() {
   return fmt::format(
@@ -31,7 +45,7 @@ std::string view_page() {
 }
 
 LiveView::LiveView(RunOptions options, scenes::Scene scene, network::ServerPlace place)
-    : methods_(message_text(methods_json()["methods"])) {
+    : methods_(message_text(methods_json()["methods"])), error_scale_(message_text(error_scale())) {
   network::ServerOptions serving;
   serving.place = std::move(place);
   serving.token = network::make_token();
@@ -39,6 +53,10 @@ LiveView::LiveView(RunOptions options, scenes::Scene scene, network::ServerPlace
   constexpr const char* kNumbers = "application/octet-stream";
   serving.files = {
       {"/scene.json", "application/json", "scene.json", [this](std::string_view) { return renderer_->scene_text(); }},
+      {"/scene/picture", "image/x-exr", "picture.exr",
+       [this](std::string_view target) {
+         return renderer_->light_picture(network::parameter_of(target, "light").value_or(""));
+       }},
       {"/three.js", "text/javascript", "", [](std::string_view) { return std::string(kThreeScript); }},
       {"/space/meshes", kNumbers, "", [this](std::string_view) { return space_->meshes(); }},
       {"/space/defects", kNumbers, "", [this](std::string_view) { return space_->defects(); }},
@@ -56,7 +74,8 @@ LiveView::LiveView(RunOptions options, scenes::Scene scene, network::ServerPlace
 
 /// Only a reader of the address knows the token, and the address is printed after renderer_ is set.
 void LiveView::opened(network::ClientId client) {
-  server_->send(client, fmt::format(R"({{"type": "hello", "client": {}, "methods": {}}})", client, methods_));
+  server_->send(client, fmt::format(R"({{"type": "hello", "client": {}, "methods": {}, "errorColors": {}}})", client,
+                                    methods_, error_scale_));
   server_->send(client, message_text(renderer_->state()));
   renderer_->show_again();
 }

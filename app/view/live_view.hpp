@@ -34,8 +34,8 @@ class LiveView final : public network::PageHandler {
   void do_message(network::ClientId client, const nlohmann::json& message);
   void send_state(network::ClientId except);
 
-  std::string methods_;  // JSON
-  std::mutex sending_;   // a state is sent before the next is taken: otherwise an old one could be sent last
+  std::string methods_, error_scale_;  // JSON
+  std::mutex sending_;  // a state is sent before the next is taken: otherwise an old one could be sent last
   std::unique_ptr<network::PageServer> server_;
   std::unique_ptr<LiveRenderer> renderer_;  // calls the server, therefore destroyed first
   std::unique_ptr<SpaceView> space_;

@@ -65,7 +65,7 @@ SpaceShadows parse_space_shadows(std::string_view target) {
 const visibility::SceneFloats& SpaceView::floats_of(const LiveScenery& scenery) {
   if (scene_ == scenery.whole) return floats_;
   scene_.reset();
-  light_.clear();
+  casters_of_.reset();
   floats_ = visibility::make_scene_floats(*scenery.whole);
   scene_ = scenery.whole;
   return floats_;
@@ -73,11 +73,12 @@ const visibility::SceneFloats& SpaceView::floats_of(const LiveScenery& scenery) 
 
 const volumes::Casters& SpaceView::casters_of(const LiveScenery& scenery, const visibility::Light& light) {
   const visibility::SceneFloats& floats = floats_of(scenery);
-  if (light_ == light.name) return casters_;
-  light_.clear();
+  const CastersOf wanted{light.index, light.unshaded_by};
+  if (casters_of_ == wanted) return casters_;
+  casters_of_.reset();
   casters_ = light.unshaded_by.empty() ? volumes::casters_of(floats, light)
                                        : volumes::casters_of(cast_for(floats, light), light);
-  light_ = light.name;
+  casters_of_ = wanted;
   return casters_;
 }
 

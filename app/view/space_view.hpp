@@ -35,8 +35,13 @@ class SpaceView {
   std::mutex mutex_;  // of what follows
   std::shared_ptr<const scenes::Scene> scene_;
   visibility::SceneFloats floats_;  // of scene_
-  std::string light_;               // empty: casters_ is of none
   volumes::Casters casters_;
+  struct CastersOf {
+    std::int32_t light = 0;
+    std::vector<std::uint8_t> unshaded_by;
+    bool operator==(const CastersOf&) const = default;
+  };
+  std::optional<CastersOf> casters_of_;  // nullopt: casters_ is of no light
 };
 
 /// Returns the request in a target's parameters; `point` is not set. Throws UsageError.

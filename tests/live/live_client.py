@@ -49,11 +49,12 @@ class Server:
             self.process.kill()
         self.process.wait()
 
-    def get(self, path="/", token=None, method="GET", **headers):
-        """Status, headers and body of a request; `token` "" leaves it out."""
+    def get(self, path="/", token=None, method="GET", parameters=None, **headers):
+        """Status, headers and body of a request; `token` "" leaves it out, and then `parameters`, too."""
         connection = http.client.HTTPConnection(self.parts.hostname, self.parts.port, timeout=60)
         token = self.token if token is None else token
-        connection.request(method, f"{path}?token={token}" if token else path,
+        more = "".join("&" + urllib.parse.urlencode({name: value}) for name, value in (parameters or {}).items())
+        connection.request(method, f"{path}?token={token}{more}" if token else path,
                            headers={name.replace("_", "-"): value for name, value in headers.items()})
         answer = connection.getresponse()
         return answer.status, dict(answer.getheaders()), answer.read()
@@ -169,6 +170,14 @@ class Client:
                 break
             self.seen.append(self.read())
         return self.seen
+
+    def save(self, server, folder):
+        """Saves the scene as the page does, and returns its file."""
+        names = self.state["saved"]
+        (folder / names["scene"]).write_bytes(server.get("/scene.json")[2])
+        for light, name in names["pictures"].items():
+            (folder / name).write_bytes(server.get("/scene/picture", parameters={"light": light})[2])
+        return folder / names["scene"]
 
     def kind(self, kind):
         return self.until(lambda message: message["type"] == kind)

@@ -175,7 +175,19 @@ def check_lights(page, folder):
     length = lambda v: sum(value ** 2 for value in v) ** 0.5  # noqa: E731
     sized = page.state()["lights"][0]["rectangle"]
     expect(length(sized["halfU"]) > 1.3 * length(aimed["halfU"]) and sized["halfV"] == aimed["halfV"], "one side has grown")
-    for wanted in (aimed, moved[0]["rectangle"], before[0]["rectangle"]):
+    # Roll: by a sixth of a circle about the middle, as the picture shows it.
+    handle, middle = page.box("[data-handle='roll']"), page.box("[data-handle='move']")
+    start, centre = (handle[0] + handle[2] / 2, handle[1] + handle[3] / 2), (middle[0] + middle[2] / 2, middle[1] + middle[3] / 2)
+    x, y = start[0] - centre[0], start[1] - centre[1]
+    page.drag(start, (centre[0] + 0.5 * x - 0.87 * y, centre[1] + 0.87 * x + 0.5 * y))
+    rolled = page.state()["lights"][0]["rectangle"]
+    cross = lambda a, b: [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]  # noqa: E731
+    apart = lambda a, b: max(abs(p - q) for p, q in zip(a, b))  # noqa: E731
+    expect(rolled["center"] == sized["center"] and apart(cross(rolled["halfU"], rolled["halfV"]), cross(sized["halfU"], sized["halfV"])) < 1e-6,
+           "a roll keeps the middle, the axis and the area")
+    expect(abs(length(rolled["halfU"]) - length(sized["halfU"])) < 1e-6 and apart(rolled["halfU"], sized["halfU"]) > 0.3 * length(sized["halfU"]),
+           f"and turns the sides: {rolled['halfU']}, was {sized['halfU']}")
+    for wanted in (sized, aimed, moved[0]["rectangle"], before[0]["rectangle"]):
         page.tick("undo")
         same(page.state()["lights"][0]["rectangle"], wanted, "undone")
     expect(page.ask("document.getElementById('undo').disabled"), "nothing more to undo")
@@ -185,6 +197,16 @@ def check_lights(page, folder):
     page.type("[aria-label='position x']", "1.25")
     same(page.state()["lights"][0]["rectangle"]["center"][0], 1.25, "a number that was typed")
     page.choose("light", "sun")
+    page.browser.wait("document.querySelector(\"[data-handle='angle of the sun']\") !== null")
+    handle, tip = page.box("[data-handle='angle of the sun']"), page.box("[data-handle='direction of the sun']")
+    start, away = (handle[0] + handle[2] / 2, handle[1] + handle[3] / 2), [handle[i] + handle[i + 2] / 2 - tip[i] - tip[i + 2] / 2 for i in (0, 1)]
+    page.drag(start, (start[0] + away[0], start[1] + away[1]))
+    sun = page.state()["lights"][2]
+    expect(sun["sun"]["angle"] > 1.5 * before[2]["sun"]["angle"], f"the angle of the sun has grown: {sun['sun']}")
+    same(sun["sun"]["direction"], before[2]["sun"]["direction"], "in the same direction")
+    expect(apart(sun["irradiance"], before[2]["irradiance"]) < 1e-9, f"and as much light comes from it: {sun['irradiance']}")
+    page.tick("undo")
+    expect(abs(page.state()["lights"][2]["sun"]["angle"] - before[2]["sun"]["angle"]) < 1e-9, "undone")
     page.type("input[aria-label='by stops']", "1")
     same(page.state()["lights"][2]["irradiance"], [2 * value for value in before[2]["irradiance"]], "a stop more")
     page.tick("light-solo")
@@ -223,8 +245,25 @@ def check_methods(page, folder):
     page.ask("document.getElementById('flip').click()")
     same(page.ask(labels), [True, False], "and the button back")
     page.ask("document.getElementById('compare').value = 'wipe'; document.getElementById('compare').dispatchEvent(new Event('change'))")
+    same(page.ask("document.getElementById('error-scale').hidden"), True, "V has no scale of errors")
     page.choose("channel", "error")
+    page.choose("limit", "0.25")
+    ticks = "[...document.querySelectorAll('#error-ticks span')].map(tick => tick.textContent)"
+    page.browser.wait(f"{ticks}[4] === '+0.25'")
+    same(page.ask(ticks), ["\u22120.25", "\u22120.0625", "0", "+0.0625", "+0.25"], "the scale of errors")
+    same(page.state()["display"]["limit"], 0.25, "is the one that was typed")
+    expect("+0.25" in page.ask("document.getElementById('error-bar').getAttribute('aria-label')"), "in words")
     page.picture("error")
+    page.choose("limit", "")
+    same(page.state()["display"]["limit"], None, "and chosen from the picture again")
+    largest = float(page.ask("document.getElementById('difference').textContent").split("largest ")[1].split(";")[0])
+    same(page.ask(ticks)[4], f"+{next(limit for limit in (0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1) if largest <= limit)}", "the next of the scales")
+    page.choose("method-b", "")
+    same(page.ask("document.getElementById('error-scale').hidden"), True, "without B there is no error")
+    expect("no B" in page.ask("document.getElementById('difference').textContent"), "which is said")
+    same(page.ask("document.querySelector('#channel [value=error]').disabled"), True, "and it can not be chosen")
+    page.choose("method-b", "edge-scatter")
+    same(page.ask("document.getElementById('error-scale').hidden"), False, "with B there is")
     for channel in ("ids", "normals", "depth"):
         page.choose("channel", channel)
     page.choose("channel", "beauty")
@@ -233,6 +272,7 @@ def check_methods(page, folder):
 
 
 def check_pixel(page, folder):
+    page.browser.wait("document.getElementById('size-facts').textContent.includes(' edges, ')", 20)
     exr, _ = rendered(page, folder, "pixel")
     for x, y in ((20, 40), (40, 50)):
         page.browser.pointer("mouseMoved", *page.place((x + 0.5) / 64, (y + 0.5) / 64))
@@ -253,6 +293,38 @@ def check_pixel(page, folder):
     page.ask("document.getElementById('show-seen').click()")
 
 
+def check_typed_pixel(page, folder):
+    """A pixel by its numbers, without a pointer: what it says, its outline in words, and the pivot there."""
+    exr, _ = rendered(page, folder, "typed")
+    page.browser.pointer("mouseMoved", 2, 2)
+    x, y = min(((x, y) for y in range(64) for x in range(64)), key=lambda at: abs(exr["key.V"][at[1] * 64 + at[0]] - 0.5))
+    page.ask("document.getElementById('show-seen').click()")
+    for field, value in (("pixel-x", x), ("pixel-y", y)):
+        page.ask(f"(() => {{ const c = document.getElementById('{field}'); c.value = '{value}'; c.dispatchEvent(new Event('change')); }})()")
+    page.browser.wait(f"document.getElementById('readout').dataset.pixel === '{x},{y}'")
+    v = exr["key.V"][y * 64 + x]
+    text = page.ask("document.getElementById('readout').innerText")
+    expect(abs(float(text.split("V key = ")[1].split(",")[0].split()[0]) - v) < 1e-5, f"V at {x},{y}: {text}, not {v}")
+    same(page.ask("[...'role aria-live'.split(' ')].map(name => document.getElementById('readout').getAttribute(name))"), ["status", "polite"], "it is read out")
+    page.browser.wait(f"document.getElementById('outline').getAttribute('aria-label').includes('as pixel {x}, {y} sees it')", 20)
+    label = page.ask("document.getElementById('outline').getAttribute('aria-label')")
+    expect("The outline of key" in label and abs(float(label.split("V = ")[1]) - v) < 1e-5, f"the outline in words: {label}")
+    page.browser.wait("document.getElementById('seen').dataset.bits !== undefined", 20)
+    same(page.ask("document.querySelectorAll('#overlay .mark').length"), 2, "the pixel is marked in the picture")
+    position = [float(part) for part in text.split("at ")[1].split(";")[0].split(",")]
+    page.tick("pivot")
+    same([round(value, 4) for value in page.camera()["target"]], position, "the pivot is at the pixel")
+    page.tick("home")
+    page.ask("document.getElementById('picture').focus()")
+    page.after(lambda: page.browser.key("p"))
+    same([round(value, 4) for value in page.camera()["target"]], position, "and by P")
+    page.tick("home")
+    page.browser.pointer("mouseMoved", *page.place(0.3, 0.3))
+    page.browser.wait("document.querySelectorAll('#overlay .mark').length === 0")
+    page.browser.wait("document.getElementById('readout').getAttribute('aria-live') === 'off'")
+    page.ask("document.getElementById('show-seen').click()")
+
+
 def check_report(page):
     """A report names what is to be seen in the address: methods and light samples, for the same scene alone."""
     url = page.server.url + "#" + urllib.parse.urlencode({"scene": "scene.json", "a": "view-sample", "b": "edge-scatter", "samples": 16})
@@ -268,6 +340,135 @@ def check_report(page):
     page.choose("method-b", "")
     page.choose("method", "")
     page.choose("light-samples", "0")
+
+
+def check_saving(browser, folder):
+    """The button saves the scene and the picture of its light, and `render` makes of them what the page shows."""
+    into = folder / "saved"
+    into.mkdir()
+    with Server(PROGRAM, SCENES / "textured-light.json", "--size", "64x64") as server:
+        page = Page(browser, server, width=1400, height=900)
+        browser.call("Browser.setDownloadBehavior", behavior="allow", downloadPath=str(into))
+        page.ask("document.getElementById('save').click()")
+        wanted = ["textured-light-view-light0.exr", "textured-light-view.json"]
+        end = time.monotonic() + 20
+        while sorted(file.name for file in into.iterdir()) != wanted and time.monotonic() < end:
+            time.sleep(0.1)
+        same(sorted(file.name for file in into.iterdir()), wanted, "the files that are saved")
+        stops = page.ask("document.getElementById('stops').dataset.stops")
+        subprocess.run([PROGRAM, "render", str(into / wanted[1]), "-o", str(into / "a.exr"), "--png", str(into / "a.png"), "-q", "--exposure", stops], check=True)
+        same(page.canvas(), png_pixels((into / "a.png").read_bytes()), "`render` of them is what the page shows")
+        browser.call("Page.navigate", url="about:blank")
+
+
+def reached_by_tab(page):
+    """What Tab reaches, from the top: identities, names of options, labels of numbers."""
+    page.ask("document.activeElement.blur()")
+    names = "document.activeElement.id || document.activeElement.dataset.option || document.activeElement.getAttribute('aria-label')"
+    reached = set()
+    for _ in range(110):
+        page.browser.key("Tab")
+        reached.add(page.ask(names))
+    return reached
+
+
+def check_reach(page):
+    """Tab reaches every control, and each has a name."""
+    page.choose("method", "view-sample")
+    page.choose("method-b", "edge-scatter")
+    page.type("[aria-label='position x']", "0.5")
+    page.type("[aria-label='position x']", "0.25")
+    page.tick("undo")  # now there is something to undo and to redo
+    page.ask("document.querySelector('#options-a summary').focus()")
+    page.browser.key("Enter")
+    same(page.ask("document.getElementById('options-a').open"), True, "Enter opens the options")
+    options = page.ask("[...document.querySelectorAll('#options-a [data-option]')].map(input => input.dataset.option)")
+    numbers = page.ask("[...document.querySelectorAll('#light-numbers input')].map(input => input.getAttribute('aria-label'))")
+    expect(len(options) > 1 and "radiance g" in numbers, f"options {options}, numbers {numbers}")
+    compare = lambda how: page.ask(f"(() => {{ const c = document.getElementById('compare'); c.value = '{how}'; c.dispatchEvent(new Event('change')); }})()")  # noqa: E731
+    compare("wipe")
+    reached = reached_by_tab(page)
+    for control in ("picture", "wipe", "method", "method-b", *options, "light-samples", "compare", "channel", "stops", "auto-stops", "size", "camera", "home",
+                    "copy-camera", "paste-camera", "light", "light-on", "light-solo", "show-lights", *numbers, "undo", "redo", "save", "see-light", "pixel-x",
+                    "pixel-y", "pivot", "show-seen"):
+        expect(control in reached, f"Tab reaches {control}")
+    compare("flip")
+    expect("flip" in reached_by_tab(page), "Tab reaches flip")
+    for node in page.browser.call("Accessibility.getFullAXTree")["nodes"]:
+        if not node.get("ignored") and node["role"]["value"] in ("button", "slider", "combobox", "spinbutton", "checkbox", "application", "image"):
+            expect(node.get("name", {}).get("value"), f"a {node['role']['value']} without a name")
+    compare("wipe")
+    page.tick("undo")
+    page.choose("method-b", "")
+    page.choose("method", "")
+
+
+def check_typed_pixel(page, folder):
+    """A pixel by its numbers, without a pointer: what it says, its outline in words, and the pivot there."""
+    exr, _ = rendered(page, folder, "typed")
+    page.browser.pointer("mouseMoved", 2, 2)
+    x, y = min(((x, y) for y in range(64) for x in range(64)), key=lambda at: abs(exr["key.V"][at[1] * 64 + at[0]] - 0.5))
+    page.ask("document.getElementById('show-seen').click()")
+    for field, value in (("pixel-x", x), ("pixel-y", y)):
+        page.ask(f"(() => {{ const c = document.getElementById('{field}'); c.value = '{value}'; c.dispatchEvent(new Event('change')); }})()")
+    page.browser.wait(f"document.getElementById('readout').dataset.pixel === '{x},{y}'")
+    v = exr["key.V"][y * 64 + x]
+    text = page.ask("document.getElementById('readout').innerText")
+    expect(abs(float(text.split("V key = ")[1].split(",")[0].split()[0]) - v) < 1e-5, f"V at {x},{y}: {text}, not {v}")
+    same(page.ask("[...'role aria-live'.split(' ')].map(name => document.getElementById('readout').getAttribute(name))"), ["status", "polite"], "it is read out")
+    page.browser.wait(f"document.getElementById('outline').getAttribute('aria-label').includes('as pixel {x}, {y} sees it')", 20)
+    label = page.ask("document.getElementById('outline').getAttribute('aria-label')")
+    expect("The outline of key" in label and abs(float(label.split("V = ")[1]) - v) < 1e-5, f"the outline in words: {label}")
+    page.browser.wait("document.getElementById('seen').dataset.bits !== undefined", 20)
+    same(page.ask("document.querySelectorAll('#overlay .mark').length"), 2, "the pixel is marked in the picture")
+    position = [float(part) for part in text.split("at ")[1].split(";")[0].split(",")]
+    page.tick("pivot")
+    same([round(value, 4) for value in page.camera()["target"]], position, "the pivot is at the pixel")
+    page.tick("home")
+    page.ask("document.getElementById('picture').focus()")
+    page.after(lambda: page.browser.key("p"))
+    same([round(value, 4) for value in page.camera()["target"]], position, "and by P")
+    page.tick("home")
+    page.browser.pointer("mouseMoved", *page.place(0.3, 0.3))
+    page.browser.wait("document.querySelectorAll('#overlay .mark').length === 0")
+    page.browser.wait("document.getElementById('readout').getAttribute('aria-live') === 'off'")
+    page.ask("document.getElementById('show-seen').click()")
+
+
+def check_report(page):
+    """A report names what is to be seen in the address: methods and light samples, for the same scene alone."""
+    url = page.server.url + "#" + urllib.parse.urlencode({"scene": "scene.json", "a": "view-sample", "b": "edge-scatter", "samples": 16})
+    page.browser.open(url)
+    page.browser.wait(f"{ROOT}.exact === 'true' && {ROOT}.method?.includes('edge-scatter')")
+    same(page.state()["method"], "view-sample", "A of the report")
+    same(page.state()["other"], "edge-scatter", "B of the report")
+    same(page.state()["lightSamples"], 16, "light samples of the report")
+    same(page.ask("location.hash"), "", "taken once")
+    page.browser.open(url.replace("scene.json", "another.json").replace("view-sample", "depth-complexity"))
+    page.browser.wait("document.getElementById('trouble').textContent.includes('another.json')")
+    same(page.state()["method"], "view-sample", "a report about another scene changes nothing")
+    page.choose("method-b", "")
+    page.choose("method", "")
+    page.choose("light-samples", "0")
+
+
+def check_saving(browser, folder):
+    """The button saves the scene and the picture of its light, and `render` makes of them what the page shows."""
+    into = folder / "saved"
+    into.mkdir()
+    with Server(PROGRAM, SCENES / "textured-light.json", "--size", "64x64") as server:
+        page = Page(browser, server, width=1400, height=900)
+        browser.call("Browser.setDownloadBehavior", behavior="allow", downloadPath=str(into))
+        page.ask("document.getElementById('save').click()")
+        wanted = ["textured-light-view-light0.exr", "textured-light-view.json"]
+        end = time.monotonic() + 20
+        while sorted(file.name for file in into.iterdir()) != wanted and time.monotonic() < end:
+            time.sleep(0.1)
+        same(sorted(file.name for file in into.iterdir()), wanted, "the files that are saved")
+        stops = page.ask("document.getElementById('stops').dataset.stops")
+        subprocess.run([PROGRAM, "render", str(into / wanted[1]), "-o", str(into / "a.exr"), "--png", str(into / "a.png"), "-q", "--exposure", stops], check=True)
+        same(page.canvas(), png_pixels((into / "a.png").read_bytes()), "`render` of them is what the page shows")
+        browser.call("Page.navigate", url="about:blank")
 
 
 def check_reach(page):
@@ -296,9 +497,11 @@ def main():
             check_lights(page, folder)
             check_methods(page, folder)
             check_pixel(page, folder)
+            check_typed_pixel(page, folder)
             check_reach(page)
             check_report(page)
             browser.call("Page.navigate", url="about:blank")  # a page whose server ends looks for it, and complains
+        check_saving(browser, folder)
         if PHOTOGRAPHS:
             with Server(PROGRAM, SCENES / "room.json") as server:
                 for name, window in (("wide", {"width": 1400, "height": 900}), ("dark", {"width": 1400, "height": 900, "dark": True}),

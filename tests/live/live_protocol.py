@@ -7,6 +7,7 @@ import math
 import pathlib
 import signal
 import socket
+import struct
 import subprocess
 import sys
 import tempfile
@@ -19,6 +20,7 @@ from exr import read_bits, read_exr  # noqa: E402
 from live_client import LIGHTS, Client, Closed, Server, png_pixels  # noqa: E402
 
 PROGRAM = sys.argv[1]
+SCENES = pathlib.Path(__file__).parents[2] / "scenes"
 SIZE = 64
 
 
@@ -103,6 +105,14 @@ def check_refusals(server):
     client.pixel(1, 1)  # the others are still there
 
 
+def edges_of(scene):
+    """The number of edges in scene floats: float32 of positions relative to the middle of their box."""
+    triangles = [mesh["triangles"][i] for mesh in scene["meshes"] for i in range(len(mesh["triangles"]))]
+    middle = [(min(min(t[k::3]) for t in triangles) + max(max(t[k::3]) for t in triangles)) / 2 for k in range(3)]
+    corner = lambda t, i: struct.pack("3f", *(t[3 * i + k] - middle[k] + 0.0 for k in range(3)))  # noqa: E731
+    return len({frozenset((corner(t, i), corner(t, (i + 1) % 3))) for t in triangles for i in range(3)})
+
+
 def check_final_pictures(server, scene, folder):
     """The final picture is the one that `render` writes: of the scene as it is, and as it was changed by hand."""
     client = Client(server).begin()
@@ -110,6 +120,9 @@ def check_final_pictures(server, scene, folder):
     exr, png = render(scene, folder, "first", "--exposure", frame["stops"])
     same(frame["images"][0]["type"], "image/png", "the final picture is lossless")
     same(png_pixels(frame["files"][0]), png, "the picture of the scene")
+    if frame["edges"] is None:  # they are counted when the picture is there
+        frame = client.until(lambda message: message["type"] == "frame" and message["edges"] is not None)
+    same(frame["edges"], edges_of(json.loads(server.get("/scene.json")[2])), "the number of edges")
     for x, y in ((5, 60), (30, 40), (40, 20), (0, 0), (63, 63)):
         answer = client.pixel(x, y)["answers"][0]
         for light in ("key", "ball", "sun"):
@@ -133,6 +146,29 @@ def check_final_pictures(server, scene, folder):
     subprocess.run([PROGRAM, "convert", str(file), "-o", str(folder / "again.json"), "-q"], check=True)
     client.send(type="lights", off=[], solo="", stamp=5)
     client.final(5)
+
+
+def check_saved_pictures(folder):
+    """Lights with pictures are saved with them, of rectangles and of domes: `render` makes of that what is shown."""
+    for name, light in (("textured-light.json", "window"), ("skies/knot.json", "evening")):
+        into = folder / name.replace("/", "-").replace(".json", "")
+        into.mkdir()
+        with Server(PROGRAM, SCENES / name, "--size", f"{SIZE}x{SIZE}") as server:
+            client = Client(server).begin()
+            same(list(client.state["saved"]["pictures"]), [light], f"lights with pictures of {name}")
+            client.send(type="camera", camera={"eye": [3, 3, 4], "target": [0, 0.5, 0], "up": [0, 1, 0], "verticalFov": 40}, stamp=1)
+            words = next(one for one in client.state["lights"] if one["name"] == light)
+            words = {key: value for key, value in words.items() if key not in ("fixed", "textured")}
+            client.send(type="light", name=light, light={**words, "radiance": [9, 8, 7]})
+            client.send(type="lights", off=[], solo=light, stamp=2)
+            frame = client.final(2)
+            saved = client.save(server, into)
+            same([one["radiance"] for one in json.loads(saved.read_text())["lights"] if one["name"] == light], [[9, 8, 7]], "its radiance")
+            same(len(list(into.iterdir())), 2, "the scene and a picture beside it")
+            same(render(saved, into, "saved", "--exposure", frame["stops"])[1], png_pixels(frame["files"][0]),
+                 f"what is saved of {name} is what is shown")
+            same(server.get("/scene/picture", parameters={"light": "none"})[0], 400, "no such light")
+            same(server.get("/scene/picture", token="", parameters={"light": light})[0], 403, "a picture without the token")
 
 
 def check_comparing(server, scene, folder):
@@ -253,6 +289,65 @@ def check_beginning(scene):
     same((wrong.returncode, wrong.stdout), (2, ""), f"no such method: {wrong.stderr}")
 
 
+def check_slow_method(folder):
+    """A method that takes long at any size holds up a drag for few pictures; then light samples of another stand in, until the end."""
+    document, scene, slow = json.loads(LIGHTS), folder / "slow.json", "layered-attenuation"
+    document["lights"] = document["lights"][:1]
+    scene.write_text(json.dumps(document))
+    with Server(PROGRAM, scene, "--method", slow) as server:
+        client = Client(server).begin()
+        client.until(lambda message: message["type"] == "frame" and message["final"], 100)
+        stamp, quick, end = 0, [], time.monotonic() + 100
+        while len(quick) < 20 and time.monotonic() < end:
+            stamp += 1
+            client.send(type="light", name="key", moving=True, stamp=stamp, light={
+                "rectangle": {"center": [0.01 * (stamp % 50), 4, 0], "halfU": [0.5, 0, 0], "halfV": [0, 0, 0.5]}, "radiance": [10, 10, 10]})
+            quick += [message["answers"][0]["method"].split(":")[0] for message in client.wait(0.05) if message["type"] == "frame" and not message["final"]]
+        expect(len(quick) == 20 and quick.count(slow) <= 3 and slow not in quick[-10:], f"methods of the pictures of a drag: {quick}")
+        client.send(type="still")
+        frame = client.until(lambda message: message["type"] == "frame" and message["final"] and
+                             message["stamps"].get(str(client.number)) == stamp, 100)
+        same(frame["answers"][0]["method"].split(":")[0], slow, "the final picture is by the method that was chosen")
+
+
+def check_watching(folder):
+    """A lamp that is edited in the file costs no mesh; a mesh file that is edited costs the meshes."""
+    into = folder / "edited"
+    into.mkdir()
+    mesh, scene = into / "tent.obj", into / "scene.json"
+
+    def write(height, lamp, color):
+        mesh.write_text(f"v -1 0 -1\nv 1 0 -1\nv 1 0 1\nv -1 0 1\nv 0 {height} 0\nf 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\n")
+        document = json.loads(LIGHTS)
+        document["meshes"][1] = {"name": "tent", "file": "tent.obj", "color": color}
+        document["lights"] = [{"name": "key", "rectangle": {"center": lamp, "halfU": [0.5, 0, 0], "halfV": [0, 0, 0.5]}, "radiance": [10, 10, 10]}]
+        text = json.dumps(document)
+        if not scene.exists() or scene.read_text() != text:
+            scene.write_text(text)
+
+    def shown_is_rendered(what):
+        frame = client.until(lambda message: message["type"] == "frame" and message["final"] and message["edges"] is not None)
+        same(png_pixels(frame["files"][0]), render(scene, folder, "edited", "--exposure", frame["stops"])[1], what)
+        return frame
+
+    write(1, [0, 4, 0], [0.5, 0.5, 0.5])
+    with Server(PROGRAM, scene, "--watch") as server:
+        client = Client(server).begin()
+        meshes = client.state["meshes"]
+        first = shown_is_rendered("the scene")
+        write(1, [1, 4, 1], [0.5, 0.5, 0.5])
+        state = client.until(lambda message: message["type"] == "state" and message["lights"][0]["rectangle"]["center"] == [1, 4, 1])
+        same(state["meshes"], meshes, "another lamp: the meshes are kept")
+        frame = shown_is_rendered("the lamp of the file")
+        same(frame["edges"], first["edges"], "and their edges")
+        write(1.5, [1, 4, 1], [0.5, 0.5, 0.5])
+        state = client.until(lambda message: message["type"] == "state" and message["meshes"] != meshes)
+        shown_is_rendered("the mesh of the file")
+        write(1.5, [1, 4, 1], [0.9, 0.2, 0.1])
+        client.until(lambda message: message["type"] == "state" and message["meshes"] != state["meshes"])
+        shown_is_rendered("the colour of the file")
+
+
 def check_ending(folder):
     scene = folder / "watched.json"
     scene.write_text(LIGHTS)
@@ -298,8 +393,11 @@ def main():
             server.process.send_signal(signal.SIGTERM)
             out, _ = server.process.communicate(timeout=10)
             same(out, "", "nothing but the address is on stdout")
+        check_saved_pictures(folder)
         check_host(scene)
         check_beginning(scene)
+        check_slow_method(folder)
+        check_watching(folder)
         check_ending(folder)
     return verdict()
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""`--tev`: what arrives at a listener that understands tev's protocol is what the EXR has.   tev_pictures.py PROGRAM"""
+"""`--tev`, of pictures, comparisons and sequences: what arrives at a listener that understands tev's protocol is what the EXR has.   tev_pictures.py PROGRAM"""
 import pathlib
 import socket
 import struct
@@ -110,6 +110,19 @@ def main():
         tev.join(10)
         same(sorted(tev.pictures), ["edge-scatter.exr", "reference.exr", "view-sample.exr"], "pictures of a comparison")
         check(tev, "view-sample.exr", folder / "c" / "view-sample.exr", ["R", "G", "B", "A", "V"])
+
+        # A sequence: each frame is a picture of its own name, one after the other on one connection.
+        for frame in (1, 2, 3):
+            (folder / f"moving.000{frame}.json").write_text(LIGHTS.replace('"translate": [0, 1, 0]', f'"translate": [{0.4 * frame - 0.8}, 1, 0]'))
+        tev = FakeTev()
+        same(run("render", folder / "moving.####.json", "--frames", "1-3", "-o", folder / "s.####.exr", "--tev", tev.address).returncode, 0, "a sequence")
+        tev.join(10)
+        names = [f"s.000{frame}.exr" for frame in (1, 2, 3)]
+        same(list(tev.pictures), names, "frames appear in their order")
+        same(tev.focused, names, "and each comes to the front")
+        for name in names:
+            check(tev, name, folder / name, ["R", "G", "B", "A", "V", *lights])
+        same(len({tuple(picture[2]["V"]) for picture in tev.pictures.values()}), 3, "different pictures")
 
         free = socket.create_server(("127.0.0.1", 0))
         gone = "127.0.0.1:%d" % free.getsockname()[1]

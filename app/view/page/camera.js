@@ -80,5 +80,5 @@ const keys = {
   ArrowLeft: () => orbit(-0.06, 0), ArrowRight: () => orbit(0.06, 0), ArrowUp: () => orbit(0, 0.06), ArrowDown: () => orbit(0, -0.06),
   w: () => walk(1, 0, 0), s: () => walk(-1, 0, 0), a: () => walk(0, -1, 0), d: () => walk(0, 1, 0), q: () => walk(0, 0, -1),
   e: () => walk(0, 0, 1), "+": () => dolly(0.9), "=": () => dolly(0.9), "-": () => dolly(1.1), Home: () => byId("home").click(),
-  f: () => flip(),
+  f: () => flip(), p: () => setPivot(),
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Every light where it is, over the picture, and handles on the chosen one: arrows along the axes, squares for planes, a disk
-// for the picture's plane, a diamond to aim, dots for the size.
+// for the picture's plane, a diamond to aim, a ring to roll about the axis, dots for the size and for the angle of a sun.
 const names = ["X", "Y", "Z"], axes = [[1, 0, 0], [0, 1, 0], [0, 0, 1]], colors = ["#ff5a52", "#5fd35f", "#5b9dff"];
 let held = null;
 
@@ -58,6 +58,24 @@ function handlesOf(light) {
     made.push({ name: kind === "sun" ? "direction of the sun" : "aim", shape: "diamond", color: "#ffd27a", at: add(anchor, times(axis, far)), from: anchor, begin: () => ({}),
       drag: (start, ray) => { const to = onBall(ray, anchor, far); return turnedLight(start.light, (d) => turnFromTo(d, axisOf(start.light), to)); } });
   }
+  if (["rectangle", "ellipse", "polygon"].includes(kind)) {
+    const toward = kind === "polygon" ? cross(axis, sub(light.polygon[0], anchor)) : add(unit(light[kind].halfU), unit(light[kind].halfV));
+    made.push({ name: "roll", shape: "ring", color: "#e3b0ff", at: add(anchor, times(unit(toward), 1.2 * reach)), from: anchor, begin: () => inPlane(anchor, axis),
+      drag: (start, ray) => {
+        const from = sub(start.at, anchor), to = sub(onPlane(ray, anchor, axis) || start.at, anchor);
+        return turnedLight(start.light, (d) => turn(d, axis, Math.atan2(dot(cross(from, to), axis), dot(from, to))));
+      } });
+  }
+  if (kind === "sun") {
+    // Off the axis by the root of the angle, so that small suns can be told apart.
+    const tip = add(anchor, times(axis, 1.5 * reach)), facing = cross(axis, frameOf(view).forward), across = length(facing) > 1e-3 ? unit(facing) : anyAcross(axis);
+    const least = worldOf(anchor, 16), most = worldOf(anchor, 110), widest = 179;
+    made.push({ name: "angle of the sun", shape: "dot", color: "#ffd27a", at: add(tip, times(across, least + most * Math.sqrt(light.sun.angle / widest))), from: tip, begin: () => ({}),
+      drag: (start, ray) => {
+        const share = Math.min(Math.max((onLine(ray, tip, across) - least) / most, 0.02), 1);
+        return { ...start.light, sun: { ...start.light.sun, angle: widest * share * share } };
+      } });
+  }
   const size = (name, from, direction, set) => made.push({ name, shape: "dot", color: "#ffffff", at: add(from, direction), begin: () => ({}),
     drag: (start, ray) => set(start.light, Math.max(onLine(ray, from, unit(direction)), 1e-3 * length(direction)) / length(direction)) });
   const shape = light[kind];
@@ -92,6 +110,7 @@ function onBall({ start, direction }, middle, radius) {
 
 function drawLights() {
   const drawing = document.createDocumentFragment();
+  drawTypedPixel(drawing);
   if (!byId("frame").hidden && byId("show-lights").checked && lights.length && shown) drawInto(drawing);
   overlay.replaceChildren(drawing);
 }
@@ -114,15 +133,16 @@ function drawHandle(handle, drawing) {
   const at = onStage(handle.at), from = handle.from && onStage(handle.from);
   if (!at) return;
   if (from) element("line", { x1: from.x, y1: from.y, x2: at.x, y2: at.y, stroke: handle.color }, drawing);
-  const s = handle.shape === "disk" ? 8 : 7, { x, y } = at;
+  const s = 7, { x, y } = at;
   const paths = { arrow: `M${x},${y - s}L${x + s},${y}L${x},${y + s}L${x - s},${y}Z`, diamond: `M${x},${y - s}L${x + s},${y}L${x},${y + s}L${x - s},${y}Z`, square: `M${x - s},${y - s}h${2 * s}v${2 * s}h${-2 * s}Z` };
-  const grip = handle.shape === "dot" || handle.shape === "disk" ? element("circle", { cx: x, cy: y, r: handle.shape === "dot" ? 5 : s }, drawing)
+  const radii = { dot: 5, disk: 8, ring: 6 };
+  const grip = handle.shape in radii ? element("circle", { cx: x, cy: y, r: radii[handle.shape] }, drawing)
     : element("path", { d: paths[handle.shape] }, drawing);
   grip.setAttribute("class", "hit");
   grip.setAttribute("data-handle", handle.name);
   grip.setAttribute("fill", handle.color);
-  grip.setAttribute("fill-opacity", handle.shape === "square" || handle.shape === "disk" ? 0.55 : 1);
-  grip.setAttribute("stroke", "#000");
+  grip.setAttribute("fill-opacity", { square: 0.55, disk: 0.55, ring: 0.1 }[handle.shape] ?? 1);
+  grip.setAttribute("stroke", handle.shape === "ring" ? handle.color : "#000");
   element("title", {}, grip).textContent = handle.name;
   grip.addEventListener("pointerdown", (event) => {
     event.preventDefault();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Lights by numbers: what a light is, changes of it, and the way back.
-let lights = [], off = [], solo = "", history = [], undone = [], lightsBefore = "[]";
+let lights = [], off = [], solo = "", saved = { scene: "scene.json", pictures: {} }, history = [], undone = [], lightsBefore = "[]";
 const kinds = ["rectangle", "ellipse", "disk", "polygon", "sphere", "sun"];
 const kindOf = (light) => kinds.find((kind) => kind in light);
 const chosenLight = () => lights.find((light) => light.name === byId("light").value) || lights[0];
@@ -162,14 +162,26 @@ function showNumbersSoon() {
   if (!numbersTimer) numbersTimer = setTimeout(() => { numbersTimer = 0; showNumbers(chosenLight(), byId("light-numbers")); }, 200);
 }
 
-async function save() {
-  const answer = await fetch(`/scene.json?token=${encodeURIComponent(token)}`);
-  if (!answer.ok) return trouble(await answer.text());
+/// Saves what the server answers as a file of that name.
+async function saveAs(name, path, parameters = {}) {
+  const answer = await fetch(`${path}?${new URLSearchParams({ token, ...parameters })}`);
+  if (!answer.ok) throw new Error(await answer.text());
   const link = document.createElement("a");
   link.href = URL.createObjectURL(await answer.blob());
-  link.download = byId("scene-name").textContent.replace(/\.[^.]*$/, "") + "-view.json";
+  link.download = name;
   link.click();
   setTimeout(() => URL.revokeObjectURL(link.href), 10000);
+}
+/// Saves the scene, and the pictures of lights that it names. They are to be in one folder.
+async function save() {
+  try {
+    await saveAs(saved.scene, "/scene.json");
+    for (const [light, name] of Object.entries(saved.pictures)) await saveAs(name, "/scene/picture", { light });
+    const count = Object.keys(saved.pictures).length;
+    if (count) trouble(`Saved: ${saved.scene}, and ${count} picture${count > 1 ? "s" : ""} of lights beside it.`, false, "good");
+  } catch (error) {
+    trouble(error.message);
+  }
 }
 
 byId("light").addEventListener("change", () => { showLight(); tell("moved"); showDisplay(); });

@@ -13,11 +13,12 @@ function fill(select, values, words = (value) => value) {
 }
 function showDisplay() {
   change("display", { type: "display", channel: byId("channel").value, light: chosenLight().name,
-    stops: byId("auto-stops").checked ? null : Number(byId("stops").value) });
+    stops: byId("auto-stops").checked ? null : Number(byId("stops").value), limit: byId("limit").value === "" ? null : Number(byId("limit").value) });
 }
 
 on("hello", (message) => {
   methods = message.methods;
+  errorColors = message.errorColors;
   fillMethods();
 });
 let firstState = true;
@@ -44,9 +45,12 @@ on("state", (state) => {
     solo = state.solo;
     if (firstState) lightsBefore = snapshot();
   }
+  saved = state.saved;
   if (firstState) takeReport(state);
   firstState = false;
   byId("channel").value = state.display.channel;
+  byId("channel").querySelector("[value=error]").disabled = state.other === null;
+  if (document.activeElement !== byId("limit")) byId("limit").value = state.display.limit ?? "";
   byId("auto-stops").checked = state.display.stops === null;
   if (state.display.stops !== null) byId("stops").value = state.display.stops;
   showLight();
@@ -56,11 +60,15 @@ on("say", (message) => {
   if (message.level === "error") trouble(message.text);
   else if (message.level === "warning") trouble(message.text, false);
 });
-on("frame", (header) => { if (header.final) trouble(byId("trouble").textContent, false); });
+on("frame", (header) => { if (header.final) trouble(byId("trouble").textContent, false, byId("trouble").className); });
 on("connected", () => trouble(""));
 on("lost", () => trouble("The connection to `penumbra view` is lost; trying again."));
 
 byId("channel").addEventListener("change", showDisplay);
+byId("limit").addEventListener("change", () => {
+  if (!byId("limit").checkValidity()) return trouble(`End of the scale: ${byId("limit").validationMessage}`);
+  showDisplay();
+});
 byId("auto-stops").addEventListener("change", showDisplay);
 byId("stops").addEventListener("change", () => { byId("auto-stops").checked = false; showDisplay(); });
 byId("size").addEventListener("change", () => {

@@ -86,6 +86,21 @@ function flip() {
   nameShown();
 }
 
+/// Whether the error is wanted of one method, which has nothing to be compared with.
+const isErrorWithoutB = () => byId("channel").value === "error" && shown.header.answers.length < 2;
+
+/// The scale of the picture of errors: the colour deepens with the square root of the error, so a quarter is half way.
+let errorColors = [];
+function showErrorScale({ limit }) {
+  byId("error-scale").hidden = !shown.by.difference;
+  if (!shown.by.difference) return;
+  const words = (share) => `${share < 0 ? "\u2212" : share > 0 ? "+" : ""}${Number(Math.abs(share * limit).toPrecision(4))}`;
+  byId("error-bar").style.background = `linear-gradient(to right, ${errorColors.map((color) => `rgb(${color})`).join(", ")})`;
+  byId("error-bar").setAttribute("aria-label", `Scale of V of A less V of B: red down to ${words(-1)}, white 0, blue up to ${words(1)}`);
+  byId("error-ticks").replaceChildren(...[-1, -0.25, 0, 0.25, 1].map((share) => Object.assign(document.createElement("span"), { textContent: words(share) })));
+  byId("limit").placeholder = limit;
+}
+
 on("frame", (header, images) => {
   if (shown) for (const image of Object.values(shown.by)) image.close();
   shown = { header, by: Object.fromEntries(images.map((image, i) => [header.images[i].shows, image])) };
@@ -101,7 +116,8 @@ on("frame", (header, images) => {
   byId("shown").textContent = `${answerWords(header.answers[0])}${header.answers[1] ? " | " + answerWords(header.answers[1]) : ""}: ` +
     `${header.final ? "final" : "preview" + reduced}, ${Math.round(root.ms)} ms`;
   nameShown();
-  byId("difference").textContent = header.difference
+  showErrorScale(header);
+  byId("difference").textContent = isErrorWithoutB() ? "There is no B: V of A is shown. The error of A against B needs a method for B." : header.difference
     ? `V of A \u2212 B: RMSE ${header.difference.rmse.toFixed(5)}, bias ${header.difference.bias.toFixed(5)}, largest ${header.difference.largest.toFixed(3)}; ` +
       `shadow ${header.answers.map((answer) => answer.milliseconds.toFixed(1)).join(" and ")} ms` : "";
   byId("stops").dataset.stops = header.stops;

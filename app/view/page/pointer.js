@@ -53,14 +53,15 @@ canvas.addEventListener("wheel", (event) => {
   dolly(Math.exp(0.0015 * event.deltaY));
   soonStill();
 }, { passive: false });
-canvas.addEventListener("dblclick", (event) => {
-  const [x, y] = placeOf(event);
-  askPixel(x, y, (pixel) => {
+/// Sets the pivot at what a pixel shows.
+function setPivot(place = pointed) {
+  if (place) askPixel(...place, (pixel) => {
     if (!pixel.position) return;
     view = { ...view, target: pixel.position };
     sendCamera(false);
   });
-});
+}
+canvas.addEventListener("dblclick", (event) => setPivot(placeOf(event)));
 canvas.addEventListener("keydown", (event) => {
   const does = event.ctrlKey || event.metaKey || event.altKey ? null : keys[event.key.length === 1 ? event.key.toLowerCase() : event.key];
   if (!does) return;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Shows what a pixel says, and what pictures cost.
 let asking = null, wanted = null, pointed = null;
+let typed = false;  // the pixel is that of the number fields, and not the pointer's
+const pixelFields = [byId("pixel-x"), byId("pixel-y")];
 const frameTimes = [];
 
 /// One question at a time, of the newest place.
@@ -28,9 +30,22 @@ on("lost", () => { asking = wanted = null; });
 on("pointed", (place) => {
   if (place.some((part) => part < 0 || part >= 1)) return;
   pointed = place;
+  if (typed) tell("moved");  // its mark goes
+  typed = false;
   if (!dragging) askPixel(...place);
 });
 on("frame", () => { if (pointed && !pointers.size) askPixel(...pointed); });
+
+for (const field of pixelFields) field.addEventListener("change", () => {
+  const numbers = pixelFields.map((one, i) => Math.min(Math.max(Math.floor(Number(one.value)), 0), pictureSize[i] - 1));
+  pixelFields.forEach((one, i) => { one.value = numbers[i]; });
+  pointed = numbers.map((number, i) => (number + 0.5) / pictureSize[i]);
+  typed = true;
+  askPixel(...pointed);
+  askSpace();
+  tell("moved");
+});
+byId("pivot").addEventListener("click", () => setPivot());
 
 function showPixel(pixel) {
   const box = byId("readout"), lines = [`Pixel ${pixel.x}, ${pixel.y}${pixel.final ? "" : " (preview)"}${pixel.surface ? `: ${pixel.object}, triangle ${pixel.id}` : ": background"}`];
@@ -39,14 +54,27 @@ function showPixel(pixel) {
     lines.push(`${pixel.answers.length > 1 ? "AB"[i] + ", " : ""}${answer.method}${answer.lightSamples ? `, ${answer.lightSamples} light samples` : ""}: ${of}`);
   }
   if (pixel.position) lines.push(`at ${pixel.position.map((value) => value.toFixed(4)).join(", ")}; depth ${pixel.depth.toFixed(4)}`);
-  box.replaceChildren(...lines.map((line) => Object.assign(document.createElement("p"), { textContent: line })));
+  box.setAttribute("aria-live", typed && pixel.final ? "polite" : "off");  // what the pointer passes is not read out
+  if (box.dataset.text !== lines.join()) box.replaceChildren(...lines.map((line) => Object.assign(document.createElement("p"), { textContent: line })));
+  box.dataset.text = lines.join();
   box.dataset.pixel = `${pixel.x},${pixel.y}`;
+  pixelFields.forEach((field, i) => {
+    field.max = pictureSize[i] - 1;
+    if (document.activeElement !== field) field.value = [pixel.x, pixel.y][i];
+  });
+  byId("pivot").disabled = !pixel.position;
   drawSeen(pixel.seen);
-  drawOutline(pixel.outline);
+  drawOutline(pixel.outline, pixel);
+}
+/// A cross over the pixel that was typed, which no pointer shows.
+function drawTypedPixel(drawing) {
+  if (!typed) return;
+  const [x, y] = stageSize().map((side, i) => pointed[i] * side), d = `M${x - 9},${y}h6m6,0h6M${x},${y - 9}v6m0,6v6`;
+  for (const name of ["mark under", "mark"]) element("path", { d, class: name }, drawing);
 }
 /// The light as the pixel sees it, and on it what stands before it. Edges are drawn under all of that: what is left of them
 /// bounds what is seen.
-function drawOutline(outline) {
+function drawOutline(outline, pixel) {
   const sheet = byId("outline"), pen = sheet.getContext("2d"), middle = sheet.width / 2, reach = 0.9 * middle;
   sheet.hidden = !byId("show-seen").checked;
   pen.clearRect(0, 0, sheet.width, sheet.height);
@@ -88,7 +116,9 @@ function drawOutline(outline) {
   pen.strokeStyle = getComputedStyle(document.documentElement).color;
   pen.lineWidth = 1;
   pen.stroke();
-  byId("outline-facts").textContent = `${outline.light}: ${outline.blockers.length}${outline.whole ? "" : " and more"} triangles stand before it; edges that bound what is seen are red`;
+  const before = `${outline.blockers.length}${outline.whole ? "" : " and more"} triangles stand before it`, v = pixel.answers[0].V[outline.light];
+  byId("outline-facts").textContent = `${outline.light}: ${before}; edges that bound what is seen are red`;
+  sheet.setAttribute("aria-label", `The outline of ${outline.light} as pixel ${pixel.x}, ${pixel.y} sees it: ${before}${v === undefined ? "" : `, V = ${v.toPrecision(6)}`}`);
   sheet.dataset.blockers = outline.blockers.length;
 }
 /// The light samples on the light, those that the pixel sees bright.
@@ -130,7 +160,7 @@ on("frame", (header) => {
   showRows(byId("times").tHead, two ? [["", "A", "B"]] : [], "th");
   showRows(byId("times").tBodies[0], [...phases.map((phase) => [phase, ...header.answers.map((answer) => (1000 * (answer.seconds[phase] || 0)).toFixed(1))]),
     ["all", header.milliseconds.toFixed(1)].concat(two ? [""] : [])], "td");
-  say(byId("size-facts"), `${header.triangles.toLocaleString("en")} triangles, ${header.width}\u00d7${header.height} pixels`);
+  say(byId("size-facts"), `${header.triangles.toLocaleString("en")} triangles, ${header.edges === null ? "" : `${header.edges.toLocaleString("en")} edges, `}${header.width}\u00d7${header.height} pixels`);
   frameTimes.push({ at: performance.now(), ms: Number(document.documentElement.dataset.ms), final: header.final });
   if (frameTimes.length > 100) frameTimes.shift();
   drawPlot();

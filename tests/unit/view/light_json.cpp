@@ -64,6 +64,24 @@ TEST(LightJson, WhatThePageDoesNotKnowStays) {
   EXPECT_EQ(read.unshaded_by, spot.unshaded_by);
 }
 
+TEST(LightJson, LightsWithoutAShapeOfTheirOwnChangeTheirBrightness) {
+  const scenes::Dome sky{{0, 0, 1}, 30, true, "evening.hdr"};
+  const scenes::Pieces mesh{{scenes::Rectangle{{0, 4, 0}, {0.5, 0, 0}, {0, 0, 0.5}}}};
+  for (const scenes::LightShape& shape : {scenes::LightShape(sky), scenes::LightShape(mesh)}) {
+    const scenes::AreaLight light = light_of(shape);
+    json written = light_json(light);
+    written["radiance"] = {6, 4, 2};
+    const scenes::AreaLight read = changed_light(light, written);
+    EXPECT_EQ(read.radiance, glm::dvec3(6, 4, 2));
+    EXPECT_EQ(light_json(read), written);
+    EXPECT_EQ(read.shape.index(), shape.index());
+    written["sphere"] = {{"center", {0, 0, 0}}, {"radius", 1}};
+    EXPECT_THROW(changed_light(light, written), InputError);
+  }
+  const scenes::AreaLight light = changed_light(light_of(sky), {{"radiance", {1, 1, 1}}});
+  EXPECT_EQ(std::get<scenes::Dome>(light.shape).image, "evening.hdr");
+}
+
 TEST(LightJson, RefusesWhatAFileCouldNotSay) {
   const scenes::AreaLight light = light_of(scenes::Rectangle{{0, 4, 0}, {0.5, 0, 0}, {0, 0, 0.5}});
   const json good = light_json(light);

@@ -95,5 +95,36 @@ TEST(LiveState, OfANewFileWhatItSaysOtherwiseIsTaken) {
   EXPECT_EQ(fewer.display.light, "key");
 }
 
+TEST(LiveState, MeshesAreTheSameUnlessATriangleOrASurfaceDiffers) {
+  scenes::Scene scene = scene_of_two();
+  scene.objects.emplace_back();
+  scene.soup = {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}, {0}, {0}};
+  scenes::Scene lit = scene;
+  lit.lights.front().radiance = glm::dvec3(3);
+  lit.cameras.pop_back();
+  EXPECT_TRUE(same_meshes(scene, lit));
+  const std::vector<void (*)(scenes::Scene&)> changes = {
+      [](scenes::Scene& one) { one.soup.positions[1].x = 2; },
+      [](scenes::Scene& one) {
+        one.soup.triangles[0] = {1, 0, 2};
+      },
+      [](scenes::Scene& one) { one.objects[0].color.x = 0.1; },
+      [](scenes::Scene& one) { one.objects[0].casts_shadow = false; },
+      [](scenes::Scene& one) { one.objects[0].emits = 1; },
+      [](scenes::Scene& one) { one.looks.normals.resize(3); },
+      [](scenes::Scene& one) { one.pictures.emplace_back(); },
+      [](scenes::Scene& one) { one.origin = glm::dvec3(1); },
+      [](scenes::Scene& one) { one.objects.emplace_back(); },
+  };
+  for (std::size_t i = 0; i < changes.size(); ++i) {
+    scenes::Scene changed = lit;
+    changes[i](changed);
+    EXPECT_FALSE(same_meshes(scene, changed)) << i;
+  }
+  const scenes::Scene whole = with_meshes(lit, scene);
+  EXPECT_TRUE(same_meshes(whole, scene));
+  EXPECT_EQ(whole.lights.front().radiance, glm::dvec3(3));
+}
+
 }  // namespace
 }  // namespace penumbra::app

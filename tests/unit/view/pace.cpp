@@ -38,5 +38,26 @@ TEST(LivePace, ASlowMachineStaysAtTheLeast) {
   EXPECT_EQ(pace.quality().divisor, 8U);
 }
 
+TEST(LivePace, AVerySlowPictureIsFollowedByTheLowestQuality) {
+  LivePace pace;
+  EXPECT_FALSE(pace.is_lowest());
+  pace.took(2000);
+  EXPECT_TRUE(pace.is_lowest());
+}
+
+TEST(SlowMethods, AreThoseThatAreSlowAtTheLowestQuality) {
+  SlowMethods slow;
+  slow.took("a", 2000, false);
+  slow.took("b", kPictureTime, true);
+  EXPECT_FALSE(slow.contains("a") || slow.contains("b"));
+  slow.took("a", kPictureTime + 1, true);
+  EXPECT_TRUE(slow.contains("a"));
+  EXPECT_FALSE(slow.contains("b"));
+  slow.took_final("a", 2000);
+  EXPECT_TRUE(slow.contains("a"));
+  slow.took_final("a", 20);  // it was the machine that was slow
+  EXPECT_FALSE(slow.contains("a"));
+}
+
 }  // namespace
 }  // namespace penumbra::app
