@@ -19,7 +19,7 @@ from window import final, run, view_3d  # noqa: E402
 
 
 def room():
-    """Suzanne, a ring and a pillar in a corner, under a large lamp, a small warm one and a grey sky."""
+    """Suzanne, a ring and a pillar in a corner, under a large lamp and a small warm one."""
     wall = scenes.diffuse((0.75, 0.72, 0.68), "Wall")
     scenes.add("Floor", scenes.quad("Floor", wall, 4))
     scenes.add("Back", scenes.quad("Back", wall, 4), (-3, 0, 2), (0, 90, 0))
@@ -30,22 +30,24 @@ def room():
             (bpy.ops.mesh.primitive_torus_add, "Ring", (0.6, 0.2, 0.2),
              {"location": (1.4, 1.3, 0.2), "major_radius": 0.6, "minor_radius": 0.2})):
         make(**values)
-        thing = bpy.context.object
+        thing = bpy.context.view_layer.objects.active
         thing.name = name
         thing.data.materials.append(scenes.diffuse(color, name))
-        bpy.ops.object.shade_smooth()
+        thing.data.polygons.foreach_set("use_smooth", [True] * len(thing.data.polygons))
         if name == "Suzanne":
             thing.modifiers.new("Subdivision", "SUBSURF").levels = 1
-    scenes.lamp("AREA", (1.5, -2.2, 3.4), (28, 25, 0), name="Window", energy=250, shape="RECTANGLE", size=1.6, size_y=0.8)
-    scenes.lamp("POINT", (1.8, 2.6, 1.8), name="Bulb", energy=60, shadow_soft_size=0.12, color=(1, 0.6, 0.3))
+    scenes.lamp("AREA", (1.5, -2.2, 3.4), (28, 25, 0), name="Window", energy=110, shape="RECTANGLE", size=1.6, size_y=0.8)
+    scenes.lamp("AREA", (1.8, 2.9, 1.8), (-60, 25, 0), name="Bulb", energy=40, shape="DISK", size=0.4, color=(1, 0.6, 0.3))
+    bpy.ops.object.select_all(action="DESELECT")
 
 
 def picture():
     scene = inside.fresh(room)
+    from penumbra import sky
     scene.view_settings.view_transform = "Standard"
     scene.render.film_transparent = False
     scene.world = bpy.data.worlds.new("Grey")
-    scene.world.color = (0.05, 0.05, 0.05)
+    scene.world.color, scene.penumbra.world = (0.05, 0.05, 0.05), sky.SEEN
     yield 0.2
     area, _, space = view_3d()
     away, target = Vector((6.6, -2.4, 3.6)), Vector((-0.2, 0.35, 0.75))
@@ -53,9 +55,7 @@ def picture():
     place.view_perspective, place.view_location, place.view_distance = "PERSP", target, (away - target).length
     place.view_rotation = (away - target).to_track_quat("Z", "Y")
     window = bpy.context.window_manager.windows[0]
-    for other in window.screen.areas:
-        if other.type == "PROPERTIES":
-            other.spaces.active.context = "RENDER"
+    next(other for other in window.screen.areas if other.type == "PROPERTIES").spaces.active.context = "RENDER"
     space.shading.type = "RENDERED"
     yield from final("no picture came")
     yield 2.0
