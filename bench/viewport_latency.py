@@ -133,8 +133,8 @@ def write(asked, loads, columns, formats, rows, size, least):
                       "processor seconds are of Blender and of the add-on's child, all threads. The judge is Cycles' own converged crop of "
                       f"64 × 48 pixels full of penumbra (8,192 samples a pixel; {100 * least:.2f} % is the least that can be told). Cycles: "
                       "direct light, its viewport's default of 1,024 samples, adaptive (the default) or not, no denoising, pixels' centres "
-                      f"as Penumbra; watched until 1 % or for {asked.rest:g} s; never: adaptive sampling "
-                      "ended before.",
+                      f"as Penumbra; watched until 1 % or for {asked.rest:g} s; never: the crop had long stopped changing "
+                      "by then. Pixels whose neighbours show other planes do not count.",
         "columns": columns, "formats": formats}
     parts = [f' "{key}": {json.dumps(value, ensure_ascii=False)}' for key, value in result.items()]
     rounded = [[round(value, 3) if isinstance(value, float) else value for value in row] for row in rows]
