@@ -80,7 +80,7 @@ def rows_of(scene, measured, rest):
             if not drags:
                 continue
             pictures = statistics.median(drag["pictures"] / drag["seconds"] for drag in drags)
-            exact = both([(drag["exact"], drag["after"][-1][1]) for drag in drags]) if engine == "PENUMBRA" else ""
+            exact = both([(drag["final"], drag["after"][-1][1]) for drag in drags]) if engine == "PENUMBRA" else ""
             processor = statistics.median(drag["processor"] / drag["pictures"] for drag in drags)
             error = statistics.median(drag["after"][-1][2] for drag in drags)
             yield [f"{NAMES[scene]}, {moves}: {name}", float(pictures), 1000 * processor,

@@ -130,9 +130,9 @@ class Test:
         last, start = time.monotonic(), processor()
         while time.monotonic() < last + REST and not self.is_done(engine, count):
             yield 0.02
-        exact = notes[-1][0] - last if engine == "PENUMBRA" and self.is_done(engine, count) else None
+        final = notes[-1][0] - last if engine == "PENUMBRA" and self.is_done(engine, count) else None
         self.drags.append({"engine": engine, "adaptive": self.scene.cycles.use_preview_adaptive_sampling, "what": what, "pictures": count,
-                           "seconds": seconds, "processor": used, "exact": exact, "after": [(when - last, until - start, crop)
+                           "seconds": seconds, "processor": used, "final": final, "after": [(when - last, until - start, crop)
                                                                                                  for when, until, crop in notes[count:]]})
 
     def see_penumbra(self):
