@@ -23,3 +23,7 @@ endforeach()
 add_test(NAME blender.viewport
          COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/blender/run.sh viewport.py ${addon} $<TARGET_FILE:penumbra> ${PROJECT_BINARY_DIR}/blender_viewport)
 set_tests_properties(blender.viewport PROPERTIES LABELS full TIMEOUT 1800 ENVIRONMENT WINDOW=1)
+add_test(NAME blender.killed
+         COMMAND ${PENUMBRA_SYSTEM_PYTHON} ${CMAKE_CURRENT_SOURCE_DIR}/blender/killed.py ${addon} $<TARGET_FILE:penumbra>
+                 ${PROJECT_BINARY_DIR}/blender_killed)
+set_tests_properties(blender.killed PROPERTIES LABELS full TIMEOUT 1200)
