@@ -359,10 +359,10 @@ using InstancesFull = Instances;
 TEST_F(InstancesFull, GiveTheSamePictureOfAForest) {
   json trees = tree();
   trees["shape"]["segments"] = 32;
-  for (int i = 0; i < 400; ++i) {
+  for (int i = 0; i < 850; ++i) {
     trees["instances"].push_back(
         {{"translate",
-          {0.5 * (i % 20) - 5, 0.2 + 0.01 * (i % 7), 0.5 * (i / 20) - 8}},  // NOLINT(bugprone-integer-division)
+          {0.35 * (i % 29) - 5, 0.2 + 0.01 * (i % 7), 0.35 * (i / 29) - 8}},  // NOLINT(bugprone-integer-division)
          {"rotate", {3 * i, 37 * i, 0}},
          {"scale", {0.4, 0.5 + 0.01 * (i % 13), 0.5}}});
   }
