@@ -254,10 +254,11 @@ Picture Renderer::render(const RenderOptions& options) {
     state.frames->expect_frames();
   }
   try {
-    state.frames->render(same_meshes ? app::without_meshes(scene.scene)
-                         : copies    ? scenes::copied(scene.scene, scene.instances, app::bytes_per_copy(state.wish))
-                                     : scene.scene,
-                         frame, {}, 0);
+    state.frames->render(
+        same_meshes ? app::without_meshes(scene.scene)
+        : copies    ? scenes::copied(scene.scene, scene.instances, app::bytes_per_copy(state.wish, scene.scene.lights))
+                    : scene.scene,
+        frame, {}, 0);
     state.rendered = meshes;
     state.shared = shares;
     Picture picture(picture_of(*state.frames, total.seconds()));

@@ -13,8 +13,10 @@ PictureScene read_picture_scene(const RunOptions& run, std::optional<double> tim
   PictureScene read;
   read.scene = read_session_scene(run, time, {.instances = &read.instances});
   set_lens(read.scene, request, run.camera);
-  if (needs_copies(read.scene, read.instances, request.instances, request.wish, request.pixel_side))
-    read.scene = copied(std::move(read.scene), std::exchange(read.instances, {}), bytes_per_copy(request.wish));
+  if (needs_copies(read.scene, read.instances, request.instances, request.wish, request.pixel_side)) {
+    const std::uint64_t bytes = bytes_per_copy(request.wish, read.scene.lights);
+    read.scene = copied(std::move(read.scene), std::exchange(read.instances, {}), bytes);
+  }
   read.seconds = watch.seconds();
   return read;
 }

@@ -153,12 +153,17 @@ bool needs_copies(const scenes::Scene& scene, const scenes::Instances& instances
          triangle_count(scene, instances) <= scenes::kFewCopies || !counts_dome_samples(wish, scene.lights);
 }
 
-std::uint64_t bytes_per_copy(const MethodWish& wish) {
+std::uint64_t bytes_per_copy(const MethodWish& wish, std::span<const scenes::AreaLight> lights) {
   if (!wish.method.empty()) return describe_method(wish.method, wish.options).bytes_per_triangle;
   const auto methods = all_methods();
   const auto areas = std::ranges::find_if(methods, [](const auto* method) { return method->exact_area.has_value(); });
-  return wish.samples || areas == methods.end() ? visibility::MethodDescription().bytes_per_triangle
-                                                : (*areas)->bytes_per_triangle;
+  const auto is_sampled = [](const scenes::AreaLight& light) {
+    const auto* const dome = std::get_if<scenes::Dome>(&light.shape);
+    return dome != nullptr && dome->sampled;
+  };
+  const bool counts = wish.samples || std::ranges::all_of(lights, is_sampled);
+  return counts || areas == methods.end() ? visibility::MethodDescription().bytes_per_triangle
+                                          : (*areas)->bytes_per_triangle;
 }
 
 bool answers_apart(const visibility::MethodDescription& method) {

@@ -12,6 +12,7 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -71,7 +72,7 @@ bool needs_copies(const scenes::Scene& scene, const scenes::Instances& instances
                   const MethodWish& wish, std::uint32_t pixel_side);
 
 /// Returns the memory that a method needs for each triangle of a copy, beside the scene's.
-std::uint64_t bytes_per_copy(const MethodWish& wish);
+std::uint64_t bytes_per_copy(const MethodWish& wish, std::span<const scenes::AreaLight> lights);
 
 /// Parses the options. Throws UsageError; throws InputError if --exposure names a picture without an exposure
 /// attribute.

@@ -23,11 +23,22 @@ constexpr int kLongestPatience = 256;  // in pictures
 }  // namespace
 
 void SlowMethods::took(const std::string& entry, double milliseconds, bool lowest) {
-  if (lowest && milliseconds > kPictureTime) entries_.insert(entry);
+  if (!lowest || milliseconds <= kPictureTime) {
+    once_.erase(entry);
+  } else if (!once_.insert(entry).second) {
+    entries_.insert(entry);
+  }
 }
 
 void SlowMethods::took_final(const std::string& entry, double milliseconds) {
-  if (milliseconds <= kPictureTime) entries_.erase(entry);
+  if (milliseconds > kPictureTime) return;
+  entries_.erase(entry);
+  once_.erase(entry);
+}
+
+void SlowMethods::clear() {
+  entries_.clear();
+  once_.clear();
 }
 
 LiveQuality LivePace::quality() const {

@@ -21,15 +21,16 @@ struct LiveQuality {
 /// Methods that are too slow for pictures during changes, even at the lowest quality.
 class SlowMethods {
  public:
-  /// Records the duration of a method's part of a picture. `lowest`: the picture has the lowest quality.
+  /// Records the duration of a method's part of a picture; a method is slow after two slow pictures in a row, since the
+  /// first may include what it prepares. `lowest`: the picture has the lowest quality.
   void took(const std::string& entry, double milliseconds, bool lowest);
   /// Records the duration of a method's part of a final picture: a method that is fast there is not slow.
   void took_final(const std::string& entry, double milliseconds);
   [[nodiscard]] bool contains(const std::string& entry) const { return entries_.contains(entry); }
-  void clear() { entries_.clear(); }
+  void clear();
 
  private:
-  std::set<std::string> entries_;
+  std::set<std::string> entries_, once_;  // once_: the last picture was slow
 };
 
 /// Chooses the best quality with pictures of at most kPictureTime, about twenty a second.

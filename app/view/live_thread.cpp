@@ -85,13 +85,13 @@ void LiveRenderer::work_on(std::unique_lock<std::mutex>& lock) {
   const bool has_any = picture_ && picture_->revision == revision_;
   Order order{state_, whole_, revision_, pace_.quality(), has_any || final_milliseconds_ < kPictureTime, stamps_};
   if (failed_ == revision_ || (has_any && picture_->is_final) || wants_show_) {
-    const bool shows = std::exchange(wants_show_, false), masks = needs_masks();
+    const bool shows = std::exchange(wants_show_, false), masks = needs_masks(), edges = needs_edges();
     lock.unlock();
     if (shows)
       show();
     else if (masks)
       make_masks(order);
-    else
+    else if (edges)
       count_edges(order.whole);
     lock.lock();
     return;

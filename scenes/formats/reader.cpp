@@ -50,10 +50,10 @@ void sample_added_domes(Scene& scene, const Instances& instances, StudioWish& st
   const std::uint64_t triangles = triangle_count(scene, instances);
   if (instances.empty() || triangles <= kFewCopies || std::ranges::all_of(studio.lights, has_place)) return;
   studio.sampled_domes = true;
-  scene.warnings.push_back(
-      fmt::format("the added dome is counted in light samples: for exact areas every instance would be a copy, {} "
-                  "triangles in all (--method edge-scatter:rows=exact asks for them)",
-                  triangles));
+  scene.warnings.push_back(fmt::format(
+      "the added dome is `sampled`: methods that may choose count its light samples, since for exact areas every "
+      "instance would be a copy, {} triangles in all (--method edge-scatter:rows=exact asks for areas)",
+      triangles));
 }
 
 }  // namespace
@@ -82,7 +82,7 @@ Scene read_scene(const std::filesystem::path& file, const ReadOptions& options) 
   studio.never |= !options.needs_light;
   const bool wishes = studio.always || !studio.lights.empty() || studio.camera || !studio.fit_camera.empty();
   const bool lacks = !is_json && (scene.cameras.empty() || (scene.lights.empty() && !studio.never));
-  const bool gets_floor = !studio.lights.empty() && scene.lights.empty() && !studio.never;
+  const bool gets_floor = studio.floor && !studio.lights.empty() && scene.lights.empty() && !studio.never;
   const bool is_around = lacks || studio.always || gets_floor || std::ranges::any_of(studio.lights, has_place) ||
                          !studio.fit_camera.empty();
   if (is_around && options.instances != nullptr)  // a studio encloses all instances, to the last bit

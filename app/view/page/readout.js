@@ -9,7 +9,7 @@ const frameTimes = [];
 function askPixel(x, y, then) {
   const place = { x: Math.min(Math.max(Math.floor(x * pictureSize[0]), 0), pictureSize[0] - 1), y: Math.min(Math.max(Math.floor(y * pictureSize[1]), 0), pictureSize[1] - 1), then };
   if (asking) {
-    wanted = place;
+    if (then || !(wanted && wanted.then)) wanted = place;  // what waits for its pixel is not dropped
     return;
   }
   asking = place;
@@ -27,6 +27,7 @@ on("pixel", (pixel) => {
   }
 });
 on("lost", () => { asking = wanted = null; });
+on("say", (message) => { if (message.level === "error") asking = null; });  // perhaps of a pixel that is not there any more
 on("pointed", (place) => {
   if (place.some((part) => part < 0 || part >= 1)) return;
   pointed = place;

@@ -65,7 +65,7 @@ TEST(LightJson, WhatThePageDoesNotKnowStays) {
 }
 
 TEST(LightJson, LightsWithoutAShapeOfTheirOwnChangeTheirBrightness) {
-  const scenes::Dome sky{{0, 0, 1}, 30, true, "evening.hdr"};
+  const scenes::Dome sky{{0, 0, 1}, 30, true, false, "evening.hdr"};
   const scenes::Pieces mesh{{scenes::Rectangle{{0, 4, 0}, {0.5, 0, 0}, {0, 0, 0.5}}}};
   for (const scenes::LightShape& shape : {scenes::LightShape(sky), scenes::LightShape(mesh)}) {
     const scenes::AreaLight light = light_of(shape);

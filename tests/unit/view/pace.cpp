@@ -51,6 +51,11 @@ TEST(SlowMethods, AreThoseThatAreSlowAtTheLowestQuality) {
   slow.took("b", kPictureTime, true);
   EXPECT_FALSE(slow.contains("a") || slow.contains("b"));
   slow.took("a", kPictureTime + 1, true);
+  EXPECT_FALSE(slow.contains("a"));  // that may have been what it prepares
+  slow.took("a", kPictureTime, true);
+  slow.took("a", kPictureTime + 1, true);
+  EXPECT_FALSE(slow.contains("a"));
+  slow.took("a", kPictureTime + 1, true);
   EXPECT_TRUE(slow.contains("a"));
   EXPECT_FALSE(slow.contains("b"));
   slow.took_final("a", 2000);
