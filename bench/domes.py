@@ -1,71 +1,68 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Error and cost of domes, areas beside rays: python3 bench/domes.py PROGRAM [SIDE]
+"""Error and cost of all methods under domes: python3 bench/domes.py PROGRAM [--size PIXELS] [--runs N] [--out FILE.json]
 
-Renders scenes/skies/knot.json under each of its domes, at SIDE x SIDE pixels (default 48): as areas, and with raytrace (Embree) for 64 to 4096 light samples, which are stratified and in
-proportion to the picture's luminance. Prints rows of bench/results/domes.json: scene, dome, method, light samples,
-processor seconds of the whole process less those of the same process with one light sample, and the RMSE of V against
-the areas of `exact`. Uses Python's standard library alone."""
+Compares the methods on scenes/skies/knot.json under each of its domes with the areas of `exact`: light samples by rays and by edges, suns of
+a median cut by maps, the picture's own depths, and exact areas. Seconds are those of the shadow, wall time, the median of N runs: an idle
+machine is needed. Without --out a table is printed; FILE.json is one of bench/results/. Uses Python's standard library alone."""
 
+import argparse
 import json
-import math
 import os
 import subprocess
-import sys
 import tempfile
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
+DOMES = ("around", "above", "evening")
+COUNTED = ("raytrace", "edge-scatter", "view-sample", "depth-complexity")
 SAMPLES = (64, 256, 1024, 4096)
-SUBJECTS = (("skies/knot", "around", ()), ("skies/knot", "above", ()), ("skies/knot", "evening", ()))
+MAPS = tuple(f"{method}:suns={suns}:size=256" for suns in (16, 64) for method in ("shadow-map", "pcss", "vssm"))
+SCREEN = ("ssao", "hbao")
+AREAS = "edge-scatter:rows=exact"
 
 
-def run(arguments):
-    """Processor seconds of the program and the processes that it starts."""
-    child = subprocess.Popen(arguments, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-    _, status, usage = os.wait4(child.pid, 0)
-    if status != 0:
-        sys.exit(f"{' '.join(arguments)}: status {status}")
-    return usage.ru_utime + usage.ru_stime
-
-
-def entry(program, folder, subject, method, samples):
-    """The process of one method, and its picture's file."""
-    scene, light, more = subject
-    out = Path(folder) / "out.exr"
-    arguments = [program, "render", str(ROOT / "scenes" / f"{scene}.json"), *more, "--light", light, "--method", method, "--size", f"{SIDE}x{SIDE}", "-o", str(out)]
-    return run(arguments + (["--light-samples", str(samples)] if samples else []))
-
-
-def errors(program, folder, subject):
-    """RMSE of V against `exact`, by the number of light samples; 0: areas by edge-scatter."""
-    scene, light, more = subject
+def rows_of(program, folder, dome, methods, samples, given):
+    """Rows of methods that one run compares. ssao and hbao know no pictures of the sky."""
     out = Path(folder) / "compared"
-    found = {}
-    for samples in (0, *SAMPLES):
-        method = "raytrace" if samples else "edge-scatter:rows=exact"
-        arguments = [program, "compare", str(ROOT / "scenes" / f"{scene}.json"), *more, "--light", light, "--methods", method, "--reference", "exact", "--size", f"{SIDE}x{SIDE}",
-                     "-o", str(out), *(["--light-samples", str(samples)] if samples else [])]
-        run(arguments)
-        found[samples] = json.loads((out / "metrics.json").read_text(encoding="utf-8"))["methods"][0]["error"]["rmse"]
-    return found
+    subprocess.run([program, "compare", ROOT / "scenes" / "skies" / "knot.json", "--light", dome, "--methods", ",".join(methods), "--reference", "exact",
+                    "--size", f"{given.size}x{given.size}", "--runs", str(given.runs), "-o", out, "--quiet", *(["--light-samples", str(samples)] if samples else [])],
+                   check=True, stdout=subprocess.DEVNULL)
+    entries = json.loads((out / "metrics.json").read_text(encoding="utf-8"))["methods"]
+    return [[dome, method, samples, entry["seconds"]["shadow"], entry["error"]["rmse"]] for method, entry in zip(methods, entries, strict=True)]
+
+
+def measured(given):
+    with tempfile.TemporaryDirectory() as folder:
+        for dome in DOMES:
+            yield from rows_of(given.program, folder, dome, (AREAS, *MAPS, *(SCREEN if dome != "evening" else ())), None, given)
+            for samples in SAMPLES:
+                yield from rows_of(given.program, folder, dome, COUNTED if samples <= 1024 else COUNTED[:1], samples, given)
 
 
 def main():
-    program = sys.argv[1]
-    with tempfile.TemporaryDirectory() as folder:
-        for subject in SUBJECTS:
-            scene, light, _ = subject
-            found = errors(program, folder, subject)
-            idle = entry(program, folder, subject, "raytrace", 1)
-            for samples in (*SAMPLES, 0):
-                method = "raytrace" if samples else "edge-scatter:rows=exact"
-                seconds = entry(program, folder, subject, method, samples) - idle
-                print(json.dumps([scene, light, method.partition(":")[0] if samples else "areas", samples or None, round(seconds, 2), float(f"{found[samples]:.1e}")]) + ",", flush=True)
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("program")
+    parser.add_argument("--size", type=int, default=48)
+    parser.add_argument("--runs", type=int, default=3)
+    parser.add_argument("--out", type=Path)
+    given = parser.parse_args()
+    rows = []
+    for row in measured(given):
+        rows.append([*row[:3], float(f"{row[3]:.3g}"), float(f"{row[4]:.2g}")])
+        print(*rows[-1], flush=True)
+    if not given.out:
+        return
+    commit = subprocess.run(["git", "-C", ROOT, "rev-parse", "--short=8", "HEAD"], check=True, capture_output=True, text=True).stdout.strip()
+    model = next((line.partition(":")[2].strip() for line in open("/proc/cpuinfo", encoding="utf-8") if line.startswith("model name")), "a processor")
+    result = {"title": "domes: errors and seconds of all methods", "commit": commit, "machine": f"{model}, {os.cpu_count()} threads, load {os.getloadavg()[1]:.0f}",
+              "command": f"bench/domes.py build/penumbra --size {given.size} --runs {given.runs}",
+              "conditions": f"`scenes/skies/knot.json`, {given.size} × {given.size} pixels; seconds of the shadow, medians of {given.runs} runs; RMSE of V over judged pixels against `exact`.",
+              "columns": ["dome", "method", "light samples", "seconds", "RMSE of V"], "formats": [None, None, None, ".3f", ".1e"]}
+    fields = [f' "{key}": {json.dumps(value, ensure_ascii=False)}' for key, value in result.items()]
+    listed = ",\n".join("  " + json.dumps(row) for row in rows)
+    given.out.write_text("{\n" + ",\n".join(fields) + ',\n "rows": [\n' + listed + "\n ]\n}\n", encoding="utf-8")
 
 
-SIDE = int(sys.argv[2]) if len(sys.argv) > 2 else 48
 if __name__ == "__main__":
-    if len(sys.argv) < 2 or not math.isfinite(SIDE):
-        sys.exit(__doc__)
     main()
