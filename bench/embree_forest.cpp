@@ -38,11 +38,12 @@ RTCScene mesh_scene(RTCDevice device, const mesh::TriangleSoup& soup) {
   auto* const vertices = static_cast<float*>(rtcSetNewGeometryBuffer(
       geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), soup.positions.size()));
   for (std::size_t i = 0; i < soup.positions.size(); ++i)
-    for (int axis = 0; axis < 3; ++axis) vertices[3 * i + axis] = static_cast<float>(soup.positions[i][axis]);
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      vertices[3 * i + axis] = static_cast<float>(soup.positions[i][static_cast<int>(axis)]);
   auto* const corners = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(
       geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(std::uint32_t), soup.triangles.size()));
   for (std::size_t i = 0; i < soup.triangles.size(); ++i)
-    for (int k = 0; k < 3; ++k) corners[3 * i + k] = soup.triangles[i][k];
+    for (std::size_t k = 0; k < 3; ++k) corners[3 * i + k] = soup.triangles[i][k];
   rtcCommitGeometry(geometry);
   rtcAttachGeometry(scene, geometry);
   rtcReleaseGeometry(geometry);
@@ -55,8 +56,8 @@ RTCScene whole_scene(RTCDevice device, const scenes::Scene& scene, const scenes:
   rtcSetSceneFlags(whole, RTC_SCENE_FLAG_ROBUST);
   const auto add = [&](RTCScene part, const glm::dmat4& to_world) {
     std::array<float, 12> columns{};
-    for (int column = 0; column < 4; ++column)
-      for (int row = 0; row < 3; ++row) columns[3 * column + row] = static_cast<float>(to_world[column][row]);
+    for (std::size_t i = 0; i < columns.size(); ++i)
+      columns[i] = static_cast<float>(to_world[static_cast<int>(i / 3)][static_cast<int>(i % 3)]);
     RTCGeometry instance = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE);
     rtcSetGeometryInstancedScene(instance, part);
     rtcSetGeometryTransform(instance, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, columns.data());
@@ -130,7 +131,8 @@ class Tracer {
     std::array<float, 16> columns{};
     rtcGetGeometryTransform(rtcGetGeometry(scene_, hit.hit.instID[0]), 0, RTC_FORMAT_FLOAT4X4_COLUMN_MAJOR,
                             columns.data());
-    for (int i = 0; i < 16; ++i) to_world[i / 4][i % 4] = columns[i];
+    for (std::size_t i = 0; i < columns.size(); ++i)
+      to_world[static_cast<int>(i / 4)][static_cast<int>(i % 4)] = columns[i];
     glm::dvec3 n(scenes::world_normal(to_world, {hit.hit.Ng_x, hit.hit.Ng_y, hit.hit.Ng_z}));
     if (glm::dot(n, d) > 0) n = -n;
     if (glm::dot(n, to_sun_) <= 0) return 0;

@@ -77,14 +77,15 @@ void MatteShares::add_row(std::size_t y, std::span<const std::uint32_t> of_sampl
   Row& row = rows_[y];
   row.ends.reserve(width_);
   row.shares.reserve(width_);
+  const std::size_t step = std::size_t{width_} * side;
   // A pixel that shows one name alone, as most do, gets the same sum as its neighbour with the same weights.
   float whole = 0;
   std::span<const double> whole_of;
   std::size_t begin = 0;
   for (std::size_t x = 0; x < width_; ++x) {
-    const std::size_t first = row.shares.size(), corner = down.first * width_ * side + across[x].first;
+    const std::size_t first = row.shares.size(), corner = down.first * step + across[x].first;
     const bool is_new = before.ends[x] == begin;
-    if (is_new && is_one_name(of_sample, corner, {down.shares.size(), across[x].shares.size(), width_ * side})) {
+    if (is_new && is_one_name(of_sample, corner, {down.shares.size(), across[x].shares.size(), step})) {
       if (!std::ranges::equal(whole_of, across[x].shares)) {
         whole_of = across[x].shares;
         whole = 0;
@@ -100,7 +101,7 @@ void MatteShares::add_row(std::size_t y, std::span<const std::uint32_t> of_sampl
                       before.shares.begin() + before.ends[x]);
     begin = before.ends[x];
     for (std::size_t i = 0; i < down.shares.size(); ++i) {
-      const std::size_t from = corner + i * width_ * side;
+      const std::size_t from = corner + i * step;
       for (std::size_t k = 0; k < across[x].shares.size(); ++k)
         add_share(row.shares, first, of_sample[from + k], down.shares[i] * across[x].shares[k]);
     }

@@ -180,13 +180,9 @@ MethodWish LiveRenderer::wish_for(const Order& order, const std::string& entry) 
   std::uint32_t samples = asked;
   if (!order.is_final) {
     samples = std::min(order.quality.light_samples, asked != 0 ? asked : kMaskSamples);
-    if (wish.method.empty()) {
-      wish.samples = true;
-    } else if (slow_.contains(entry)) {
+    if (wish.method.empty() || slow_.contains(entry) || describe_method(wish.method, wish.options).gives_area()) {
       wish = {{}, {}, true};
-    } else if (const auto description = describe_method(wish.method, wish.options); description.gives_area()) {
-      wish = {{}, {}, true};
-    } else if (description.counts_light_samples()) {
+    } else if (describe_method(wish.method, wish.options).counts_light_samples()) {
       wish.samples = true;
     } else {
       samples = 0;
