@@ -73,7 +73,7 @@ TEST(LightJson, LightsWithoutAShapeOfTheirOwnChangeTheirBrightness) {
     written["radiance"] = {6, 4, 2};
     const scenes::AreaLight read = changed_light(light, written);
     EXPECT_EQ(read.radiance, glm::dvec3(6, 4, 2));
-    EXPECT_EQ(light_json(read), written);
+    EXPECT_EQ(json(light_json(read)), written);
     EXPECT_EQ(read.shape.index(), shape.index());
     written["sphere"] = {{"center", {0, 0, 0}}, {"radius", 1}};
     EXPECT_THROW(changed_light(light, written), InputError);
