@@ -362,7 +362,7 @@ def check_saving(browser, folder):
 
 
 def reached_by_tab(page):
-    """What Tab reaches, from the top: identities, names of options, labels of numbers."""
+    """Returns what Tab reaches, from the top: identities, names of options, labels of numbers."""
     page.ask("document.activeElement.blur()")
     names = "document.activeElement.id || document.activeElement.dataset.option || document.activeElement.getAttribute('aria-label')"
     reached = set()
@@ -401,89 +401,6 @@ def check_reach(page):
     page.tick("undo")
     page.choose("method-b", "")
     page.choose("method", "")
-
-
-def check_typed_pixel(page, folder):
-    """A pixel by its numbers, without a pointer: what it says, its outline in words, and the pivot there."""
-    exr, _ = rendered(page, folder, "typed")
-    page.browser.pointer("mouseMoved", 2, 2)
-    x, y = min(((x, y) for y in range(64) for x in range(64)), key=lambda at: abs(exr["key.V"][at[1] * 64 + at[0]] - 0.5))
-    page.ask("document.getElementById('show-seen').click()")
-    for field, value in (("pixel-x", x), ("pixel-y", y)):
-        page.ask(f"(() => {{ const c = document.getElementById('{field}'); c.value = '{value}'; c.dispatchEvent(new Event('change')); }})()")
-    page.browser.wait(f"document.getElementById('readout').dataset.pixel === '{x},{y}'")
-    v = exr["key.V"][y * 64 + x]
-    text = page.ask("document.getElementById('readout').innerText")
-    expect(abs(float(text.split("V key = ")[1].split(",")[0].split()[0]) - v) < 1e-5, f"V at {x},{y}: {text}, not {v}")
-    same(page.ask("[...'role aria-live'.split(' ')].map(name => document.getElementById('readout').getAttribute(name))"), ["status", "polite"], "it is read out")
-    page.browser.wait(f"document.getElementById('outline').getAttribute('aria-label').includes('as pixel {x}, {y} sees it')", 20)
-    label = page.ask("document.getElementById('outline').getAttribute('aria-label')")
-    expect("The outline of key" in label and abs(float(label.split("V = ")[1]) - v) < 1e-5, f"the outline in words: {label}")
-    page.browser.wait("document.getElementById('seen').dataset.bits !== undefined", 20)
-    same(page.ask("document.querySelectorAll('#overlay .mark').length"), 2, "the pixel is marked in the picture")
-    position = [float(part) for part in text.split("at ")[1].split(";")[0].split(",")]
-    page.tick("pivot")
-    same([round(value, 4) for value in page.camera()["target"]], position, "the pivot is at the pixel")
-    page.tick("home")
-    page.ask("document.getElementById('picture').focus()")
-    page.after(lambda: page.browser.key("p"))
-    same([round(value, 4) for value in page.camera()["target"]], position, "and by P")
-    page.tick("home")
-    page.browser.pointer("mouseMoved", *page.place(0.3, 0.3))
-    page.browser.wait("document.querySelectorAll('#overlay .mark').length === 0")
-    page.browser.wait("document.getElementById('readout').getAttribute('aria-live') === 'off'")
-    page.ask("document.getElementById('show-seen').click()")
-
-
-def check_report(page):
-    """A report names what is to be seen in the address: methods and light samples, for the same scene alone."""
-    url = page.server.url + "#" + urllib.parse.urlencode({"scene": "scene.json", "a": "view-sample", "b": "edge-scatter", "samples": 16})
-    page.browser.open(url)
-    page.browser.wait(f"{ROOT}.exact === 'true' && {ROOT}.method?.includes('edge-scatter')")
-    same(page.state()["method"], "view-sample", "A of the report")
-    same(page.state()["other"], "edge-scatter", "B of the report")
-    same(page.state()["lightSamples"], 16, "light samples of the report")
-    same(page.ask("location.hash"), "", "taken once")
-    page.browser.open(url.replace("scene.json", "another.json").replace("view-sample", "depth-complexity"))
-    page.browser.wait("document.getElementById('trouble').textContent.includes('another.json')")
-    same(page.state()["method"], "view-sample", "a report about another scene changes nothing")
-    page.choose("method-b", "")
-    page.choose("method", "")
-    page.choose("light-samples", "0")
-
-
-def check_saving(browser, folder):
-    """The button saves the scene and the picture of its light, and `render` makes of them what the page shows."""
-    into = folder / "saved"
-    into.mkdir()
-    with Server(PROGRAM, SCENES / "textured-light.json", "--size", "64x64") as server:
-        page = Page(browser, server, width=1400, height=900)
-        browser.call("Browser.setDownloadBehavior", behavior="allow", downloadPath=str(into))
-        page.ask("document.getElementById('save').click()")
-        wanted = ["textured-light-view-light0.exr", "textured-light-view.json"]
-        end = time.monotonic() + 20
-        while sorted(file.name for file in into.iterdir()) != wanted and time.monotonic() < end:
-            time.sleep(0.1)
-        same(sorted(file.name for file in into.iterdir()), wanted, "the files that are saved")
-        stops = page.ask("document.getElementById('stops').dataset.stops")
-        subprocess.run([PROGRAM, "render", str(into / wanted[1]), "-o", str(into / "a.exr"), "--png", str(into / "a.png"), "-q", "--exposure", stops], check=True)
-        same(page.canvas(), png_pixels((into / "a.png").read_bytes()), "`render` of them is what the page shows")
-        browser.call("Page.navigate", url="about:blank")
-
-
-def check_reach(page):
-    """Tab reaches every control, and each has a name."""
-    page.ask("document.activeElement.blur()")
-    reached = set()
-    for _ in range(60):
-        page.browser.key("Tab")
-        reached.add(page.ask("document.activeElement.id"))
-    for control in ("picture", "method", "method-b", "light-samples", "compare", "channel", "stops", "auto-stops", "size", "camera", "home",
-                    "copy-camera", "paste-camera", "light", "light-on", "light-solo", "show-lights", "save", "see-light", "show-seen"):
-        expect(control in reached, f"Tab reaches {control}")
-    for node in page.browser.call("Accessibility.getFullAXTree")["nodes"]:
-        if not node.get("ignored") and node["role"]["value"] in ("button", "slider", "combobox", "spinbutton", "checkbox", "application", "image"):
-            expect(node.get("name", {}).get("value"), f"a {node['role']['value']} without a name")
 
 
 def main():

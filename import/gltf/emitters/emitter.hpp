@@ -22,7 +22,7 @@ struct Emitter {
   bool hides_itself = false;
 };
 
-/// What a reader says of an emitter that hides itself.
+/// Reason, for messages, why an emitter that hides parts of itself cannot be a light.
 inline constexpr const char* kHidesItself =
     "is an emitter with parts that stand in one another's light, which its own mesh would not hide: it would be too "
     "bright (make its parts objects of their own)";
