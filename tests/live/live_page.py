@@ -387,6 +387,8 @@ def check_reach(page):
     expect(len(options) > 1 and "radiance g" in numbers, f"options {options}, numbers {numbers}")
     compare = lambda how: page.ask(f"(() => {{ const c = document.getElementById('compare'); c.value = '{how}'; c.dispatchEvent(new Event('change')); }})()")  # noqa: E731
     compare("wipe")
+    page.browser.pointer("mouseMoved", *page.place(0.5, 0.6))  # a surface, at which a pivot may be set
+    page.browser.wait("!document.getElementById('pivot').disabled", 20)
     reached = reached_by_tab(page)
     for control in ("picture", "wipe", "method", "method-b", *options, "light-samples", "compare", "channel", "stops", "auto-stops", "size", "camera", "home",
                     "copy-camera", "paste-camera", "light", "light-on", "light-solo", "show-lights", *numbers, "undo", "redo", "save", "see-light", "pixel-x",
