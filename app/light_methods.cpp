@@ -62,12 +62,6 @@ std::string note_of_span(const Light& light, const std::string& method, const st
                      light.name, method, chosen);
 }
 
-/// Returns whether the light's source asks for its light samples.
-bool is_sampled(const scenes::AreaLight& source) {
-  const auto* const dome = std::get_if<scenes::Dome>(&source.shape);
-  return dome != nullptr && dome->sampled;
-}
-
 LightMethod choose(const Light& light, const LightScene& scene, const MethodWish& wish) {
   const bool samples = wish.samples || is_sampled(scene.sources.at(static_cast<std::size_t>(light.index)));
   if (!samples) {
@@ -149,6 +143,11 @@ std::vector<LightMethod> choose_light_methods(const std::vector<Light>& lights, 
                      fmt::format("{}", fmt::join(names, ", ")));
   }
   return all;
+}
+
+bool is_sampled(const scenes::AreaLight& source) {
+  const auto* const dome = std::get_if<scenes::Dome>(&source.shape);
+  return dome != nullptr && dome->sampled;
 }
 
 bool counts_dome_samples(const MethodWish& wish, const std::vector<scenes::AreaLight>& lights) {

@@ -42,6 +42,9 @@ struct LightScene {
 std::vector<LightMethod> choose_light_methods(const std::vector<visibility::Light>& lights, const LightScene& scene,
                                               const MethodWish& wish);
 
+/// Returns whether the light itself asks for its light samples (scenes::Dome::sampled).
+bool is_sampled(const scenes::AreaLight& source);
+
 /// Returns whether the methods of all domes among the lights will certainly answer for each of their light samples, and
 /// give no areas.
 bool counts_dome_samples(const MethodWish& wish, const std::vector<scenes::AreaLight>& lights);

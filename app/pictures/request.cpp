@@ -157,10 +157,6 @@ std::uint64_t bytes_per_copy(const MethodWish& wish, std::span<const scenes::Are
   if (!wish.method.empty()) return describe_method(wish.method, wish.options).bytes_per_triangle;
   const auto methods = all_methods();
   const auto areas = std::ranges::find_if(methods, [](const auto* method) { return method->exact_area.has_value(); });
-  const auto is_sampled = [](const scenes::AreaLight& light) {
-    const auto* const dome = std::get_if<scenes::Dome>(&light.shape);
-    return dome != nullptr && dome->sampled;
-  };
   const bool counts = wish.samples || std::ranges::all_of(lights, is_sampled);
   return counts || areas == methods.end() ? visibility::MethodDescription().bytes_per_triangle
                                           : (*areas)->bytes_per_triangle;

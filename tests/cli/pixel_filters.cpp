@@ -172,12 +172,18 @@ TEST(MatteShares, KnowNamesOfAllPictures) {
   EXPECT_FLOAT_EQ(here[2].part, 1.0f / 8);
 }
 
-/// A pixel of one name gets the sum of its taps as any other does, added up in their order: the same float.
-TEST(MatteShares, OfOneNameAreSumsOfTaps) {
-  constexpr std::uint32_t kSide = 3, kAcross = 9, kDown = 7, kSamples = kSide * kAcross;
+/// A filter that reaches beyond a pixel, with weights that differ.
+app::PixelFilter wide_filter() {
   app::PixelFilter filter;
   filter.kind = app::PixelFilter::Kind::blackman_harris;
   filter.width = 1.5;
+  return filter;
+}
+
+/// A pixel of one name gets the sum of its taps as any other does, added up in their order: the same float.
+TEST(MatteShares, OfOneNameAreSumsOfTaps) {
+  constexpr std::uint32_t kSide = 3, kAcross = 9, kDown = 7, kSamples = kSide * kAcross;
+  const app::PixelFilter filter = wide_filter();
   std::mt19937 random(5);
   std::vector<std::uint32_t> of_sample(std::size_t{kSamples} * kSide * kDown);
   for (std::size_t i = 0; i < of_sample.size(); ++i) {  // one name on the left, two and the background on the right
@@ -215,9 +221,7 @@ TEST(MatteShares, OfOneNameAreSumsOfTaps) {
 /// Rows that are added once have the bits of sums that are kept in double.
 TEST(PictureMean, OfRowsAddedOnceIsTheSame) {
   constexpr std::uint32_t kSide = 2, kAcross = 6, kDown = 8, kSamples = kSide * kAcross;
-  app::PixelFilter filter;
-  filter.kind = app::PixelFilter::Kind::blackman_harris;
-  filter.width = 1.5;
+  const app::PixelFilter filter = wide_filter();
   std::mt19937 random(6);
   std::uniform_real_distribution<float> real(0, 1);
   const std::size_t samples = std::size_t{kSamples} * kSide * kDown;
