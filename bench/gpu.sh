@@ -2,9 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 # gpu.sh [FILE.json] [DEVICE] [largest side]: is every pass right on this machine's GPU, and how fast is it? Eight minutes at most. Runs
 # from the unpacked tarball (cmake/tarball.sh), where nothing needs to be installed, or from a built clone. DEVICE as for --device.
-# Three parts, in FILE.json (gpu.json): the self-test; the bits of exact methods on the device against those of the processor's vector
-# units; seconds and milliseconds a pass of exact and image-based methods from 512x512 to 4K. Exit 1 where something is wrong: bits that differ,
-# or a run that fails. A run that is out of time is not wrong.
+# Four parts, in FILE.json (gpu.json): the self-test; the bits of exact methods on the device against those of the processor's vector
+# units; seconds and milliseconds a pass of exact and image-based methods from 512x512 to 4K; errors and seconds of all that
+# `compare` takes by itself, at two sizes. Exit 1 where something is wrong: bits that differ, or a run that fails. A run that is
+# out of time is not wrong.
 set -uo pipefail
 file=${1:-gpu.json} device=${2:-} largest=${3:-3840}
 here=$(cd -- "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")" && pwd)
@@ -77,11 +78,24 @@ for size in 512x512 1920x1080 3840x2160; do
   done
 done
 
+methods=()
+for size in 512x512 1920x1080; do
+  ((${size%x*} <= largest)) || continue
+  if timeout "$(left 480)" "$program" compare "$scenes/self-shadow.json" "${on[@]}" --size "$size" --reference edge-scatter:rows=exact --runs 3 \
+    -o "$work/compared" --stats "$work/metrics.json" --quiet >"$work/errors.txt" 2>&1; then
+    methods+=("$(cat "$work/metrics.json")")
+    say "$size, methods: compared"
+  else
+    failed "$size, methods" $?
+  fi
+  rm -rf "$work/compared"
+done
+
 join() { local IFS=,; printf '%s' "$*"; }
 {
   printf '{"format": "penumbra-gpu/1", "commit": "%s", "date": "%s", "processors": %d, "seconds": %d,\n' "$commit" "$(date -u +%FT%TZ)" "$(nproc)" "$SECONDS"
   printf '"devices": %s,\n"selfTest": {"exitCode": %d, "rows": %s},\n' "$(cat "$work/devices.json")" $self_test "$(cat "$work/self-test.json")"
-  printf '"sameBitsAsVectorUnits": [%s],\n"speed": [%s]}\n' "$(join "${bits[@]}")" "$(join "${speed[@]}")"
+  printf '"sameBitsAsVectorUnits": [%s],\n"speed": [%s],\n"methods": [%s]}\n' "$(join "${bits[@]}")" "$(join "${speed[@]}")" "$(join "${methods[@]}")"
 } >"$work/all.json" && mv -- "$work/all.json" "$file"
 say "written: $file"
 exit $wrong

@@ -22,7 +22,6 @@ import times  # noqa: E402
 
 RESULTS = ROOT / "bench" / "results"
 BLOCK = re.compile(r"(<!-- results/([\w-]+)\.json -->\n).*?(<!-- end -->)", re.S)
-GPU = "nvidia-h100"  # docs/devices.md has its table
 OWN_PAGE = {"against-cycles"}  # another script writes the page
 PAGES = [page for page in (ROOT / "bench" / "README.md", *sorted((ROOT / "docs").glob("*.md"))) if "<!-- results/" in page.read_text(encoding="utf-8")]
 
@@ -56,26 +55,10 @@ def table(data):
 
 def block(name):
     """The table of one file; that of all methods is kept, and drawn, with the papers' figures."""
-    if name == GPU:
-        return gpu_table(read(RESULTS / f"{name}.json"))
     if name != "times":
         return table(read(RESULTS / f"{name}.json"))
     kept = read(ROOT / "docs" / "figures" / "papers" / "times.json")
     return f"Commit {kept['commit']}; {kept['device']}. {kept['data']['of']}.\n\n{times.table(kept['data'])}\n"
-
-
-def milliseconds(value):
-    return f"{value:.1f}" if value < 10 else f"{value:.0f}"
-
-
-def gpu_table(data):
-    lines = ["| method | size | light samples | evaluate, ms | of it passes on the GPU, ms |", "| --- | --- | ---: | ---: | ---: |"]
-    runs = [run for run in data["bunny"] if run["method"] in ("edge-scatter:engine=vulkan", "view-sample:engine=vulkan")]
-    for run in sorted(runs, key=lambda run: (run["method"], run["size"], run["lightSamples"])):
-        size = "x".join(map(str, run["size"]))
-        lines.append(f"| {run['method'].partition(':')[0]} | {size} | {run['lightSamples']} | {1000 * run['seconds']['evaluate']:.0f} | "
-                     f"{milliseconds(sum(run['passesMilliseconds'].values()))} |")
-    return "\n".join(lines) + "\n"
 
 
 def listing(files):
@@ -83,8 +66,7 @@ def listing(files):
              "[bench/README.md](../README.md) and of pages in `docs/`, from these files; do not edit either.", "", "| file | what | commit | machine |", "| --- | --- | --- | --- |"]
     for path in files:
         data = read(path)
-        machine = data["machine"] if isinstance(data["machine"], str) else data["machine"]["device"]
-        lines.append(f"| [{path.name}]({path.name}) | {data.get('title', 'shadows on a GPU')} | {data.get('commit', 'not known')} | {machine} |")
+        lines.append(f"| [{path.name}]({path.name}) | {data['title']} | {data.get('commit', 'not known')} | {data['machine']} |")
     return "\n".join(lines) + "\n"
 
 
@@ -96,10 +78,9 @@ def main():
     before = {page: page.read_text(encoding="utf-8") for page in PAGES}
     for path in files:
         data = read(path)
-        if path.stem != GPU:
-            keys = ("title", "machine", "command") if path.stem in OWN_PAGE else ("title", "machine", "command", "conditions", "columns", "rows")
-            complaints += [f"{path.name}: lacks {key}" for key in keys if key not in data]
-            complaints += [] if {"commit", "recordedAt"} & data.keys() else [f"{path.name}: lacks commit"]
+        keys = ("title", "machine", "command") if path.stem in OWN_PAGE else ("title", "machine", "command", "conditions", "columns", "rows")
+        complaints += [f"{path.name}: lacks {key}" for key in keys if key not in data]
+        complaints += [] if {"commit", "recordedAt"} & data.keys() else [f"{path.name}: lacks commit"]
         if path.stem in OWN_PAGE:
             continue
         complaints += [] if any(f"<!-- results/{path.name} -->" in text for text in before.values()) else [f"{path.name}: no page shows it"]

@@ -2,16 +2,21 @@
 # SPDX-License-Identifier: Apache-2.0
 """Measures ratios of time that the papers sell, one method's over another's, into results/time-ratios.json.
 
-  bench/time_ratios.py [PROGRAM]      about half an hour on two busy cores; then bench/tables.py writes the table of docs/figures.md
+  bench/time_ratios.py [PROGRAM]           about half an hour on two busy cores
+  bench/time_ratios.py PROGRAM --write-scenes FOLDER      the scenes as GLB files, for a machine without the packages that hold their meshes
+  bench/time_ratios.py PROGRAM --gpu FOLDER FILE.json     on a GPU, from those scenes: into FILE.json, results/time-ratios-gpu.json, in two minutes
 
-Questions that have a row are left out: delete a row to measure it again. A row says of which commit it is.
+Then bench/tables.py writes the tables of docs/figures.md. Questions that have a row are left out: delete a row to measure it again. A
+row says of which commit it is.
 
-A number is processor seconds of a run (`light` and `evaluate`): those of a whole `penumbra compare` of one method with more runs less
+On a GPU a number is the clock's: `light` and `evaluate` as `compare` reports them, the median of five runs, and the sum of the passes'
+milliseconds by the GPU's own clock. Else it is processor seconds of a run (`light` and `evaluate`): those of a whole `penumbra compare` of one method with more runs less
 those with one run, a run. So what a program needs to start, to read, to compile shaders and to judge is in neither, and other
 programs at work disturb less than they do a clock. The methods of a question are measured in turns; a ratio is the median of each
 turn's own."""
 
 import json
+import os
 import resource
 import subprocess
 import sys
@@ -105,39 +110,92 @@ def of_a_run(program, scene_file, folder, method, size, more, runs):
     return (whole(1 + runs) - whole(1)) / runs
 
 
-def write(program, commit, rows):
+def on_gpu(program, scene_file, folder, method, size, more):
+    """Seconds of the method, all and of its passes, as the program reports them."""
+    subprocess.run([program, "-q", "compare", scene_file, "-o", folder / "out", "--methods", method, "--size", f"{size}x{size}", "--reference-samples", "1",
+                    "--sample-pixels", "1", "--runs", "5", *more], check=True, stdout=subprocess.DEVNULL)
+    ran = json.loads((folder / "out" / "metrics.json").read_text(encoding="utf-8"))["methods"][0]
+    return ran["seconds"]["shadow"], sum(one["milliseconds"] for one in ran["passes"]) / 1000
+
+
+def of_turns(seconds):
+    """The median ratio, the least to the largest, and both medians, of pairs of seconds."""
+    ratios = sorted(first / second for first, second in seconds)
+    first, second = (median(turn[k] for turn in seconds) for k in range(2))
+    return f"{median(ratios):.2f}", f"{ratios[0]:.2f} to {ratios[-1]:.2f}", f"{first:.2g} over {second:.2g}"
+
+
+def name_of(program):
     device = json.loads(subprocess.run([program, "devices", "--json"], check=True, capture_output=True, text=True).stdout)["devices"][0]["name"]
     cpu = next(line.partition(":")[2].strip() for line in Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines() if line.startswith("model name"))
-    data = {"title": "ratios of time that the papers print, measured again", "commit": commit, "machine": f"{device} on {cpu}, 2 threads that other programs used as well",
-            "command": "bench/time_ratios.py", "conditions": f"Processor seconds of a run, `light` and `evaluate`, medians of {TURNS} turns.",
-            "columns": ["paper", "question", "the paper's", "here", "turns", "seconds", "commit"]}
+    return device, cpu
+
+
+def write(path, fields, rows):
+    data = {"title": "ratios of time that the papers print, measured again", **fields}
     text = json.dumps(data, ensure_ascii=False, indent=1).removesuffix("\n}")
     lines = ",\n".join("  " + json.dumps(row, ensure_ascii=False) for row in rows)
-    RESULT.write_text(text + ',\n "rows": [\n' + lines + "\n ]\n}\n", encoding="utf-8")
+    path.write_text(text + ',\n "rows": [\n' + lines + "\n ]\n}\n", encoding="utf-8")
 
 
-def main():
-    program = Path(sys.argv[1] if len(sys.argv) > 1 else ROOT / "build" / "penumbra").resolve()
-    git = ["git", "-C", ROOT]
-    commit = subprocess.run([*git, "rev-parse", "--short", "HEAD"], check=True, capture_output=True, text=True).stdout.strip()
+def write_scenes(program, to):
+    to.mkdir(parents=True, exist_ok=True)
+    for number, (_, _, _, world, _, _, _) in enumerate(questions()):
+        with tempfile.TemporaryDirectory() as name:
+            subprocess.run([program, "-q", "convert", scene_in(Path(name), world), "-o", to / f"{number}.glb"], check=True)
+
+
+def scene_in(folder, world):
+    if not isinstance(world, dict):
+        return ROOT / world
+    (folder / "scene.json").write_text(json.dumps(world), encoding="utf-8")
+    return folder / "scene.json"
+
+
+def measure_gpu(program, commit, scenes, result):
+    device, cpu = name_of(program)
+    rows = []
+    for number, (paper, question, claimed, _, _, more, methods) in enumerate(questions()):
+        with tempfile.TemporaryDirectory() as name:
+            folder, file = Path(name), scenes / f"{number}.glb"
+            turns = [[on_gpu(program, file, folder, method, 512, more) for method in methods] for _ in range(TURNS)]
+        whole, passes = (of_turns([[method[k] for method in turn] for turn in turns]) for k in range(2))
+        rows.append([paper, question, claimed, whole[0], passes[0], passes[1], whole[2], passes[2]])
+        print(" | ".join(rows[-1]), flush=True)
+        write(result, {"commit": commit, "machine": f"{device}, {os.cpu_count()} threads of {cpu}", "command": "bench/time_ratios.py build/penumbra --gpu scenes OUT.json",
+                       "conditions": f"Medians of {TURNS} turns of five runs each at 512² pixels, by the clock: `light` and `evaluate`, and of it the passes on the GPU.",
+                       "columns": ["paper", "question", "the paper's", "here", "passes alone", "their turns", "seconds", "seconds of passes"]}, rows)
+
+
+def measure(program, commit):
     asked = list(questions())
     rows = {row[1]: row for row in json.loads(RESULT.read_text(encoding="utf-8"))["rows"]} if RESULT.is_file() else {}
+    device, cpu = name_of(program)
     for paper, question, claimed, world, size, more, methods in asked:
         if question in rows:
             continue
         with tempfile.TemporaryDirectory() as name:
             folder = Path(name)
-            scene_file = folder / "scene.json" if isinstance(world, dict) else ROOT / world
-            if isinstance(world, dict):
-                scene_file.write_text(json.dumps(world), encoding="utf-8")
+            scene_file = scene_in(folder, world)
             # About a second of runs, so that a clock tick counts for nothing.
             runs = {method: max(1, min(20, round(1 / max(of_a_run(program, scene_file, folder, method, size, more, 1), 0.05)))) for method in methods}
             seconds = [[of_a_run(program, scene_file, folder, method, size, more, runs[method]) for method in methods] for _ in range(TURNS)]
-        ratios = sorted(first / second for first, second in seconds)
-        first, second = (median(turn[k] for turn in seconds) for k in range(2))
-        rows[question] = [paper, question, claimed, f"{median(ratios):.2f}", f"{ratios[0]:.2f} to {ratios[-1]:.2f}", f"{first:.2g} over {second:.2g}", commit]
+        rows[question] = [paper, question, claimed, *of_turns(seconds), commit]
         print(" | ".join(rows[question]), flush=True)
-        write(program, commit, [rows[one[1]] for one in asked if one[1] in rows])
+        write(RESULT, {"commit": commit, "machine": f"{device} on {cpu}, 2 threads that other programs used as well", "command": "bench/time_ratios.py",
+                       "conditions": f"Processor seconds of a run, `light` and `evaluate`, medians of {TURNS} turns.",
+                       "columns": ["paper", "question", "the paper's", "here", "turns", "seconds", "commit"]}, [rows[one[1]] for one in asked if one[1] in rows])
+
+
+def main():
+    program = Path(sys.argv[1] if len(sys.argv) > 1 else ROOT / "build" / "penumbra").resolve()
+    if sys.argv[2:3] == ["--write-scenes"]:
+        return write_scenes(program, Path(sys.argv[3]))
+    git = ["git", "-C", ROOT]
+    commit = subprocess.run([*git, "rev-parse", "--short", "HEAD"], check=True, capture_output=True, text=True).stdout.strip()
+    if sys.argv[2:3] == ["--gpu"]:
+        return measure_gpu(program, commit, Path(sys.argv[3]), Path(sys.argv[4]))
+    return measure(program, commit)
 
 
 main()

@@ -32,7 +32,7 @@ verdict() {
   [[ -s $work/gpu.json ]] || { echo "FAILED: no gpu.json, of '$2' with $3"; exit 1; }
 }
 verdict 0 "" 0
-for part in --self-test view-sample:engine=native "shadow-map "; do
+for part in --self-test view-sample:engine=native "shadow-map " "compare "; do
   verdict 1 "$part" 139
   verdict 0 "$part" 124  # as of `timeout`
 done
