@@ -30,6 +30,10 @@ using visibility::Tile;
 /// each corner (DiskPart); smaller values appear where a sphere touches the receiver's plane from below.
 constexpr float kLeastRoundShare = 0x1p-44F;
 
+/// Shares are sums and quotients of floats, which Vulkan lets be off by 2.5 units in the last place (a quotient of equal
+/// numbers need not be 1): this is room for two of them, and far below the tolerance of any method.
+constexpr float kRoundedShare = 0x1p-20F;
+
 /// Form factors are sums of terms up to 1/2, each off by a few roundings (visibility/lights/form_factor.hpp).
 constexpr double kLeastFormFactor = 0x1p-40;
 
@@ -284,7 +288,7 @@ class Host {
       if (lies_in_light_by_rule(classes[i])) values[i] = 1.0f;
       if (classes[i] == PixelClass::unlit) values[i] = 0.0f;
     }
-    require_shares(light, first, values);
+    settle_shares(light, first, values);
     leave_out(light_index, first, values);
     if (method_.description().output == Output::mask)
       read_masks(light_index, classes, dark.empty() ? dark : dark.subspan(first, count));
@@ -296,10 +300,15 @@ class Host {
     if (sink_) sink_({light_index, tile, values, masks_, transmittances_, dimmed_, form_factors_});
   }
 
-  /// Throws for values outside 0 … 1; V of every method passes through this function.
-  void require_shares(const Light& light, std::size_t first, std::span<const float> values) const {
+  /// Sets values that are outside 0 … 1 by rounding alone to 0 or 1, and throws for others; V of every method passes
+  /// through this function.
+  void settle_shares(const Light& light, std::size_t first, std::span<float> values) const {
     for (std::size_t i = 0; i < values.size(); ++i) {
-      if ((values[i] >= 0 && values[i] <= 1) || !wanted(first + i)) continue;
+      if (values[i] >= -kRoundedShare && values[i] <= 1 + kRoundedShare) {
+        values[i] = std::clamp(values[i], 0.0f, 1.0f);
+        continue;
+      }
+      if (!wanted(first + i)) continue;
       refuse(light, first + i, fmt::format("V = {}, which is no share of a light (0 to 1)", values[i]));
     }
   }
