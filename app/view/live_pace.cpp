@@ -13,7 +13,6 @@ namespace {
 /// Levels from the best to the lowest.
 constexpr std::array kLevels{LiveQuality{1, 64}, LiveQuality{1, 16}, LiveQuality{2, 16},
                              LiveQuality{2, 4},  LiveQuality{4, 4},  LiveQuality{8, 4}};
-constexpr double kQuickTime = 20;  // milliseconds; a faster picture leaves time for a better level
 
 /// Milliseconds; a picture that takes longer is followed by one of the lowest quality.
 constexpr double kSlowTime = 8 * kPictureTime;

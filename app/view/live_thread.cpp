@@ -83,7 +83,7 @@ void LiveRenderer::work_on(std::unique_lock<std::mutex>& lock) {
     if (ending_ || wants_reload_) return;
   }
   const bool has_any = picture_ && picture_->revision == revision_;
-  Order order{state_, whole_, revision_, pace_.quality(), has_any || final_milliseconds_ < kPictureTime, stamps_};
+  Order order{state_, whole_, revision_, pace_.quality(), has_any || final_milliseconds_ < kQuickTime, stamps_};
   if (failed_ == revision_ || (has_any && picture_->is_final) || wants_show_) {
     const bool shows = std::exchange(wants_show_, false), masks = needs_masks(), edges = needs_edges();
     lock.unlock();
