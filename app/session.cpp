@@ -148,6 +148,17 @@ void SessionMaker::look_into(const scenes::Scene& scene, const scenes::Instances
   placed_.place(scene, instances);
 }
 
+visibility::PinholeCamera SessionMaker::look_through(const scenes::Camera& camera, const glm::dvec3& origin,
+                                                     std::uint32_t width, std::uint32_t height) const {
+  visibility::PinholeCamera view = visibility::make_camera(camera, origin, width, height);
+  if (lens_share_ && camera.lens) {
+    visibility::Lens& lens = view.lens.emplace(*lens_share_);
+    lens.radius = camera.lens->radius;
+    lens.focus_distance = camera.lens->focus_distance;
+  }
+  return view;
+}
+
 void SessionMaker::show_part(const visibility::Tile& rows, const std::string& camera, Progress& progress) {
   progress.begin("what is seen", 1);
   const Stopwatch watch;
@@ -156,7 +167,7 @@ void SessionMaker::show_part(const visibility::Tile& rows, const std::string& ca
   const std::size_t number =
       camera.empty() ? 0 : find_named(scene.cameras, camera, "--camera", options_.scene.string());
   visibility::SeenPart part =
-      visibility::seen_part(placed_, visibility::make_camera(scene.cameras[number], placed_.origin(), width, height),
+      visibility::seen_part(placed_, look_through(scene.cameras[number], placed_.origin(), width, height),
                             make_lights(scene, placed_.origin(), nullptr), rows,
                             {.dome_samples = dome_samples_, .viewed = rows.row_count < height ? &viewed_ : nullptr});
   show_part(std::move(part), rows, camera, watch.seconds(), progress);
@@ -170,7 +181,7 @@ void SessionMaker::show_seen(const std::string& camera, Progress& progress) {
   const std::size_t number =
       camera.empty() ? 0 : find_named(scene.cameras, camera, "--camera", options_.scene.string());
   visibility::SeenPart part = visibility::seen_part(
-      placed_, visibility::make_camera(scene.cameras[number], placed_.origin(), width, height), {}, {0, height});
+      placed_, look_through(scene.cameras[number], placed_.origin(), width, height), {}, {0, height});
   show_part(std::move(part), {0, height}, camera, watch.seconds(), progress);
 }
 
@@ -253,16 +264,11 @@ void SessionMaker::show(scenes::Scene scene, bool changed, const std::string& ca
     }
     ++session_.mesh_version;
   }
-  session_.camera = visibility::make_camera(seen_by, session_.floats.origin, width, height);
+  session_.camera = look_through(seen_by, session_.floats.origin, width, height);
   if (band_) {
     session_.camera.first_row = band_->first_row;
     session_.camera.rows_of_picture = height;
     session_.camera.height = band_->row_count;
-  }
-  if (lens_share_ && seen_by.lens) {
-    visibility::Lens& lens = session_.camera.lens.emplace(*lens_share_);
-    lens.radius = seen_by.lens->radius;
-    lens.focus_distance = seen_by.lens->focus_distance;
   }
   const auto casters = casters_of(session_.lights);
   session_.lights = make_lights(session_.scene, session_.floats.origin, &session_.warnings);

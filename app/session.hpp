@@ -139,6 +139,9 @@ class SessionMaker {
   void show(scenes::Scene scene, bool changed, const std::string& camera, std::uint32_t runs, Progress& progress);
   void show_part(visibility::SeenPart part, const visibility::Tile& rows, const std::string& camera, double seconds,
                  Progress& progress);
+  /// Returns the camera of a whole picture, through its lens if it looks through one.
+  [[nodiscard]] visibility::PinholeCamera look_through(const scenes::Camera& camera, const glm::dvec3& origin,
+                                                       std::uint32_t width, std::uint32_t height) const;
   /// Computes the classes of the session's view samples for its lights.
   void classify();
   /// Returns the requested lights of a scene, pieces one after the other.

@@ -228,7 +228,7 @@ Picture Renderer::render(const RenderOptions& options) {
                        options.light_samples != 0 || !options.sample_pattern.empty()};
   const std::uint32_t side = pixel_side(options.pixel_samples);
   const bool copies =
-      app::needs_copies(scene.scene, scene.instances, app::parse_instances(options.instances, wish), wish, side);
+      app::needs_copies(scene.scene, scene.instances, app::parse_instances(options.instances, wish), wish, side * side);
   const bool shares = !copies && !scene.instances.empty();
   const bool same_meshes = options.pixel_samples == 1 && state.frames && state.frames->has_meshes() &&
                            state.rendered == meshes && !scene.scene.lights.empty() && !shares && !state.shared;

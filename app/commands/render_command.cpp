@@ -154,13 +154,13 @@ class RenderCommand : public Command {
 
   /// Returns the scenes at the middle of each of the equal parts of the time that the shutter is open; empty if one
   /// scene is sufficient.
-  [[nodiscard]] std::vector<std::function<scenes::Scene()>> moments_of(std::optional<double> frame, bool moves) const {
-    std::vector<std::function<scenes::Scene()>> all;
+  [[nodiscard]] std::vector<std::function<PictureScene()>> moments_of(std::optional<double> frame, bool moves) const {
+    std::vector<std::function<PictureScene()>> all;
     if (!frame || !moves || request_.moments == 1) return all;
     for (std::uint32_t i = 0; i < request_.moments; ++i) {
       const double offset = request_.shutter_frames * ((i + 0.5) / request_.moments - 0.5);
       const double time = (*frame + offset) * request_.seconds_per_frame;
-      all.emplace_back([this, time] { return read_moment(options_.run, time, request_); });
+      all.emplace_back([this, time] { return read_picture_scene(options_.run, time, request_); });
     }
     return all;
   }

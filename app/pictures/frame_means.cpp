@@ -71,7 +71,7 @@ void FrameRenderer::render_mean(scenes::Scene scene, bool by_lens) {
   const std::uint32_t side = picture_.frame.pixel_side;
   const bool is_fine = side > 1 || by_lens;
   if (is_fine) {
-    show(maker_, scene);
+    show(maker_, scene, picture_.frame.instances);
     check_wanted_layers();
     spent_.view += session().filtering_seconds();
     const std::string size = fmt::format("{}x{}", session().width * side, session().height * side);
@@ -90,7 +90,8 @@ void FrameRenderer::render_mean(scenes::Scene scene, bool by_lens) {
   const auto moments = static_cast<std::uint32_t>(std::max<std::size_t>(picture_.frame.moments.size(), 1));
   std::uint32_t moment_number = 0;
   const auto add_band = [&](const MeanBand& band) {
-    if (!is_fine && StillMoments::are_worth(lit().samples.size(), lit().lights.size())) {
+    const bool is_whole = lit().numbers.empty();  // parts of moments number their triangles differently
+    if (!is_fine && is_whole && StillMoments::are_worth(lit().samples.size(), lit().lights.size())) {
       if (!picture_.still) picture_.still.emplace();
       picture_.still->begin(lit().floats);
     } else {
@@ -130,11 +131,11 @@ void FrameRenderer::render_mean(scenes::Scene scene, bool by_lens) {
     before.times.lights.clear();  // the lights of the other moment may differ
     add_times(picture_.run, before);
   };
-  const auto add = [&](scenes::Scene moment) {
+  const auto add = [&](scenes::Scene moment, const scenes::Instances* instances) {
     if (by_lens)
       fine_->maker.look_through_lens(visibility::Lens{.side = side, .moment = moment_number++, .moments = moments});
     if (is_fine) fine_->maker.look_at_rows(bands.size() > 1 ? std::optional(bands.front().samples) : std::nullopt);
-    show(is_fine ? fine_->maker : maker_, std::move(moment));
+    show(is_fine ? fine_->maker : maker_, std::move(moment), instances);
     done_.lights_something.clear();
     add_band(bands.front());
     for (std::size_t i = 1; i < bands.size(); ++i) {
@@ -145,12 +146,12 @@ void FrameRenderer::render_mean(scenes::Scene scene, bool by_lens) {
     }
     if (picture_.in_bands) say_idle_lights();
   };
-  if (picture_.frame.moments.empty()) add(scene);
+  if (picture_.frame.moments.empty()) add(scene, picture_.frame.instances);
   for (const auto& moment : picture_.frame.moments) {
     const Stopwatch read;
-    scenes::Scene then = moment();
+    PictureScene then = moment();
     spent_.load += read.seconds();
-    add(std::move(then));
+    add(std::move(then.scene), &then.instances);
   }
   picture_.still.reset();
   picture_.own_rows.reset();
@@ -162,7 +163,7 @@ void FrameRenderer::render_mean(scenes::Scene scene, bool by_lens) {
   picture_.alpha.clear();
   if (std::exchange(picture_.in_bands, false)) fine_->maker.forget_view();
   if (!is_fine) {
-    show(maker_, std::move(scene));
+    show(maker_, std::move(scene), picture_.frame.instances);
     spent_.view += session().filtering_seconds();
   }
   // Outputs of lights describe the lights at the frame's own time.

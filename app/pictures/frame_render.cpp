@@ -134,9 +134,8 @@ void FrameRenderer::say_idle_lights() {
   say_once(warnings);
 }
 
-void FrameRenderer::show(SessionMaker& maker, scenes::Scene scene) {
-  if (const scenes::Instances* const instances = picture_.frame.instances;
-      instances != nullptr && !instances->empty()) {
+void FrameRenderer::show(SessionMaker& maker, scenes::Scene scene, const scenes::Instances* instances) {
+  if (instances != nullptr && !instances->empty()) {
     maker.look_into(scene, *instances, counts_dome_samples(wish_, scene.lights));
     maker.show_part({0, maker.picture_size(scene, picture_.frame.camera).second}, picture_.frame.camera, progress_);
     maker.look_away();
@@ -248,7 +247,7 @@ void FrameRenderer::render(scenes::Scene scene, const Frame& frame, const std::f
   } else if (shows_in_bands(bits)) {
     render_in_bands(scene);
   } else if (frame.moments.empty() && frame.pixel_side == 1) {
-    show(maker_, std::move(scene));
+    show(maker_, std::move(scene), frame.instances);
     check_wanted_layers();
     run_methods(bits);
   } else {

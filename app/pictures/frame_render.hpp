@@ -32,6 +32,13 @@
 
 namespace penumbra::app {
 
+/// Scene of a picture, and the time of reading it.
+struct PictureScene {
+  scenes::Scene scene;
+  scenes::Instances instances = {};  ///< those that stay without copies
+  double seconds = 0;
+};
+
 /// Content of one picture in addition to the options common to all pictures.
 struct Frame {
   std::optional<double> number;  ///< nullopt: not requested
@@ -41,8 +48,8 @@ struct Frame {
   /// Error of V up to which exact areas are interpolated (InterpolatedAreas); 0: every view sample is evaluated.
   double pixel_tolerance = kPixelTolerance;
   /// Scenes at other moments, whose mean is the picture; empty: a picture of one moment. Each function is called once.
-  std::vector<std::function<scenes::Scene()>> moments = {};
-  /// Instances of the scene, which are not in its soup; null: none. Only for a picture of one moment.
+  std::vector<std::function<PictureScene()>> moments = {};
+  /// Instances of the scene, which are not in its soup; null: none.
   const scenes::Instances* instances = nullptr;
   /// The scene is without_meshes(), with the meshes of the last picture; only for one moment and pixels' centres.
   bool same_meshes = false;
@@ -147,7 +154,7 @@ class FrameRenderer {
   /// Composites translucent surfaces (BLEND), each shaded at its own view samples, over the surfaces behind.
   void add_panes();
   void mark_lamps();
-  void show(SessionMaker& maker, scenes::Scene scene);
+  void show(SessionMaker& maker, scenes::Scene scene, const scenes::Instances* instances);
   void note_seconds(const SessionMaker& maker);
   /// Returns whether the picture is of a scene with instances, and can be rendered in bands.
   [[nodiscard]] bool shows_in_bands(const std::filesystem::path& bits) const;

@@ -13,18 +13,12 @@ PictureScene read_picture_scene(const RunOptions& run, std::optional<double> tim
   PictureScene read;
   read.scene = read_session_scene(run, time, {.instances = &read.instances});
   set_lens(read.scene, request, run.camera);
-  if (needs_copies(read.scene, read.instances, request.instances, request.wish, request.pixel_side)) {
+  if (needs_copies(read.scene, read.instances, request.instances, request.wish, request.view_samples())) {
     const std::uint64_t bytes = bytes_per_copy(request.wish, read.scene.lights);
     read.scene = copied(std::move(read.scene), std::exchange(read.instances, {}), bytes);
   }
   read.seconds = watch.seconds();
   return read;
-}
-
-scenes::Scene read_moment(const RunOptions& run, std::optional<double> time, const PictureRequest& request) {
-  scenes::Scene scene = read_session_scene(run, time);
-  set_lens(scene, request, run.camera);
-  return scene;
 }
 
 }  // namespace penumbra::app

@@ -123,7 +123,7 @@ InstanceUse parse_instances(const std::string& text, const MethodWish& wish) {
 }
 
 /// Returns the reason why triangles of the scene cannot pass one after the other; null: there is none.
-const char* cannot_pass(const scenes::Scene& scene, std::uint32_t pixel_side) {
+const char* cannot_pass(const scenes::Scene& scene, std::uint32_t pixel_samples) {
   const auto is_round = [](const scenes::AreaLight& light) {
     return std::holds_alternative<scenes::Sphere>(light.shape) || std::holds_alternative<scenes::Dome>(light.shape) ||
            std::holds_alternative<scenes::Pieces>(light.shape);
@@ -133,24 +133,20 @@ const char* cannot_pass(const scenes::Scene& scene, std::uint32_t pixel_side) {
     return "takes no lights with casters of their own";
   const auto is_open = [](const scenes::Object& object) { return object.alpha.mode != scenes::Alpha::Mode::opaque; };
   if (std::ranges::any_of(scene.objects, is_open)) return "takes no surfaces with holes and no translucent ones";
-  return pixel_side > 1 ? "takes one view sample a pixel" : nullptr;
+  return pixel_samples > 1 ? "takes one view sample a pixel" : nullptr;
 }
 
 bool needs_copies(const scenes::Scene& scene, const scenes::Instances& instances, InstanceUse use,
-                  const MethodWish& wish, std::uint32_t pixel_side) {
+                  const MethodWish& wish, std::uint32_t pixel_samples) {
   if (instances.empty()) return false;
-  const bool lens = pixel_side > 1 && std::ranges::any_of(scene.cameras, [](const auto& camera) {
-                      return camera.lens && camera.lens->radius > 0;
-                    });
   const bool passes = passes_triangles(wish.method, wish.options);
-  const char* const why = passes ? cannot_pass(scene, pixel_side) : nullptr;
+  const char* const why = passes ? cannot_pass(scene, pixel_samples) : nullptr;
   if (use == InstanceUse::shared) {
     if (why != nullptr) throw UsageError("--instances shared: {} {} there", wish.method, why);
-    if (lens) throw UsageError("--instances shared: not through a lens; --aperture 0 makes all of the picture sharp");
     return false;
   }
-  return lens || why != nullptr || use == InstanceUse::copies ||
-         triangle_count(scene, instances) <= scenes::kFewCopies || !counts_dome_samples(wish, scene.lights);
+  return why != nullptr || use == InstanceUse::copies || triangle_count(scene, instances) <= scenes::kFewCopies ||
+         !counts_dome_samples(wish, scene.lights);
 }
 
 std::uint64_t bytes_per_copy(const MethodWish& wish, std::span<const scenes::AreaLight> lights) {
@@ -265,10 +261,6 @@ PictureRequest parse_request(const PictureOptions& options) {
   parse_means(options, request);
   parse_lens(options, request);
   request.instances = parse_instances(options.instances, request.wish);
-  if (request.moments > 1) {
-    if (options.instances == "shared") throw UsageError("--instances shared: not with --motion-samples");
-    request.instances = InstanceUse::copies;
-  }
   parse_format(options.run.format);  // refuses an unknown format before rendering
   if (options.run.out.extension() != ".exr") {
     throw UsageError("-o {}: expected a name that ends in .exr (--png writes a PNG file beside it)",

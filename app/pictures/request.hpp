@@ -55,6 +55,9 @@ struct PictureRequest {
   std::optional<double> aperture, focus_distance;  ///< replace the cameras' own values; aperture 0: everything is sharp
   /// Frame numbers: one entry without a number if no frame was requested; numbers of a sequence are whole.
   std::vector<std::optional<double>> frames;
+
+  /// Returns the number of view samples of a pixel, at all moments.
+  [[nodiscard]] std::uint32_t view_samples() const { return pixel_side * pixel_side * moments; }
 };
 
 /// Returns whether a method's answer for a view sample depends only on the surfaces between the view sample and the
@@ -65,11 +68,11 @@ bool answers_apart(const visibility::MethodDescription& method);
 InstanceUse parse_instances(const std::string& text, const MethodWish& wish);
 
 /// Returns whether the scene's instances become copies: if copies are requested or cheap, under a dome of which areas
-/// may be asked, since its directions pass all triangles, with a lens, whose points see other triangles than its
-/// middle, and for a method that looks at each triangle once, where the scene makes it look again. Throws UsageError if
-/// `use` is shared and cannot be.
+/// may be asked, since its directions pass all triangles, and for a method that looks at each triangle once, where the
+/// scene or several view samples a pixel, at one moment or at several, make it look again. Throws UsageError if `use`
+/// is shared and cannot be.
 bool needs_copies(const scenes::Scene& scene, const scenes::Instances& instances, InstanceUse use,
-                  const MethodWish& wish, std::uint32_t pixel_side);
+                  const MethodWish& wish, std::uint32_t pixel_samples);
 
 /// Returns the memory that a method needs for each triangle of a copy, beside the scene's.
 std::uint64_t bytes_per_copy(const MethodWish& wish, std::span<const scenes::AreaLight> lights);

@@ -11,8 +11,8 @@ namespace penumbra::app {
 /// Milliseconds of one picture. A move that comes just after a picture began waits for two, and is to be seen within
 /// 120 ms.
 inline constexpr double kPictureTime = 45;
-/// Milliseconds; a faster picture leaves time for a better one. A final picture that is as fast needs no quick one before
-/// it.
+/// Milliseconds; a faster picture leaves time for a better one. A final picture that is as fast needs no quick one
+/// before it.
 inline constexpr double kQuickTime = 20;
 
 /// Quality of a picture during changes.

@@ -103,9 +103,9 @@ TEST(MeanBands, AreTheWholePictureOfMoments) {
   frame.pixel_side = 4;
   for (int i = 0; i < 2; ++i) {
     frame.moments.emplace_back([run, i] {
-      scenes::Scene scene = app::read_session_scene(run, std::nullopt);
-      for (scenes::Camera& camera : scene.cameras) camera.eye.x += 0.01 * i;
-      return scene;
+      app::PictureScene read{app::read_session_scene(run, std::nullopt)};
+      for (scenes::Camera& camera : read.scene.cameras) camera.eye.x += 0.01 * i;
+      return read;
     });
   }
   expect_same_in_bands(run, frame);
