@@ -8,6 +8,7 @@
 #include "base/pages.hpp"
 #include "visibility/alpha/alpha_filter.hpp"
 #include "visibility/masks/visible_share.hpp"
+#include "visibility/share.hpp"
 
 #include <glm/common.hpp>
 
@@ -29,10 +30,6 @@ using visibility::Tile;
 /// Smallest V of a round light that is not a rounding error. V is a sum of arcs in double, off by up to 16 · 2⁻⁵³ for
 /// each corner (DiskPart); smaller values appear where a sphere touches the receiver's plane from below.
 constexpr float kLeastRoundShare = 0x1p-44F;
-
-/// Shares are sums and quotients of floats, which Vulkan lets be off by 2.5 units in the last place (a quotient of equal
-/// numbers need not be 1): this is room for two of them, and far below the tolerance of any method.
-constexpr float kRoundedShare = 0x1p-20F;
 
 /// Form factors are sums of terms up to 1/2, each off by a few roundings (visibility/lights/form_factor.hpp).
 constexpr double kLeastFormFactor = 0x1p-40;
@@ -304,7 +301,7 @@ class Host {
   /// through this function.
   void settle_shares(const Light& light, std::size_t first, std::span<float> values) const {
     for (std::size_t i = 0; i < values.size(); ++i) {
-      if (values[i] >= -kRoundedShare && values[i] <= 1 + kRoundedShare) {
+      if (visibility::is_share(values[i])) {
         values[i] = std::clamp(values[i], 0.0f, 1.0f);
         continue;
       }

@@ -12,6 +12,7 @@
 #include "scenes/light_kind.hpp"
 #include "visibility/masks/visible_share.hpp"
 #include "visibility/receivers.hpp"
+#include "visibility/share.hpp"
 
 #include <penumbra/own_method.hpp>
 
@@ -170,7 +171,7 @@ void HostedMethod::evaluate(const visibility::Tile& tile) {
     visibility_.assign(pixels_.size(), std::numeric_limits<float>::quiet_NaN());
     if (!pixels_.empty()) call([&] { own_->visibility(pixels_, visibility_); });
     for (std::size_t i = 0; i < pixels_.size(); ++i) {
-      if (visibility_[i] >= 0 && visibility_[i] <= 1) continue;
+      if (visibility::is_share(visibility_[i])) continue;
       throw ResourceError("method {}: its function gave V = {} at pixel ({}, {}); expected a number from 0 to 1",
                           description_.name, visibility_[i], pixels_[i] % samples_->width,
                           pixels_[i] / samples_->width);

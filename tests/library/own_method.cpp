@@ -170,6 +170,18 @@ TEST(OwnMethods, FailAlone) {
   EXPECT_THAT(on_surfaces(renderer.render({.width = 8, .height = 8, .method = "constant"})), Each(0.5F));
 }
 
+TEST(OwnMethods, MayExceedAllOfTheLightByRounding) {
+  add_once();
+  Renderer renderer(floor_under_light());
+  const auto shown = [&](const char* value) {
+    return on_surfaces(renderer.render({.width = 8, .height = 8, .method = "constant", .options = {{"value", value}}}));
+  };
+  EXPECT_THAT(shown("1.0000001"), Each(1.0F));
+  EXPECT_THAT(shown("-0.0000001"), Each(0.0F));
+  EXPECT_THROW(shown("1.00001"), ResourceError);
+  EXPECT_THROW(shown("-0.00001"), ResourceError);
+}
+
 TEST(OwnMethods, WorkInSeveralThreadsWhileOthersAreAdded) {
   add_once();
   std::vector<std::jthread> threads;
