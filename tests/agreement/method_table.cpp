@@ -70,5 +70,18 @@ TEST_F(MethodTable, ListsEachMethodOnceTheDefaultFirst) {
   EXPECT_EQ(app::ray_judge().name, "raytrace");
 }
 
+TEST_F(MethodTable, WarnsWithEachOfItsOptions) {
+  std::size_t asked = 0;
+  for (const visibility::MethodDescription* method : app::all_methods()) {
+    if (method->warning == nullptr) continue;
+    for (const visibility::OptionDescription& option : method->options) {
+      ++asked;
+      EXPECT_NO_THROW(method->warning({{option.name, option.default_value}}, {{"pixelsOnOccluders", 1}}))
+          << method->name << ", " << option.name;
+    }
+  }
+  EXPECT_GT(asked, 10U);
+}
+
 }  // namespace
 }  // namespace penumbra::tests
