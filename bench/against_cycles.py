@@ -2,10 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Error against processor time of Penumbra and of Blender's Cycles, whole processes from start to file.
 
-    bench/against_cycles.py measure [BUILD]     renders and measures; writes bench/results/against-cycles.json; an hour
+    bench/against_cycles.py measure [BUILD [SCENE …]]     renders and measures; writes bench/results/against-cycles.json; an hour
     bench/against_cycles.py page [--check]      docs/against-cycles.md and its chart from that file
 
-`measure` needs Blender, the built program and the add-on (targets penumbra and penumbra_blender_addon).
+With scenes named, rows of others stay as they are. `measure` needs Blender, the built program and the add-on (targets penumbra and penumbra_blender_addon).
 
 Each scene (cycles/scenes.py) is rendered at its pixels' centres, and antialiased under a Blackman-Harris filter of 1.5 pixels, by
 four processes: the program from the add-on's exchange file; Blender with the add-on; and Blender with Cycles, direct light, at
@@ -42,7 +42,7 @@ CYCLES_SAMPLES = 64, 256
 JUDGE_SAMPLES = 4096  # for each of two seeds
 RUNS = 3
 ERRORS = 0.03, 0.01, 0.002
-NAMES = {"small": "small lamp", "large_penumbrae": "large penumbrae", "dense": "504k triangles", "four_lamps": "four lamps"}
+NAMES = {"small": "small lamp", "large_penumbrae": "large penumbrae", "dense": "504k triangles", "four_lamps": "four lamps", "sky": "sky picture"}
 
 
 def processor_seconds(command, environment, log):
@@ -158,7 +158,7 @@ class Scene:
                             for engine, times in seconds.items()]}
 
 
-def measure(build):
+def measure(build, names):
     git = lambda *arguments: subprocess.run(["git", "-C", ROOT, *arguments], capture_output=True, text=True).stdout.strip()
     blender = subprocess.run(["blender", "--version"], capture_output=True, text=True, check=True).stdout.split("\n")[0]
     with tempfile.TemporaryDirectory() as folder:
@@ -167,13 +167,20 @@ def measure(build):
         (work / "scripts").mkdir()
         program = build / "penumbra"
         processor_seconds(["blender", "-b", "--factory-startup", "--python-exit-code", "1", "-P", HERE / "scenes.py", "--",
-                           build / "penumbra-blender.zip", work, WIDTH, HEIGHT], environment, work / "log")
+                           build / "penumbra-blender.zip", work, WIDTH, HEIGHT, *names], environment, work / "log")
         triangles = {line.split()[1]: int(line.split()[2]) for line in (work / "log").read_text().splitlines() if line.startswith("scene: ")}
-        rows = [Scene(name, work, program, environment).measure(antialiased) for name in NAMES for antialiased in (False, True)]
-    RESULT.write_text(json.dumps({
-        "title": "error against processor seconds, beside Cycles", "command": "bench/against_cycles.py measure", "commit": git("rev-parse", "--short", "HEAD"),
-        "machine": processor(), "threads": os.cpu_count(), "load": [round(x, 1) for x in os.getloadavg()], "blender": blender,
-        "size": [WIDTH, HEIGHT], "judgeSamples": 2 * JUDGE_SAMPLES, "triangles": triangles, "rows": rows}, indent=1) + "\n")
+        rows = [Scene(name, work, program, environment).measure(antialiased) for name in names for antialiased in (False, True)]
+    state = {"commit": git("rev-parse", "--short", "HEAD"), "machine": processor(), "threads": os.cpu_count(),
+             "load": [round(x, 1) for x in os.getloadavg()]}
+    data = {"title": "error against processor seconds, beside Cycles", "command": "bench/against_cycles.py measure", **state, "blender": blender,
+            "size": [WIDTH, HEIGHT], "judgeSamples": 2 * JUDGE_SAMPLES, "triangles": triangles, "rows": rows}
+    if set(names) != set(NAMES):
+        kept = json.loads(RESULT.read_text())
+        measured = {(row["scene"], row["antialiased"]): row | {"measured": state} for row in rows}
+        old = {(row["scene"], row["antialiased"]): row for row in kept["rows"]}
+        data = kept | {"triangles": kept["triangles"] | triangles,
+                       "rows": [row for name in NAMES for antialiased in (False, True) if (row := (old | measured).get((name, antialiased)))]}
+    RESULT.write_text(json.dumps(data, indent=1) + "\n")
 
 
 def processor():
@@ -220,7 +227,8 @@ def table(rows):
         cycles = " | ".join(f"{entries[f'cycles {samples}']['error']:.4f} / {number(entries[f'cycles {samples}']['seconds'])}" for samples in CYCLES_SAMPLES)
         # An error below what ours has is nothing that both reach.
         factors = ", ".join(line.factor(error, ours["seconds"]) if error >= ours["error"] else "–" for error in ERRORS)
-        yield f"| {NAMES[row['scene']]} | {number(ours['seconds'])} | {number(entries['add-on']['seconds'])} | {error} | {cycles} | {factors} |"
+        later = f" ({row['measured']['commit']}, load {row['measured']['load'][0]})" if "measured" in row else ""
+        yield f"| {NAMES[row['scene']]}{later} | {number(ours['seconds'])} | {number(entries['add-on']['seconds'])} | {error} | {cycles} | {factors} |"
 
 
 def chart(data):
@@ -242,7 +250,7 @@ def chart(data):
             at = plot.at(max(ours["seconds"], xs[0]), max(ours["error"], row["leastError"], ys[0]))
             d.circle(at, 8, None, STYLES[style][0], 1.6)
             mark(d, at, *STYLES[style])
-    key(d, (70, 405), list(enumerate(NAMES[row["scene"]] for row in data["rows"] if not row["antialiased"])), 220)
+    key(d, (70, 405), list(enumerate(NAMES[row["scene"]] for row in data["rows"] if not row["antialiased"])), 180)
     d.text((70, 430), "Ringed: Penumbra. Curves: Cycles, 64 and 256 light samples a pixel, measured, and 1,024 … computed from these.", 12)
     return d.finish()
 
@@ -255,7 +263,8 @@ writes; that script's head says how errors and times are taken.
 
 ![error against processor seconds](images/against-cycles.svg)
 
-Commit {commit}, {machine}, {threads} threads, load {load[0]} at the end, {blender}, {size[0]} × {size[1]} pixels. Times are
+Commit {commit}, {machine}, {threads} threads, load {load[0]} at the end, {blender}, {size[0]} × {size[1]} pixels; a scene that was
+measured later has its own commit and load. Under the sky picture Penumbra asks 256 directions, as its add-on does by itself. Times are
 processor seconds (user and system, medians of {runs}), so another process on the machine changes them less than the clock. The error is
 relative RMSE over a crop of {crop[2]} × {crop[3]} pixels full of penumbra, against Cycles with {judgeSamples} samples a pixel; "≤": below the
 judge's own noise. The last column extrapolates Cycles' error by one over the root of its samples, to more samples than 64 only ("≤" for fewer);
@@ -291,7 +300,7 @@ def page(check):
 def main():
     command, *rest = sys.argv[1:] or [""]
     if command == "measure":
-        measure(Path(rest[0] if rest else ROOT / "build").resolve())
+        measure(Path(rest[0] if rest else ROOT / "build").resolve(), rest[1:] or list(NAMES))
     elif command == "page":
         raise SystemExit(page("--check" in rest))
     else:

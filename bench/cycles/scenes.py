@@ -3,7 +3,7 @@
 
     blender -b --factory-startup --python-exit-code 1 -P scenes.py -- ADDON.zip FOLDER WIDTH HEIGHT [NAME …]
 
-Without names the four of against_cycles.py. Writes FOLDER/NAME.blend, and FOLDER/NAME.glb as the add-on hands it to the program.
+Without names the five of against_cycles.py. Writes FOLDER/NAME.blend, and FOLDER/NAME.glb as the add-on hands it to the program.
 """
 
 import os
@@ -12,6 +12,7 @@ import sys
 from math import radians, sin
 
 import bpy
+import numpy
 from mathutils import Vector
 
 ZIP, FOLDER, WIDTH, HEIGHT, *NAMES = sys.argv[sys.argv.index("--") + 1:]
@@ -105,6 +106,31 @@ def four_lamps():
     lamp("Sun", "SUN", (0, -3, 6), angle=radians(3), energy=0.5)
 
 
+def sky():
+    """The still life under an environment picture: a sky brighter at the horizon, and a low sun of 8 degrees behind haze."""
+    still_life()
+    width, height = 512, 256
+    u, v = numpy.meshgrid((numpy.arange(width) + 0.5) / width, (numpy.arange(height) + 0.5) / height)
+    longitude, latitude = 2 * numpy.pi * (0.5 - u), numpy.pi * (v - 0.5)  # rows from the bottom; the middle column along +X
+    toward = numpy.stack([numpy.cos(latitude) * numpy.cos(longitude), numpy.cos(latitude) * numpy.sin(longitude), numpy.sin(latitude)], axis=-1)
+    sun = Vector((0.5, -0.6, 0.62)).normalized()
+    angle = numpy.degrees(numpy.arccos(numpy.clip(toward @ numpy.array(sun), -1, 1)))
+    shade = numpy.where(latitude > 0, 1.2 - 0.8 * numpy.sin(numpy.abs(latitude)), 0.2)
+    pixels = numpy.ones((height, width, 4), numpy.float32)
+    pixels[..., :3] = shade[..., None] * [0.45, 0.6, 1.0] + (80 * numpy.clip(5 - angle, 0, 1) + 3 * numpy.exp(-angle / 8))[..., None] * [1.0, 0.9, 0.7]
+    image = bpy.data.images.new("Sky", width, height, float_buffer=True)
+    image.colorspace_settings.name = "Linear"
+    image.pixels.foreach_set(pixels.ravel())
+    image.filepath_raw, image.file_format = os.path.join(FOLDER, "sky.exr"), "OPEN_EXR"
+    image.save()
+    world = bpy.data.worlds.new("World")
+    bpy.context.scene.world = world
+    world.use_nodes = True
+    picture = world.node_tree.nodes.new("ShaderNodeTexEnvironment")
+    picture.image = image
+    world.node_tree.links.new(picture.outputs["Color"], world.node_tree.nodes["Background"].inputs["Color"])
+
+
 def lamps(count):
     """Point lamps, spot lamps and rectangles in turn over a floor of 40 × 40 with 64 blocks; the same numbers in every run."""
     numbers = random.Random(7)
@@ -160,6 +186,6 @@ def write(name, build):
 
 
 bpy.ops.preferences.addon_install(filepath=ZIP)
-SCENES = {function.__name__: function for function in (small, large_penumbrae, dense, four_lamps, lamps_200, lamps_1000)}
-for name in NAMES or list(SCENES)[:4]:
+SCENES = {function.__name__: function for function in (small, large_penumbrae, dense, four_lamps, sky, lamps_200, lamps_1000)}
+for name in NAMES or list(SCENES)[:5]:
     write(name, SCENES[name])
