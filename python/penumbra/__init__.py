@@ -65,9 +65,9 @@ def _size(size):
 
 
 class Instance(_typing.NamedTuple):
-    """One instance of a mesh: the first has number 0. Also `Instance(mesh, number)` for those of a file."""
+    """One instance of a mesh, which is named or numbered: its first has number 0. Those of a file are `Instance("tree", 17)`."""
 
-    mesh: int
+    mesh: _typing.Union[str, int]
     number: int
 
 
@@ -136,7 +136,7 @@ class Scene:
         added or read with to where they are; with instances, it moves them all. Of an Instance, it replaces the matrix."""
         matrix = _np.asarray(matrix, float)
         if isinstance(mesh, Instance):
-            self._core.set_instance_transform(mesh.mesh, mesh.number, matrix)
+            self._core.set_instance_transform(self._mesh(mesh.mesh), mesh.number, matrix)
         else:
             self._core.set_transform(self._mesh(mesh), matrix)
 

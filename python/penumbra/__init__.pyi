@@ -17,7 +17,7 @@ _Log = Callable[[str, str], object]
 _Progress = Callable[[str, float], Optional[bool]]
 
 class Instance(NamedTuple):
-    mesh: int
+    mesh: Union[str, int]
     number: int
 
 class Scene:

@@ -100,6 +100,8 @@ class Instances(unittest.TestCase):
         self.assertFalse(np.array_equal(moved.V, first.V))
         self.assertEqual(moved.stats["counters"]["meshTreesBuilt"], 0)
         np.testing.assert_array_equal(moved.V, renderer.render((30, 50), instances="copies").V)
+        read.set_transform(penumbra.Instance("tent", 5), np.diag([1.0, 2, 1, 1]))
+        np.testing.assert_array_equal(moved.V, penumbra.render(read, (30, 50), instances="shared").V)
         with self.assertRaisesRegex(penumbra.UsageError, "has 6 instances, and none 6"):
             scene.set_transform(penumbra.Instance(mesh, 6), np.eye(4))
 
