@@ -98,6 +98,17 @@ void SoupBuilder::add(const Instance& instance, std::uint32_t triangle) {
   to_.soup.source_face.push_back(soup.source_face[triangle]);
 }
 
+std::uint32_t object_of(const Scene& scene, const Instances& instances, std::uint64_t triangle) {
+  std::uint64_t before = 0;  // triangles of the instances before
+  for (const Instance& instance : instances.all) {
+    const std::uint64_t first = instance.soup_before + before, count = instances.triangles_of(instance);
+    if (triangle < first) break;
+    if (triangle < first + count) return instance.object;
+    before += count;
+  }
+  return scene.soup.object[triangle - before];
+}
+
 Scene copied(Scene scene, const Instances& instances, std::uint64_t more_bytes) {
   if (instances.empty()) return scene;
   const std::uint64_t triangles = triangle_count(scene, instances);

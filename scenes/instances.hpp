@@ -73,6 +73,9 @@ inline constexpr std::uint64_t kFewCopies = 500'000;
 /// Returns the number of the scene's triangles, those of instances included.
 std::uint64_t triangle_count(const Scene& scene, const Instances& instances);
 
+/// Returns the index into Scene::objects of a triangle, by its number in the whole scene.
+std::uint32_t object_of(const Scene& scene, const Instances& instances, std::uint64_t triangle);
+
 /// A soup to which triangles of instances are added, one after the other.
 class SoupBuilder {
  public:

@@ -221,7 +221,7 @@ void Service::show(const json& message) {
   if (!renderer_) {
     if (!update.scene) throw InputError("there is nothing to show: nothing was put");
     renderer_ = std::make_unique<LiveRenderer>(
-        options_, update.scene->scene,
+        options_, WholeScene{update.scene->scene},
         LiveEvents{.frame = {},
                    .say = [this](std::string_view level, const std::string& text) { say(level, text); },
                    .reloaded = {},

@@ -79,6 +79,11 @@ class ViewCommand : public Command {
         ->type_name("NAME|fit|E:T[:FOV]");
     cli_.add_option("--device", run_.device, "Vulkan device: part of its name, its index, or cpu (default: the best)")
         ->type_name("NAME|INDEX|cpu");
+    cli_.add_option("--instances", instances_,
+                    "instances of meshes: as copies, which cost time and memory at the start; shared, found anew for "
+                    "each picture, by methods that look from view samples to the light; or auto, as copies up to "
+                    "5,000,000 triangles")
+        ->type_name("auto|copies|shared");
     add_allow_outside(cli_, run_.allow_outside);
     add_lenient(cli_, run_.lenient);
     add_gltf_options(cli_, run_.gltf);
@@ -90,10 +95,10 @@ class ViewCommand : public Command {
     TerminalProgress progress(!global.quiet);
     progress.begin("reading " + run_.scene.filename().string(), 1);
     FileWatch files({run_.scene});  // set before reading: the scene is read again after changes during reading
-    scenes::Scene scene = read_session_scene(run_, {});
+    WholeScene whole = read_whole_scene(run_, parse_instances(instances_, {}));
     progress.clear();
-    for (const std::string& warning : scene.warnings) spdlog::warn("{}", warning);
-    LiveView view(run_, std::move(scene), {host_, static_cast<std::uint16_t>(port_)});
+    for (const std::string& warning : whole.scene.warnings) spdlog::warn("{}", warning);
+    LiveView view(run_, std::move(whole), {host_, static_cast<std::uint16_t>(port_)});
     if (!method_.empty()) view.renderer().apply({{"type", "method"}, {"slot", "a"}, {"entry", method_}}, 0);
     if (!other_.empty()) view.renderer().apply({{"type", "method"}, {"slot", "b"}, {"entry", other_}}, 0);
     if (samples_ != 0) view.renderer().apply({{"type", "samples"}, {"count", samples_}}, 0);
@@ -129,7 +134,7 @@ class ViewCommand : public Command {
   int port_ = 0;
   std::uint32_t samples_ = 0;
   bool no_browser_ = false, watch_ = false;
-  std::string method_, other_;
+  std::string method_, other_, instances_;
 };
 
 }  // namespace

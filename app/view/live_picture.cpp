@@ -183,8 +183,7 @@ std::string frame_message(const LivePicture& picture, const LiveDisplay& display
   return message;
 }
 
-ordered_json pixel_json(const LivePicture& picture, glm::uvec2 pixel, const scenes::Scene& scene,
-                        const LiveMasks* masks) {
+ordered_json pixel_json(const LivePicture& picture, glm::uvec2 pixel, const WholeScene& whole, const LiveMasks* masks) {
   if (pixel.x >= picture.full_width || pixel.y >= picture.full_height)
     throw InputError("pixel {},{}: the picture has {}x{}", pixel.x, pixel.y, picture.full_width, picture.full_height);
   const ViewSamples& samples = picture.samples;
@@ -197,7 +196,8 @@ ordered_json pixel_json(const LivePicture& picture, glm::uvec2 pixel, const scen
   if (triangle != ViewSamples::kBackground) {
     const glm::dvec3 p = glm::dvec3(samples.p[i]) + picture.origin;
     made["id"] = triangle;
-    made["object"] = scene.objects[scene.soup.object[static_cast<std::size_t>(triangle)]].name;
+    const auto number = static_cast<std::uint64_t>(triangle);
+    made["object"] = whole.scene.objects[scenes::object_of(whole.scene, whole.instances, number)].name;
     made["position"] = {p.x, p.y, p.z};
     made["normal"] = {samples.n[i].x, samples.n[i].y, samples.n[i].z};
     made["depth"] = samples.depth[i];

@@ -3,6 +3,7 @@
 
 #include "app/pictures/frame_render.hpp"
 #include "app/view/live_state.hpp"
+#include "app/view/whole_scene.hpp"
 #include "visibility/view_samples.hpp"
 
 #include <glm/vec2.hpp>
@@ -60,9 +61,9 @@ std::optional<LiveDifference> difference(const LivePicture& picture, const std::
 /// the bytes of each of its `images`, PNG for a final picture, else JPEG. `more`: further members of the object.
 std::string frame_message(const LivePicture& picture, const LiveDisplay& display, const nlohmann::ordered_json& more);
 
-/// Returns all answers at one pixel of the final picture's size. `scene`: provides the names of the meshes; `masks` may
+/// Returns all answers at one pixel of the final picture's size. `whole`: provides the names of the meshes; `masks` may
 /// be null, or of another picture.
-nlohmann::ordered_json pixel_json(const LivePicture& picture, glm::uvec2 pixel, const scenes::Scene& scene,
+nlohmann::ordered_json pixel_json(const LivePicture& picture, glm::uvec2 pixel, const WholeScene& whole,
                                   const LiveMasks* masks);
 
 }  // namespace penumbra::app

@@ -67,15 +67,15 @@ std::string plain_name(std::string name) {
 
 }  // namespace
 
-LiveRenderer::LiveRenderer(RunOptions options, scenes::Scene scene, LiveEvents events)
+LiveRenderer::LiveRenderer(RunOptions options, WholeScene whole, LiveEvents events)
     : options_(std::move(options)),
       events_(std::move(events)),
       machine_(make_machine(options_.device)),
-      state_(live_state(without_meshes(scene), options_.camera)),
+      state_(live_state(without_meshes(whole.scene), options_.camera)),
       run_(options_),
       steps_(std::make_unique<Steps>(*this)) {
-  file_ = std::make_shared<const scenes::Scene>(without_meshes(scene));
-  whole_ = std::make_shared<const scenes::Scene>(std::move(scene));
+  file_ = std::make_shared<const scenes::Scene>(without_meshes(whole.scene));
+  whole_ = std::make_shared<const WholeScene>(std::move(whole));
   if (!options_.size.empty()) std::tie(state_.width, state_.height) = parse_size(options_.size);
   thread_ = std::thread([this] { work(); });
 }
@@ -117,7 +117,7 @@ void LiveRenderer::update(LiveUpdate update, std::uint64_t client) {
   state.moving = update.moving;
   state_ = std::move(state);
   if (update.scene && !update.scene->same_meshes) {
-    whole_ = std::make_shared<const scenes::Scene>(std::move(update.scene->scene));
+    whole_ = std::make_shared<const WholeScene>(WholeScene{std::move(update.scene->scene)});
     ++meshes_;
   }
   if (update.stamp) stamps_[client] = *update.stamp;
@@ -171,7 +171,7 @@ LiveScenery LiveRenderer::scenery() const {
 ordered_json LiveRenderer::pixel(std::uint32_t x, std::uint32_t y) const {
   std::shared_ptr<const LivePicture> picture;
   std::shared_ptr<const LiveMasks> masks;
-  std::shared_ptr<const scenes::Scene> whole;
+  std::shared_ptr<const WholeScene> whole;
   std::optional<scenes::AreaLight> light;  // light whose outline at the pixel is requested
   {
     const std::lock_guard lock(mutex_);
@@ -182,12 +182,13 @@ ordered_json LiveRenderer::pixel(std::uint32_t x, std::uint32_t y) const {
     const auto shown = std::ranges::find(lights, state_.display.light, &scenes::AreaLight::name);
     if (state_.masks && shown != lights.end()) light = *shown;
   }
-  if (!picture || picture->triangles != whole->soup.triangles.size()) return {{"type", "pixel"}, {"x", x}, {"y", y}};
+  if (!picture || picture->triangles != scenes::triangle_count(whole->scene, whole->instances))
+    return {{"type", "pixel"}, {"x", x}, {"y", y}};
   ordered_json made = pixel_json(*picture, {x, y}, *whole, masks.get());
-  if (light && made["surface"]) {
+  if (light && made["surface"] && whole->instances.empty()) {  // an outline is cut by all triangles
     const ordered_json& p = made["position"];
     const auto triangle = made["id"].get<std::size_t>();
-    if (const auto outline = light_outline(*whole, *light, {{p[0], p[1], p[2]}, triangle}))
+    if (const auto outline = light_outline(whole->scene, *light, {{p[0], p[1], p[2]}, triangle}))
       made["outline"] = outline_json(*outline, light->name);
   }
   return made;
@@ -199,9 +200,11 @@ std::string LiveRenderer::saved_name() const {
 
 std::string LiveRenderer::scene_text() const {
   scenes::Scene scene;
+  std::shared_ptr<const WholeScene> whole;
   {
     const std::lock_guard lock(mutex_);
-    scene = with_meshes(state_.scene, *whole_);
+    whole = whole_;
+    scene = with_meshes(state_.scene, whole->scene);
     const std::vector<std::string> on = lights_on(state_);
     for (scenes::AreaLight& light : scene.lights) {
       if (std::ranges::find(on, light.name) == on.end()) light.radiance = glm::dvec3(0);
@@ -214,7 +217,8 @@ std::string LiveRenderer::scene_text() const {
       scene.cameras.front().aspect.reset();
     }
   }
-  return written(saved_name(), [&](const std::filesystem::path& file) { scenes::write_scene(scene, file); });
+  return written(saved_name(),
+                 [&](const std::filesystem::path& file) { scenes::write_scene(scene, file, {}, whole->instances); });
 }
 
 std::string LiveRenderer::light_picture(const std::string& light) const {

@@ -7,6 +7,7 @@
 #include "app/view/live_pace.hpp"
 #include "app/view/live_picture.hpp"
 #include "app/view/live_state.hpp"
+#include "app/view/whole_scene.hpp"
 #include "render/machine.hpp"
 
 #include <nlohmann/json.hpp>
@@ -52,7 +53,7 @@ struct LiveUpdate {
 
 /// Scene as displayed.
 struct LiveScenery {
-  std::shared_ptr<const scenes::Scene> whole;  ///< with meshes; lights and cameras may be of an earlier file
+  std::shared_ptr<const WholeScene> whole;     ///< lights and cameras may be of an earlier file
   scenes::Scene lights;                        ///< without meshes; lights as changed
   std::shared_ptr<const LivePicture> picture;  ///< may be null, or of an earlier state
 };
@@ -62,8 +63,8 @@ struct LiveScenery {
 /// picture. Thread-safe.
 class LiveRenderer {
  public:
-  /// `scene`: read with `options`.
-  LiveRenderer(RunOptions options, scenes::Scene scene, LiveEvents events);
+  /// `whole`: read with `options`.
+  LiveRenderer(RunOptions options, WholeScene whole, LiveEvents events);
   LiveRenderer(const LiveRenderer&) = delete;
   LiveRenderer& operator=(const LiveRenderer&) = delete;
   ~LiveRenderer();
@@ -97,7 +98,7 @@ class LiveRenderer {
  private:
   struct Order {
     LiveState state;
-    std::shared_ptr<const scenes::Scene> whole;  // with the meshes of `state`
+    std::shared_ptr<const WholeScene> whole;  // with the meshes of `state`
     std::uint64_t revision = 0;
     LiveQuality quality;
     bool is_final = false;
@@ -117,7 +118,7 @@ class LiveRenderer {
   /// Returns whether pictures are to tell the number of the mesh's edges, which is unknown.
   [[nodiscard]] bool needs_edges() const { return events_.frame && counted_ != whole_; }
   /// Counts the edges of the displayed mesh, and shows the picture again with their number.
-  void count_edges(const std::shared_ptr<const scenes::Scene>& whole);
+  void count_edges(const std::shared_ptr<const WholeScene>& whole);
   /// Returns whether a change has made the current picture obsolete.
   [[nodiscard]] bool is_overtaken(std::uint64_t revision) const;
   LiveAnswer answer(const Order& order, const std::string& entry, scenes::Scene& scene);
@@ -138,26 +139,27 @@ class LiveRenderer {
   bool ending_ = false, wants_reload_ = false, wants_show_ = false;
   bool is_awaited_ = false;  // the last frame has not yet been shown
   LiveState state_;
-  std::uint64_t revision_ = 1;                         // of state_; a different number requires another picture
-  std::map<std::uint64_t, double> stamps_;             // of each client, of its last change
-  std::shared_ptr<const scenes::Scene> whole_, file_;  // with the meshes displayed; as read, without meshes
-  std::uint64_t meshes_ = 1;                           // of whole_; a different number: other meshes
+  std::uint64_t revision_ = 1;                 // of state_; a different number requires another picture
+  std::map<std::uint64_t, double> stamps_;     // of each client, of its last change
+  std::shared_ptr<const WholeScene> whole_;    // with the meshes displayed
+  std::shared_ptr<const scenes::Scene> file_;  // as read, without meshes
+  std::uint64_t meshes_ = 1;                   // of whole_; a different number: other meshes
   std::shared_ptr<const LivePicture> picture_;
   std::shared_ptr<const LiveMasks> masks_;
-  std::shared_ptr<const scenes::Scene> counted_;  // scene whose edges were counted
-  std::optional<std::size_t> edges_;              // of counted_
-  std::uint64_t failed_ = 0, masks_failed_ = 0;   // revision that could not be shown
+  std::shared_ptr<const WholeScene> counted_;    // scene whose edges were counted
+  std::optional<std::size_t> edges_;             // of counted_
+  std::uint64_t failed_ = 0, masks_failed_ = 0;  // revision that could not be shown
   std::exception_ptr thrown_;
 
   // Used only by the thread:
   RunOptions run_;
   MethodWish wish_;
   std::unique_ptr<Steps> steps_;
-  std::unique_ptr<FrameRenderer> frames_;          // refers to run_, wish_ and steps_
-  std::shared_ptr<const scenes::Scene> rendered_;  // scene whose meshes frames_ has
+  std::unique_ptr<FrameRenderer> frames_;       // refers to run_, wish_ and steps_
+  std::shared_ptr<const WholeScene> rendered_;  // scene whose meshes frames_ has
   LivePace pace_;
-  SlowMethods slow_;                              // of slow_of_
-  std::shared_ptr<const scenes::Scene> slow_of_;  // with meshes
+  SlowMethods slow_;  // of slow_of_
+  std::shared_ptr<const WholeScene> slow_of_;
   double final_milliseconds_ = 1000;
   float automatic_stops_ = 0;
   bool has_stops_ = false;

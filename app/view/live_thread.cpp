@@ -122,20 +122,25 @@ void LiveRenderer::failed(std::uint64_t revision, const std::string& message) {
 
 void LiveRenderer::read_again() {
   try {
-    scenes::Scene scene = read_session_scene(options_, {});
-    auto file = std::make_shared<const scenes::Scene>(without_meshes(scene));
-    std::shared_ptr<const scenes::Scene> whole;
+    InstanceUse use = InstanceUse::automatic;
+    {
+      const std::lock_guard lock(mutex_);
+      use = whole_->use;
+    }
+    WholeScene read = read_whole_scene(options_, use);
+    auto file = std::make_shared<const scenes::Scene>(without_meshes(read.scene));
+    std::shared_ptr<const WholeScene> whole;
     {
       const std::lock_guard lock(mutex_);
       whole = whole_;
     }
-    const bool same = same_meshes(*whole, scene);
+    const bool same = whole->instances.empty() && read.instances.empty() && same_meshes(whole->scene, read.scene);
     {
       const std::lock_guard lock(mutex_);
-      state_ = reloaded(state_, *file_, without_meshes(scene));
+      state_ = reloaded(state_, *file_, without_meshes(read.scene));
       file_ = std::move(file);
       if (!same || whole != whole_) {
-        whole_ = std::make_shared<const scenes::Scene>(std::move(scene));
+        whole_ = std::make_shared<const WholeScene>(std::move(read));
         ++meshes_;
       }
       ++revision_;
@@ -150,8 +155,9 @@ void LiveRenderer::read_again() {
 
 scenes::Scene LiveRenderer::scene_of(const Order& order) const {
   const LiveState& state = order.state;
-  const bool same_meshes = frames_ && frames_->has_meshes() && rendered_ == order.whole;
-  scenes::Scene scene = same_meshes ? state.scene : with_meshes(state.scene, *order.whole);
+  const bool same_meshes =
+      frames_ && frames_->has_meshes() && rendered_ == order.whole && order.whole->instances.empty();
+  scenes::Scene scene = same_meshes ? state.scene : with_meshes(state.scene, order.whole->scene);
   scene.cameras = {state.camera};
   return scene;
 }
@@ -161,9 +167,12 @@ void LiveRenderer::render(const Order& order, scenes::Scene scene, bool keeps_ma
     frames_ = std::make_unique<FrameRenderer>(run_, wish_, machine_, *steps_);
     frames_->expect_frames();
   }
-  const bool same_meshes = scene.soup.triangles.empty();
+  const scenes::Instances& instances = order.whole->instances;
+  const bool same_meshes = scene.soup.triangles.empty() && instances.empty();
+  require_no_copies(scene, instances, wish_);
   const Frame frame{.number = {},
                     .camera = scene.cameras.front().name,
+                    .instances = &instances,
                     .same_meshes = same_meshes,
                     .keeps_masks = keeps_masks,
                     .band_rows = kBand};
@@ -243,7 +252,8 @@ void LiveRenderer::make_picture(const Order& order) {
     picture->lights = whole_names(session.lights);
     picture->samples = session.samples;
     picture->origin = session.floats.origin;
-    picture->triangles = session.scene.soup.triangles.size();
+    for (std::int32_t& triangle : picture->samples.triangle) triangle = session.number_of(triangle);
+    picture->triangles = session.triangle_count();
     if (order.is_final || !has_stops_) {
       automatic_stops_ = std::log2(auto_exposure(session, picture->answers.front().frame.sum));
       has_stops_ = true;
@@ -306,9 +316,9 @@ void LiveRenderer::make_masks(const Order& order) {
   }
 }
 
-void LiveRenderer::count_edges(const std::shared_ptr<const scenes::Scene>& whole) {
+void LiveRenderer::count_edges(const std::shared_ptr<const WholeScene>& whole) {
   std::optional<std::size_t> edges;
-  if (frames_ && frames_->has_meshes() && rendered_ == whole) {
+  if (frames_ && frames_->has_meshes() && rendered_ == whole && whole->instances.empty()) {
     const visibility::SceneFloats& floats = frames_->session().floats;
     edges = mesh::build_edge_graph({mesh::widened(floats.positions), floats.triangles}).edges.size();
   }

@@ -44,7 +44,7 @@ std::string view_page() {
       kViewStyle, kViewMarkup, kViewScript);
 }
 
-LiveView::LiveView(RunOptions options, scenes::Scene scene, network::ServerPlace place)
+LiveView::LiveView(RunOptions options, WholeScene whole, network::ServerPlace place)
     : methods_(message_text(methods_json()["methods"])), error_scale_(message_text(error_scale())) {
   network::ServerOptions serving;
   serving.place = std::move(place);
@@ -63,7 +63,7 @@ LiveView::LiveView(RunOptions options, scenes::Scene scene, network::ServerPlace
       {"/space/shadows", kNumbers, "", [this](std::string_view target) { return space_->shadows(target); }}};
   server_ = std::make_unique<network::PageServer>(std::move(serving), *this);
   renderer_ = std::make_unique<LiveRenderer>(
-      std::move(options), std::move(scene),
+      std::move(options), std::move(whole),
       LiveEvents{.frame = [this](std::shared_ptr<const std::string> frame) { server_->send_frame(std::move(frame)); },
                  .say = [this](std::string_view level,
                                const std::string& text) { server_->send_to_all(message_text(saying(level, text))); },

@@ -17,7 +17,7 @@ namespace penumbra::app {
 /// Scene in a browser: the page's server, and the renderer of its pictures. All open pages show, and change, one state.
 class LiveView final : public network::PageHandler {
  public:
-  LiveView(RunOptions options, scenes::Scene scene, network::ServerPlace place);
+  LiveView(RunOptions options, WholeScene whole, network::ServerPlace place);
 
   LiveView(const LiveView&) = delete;
   LiveView& operator=(const LiveView&) = delete;

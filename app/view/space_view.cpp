@@ -63,10 +63,14 @@ SpaceShadows parse_space_shadows(std::string_view target) {
 }
 
 const visibility::SceneFloats& SpaceView::floats_of(const LiveScenery& scenery) {
+  if (!scenery.whole->instances.empty())
+    throw UsageError(
+        "the 3D view does not draw instances without copies, of which there are {} here (--instances copies)",
+        scenery.whole->instances.all.size());
   if (scene_ == scenery.whole) return floats_;
   scene_.reset();
   casters_of_.reset();
-  floats_ = visibility::make_scene_floats(*scenery.whole);
+  floats_ = visibility::make_scene_floats(scenery.whole->scene);
   scene_ = scenery.whole;
   return floats_;
 }
@@ -85,13 +89,13 @@ const volumes::Casters& SpaceView::casters_of(const LiveScenery& scenery, const 
 std::string SpaceView::meshes() {
   const LiveScenery scenery = renderer_.scenery();
   const std::lock_guard lock(mutex_);
-  return meshes_message(*scenery.whole, floats_of(scenery));
+  return meshes_message(scenery.whole->scene, floats_of(scenery));
 }
 
 std::string SpaceView::defects() {
   const LiveScenery scenery = renderer_.scenery();
   const std::lock_guard lock(mutex_);
-  return defects_message(*scenery.whole, floats_of(scenery).origin);
+  return defects_message(scenery.whole->scene, floats_of(scenery).origin);
 }
 
 std::string SpaceView::shadows(std::string_view target) {

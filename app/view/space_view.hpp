@@ -22,9 +22,9 @@ class SpaceView {
 
   std::string meshes();
   std::string defects();
-  /// `target`: of the request, with the parameters light, construction, from, s, t, floor, wedge, and x and y of a
-  /// pixel. A light without wedges has none: the header says so in `refused`. Throws UsageError for an invalid
-  /// parameter.
+  /// Each function throws UsageError for a scene with instances. `target`: of the request, with the parameters light,
+  /// construction, from, s, t, floor, wedge, and x and y of a pixel. A light without wedges has none: the header says
+  /// so in `refused`. Throws UsageError for an invalid parameter.
   std::string shadows(std::string_view target);
 
  private:
@@ -33,7 +33,7 @@ class SpaceView {
 
   const LiveRenderer& renderer_;
   std::mutex mutex_;  // of what follows
-  std::shared_ptr<const scenes::Scene> scene_;
+  std::shared_ptr<const WholeScene> scene_;
   visibility::SceneFloats floats_;  // of scene_
   volumes::Casters casters_;
   struct CastersOf {

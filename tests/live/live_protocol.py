@@ -289,6 +289,41 @@ def check_beginning(scene):
     same((wrong.returncode, wrong.stdout), (2, ""), f"no such method: {wrong.stderr}")
 
 
+def check_forest(folder):
+    """Instances without copies, a thousand million triangles: the final picture and what pixels say are those of `render`;
+    what needs the copies is refused."""
+    document, scene = json.loads(LIGHTS), folder / "forest.json"
+    document["size"] = [48, 36]
+    document["meshes"].append({"name": "balls", "shape": {"type": "sphere", "radius": 0.2, "segments": 256}, "instances": [
+        {"translate": [0.5 * (i % 200) - 50, 0.2, -0.5 * (i // 200) - 1]} for i in range(20000)]})
+    scene.write_text(json.dumps(document))
+    with Server(PROGRAM, scene) as server:
+        client = Client(server).begin()
+        frame = client.final()
+        exr, png = render(scene, folder, "forest", "--exposure", frame["stops"])
+        same(png_pixels(frame["files"][0]), png, "the picture of the forest")
+        names = set()
+        for x, y in ((5, 30), (20, 14), (30, 15), (40, 16), (24, 20), (0, 0)):
+            told, i = client.pixel(x, y), y * 48 + x
+            same(told["answers"][0]["V"]["key"], exr["key.V"][i], f"V at {x},{y}")
+            if told["surface"]:
+                same(told["id"], exr["id"][i], f"the triangle at {x},{y}")
+                names.add(told["object"])
+        expect("balls" in names and len(names) > 1, f"objects of both kinds: {names}")
+        client.send(type="light", name="key", stamp=1, light={
+            "rectangle": {"center": [1, 4, 0.5], "halfU": [0.8, 0, 0], "halfV": [0, 0.2, 0.5]}, "radiance": [8, 9, 10]})
+        frame = client.final(1)
+        exr, png = render(client.save(server, folder), folder, "moved", "--exposure", frame["stops"])
+        same(png_pixels(frame["files"][0]), png, "the picture under the moved light, by `render` of the saved scene")
+        client.send(type="method", slot="a", entry="vssm", stamp=2)
+        said = client.until(lambda message: message["type"] == "say" and message["level"] == "error")["text"]
+        expect("vssm looks at more than lies between" in said, f"a method that needs copies: {said}")
+        status, _, text = server.get("/space/meshes")
+        expect(status >= 400 and b"instances" in text, f"the 3D view: {status} {text[:200]}")
+        client.send(type="method", slot="a", entry="view-sample", stamp=3)
+        same(client.final(3)["answers"][0]["method"], "view-sample", "a method that needs none")
+
+
 def check_slow_method(folder):
     """A method that takes long at any size holds up a drag for few pictures; then light samples of another stand in, until the end."""
     document, scene, slow = json.loads(LIGHTS), folder / "slow.json", "layered-attenuation"
@@ -402,6 +437,7 @@ def main():
         check_saved_pictures(folder)
         check_host(scene)
         check_beginning(scene)
+        check_forest(folder)
         check_slow_method(folder)
         check_watching(folder)
         check_ending(folder)

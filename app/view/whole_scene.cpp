@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// Scenes of the live view: with copies of instances where these fit into memory.
+
+#include "app/view/whole_scene.hpp"
+
+#include "app/pictures/request.hpp"
+#include "app/session.hpp"
+#include "base/error.hpp"
+
+#include <fmt/format.h>
+
+namespace penumbra::app {
+
+WholeScene read_whole_scene(const RunOptions& options, InstanceUse use) {
+  WholeScene read;
+  read.use = use;
+  read.scene = read_session_scene(options, {}, {.instances = &read.instances});
+  if (read.instances.empty()) return read;
+  const std::uint64_t triangles = scenes::triangle_count(read.scene, read.instances);
+  const auto copy = [&] { return scenes::copied(read.scene, read.instances, bytes_per_copy({}, read.scene.lights)); };
+  if (use == InstanceUse::copies) return {copy(), {}, use};
+  if (use == InstanceUse::automatic && triangles <= kMostCopies) {
+    try {
+      return {copy(), {}, use};
+    } catch (const ResourceError&) {  // NOLINT(bugprone-empty-catch): without copies, then
+    }
+  }
+  read.scene.warnings.push_back(fmt::format(
+      "{} triangles, {} instances of meshes among them, without copies: each picture finds what it sees of them; "
+      "methods that need all triangles, and the 3D view, are refused (--instances copies)",
+      triangles, read.instances.all.size()));
+  return read;
+}
+
+void require_no_copies(const scenes::Scene& scene, const scenes::Instances& instances, const MethodWish& wish) {
+  if (instances.empty()) return;
+  // Throws for methods that look at more than what lies between view samples and lights.
+  static_cast<void>(needs_copies(scene, instances, parse_instances("shared", wish), wish, 1));
+  const std::uint64_t triangles = scenes::triangle_count(scene, instances);
+  if (triangles <= kMostCopies || counts_dome_samples(wish, scene.lights)) return;
+  throw UsageError(
+      "exact areas of a dome need all {} triangles of this scene; choose a number of light samples, or --instances "
+      "copies",
+      triangles);
+}
+
+}  // namespace penumbra::app

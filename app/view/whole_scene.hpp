@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "app/light_methods.hpp"
+#include "app/options.hpp"
+#include "app/pictures/request.hpp"
+#include "scenes/instances.hpp"
+#include "scenes/scene.hpp"
+
+#include <cstdint>
+
+namespace penumbra::app {
+
+/// Scene of a live view, with its meshes.
+struct WholeScene {
+  scenes::Scene scene;
+  scenes::Instances instances = {};  ///< those that stay without copies
+  InstanceUse use = InstanceUse::automatic;
+};
+
+/// Reads a scene for the live view. Methods keep copies of instances from picture to picture, but making these takes
+/// time and memory: by default instances become copies up to kMostCopies triangles, if memory suffices.
+WholeScene read_whole_scene(const RunOptions& options, InstanceUse use);
+inline constexpr std::uint64_t kMostCopies = 5'000'000;
+
+/// Throws UsageError if the method needs copies of instances that have none. `scene`: with the lights that it
+/// evaluates.
+void require_no_copies(const scenes::Scene& scene, const scenes::Instances& instances, const MethodWish& wish);
+
+}  // namespace penumbra::app
