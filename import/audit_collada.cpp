@@ -6,6 +6,8 @@
 #include "import/text.hpp"
 #include "import/xml.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <map>
 #include <sstream>
@@ -152,6 +154,18 @@ std::string with_named_cameras(std::string content) {
     if (std::string_view(content).substr(at, end - at).find(" name=") == std::string_view::npos)
       content.insert(at + kTag.size(), R"(name="camera" )");
   }
+  return content;
+}
+
+std::string with_plain_material(std::string content) {
+  const std::size_t end = content.rfind("</COLLADA>");
+  if (end == std::string::npos) return content;
+  content.insert(
+      end, fmt::format(R"(<library_effects><effect id="{0}"><profile_COMMON><technique sid="common"><lambert><diffuse>)"
+                       R"(<color>0.8 0.8 0.8 1</color></diffuse></lambert></technique></profile_COMMON></effect>)"
+                       R"(</library_effects><library_materials><material id="{0}" name="{0}"><instance_effect )"
+                       R"(url="#{0}"/></material></library_materials>)",
+                       kPlainMaterial));
   return content;
 }
 

@@ -19,4 +19,11 @@ std::string without_leading_blanks(std::string_view content, const std::string& 
 /// Returns the same file with a name for each camera that has none: Assimp 5.2 reads no lens of nameless cameras.
 std::string with_named_cameras(std::string content);
 
+/// Name of the material that with_plain_material() adds. Sorts before all names that XML permits.
+inline constexpr std::string_view kPlainMaterial = "!penumbra-plain";
+
+/// Returns the same file with one more material, kPlainMaterial, which Assimp gives to meshes that have none: it gives
+/// these the first in alphabetical order, which may shine.
+std::string with_plain_material(std::string content);
+
 }  // namespace penumbra::import

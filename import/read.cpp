@@ -8,6 +8,7 @@
 #include "import/amf.hpp"
 #include "import/assimp_scene.hpp"
 #include "import/obj.hpp"
+#include "import/obj_materials.hpp"
 #include "import/off.hpp"
 #include "import/ply.hpp"
 #include "import/stl.hpp"
@@ -180,6 +181,9 @@ mesh::ImportedMesh read_with_assimp(const mesh::InputFile& input, const std::str
     parts->white_is_grey = has_template_of_lamps(content);
   }
   mesh::ImportedMesh mesh = read_assimp_scene(*scene, file, options);
+  if (parts == nullptr) {
+    if (auto note = solid_materials_note(transparent_materials(*scene))) mesh.notes.push_back(*std::move(note));
+  }
   const auto said = complaints.notes();
   mesh.notes.insert(mesh.notes.end(), said.begin(), said.end());
   return mesh;
@@ -202,7 +206,8 @@ void note_material_libraries(std::string_view text, const std::filesystem::path&
 mesh::ImportedMesh read_collada(const mesh::InputFile& input, const std::string& content, SceneParts* parts) {
   const std::string file = input.name.string();
   const std::uint64_t triangles = triangles_of_collada(content, file);
-  return read_with_assimp(input, with_named_cameras(without_leading_blanks(content, file)), triangles, parts);
+  return read_with_assimp(input, with_plain_material(with_named_cameras(without_leading_blanks(content, file))),
+                          triangles, parts);
 }
 
 /// File formats that artists use, and that no library on this system reads.
@@ -218,7 +223,9 @@ mesh::ImportedMesh read_as(const std::string& extension, const mesh::InputFile& 
   const std::string file = input.name.string();
   if (extension == ".obj") {
     note_material_libraries(content, std::filesystem::absolute(input.name).parent_path());
-    return read_obj_text(content, file, with_places);
+    mesh::ImportedMesh mesh = read_obj_text(content, file, with_places);
+    if (auto note = solid_materials_note(transparent_materials(content, input))) mesh.notes.push_back(*std::move(note));
+    return mesh;
   }
   if (extension == ".ply") return read_ply(content, file);
   if (extension == ".off") return read_off_text(content, file);

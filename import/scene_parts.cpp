@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "import/scene_parts.hpp"
 
+#include "import/audit_collada.hpp"
+
 #include <assimp/material.h>
 #include <assimp/scene.h>
 
@@ -9,6 +11,7 @@
 #include <cmath>
 #include <cstdint>
 #include <optional>
+#include <set>
 #include <span>
 
 namespace penumbra::import {
@@ -52,6 +55,7 @@ SceneParts::Part part_of(const aiScene& scene, const aiMesh& mesh, const std::st
   part.name = name;
   if (mesh.mMaterialIndex >= scene.mNumMaterials) return part;
   const aiMaterial& material = *scene.mMaterials[mesh.mMaterialIndex];
+  if (material.GetName().C_Str() == kPlainMaterial) return part;
   part.material = material.GetName().C_Str();
   part.color = color_of(material, "$clr.diffuse").value_or(part.color);
   part.emission = color_of(material, "$clr.emissive").value_or(part.emission);
@@ -61,6 +65,15 @@ SceneParts::Part part_of(const aiScene& scene, const aiMesh& mesh, const std::st
       material.GetTextureCount(aiTextureType_DIFFUSE) + material.GetTextureCount(aiTextureType_BASE_COLOR) > 0;
   part.has_cut = material.GetTextureCount(aiTextureType_OPACITY) > 0;
   return part;
+}
+
+std::vector<std::string> transparent_materials(const aiScene& scene) {
+  std::set<std::string> names;
+  for (const aiMesh* mesh : std::span(scene.mMeshes, scene.mNumMeshes)) {
+    const SceneParts::Part part = part_of(scene, *mesh, {});
+    if (part.opacity < 1 || part.has_cut) names.insert(part.material);
+  }
+  return {names.begin(), names.end()};
 }
 
 void add_lamps_and_lenses(const aiScene& scene, const std::map<std::string, glm::dmat4, std::less<>>& places,

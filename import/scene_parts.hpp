@@ -54,6 +54,9 @@ struct SceneParts {
 
 SceneParts::Part part_of(const aiScene& scene, const aiMesh& mesh, const std::string& name);
 
+/// Returns the names of the materials of the scene's meshes that let light through.
+std::vector<std::string> transparent_materials(const aiScene& scene);
+
 /// Adds lamps and cameras. `places`: for each node's name, the node's transform.
 void add_lamps_and_lenses(const aiScene& scene, const std::map<std::string, glm::dmat4, std::less<>>& places,
                           SceneParts& parts);

@@ -2,6 +2,7 @@
 #include "import/x3d.hpp"
 
 #include "import/assembly.hpp"
+#include "import/obj_materials.hpp"
 #include "import/text.hpp"
 #include "import/x3d_geometry.hpp"
 #include "import/xml.hpp"
@@ -75,6 +76,8 @@ class X3dReader {
                       missing_.size(), first_missing_));
     }
     if (!ignored_.empty()) mesh.notes.push_back("ignored: " + listed(ignored_));
+    const std::vector<std::string> transparent(transparent_.begin(), transparent_.end());
+    if (auto note = solid_materials_note(transparent)) mesh.notes.push_back(*std::move(note));
     return mesh;
   }
 
@@ -238,10 +241,22 @@ class X3dReader {
     return std::string_view(node.attribute("containerField").value()) == "appearance";
   }
 
+  /// Keeps the name of a material that lets light through.
+  void note_transparency(const pugi::xml_node& appearance) {
+    for (const pugi::xml_node& child : appearance.children()) {
+      if (local_name(child) != "Material" && local_name(child) != "PhysicalMaterial") continue;
+      const pugi::xml_node material = resolved(child);
+      if (!(material.attribute("transparency").as_double() > 0)) continue;
+      const std::string_view name = material.attribute("DEF").value();
+      transparent_.emplace(name.empty() ? "without a name" : name);
+    }
+  }
+
   void read_shape(const pugi::xml_node& shape, AssemblyPart& part) {
     ++reached_;
     for (const pugi::xml_node& child : shape.children()) {
       const std::string_view name = local_name(child);
+      if (name == "Appearance") note_transparency(resolved(child));
       if (child.type() != pugi::node_element || name == "Appearance" || name == "AcousticProperties" ||
           name.starts_with("Metadata") || (name == "ProtoInstance" && is_appearance(child)))
         continue;
@@ -308,6 +323,7 @@ class X3dReader {
   std::vector<AssemblyPart> parts_;
   std::uint64_t shapes_ = 0, reached_ = 0, left_out_ = 0, curved_ = 0;
   Counts lines_, ignored_;
+  std::set<std::string> transparent_;  // names of materials that let light through
 };
 
 }  // namespace

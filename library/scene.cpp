@@ -144,14 +144,15 @@ void change_light(scenes::Scene& scene, std::string_view name, Change change) {
   light = std::move(changed);
 }
 
-/// Sets a light's shape; reads a dome's picture unless the light already has this picture.
-void set_shape(scenes::AreaLight& light, scenes::LightShape shape) {
+/// Sets a light's shape; reads a dome's picture unless the light already has this picture, and adds its warnings.
+void set_shape(scenes::AreaLight& light, scenes::LightShape shape, std::vector<std::string>& warnings) {
   const auto* const before = std::get_if<scenes::Dome>(&light.shape);
   const auto* const after = std::get_if<scenes::Dome>(&shape);
   const bool same = before != nullptr && after != nullptr && before->image == after->image;
   if ((before != nullptr || after != nullptr) && !same) light.texture.reset();
   if (after != nullptr && !after->image.empty() && !same)
-    light.texture = with_errors([&] { return scenes::read_sky_picture(mesh::open_input(after->image), after->image); });
+    light.texture =
+        with_errors([&] { return scenes::read_sky_picture(mesh::open_input(after->image), after->image, warnings); });
   light.shape = std::move(shape);
 }
 
@@ -172,7 +173,7 @@ void Scene::add_light(std::string name, const LightShape& shape, const LightOpti
     throw UsageError("the scene has a light \"{}\" already", name);
   scenes::AreaLight light;
   light.name = std::move(name);
-  set_shape(light, to_scene(shape));
+  set_shape(light, to_scene(shape), state_->scene.warnings);
   set_options(light, options);
   scenes::check_light(light, fmt::format("light \"{}\"", light.name));
   state_->scene.lights.push_back(std::move(light));
@@ -192,7 +193,7 @@ void Scene::set_light(std::string_view name, const LightShape& shape) {
     const auto* const before = std::get_if<scenes::Sphere>(&light.shape);
     auto* const after = std::get_if<scenes::Sphere>(&made);
     if (before != nullptr && after != nullptr) after->cone = before->cone;  // a spot lamp stays a spot lamp
-    set_shape(light, std::move(made));
+    set_shape(light, std::move(made), state_->scene.warnings);
   });
 }
 

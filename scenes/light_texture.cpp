@@ -9,9 +9,12 @@
 #include "mesh/import_wire.hpp"
 #include "scenes/scene_wire.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <string_view>
 
@@ -29,14 +32,36 @@ struct PictureKind {
   std::uint32_t largest_side;
 };
 
-Texture read_picture(const mesh::InputFile& input, const std::string& shown, const PictureKind& kind) {
+/// Sets negative values to 0. Returns a warning that says how many texels had any; nullopt: none.
+std::optional<std::string> without_negative(Texture& texture, const std::string& shown) {
+  std::size_t texels = 0;
+  float least = 0;
+  for (glm::vec3& texel : texture.texels) {
+    bool any = false;
+    for (int c = 0; c < 3; ++c) {
+      if (!(texel[c] < 0) || !std::isfinite(texel[c])) continue;
+      any = true;
+      least = std::min(least, texel[c]);
+      texel[c] = 0;
+    }
+    texels += any ? 1 : 0;
+  }
+  if (texels == 0) return std::nullopt;
+  return fmt::format("\"{}\": negative values in {} of its texels (down to {}), taken as 0: light is never negative",
+                     shown, texels, least);
+}
+
+Texture read_picture(const mesh::InputFile& input, const std::string& shown, const PictureKind& kind,
+                     std::vector<std::string>& warnings) {
   try {
     const mesh::HelperAnswer answer = mesh::run_import_helper({kind.name, input, {}}, kind.limits);
     mesh::WireReader from(answer.payload());
     Texture texture = get_texture(from);
     from.expect_end();
     texture.file = shown;
+    const std::optional<std::string> negative = without_negative(texture, shown);
     check_texture(texture, fmt::format("\"{}\"", shown), kind.largest_side);
+    if (negative) warnings.push_back(*negative);
     return texture;
   } catch (const InputError& error) {
     const std::string name = fmt::format("\"{}\"", shown);
@@ -50,12 +75,12 @@ Texture read_picture(const mesh::InputFile& input, const std::string& shown, con
 
 }  // namespace
 
-Texture read_texture(const mesh::InputFile& input, const std::string& shown) {
-  return read_picture(input, shown, {"texture", kTextureLimits, kLargestTextureSide});
+Texture read_texture(const mesh::InputFile& input, const std::string& shown, std::vector<std::string>& warnings) {
+  return read_picture(input, shown, {"texture", kTextureLimits, kLargestTextureSide}, warnings);
 }
 
-Texture read_sky_picture(const mesh::InputFile& input, const std::string& shown) {
-  return read_picture(input, shown, {"sky", kSkyLimits, kLargestSkySide});
+Texture read_sky_picture(const mesh::InputFile& input, const std::string& shown, std::vector<std::string>& warnings) {
+  return read_picture(input, shown, {"sky", kSkyLimits, kLargestSkySide}, warnings);
 }
 
 void check_texture(const Texture& texture, const std::string& where, std::uint32_t largest_side) {

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 /// Pictures on lights. Internal to scenes/.
 namespace penumbra::scenes {
@@ -21,11 +22,12 @@ inline constexpr std::uint32_t kLargestSkySide = 8192;
 /// Reads a PNG (values are sRGB, made linear; transparent texels are composited on black) or an OpenEXR picture
 /// (channels R, G and B, or Y alone, linear with the primaries of Rec. 709; a premultiplied alpha is ignored),
 /// distinguished by the file's first bytes. Reads in a child process under limits. `shown` is the name in messages.
-/// Throws InputError for anything else, and for texels as check_texture does.
-Texture read_texture(const mesh::InputFile& input, const std::string& shown);
+/// Negative values, which lossy compression and resampling leave, become 0, with one warning. Throws InputError for
+/// anything else, and for texels as check_texture does.
+Texture read_texture(const mesh::InputFile& input, const std::string& shown, std::vector<std::string>& warnings);
 
 /// Reads a picture of the sky as read_texture does; the picture may be larger, and a Radiance picture (RGBE), too.
-Texture read_sky_picture(const mesh::InputFile& input, const std::string& shown);
+Texture read_sky_picture(const mesh::InputFile& input, const std::string& shown, std::vector<std::string>& warnings);
 
 /// Throws InputError, with the texel, unless the size is within `largest_side`, the number of texels fits, and texels
 /// are finite, not negative, and not all 0. `where` begins the message.

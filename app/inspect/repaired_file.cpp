@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/inspect/repaired_file.hpp"
 
+#include "app/process/interrupt.hpp"
 #include "base/error.hpp"
+#include "base/scratch_folder.hpp"
 #include "mesh/soup_files.hpp"
 #include "mesh/soup_ply.hpp"
 #include "scenes/formats/writer.hpp"
@@ -28,6 +30,20 @@ void write_mesh(const std::filesystem::path& file, const mesh::TriangleSoup& sou
   }
 }
 
+/// Returns what a reader makes of a file with this soup; `file` tells its name and folder, and is not written.
+InspectedMesh read_again(const std::filesystem::path& file, const mesh::TriangleSoup& soup) {
+  const UnwindsAfterSignals unwinds;
+  const std::filesystem::path parent = file.has_parent_path() ? file.parent_path() : ".";
+  const ScratchFolder folder(parent);
+  const std::filesystem::path written = folder.path() / file.filename();
+  write_mesh(written, soup);
+  try {
+    return read_inspected(written, false);
+  } catch (const InputError& error) {
+    throw InputError("{}: not written, since no reader would take it: {}", file.string(), error.what());
+  }
+}
+
 }  // namespace
 
 void require_mesh_ending(const std::filesystem::path& file) {
@@ -40,9 +56,11 @@ RepairReport repaired_file(const std::filesystem::path& file, const mesh::Triang
                            Progress& progress) {
   mesh::Repaired repaired = mesh::repair(soup, repair);
   RepairReport report{file, repaired.soup.triangles.size(), std::move(repaired.done), std::move(repaired.left), {}};
+  if (repaired.soup.triangles.empty())
+    throw InputError("{}: not written, since nothing is left of the mesh: none of its triangles has an area",
+                     file.string());
+  report.written = examine(file, read_again(file, repaired.soup), diagnosis, progress).total.diagnosis;
   write_mesh(file, repaired.soup);
-  if (repaired.soup.triangles.empty()) return report;  // a file without triangles is not a mesh for any reader
-  report.written = examine(file, read_inspected(file, false), diagnosis, progress).total.diagnosis;
   const std::uint64_t edges = report.written.non_manifold_edges.count,
                       vertices = report.written.non_manifold_vertices.count;
   if (edges + vertices > 0)

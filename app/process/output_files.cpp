@@ -30,6 +30,8 @@ FileIdentity identity_of(const std::filesystem::path& path) {
 
 void OutputFiles::add(const std::string& option, const std::filesystem::path& path) {
   if (path.empty()) return;
+  if (path == "-")
+    throw UsageError("{} -: expected the name of a file; stdout does not take it (./- is a file)", option);
   const auto [other, is_new] = numbers_.emplace(identity_of(path), files_.size());
   if (!is_new) {
     throw UsageError("{} {} and {} {} are one file, and two outputs cannot be; choose another name for one of them",

@@ -8,16 +8,15 @@
 #include "app/view/light_outline.hpp"
 #include "app/view/live_steps.hpp"
 #include "base/error.hpp"
+#include "base/scratch_folder.hpp"
 #include "scenes/formats/writer.hpp"
 #include "scenes/light_texture.hpp"
 
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <cstdlib>
 #include <fstream>
 #include <iterator>
-#include <system_error>
 #include <tuple>
 #include <utility>
 
@@ -27,29 +26,11 @@ namespace {
 using nlohmann::json;
 using nlohmann::ordered_json;
 
-/// Folder removed by the destructor.
-class ScratchFolder {
- public:
-  ScratchFolder() : path_((std::filesystem::temp_directory_path() / "penumbra-view-XXXXXX").string()) {
-    if (mkdtemp(path_.data()) == nullptr) throw ResourceError("no folder can be made in {}", path_);
-  }
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
-  ~ScratchFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  [[nodiscard]] std::filesystem::path path() const { return path_; }
-
- private:
-  std::string path_;
-};
-
 /// Returns what `write` writes to a file of this name.
 template <typename Write>
 std::string written(const std::string& name, Write write) {
   const UnwindsAfterSignals unwinds;
-  const ScratchFolder folder;
+  const ScratchFolder folder(std::filesystem::temp_directory_path());
   const std::filesystem::path file = folder.path() / name;
   write(file);
   std::ifstream in(file, std::ios::binary);

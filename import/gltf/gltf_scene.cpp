@@ -328,6 +328,11 @@ class GltfScene {
     const SoupEnd before = append_triangles(scene_, vertices, std::move(triangles));
     scenes::Object object = object_of(look);
     object.emits = add_light({radiance, vertices.look.two_sided}, name, vertices.placed, before);
+    if (object.emits && look.alpha.mode != scenes::Alpha::Mode::opaque)
+      losses_.refuse(
+          "is emissive and lets light through (alphaMode MASK or BLEND); only whole surfaces shine: make it opaque, or "
+          "cut the mesh to the part that shines",
+          name);
     if (object.emits && !flags_.body) {  // the object only marks the place of the light
       ++bodiless_;
       return shorten(scene_, before);

@@ -58,10 +58,33 @@ def _names(value):
 def _size(size):
     if size is None:
         return 0, 0
-    width, height = size
-    if not (int(width) == width >= 1 and int(height) == height >= 1):
-        raise UsageError(f"size {width}x{height}: expected two whole numbers of pixels, at least 1")
+    try:
+        width, height = size
+        whole = int(width) == width >= 1 and int(height) == height >= 1
+    except (TypeError, ValueError):
+        whole = False
+    if not whole:
+        raise UsageError(f"size {size!r}: expected two whole numbers of pixels, at least 1")
     return int(width), int(height)
+
+
+def _count(name, value):
+    """A whole number from 0 on, as int; None is 0."""
+    try:
+        count = int(value or 0)
+    except (TypeError, ValueError):
+        count = -1
+    if count < 0 or count != (value or 0) or count > 0xffffffff:
+        raise UsageError(f"{name} {value!r}: expected a whole number, from 0 on")
+    return count
+
+
+def _faces(faces):
+    """Faces as an array of whole numbers; numpy would cut fractions off."""
+    faces = _np.asarray(faces)
+    if faces.dtype.kind not in "iu" and (faces.dtype.kind != "f" or not (faces == _np.floor(faces)).all()):
+        raise UsageError(f"faces: expected whole numbers of vertices (F, 3), not {faces.dtype} with fractions or other values")
+    return faces
 
 
 class Instance(_typing.NamedTuple):
@@ -105,7 +128,7 @@ class Scene:
                 mesh = dict(mesh)
                 if not ("vertices" in mesh and "faces" in mesh):
                     raise UsageError(f"mesh {index}: vertices and faces come together")
-                arrays.append((index, _np.asarray(mesh.pop("vertices"), float), mesh.pop("faces")))
+                arrays.append((index, _np.asarray(mesh.pop("vertices"), float), _faces(mesh.pop("faces"))))
                 # The file's rules ask for a source; the arrays replace this one.
                 mesh["triangles"] = [[0, 0, 0, 1, 0, 0, 0, 1, 0]]
             meshes.append(mesh)
@@ -114,7 +137,7 @@ class Scene:
 
     def add_mesh(self, name, vertices, faces, *, color=(0.8, 0.8, 0.8), casts_shadow=True, receives_shadow=True):
         """Adds a mesh: vertices (V, 3), faces (F, 3). Returns its number."""
-        return self._core.add_mesh(name, vertices, faces, color, casts_shadow, receives_shadow)
+        return self._core.add_mesh(name, vertices, _faces(faces), color, casts_shadow, receives_shadow)
 
     def add_instance(self, mesh, matrix):
         """Adds an instance of a mesh, by its name or number, which is stored once: `matrix` (4, 4), for column vectors, takes
@@ -368,8 +391,9 @@ class Renderer:
             raise UsageError(f'normals "{normals}": expected shading or geometric')
         width, height = _size(size)
         texts = {str(key): _text(value) for key, value in (options or {}).items()}
-        return Picture(self._core.render(width, height, method or "", texts, int(light_samples or 0), sample_pattern,
-                                         sample_seed, _names(light), camera or "", pixel_samples, pixel_tolerance,
+        return Picture(self._core.render(width, height, method or "", texts, _count("light_samples", light_samples), sample_pattern,
+                                         _count("sample_seed", sample_seed), _names(light), camera or "",
+                                         _count("pixel_samples", pixel_samples), pixel_tolerance,
                                          light_cutoff, normals == "shading", masks, instances))
 
 
@@ -407,8 +431,11 @@ def compare(scene, methods="default", *, reference="raytrace", reference_samples
     `methods` has them. `methods`: entries "NAME:key=value:…", or the groups geometry, image, all, default. `out`: a folder
     for pictures and the report."""
     width, height = _size(size)
+    if not _names(methods):
+        raise UsageError("methods: expected one or more entries, or a group")
     text = _core.compare_json(_as_scene(scene)._core, _names(methods), reference, str(reference_samples), width, height,
-                              light_samples, sample_pattern, _names(light), camera, runs, error_budget, _os.fspath(out),
+                              _count("light_samples", light_samples), sample_pattern, _names(light), camera,
+                              _count("runs", runs), error_budget, _os.fspath(out),
                               device, log, progress)
     return _json.loads(text)["methods"]
 
@@ -458,7 +485,7 @@ def inspect(mesh, faces=None, *, weld=0.0, self_intersections=True, list_limit=1
     if faces is None:
         text = _core.inspect_file(_os.fspath(mesh), weld, self_intersections, list_limit, log, progress)
     else:
-        text = _core.inspect_arrays(mesh, faces, weld, self_intersections, list_limit, log, progress)
+        text = _core.inspect_arrays(mesh, _faces(faces), weld, self_intersections, list_limit, log, progress)
     return _json.loads(text)
 
 

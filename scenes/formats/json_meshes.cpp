@@ -282,7 +282,7 @@ SceneFile open_scene_file(const std::string& name, const Place& place, const Rea
 
 Texture read_sky(const std::string& name, const Place& place, const ReadOptions& options, Scene& scene) {
   const SceneFile file = open_scene_file(name, place, options);
-  Texture picture = at_place(place, [&] { return read_sky_picture(file.input, name); });
+  Texture picture = at_place(place, [&] { return read_sky_picture(file.input, name, scene.warnings); });
   scene.sources.push_back(file.path);
   return picture;
 }

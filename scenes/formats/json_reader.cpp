@@ -88,7 +88,7 @@ Texture read_light_texture(const json& value, const Place& place, const ReadOpti
   }
   const std::string name = value["texture"].get<std::string>();
   const SceneFile file = open_scene_file(name, place, options);
-  Texture texture = at_place(place, [&] { return read_texture(file.input, name); });
+  Texture texture = at_place(place, [&] { return read_texture(file.input, name, scene.warnings); });
   scene.sources.push_back(file.path);
   return texture;
 }

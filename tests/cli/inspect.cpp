@@ -8,8 +8,10 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <filesystem>
 #include <span>
 #include <sstream>
+#include <tuple>
 
 namespace penumbra::tests {
 namespace {
@@ -175,6 +177,22 @@ TEST_F(Inspect, RepairsAndTheResultReadsBack) {
     EXPECT_EQ(read_again.at("triangles"), 12);
     EXPECT_EQ(read_again.at("closed"), true);
     EXPECT_NEAR(read_again.at("volume").get<double>(), 1, 1e-6);
+  }
+}
+
+/// What no reader takes is not written, and neither is a mesh of which nothing is left.
+TEST_F(Inspect, WritesNoRepairThatIsNoMesh) {
+#ifndef PENUMBRA_WITH_CGAL_GPL
+  GTEST_SKIP() << "penumbra-repair is not built";
+#endif
+  write("line.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n");
+  write("huge.obj", "v 0 0 0\nv 1e30 0 0\nv 0 1e30 0\nf 1 2 3\n");
+  for (const auto& [mesh, repaired, said] : {std::tuple("line.obj", "line.ply", "nothing is left of the mesh"),
+                                             {"huge.obj", "huge.glb", "no reader would take it"}}) {
+    const Outcome outcome = run({"inspect", path(mesh), "--repair", path(repaired)});
+    EXPECT_EQ(outcome.code, 3);
+    EXPECT_THAT(outcome.err, HasSubstr(said));
+    EXPECT_FALSE(std::filesystem::exists(path(repaired)));
   }
 }
 

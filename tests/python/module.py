@@ -148,6 +148,18 @@ class OwnMethod(unittest.TestCase):
         with self.assertRaisesRegex(penumbra.InputError, "sphere"):
             penumbra.render(scene, size=(8, 6), method="even")
 
+    def test_names_arguments_that_cannot_be(self):
+        scene = board_over_floor()
+        for what, call in (("size", lambda: penumbra.render(scene, size="ab")), ("size", lambda: penumbra.render(scene, size=(8, 2.5))),
+                           ("light_samples", lambda: penumbra.render(scene, size=(8, 6), light_samples=-1)),
+                           ("light_samples", lambda: penumbra.render(scene, size=(8, 6), light_samples="many")),
+                           ("pixel_samples", lambda: penumbra.render(scene, size=(8, 6), pixel_samples=1.5)),
+                           ("methods", lambda: penumbra.compare(scene, [])),
+                           ("faces", lambda: penumbra.Scene().add_mesh("x", np.eye(3), [[0, 1, 1.9]]))):
+            with self.assertRaisesRegex(penumbra.UsageError, what):
+                call()
+        self.assertEqual(penumbra.Scene().add_mesh("x", np.eye(3), [[0.0, 1.0, 2.0]]), 0)
+
     def test_refuses_what_cannot_be(self):
         answer = {}
         penumbra.add_method("answers", lambda question: answer["of"](question))

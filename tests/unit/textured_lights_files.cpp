@@ -111,6 +111,14 @@ TEST_F(TexturedLightFiles, OpenExrIsLinearAndMayBeBrighterThanOne) {
   EXPECT_EQ(read(exr(2, 2, {"R", "G", "B"}, values), "t.png").lights[0].texture->texels, color->texels);
 }
 
+/// Lossy compression and resampling leave small negative values.
+TEST_F(TexturedLightFiles, NegativeValuesAreNoneAndAreNamed) {
+  const scenes::Scene scene = read(exr(3, 1, {"R", "G", "B"}, {1, -0.5f, -1e-6f}), "t.exr");
+  EXPECT_EQ(scene.lights[0].texture->texels, (std::vector<glm::vec3>{glm::vec3(1), glm::vec3(0), glm::vec3(0)}));
+  EXPECT_THAT(scene.warnings,
+              testing::Contains(testing::HasSubstr("negative values in 2 of its texels (down to -0.5)")));
+}
+
 TEST_F(TexturedLightFiles, BadPicturesAreRefusedWithTheReason) {
   const std::string good = png_file(1, 1, 8, 0, {bytes_of({9})});
   constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
@@ -123,7 +131,9 @@ TEST_F(TexturedLightFiles, BadPicturesAreRefusedWithTheReason) {
   refuse(png_file(2049, 1, 8, 0, {std::string(2049, 'x')}), "2049x1 pixels; at most 2048 a side");
   refuse(png_file(900'000, 900'000, 8, 0, {}), "900000x900000 pixels; at most 2048 a side");
   refuse(exr(2049, 1, {"R", "G", "B"}, std::vector<float>(2049, 1)), "2049x1 pixels; at most 2048 a side");
-  refuse(exr(1, 2, {"R", "G", "B"}, {1, -0.5f}), "texel (0, 1) from the top left is (-0.5, -0.5, -0.5)");
+  refuse(exr(1, 2, {"R", "G", "B"}, {0, -0.5f}), "every texel is black");
+  refuse(exr(1, 2, {"R", "G", "B"}, {1, -std::numeric_limits<float>::infinity()}),
+         "texel (0, 1) from the top left is (-inf");
   refuse(exr(2, 1, {"R", "G", "B"}, {1, kNan}), "texel (1, 0) from the top left is (nan, nan, nan)");
   refuse(exr(1, 1, {"R", "G", "B"}, {std::numeric_limits<float>::infinity()}), "expected finite numbers");
   refuse(exr(1, 1, {"diffuse.R", "G"}, {1}), "this file has: G, diffuse.R");

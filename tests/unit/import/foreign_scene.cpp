@@ -20,6 +20,7 @@ namespace {
 
 using ::testing::Contains;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 class ForeignScenes : public test::FileTest {
  protected:
@@ -118,6 +119,19 @@ TEST_F(ForeignScenes, EmissiveMeshesAreLights) {
   EXPECT_THAT(bright.warnings, Contains(HasSubstr("'Card' is an emitter with parts")));
 }
 
+/// Assimp gives a mesh without a material the file's first one.
+TEST_F(ForeignScenes, MeshesWithoutMaterialsAreGreyAndDark) {
+  const Scene scene = read_scene(write(
+      "scene.dae",
+      collada("<emission><color>4 2 1 1</color></emission><diffuse><color>1 0 0 1</color></diffuse>", "",
+              R"(<node id="Bare" name="Bare"><translate>0 0 3</translate><instance_geometry url="#g"/></node>)")));
+  ASSERT_EQ(scene.lights.size(), 1u);
+  EXPECT_EQ(scene.lights[0].name, "Card");
+  const Object& bare = *std::ranges::find(scene.objects, "Bare", &Object::name);
+  EXPECT_EQ(bare.emits, std::nullopt);
+  EXPECT_NEAR(glm::distance(bare.color, glm::dvec3(0.8)), 0, 1e-6);
+}
+
 TEST_F(ForeignScenes, WhatCannotBeDoneIsRefusedByName) {
   const auto glass = write("glass.dae", collada("<diffuse><color>1 1 1 1</color></diffuse><transparent "
                                                 "opaque=\"A_ONE\"><color>0 0 0 0.5</color></transparent>"
@@ -152,6 +166,25 @@ TEST_F(ForeignScenes, WhatCannotBeDoneIsNamedWhereAStudioLights) {
   EXPECT_THAT(scene.warnings, Contains(HasSubstr("'Panel' is an area lamp")));
   EXPECT_THAT(scene.warnings, Contains(HasSubstr("'dark.dae' has an orthographic camera")));
   EXPECT_THAT(scene.warnings, Contains(HasSubstr("a studio was put around it")));
+}
+
+/// Formats of which meshes alone are read name what lets light through.
+TEST_F(ForeignScenes, SolidMaterialsOfMeshesAreNamed) {
+  write("some library.mtl",
+        "newmtl Glass\nKd 1 1 1\nd 0.3\nnewmtl Leaf\n map_d leaf.png\nnewmtl Wood\nd 1.0\nnewmtl Ghost\nTr 0.5\n");
+  const std::string corners = "mtllib some library.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\n";
+  const auto notes = [&](const char* name, const std::string& text) {
+    return mesh::import_mesh(write(name, text)).notes;
+  };
+  EXPECT_THAT(
+      notes("a.obj", corners + "usemtl Glass\nf 1 2 3\nusemtl Leaf\nf 3 2 1\nusemtl Wood\nf 1 3 2\n"),
+      Contains(HasSubstr("materials that let light through, which is not read of this format: 'Glass', 'Leaf';")));
+  EXPECT_THAT(notes("b.obj", corners + "usemtl Wood\nf 1 2 3\n"), Not(Contains(HasSubstr("light through"))));
+  const std::string shape = R"(<X3D><Scene><Shape><Appearance><Material DEF="Pane" transparency="{}"/></Appearance>
+<IndexedFaceSet coordIndex="0 1 2 -1"><Coordinate point="0 0 0 1 0 0 0 1 0"/></IndexedFaceSet></Shape></Scene></X3D>)";
+  EXPECT_THAT(notes("a.x3d", fmt::format(fmt::runtime(shape), 0.5)),
+              Contains(HasSubstr("'Pane'; their surfaces are taken as solid")));
+  EXPECT_THAT(notes("b.x3d", fmt::format(fmt::runtime(shape), 0)), Not(Contains(HasSubstr("light through"))));
 }
 
 TEST_F(ForeignScenes, UsdAndAlembicAreRefusedInOneLine) {

@@ -272,6 +272,15 @@ TEST_F(GltfSurfaces, ShineWithTheMeanOfTheirPictureWhereItLies) {
   EXPECT_THAT(refusal(unreadable), HasSubstr("'Lamp' would shine without its emissive picture"));
 }
 
+/// A light shines from all of its mesh, so that what alpha takes away would shine, too.
+TEST_F(GltfSurfaces, ThatLetLightThroughDoNotShine) {
+  Gltf gltf = textured();
+  gltf.at("/materials/1")["alphaMode"] = "BLEND";
+  EXPECT_EQ(read(gltf).lights.size(), 1U) << "nothing is let through";
+  gltf.at("/materials/1")["pbrMetallicRoughness"]["baseColorFactor"] = {1, 1, 1, 0.75};
+  EXPECT_THAT(refusal(gltf), HasSubstr("'Lamp' is emissive and lets light through"));
+}
+
 /// Custom properties of an object, or of its mesh, say what glTF has no words for.
 TEST_F(GltfSurfaces, ExtrasSayWhoCastsAndReceives) {
   Gltf gltf;
