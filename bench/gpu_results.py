@@ -49,14 +49,19 @@ def main():
         sys.exit(__doc__)
     gpu = json.loads(Path(sys.argv[1]).read_text(encoding="utf-8"))
     device = gpu["devices"]["devices"][0]
-    of = {"commit": gpu["commit"], "machine": f"{device['name']} ({device['driver']}), {gpu['processors']} processor threads", "command": "bench/gpu.sh"}
+    of = {"commit": gpu["commit"], "machine": f"{device['name']} ({device['driver']}), {gpu['processors']} processor threads"}
     exact, methods = list(exact_rows(gpu)), list(method_rows(gpu))
     scene = gpu["speed"][0]["scene"].partition(".")[0]
-    write("gpu-exact.json", {"title": "exact methods on a GPU", **of, "conditions": f"Scene `{scene}`, engine=vulkan, one run of each in a process of its own.",
+    if not gpu["methods"]:
+        sys.exit(f"{sys.argv[1]}: no methods were compared, for want of time")
+    write("gpu-exact.json", {"title": "exact methods on a GPU", **of,
+                             "command": f"penumbra render scenes/{scene}.json --method METHOD:engine=vulkan --light-samples N --size WxH --stats FILE",
+                             "conditions": f"Scene `{scene}`, engine=vulkan, one run of each in a process of its own.",
                              "columns": ["method", "size", "light samples", "evaluate, ms", "of it passes on the GPU, ms"], "formats": [None, None, None, ".0f", ".1f"]}, exact)
     compared = gpu["methods"][0]["methods"][0]
     columns = [f"{what}, ms, {one['methods'][0]['size'][0]} × {one['methods'][0]['size'][1]}" for one in gpu["methods"] for what in ("light", "evaluate", "passes")]
     write("gpu-methods.json", {"title": "methods of compare on a GPU", **of,
+                               "command": "penumbra compare scenes/self-shadow.json --size WxH --reference edge-scatter:rows=exact --runs 3",
                                "conditions": f"Scene `{compared['scene'].partition('.')[0]}`, {compared['triangles']:,} triangles, 256 light samples where a method asks any; medians of "
                                              f"{compared['runs']} runs; RMSE against exact areas at the larger size.",
                                "columns": ["method", "RMSE", *columns], "formats": [None, ".4f"] + [".1f"] * len(columns)}, methods)

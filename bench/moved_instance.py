@@ -5,7 +5,7 @@ of one after a move. The scenes are those of forest.py.
 
     bench/moved_instance.py MODULES FOLDER [TREES …] [--results FILE.json --machine TEXT --conditions TEXT]
 
-MODULES: folder of the Python module, build/python. A number is the median of five."""
+MODULES: folder of the Python module, build/python. The first picture is measured once, the others are medians of five."""
 
 import argparse
 import json
@@ -80,7 +80,7 @@ def main():
         given.results.write_text(json.dumps({
             "title": "a tree of a forest moves: processor seconds of pictures in a kept renderer", "commit": commit, "machine": given.machine,
             "command": f"bench/moved_instance.py build/python FOLDER {' '.join(map(str, given.trees))}",
-            "conditions": f"{SIZE[0]} × {SIZE[1]} pixels, 64 light samples of a sun of 2°, medians of {MOVES}. {given.conditions}".strip(),
+            "conditions": f"{SIZE[0]} × {SIZE[1]} pixels, 64 light samples of a sun of 2°; processor seconds, of the first picture once, else medians of {MOVES}. {given.conditions}".strip(),
             "columns": ["trees", "triangles", "first picture", "the same again", "after a move"], "formats": [None, None, ".2f", ".2f", ".2f"], "rows": rows}, indent=1) + "\n", encoding="utf-8")
 
 

@@ -4,9 +4,9 @@
 
   bench/time_ratios.py [PROGRAM]           about half an hour on two busy cores
   bench/time_ratios.py PROGRAM --write-scenes FOLDER      the scenes as GLB files, for a machine without the packages that hold their meshes
-  bench/time_ratios.py PROGRAM --gpu FOLDER FILE.json     on a GPU, from those scenes: into FILE.json, results/time-ratios-gpu.json, in two minutes
+  bench/time_ratios.py PROGRAM --gpu FOLDER FILE.json     on a GPU, from those scenes: into FILE.json, in two minutes
 
-Then bench/tables.py writes the tables of docs/figures.md. Questions that have a row are left out: delete a row to measure it again. A
+Then bench/tables.py writes the table of docs/figures.md. Questions that have a row are left out: delete a row to measure it again. A
 row says of which commit it is.
 
 On a GPU a number is the clock's: `light` and `evaluate` as `compare` reports them, the median of five runs, and the sum of the passes'
@@ -120,6 +120,8 @@ def on_gpu(program, scene_file, folder, method, size, more):
 
 def of_turns(seconds):
     """The median ratio, the least to the largest, and both medians, of pairs of seconds."""
+    if any(second == 0 for _, second in seconds):
+        return "–", "–", "no time"  # passes of methods that have none
     ratios = sorted(first / second for first, second in seconds)
     first, second = (median(turn[k] for turn in seconds) for k in range(2))
     return f"{median(ratios):.2f}", f"{ratios[0]:.2f} to {ratios[-1]:.2f}", f"{first:.2g} over {second:.2g}"
@@ -192,7 +194,7 @@ def main():
     if sys.argv[2:3] == ["--write-scenes"]:
         return write_scenes(program, Path(sys.argv[3]))
     git = ["git", "-C", ROOT]
-    commit = subprocess.run([*git, "rev-parse", "--short", "HEAD"], check=True, capture_output=True, text=True).stdout.strip()
+    commit = subprocess.run([*git, "rev-parse", "--short", "HEAD"], check=False, capture_output=True, text=True).stdout.strip() or "not known"
     if sys.argv[2:3] == ["--gpu"]:
         return measure_gpu(program, commit, Path(sys.argv[3]), Path(sys.argv[4]))
     return measure(program, commit)

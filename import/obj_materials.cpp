@@ -3,12 +3,14 @@
 
 #include "import/obj_materials.hpp"
 
+#include "base/error.hpp"
 #include "import/text.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <fcntl.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <charconv>
@@ -35,12 +37,20 @@ void for_each_statement(std::string_view text, const Take& take) {
   }
 }
 
-/// Returns the content of a file in the folder or below; empty if it cannot be read.
+/// Returns the content of a file in the folder or below; empty if it is none, is larger than any material library, or
+/// cannot be read: the mesh does not need it.
 std::string content_of(const mesh::InputFile& input, std::string_view name) {
+  constexpr off_t kMostBytes = 64 << 20;
   const mesh::OpenedBeneath file =
       mesh::open_beneath(input.folder.get(), std::string(name), O_RDONLY | O_NONBLOCK | O_NOCTTY);
-  if (file.error != 0 || !mesh::require_regular(file.descriptor.get(), std::string(name))) return {};
-  return mesh::read_content(file.descriptor.get(), std::string(name));
+  struct stat info {};
+  if (file.error != 0 || ::fstat(file.descriptor.get(), &info) != 0) return {};
+  if (!S_ISREG(info.st_mode) || info.st_size > kMostBytes) return {};
+  try {
+    return mesh::read_content(file.descriptor.get(), std::string(name));
+  } catch (const InputError&) {
+    return {};
+  }
 }
 
 std::optional<double> number_in(std::string_view text) {

@@ -241,11 +241,11 @@ class X3dReader {
     return std::string_view(node.attribute("containerField").value()) == "appearance";
   }
 
-  /// Keeps the name of a material that lets light through.
+  /// Keeps the name of a material that lets light through. A USE of none is no fault: no surface needs it.
   void note_transparency(const pugi::xml_node& appearance) {
-    for (const pugi::xml_node& child : appearance.children()) {
+    for (const pugi::xml_node& child : meant(appearance).children()) {
       if (local_name(child) != "Material" && local_name(child) != "PhysicalMaterial") continue;
-      const pugi::xml_node material = resolved(child);
+      const pugi::xml_node material = meant(child);
       if (!(material.attribute("transparency").as_double() > 0)) continue;
       const std::string_view name = material.attribute("DEF").value();
       transparent_.emplace(name.empty() ? "without a name" : name);
@@ -256,7 +256,7 @@ class X3dReader {
     ++reached_;
     for (const pugi::xml_node& child : shape.children()) {
       const std::string_view name = local_name(child);
-      if (name == "Appearance") note_transparency(resolved(child));
+      if (name == "Appearance") note_transparency(child);
       if (child.type() != pugi::node_element || name == "Appearance" || name == "AcousticProperties" ||
           name.starts_with("Metadata") || (name == "ProtoInstance" && is_appearance(child)))
         continue;

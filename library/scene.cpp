@@ -173,10 +173,13 @@ void Scene::add_light(std::string name, const LightShape& shape, const LightOpti
     throw UsageError("the scene has a light \"{}\" already", name);
   scenes::AreaLight light;
   light.name = std::move(name);
-  set_shape(light, to_scene(shape), state_->scene.warnings);
+  std::vector<std::string> warnings;
+  set_shape(light, to_scene(shape), warnings);
   set_options(light, options);
   scenes::check_light(light, fmt::format("light \"{}\"", light.name));
+  reserve_more(state_->scene.warnings, warnings.size());
   state_->scene.lights.push_back(std::move(light));
+  std::ranges::move(warnings, std::back_inserter(state_->scene.warnings));
 }
 
 void Scene::set_light(std::string_view name, const LightShape& shape) {
@@ -188,13 +191,16 @@ void Scene::set_light(std::string_view name, const LightShape& shape) {
           "light \"{}\" has a body, mesh \"{}\", which would stay behind: remove the light, and add another", name,
           object.name);
   }
+  std::vector<std::string> warnings;
   change_light(state_->scene, name, [&](scenes::AreaLight& light) {
     scenes::LightShape made = to_scene(shape);
     const auto* const before = std::get_if<scenes::Sphere>(&light.shape);
     auto* const after = std::get_if<scenes::Sphere>(&made);
     if (before != nullptr && after != nullptr) after->cone = before->cone;  // a spot lamp stays a spot lamp
-    set_shape(light, std::move(made), state_->scene.warnings);
+    set_shape(light, std::move(made), warnings);
+    reserve_more(state_->scene.warnings, warnings.size());
   });
+  std::ranges::move(warnings, std::back_inserter(state_->scene.warnings));
 }
 
 void Scene::set_light(std::string_view name, const LightOptions& options) {

@@ -40,7 +40,10 @@ InspectedMesh read_again(const std::filesystem::path& file, const mesh::Triangle
   try {
     return read_inspected(written, false);
   } catch (const InputError& error) {
-    throw InputError("{}: not written, since no reader would take it: {}", file.string(), error.what());
+    std::string said = error.what();
+    if (const std::size_t at = said.find(written.string()); at != std::string::npos)
+      said.erase(at, written.string().size() + (said.substr(at + written.string().size()).starts_with(": ") ? 2 : 0));
+    throw InputError("{}: not written, since no reader would take it: {}", file.string(), said);
   }
 }
 

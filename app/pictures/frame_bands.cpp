@@ -59,13 +59,21 @@ void FrameRenderer::render_passing(const scenes::Scene& scene, const std::filesy
   note_seconds(maker_);
   check_wanted_layers();
   picture_.all = &maker_.all_triangles();
-  run_methods(bits);
-  for (Kept& kept : kept_) {
-    visibility::pass(*kept.method, nullptr);
-    kept.prepared = nullptr;  // what was not seen may move until the next picture
+  const auto leave = [&] {
+    for (Kept& kept : kept_) {
+      visibility::pass(*kept.method, nullptr);
+      kept.prepared = nullptr;  // what was not seen may move until the next picture
+    }
+    picture_.all = nullptr;
+    maker_.look_away();
+  };
+  try {
+    run_methods(bits);
+  } catch (...) {  // a live view's picture that is given up
+    leave();
+    throw;
   }
-  picture_.all = nullptr;
-  maker_.look_away();
+  leave();
   picture_.run.counters["meshTreesBuilt"] = maker_.mesh_trees_built();
 }
 

@@ -169,7 +169,12 @@ void LiveRenderer::render(const Order& order, scenes::Scene scene, bool keeps_ma
   }
   const scenes::Instances& instances = order.whole->instances;
   const bool same_meshes = scene.soup.triangles.empty() && instances.empty();
-  require_no_copies(scene, instances, wish_);
+  if (!instances.empty()) {
+    scenes::Scene lit = without_meshes(scene);
+    std::erase_if(lit.lights,
+                  [&](const auto& light) { return std::ranges::find(run_.lights, light.name) == run_.lights.end(); });
+    require_no_copies(lit, instances, wish_);
+  }
   const Frame frame{.number = {},
                     .camera = scene.cameras.front().name,
                     .instances = &instances,

@@ -319,7 +319,11 @@ class GltfScene {
   void add_object(const PrimitiveVertices& vertices, std::vector<mesh::Triangle> triangles, const std::string& name) {
     const Look& look = vertices.look;
     const bool pictured = look.emission && !is_mesh();  // a mesh without lights has no emission
-    const glm::dvec3 radiance = pictured ? radiance_of(vertices, triangles, means_) : look.radiance;
+    using Mode = scenes::Alpha::Mode;
+    const bool lets_through = look.alpha.mode != Mode::opaque;
+    const bool evenly = look.alpha.mode == Mode::blend && !look.picture && look.colors.empty();
+    const glm::dvec3 radiance = (pictured ? radiance_of(vertices, triangles, means_) : look.radiance) *
+                                (evenly ? look.alpha.factor : 1.0);  // what a pane covers shines
     if (pictured && radiance != glm::dvec3(0))
       losses_.mention("shines evenly, with the mean of its emissive picture where that lies on it", name);
     else if (pictured)
@@ -328,10 +332,11 @@ class GltfScene {
     const SoupEnd before = append_triangles(scene_, vertices, std::move(triangles));
     scenes::Object object = object_of(look);
     object.emits = add_light({radiance, vertices.look.two_sided}, name, vertices.placed, before);
-    if (object.emits && look.alpha.mode != scenes::Alpha::Mode::opaque)
+    if (object.emits && lets_through && !evenly)
       losses_.refuse(
-          "is emissive and lets light through (alphaMode MASK or BLEND); only whole surfaces shine: make it opaque, or "
-          "cut the mesh to the part that shines",
+          "is emissive and lets light through in places (alphaMode MASK or BLEND); lights shine evenly: make it "
+          "opaque, "
+          "or cut the mesh to the part that shines",
           name);
     if (object.emits && !flags_.body) {  // the object only marks the place of the light
       ++bodiless_;

@@ -60,8 +60,8 @@ def _size(size):
         return 0, 0
     try:
         width, height = size
-        whole = int(width) == width >= 1 and int(height) == height >= 1
-    except (TypeError, ValueError):
+        whole = all(int(side) == side and 1 <= side <= 0xffffffff for side in (width, height))
+    except (TypeError, ValueError, OverflowError):
         whole = False
     if not whole:
         raise UsageError(f"size {size!r}: expected two whole numbers of pixels, at least 1")
@@ -70,11 +70,13 @@ def _size(size):
 
 def _count(name, value):
     """A whole number from 0 on, as int; None is 0."""
+    if value is None:
+        return 0
     try:
-        count = int(value or 0)
-    except (TypeError, ValueError):
+        count = int(value)
+    except (TypeError, ValueError, OverflowError):
         count = -1
-    if count < 0 or count != (value or 0) or count > 0xffffffff:
+    if count != value or not 0 <= count <= 0xffffffff:
         raise UsageError(f"{name} {value!r}: expected a whole number, from 0 on")
     return count
 
@@ -82,7 +84,7 @@ def _count(name, value):
 def _faces(faces):
     """Faces as an array of whole numbers; numpy would cut fractions off."""
     faces = _np.asarray(faces)
-    if faces.dtype.kind not in "iu" and (faces.dtype.kind != "f" or not (faces == _np.floor(faces)).all()):
+    if faces.dtype.kind not in "iu" and (faces.dtype.kind != "f" or not (_np.isfinite(faces) & (faces == _np.floor(faces))).all()):
         raise UsageError(f"faces: expected whole numbers of vertices (F, 3), not {faces.dtype} with fractions or other values")
     return faces
 

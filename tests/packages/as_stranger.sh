@@ -46,7 +46,8 @@ gpu = json.load(open("gpu.json"))
 assert gpu["selfTest"]["exitCode"] in (0, 124), gpu["selfTest"]  # 124: out of time
 assert gpu["format"] == "penumbra-gpu/1" and gpu["devices"]["devices"], gpu
 assert len(gpu["sameBitsAsVectorUnits"]) == 9 and all(one["same"] for one in gpu["sameBitsAsVectorUnits"]), gpu["sameBitsAsVectorUnits"]
-assert all(len(one["methods"]) >= 15 for one in gpu["methods"]), gpu["methods"]
+out_of_time = "methods: out of time" in open("gpu.txt").read()
+assert out_of_time or (gpu["methods"] and all(len(one["methods"]) >= 15 for one in gpu["methods"])), gpu["methods"]
 assert len(gpu["speed"]) >= 5 and all(run["seconds"]["shadow"] > 0 for run in gpu["speed"])
 END
     ((code == 0)) || fail "gpu.sh: exit $code, $(cat gpu.txt)"

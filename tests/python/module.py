@@ -153,6 +153,9 @@ class OwnMethod(unittest.TestCase):
         for what, call in (("size", lambda: penumbra.render(scene, size="ab")), ("size", lambda: penumbra.render(scene, size=(8, 2.5))),
                            ("light_samples", lambda: penumbra.render(scene, size=(8, 6), light_samples=-1)),
                            ("light_samples", lambda: penumbra.render(scene, size=(8, 6), light_samples="many")),
+                           ("light_samples", lambda: penumbra.render(scene, size=(8, 6), light_samples=float("inf"))),
+                           ("size", lambda: penumbra.render(scene, size=(2 ** 33, 8))),
+                           ("faces", lambda: penumbra.Scene().add_mesh("x", np.eye(3), [[0, 1, np.inf]])),
                            ("pixel_samples", lambda: penumbra.render(scene, size=(8, 6), pixel_samples=1.5)),
                            ("methods", lambda: penumbra.compare(scene, [])),
                            ("faces", lambda: penumbra.Scene().add_mesh("x", np.eye(3), [[0, 1, 1.9]]))):

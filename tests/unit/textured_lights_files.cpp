@@ -8,7 +8,7 @@
 #include "tests/unit/scenes/support.hpp"
 #include "tests/unit/textured_lights_support.hpp"
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include <cmath>
 #include <limits>

@@ -179,6 +179,9 @@ TEST_F(ForeignScenes, SolidMaterialsOfMeshesAreNamed) {
   EXPECT_THAT(
       notes("a.obj", corners + "usemtl Glass\nf 1 2 3\nusemtl Leaf\nf 3 2 1\nusemtl Wood\nf 1 3 2\n"),
       Contains(HasSubstr("materials that let light through, which is not read of this format: 'Glass', 'Leaf';")));
+  EXPECT_THAT(notes("c.obj", "mtllib .\nmtllib nowhere.mtl\n" + corners + "usemtl Glass\nf 1 2 3\n"),
+              Contains(HasSubstr("'Glass'")))
+      << "folders and files that are not there are no libraries";
   EXPECT_THAT(notes("b.obj", corners + "usemtl Wood\nf 1 2 3\n"), Not(Contains(HasSubstr("light through"))));
   const std::string shape = R"(<X3D><Scene><Shape><Appearance><Material DEF="Pane" transparency="{}"/></Appearance>
 <IndexedFaceSet coordIndex="0 1 2 -1"><Coordinate point="0 0 0 1 0 0 0 1 0"/></IndexedFaceSet></Shape></Scene></X3D>)";
