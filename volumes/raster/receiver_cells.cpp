@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// View samples in cells of directions from a light point, on the faces of a cube, clustered by depth.
+// Sorts view samples into cells of directions from a light point, on the faces of a cube, and clusters them by depth;
+// finds the cells and depths of polygons, boxes and segments. For reduced shadow volumes (volume_culling.cpp).
 
 #include "volumes/raster/receiver_cells.hpp"
 
@@ -22,7 +23,7 @@ namespace {
 
 using visibility::ViewSamples;
 
-constexpr double kCellPad = 1e-6;  // of a cell: far beyond the rounding of places
+constexpr double kCellPad = 1e-6;  // in cells; much larger than the rounding of positions
 constexpr std::uint32_t kBuckets = 256;
 
 /// Returns x in the coordinates of a face: across, down, and depth.
@@ -31,6 +32,7 @@ glm::dvec3 seen_on(std::uint32_t face, const glm::dvec3& x) {
   return {x[(axis + 1) % 3], x[(axis + 2) % 3], face % 2 == 0 ? x[axis] : -x[axis]};
 }
 
+/// Returns the position, 0 to kSide, for across or down divided by depth, −1 to 1.
 double place(double share) {
   return 0.5 * (share + 1) * ReceiverCells::kSide;
 }
@@ -193,7 +195,7 @@ std::vector<CellSegment> segments_of(const glm::dvec3& a, const glm::dvec3& b) {
       }
     }
     if (!any) continue;
-    // passes through l: replaced by the ends of both diagonals, which mark most of the face
+    // Replaces a segment that passes through l, which has no position on the face, by the face's diagonal.
     if (!(from.z > 0 && to.z > 0)) {
       segments.push_back({face, {0, 0}, glm::dvec2(ReceiverCells::kSide)});
       continue;

@@ -3,8 +3,8 @@
 // Wächter, A. Keller, Efficient and robust shadow volumes using hierarchical occlusion culling and geometry shaders,
 // GPU Gems 3, 2007; S. Laine, Split-plane shadow volumes, Graphics Hardware 2005. Departures: a caster is tested
 // against the view samples themselves, in cells of directions from the light, where the papers draw bounding boxes and
-// query the number of passing fragments; stretches are between planes across each caster's axis, where Lloyd's slices
-// contain the eye.
+// query the number of passing fragments; stretches (intervals of depth) lie between planes perpendicular to each
+// caster's axis, where Lloyd's slices contain the eye.
 
 #include "volumes/raster/volume_culling.hpp"
 
@@ -28,8 +28,8 @@ using visibility::SceneFloats;
 using visibility::ViewSamples;
 
 constexpr double kUnbounded = std::numeric_limits<double>::infinity();
-/// A caster is behind another only if it is farther by this factor: then objects that coincide with the other, or with
-/// a view sample's own plane, are not between them.
+/// Factor of depth by which a triangle must be farther than a covering caster to be omitted: objects that coincide with
+/// the covering caster are kept.
 constexpr double kBehind = 1.02;
 constexpr std::size_t kMostStretches = 4;
 
@@ -44,8 +44,8 @@ class Covers {
  public:
   Covers() : depth_(ReceiverCells::kCells, kUnbounded), most_(ReceiverCells::kCells), state_(ReceiverCells::kCells) {}
 
-  /// Adds caps and silhouette edges of one caster. Without an edge of its silhouette in a cell, as many of its
-  /// triangles are in front of all of the cell as of its middle.
+  /// Adds the caps and silhouette edges of one caster. In a cell that no silhouette edge crosses, the caster covers
+  /// every direction if it covers the cell's middle.
   void add(const glm::vec3& l, std::span<const VolumeCap* const> caps, std::span<const VolumeEdge* const> edges) {
     for (const VolumeCap* cap : caps) {
       const std::array<glm::dvec3, 3> corners = from(l, cap->corners);
@@ -88,7 +88,8 @@ class Covers {
   std::vector<std::size_t> touched_;
 };
 
-/// Calls visit(cluster) for the clusters that a triangle may be in front of, until it returns false.
+/// Calls visit(cluster) for the clusters that a triangle may be in front of, until visit returns false. `covers`:
+/// omits cells in which another caster hides all that the triangle could hide; nullptr: omits none.
 template <typename Visit>
 void for_each_behind(const ReceiverCells& cells, const Covers* covers, const VolumeCap& cap, const glm::vec3& l,
                      Visit&& visit) {
@@ -111,7 +112,7 @@ void for_each_behind(const ReceiverCells& cells, const Covers* covers, const Vol
   }
 }
 
-/// Stretches along a caster's axis; overlapping ones are merged.
+/// Intervals of depth along a caster's axis; overlapping ones are merged.
 class Stretches {
  public:
   void add(double lower, double upper) {
@@ -154,11 +155,11 @@ class Stretches {
 struct Caster {
   std::vector<const VolumeCap*> caps;
   std::vector<const VolumeEdge*> edges;
-  glm::dvec3 axis{0};           // unit, from l toward its middle
-  double nearest = 0, end = 0;  // range of its corners along the axis
+  glm::dvec3 axis{0};           // unit, from l toward the middle of the caster's box
+  double nearest = 0, end = 0;  // range of the corners along the axis; nearest is -infinity if the caster cannot be cut
 };
 
-/// Casters whose corners are all well in front of l along the axis can be cut across it.
+/// Least cosine between the axis and the direction of any corner for a caster that planes across the axis can cut.
 constexpr double kLeastCosine = 0.05;
 
 std::vector<Caster> casters_in(const LightVolumes& volumes, const std::vector<std::uint32_t>& components) {
@@ -192,11 +193,12 @@ std::vector<Caster> casters_in(const LightVolumes& volumes, const std::vector<st
   return casters;
 }
 
-/// Volumes with the caps and edges of these parts of casters only.
+/// A caster, and the part of its volume that is drawn.
 struct PartOf {
   const Caster* caster;
   gpu::VolumePart part;
 };
+/// Returns the volumes with the caps and edges of `parts` only.
 LightVolumes assembled(const LightVolumes& all, std::span<const PartOf> parts) {
   LightVolumes result{all.l, {}, {}, all.left_out, {}};
   for (const auto& [caster, part] : parts) {
@@ -214,7 +216,8 @@ LightVolumes assembled(const LightVolumes& all, std::span<const PartOf> parts) {
   return result;
 }
 
-/// Restores those triangles of a caster whose removal gives it more silhouette edges than before: each edge has a face.
+/// Restores all triangles of a caster whose remaining triangles have more silhouette edges than the whole caster: each
+/// silhouette edge costs a face of the volume.
 void keep_simple(const ShadowCasters& casters, const glm::vec3& l, const Light& light,
                  std::vector<std::uint8_t>& kept) {
   const std::vector<std::uint32_t> components = casters.components();
@@ -255,7 +258,7 @@ LeanVolumes culled_and_clamped(const SceneFloats& scene, const ShadowCasters& ca
         const glm::dvec3 low = caster.axis * cluster.lower, high = caster.axis * cluster.upper;
         const glm::dvec3 least = glm::min(low, high), most = glm::max(low, high);
         stretches.add(least.x + least.y + least.z, most.x + most.y + most.z);
-        return can_be_cut;  // otherwise one stretch suffices
+        return can_be_cut;  // a caster that cannot be cut keeps its whole volume
       });
       if (lean[i].hides && !can_be_cut) break;
     }

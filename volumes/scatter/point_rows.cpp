@@ -16,7 +16,7 @@ constexpr float kNowhere = 1e30F;
 
 using Row = std::vector<std::uint32_t>;
 
-/// Exact: floats, plus a half in double.
+/// Returns the row of height y, in cells. Exact: y is a float, and the half is added in double.
 std::uint32_t row_of(float y, std::uint32_t rows) {
   return static_cast<std::uint32_t>(std::clamp(std::floor(static_cast<double>(y) + 0.5), 0.0, rows - 1.0));
 }
@@ -36,7 +36,7 @@ void add_row(PointRows& all, std::span<const glm::vec2> places, const Row& row) 
     all.places.push_back(y);
   }
   for (std::uint32_t start = 0; start < all.columns * gpu::kStartsPerCell; ++start) {
-    // Slightly early: the shader rounds before looking up.
+    // Begins slightly to the left: the shader rounds before it looks up.
     const float x = (static_cast<float>(start) - 0x1p-8F) / gpu::kStartsPerCell - 0.5F;
     const auto first = std::ranges::lower_bound(row, x, {}, [&](std::uint32_t j) { return places[j].x; });
     const auto four = static_cast<std::uint32_t>(first - row.begin()) / gpu::kPointsAtOnce;
@@ -48,7 +48,7 @@ std::size_t longest(const std::vector<Row>& rows) {
   return std::ranges::max_element(rows, {}, &Row::size)->size();
 }
 
-/// Returns places in cells of a grid with `cells.rows` rows.
+/// Returns the position of each light sample in cells of a grid of `cells.columns` by `cells.rows`.
 std::vector<glm::vec2> places_of(std::span<const glm::vec2> coordinates, const PointRows& cells) {
   const glm::dvec2 half(0.5 * cells.columns, 0.5 * cells.rows);
   std::vector<glm::vec2> places;

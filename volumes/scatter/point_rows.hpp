@@ -25,8 +25,8 @@ struct PointRows {
       starts{};  ///< for each row and half cell, left to right: the four slots with the first sample at or after it
 };
 
-/// Makes the rows. `coordinates`: (s, t) of light samples, in [−1, 1]². About √N rows; more if a row would have more
-/// than `most_fours`, which is still exceeded if too many light samples have the same height.
+/// Makes about √N rows of N light samples; more rows if one would have more than `most_fours` times four slots. Too
+/// many light samples of the same height exceed this limit. `coordinates`: (s, t) of the light samples, in [−1, 1]².
 PointRows make_point_rows(std::span<const glm::vec2> coordinates, std::uint32_t most_fours);
 
 }  // namespace penumbra::volumes

@@ -5,9 +5,9 @@
 #include "volumes/edges/device/edge_scatter.glsl"
 
 // Second pass of edge scatter, a workgroup for a few neighbouring view samples (one in each lane) and a band of light
-// rows: the number of triangles between p and each light sample. D at the light's lower left corner is counted triangle
-// by triangle. From there D changes by ∓k_e(p) at each projected edge: up the light's left side, then along each row.
-// Edges are scattered into a histogram [column][row] of such changes, in bytes; a running sum converts it to depths.
+// rows: computes D, the number of triangles between p and each light sample. D at the light's lower left corner is
+// counted triangle by triangle. From there D changes by ∓k_e(p), the signed multiplicity of edge e as seen from p, at
+// each projected edge: up the light's left side, then along each row. Edges are scattered into a histogram [column][row] of such changes, in bytes; a running sum converts it to depths.
 // Derivation, bounds and the handling of light rows that rounding leaves open: docs/edge-scatter.md.
 
 #include "volumes/scatter/scatter_view_samples.glsl"

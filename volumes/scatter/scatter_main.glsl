@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Computes a few view samples, from lists to bits. Part of scatter_edges.comp and scatter_points.comp.
+// Main function of the second pass of edge scatter: computes the visibility bits of a few view samples from the lists
+// of edges and triangles. Included by scatter_edges.comp and scatter_points.comp.
 
 void main() {
   make_frame();
@@ -27,7 +28,7 @@ void main() {
   // Condition (2): p strictly on an emitting side of the light's plane. (bound level)
   const float error_level = level_error(at.p);
   if (on && abs(at.height) <= error_level) {
-    open_pixel = push.side > 0.0;                         // only one of two dispatches asks
+    open_pixel = push.side > 0.0;                         // of the two sides' dispatches only one asks the host
     on = false;
   }
   const bool other_side = receives && at.height < -error_level;

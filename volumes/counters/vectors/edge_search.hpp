@@ -26,7 +26,6 @@ enum class Search : std::uint8_t {
   kd_tree,    ///< Lehtinen et al. 2006: a kd-tree over the space of receivers, with the wedges that meet each cell
   hemicube,   ///< Laine et al. 2005: a grid on a cube around the light's centre, with the wedges that appear in each
               ///< cell
-              ///< cell
 };
 
 struct EdgeSearchInput {
@@ -39,7 +38,7 @@ struct EdgeSearchInput {
 };
 
 /// A structure over the wedges of all edges that may be silhouettes as seen from some point of the light. Planar
-/// lights.
+/// lights only.
 class EdgeSearch {
  public:
   EdgeSearch(Search search, const EdgeSearchInput& input);
