@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Options that separate the causes of error of map methods: resolution, view, bias, layers (docs/error-budget.md).
+// Makes the runs that repair one cause of a map method's error at a time: resolution, view, bias, layers
+// (docs/error-budget.md).
 
 #include "maps/host/error_repairs.hpp"
 

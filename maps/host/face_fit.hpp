@@ -24,12 +24,12 @@ namespace penumbra::maps {
 struct FittedFace {
   int side = 0;               ///< of the light's plane
   int axis = 2;               ///< axis of the light's basis along which depths are measured
-  glm::dvec3 along{0, 0, 1};  ///< the same axis with its sign; of e = (x, y, |z|)
-  glm::dmat3 to_face{1};      ///< e to (a k, b k, k)
+  glm::dvec3 along{0, 0, 1};  ///< the same axis with its sign, for e = (x, y, |z|)
+  glm::dmat3 to_face{1};      ///< maps e to (a k, b k, k); (a, b) is the position on the face
   double ratio = 0;           ///< LogPSM: rows are logarithms, of distances up to `ratio` times the nearest; 0: linear
                               ///< rows
-  double margin = 0;          ///< of LogPSM: the fraction of the face on either side of its rows; of a circle: around
-                              ///< the circle
+  double margin = 0;          ///< fraction of the face that is left free: of LogPSM on either side of its rows, of a
+                              ///< circle around the circle
   bool circle = false;        ///< e is projected by reflection at a paraboloid: a half space in a circle
                               ///< (paraboloid_face)
   double from = 0, to = std::numeric_limits<double>::infinity();  ///< depths of the receivers that use this face, from
@@ -42,6 +42,7 @@ struct FittedFace {
   /// Returns the displacement of a position when e moves by `by`.
   [[nodiscard]] glm::dvec2 moves(const glm::dvec3& e, const glm::dvec3& by) const;
 
+  /// Returns the face in float32, as the device reads it.
   [[nodiscard]] gpu::FittedFace rounded() const;
 };
 
@@ -64,7 +65,8 @@ std::vector<FittedFace> fit_faces(const visibility::SceneFloats& scene, const vi
                                   const LightBasis& basis, const visibility::ViewSamples& samples,
                                   const FaceFitOptions& options);
 
-/// Returns a square of the quadtree over a face: 2^level squares across, `first` those before it on either axis.
+/// Returns a square of the quadtree over a face: 2^level squares across. `first`: number of squares before
+/// it on each axis.
 FittedFace square_of(const FittedFace& whole, std::uint32_t level, const glm::dvec2& first);
 
 /// Returns the face of a whole side of the light's plane, `spare` texels of `size` away from the face's sides: e is
