@@ -9,7 +9,7 @@ namespace penumbra::vsm {
 
 /// Makes `view-sample` with variant=sintorn, as in Sintorn, Eisemann and Assarsson 2008: view samples in lists of light
 /// pixels, twelve-point hulls, conservative rasterisation. Planar lights and suns; every bit is the truth of its pair.
-/// On the processor. docs/view-sample.md.
+/// Runs on the processor (docs/view-sample.md).
 std::unique_ptr<visibility::Method> make_view_sample_lists(visibility::MethodDescription description);
 
 }  // namespace penumbra::vsm

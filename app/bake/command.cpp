@@ -27,7 +27,7 @@ namespace penumbra::app {
 namespace {
 
 constexpr std::uint32_t kDefaultSide = 512, kMostMargin = 1024;
-constexpr std::uint32_t kPointsInARow = 256;  // of vertices: as many as in a small picture
+constexpr std::uint32_t kPointsInARow = 256;  // row length of the picture that holds the vertices' view samples
 
 class BakeCommand : public Command {
  public:
@@ -133,7 +133,7 @@ class BakeCommand : public Command {
     if (size.empty()) size = fmt::format("{}", kDefaultSide);
     if (parse_integer<std::uint32_t>(size)) size = fmt::format("{0}x{0}", size);
     std::tie(width_, height_) = parse_size(size);
-    // The rest of the request is that of a picture, whose name has this ending.
+    // Checks the other options as `render` does, whose output's name ends in .exr.
     PictureOptions as_picture = options_;
     if (vertices_) {
       if (options_.run.out.extension() != ".ply")

@@ -14,7 +14,7 @@ void MaskComparison::add(const TileResult& result) {
   const visibility::Light& light = session_.lights[question_.light];
   const std::size_t first = std::size_t{result.tile.first_row} * session_.width;
   const std::size_t count = std::size_t{result.tile.row_count} * session_.width;
-  std::vector<std::uint32_t> pixels;  // of the tile, with A = 1
+  std::vector<std::uint32_t> pixels;  // pixels of the tile that show a surface
   for (std::size_t i = 0; i < count; ++i) {
     if (session_.samples.triangle[first + i] != visibility::ViewSamples::kBackground) {
       pixels.push_back(static_cast<std::uint32_t>(i));
@@ -28,7 +28,7 @@ void MaskComparison::add(const TileResult& result) {
     if (seen_++ % stride_ != 0) return;
     kept_.push_back({static_cast<std::uint32_t>(first) + pixel, sample, visible});
     if (kept_.size() <= question_.most_decided) return;
-    // Too many: keeps every other one, and from now on half as many.
+    // Keeps every second pair of too many, and from now on half as many.
     stride_ *= 2;
     for (std::size_t i = 0; 2 * i < kept_.size(); ++i) kept_[i] = kept_[2 * i];
     kept_.resize((kept_.size() + 1) / 2);

@@ -24,9 +24,10 @@ class PackedMasks {
   /// Returns base64 of each light's masks; empty for a light without masks, or with too many.
   std::vector<std::string> finish();
 
-  /// Limit for one light, in a browser's memory. A picture of 512 × 512 pixels with 1024 light samples has 32 MiB.
+  /// Largest size of one light's masks in a browser's memory, in bytes. A picture of 512 × 512 pixels with 1024 light
+  /// samples has 32 MiB.
   static constexpr std::size_t kMostBytes = std::size_t{64} << 20;
-  /// Limit for one light, in the page.
+  /// Largest size of one light's deflated masks in the page, in bytes.
   static constexpr std::size_t kMostPackedBytes = std::size_t{3} << 20;
 
  private:
@@ -41,7 +42,7 @@ class PackedMasks {
 std::vector<compare::ReportLight> report_lights(const Session& session, std::span<const visibility::Light> reference,
                                                 bool same_samples);
 
-/// Numbers of a run of whole lights.
+/// Results of a method's run, light by light, for the report.
 struct SeenByRun {
   const MethodRun& run;
   std::span<const glm::vec3> beauty;                 ///< empty: none is shown

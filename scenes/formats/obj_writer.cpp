@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// Writes a scene's meshes as an OBJ file: world space, a group for each range of an object's triangles; no materials,
+// lights or cameras.
+
 #include "scenes/formats/writers.hpp"
 
 namespace penumbra::scenes {
