@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Radiance pictures: headers, the three ways that scan lines are written, and what is no such picture.
+// Tests the reader of Radiance pictures: headers, the three encodings of scan lines, and files that are refused.
 
 #include "base/error.hpp"
 #include "base/rgbe.hpp"
@@ -43,7 +43,7 @@ TEST(Rgbe, RowsAndPixelsRunAsTheSizeSays) {
   EXPECT_EQ(leftward.pixels[0], glm::vec3(0.5));
 }
 
-/// Nine pixels: a run of eight and one literal in each channel.
+/// Decodes nine pixels: a run of eight and one literal in each channel.
 TEST(Rgbe, PlanesAreInRuns) {
   std::string text = with_header("-Y 1 +X 9") + std::string("\x02\x02\x00\x09", 4);
   for (const char* const pair : {"\x80\x40", "\x40\x20", "\x20\x10", "\x81\x81"})
@@ -53,7 +53,7 @@ TEST(Rgbe, PlanesAreInRuns) {
   EXPECT_EQ(image.pixels[8], glm::vec3(0.5, 0.25, 0.125));
 }
 
-/// A pixel, then 3 + 256 of it.
+/// Decodes one pixel and two old runs, which repeat it 3 and 256 times.
 TEST(Rgbe, OldRunsRepeatTheLastPixel) {
   const LinearImage image = decode(
       with_header("-Y 1 +X 260") + kPixel + std::string("\x01\x01\x01\x03", 4) + std::string("\x01\x01\x01\x01", 4),
@@ -71,7 +71,7 @@ TEST(Rgbe, WhatIsNoneIsRefused) {
         with_header("-Y 1 +X 9") + std::string("\x02\x02\x00\x08\x88\x01", 6),   // another width
         with_header("-Y 1 +X 9") + std::string("\x02\x02\x00\x09\xff\x01", 6),   // a run beyond the line
         with_header("-Y 1 +X 9") + std::string("\x02\x02\x00\x09\x00\x01", 6),   // a run of nothing
-        with_header("-Y 1 +X 4") + std::string("\x01\x01\x01\x01", 4) + kPixel,  // repeats what is not there
+        with_header("-Y 1 +X 4") + std::string("\x01\x01\x01\x01", 4) + kPixel,  // a run before any pixel
         with_header("-Y 1 +X 4") + kPixel + std::string("\x01\x01\x01\x09", 4)}) {
     EXPECT_THROW(decode(text), InputError) << text;
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Weights of light samples: they add up, they are those of the texel at the sample, and they change nothing where
-// nothing should change.
+// Tests the weights of a textured light's samples: their sum is exactly 1, each is in proportion to the luminance of
+// the texel at the sample, and those of a constant texture give the same bytes as no texture.
 
 #include "base/error.hpp"
 #include "tests/unit/scenes/support.hpp"
@@ -54,7 +54,7 @@ TEST(TexturedLightWeights, AddUpToOneInAnyOrder) {
 }
 
 TEST(TexturedLightWeights, OfAConstantTextureGiveTheBytesOfNone) {
-  // Every number of visible samples out of every number of samples that is no larger than 300, and of some larger.
+  // Tries every number of visible samples for each number of samples up to 300, and for some larger ones.
   const auto texture = make_light_texture(tests::constant_texture(5, 3, glm::vec3(0.1f, 0.7f, 0.3f)));
   std::vector<std::uint32_t> counts(300);
   std::iota(counts.begin(), counts.end(), 1u);
@@ -70,7 +70,7 @@ TEST(TexturedLightWeights, OfAConstantTextureGiveTheBytesOfNone) {
 }
 
 TEST(TexturedLightWeights, TexelZeroLiesAtTheLeftAndTheTop) {
-  // 3 × 2 texels numbered by their red. halfU is to the right, halfV upward.
+  // Numbers 3 × 2 texels by their red value. halfU points to the right, halfV upward.
   const auto texture =
       texture_of(3, 2, [](std::uint32_t x, std::uint32_t y) { return glm::vec3(static_cast<float>(1 + x + 3 * y)); });
   const Light light = light_with(texture, {6, 2, 3, SamplePattern::grid, 0});

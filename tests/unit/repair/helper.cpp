@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// mesh::repair is run_repair in another process: the same answer, and an error that says what and where if that process
-// is missing, crashes or lies.
+// Tests mesh::repair, which runs run_repair in another process: the answer is the same, and an error says what went
+// wrong and where if that process is missing, crashes or sends a damaged answer.
 
 #include "base/error.hpp"
 #include "mesh/repair.hpp"

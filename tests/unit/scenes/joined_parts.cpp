@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A scene that is cut in parts and joined again is the scene that it was.
+// Tests scenes::joined: a scene that is divided into parts and joined again equals the original.
 #include "scenes/joined_parts.hpp"
 
 #include <gtest/gtest.h>
@@ -9,8 +9,8 @@
 namespace penumbra::scenes {
 namespace {
 
-/// Three objects of one to three triangles, the second one with normals and a picture and the body of the first of two
-/// lights.
+/// Returns three objects of one to three triangles and two lights. The second object has normals and a picture, and is
+/// the body of the first light.
 Scene three_objects() {
   Scene scene;
   for (std::uint32_t object = 0; object < 3; ++object) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The schema of scene files, and the validator that speaks to people, against a JSON Schema library.
+// Tests the validator of scene files (scenes::find_violation) against a JSON Schema library.
 
 #include "scenes/formats/json_schema.hpp"
 #include "tests/unit/scenes/support.hpp"
@@ -21,7 +21,7 @@
 namespace penumbra::test {
 namespace {
 
-/// The verdict of a library that knows all of JSON Schema.
+/// Validator of the library valijson, which implements all of JSON Schema.
 class Library {
  public:
   explicit Library(const nlohmann::json& schema) {
@@ -57,7 +57,7 @@ std::vector<std::string> property_names(const nlohmann::json& schema) {
   return {names.begin(), names.end()};
 }
 
-/// Documents that people and programs write by mistake: one value is another, or gone, or there once more.
+/// Changes one value of a shipped scene at random (replaced, removed, or added) and compares both verdicts.
 TEST(JsonSchema, DecidesAsALibraryDoes) {
   const nlohmann::json schema = nlohmann::json::parse(scenes::kSceneSchemaText);
   const Library library(schema);
@@ -123,7 +123,7 @@ TEST(JsonSchema, DecidesAsALibraryDoes) {
   EXPECT_GT(refused, 1500);
 }
 
-/// Every object that the schema describes with properties is closed.
+/// Checks that every object with properties in the schema refuses other keys.
 TEST(JsonSchema, NoObjectTakesUnknownKeys) {
   const auto schema = nlohmann::json::parse(scenes::kSceneSchemaText);
   int objects = 0;

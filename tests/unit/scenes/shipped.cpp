@@ -10,7 +10,7 @@
 #include <variant>
 #include <vector>
 
-/// The scenes that ship load, and are what their names say.
+// Tests that the shipped scenes load without warnings and contain what tests and pages rely on.
 namespace penumbra::test {
 namespace {
 
@@ -20,7 +20,7 @@ scenes::Scene read_shipped(const std::string& name) {
   return scenes::read_scene(kScenes / name);
 }
 
-/// Returns all shipped scenes, those in folders, too.
+/// Returns the files of all shipped scenes, including those in folders.
 std::vector<std::filesystem::path> shipped_files() {
   std::vector<std::filesystem::path> files;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(kScenes)) {
@@ -39,7 +39,8 @@ TEST(ShippedScenes, AllLoadWithoutAWarning) {
       EXPECT_TRUE(file.filename() == "lights.json" && warning.find("parallelogram") != std::string::npos)
           << file << ": " << warning;
     }
-    // Edges of papers/centred.json pass the light's centre as seen from the picture's middle row: it has an odd number.
+    // Edges of papers/centred.json pass the light's centre as seen from the picture's middle row, so the
+    // picture has an odd number of rows.
     EXPECT_EQ(scene.width, file.filename() == "centred.json" ? 145u : 512u) << file;
     ++count;
   }

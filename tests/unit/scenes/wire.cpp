@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A scene on its way from the import helper: nothing is lost, and whatever else arrives is found out.
+// Tests the transfer of scenes from the import helper: every field arrives, and damaged messages are refused.
 #include "mesh/import_wire.hpp"
 #include "scenes/scene_wire.hpp"
 
@@ -18,7 +18,7 @@ using mesh::WireWriter;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-/// A value in every field that travels, each another one.
+/// Returns a scene with a different value in every transferred field.
 Scene full_scene() {
   Scene scene;
   scene.name = "all of it";
@@ -210,7 +210,7 @@ TEST(SceneWire, WhatNoSceneHasIsRefused) {
   refuses("a mode", [](Scene& s) { s.objects[0].alpha.mode = static_cast<Alpha::Mode>(3); });
 }
 
-/// A scene up to its only light's shape.
+/// Returns the bytes of a scene up to the shape of its only light.
 WireWriter up_to_shape() {
   WireWriter to;
   to.put_string("scene");
@@ -223,7 +223,7 @@ WireWriter up_to_shape() {
   return to;
 }
 
-// A hostile answer must not use up the stack.
+// Nested pieces in a hostile answer must not exhaust the stack.
 TEST(SceneWire, PiecesInPiecesAreRefused) {
   WireWriter to = up_to_shape();
   for (int depth = 0; depth < 1'000'000; ++depth) to.put<std::uint8_t>(6), to.put<std::uint64_t>(1);
