@@ -7,15 +7,18 @@ import zlib
 
 import numpy
 
-# Width below which images get interpolated texels, as Cycles interpolates; and the largest factor of their width.
+# FINE: largest side, in texels, of an image with interpolated texels added; they are added to images of at most half this side.
+# _MOST: largest factor of an image's sides.
 FINE, _MOST = 1024, 16
 
 
 def linear_of(encoded):
+    """Converts sRGB to linear values."""
     return numpy.where(encoded <= 0.04045, encoded / 12.92, ((numpy.maximum(encoded, 0) + 0.055) / 1.055) ** 2.4)
 
 
 def encoded_of(linear):
+    """Converts linear values to sRGB."""
     linear = numpy.clip(linear, 0, 1)
     return numpy.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)
 
@@ -37,6 +40,7 @@ def is_encoded(image):
 
 
 def knows_space(image):
+    """Returns whether the image's colour space is sRGB or a linear one, which linear() can convert."""
     return image.colorspace_settings.name in ("sRGB", "Non-Color", "Raw", "Linear", "Linear Rec.709") or image.is_float
 
 
@@ -49,7 +53,8 @@ def linear(node):
 
 
 def _weights(kind, t):
-    """Returns offsets and weights of the texels around `t`: four, from the one before on (cubic B-splines), or two (linear)."""
+    """Returns offsets and weights of the texels around `t`: four, the first at −1 (cubic
+    B-splines), or two (linear). `t`: position between texel 0 and texel 1."""
     if kind == "Linear":
         return (0, 1), (1 - t, t)
     return (-1, 0, 1, 2), ((1 - t) ** 3 / 6, (3 * t ** 3 - 6 * t ** 2 + 4) / 6, (-3 * t ** 3 + 3 * t ** 2 + 3 * t + 1) / 6, t ** 3 / 6)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The add-on as Blender's render engine: animation, passes, what is refused and what is warned of. Run inside Blender:
+"""Tests the add-on as Blender's render engine: animation, passes, refusals and warnings. Run inside Blender:
 
     run.sh engine.py ADDON.zip PENUMBRA WORK
 """
@@ -45,7 +45,7 @@ class Engine(unittest.TestCase):
         return said
 
     def stats(self, scene):
-        """Returns what the program's --stats says of a render."""
+        """Returns the program's --stats of a render."""
         from penumbra import serving
         own = serving.run
         serving.run = lambda command, *rest: own([*command, "--stats", out("stats.json")], *rest)
@@ -135,7 +135,7 @@ class Engine(unittest.TestCase):
         self.assertIn("'Shot' is panoramic", self.refusal(scene))
 
     def test_sizes_are_as_blender_rounds_them(self):
-        """Every percentage: what is asked of the program is what Blender has room for."""
+        """At every percentage the program is asked for the size that Blender's own result has."""
         from penumbra import serving
         asked, own = [], serving.run
 
@@ -233,7 +233,7 @@ class Engine(unittest.TestCase):
         """The background is that of Cycles, in whichever direction the camera looks."""
         for turn, target in (((0, 0, 0), (0, 0, 0)), ((0.4, -0.3, 2.1), (3, 4, 9)), ((0, 0, 0.7), (-9, 0, 2))):
             def build():
-                scenes.translucent()  # whose pane is black here, half in the picture, and the only thing there
+                scenes.translucent()  # the pane alone remains, black, and covers half of the picture
                 for name in ("Floor", "Block", "Key"):
                     bpy.data.objects.remove(bpy.data.objects[name])
                 pane = bpy.data.objects["Pane"]
@@ -254,7 +254,7 @@ class Engine(unittest.TestCase):
             for letter in "RGB":
                 off = numpy.abs(ours[f"Combined.{letter}"] - theirs[f"Combined.{letter}"])
                 self.assertGreater(float(numpy.ptp(theirs[f"Combined.{letter}"])), 0.05)
-                self.assertLess(float(numpy.mean(off > 1e-3)), 0.01, letter)  # but where a pixel lies on a texel's border
+                self.assertLess(float(numpy.mean(off > 1e-3)), 0.01, letter)  # except pixels on a border between texels
 
     def test_worlds_that_are_not_evaluated_are_refused_by_name(self):
         def refused(change):

@@ -4,7 +4,8 @@ direct light as exported.py does. Run inside Blender:
 
     run.sh foreign.py ADDON.zip PENUMBRA WORK [SCENE...]
 
-Lamps have no size in these files, so the program is told theirs. COLLADA has no strength of emission and no cone that falls.
+These files hold no size of a lamp, so options of the program give it. COLLADA holds no strength of emission and no cone whose light
+falls off toward its rim.
 """
 
 import os
@@ -36,7 +37,7 @@ def turned_below_a_parent():
 
 
 def make_exportable():
-    """Makes emission that of a Principled surface, which is all that the exporters write."""
+    """Moves emission into Principled surfaces, the only emission that the exporters write."""
     exported.make_exportable()
     for material in bpy.data.materials:
         tree = material.node_tree
@@ -50,7 +51,7 @@ def make_exportable():
 
 
 def make_diffuse():
-    """Makes surfaces diffuse as exported.make_diffuse does, except those that shine."""
+    """Makes surfaces diffuse as exported.make_diffuse does, except emissive ones."""
     for material in bpy.data.materials:
         tree = material.node_tree
         old = next((node for node in tree.nodes if node.type == "BSDF_PRINCIPLED"), None) if material.use_nodes else None

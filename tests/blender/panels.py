@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Tests what can be edited with Penumbra as the engine: the panels of each tab, and what they show. Run inside Blender:
+"""Tests the panels of each tab while Penumbra is the engine, and the properties that they show. Run inside Blender:
 
     run.sh panels.py ADDON.zip PENUMBRA WORK
 """
@@ -18,7 +18,7 @@ import scenes  # noqa: E402
 
 
 class Layout:
-    """Notes what is shown in it; refuses properties that their owner does not have."""
+    """Stands in for bpy.types.UILayout: records what a panel shows, and fails for a property that its owner lacks."""
 
     def __init__(self, shown=None):
         self.shown = [] if shown is None else shown
@@ -46,7 +46,7 @@ class Layout:
 
 
 def context_of(tab, thing=None):
-    """Returns a context with what panels of a tab ask for."""
+    """Returns a context with the members that the panels of a tab read."""
     data = thing.data if thing else None
     found = types.SimpleNamespace(
         engine="PENUMBRA", scene=bpy.context.scene, view_layer=bpy.context.view_layer, object=thing, active_object=thing,
@@ -68,7 +68,7 @@ def panels_of(tab):
 
 
 def shown(tab, thing=None):
-    """Returns what the tab's panels of the add-on show, with all that is polled."""
+    """Returns what the add-on's panels of a tab show, those whose poll() accepts the context."""
     context, layout = context_of(tab, thing), Layout()
     for panel in panels_of(tab):
         if panel.__module__.startswith("penumbra") and panel.poll(context):
@@ -87,7 +87,7 @@ class Panels(unittest.TestCase):
         return scenes.lamp(kind, (0, 0, 3), **values)
 
     def test_lamps(self):
-        """All that makes a lamp's light and shadow."""
+        """The lamp's tab shows every property that changes its light or shadow."""
         both = {"type", "color", "energy", "use_shadow"}
         sizes = {"POINT": {"shadow_soft_size"}, "SUN": {"angle"}, "SPOT": {"shadow_soft_size", "spot_size", "spot_blend"}}
         for kind, wanted in sizes.items():
@@ -118,7 +118,7 @@ class Panels(unittest.TestCase):
                               "DATA_PT_uv_texture", "OBJECT_PT_custom_props", "RENDER_PT_format", "RENDER_PT_output",
                               "RENDER_PT_color_management", "VIEWLAYER_PT_layer", "WORLD_PT_context_world",
                               "PARTICLE_PT_render"}, names)
-        # One panel a matter, and none of what is not rendered.
+        # Has no second panel for the same settings, and none for what Penumbra does not render.
         self.assertFalse({"DATA_PT_light", "DATA_PT_EEVEE_light", "EEVEE_MATERIAL_PT_surface", "RENDER_PT_eevee_bloom",
                           "RENDER_PT_freestyle", "RENDER_PT_stereoscopy", "VIEWLAYER_PT_layer_passes"} & names)
 
