@@ -39,11 +39,11 @@ class BakeCommand : public Command {
         ->description(fmt::format("texels of the map: S for a square, or WxH (default: {})", kDefaultSide))
         ->type_name("S|WxH");
     cli_.add_option("--mesh", mesh_,
-                    "the mesh that is baked, by its name: all of that name, and of a glTF mesh all its materials")
+                    "name of the mesh to bake: all meshes of that name, and all materials of a glTF mesh")
         ->required()
         ->type_name("NAME");
     auto* uv = cli_.add_option("--uv", lightmap_.set,
-                               "the coordinates that lay the mesh out in the map: TEXCOORD_N of glTF; OBJ files and "
+                               "number of the texture coordinates that map the mesh: TEXCOORD_N of glTF; OBJ files and "
                                "quads of JSON have one set, 0")
                    ->type_name("N")
                    ->default_str("0");
@@ -78,7 +78,7 @@ class BakeCommand : public Command {
         ->type_name("N");
     cli_.footer(
         "Each texel whose centre lies on the mesh is a view sample there, on the mesh's own triangle, with its "
-        "geometric normal; V and irradiance are what `render` finds at such a point. docs/bake.md says the rest.\n");
+        "geometric normal; V and irradiance are what `render` finds at such a point. See docs/bake.md.\n");
   }
 
   int run(const GlobalOptions& global) override {
@@ -139,7 +139,8 @@ class BakeCommand : public Command {
       if (options_.run.out.extension() != ".ply")
         throw UsageError("-o {}: expected a name that ends in .ply (--vertices)", options_.run.out.string());
       if (!options_.png.empty() || !options_.stats.empty())
-        throw UsageError("--vertices: {} is of a map; leave it out", options_.png.empty() ? "--stats" : "--png");
+        throw UsageError("--vertices: {} applies to a map only; leave it out",
+                         options_.png.empty() ? "--stats" : "--png");
       as_picture.run.out.replace_extension(".exr");
     }
     if (options_.exposure == "first")

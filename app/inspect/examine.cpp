@@ -68,12 +68,12 @@ std::vector<MethodVerdict> verdicts_on(const mesh::Diagnosis& diagnosis, const I
     const std::string through = !mesh.scene ? "" : method->draws_holes ? mesh.scene->dimmer : mesh.scene->filter;
     if (!through.empty() && method->output != visibility::Output::mask) {
       verdict = {visibility::Verdict::refused,
-                 fmt::format("light passes through \"{}\", which is asked light sample by light sample", through)};
+                 fmt::format("light passes through \"{}\", which needs a decision for each light sample", through)};
     }
     for (const InspectedMesh::Light& light : mesh.lights) {
       if (method->lights.contains(light.kind)) continue;
       verdict = {visibility::Verdict::refused,
-                 fmt::format("it cannot do the scene's light \"{}\", a {}", light.name, name_of(light.kind))};
+                 fmt::format("it does not support the scene's light \"{}\", a {}", light.name, name_of(light.kind))};
       break;
     }
     verdicts.push_back({method->name, std::move(verdict)});
