@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// Converts masks from the layout of the device's kernels to that of visibility::Method::read_masks.
+
 #include "engines/device/mask_layout.hpp"
 
 #include "base/assert.hpp"

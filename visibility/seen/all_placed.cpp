@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// Makes the triangles of placed meshes run by run, one instance after the other, so that memory holds one instance at a
+// time (docs/instances.md).
+
 #include "visibility/seen/all_placed.hpp"
 
 #include "base/parallel.hpp"
@@ -15,7 +18,7 @@
 namespace penumbra::visibility {
 namespace {
 
-/// Number of triangles of a run: of the scene's own soup, which may be large.
+/// Number of triangles in a run of the scene's own soup, which may be large.
 constexpr std::size_t kMostOfRun = 100'000;
 
 using Corners = std::array<glm::vec3, 3>;

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// Builds a binary hierarchy over boxes: nodes are divided at one of sixteen slices by the surface area heuristic, and
+// in halves far below the root or where all middles coincide.
+
 #include "visibility/seen/box_tree.hpp"
 
 #include <algorithm>
@@ -30,7 +33,7 @@ struct Slice {
   }
 };
 
-/// Place to divide at: between two slices along an axis.
+/// Position at which a node is divided: between two slices along an axis.
 struct Cut {
   double cost = std::numeric_limits<double>::infinity();
   int axis = -1;

@@ -25,7 +25,7 @@ class BoxTree {
     std::uint32_t first = 0;  ///< leaf: index into items(); inner node: second child (the first one follows the node)
     std::uint32_t count = 0;  ///< number of items of a leaf; 0: inner node
   };
-  /// No way from the root to a leaf has more nodes.
+  /// Largest number of nodes on the path from the root to a leaf.
   static constexpr std::uint32_t kDepth = 64;
 
   BoxTree() = default;

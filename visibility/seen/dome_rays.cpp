@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// Finds triangles that block pairs of a point and a light sample of a dome: one triangle that blocks the pair beyond
+// doubt, or all triangles that may lie between (docs/instances.md).
+
 #include "visibility/seen/dome_rays.hpp"
 
 #include "base/assert.hpp"
@@ -26,7 +29,7 @@ constexpr double kDoubt = 0x1p-18;
 /// what float32 rays are off at that distance, 2⁻²².
 constexpr double kBeside = 0x1p-20;
 
-/// x × y with all terms added up.
+/// Returns x × y with all terms added, none subtracted: the size of the terms, for x and y of absolute values.
 glm::dvec3 wide_cross(const glm::dvec3& x, const glm::dvec3& y) {
   return {x.y * y.z + x.z * y.y, x.z * y.x + x.x * y.z, x.x * y.y + x.y * y.x};
 }
@@ -88,7 +91,7 @@ struct DomeRays::Ray {
   }
 };
 
-/// The walks of rays in one direction, from point to point.
+/// Follows rays in one direction from one point after the other.
 class DomeRays::Walk {
  public:
   Walk(const DomeRays& rays, const glm::vec3& direction, TriangleBits& seen)

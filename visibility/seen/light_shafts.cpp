@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+// Builds shafts from a box of points to a light (E. Haines and J. Wallace, Shaft culling for efficient ray-cast
+// radiosity, 1991). Departures: the light is the hull of its corners, its sides are further planes, and all planes are
+// moved outward by the rounding of stored points.
+
 #include "visibility/seen/light_shafts.hpp"
 
 #include "base/assert.hpp"

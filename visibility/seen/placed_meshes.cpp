@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// Places a scene's meshes without copies of instances: builds a tree over each mesh's triangles in the mesh's own space
+// and one over all instances, and keeps trees over meshes that have not changed (docs/instances.md).
+
 #include "visibility/seen/placed_meshes.hpp"
 
 #include <glm/common.hpp>

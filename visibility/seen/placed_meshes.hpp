@@ -55,7 +55,7 @@ class PlacedMeshes {
   /// Places the meshes, as another scene has them or the same one after a change. Trees over meshes that the last scene
   /// had are kept. Both arguments must outlive all calls until the next place() or leave().
   void place(const scenes::Scene& scene, const scenes::Instances& instances);
-  /// Lets go of the scene, and keeps the trees over its shared meshes.
+  /// Releases the scene, and keeps the trees over its shared meshes.
   void leave();
   /// Returns the number of trees over shared meshes that the last place() built.
   [[nodiscard]] std::size_t trees_built() const { return trees_built_; }

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// Gathers the triangles that pixels see, and those that may lie between their view samples and the lights, as a scene
+// of its own whose view samples, V and masks are those of the whole scene (docs/instances.md).
+
 #include "visibility/seen/seen_part.hpp"
 
 #include "base/memory.hpp"

@@ -26,8 +26,8 @@ struct SeenPart {
 };
 
 struct PartOptions {
-  /// A dome's directions go everywhere, so that its areas need all triangles. True: its light samples alone are asked
-  /// about, and need what blocks each of them.
+  /// True: of a dome only the light samples are evaluated, so that one blocker of each suffices. False: areas of a dome
+  /// need all triangles, since its directions go everywhere.
   bool dome_samples = false;
   /// Receives the triangles that the rows' pixels see, for viewed_part(), beside those that it has; null: not
   /// requested.

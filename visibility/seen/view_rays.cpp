@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// Finds what pixels see of placed meshes: along each ray the nearest opaque triangle, decided by visibility::cover, and
+// the translucent triangles in front of it (docs/instances.md).
+
 #include "visibility/seen/view_rays.hpp"
 
 #include "mesh/predicates.hpp"
