@@ -73,18 +73,25 @@ void read_watched(const LoadOptions& options, const Read& read) {
   }
 }
 
+std::unique_ptr<Scene::State> empty_state() {
+  auto state = std::make_unique<Scene::State>();
+  state->scene.name = "scene";
+  return state;
+}
+
 }  // namespace
 
-Scene::Scene() : state_(std::make_unique<State>()) {
-  state_->scene.name = "scene";
-}
+Scene::Scene() : state_(empty_state()) {}
 Scene::Scene(const Scene& other) : state_(std::make_unique<State>(*other.state_)) {}
-Scene::Scene(Scene&& other) noexcept = default;
+Scene::Scene(Scene&& other) noexcept : state_(std::exchange(other.state_, empty_state())) {}
 Scene& Scene::operator=(const Scene& other) {
   if (this != &other) state_ = std::make_unique<State>(*other.state_);
   return *this;
 }
-Scene& Scene::operator=(Scene&& other) noexcept = default;
+Scene& Scene::operator=(Scene&& other) noexcept {
+  if (this != &other) state_ = std::exchange(other.state_, empty_state());
+  return *this;
+}
 Scene::~Scene() = default;
 
 Scene Scene::load(const std::filesystem::path& file, const LoadOptions& options) {

@@ -69,7 +69,8 @@ class PENUMBRA_API Cancelled : public Error {
 /// Renders pictures of one scene, and keeps unchanged data from call to call. Hierarchies over a mesh are kept until it
 /// moves, and are then refitted; trees over meshes with instances are kept also when instances move. View samples are
 /// kept while camera, size and meshes are unchanged, the Vulkan device always. Renderers on different threads are
-/// independent; one renderer is for one thread at a time. A call that throws leaves the renderer usable.
+/// independent; one renderer is for one thread at a time. A call that throws leaves the renderer usable. One that was
+/// moved from can only be destroyed or assigned to.
 class PENUMBRA_API Renderer {
  public:
   explicit Renderer(Scene scene, RendererOptions options = {});

@@ -121,7 +121,8 @@ struct InstanceId {
 };
 
 /// Triangles, area lights and cameras. Value type: copies are independent of each other. A call that throws leaves the
-/// scene unchanged. Scenes on different threads are independent; one scene is for one thread at a time.
+/// scene unchanged. A scene that was moved from is as new. Scenes on different threads are independent; one scene is
+/// for one thread at a time.
 class PENUMBRA_API Scene {
  public:
   /// Makes a scene without meshes, lights and cameras.

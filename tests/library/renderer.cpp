@@ -251,6 +251,20 @@ TEST_F(Library, MeshesMoveFromWhereTheyWere) {
 }
 
 /// Vertices that no triangle uses are left out with a warning, as of a file, and positions are given as before.
+TEST_F(Library, ScenesThatWereMovedFromAreAsNew) {
+  const std::array<Vector, 3> corners = {{{0, 0, 0}, {1, 0, 0}, {0, 0, 1}}};
+  const std::array<std::array<std::uint32_t, 3>, 1> face = {{{0, 1, 2}}};
+  Scene scene;
+  scene.add_mesh("leaf", corners, face);
+  Scene other = std::move(scene);
+  EXPECT_EQ(other.triangle_count(), 1U);
+  EXPECT_EQ(scene.triangle_count(), 0U);  // NOLINT(bugprone-use-after-move): what a program may do
+  scene.add_mesh("other leaf", corners, face);
+  other = std::move(scene);
+  EXPECT_EQ(scene.triangle_count(), 0U);  // NOLINT(bugprone-use-after-move)
+  EXPECT_EQ(other.triangle_count(), 1U);
+}
+
 TEST_F(Library, UnusedVerticesAreNoPartOfAScene) {
   const std::array<Vector, 5> board = {{{9, 9, 9}, {-1, 1, -1}, {1, 1, -1}, {5, 5, 5}, {0, 1.5, 1}}};
   const std::array<std::array<std::uint32_t, 3>, 1> one = {{{1, 2, 4}}};
