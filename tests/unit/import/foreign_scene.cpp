@@ -13,6 +13,7 @@
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <string_view>
 #include <variant>
 
 namespace penumbra::scenes {
@@ -119,12 +120,17 @@ TEST_F(ForeignScenes, EmissiveMeshesAreLights) {
   EXPECT_THAT(bright.warnings, Contains(HasSubstr("'Card' is an emitter with parts")));
 }
 
-/// Assimp gives a mesh without a material the file's first one.
+/// Assimp gives a mesh without a material the file's first one; only a symbol that is a material's id is that material.
 TEST_F(ForeignScenes, MeshesWithoutMaterialsAreGreyAndDark) {
-  const Scene scene = read_scene(write(
-      "scene.dae",
+  std::string text =
       collada("<emission><color>4 2 1 1</color></emission><diffuse><color>1 0 0 1</color></diffuse>", "",
-              R"(<node id="Bare" name="Bare"><translate>0 0 3</translate><instance_geometry url="#g"/></node>)")));
+              R"(<node id="Bare" name="Bare"><translate>0 0 3</translate><instance_geometry url="#g"/></node>)");
+  for (const char* word : {R"(material id="m")", R"(target="#m")"}) {
+    const std::size_t at = text.find(word) + std::string_view(word).size() - 2;
+    ASSERT_EQ(text.at(at), 'm');
+    text[at] = 'z';
+  }
+  const Scene scene = read_scene(write("scene.dae", text));
   ASSERT_EQ(scene.lights.size(), 1u);
   EXPECT_EQ(scene.lights[0].name, "Card");
   const Object& bare = *std::ranges::find(scene.objects, "Bare", &Object::name);
