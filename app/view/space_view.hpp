@@ -20,12 +20,12 @@ class SpaceView {
  public:
   explicit SpaceView(const LiveRenderer& renderer) : renderer_(renderer) {}
 
-  // Each of the following throws UsageError for a scene with instances without copies.
+  // The following functions throw UsageError for scenes with instances without copies.
   std::string meshes();
   std::string defects();
-  /// `target`: of the request, with the parameters light,
-  /// construction, from, s, t, floor, wedge, and x and y of a pixel. A light without wedges has none: the header says
-  /// so in `refused`. Throws UsageError for an invalid parameter.
+  /// `target`: of the request, with the parameters light, construction, from, s, t, floor, wedge, and x and y of a
+  /// pixel. A light without wedges has none: the header says so in `refused`. Throws UsageError for an invalid
+  /// parameter.
   std::string shadows(std::string_view target);
 
  private:

@@ -180,7 +180,7 @@ TEST_F(Inspect, RepairsAndTheResultReadsBack) {
   }
 }
 
-/// What no reader takes is not written, and neither is a mesh of which nothing is left.
+/// Repairs that no reader takes are not written, and neither are those that leave no triangle.
 TEST_F(Inspect, WritesNoRepairThatIsNoMesh) {
 #ifndef PENUMBRA_WITH_CGAL_GPL
   GTEST_SKIP() << "penumbra-repair is not built";
