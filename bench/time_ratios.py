@@ -4,7 +4,7 @@
 
   bench/time_ratios.py [PROGRAM]           about half an hour on two busy cores
   bench/time_ratios.py PROGRAM --write-scenes FOLDER      the scenes as GLB files, for a machine without the packages that hold their meshes
-  bench/time_ratios.py PROGRAM --gpu FOLDER FILE.json     on a GPU, from those scenes: into FILE.json, in two minutes
+  bench/time_ratios.py PROGRAM --gpu FOLDER FILE.json     on a GPU, from those scenes: into FILE.json
 
 Then bench/tables.py writes the table of docs/figures.md. Questions that have a row are left out: delete a row to measure it again. A
 row says of which commit it is.
