@@ -335,8 +335,7 @@ class GltfScene {
     if (object.emits && lets_through && !evenly)
       losses_.refuse(
           "is emissive and lets light through in places (alphaMode MASK or BLEND); lights shine evenly: make it "
-          "opaque, "
-          "or cut the mesh to the part that shines",
+          "opaque, or cut the mesh to the part that shines",
           name);
     if (object.emits && !flags_.body) {  // the object only marks the place of the light
       ++bodiless_;
