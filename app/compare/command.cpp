@@ -222,6 +222,10 @@ class CompareCommand : public Command {
     cli_.add_option("--aperture", aperture_, "0 alone: errors are of what is seen through the lens's middle")
         ->type_name("0");
     cli_.add_option("--focus-distance", focus_distance_, "of --aperture; not here")->type_name("D");
+    cli_.add_option("--instances", instances_, "auto and copies alone: image-based methods draw every triangle")
+        ->type_name("auto|copies");
+    cli_.add_option("--light-cutoff", light_cutoff_, "0 alone: errors are of V, which no light's strength changes")
+        ->type_name("0");
     cli_.add_flag("--skip-existing", skip_existing_, "not supported by compare: all methods are always measured");
   }
 
@@ -242,6 +246,14 @@ class CompareCommand : public Command {
                        shutter_);
     if (parse_number(aperture_) != 0.0 || !focus_distance_.empty())
       throw UsageError("--aperture {}: methods are compared through the lens's middle; expected 0", aperture_);
+    if (instances_ != "auto" && instances_ != "copies") {
+      throw UsageError(
+          "--instances {}: methods are compared on copies of the instances, which all of them can see; expected auto "
+          "or copies",
+          instances_);
+    }
+    if (parse_number(light_cutoff_) != 0.0)
+      throw UsageError("--light-cutoff {}: every light's V is compared; expected 0", light_cutoff_);
     if (skip_existing_)
       throw UsageError("--skip-existing: a comparison is measured as a whole, so nothing of an earlier one is kept");
   }
@@ -285,7 +297,7 @@ class CompareCommand : public Command {
   std::optional<std::string> frame_;
   std::string max_rmse_text_, fps_, exposure_, shutter_, frames_, tev_;
   std::string pixel_samples_ = "1", motion_samples_ = "1", pixel_filter_ = "box", filter_width_, aperture_ = "0",
-              focus_distance_;
+              focus_distance_, instances_ = "auto", light_cutoff_ = "0";
   bool skip_existing_ = false;
 };
 

@@ -58,10 +58,9 @@ double positive(const std::string& key, const std::string& text) {
   return *value;
 }
 
-/// Scales a light about its center until the larger half of its extent is `half`.
+/// Scales a light about its center until the larger half of its extent is `half`; only lights that `why_fixed` passes.
 struct SetHalf {
   double half;
-  const std::string& name;
 
   void operator()(scenes::Rectangle& light) const { scale(light.half_u, light.half_v); }
   void operator()(scenes::Ellipse& light) const { scale(light.half_u, light.half_v); }
@@ -77,15 +76,7 @@ struct SetHalf {
     const double larger = std::max({extent.x, extent.y, extent.z});
     for (glm::dvec3& vertex : light.vertices) vertex = center + (vertex - center) * (half / larger);
   }
-  void operator()(scenes::Sun& /*light*/) const {}  // has no extent
-  void operator()(scenes::Dome& /*light*/) const {
-    throw UsageError("--over {}: light \"{}\" is a dome, which has no size; choose others with --light", kHalf, name);
-  }
-  void operator()(scenes::Pieces& /*light*/) const {
-    throw UsageError(
-        "--over {}: light \"{}\" is a mesh in pieces, which cannot change its size; choose others with --light", kHalf,
-        name);
-  }
+  void operator()(auto& /*light*/) const {}  // without an extent, or fixed
 
  private:
   void scale(glm::dvec3& u, glm::dvec3& v) const {
@@ -95,24 +86,59 @@ struct SetHalf {
   }
 };
 
-/// Returns the scene with the chosen lights at these sizes.
-scenes::Scene with_lights(scenes::Scene scene, const Values& sizes, const std::vector<std::string>& chosen) {
-  for (std::size_t i = 0; i < scene.lights.size() && !sizes.empty(); ++i) {
+/// Returns why a light's extent or angle cannot vary, after "the light "; nullptr if one of them can.
+const char* why_fixed(const scenes::Scene& scene, std::size_t light) {
+  const auto& shape = scene.lights[light].shape;
+  if (std::holds_alternative<scenes::Dome>(shape)) return "is a dome, which has no size";
+  if (std::holds_alternative<scenes::Pieces>(shape)) return "is a mesh in pieces, which cannot change its size";
+  if (std::ranges::find(scene.objects, light, &scenes::Object::emits) != scene.objects.end())
+    return "is an emitting mesh, which keeps its size";
+  return nullptr;
+}
+
+bool is_named(const scenes::AreaLight& light, const std::vector<std::string>& names) {
+  return std::ranges::find(names, light.name) != names.end();
+}
+
+/// Returns the key of the size that a light has; nullptr if its size is fixed.
+const char* size_key(const scenes::Scene& scene, std::size_t light) {
+  if (why_fixed(scene, light) != nullptr) return nullptr;
+  return std::holds_alternative<scenes::Sun>(scene.lights[light].shape) ? kAngle : kHalf;
+}
+
+/// Returns the scene with these sizes of the lights named, or of all lights that have such a size if `names` is empty.
+scenes::Scene with_lights(scenes::Scene scene, const Values& sizes, const std::vector<std::string>& names) {
+  for (std::size_t i = 0; i < scene.lights.size(); ++i) {
     scenes::AreaLight& light = scene.lights[i];
-    if (!chosen.empty() && std::ranges::find(chosen, light.name) == chosen.end()) continue;
-    const auto is_body = [&](const scenes::Object& object) { return object.emits == i; };
-    if (std::ranges::any_of(scene.objects, is_body))
-      throw UsageError("--over {}: light \"{}\" is an emitting mesh, which keeps its size; choose others with --light",
-                       sizes.begin()->first, light.name);
-    auto* const sun = std::get_if<scenes::Sun>(&light.shape);
-    if (const auto half = sizes.find(kHalf); half != sizes.end() && sun == nullptr)
-      std::visit(SetHalf{positive(kHalf, half->second), light.name}, light.shape);
-    if (const auto angle = sizes.find(kAngle); angle != sizes.end() && sun != nullptr) {
-      sun->angle = positive(kAngle, angle->second);
-      if (sun->angle >= 180) throw UsageError("--over {}={}: expected less than 180 degrees", kAngle, angle->second);
+    const char* const key = size_key(scene, i);
+    if (key == nullptr || (!names.empty() && !is_named(light, names))) continue;
+    const auto size = sizes.find(key);
+    if (size == sizes.end()) continue;
+    const double value = positive(key, size->second);
+    if (auto* const sun = std::get_if<scenes::Sun>(&light.shape)) {
+      if (value >= 180) throw UsageError("--over {}={}: expected less than 180 degrees", kAngle, size->second);
+      sun->angle = value;
+    } else {
+      std::visit(SetHalf{value}, light.shape);
     }
   }
   return scene;
+}
+
+/// Throws if a light that was named keeps its size; of the others, warns of those that keep theirs while others vary.
+void report_fixed_lights(const scenes::Scene& scene, std::span<const SweptKey> over,
+                         const std::vector<std::string>& names, Progress& progress) {
+  for (std::size_t i = 0; i < scene.lights.size(); ++i) {
+    const scenes::AreaLight& light = scene.lights[i];
+    if (!names.empty() && !is_named(light, names)) continue;
+    const char* const key = size_key(scene, i);
+    if (key != nullptr && std::ranges::find(over, key, &SweptKey::name) != over.end()) continue;
+    if (key == nullptr && !names.empty())
+      throw UsageError("--over {}: light \"{}\" {}; choose others with --light", over.front().name, light.name,
+                       why_fixed(scene, i));
+    const std::string why = key == nullptr ? why_fixed(scene, i) : fmt::format("has another size, {}", key);
+    progress.warn(fmt::format("--over {}: light \"{}\" {}, and stays as it is", over.front().name, light.name, why));
+  }
 }
 
 bool has_option(const MethodEntry& entry, const std::string& key) {
@@ -141,10 +167,11 @@ std::vector<MethodEntry> with_swept_options(std::span<const MethodEntry> entries
 
 /// Returns whether a chosen light has this size (light.half, light.angle).
 bool is_size_of_some(const std::string& key, const scenes::Scene& scene, const std::vector<std::string>& chosen) {
-  return std::ranges::any_of(scene.lights, [&](const scenes::AreaLight& light) {
-    const bool is_chosen = chosen.empty() || std::ranges::find(chosen, light.name) != chosen.end();
-    return is_chosen && std::holds_alternative<scenes::Sun>(light.shape) == (key == kAngle);
-  });
+  for (std::size_t i = 0; i < scene.lights.size(); ++i) {
+    const char* const own = size_key(scene, i);
+    if (own != nullptr && key == own && (chosen.empty() || is_named(scene.lights[i], chosen))) return true;
+  }
+  return false;
 }
 
 bool counts_samples(const MethodEntry& entry) {
@@ -158,7 +185,9 @@ void require_known_keys(std::span<const SweptKey> over, std::span<const MethodEn
     if (is_of_light(key)) {
       if (is_size_of_some(key.name, scene, lights)) continue;
       throw UsageError("--over {}: none of the lights {}", key.name,
-                       key.name == kAngle ? "is a sun" : "is other than a sun, whose size is light.angle");
+                       key.name == kAngle ? "is a sun"
+                                          : "has an extent that can vary (a sun has light.angle; domes and emitting "
+                                            "meshes have none)");
     }
     if (key.name == kSamples) {
       if (std::ranges::any_of(entries, counts_samples)) continue;
@@ -241,6 +270,7 @@ Sweep sweep_methods(const scenes::Scene& scene, const RunOptions& run, Compariso
   const std::vector<Values> sizes = products(of_light);
   for (const Values& light : sizes) static_cast<void>(with_lights(without_meshes(scene), light, run.lights));
 
+  if (!of_light.empty()) report_fixed_lights(scene, of_light, run.lights, progress);
   SayOnce said(progress);
   for (const Values& light : sizes) {
     const scenes::Scene lit = with_lights(scene, light, run.lights);

@@ -191,6 +191,8 @@ TEST_F(Frames, OfComparisonsAreAtTheirTime) {
       {{"--aperture", "0.1"}, "through the lens's middle"},
       {{"--focus-distance", "2"}, "through the lens's middle"},
       {{"--frames", "1-2", "--sample-pixels", "5"}, "at the same pixels"},
+      {{"--instances", "shared"}, "which all of them can see; expected auto or copies"},
+      {{"--light-cutoff", "0.01"}, "every light's V is compared"},
       {{"--skip-existing"}, "nothing of an earlier one is kept"},
       {{"--camera", "all"}, "name one"},
       {{"--exposure", "bright"}, "stops from -100 to 100"},

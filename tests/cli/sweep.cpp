@@ -7,6 +7,7 @@
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
+#include <fstream>
 #include <map>
 #include <sstream>
 
@@ -154,6 +155,33 @@ TEST_F(SweepTest, TakesOptionsOfAllMethodsAndTheSceneLast) {
   ASSERT_EQ(rows.size(), 3U);
   EXPECT_EQ(std::ranges::count_if(rows, [](const json& row) { return row.at("options").value("size", "") == "32"; }),
             1);
+}
+
+TEST_F(SweepTest, LightsWithoutTheSizeStayAsTheyAreAndAreNamed) {
+  std::ofstream(path("sky.json")) << R"({"format": "penumbra-scene/1", "size": [24, 24],
+    "camera": {"eye": [0, 3, 4], "target": [0, 0.5, 0], "verticalFov": 45},
+    "meshes": [{"name": "floor", "quad": {"center": [0, 0, 0], "halfU": [3, 0, 0], "halfV": [0, 0, -3]}},
+               {"name": "card", "quad": {"center": [0, 1, 0], "halfU": [0.5, 0, 0], "halfV": [0, 0, -0.5]}}],
+    "lights": [{"name": "key", "rectangle": {"center": [0, 3, 0], "halfU": [0.3, 0, 0], "halfV": [0, 0, 0.3]}},
+               {"name": "sun", "sun": {"direction": [0.2, -1, 0], "angle": 2}},
+               {"name": "sky", "dome": {}}]})";
+  const auto sweep_sky = [&](std::vector<std::string> more) {
+    std::vector<std::string> arguments = {
+        "sweep",       path("sky.json"), "-o",       path("dir"),           "--runs", "1", "--methods",
+        "pcf:size=64", "--reference",    "raytrace", "--reference-samples", "64"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run(arguments);
+  };
+  const Outcome outcome = sweep_sky({"--over", "light.half=0.1,0.6"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("light \"sky\" is a dome, which has no size, and stays as it is"));
+  EXPECT_THAT(outcome.err, HasSubstr("light \"sun\" has another size, light.angle, and stays as it is"));
+  const json rows = json::parse(read("dir/sweep.json")).at("rows");
+  ASSERT_EQ(rows.size(), 2U);
+  EXPECT_NE(rows[0].at("error").at("rmse"), rows[1].at("error").at("rmse"));  // the key's size varies
+  const Outcome named = sweep_sky({"--over", "light.half=0.1,0.6", "--light", "key", "--light", "sky"});
+  EXPECT_EQ(named.code, 2);
+  EXPECT_THAT(named.err, HasSubstr("light \"sky\" is a dome, which has no size; choose others with --light"));
 }
 
 TEST_F(SweepTest, RefusesWhatCannotVary) {
