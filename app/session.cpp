@@ -371,6 +371,7 @@ scenes::Scene read_session_scene(const RunOptions& options, std::optional<double
   reading.studio = parse_studio(options.studio, options.camera);
   reading.lightmap = beside.lightmap;
   reading.instances = beside.instances;
+  reading.ahead = beside.ahead;
   reading.rest = options.rest.get();
   if (!options.size.empty()) {
     const auto [width, height] = parse_size(options.size);

@@ -5,6 +5,7 @@
 #include "app/options.hpp"
 #include "app/process/progress.hpp"
 #include "engines/view_sampler.hpp"
+#include "scenes/formats/scenes_ahead.hpp"
 #include "scenes/instances.hpp"
 #include "scenes/scene.hpp"
 #include "visibility/alpha/alpha_reach.hpp"
@@ -178,6 +179,7 @@ scenes::Scene without_meshes(const scenes::Scene& scene);
 struct ReadBeside {
   scenes::LightmapPlaces* lightmap = nullptr;  ///< ReadOptions::lightmap
   scenes::Instances* instances = nullptr;      ///< ReadOptions::instances
+  scenes::ScenesAhead* ahead = nullptr;        ///< ReadOptions::ahead
 };
 /// Reads the scene at a time of its animation; at rest without a time.
 scenes::Scene read_session_scene(const RunOptions& options, std::optional<double> time, const ReadBeside& beside = {});

@@ -20,12 +20,16 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <chrono>
 #include <cstdlib>
+#include <list>
 #include <new>
 #include <optional>
 #include <span>
 #include <stdexcept>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #if defined(PENUMBRA_SHADOW_MEMORY)
 // Sanitizers reserve terabytes of addresses, so that the limit must be on resident memory instead. The leaks are
@@ -47,7 +51,11 @@ struct Arguments {
   scenes::ReadOptions options;
   std::optional<double> uv;
   bool instances = false;
+  std::vector<double> further;  ///< times at which the scene is wanted, too
 };
+
+/// Scenes at further times are added to an answer of fewer bytes, and in this part of the time that reading may take.
+constexpr std::uint64_t kAheadBytes = std::uint64_t{256} << 20U, kAheadPart = 4;
 
 bool parse(std::string_view text, std::uint64_t& value) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -80,6 +88,10 @@ bool parse(int argc, char** argv, Arguments& arguments) {
       arguments.options.clips.emplace_back(flag.substr(kClip.size()));
       continue;
     }
+    if (std::optional<double> then; parse_number(flag, "--then=", then)) {
+      arguments.further.push_back(*then);
+      continue;
+    }
     if (flag == "--instances") {
       arguments.instances = true;
       continue;
@@ -97,13 +109,12 @@ bool parse(int argc, char** argv, Arguments& arguments) {
 }
 
 struct Answer {
-  mesh::WireWriter head, payload;
+  mesh::WireWriter head, payload, further;  // `further`: scenes after the first
   // Owners of data that the payload refers to without copying.
   mesh::ImportedMesh mesh;
-  scenes::Scene scene;
+  std::list<std::pair<scenes::Scene, scenes::Instances>> scenes;
   scenes::Texture texture;
   scenes::LightmapPlaces lightmap;
-  scenes::Instances instances;
 };
 
 Answer message(mesh::HelperStatus status) {
@@ -115,6 +126,36 @@ mesh::ImportedMesh read_mesh(const mesh::InputFile& input, const Arguments& argu
   return import::read_mesh(input, arguments.uv.has_value());
 }
 
+/// Answers with the scene, then the number of scenes at further times, and these.
+void put_scenes(Answer& answer, const mesh::InputFile& input, const Arguments& arguments) {
+  const auto start = std::chrono::steady_clock::now();
+  scenes::ReadOptions options = arguments.options;
+  scenes::Instances instances;
+  answer.lightmap.set = static_cast<std::uint32_t>(std::clamp(arguments.uv.value_or(0), 0.0, 1e6));
+  if (arguments.uv) options.lightmap = &answer.lightmap;
+  if (arguments.instances) options.instances = &instances;
+  const auto put = [&](mesh::WireWriter& to, scenes::Scene scene, scenes::Instances its_instances) {
+    const auto& [kept, kept_instances] = answer.scenes.emplace_back(std::move(scene), std::move(its_instances));
+    scenes::put_scene(to, kept);
+    const bool is_first = answer.scenes.size() == 1;
+    if (arguments.uv && is_first) to.put_array(std::span<const glm::dvec2>(answer.lightmap.places));
+    if (arguments.instances) scenes::put_instances(to, kept_instances);
+  };
+  if (import::is_foreign_scene(input.name)) {
+    put(answer.payload, import::import_foreign_scene(input, options), {});
+  } else {
+    import::import_gltf_scenes(input, options, arguments.further,
+                               [&](scenes::Scene scene, scenes::Instances its_instances) {
+                                 put(answer.scenes.empty() ? answer.payload : answer.further, std::move(scene),
+                                     std::move(its_instances));
+    const auto spent = std::chrono::steady_clock::now() - start;
+    return answer.payload.size() + answer.further.size() < kAheadBytes &&
+           spent * kAheadPart < std::chrono::milliseconds(arguments.milliseconds);
+  });
+}
+answer.payload.put<std::uint64_t>(answer.scenes.size() - 1);
+}  // namespace
+
 Answer answer_for(const Arguments& arguments) {
   const mesh::InputFile input{arguments.file, Descriptor(mesh::kInputDescriptor), Descriptor(mesh::kFolderDescriptor)};
   mesh::note_opened_file(std::filesystem::absolute(input.name));
@@ -125,15 +166,7 @@ Answer answer_for(const Arguments& arguments) {
       mesh::put_mesh(answer.payload, answer.mesh);
       if (arguments.uv) answer.payload.put_array(std::span<const glm::dvec2>(answer.mesh.places));
     } else if (arguments.kind == "scene") {
-      scenes::ReadOptions options = arguments.options;
-      answer.lightmap.set = static_cast<std::uint32_t>(std::clamp(arguments.uv.value_or(0), 0.0, 1e6));
-      if (arguments.uv) options.lightmap = &answer.lightmap;
-      if (arguments.instances) options.instances = &answer.instances;
-      const bool foreign = import::is_foreign_scene(input.name);
-      answer.scene = foreign ? import::import_foreign_scene(input, options) : import::import_gltf(input, options);
-      scenes::put_scene(answer.payload, answer.scene);
-      if (arguments.uv) answer.payload.put_array(std::span<const glm::dvec2>(answer.lightmap.places));
-      if (arguments.instances) scenes::put_instances(answer.payload, answer.instances);
+      put_scenes(answer, input, arguments);
     } else {
       answer.texture = arguments.kind == "sky" ? import::read_sky_file(input) : import::read_texture_file(input);
       scenes::put_texture(answer.payload, answer.texture);
@@ -168,6 +201,7 @@ int main(int argc, char** argv) {
   keep_freed_memory();
   const Answer answer = answer_for(arguments);
   // Uses _exit: cleanup by libraries after a hostile file could crash.
-  const bool told = mesh::write_all(output, answer.head) && mesh::write_all(output, answer.payload);
+  const bool told = mesh::write_all(output, answer.head) && mesh::write_all(output, answer.payload) &&
+                    mesh::write_all(output, answer.further);
   _exit(told ? 0 : static_cast<int>(ExitCode::resource));
 }

@@ -93,6 +93,12 @@ std::vector<std::span<const std::byte>> WireWriter::pieces() const {
   return pieces;
 }
 
+std::uint64_t WireWriter::size() const {
+  std::uint64_t size = bytes_.size();
+  for (const InPlace& piece : in_place_) size += piece.values.size();
+  return size;
+}
+
 std::vector<std::byte> WireWriter::bytes() const {
   std::vector<std::byte> bytes;
   for (const auto piece : pieces()) bytes.insert(bytes.end(), piece.begin(), piece.end());

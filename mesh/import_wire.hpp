@@ -55,6 +55,8 @@ class WireWriter {
     put<std::uint64_t>(texts.size());
     for (const std::string& text : texts) put_string(text);
   }
+  /// Returns the number of bytes written.
+  [[nodiscard]] std::uint64_t size() const;
   /// Returns everything written, in order; valid until the next put.
   [[nodiscard]] std::vector<std::span<const std::byte>> pieces() const;
   /// Returns everything written as one array.

@@ -120,7 +120,7 @@ class RenderCommand : public Command {
         const bool is_last = &camera == &cameras.back() && (coming.valid() || next >= frames.size());
         renderer.render(is_last ? std::move(now.scene) : scenes::Scene(now.scene),
                         {frames[at], camera, request_.pixel_side, request_.filter, request_.pixel_tolerance,
-                         moments_of(frames[at], moves), &now.instances, false, request_.light_cutoff},
+                         moments_of(frames[at], moves, now.ahead), &now.instances, false, request_.light_cutoff},
                         files.bits, now.seconds);
         now.seconds = 0;  // counted once
         const std::string made = summary(renderer.write(files, exposure));
@@ -152,16 +152,24 @@ class RenderCommand : public Command {
     options_.run.rest = std::make_shared<const scenes::Scene>(scenes::read_scene(first.scene, reading));
   }
 
-  /// Returns the scenes at the middle of each of the equal parts of the time that the shutter is open; empty if one
-  /// scene is sufficient.
-  [[nodiscard]] std::vector<std::function<PictureScene()>> moments_of(std::optional<double> frame, bool moves) const {
-    std::vector<std::function<PictureScene()>> all;
-    if (!frame || !moves || request_.moments == 1) return all;
-    for (std::uint32_t i = 0; i < request_.moments; ++i) {
+  /// Returns the middle of each of the equal parts of the time that the shutter is open, in seconds; empty for a
+  /// picture of one moment.
+  [[nodiscard]] std::vector<double> moment_times(std::optional<double> frame) const {
+    std::vector<double> times;
+    for (std::uint32_t i = 0; frame && request_.moments > 1 && i < request_.moments; ++i) {
       const double offset = request_.shutter_frames * ((i + 0.5) / request_.moments - 0.5);
-      const double time = (*frame + offset) * request_.seconds_per_frame;
-      all.emplace_back([this, time] { return read_picture_scene(options_.run, time, request_); });
+      times.push_back((*frame + offset) * request_.seconds_per_frame);
     }
+    return times;
+  }
+
+  /// Returns the scenes at moment_times; empty if one scene is sufficient. `ahead`: what was read with the first one.
+  [[nodiscard]] std::vector<std::function<PictureScene()>> moments_of(
+      std::optional<double> frame, bool moves, const std::shared_ptr<scenes::ScenesAhead>& ahead) const {
+    std::vector<std::function<PictureScene()>> all;
+    if (!moves) return all;
+    for (const double time : moment_times(frame))
+      all.emplace_back([this, time, ahead] { return read_picture_scene(options_.run, time, request_, ahead.get()); });
     return all;
   }
 
@@ -170,7 +178,11 @@ class RenderCommand : public Command {
     if (frame && !is_sequence_) time = *frame * request_.seconds_per_frame;
     RunOptions run = options_.run;
     if (is_sequence_) run.scene = frame_path(run.scene, std::llround(*frame));
-    return read_picture_scene(run, time, request_);
+    const auto ahead = std::make_shared<scenes::ScenesAhead>();
+    ahead->times = moment_times(frame);
+    PictureScene scene = read_picture_scene(run, time, request_, ahead.get());
+    scene.ahead = ahead;
+    return scene;
   }
 
   [[nodiscard]] OutputFiles claim(const std::vector<std::string>& cameras) const {

@@ -13,6 +13,7 @@
 #include "app/pictures/tev_pictures.hpp"
 #include "app/runner.hpp"
 #include "app/session.hpp"
+#include "scenes/formats/scenes_ahead.hpp"
 #include "visibility/all_triangles.hpp"
 #include "visibility/frame_memory.hpp"
 
@@ -37,6 +38,7 @@ struct PictureScene {
   scenes::Scene scene;
   scenes::Instances instances = {};  ///< those that stay without copies
   double seconds = 0;
+  std::shared_ptr<scenes::ScenesAhead> ahead = {};  ///< the picture's other moments, read with the scene; null: none
 };
 
 /// Content of one picture in addition to the options common to all pictures.

@@ -8,10 +8,11 @@
 
 namespace penumbra::app {
 
-PictureScene read_picture_scene(const RunOptions& run, std::optional<double> time, const PictureRequest& request) {
+PictureScene read_picture_scene(const RunOptions& run, std::optional<double> time, const PictureRequest& request,
+                                scenes::ScenesAhead* ahead) {
   const Stopwatch watch;
   PictureScene read;
-  read.scene = read_session_scene(run, time, {.instances = &read.instances});
+  read.scene = read_session_scene(run, time, {.instances = &read.instances, .ahead = ahead});
   set_lens(read.scene, request, run.camera);
   if (needs_copies(read.scene, read.instances, request.instances, request.wish, request.view_samples())) {
     const std::uint64_t bytes = bytes_per_copy(request.wish, read.scene.lights);

@@ -44,30 +44,68 @@ std::optional<scenes::Motion> motion_for(const tinygltf::Model& model, const Cli
   }
 }
 
-scenes::Scene import_for(Purpose purpose, const mesh::InputFile& input, const scenes::ReadOptions& options) {
+/// A parsed file, of which scenes at several times are built. `model`, `taken_out` and `options` must outlive it.
+class ParsedFile {
+ public:
+  ParsedFile(Purpose purpose, std::string name, tinygltf::Model& model, const TakenOut& taken_out,
+             const scenes::ReadOptions& options)
+      : purpose_(purpose),
+        name_(std::move(name)),
+        model_(model),
+        taken_out_(taken_out),
+        options_(options),
+        scales_(rest_scales(model)) {
+    clips_ = choose_clips(model_, options.clips);
+    motion_ = motion_for(model_, clips_, options, warnings_);
+    if (bends(model_) || (motion_ && options.time)) origin_ = middle_at_rest(model_, {name_, options});
+    if (!model_.animations.empty() && (purpose == Purpose::any_scene || purpose == Purpose::mesh))
+      warnings_.push_back("the file is read at rest; its animation clips are " +
+                          names_of_clips(model_, all_clips(model_)));
+  }
+
+  [[nodiscard]] bool moves() const { return motion_.has_value(); }
+
+  /// Returns the scene at a time, or at rest; not at rest after a time.
+  scenes::Scene scene_at(std::optional<double> time) {
+    if (time) pose_model(model_, *time, clips_.played);  // places what moves, wherever it was before
+    const std::vector<std::size_t> played = time ? clips_.played : std::vector<std::size_t>();
+    std::vector<std::optional<glm::dmat4>> unhidden;
+    if (motion_) unhidden = unhidden_places(model_, scales_);
+    auto [scene, left_vertices_out] = build_scene(model_, {name_, options_, unhidden, played}, purpose_, taken_out_);
+    if (!origin_ && left_vertices_out && purpose_ != Purpose::mesh) origin_ = middle_at_rest(model_, {name_, options_});
+    scene.origin = origin_;
+    scene.motion = motion_;
+    scene.warnings.insert(scene.warnings.begin(), warnings_.begin(), warnings_.end());
+    return std::move(scene);
+  }
+
+ private:
+  Purpose purpose_;
+  std::string name_;
+  tinygltf::Model& model_;
+  const TakenOut& taken_out_;
+  const scenes::ReadOptions& options_;
+  std::vector<std::vector<double>> scales_;
+  std::vector<std::string> warnings_;
+  ClipChoice clips_;
+  std::optional<scenes::Motion> motion_;
+  std::optional<glm::dvec3> origin_;
+};
+
+/// Reads the scene for a purpose, at `options.time` and then at `further` times (import_gltf_scenes).
+void read_scenes(Purpose purpose, const mesh::InputFile& input, const scenes::ReadOptions& options,
+                 std::span<const double> further, const TakeScene& take) {
   tinygltf::Model model;
   const TakenOut taken_out = load_gltf_model(input, options, model);
-  const std::string name = input.name.filename().string();
   try {
-    std::vector<std::string> warnings;
-    const ClipChoice clips = choose_clips(model, options.clips);
-    const std::optional<scenes::Motion> motion = motion_for(model, clips, options, warnings);
-    std::optional<glm::dvec3> origin;
-    if (bends(model) || (motion && options.time)) origin = middle_at_rest(model, {name, options});
-    const auto scales = rest_scales(model);
-    if (options.time) pose_model(model, *options.time, clips.played);
-    const std::vector<std::size_t> played = options.time ? clips.played : std::vector<std::size_t>();
-    std::vector<std::optional<glm::dmat4>> unhidden;
-    if (motion) unhidden = unhidden_places(model, scales);
-    if (!model.animations.empty() && (purpose == Purpose::any_scene || purpose == Purpose::mesh))
-      warnings.push_back("the file is read at rest; its animation clips are " +
-                         names_of_clips(model, all_clips(model)));
-    auto [scene, left_vertices_out] = build_scene(model, {name, options, unhidden, played}, purpose, taken_out);
-    if (!origin && left_vertices_out && purpose != Purpose::mesh) origin = middle_at_rest(model, {name, options});
-    scene.origin = origin;
-    scene.motion = motion;
-    scene.warnings.insert(scene.warnings.begin(), warnings.begin(), warnings.end());
-    return std::move(scene);
+    ParsedFile file(purpose, input.name.filename().string(), model, taken_out, options);
+    const auto take_at = [&](std::optional<double> time) {
+      scenes::Scene scene = file.scene_at(time);
+      return take(std::move(scene),
+                  options.instances == nullptr ? scenes::Instances() : std::exchange(*options.instances, {}));
+    };
+    bool more = take_at(options.time) && options.time && file.moves();
+    for (std::size_t i = 0; more && i < further.size(); ++i) more = take_at(further[i]);
   } catch (const InputError& error) {
     throw InputError("{}: {}", input.name.string(), error.what());  // places alone do not identify the file
   }
@@ -75,12 +113,17 @@ scenes::Scene import_for(Purpose purpose, const mesh::InputFile& input, const sc
 
 }  // namespace
 
-scenes::Scene import_gltf(const mesh::InputFile& input, const scenes::ReadOptions& options) {
-  return import_for(options.needs_light ? Purpose::lit_scene : Purpose::any_scene, input, options);
+void import_gltf_scenes(const mesh::InputFile& input, const scenes::ReadOptions& options,
+                        std::span<const double> further, const TakeScene& take) {
+  read_scenes(options.needs_light ? Purpose::lit_scene : Purpose::any_scene, input, options, further, take);
 }
 
 mesh::ImportedMesh import_gltf_mesh(const mesh::InputFile& input, const scenes::ReadOptions& options) {
-  scenes::Scene scene = import_for(Purpose::mesh, input, options);
+  scenes::Scene scene;
+  read_scenes(Purpose::mesh, input, options, {}, [&](scenes::Scene read, const scenes::Instances& /*none*/) {
+    scene = std::move(read);
+    return false;
+  });
   mesh::ImportedMesh mesh{std::move(scene.soup), std::move(scene.warnings), {}};
   // Makes one object, whose faces are numbered consecutively.
   std::uint32_t number = 0;

@@ -4,13 +4,17 @@
 #include "base/descriptor.hpp"
 #include "base/error.hpp"
 #include "base/file_error.hpp"
+#include "base/memory.hpp"
 #include "mesh/import_helper.hpp"
 #include "mesh/import_wire.hpp"
 #include "scenes/formats/json_meshes.hpp"
+#include "scenes/formats/scenes_ahead.hpp"
 #include "scenes/instances.hpp"
 #include "scenes/scene_wire.hpp"
 
 #include <cerrno>
+#include <cstddef>
+#include <cstdint>
 #include <utility>
 #include <variant>
 
@@ -20,6 +24,10 @@
 
 namespace penumbra::scenes {
 namespace {
+
+/// Scenes are read ahead only where their bytes (import's kAheadBytes, held thrice while they are decoded) are little
+/// of the free memory.
+constexpr std::uint64_t kMemoryForAhead = std::uint64_t{4} << 30U;
 
 /// Pictures of domes lie beside the file, as with JSON scenes. `has_folder`: whether the file lies somewhere.
 void read_skies(const std::filesystem::path& file, bool has_folder, const ReadOptions& options, Scene& scene) {
@@ -48,6 +56,10 @@ Scene read_by_helper(const mesh::InputFile& input, bool has_folder, const ReadOp
   for (const std::string& clip : options.clips) job.flags.push_back("--clip=" + clip);
   if (options.lightmap != nullptr) job.flags.push_back(fmt::format("--uv={}", options.lightmap->set));
   if (options.instances != nullptr) job.flags.emplace_back("--instances");
+  ScenesAhead* const ahead = options.time && memory_room().bytes > kMemoryForAhead ? options.ahead : nullptr;
+  if (ahead != nullptr) {
+    for (const double time : ahead->times) job.flags.push_back(fmt::format("--then={}", time));
+  }
   mesh::HelperAnswer answer = mesh::run_import_helper(job, {.step = options.step});
   try {
     mesh::WireReader from(answer.payload());
@@ -59,8 +71,19 @@ Scene read_by_helper(const mesh::InputFile& input, bool has_folder, const ReadOp
         throw mesh::WireError("not every vertex has a place");
     }
     if (options.instances != nullptr) *options.instances = get_instances(from, scene);
-    from.expect_end();
     read_skies(input.name, has_folder, options, scene);
+    const auto further = from.get<std::uint64_t>();
+    if (further > (ahead == nullptr ? 0 : ahead->times.size())) throw mesh::WireError("more scenes than asked for");
+    for (std::uint64_t i = 0; i < further; ++i) {
+      ScenesAhead::Read read{ahead->times[i], get_scene(from), {}};
+      read.scene.sources = scene.sources;
+      if (options.instances != nullptr) read.instances = get_instances(from, read.scene);
+      read_skies(input.name, has_folder, options, read.scene);
+      ahead->kept.push_back(std::move(read));
+    }
+    from.expect_end();
+    if (further > 0)
+      ahead->times.erase(ahead->times.begin(), ahead->times.begin() + static_cast<std::ptrdiff_t>(further));
     return scene;
   } catch (const mesh::WireError& error) {
     throw InputError("{}: the importer's answer is damaged ({}); the file is probably damaged", input.name.string(),
@@ -83,6 +106,14 @@ Descriptor file_of(std::span<const std::byte> bytes, const std::string& name) {
 }  // namespace
 
 Scene read_gltf(const std::filesystem::path& file, const ReadOptions& options) {
+  if (options.ahead != nullptr && options.time) {
+    if (auto read = options.ahead->take(*options.time)) {
+      if (options.instances != nullptr) *options.instances = std::move(read->instances);
+      return std::move(read->scene);
+    }
+    auto& times = options.ahead->times;
+    if (!times.empty() && times.front() == *options.time) times.erase(times.begin());
+  }
   return read_by_helper(mesh::open_input(file), true, options);
 }
 

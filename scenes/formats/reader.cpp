@@ -8,6 +8,7 @@
 #include "mesh/unused_vertices.hpp"
 #include "scenes/formats/json_meshes.hpp"
 #include "scenes/formats/json_reader.hpp"
+#include "scenes/formats/scenes_ahead.hpp"
 #include "scenes/instances.hpp"
 #include "scenes/whole_view.hpp"
 
@@ -56,6 +57,14 @@ void sample_added_domes(Scene& scene, const Instances& instances, StudioWish& st
       triangles));
 }
 
+Scene read_at_rest(const std::filesystem::path& file, ReadOptions options) {
+  options.lightmap = nullptr;
+  options.instances = nullptr;
+  options.ahead = nullptr;
+  options.time.reset();
+  return read_gltf(file, options);
+}
+
 }  // namespace
 
 Scene read_scene(const std::filesystem::path& file, const ReadOptions& options) {
@@ -96,11 +105,9 @@ Scene read_scene(const std::filesystem::path& file, const ReadOptions& options) 
   if ((lacks || wishes) && has_room && has_triangles) {
     std::optional<Scene> rest;
     if (is_around && options.rest == nullptr && options.time && scene.motion) {
-      ReadOptions at_rest = options;
-      at_rest.lightmap = nullptr;
-      at_rest.instances = nullptr;
-      at_rest.time.reset();
-      rest = read_gltf(file, at_rest);
+      if (options.ahead != nullptr) rest = options.ahead->rest;
+      if (!rest) rest = read_at_rest(file, options);
+      if (options.ahead != nullptr) options.ahead->rest = rest;
     }
     put_in_studio(scene, options.rest != nullptr ? *options.rest : rest ? *rest : scene, studio);
   }

@@ -31,6 +31,7 @@ struct LightmapPlaces {
 using mesh::kNoPlace;
 
 struct Instances;
+struct ScenesAhead;
 
 struct ReadOptions {
   bool allow_outside = false;  ///< the scene may name files outside its folder
@@ -54,6 +55,9 @@ struct ReadOptions {
   /// Receives meshes that the scene has several times (scenes/instances.hpp); null: they are copied into the scene's
   /// soup.
   Instances* instances = nullptr;
+  /// glTF with a `time`: other times at which the scene will be wanted; scenes are taken from here, and read in advance
+  /// while the file is parsed. Not with `lightmap`. Null: none.
+  ScenesAhead* ahead = nullptr;
   /// Called ten times a second while another process reads a file, and before each mesh of a JSON file; its exception
   /// ends the reading. Null: none.
   const std::function<void()>* step = nullptr;

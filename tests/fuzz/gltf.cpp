@@ -36,7 +36,15 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   static const fuzz::Folder folder;
   if (size == 0) return 0;
   const mesh::InputFile input = mesh::open_input(folder.write("scene.glb", {data, size}));
-  const auto scene = attempt([&] { return penumbra::import::import_gltf(input, {.needs_light = false}); });
+  const auto scene = attempt([&] {
+    scenes::Scene read;
+    penumbra::import::import_gltf_scenes(input, {.needs_light = false}, {},
+                                         [&](scenes::Scene one, const scenes::Instances& /*none*/) {
+                                           read = std::move(one);
+                                           return false;
+                                         });
+    return read;
+  });
   if (scene) {
     mesh::WireWriter writer;
     scenes::put_scene(writer, *scene);

@@ -2,12 +2,18 @@
 // Motion in glTF: animations, skins, morph targets.
 #include "scenes/formats/gltf_reader.hpp"
 
+#include "mesh/import_wire.hpp"
+#include "scenes/formats/scenes_ahead.hpp"
+#include "scenes/scene_wire.hpp"
 #include "tests/unit/import/gltf_file.hpp"
 
 #include <glm/geometric.hpp>
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <cstddef>
+#include <set>
+#include <vector>
 
 namespace penumbra::scenes {
 namespace {
@@ -91,6 +97,52 @@ TEST_F(GltfAnimation, LightsCamerasAndChildrenMove) {
   const Scene scene = read(gltf, 0.5);
   EXPECT_EQ(std::get<Rectangle>(scene.lights[0].shape).center, glm::dvec3(0, 6, 0));
   EXPECT_EQ(scene.cameras[0].eye, glm::dvec3(1, 8, 8));
+}
+
+/// One parse gives the scenes that a parse each gives, to the last bit, also where scales of nothing and morph targets
+/// come and go.
+TEST_F(GltfAnimation, ScenesReadAheadAreThoseReadAlone) {
+  Gltf gltf;
+  gltf.at("/meshes/0/primitives/0")["targets"] = {{{"POSITION", gltf.add_floats("VEC3", {0, 0, 0, 2, 0, 0, 0, 0, 0})}}};
+  gltf.animate(0, "weights", {0, 1}, {0, 1});
+  gltf.animate(0, "rotation", {0, 1}, {0, 0, 0, 1, 0, kHalf, 0, kHalf});
+  gltf.animate(1, "scale", {0, 1, 2}, {1, 1, 1, 0, 0, 0, 1, 1, 1});
+  const auto path = write("scene.glb", gltf.glb());
+  const auto bytes = [](const Scene& scene) {
+    mesh::WireWriter writer;
+    put_scene(writer, scene);
+    return writer.bytes();
+  };
+  const std::vector<double> times = {0.25, 1, 0.5, 1.75, 0.5};
+  ScenesAhead ahead;
+  ahead.times = times;
+  ReadOptions options;
+  options.needs_light = false;
+  const auto read_at = [&](double time, ScenesAhead* from) {
+    options.time = time;
+    options.ahead = from;
+    return read_gltf(path, options);
+  };
+  EXPECT_EQ(bytes(read_at(0, &ahead)), bytes(read_at(0, nullptr)));
+  EXPECT_THAT(ahead.times, IsEmpty()) << "all were read with the first";
+  EXPECT_EQ(ahead.kept.size(), times.size());
+  std::set<std::vector<std::byte>> different;
+  for (const double time : times) {
+    const std::vector<std::byte> one = bytes(read_at(time, &ahead));
+    EXPECT_EQ(one, bytes(read_at(time, nullptr))) << time;
+    different.insert(one);
+  }
+  EXPECT_EQ(different.size(), times.size() - 1) << "one time was asked for twice";
+  EXPECT_THAT(ahead.kept, IsEmpty());
+  EXPECT_EQ(bytes(read_at(3, &ahead)), bytes(read_at(3, nullptr))) << "a time that was not announced";
+
+  Gltf still;
+  const auto unmoved = write("still.glb", still.glb());
+  ahead.times = times;
+  options.time = 0;
+  options.ahead = &ahead;
+  read_gltf(unmoved, options);
+  EXPECT_THAT(ahead.kept, IsEmpty()) << "a scene without animation is the same at all times";
 }
 
 /// World space less the origin must not jump: the origin is that of the scene at rest, whatever the time.
