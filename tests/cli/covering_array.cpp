@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <unordered_set>
+#include <utility>
 
 namespace penumbra::tests {
 namespace {
@@ -100,12 +101,14 @@ class Generator {
     collect(row, 0, strength);
   }
 
-  std::vector<Choices> rows() {
+  CoveringArray array(std::size_t most) {
+    const std::size_t combinations = open_.size();
     std::vector<Choices> rows;
     for (const auto& [seed, code] : wanted_) {
+      if (rows.size() == most) break;
       if (open_.contains(code)) rows.push_back(completed(seed, rows.size()));
     }
-    return rows;
+    return {std::move(rows), combinations, open_.size()};
   }
 
   std::size_t without(const std::vector<Choices>& rows) {
@@ -200,8 +203,9 @@ class Generator {
 
 }  // namespace
 
-std::vector<Choices> covering_array(const std::vector<Factor>& factors, std::size_t strength, const Allowed& allowed) {
-  return Generator(factors, strength, allowed).rows();
+CoveringArray covering_array(const std::vector<Factor>& factors, std::size_t strength, const Allowed& allowed,
+                             std::size_t most) {
+  return Generator(factors, strength, allowed).array(most);
 }
 
 std::size_t uncovered_combinations(const std::vector<Factor>& factors, std::size_t strength, const Allowed& allowed,

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <set>
@@ -28,9 +29,18 @@ using Choices = std::vector<std::optional<std::size_t>>;
 /// Says whether choices, some of which may still be open, can go together.
 using Allowed = std::function<bool(const Choices&)>;
 
-/// Rows in which every wanted combination of values of any `strength` (2 or 3) factors occurs, if it is allowed by
-/// itself: a greedy covering array (Cohen et al., The AETG system, 1997). The rows are the same on every machine.
-std::vector<Choices> covering_array(const std::vector<Factor>& factors, std::size_t strength, const Allowed& allowed);
+/// Rows, and how many of the wanted combinations they have.
+struct CoveringArray {
+  std::vector<Choices> rows;
+  std::size_t combinations;  ///< wanted, and allowed by themselves
+  std::size_t left;          ///< of them, those that no row has
+};
+
+/// Returns rows in which every wanted combination of values of any `strength` (2 or 3) factors occurs, if it is allowed
+/// by itself: a greedy covering array (Cohen et al., The AETG system, 1997). The rows are the same on every machine.
+/// `most`: only so many rows; the first ones have the most new combinations.
+CoveringArray covering_array(const std::vector<Factor>& factors, std::size_t strength, const Allowed& allowed,
+                             std::size_t most = SIZE_MAX);
 
 /// Returns the number of combinations that no row has: 0, unless an allowed combination cannot be completed to an
 /// allowed row.
