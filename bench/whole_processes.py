@@ -2,20 +2,22 @@
 # SPDX-License-Identifier: Apache-2.0
 """Processor seconds of whole processes, from start to file, user and system time of the process and of its children.
 
-    bench/whole_processes.py small|lamps|dense [BUILD]
+    bench/whole_processes.py small|lamps|dense|motion [BUILD]
 
-Writes bench/results/NAME.json, of which bench/tables.py makes a table of bench/README.md. `lamps` and `dense` need Blender and the
+Writes bench/results/NAME.json, of which bench/tables.py makes tables of the pages. `lamps` and `dense` need Blender and the
 add-on (target penumbra_blender_addon). What is compared takes turns; a number is the least of its runs, for others that work on the
 machine only add to it.
 
 small   a picture of a box, 64 × 64: what a process pays before its first pixel, by processes that do more and more of it
 lamps   200 and 1,000 lamps, 320 × 240, beside Cycles with 32 samples a pixel
+motion  an open shutter of 16 moments beside a still picture, where one of two bodies moves
 dense   504,080 triangles, 640 × 480: the program from the add-on's exchange file, and what Blender adds with the add-on
 """
 
 import json
 import os
 import platform
+import struct
 import subprocess
 import sys
 import tempfile
@@ -121,8 +123,53 @@ def dense(build, program, folder):
          ["what", "processor seconds"], rows, [None, ".2f"])
 
 
+def add_motion(glb, node, moves):
+    """Adds an animation to a .glb file: the node of this name moves by `moves` (x, y, z) in a second."""
+    data = bytearray(glb.read_bytes())
+    length = struct.unpack_from("<I", data, 12)[0]
+    document, binary = json.loads(data[20:20 + length]), data[28 + length:]
+    at = len(binary)
+    start = document["nodes"][node].get("translation", [0, 0, 0])
+    binary += struct.pack("<8f", 0, 1, *start, *(a + b for a, b in zip(start, moves)))
+    document["buffers"][0]["byteLength"] = len(binary)
+    views, accessors = len(document["bufferViews"]), len(document["accessors"])
+    document["bufferViews"] += [{"buffer": 0, "byteOffset": at, "byteLength": 8}, {"buffer": 0, "byteOffset": at + 8, "byteLength": 24}]
+    document["accessors"] += [{"bufferView": views, "componentType": 5126, "count": 2, "type": "SCALAR", "min": [0], "max": [1]},
+                              {"bufferView": views + 1, "componentType": 5126, "count": 2, "type": "VEC3"}]
+    document["animations"] = [{"channels": [{"sampler": 0, "target": {"node": node, "path": "translation"}}],
+                               "samplers": [{"input": accessors, "output": accessors + 1}]}]
+    text = json.dumps(document).encode()
+    text += b" " * (-len(text) % 4)
+    glb.write_bytes(struct.pack("<4sIIII", b"glTF", 2, 28 + len(text) + len(binary), len(text), 0x4E4F534A) + text
+                    + struct.pack("<II", len(binary), 0x4E4942) + binary)
+
+
+def motion(_build, program, folder):
+    runs, rows = 3, []
+    body = {"name": "body", "shape": {"type": "box", "center": [0, 0, 0], "halfSize": [0.2, 0.2, 0.2]}}
+    for name in ("bunny", "large-penumbra", "contact"):
+        scene = json.loads((ROOT / "scenes" / f"{name}.json").read_text())
+        scene["meshes"].append(body)
+        (folder / "scene.json").write_text(json.dumps(scene))
+        glb = folder / f"{name}.glb"
+        processor_seconds([program, "convert", folder / "scene.json", "-o", glb, "--quiet"])
+        length = struct.unpack_from("<I", glb.read_bytes(), 12)[0]
+        nodes = json.loads(glb.read_bytes()[20:20 + length])["nodes"]
+        add_motion(glb, next(i for i, node in enumerate(nodes) if node.get("name") == "body"), [0.8, 0, 0.8])
+        stats = folder / "stats.json"
+        picture = [program, "render", glb, "-o", folder / "o.exr", "--frame", "12", "--shutter", "0.5", "--size", "512x512", "--quiet"]
+        blurred = [*picture, "--motion-samples", "16", "--stats", stats]
+        still, open_shutter = in_turns([picture, blurred], runs)
+        counters = json.loads(stats.read_text())["counters"]
+        asked = 15 * 512 * 512  # view samples of the moments after the first
+        rows.append([name, still, open_shutter, open_shutter / still, 100 * counters.get("viewSamplesStill", 0) / asked])
+    save("motion", "an open shutter beside a still picture", f"A scene of the project and a small box that moves, 512 × 512 pixels, one view sample a pixel, exact areas; least of {runs} runs in turns. "
+         "Of the view samples at the other 15 moments, those that kept their answer (the background is among the others).",
+         ["scene", "one moment, processor s", "16 moments", "times", "view samples that kept their answer, %"], rows, [None, ".2f", ".2f", ".1f", ".0f"])
+
+
 def main():
-    if not sys.argv[1:] or sys.argv[1] not in ("small", "lamps", "dense"):
+    if not sys.argv[1:] or sys.argv[1] not in ("small", "lamps", "dense", "motion"):
         sys.exit(__doc__)
     build = Path(sys.argv[2] if len(sys.argv) > 2 else ROOT / "build").resolve()
     with tempfile.TemporaryDirectory() as folder:
