@@ -133,7 +133,7 @@ std::vector<LightMethod> choose_light_methods(const std::vector<Light>& lights, 
   std::vector<LightMethod> all;
   for (const Light& light : lights) all.push_back(choose(light, scene, wish));
   for (const WholeLight& whole : whole_lights(lights)) unite(lights, scene.floats, whole, all);
-  for (std::size_t i = 0; i < lights.size(); ++i) check_light(all[i].description, lights[i]);
+  for (std::size_t i = 0; i < lights.size(); ++i) check_light(all[i].description, all[i].options, lights[i]);
   for (const auto& option : wish.options) {
     const std::string& key = option.first;
     if (std::ranges::any_of(all, [&](const LightMethod& one) { return one.options.contains(key); })) continue;

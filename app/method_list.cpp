@@ -97,6 +97,7 @@ nlohmann::ordered_json methods_json() {
                     {"textures", method->textures},
                     {"anyPattern", method->any_pattern},
                     {"onRequest", method->on_request},
+                    {"slowOnProcessors", is_slow_on_processors(method->name)},
                     {"exactArea", exact_area_json(*method)},
                     {"variants", variants_json(*method)},
                     {"options", options}});

@@ -157,12 +157,34 @@ bool runs_on_device(std::string_view name, const MethodOptions& options, const L
   return find_row(name).on_device(machine, options, light);
 }
 
+bool is_slow_on_processors(std::string_view name) {
+  return find_row(name).slow_on_processors;
+}
+
 bool needs_device(std::string_view name, const MethodOptions& options) {
   return find_row(name).on_device(render::Machine({.wanted = "cpu"}), options, Light{});
 }
 
 bool passes_triangles(std::string_view name, const visibility::MethodOptions& options) {
   return maps::passes_triangles(name, options);
+}
+
+void check_light(const MethodDescription& description, const MethodOptions& options, const Light& light) {
+  for (const auto& [key, value] : options) {
+    if (description.lights.contains(light.kind)) break;
+    MethodOptions others = options;
+    others.erase(key);
+    try {
+      if (!describe_method(description.name, others).lights.contains(light.kind)) continue;
+    } catch (const UsageError&) {  // another option needs this one
+      continue;
+    }
+    throw InputError(
+        "light \"{0}\" is a {1}; method {2} can do a {1}, but not with {3}={4}. Leave the option out, or take another "
+        "light (--light)",
+        light.name, visibility::name_of(light.kind), description.name, key, value);
+  }
+  visibility::check_light(description, light);
 }
 
 bool can_do(const MethodDescription& method, const std::vector<Light>& lights) {

@@ -46,6 +46,9 @@ const visibility::MethodDescription& ray_judge();
 bool runs_on_device(std::string_view name, const visibility::MethodOptions& options, const visibility::Light& light,
                     const render::Machine& machine);
 
+/// Returns whether the method is slow where the Vulkan device is a processor (MethodRow::slow_on_processors).
+bool is_slow_on_processors(std::string_view name);
+
 /// Returns whether the method runs only on a Vulkan device, for any light.
 bool needs_device(std::string_view name, const visibility::MethodOptions& options);
 
@@ -56,6 +59,11 @@ std::unique_ptr<visibility::Method> make_method(std::string_view name, const vis
 /// Returns whether a method, with these options, looks at each triangle once, and keeps none: of planar lights and
 /// suns, in scenes without holes and translucent surfaces (visibility::PassesTriangles).
 bool passes_triangles(std::string_view name, const visibility::MethodOptions& options);
+
+/// visibility::check_light for a method with these options, of which `description` is. Where one option alone keeps the
+/// method from this kind of light, the error names the option.
+void check_light(const visibility::MethodDescription& description, const visibility::MethodOptions& options,
+                 const visibility::Light& light);
 
 bool can_do(const visibility::MethodDescription& method, const std::vector<visibility::Light>& lights);
 

@@ -252,6 +252,7 @@ std::vector<MethodEntry> parse_methods(std::string_view text) {
       for (const visibility::MethodDescription* description : *group) {
         describe_method(description->name, options);  // throws for unknown options
         add(description->name, description->name, options, true);
+        entries.back().by_default = fields[0] == "default";
         if (description->exact_area) add_exact_area(*description, options);
       }
     } else {

@@ -78,6 +78,7 @@ struct MethodEntry {
   std::string name;
   visibility::MethodOptions options;
   bool from_group = false;  ///< not named explicitly: left out, with a warning, if the scene's lights are not supported
+  bool by_default = false;  ///< of the group `default`: left out, with a warning, if it is slow on the device
   bool exact_area = false;  ///< a group's member once more, for its exact areas
 };
 /// Parses "a,b:key=value:key=value,c"; `geometry`, `image` and `all` stand for the methods of these families in the

@@ -24,6 +24,9 @@ struct MethodRow {
   /// Returns whether the light's shadows are computed on the Vulkan device. Looks for a GPU only if the answer depends
   /// on it.
   std::function<bool(const render::Machine&, const Options&, const visibility::Light&)> on_device;
+  /// A picture takes seconds on a Vulkan device that is a processor, milliseconds on a GPU: left out of the default
+  /// comparison there.
+  bool slow_on_processors = false;
   int precedence = 0;  ///< rows with higher values come first, regardless of family; others keep the order of the
                        ///< tables
 };
@@ -52,10 +55,13 @@ MethodRow on_device() {
 /// Makes the row of a method with two engines. `kOnVectors` returns whether the method uses the processor for a light.
 template <auto kDescribe, auto kMake, auto kOnVectors>
 MethodRow on_either(int precedence = 0) {
-  return {describe_with<kDescribe>({}), describe_with<kDescribe>, kMake,
+  return {describe_with<kDescribe>({}),
+          describe_with<kDescribe>,
+          kMake,
           [](const render::Machine& machine, const visibility::MethodOptions& options, const visibility::Light& light) {
             return !kOnVectors(machine, options, light);
           },
+          false,
           precedence};
 }
 

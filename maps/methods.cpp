@@ -71,6 +71,11 @@ engines::MethodRow row() {
   return row;
 }
 
+engines::MethodRow slow_on_processors(engines::MethodRow row) {
+  row.slow_on_processors = true;
+  return row;
+}
+
 /// Methods with penumbrae drawn along the borders of triangles, which are not the borders of holes.
 constexpr Given kWithoutHoles{.suns = true, .spheres = true, .holes = false};
 /// Methods with a flood on the screen, which would end at the border of the next disk of a lamp.
@@ -91,16 +96,16 @@ bool passes_triangles(std::string_view name, const visibility::MethodOptions& op
 std::span<const engines::MethodRow> methods() {
   static const std::array rows{
       row<bitmask_description, make_bitmask>(),
-      row<backproject_description, make_backproject>(),
-      row<backproject_peel_description, make_backproject_peel>(),
+      slow_on_processors(row<backproject_description, make_backproject>()),
+      slow_on_processors(row<backproject_peel_description, make_backproject_peel>()),
       row<layer_rays_description, make_layer_rays>(),
       row<packet_description, make_packet>(),
-      row<contour_description, make_contour>(),
+      slow_on_processors(row<contour_description, make_contour>()),
       row<pcss_description, make_pcss>(),
       row<vssm_description, make_vssm>(),
       row<soft_shadow_map_description, make_soft_shadow_map>(),
-      row<accumulate_description, make_accumulate>(),
-      row<adaptive_light_description, make_adaptive_light>(),
+      slow_on_processors(row<accumulate_description, make_accumulate>()),
+      slow_on_processors(row<adaptive_light_description, make_adaptive_light>()),
       row<deep_penumbra_description, make_deep_penumbra>(),
       row<layered_attenuation_description, make_layered_attenuation>(),
       row<occlusion_textures_description, make_occlusion_textures>(),

@@ -131,8 +131,10 @@ class CompareCommand : public Command {
     cli_.add_option(
             "--methods,--method", methods_,
             "what to compare: names with options of their own, a:key=value,b; or geometry, image, all, or default, "
-            "those of geometry and image that do not take minutes; a method of a group is left out, by name, if a run "
-            "of it takes more than 30 seconds (not with --max-rmse or --frames)")
+            "those of geometry and image that do not take minutes, or on a device that is a processor seconds; a "
+            "method "
+            "of a group is left out, by name, if a run of it takes more than 30 seconds (not with --max-rmse or "
+            "--frames)")
         ->type_name("LIST")
         ->capture_default_str();
     cli_.add_option("--reference", options_.reference,

@@ -106,7 +106,7 @@ std::vector<Entry> choose_entries(const ComparisonOptions& options, const Sessio
                                   const render::Machine& machine, const std::function<void(std::string)>& warn) {
   std::vector<Entry> entries;
   const std::string no_device = why_no_device(options, machine);
-  std::vector<std::string> without_device, costly;
+  std::vector<std::string> without_device, slow, costly;
   std::vector<Entry> costly_entries;
   // Maps see a sphere as up to 54 disks (maps/host/lamp_disks.hpp), a dome as suns (maps/host/dome_suns.hpp).
   const bool costs_maps_much = std::ranges::any_of(session.lights, [](const visibility::Light& light) {
@@ -132,8 +132,12 @@ std::vector<Entry> choose_entries(const ComparisonOptions& options, const Sessio
         warn("left out: " + reason);
         continue;
       }
+      if (chosen.by_default && is_slow_on_processors(chosen.name) && machine.device().info().kind == "cpu") {
+        slow.push_back(entry.label);
+        continue;
+      }
     }
-    for (const visibility::Light& light : session.lights) check_light(entry.description, light);
+    for (const visibility::Light& light : session.lights) check_light(entry.description, entry.options, light);
     if (wants_bits(entry, options)) check_bits(entry.description, session.lights);
     if (chosen.from_group && costs_maps_much && entry.description.family == visibility::Family::image) {
       costly.push_back(entry.label);
@@ -149,6 +153,11 @@ std::vector<Entry> choose_entries(const ComparisonOptions& options, const Sessio
         fmt::format("{} left out: maps see a sphere as up to 54 disks and a dome as many suns, each with maps of its "
                     "own; name a method to have it",
                     fmt::join(costly, ", ")));
+  if (!slow.empty())
+    warn(fmt::format(
+        "{} left out: a picture takes seconds on {}, which is no GPU; name a method, or the group image, to "
+        "have it",
+        fmt::join(slow, ", "), machine.device().info().name));
   if (!without_device.empty()) {
     if (entries.empty()) throw ResourceError("{}: {}", fmt::join(without_device, ", "), no_device);
     warn(fmt::format("{} left out: {}", fmt::join(without_device, ", "), no_device));
