@@ -100,7 +100,7 @@ std::string man_page(std::span<const CommandWords> commands, const CommandWords&
   if (!command.footer.empty()) text += ".SH NOTES\n" + lines_of(command.footer);
   if (!is_program)
     text +=
-        ".SH EXIT STATUS\n0 done; 1 the job ran and the answer is no; 2 wrong usage; 3 bad input; 4 device or "
+        ".SH EXIT STATUS\n0 done; 1 the job ran and a check failed; 2 wrong usage; 3 bad input; 4 device or "
         "resource; 130 interrupted.\n";
   text += is_program ? ".SH SEE ALSO\n" : ".SH SEE ALSO\n\\fBpenumbra\\fR(1)";
   for (const CommandWords& one : commands.subspan(1)) {
