@@ -97,6 +97,7 @@ std::string man_page(std::span<const CommandWords> commands, const CommandWords&
       text += fmt::format(".TP\n\\fB{}\\fR\n{}\n", roff(one.name), roff(one.help));
   }
   text += options_of(command);
+  if (!command.example.empty()) text += fmt::format(".SH EXAMPLES\n.nf\n{}\n.fi\n", roff(command.example));
   if (!command.footer.empty()) text += ".SH NOTES\n" + lines_of(command.footer);
   if (!is_program)
     text +=
