@@ -46,6 +46,31 @@ const std::map<std::string_view, std::string_view>& groups() {
   return table;
 }
 
+/// Returns a command line that does what the command is most often used for; tests/docs/examples.py runs each as a
+/// reader would, in a folder with the scenes that ship.
+std::string_view example_of(const CLI::App& command) {
+  static const std::map<std::string_view, std::string_view> table = {
+      {"render", "penumbra render scenes/room.json -o room.exr --png room.png"},
+      {"compare", "penumbra compare scenes/fusion.json -o out --methods pcss --size 256x256"},
+      {"sweep", "penumbra sweep scenes/fusion.json -o out --methods pcss --over size=128,256"},
+      {"bake", "penumbra bake scenes/contact.json --mesh floor --size 256 -o floor.exr"},
+      {"inspect", "penumbra inspect scenes/broken.json --png defects.png"},
+      {"methods", "penumbra methods pcss"},
+      {"devices", "penumbra devices"},
+      {"convert", "penumbra convert scenes/room.json -o room.glb"},
+      {"wedges", "penumbra wedges scenes/fusion.json --light key --validate"},
+      {"submit", "penumbra submit shot.glb --frames 1-240 -o shot/beauty.####.exr"},
+      {"view", "penumbra view scenes/bunny.json"},
+      {"serve", "penumbra serve"},
+      {"help", "penumbra help render"},
+      {"version", "penumbra version"},
+      {"completion", "penumbra completion bash > penumbra.bash"},
+      {"man", "penumbra man render > penumbra-render.1"},
+  };
+  const auto found = table.find(command.get_name());
+  return found != table.end() ? found->second : std::string_view();
+}
+
 std::string_view group_of(const CLI::Option& option) {
   for (const std::string& name : option.get_lnames()) {
     const auto found = groups().find(name);
@@ -84,7 +109,9 @@ class GroupedFormatter : public CLI::Formatter {
           [&](const CLI::Option* option) { return option->get_group() == group && option->nonpositional(); });
       if (!options.empty()) text << make_group(group, false, options);
     }
-    text << make_subcommands(app, mode) << '\n' << paragraphs(make_footer(app));
+    text << make_subcommands(app, mode) << '\n';
+    if (!example_of(*app).empty()) text << paragraphs(fmt::format("Example:\n  {}\n", example_of(*app)));
+    text << paragraphs(make_footer(app));
     if (app->get_parent() != nullptr)
       text << paragraphs("Every command takes --quiet, --verbose and --threads N, too: `penumbra --help`.\n");
     return text.str();
@@ -141,7 +168,8 @@ OptionWords words_of(const CLI::Option& option) {
 }
 
 CommandWords words_of(const CLI::App& command) {
-  CommandWords words{command.get_name(), command.get_description(), command.get_footer(), {}, {}};
+  CommandWords words{
+      command.get_name(), command.get_description(), std::string(example_of(command)), command.get_footer(), {}, {}};
   for (const CLI::Option* option : command.get_options()) {
     (option->get_positional() ? words.arguments : words.options).push_back(words_of(*option));
   }

@@ -24,7 +24,9 @@ struct OptionWords {
 
 /// Command with its options. Help, manual pages and shell completions are generated from these words.
 struct CommandWords {
-  std::string name, help, footer;
+  std::string name, help;
+  std::string example;  ///< a command line; empty for the program itself
+  std::string footer;
   std::vector<OptionWords> arguments, options;
 };
 

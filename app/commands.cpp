@@ -26,7 +26,7 @@ constexpr const char* kDescription =
     "Results go to stdout, messages to stderr.";
 
 constexpr const char* kFooter =
-    "Exit codes: 0 done; 1 the job ran and the answer is no; 2 wrong usage; 3 bad input; 4 device or resource; "
+    "Exit codes: 0 done; 1 the job ran and a check failed; 2 wrong usage; 3 bad input; 4 device or resource; "
     "130 interrupted. An output file appears whole or not at all; if stdout does not take the results (a full disk, a "
     "closed pipe) the code is 4.\n"
     "`penumbra help COMMAND` explains a command, `penumbra methods NAME` a method.";

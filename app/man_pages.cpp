@@ -97,10 +97,11 @@ std::string man_page(std::span<const CommandWords> commands, const CommandWords&
       text += fmt::format(".TP\n\\fB{}\\fR\n{}\n", roff(one.name), roff(one.help));
   }
   text += options_of(command);
+  if (!command.example.empty()) text += fmt::format(".SH EXAMPLES\n.nf\n{}\n.fi\n", roff(command.example));
   if (!command.footer.empty()) text += ".SH NOTES\n" + lines_of(command.footer);
   if (!is_program)
     text +=
-        ".SH EXIT STATUS\n0 done; 1 the job ran and the answer is no; 2 wrong usage; 3 bad input; 4 device or "
+        ".SH EXIT STATUS\n0 done; 1 the job ran and a check failed; 2 wrong usage; 3 bad input; 4 device or "
         "resource; 130 interrupted.\n";
   text += is_program ? ".SH SEE ALSO\n" : ".SH SEE ALSO\n\\fBpenumbra\\fR(1)";
   for (const CommandWords& one : commands.subspan(1)) {

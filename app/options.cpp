@@ -134,9 +134,10 @@ void add_gltf_options(CLI::App& command, GltfOptions& gltf) {
                   "glTF: apparent diameter in degrees of sun lamps whose file gives none (default: 0.53)")
       ->type_name("DEGREES");
   command
-      .add_option("--lumens-per-watt", gltf.lumens_per_watt,
-                  "glTF: by what lamps' intensities are divided (default: 683 in files of Blender's exporter, which "
-                  "multiplies by that, before version 3.4.36 4 pi, of suns 1; else 1)")
+      .add_option(
+          "--lumens-per-watt", gltf.lumens_per_watt,
+          "glTF: divide the intensities of lamps by N (default: 1; in files of Blender's exporter 683, the number "
+          "by which it multiplies; in files of its versions before 3.4.36 4 pi, for suns 1)")
       ->type_name("N");
   command
       .add_option("--clip", gltf.clips,

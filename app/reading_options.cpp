@@ -10,9 +10,10 @@ void add_allow_outside(CLI::App& command, bool& allow_outside) {
 }
 
 void add_lenient(CLI::App& command, bool& lenient) {
-  command.add_flag("--lenient", lenient,
-                   "leave out what would change shadows and is not supported, of glTF or in a format that is "
-                   "written, with a warning, instead of refusing");
+  command.add_flag(
+      "--lenient", lenient,
+      "if the scene has what is not supported, or what the format of an output cannot hold, and that would "
+      "change shadows: leave it out with a warning instead of refusing");
 }
 
 }  // namespace penumbra::app

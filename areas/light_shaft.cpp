@@ -29,6 +29,7 @@ Cross cross_of(const glm::dvec3& a, const glm::dvec3& b) {
 LightShaft::LightShaft(const IntegerFrame& frame, bool mirrored, const glm::vec3& p, const GridBox& box) : p_(p) {
   const glm::dvec3 u = frame.u_end - frame.origin, v = frame.v_end - frame.origin,
                    r = frame.endless ? -frame.c : p_ - frame.c;
+  // The gradients of S, T and W (back_projection.hpp), and K.
   const Cross s = cross_of(v, r), t = cross_of(r, u), w = cross_of(v, u);
   const double reach = -glm::dot(w.value, r);
   const double sign = mirrored ? -1 : 1;

@@ -12,6 +12,8 @@
 
 namespace penumbra::areas {
 
+/// The pyramid from p to a box on the light's plane, as planes whose heights have error bounds: answers "certainly
+/// inside", "certainly outside", or neither.
 class LightShaft {
  public:
   /// Clip planes that a point is certainly strictly inside of, and planes that it is certainly outside of (bits); among
@@ -21,7 +23,7 @@ class LightShaft {
   };
   static constexpr unsigned kBehind = 1u << kClipPlanes;
 
-  /// `mirrored`: BackProjection::mirrored(), the side of the light's plane with p.
+  /// `mirrored`: BackProjection::mirrored(), whether p is behind the light's plane.
   LightShaft(const IntegerFrame& frame, bool mirrored, const glm::vec3& p, const GridBox& box);
 
   [[nodiscard]] Sides sides_of(const glm::vec3& q) const;

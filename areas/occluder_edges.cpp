@@ -60,6 +60,7 @@ void OccluderEdges::add_triangle(std::uint32_t triangle) {
   if (projection_.mirrored()) turn = -turn;
 
   const unsigned inside = sides[0].inside & sides[1].inside & sides[2].inside;
+  // The planes along which a cut leaves an edge (cut_triangle).
   constexpr unsigned kCutting = bit_of(ClipPlane::light) | bit_of(ClipPlane::bottom);
   if ((inside & kCutting) != kCutting && !cut_triangle(corners, turn)) return;
   const visibility::Triangle& t = scene_.scene->triangles[triangle];

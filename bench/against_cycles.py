@@ -3,7 +3,7 @@
 """Error against processor time of Penumbra and of Blender's Cycles, whole processes from start to file.
 
     bench/against_cycles.py measure [BUILD [SCENE …]]     renders and measures; writes bench/results/against-cycles.json; an hour
-    bench/against_cycles.py page [--check]      docs/against-cycles.md and its chart from that file
+    bench/against_cycles.py page [--check]      docs/against-cycles.md, its chart, and the README's sentences, from that file
 
 With scenes named, rows of others stay as they are. `measure` needs Blender, the built program and the add-on (targets penumbra and penumbra_blender_addon).
 
@@ -21,6 +21,7 @@ seconds for an error that was not measured follow from two measured counts.
 import json
 import os
 import platform
+import re
 import statistics
 import subprocess
 import sys
@@ -33,7 +34,7 @@ import numpy
 ROOT = Path(__file__).resolve().parent.parent
 HERE = ROOT / "bench/cycles"
 RESULT = ROOT / "bench/results/against-cycles.json"
-PAGE, CHART = ROOT / "docs/against-cycles.md", ROOT / "docs/images/against-cycles.svg"
+PAGE, CHART, README = ROOT / "docs/against-cycles.md", ROOT / "docs/images/against-cycles.svg", ROOT / "README.md"
 sys.path[:0] = [str(ROOT / "blender"), str(ROOT / "docs/figures"), str(ROOT / "docs/figures/papers")]
 
 WIDTH, HEIGHT = 640, 480
@@ -282,13 +283,36 @@ Blackman-Harris filter of 1.5 pixels; Penumbra takes 16 view samples a pixel (`-
 """
 
 
+BLOCK = re.compile(r"(<!-- results/against-cycles\.json -->\n).*?(<!-- end -->)", re.S)
+
+
+def at_one_percent(rows):
+    """How many times as long Cycles takes for an error of 1 %, for each scene whose picture by Penumbra reaches it. Bounds ("≤") are left out."""
+    for row in rows:
+        ours = next(entry for entry in row["entries"] if entry["entry"] == "penumbra")
+        times = Line(row).factor(0.01, ours["seconds"])
+        if ours["error"] <= 0.01 and not times.startswith("≤"):
+            yield row["scene"], float(times.replace(",", ""))
+
+
+def readme_sentences(data):
+    centres, filtered = (dict(at_one_percent([row for row in data["rows"] if row["antialiased"] == antialiased])) for antialiased in (False, True))
+    lamps = max(times for scene, times in centres.items() if scene != "sky")
+    return (f"At an error of 1 % and without antialiasing, Cycles takes up to {lamps:.0f} times the processor time under lamps, and {centres['sky']:.0f} times under the "
+            f"picture of a sky. With 16\nview samples a pixel it takes {min(filtered.values()):.1f} to {max(filtered.values()):.0f} times as much "
+            "([scenes, errors and times](docs/against-cycles.md)).\n")
+
+
 def page(check):
     data = json.loads(RESULT.read_text())
     text = PAGE_TEXT.format(**data, runs=RUNS, crop=data["rows"][0]["crop"], **{
         name: "\n".join(table([row for row in data["rows"] if row["antialiased"] == antialiased]))
         for name, antialiased in (("centres", False), ("antialiased", True))})
     stale = False
-    for path, content in ((PAGE, text), (CHART, chart(data))):
+    readme, blocks = BLOCK.subn(lambda found: found[1] + readme_sentences(data) + found[2], README.read_text())
+    if blocks != 1:
+        raise SystemExit(f"README.md has {blocks} blocks of results/against-cycles.json")
+    for path, content in ((PAGE, text), (CHART, chart(data)), (README, readme)):
         if not check:
             path.write_text(content)
         elif not path.exists() or path.read_text() != content:

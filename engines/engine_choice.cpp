@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// Chooses between the Vulkan device and the processor's vector units for methods that run on both: vector units where
+// the machine has no GPU, unless the option `engine` says otherwise. Not from a paper.
+
 #include "engines/engine_choice.hpp"
 
 namespace penumbra::engines {

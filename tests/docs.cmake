@@ -1,17 +1,19 @@
 # SPDX-License-Identifier: Apache-2.0
 # The figures of docs/ are what their script draws; each picture and link of a page leads somewhere; the commands of the README, of the
-# tutorials and of docs/scenes.md print what the pages say; options.md is what the program says; tables of timings are what bench/results/
-# holds, and every method has its rows in them and in the ranking; the chart of a benchmark has its marks where its lines say.
+# tutorials and of docs/scenes.md print what the pages say; options.md is what the program says; tables of timings, and the README's
+# figures beside Cycles, are what bench/results/ holds, and every method has its rows in them and in the ranking; the chart of a benchmark
+# has its marks where its lines say; the example in the help of each command runs.
 find_package(Python3 REQUIRED COMPONENTS Interpreter)
 add_test(NAME docs.figures COMMAND ${Python3_EXECUTABLE} ${PROJECT_SOURCE_DIR}/docs/figures/make.py --check)
 add_test(NAME docs.options COMMAND ${Python3_EXECUTABLE} ${PROJECT_SOURCE_DIR}/docs/option_tables.py --program $<TARGET_FILE:penumbra> --check)
 add_test(NAME docs.options_missing COMMAND ${Python3_EXECUTABLE} ${CMAKE_CURRENT_SOURCE_DIR}/docs/option_tables.py ${PROJECT_SOURCE_DIR}/docs)
 add_test(NAME docs.results COMMAND ${Python3_EXECUTABLE} ${PROJECT_SOURCE_DIR}/bench/tables.py --check)
+add_test(NAME docs.examples COMMAND ${Python3_EXECUTABLE} ${CMAKE_CURRENT_SOURCE_DIR}/docs/examples.py $<TARGET_FILE:penumbra> ${PROJECT_SOURCE_DIR})
 add_test(NAME docs.error_chart COMMAND ${Python3_EXECUTABLE} ${CMAKE_CURRENT_SOURCE_DIR}/docs/error_chart.py)
 add_test(NAME docs.methods_have_rows COMMAND ${Python3_EXECUTABLE} ${CMAKE_CURRENT_SOURCE_DIR}/docs/every_method_has_rows.py $<TARGET_FILE:penumbra>
                                              ${PROJECT_SOURCE_DIR})
 add_test(NAME docs.against_cycles COMMAND ${PENUMBRA_SYSTEM_PYTHON} ${PROJECT_SOURCE_DIR}/bench/against_cycles.py page --check)
-set_tests_properties(docs.against_cycles docs.figures docs.options docs.options_missing docs.results docs.error_chart docs.methods_have_rows PROPERTIES LABELS quick)
+set_tests_properties(docs.against_cycles docs.examples docs.figures docs.options docs.options_missing docs.results docs.error_chart docs.methods_have_rows PROPERTIES LABELS quick)
 foreach(page IN ITEMS README docs/start/artist docs/start/researcher docs/start/mesh-tester docs/start/wedge-validator docs/scenes)
   cmake_path(GET page FILENAME name)
   string(TOLOWER ${name} name)

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// Parses and checks the options of a method, KEY=VALUE, by what the method declares of each. A wrong key or value is
+// refused with the possible ones and the closest of these.
+
 #include "visibility/method_options.hpp"
 
 #include "base/assert.hpp"

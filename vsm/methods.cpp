@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// The table of view-sample mapping, a row a method: its description, and which engines it runs on. The papers are in
+// methods.hpp and on the methods' pages.
+
 #include "vsm/methods.hpp"
 
 #include <array>

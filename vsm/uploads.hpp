@@ -27,20 +27,25 @@ inline constexpr std::uint32_t kPartShift = 27;
 /// empty if there are no parts.
 std::vector<std::uint32_t> part_tags(const ClosedParts& closed);
 
-/// Writes into each child's second texel the closed part outside of which all triangles below are dispensable, or 0.
+/// Writes a number into the second texel of each child of the tree: if all triangles below the child are dispensable,
+/// the one closed part to which they belong (view samples outside of this part need not test them, find_dispensable);
+/// else 0. `dispensable`: what find_dispensable returned. `nodes`: the tree's texels, two a child.
 void mark_dispensable(const visibility::TriangleTree& tree, std::span<const std::uint8_t> dispensable,
                       std::span<Texel> nodes);
 
-/// Returns seven boxes of two texels for each part: that of the part, and those of its vertices on each face.
+/// Returns the boxes of each part, seven a part: its own, then for each of its six faces the box of the part's vertices
+/// on that face (ClosedPart::touching). A box is two texels, its lower and its upper corner, multiplied by `scale`.
 std::vector<Texel> part_texels(const ClosedParts& closed, float scale);
 
-/// The shaders' table of light samples: uint first_point[257], then (s, t) of each, sorted by t, so that a triangle
-/// reads one contiguous range. Rows are computed, not read: their table is empty, and in the order of the light
-/// samples.
+/// The shaders' table of light samples: uint first_point[257], then (s, t) of each light sample, sorted by t, so that a
+/// triangle reads one contiguous range. first_point[i] is the first light sample with t of at least −1 + 2 i / 256.
+/// Light samples in rows (DeviceLight::rows) need no table, since the shaders compute them: then it holds one point
+/// that is not used, and the shaders' indices are those of the light samples.
 struct SampleTable {
   std::vector<std::byte> bytes;
   std::vector<std::uint32_t> bit_of;  ///< for each of the shaders' sample indices, the light sample
 };
+/// `frame`: the light whose samples the table holds; `rows`: whether the shaders compute them as rows.
 SampleTable make_sample_table(const visibility::DeviceLight& frame, bool rows);
 
 }  // namespace penumbra::vsm

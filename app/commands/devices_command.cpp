@@ -88,8 +88,9 @@ nlohmann::ordered_json json_of(const render::opengl::ContextInfo& context) {
 class DevicesCommand : public Command {
  public:
   explicit DevicesCommand(CLI::App& app)
-      : Command(app, "devices",
-                "list the Vulkan devices and OpenGL beside them, and why one cannot be used, or not for all") {
+      : Command(
+            app, "devices",
+            "list the devices of Vulkan and OpenGL, and say why one cannot be used at all, or not by some methods") {
     cli_.add_flag("--json", json_, "as JSON");
     cli_.add_flag(
         "--self-test", self_test_,

@@ -7,8 +7,9 @@
 
 namespace penumbra::app {
 
-/// Returns a light in the form of scene files: its shape under the key of its kind, radiance (of a sun irradiance,
-/// which is unchanged if its angle changes), twoSided. A shape that the page cannot change has no such key.
+/// Returns a light in the form of scene files: its shape under the key of its kind, radiance, twoSided. A sun has
+/// irradiance in place of radiance, so that it stays as bright when the page changes its angle. A shape that the page
+/// cannot change has no key.
 nlohmann::ordered_json light_json(const scenes::AreaLight& light);
 nlohmann::ordered_json camera_json(const scenes::Camera& camera);
 

@@ -14,7 +14,7 @@
 
 namespace penumbra::app {
 
-/// Answers the requests of the page's 3D view (docs/view.md), of the renderer's scene and lights as they are. Scene
+/// Answers the requests of the page's 3D view (docs/view.md) about the renderer's current scene and lights. Scene
 /// floats and the casters of the last light are kept, for as long as the scene's meshes are the same. Thread-safe.
 class SpaceView {
  public:

@@ -20,8 +20,9 @@
 namespace penumbra::maps {
 namespace {
 
-/// Distance of b from the scene, in scene sizes. With a larger one depths would be distorted less, but tolerances
-/// relative to a depth (a slice's end, Slices) would be a larger part of the scene, and floats would lose digits.
+/// How far the plane Z = b, on which the map is infinite (SunSpace), is below the scene; 1 is the diagonal of the
+/// scene's box. If it were farther away, depths would be distorted less, but tolerances relative to a depth (a slice's
+/// end, Slices) would be a larger part of the scene, and floats would lose digits.
 constexpr double kScenesBelow = 4;
 /// Tangent used for a sun of one direction.
 constexpr double kLeastTangent = 0x1p-20;
@@ -32,7 +33,7 @@ SunSpace::SunSpace(const visibility::SceneFloats& scene, const visibility::Light
                    const visibility::AllTriangles* all)
     : scene_(scene), all_(all) {
   PENUMBRA_ASSERT(sun.sun.has_value(), "light \"{}\" is no sun", sun.name);
-  way_ = *sun.sun;
+  directions_ = *sun.sun;
   n_ = glm::normalize(glm::cross(glm::dvec3(sun.sun->axis_u), glm::dvec3(sun.sun->axis_v)));
   u_ = glm::normalize(glm::cross(glm::dvec3(sun.sun->axis_v), n_));
   v_ = glm::cross(n_, u_);
@@ -88,7 +89,7 @@ void SunSpace::for_each_positions(const std::function<void(std::span<const glm::
 }
 
 bool SunSpace::take(const visibility::Light& sun) {
-  if (!sun.sun || sun.sun->axis_u != way_.axis_u || sun.sun->axis_v != way_.axis_v) return false;
+  if (!sun.sun || sun.sun->axis_u != directions_.axis_u || sun.sun->axis_v != directions_.axis_v) return false;
   make_light(sun);
   return true;
 }

@@ -50,7 +50,7 @@ class SunSpace final : public visibility::AllTriangles {
 
   void make_light(const visibility::Light& sun);
 
-  visibility::Light::Directions way_;  // directions of the sun that defines the axes
+  visibility::Light::Directions directions_;  // of the sun that defines the axes
   glm::dvec3 u_{0}, v_{0}, n_{0}, middle_{0};
   double scale_ = 1, below_ = 1;  // S, and b from the scene's middle
   visibility::SceneFloats scene_;

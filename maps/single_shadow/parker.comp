@@ -7,8 +7,10 @@
 #include "maps/host/look_up.glsl"
 #include "maps/single_shadow/search.glsl"
 
-// Returns V for objects with soft edges (Parker et al. 1998). 0 in the hard shadow; else s(x / b), x the distance of
-// the object from the ray to the light's centre, b that of the soft edge, a D / A: the least over all texels.
+// Returns V for objects with soft edges (Parker et al. 1998): 0 in the hard shadow; else the least, over all texels, of
+// s(x / b). x is the distance of the texel's surface from the ray to the light's centre, and b = a D / A the width of its
+// soft edge, with a the light's radius, D the distance from the receiver to the surface and A that to the light. s is
+// the falloff (docs/parker.md).
 
 float visibility_of(LightView view, vec3 d, vec3 m) {
   if (!(dot(m, d) > 0.0)) return 0.0;  // the light's centre is below the receiver's horizon

@@ -21,7 +21,8 @@ namespace penumbra::scenes {
 
 using Notes = std::vector<std::string>;
 
-/// Write a scene. Parts that the format cannot hold are added to `losses` for objects and lights, to `notes` otherwise.
+/// These write a scene to a file. What the format cannot hold is added to `losses` for objects and lights, to `notes`
+/// otherwise.
 void write_json(const Scene& scene, const Instances& instances, AtomicFile& file, Losses& losses, Notes& notes);
 void write_glb(const Scene& scene, const Instances& instances, AtomicFile& file, Losses& losses, Notes& notes);
 void write_obj(const Scene& scene, AtomicFile& file, Losses& losses, Notes& notes);

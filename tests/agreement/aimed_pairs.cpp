@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Error bounds, tested where they matter: every pair of scenes in which all casters pass segments of pairs within float
-// rounding.
+// Error bounds, tested where they matter: in these scenes an edge, a vertex or the plane of each caster (Aim) is within
+// float rounding of the segment from a view sample to a light sample. Every pair is compared with the exact decision.
 
 #include "tests/agreement/aimed_scene.hpp"
 #include "tests/agreement/mask_methods.hpp"

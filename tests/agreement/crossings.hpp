@@ -97,8 +97,9 @@ class DevicePlaces {
   float per_length_, skew_, away_, deviation_;
 };
 
-/// A triangle with an edge through the light sample, as well as floats let it pass there, by numbers of a search; the
-/// edge is the first side. `width`: of the light, across.
+/// Returns a triangle between p and the light sample l whose first side passes through the segment from p to l, up to
+/// the rounding of its corners to floats. `numbers`: of a search, which chooses place, direction and size. `width`: of
+/// the light, across.
 inline std::array<glm::dvec3, 3> triangle_at(const glm::dvec3& p, const glm::dvec3& l, double width, Numbers& numbers) {
   const glm::dvec3 direction = l - p, across = numbers.vector() + glm::dvec3(0x1p-30);
   const double share = 0.1 + 0.8 * numbers.next(), size = share * width * std::exp2(1 - 2 * numbers.next());

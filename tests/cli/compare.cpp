@@ -235,7 +235,7 @@ TEST_F(Compare, MaxRmseDecidesTheExitCode) {
   const Outcome strict = compare({"--methods", "raytrace", "--light-samples", "16", "--max-rmse", "0.0000001"});
   EXPECT_EQ(strict.code, 1);
   EXPECT_THAT(strict.err, HasSubstr("--max-rmse"));
-  EXPECT_TRUE(std::filesystem::exists(path("dir/report.html"))) << "the job ran; only its answer is no";
+  EXPECT_TRUE(std::filesystem::exists(path("dir/report.html"))) << "the job ran; only the check failed";
 }
 
 TEST_F(Compare, OneMethodMayAppearSeveralTimes) {

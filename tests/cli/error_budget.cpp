@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// `compare --error-budget` on scenes where one cause of error is there alone: the budget must name it, with its sign. A
-// floor that casts nothing under casters that receive nothing, the light at height 5; exact areas judge.
+// `compare --error-budget` on scenes with one cause of error each: the budget must name it, with its sign. The scenes
+// are a floor that casts nothing, under casters that receive nothing, with the light at height 5; exact areas judge.
 #include "base/image.hpp"
 #include "base/png.hpp"
 #include "tests/cli/program.hpp"

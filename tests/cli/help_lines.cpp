@@ -82,5 +82,19 @@ TEST_F(HelpLines, EndWhereTheTerminalDoes) {
   }
 }
 
+TEST_F(HelpLines, ShowAnExampleOfEachCommand) {
+  std::string listed = run({"completion", "commands"}).out;
+  std::ranges::replace(listed, ';', ' ');
+  for (const std::string& command : words_in(listed)) {
+    const std::string example = "penumbra " + command;
+    const std::vector<std::string> lines = lines_in(run({"help", command}, {{"COLUMNS", "100"}}).out);
+    const auto head = std::ranges::find(lines, "Example:");
+    ASSERT_LT(head - lines.begin() + 1, std::ssize(lines)) << command;
+    EXPECT_TRUE(head[1].starts_with("  " + example)) << head[1];
+    EXPECT_THAT(run({"man", command}).out, testing::HasSubstr(".SH EXAMPLES\n.nf\n" + example)) << command;
+  }
+  EXPECT_THAT(run({"help"}).out, testing::Not(testing::HasSubstr("Example:")));
+}
+
 }  // namespace
 }  // namespace penumbra::tests

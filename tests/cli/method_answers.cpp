@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests that answers of a method that are no shares of a light go no further than the host.
+// Tests that the host refuses a method's V outside of [0, 1], and form factors that are negative or no numbers, before
+// a file is written.
 #include "app/process/terminal_progress.hpp"
 #include "app/machine.hpp"
 #include "app/runner.hpp"

@@ -54,7 +54,8 @@ inline constexpr double kVoterAt[kVoters][2] = {{0.40625, 0.28125}, {-0.28125, 0
 const dvec2 kVoterAt[kVoters] = dvec2[kVoters](dvec2(0.40625LF, 0.28125LF), dvec2(-0.28125LF, 0.34375LF));
 #endif
 
-/// Measures of the part of the light on a side of an edge: its area; by a table; for a texture, texel by texel.
+/// How soft_volume.frag finds the share of the light on one side of an edge: as an area in closed form; from the
+/// precomputed table of the option coverage=table; or, for a textured light, as a sum over texels.
 const uint kArea = 0, kTable = 1, kTexture = 2;
 
 #ifdef __cplusplus

@@ -45,12 +45,14 @@ class FusedShare {
   double largest_ = 0, sum_ = 0, rest_ = 1;
 };
 
-/// U. Assarsson, M. Dougherty, M. Mounier, T. Akenine-Möller 2003: evaluates `alone`, a method for planar lights that
-/// adds hidden shares, for each object of the scene separately, and fuses the results, in each of the light's parts.
 struct FusedOptions {
   Fusion rule = Fusion::sum;
-  std::uint32_t split = 1;
+  std::uint32_t split = 1;  ///< number of the light's parts along each axis
 };
+
+/// Makes a method that evaluates `alone`, a method for planar lights that adds hidden shares, for each object of the
+/// scene separately, and fuses the results, in each of the light's parts (U. Assarsson, M. Dougherty, M. Mounier,
+/// T. Akenine-Möller 2003).
 std::unique_ptr<visibility::Method> make_fused(visibility::MethodDescription description,
                                                std::unique_ptr<visibility::Method> alone, const FusedOptions& options);
 

@@ -13,9 +13,10 @@ using uint = std::uint32_t;
 /// 2 and 3: the same bits if the triangle counts for that side (ShadowCasters::counted_sides), else 0.
 const uint kFrontBit = 1u, kBackBit = 2u, kBothBits = 3u, kCountedShift = 2u;
 
-/// An edge's triangles in the device's format, triangle · 2, + 1 if its winding runs from b to a: two of them, where a
-/// missing one is replaced by a triangle that never counts; or, with this bit, the edge's index among those with more
-/// triangles.
+/// The triangles of an edge are a pair of words, 2 · triangle each, + 1 if the triangle's winding runs from b to a.
+/// Where an edge has one triangle, the second word is of a triangle that never counts. Where it has more than two, the
+/// first word has this bit, and the rest of that word is the edge's index among such edges, whose triangles are in a
+/// list.
 const uint kManyIncidences = 1u << 31;
 
 /// A triangle that floats cannot decide; `side` receives the host's answer.

@@ -16,7 +16,8 @@ namespace penumbra::tests {
 namespace {
 
 // A parallel rectangle, and a small one beside it so that no texel's border lies on an edge. On either axis each edge
-// is off by half a texel at most, which is t f on the light.
+// is off by half a texel at most. Projected from the receiver onto the light, a length in the map's coordinates x / z
+// grows by `to_light` = 3 · 5 / 2: the rectangles are at depth 3, the receivers at depth 5, 2 apart.
 TEST_F(SoftShadowMap, AParallelRectangleIsOffByNoMoreThanItsTexels) {
   struct Rectangle {
     glm::dvec2 center, half;
