@@ -210,6 +210,15 @@ class Arguments(unittest.TestCase):
         self.assertEqual(penumbra.render(scene, method="pcf", options={"window": np.int64(3)}, light_samples=np.float64(64)).V.shape, (6, 8))
         self.assertEqual(penumbra.render(scene, size=np.array([4, 2]), light=("key",), camera=None, method=None).size, (4, 2))
 
+    def test_lights_have_their_own_names(self):
+        scene = copy.copy(self.scene)
+        names = ["N", "P", "V", "Z", "id", "object", "R", "a.b", "a_b", "N_2"]
+        for index, name in enumerate(names):
+            scene.add_light(name, "sphere", center=(index, 3, 0), radius=0.1)
+        lights = penumbra.render(scene).lights
+        self.assertEqual(list(lights), ["key", *names])
+        np.testing.assert_array_equal(lights["N"].V, penumbra.render(scene, light="N").V)
+
     def test_names_that_are_not_utf8_can_be_shown(self):
         with tempfile.TemporaryDirectory() as folder:
             file = os.path.join(os.fsencode(folder), b"\xe9.obj")
