@@ -52,6 +52,15 @@ void jpeg_warned(j_common_ptr jpeg, int level) {
   if (level < 0 && jpeg->err->msg_code != JWRN_EXTRANEOUS_DATA) jpeg_failed(jpeg);
 }
 
+/// Returns the colour of four inks without a colour profile: each ink takes its share of one colour away, and black
+/// that of all three. Adobe's programs write how much of each ink is missing (libjpeg.txt, "Special color spaces"); a
+/// marker says that one of them wrote the file.
+std::array<std::uint8_t, 4> color_of_inks(const JSAMPLE* inks, bool adobe) {
+  const auto left = [&](std::size_t ink) { return adobe ? unsigned{inks[ink]} : 255U - inks[ink]; };
+  const auto part = [&](std::size_t ink) { return static_cast<std::uint8_t>((left(ink) * left(3) + 127) / 255); };
+  return {part(0), part(1), part(2), 255};
+}
+
 /// Returns false on failure: `message` then has the reason, unless the size is the reason.
 bool decode_jpeg(JpegDecoder& decoder, std::span<const std::byte> bytes) {
   if (setjmp(decoder.escape) != 0) return false;
@@ -62,16 +71,20 @@ bool decode_jpeg(JpegDecoder& decoder, std::span<const std::byte> bytes) {
   decoder.width = decoder.jpeg.image_width;
   decoder.height = decoder.jpeg.image_height;
   if (std::max(decoder.width, decoder.height) > decoder.largest_side) return false;
-  decoder.jpeg.out_color_space = JCS_RGB;
+  // libjpeg converts YCCK to CMYK, and neither to RGB.
+  const bool inks = decoder.jpeg.jpeg_color_space == JCS_CMYK || decoder.jpeg.jpeg_color_space == JCS_YCCK;
+  decoder.jpeg.out_color_space = inks ? JCS_CMYK : JCS_RGB;
+  const std::size_t channels = inks ? 4 : kJpegChannels;
   jpeg_start_decompress(&decoder.jpeg);
-  decoder.row.resize(kJpegChannels * decoder.width);
+  decoder.row.resize(channels * decoder.width);
   decoder.image.pixels.reserve(std::size_t{decoder.width} * decoder.height);
   decoder.rows = decoder.row.data();
   while (decoder.jpeg.output_scanline < decoder.jpeg.output_height) {
     jpeg_read_scanlines(&decoder.jpeg, &decoder.rows, 1);
     for (std::size_t x = 0; x < decoder.width; ++x) {
-      const JSAMPLE* texel = &decoder.row[kJpegChannels * x];
-      decoder.image.pixels.push_back({texel[0], texel[1], texel[2], 255});
+      const JSAMPLE* texel = &decoder.row[channels * x];
+      decoder.image.pixels.push_back(inks ? color_of_inks(texel, decoder.jpeg.saw_Adobe_marker != 0)
+                                          : std::array<std::uint8_t, 4>{texel[0], texel[1], texel[2], 255});
     }
   }
   jpeg_finish_decompress(&decoder.jpeg);

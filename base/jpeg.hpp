@@ -13,9 +13,10 @@ namespace penumbra {
 /// Returns whether the bytes begin as a JPEG file does.
 bool looks_like_jpeg(std::span<const std::byte> bytes);
 
-/// Decodes a JPEG picture to 8 bits, alpha 255, with libjpeg's defaults. Throws InputError for bytes that are not a
-/// JPEG file, are damaged, have colours that are neither grey nor RGB (CMYK), or have a side of more than
-/// `largest_side` pixels, which is checked before anything is decoded.
+/// Decodes a JPEG picture to 8 bits, alpha 255, with libjpeg's defaults. CMYK and YCCK become RGB without a colour
+/// profile; with Adobe's marker their values are inverted. Throws InputError for bytes that are not a
+/// JPEG file, are damaged, or have a side of more than `largest_side` pixels, which is checked before anything is
+/// decoded.
 RgbaImage decode_rgba_jpeg(std::span<const std::byte> bytes, std::uint32_t largest_side);
 
 /// Returns the picture as a JPEG file in memory, with colours at full resolution, for display; `quality` from 1 to 100.

@@ -116,12 +116,6 @@ class Complaints : public Assimp::LogStream {
   std::size_t more_ = 0;
 };
 
-std::string supported_extensions(const Assimp::Importer& importer) {
-  std::string list;
-  importer.GetExtensionList(list);
-  return list;
-}
-
 /// Returns the format recognised by the file's first bytes, for files with a misleading extension; nullopt if unknown.
 std::optional<std::string_view> sniff(std::string_view content) {
   if (content.starts_with("glTF")) return ".glb";
@@ -160,7 +154,8 @@ mesh::ImportedMesh read_with_assimp(const mesh::InputFile& input, const std::str
   importer.SetIOHandler(std::make_unique<FolderOnly>(input, content).release());  // the importer takes ownership
   importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);            // no generated geometry for bones
   if (!extension.empty() && !importer.IsExtensionSupported(extension)) {
-    throw InputError("{}: no importer for '{}' files; known are {}", file, extension, supported_extensions(importer));
+    throw InputError("{}: no importer for '{}' files; export the mesh as OBJ, PLY, STL or glTF 2.0 (.glb)", file,
+                     extension);
   }
   // Post-processing is off: some of its steps drop faces.
   const aiScene* scene = importer.ReadFile(shown_to_assimp, 0);
@@ -212,9 +207,19 @@ mesh::ImportedMesh read_collada(const mesh::InputFile& input, const std::string&
 
 /// File formats that artists use, and that no library on this system reads.
 void refuse_unknown(const std::string& extension, const std::string& file) {
-  for (const auto& [known, name] :
-       {std::pair(".usd", "USD"), {".usda", "USD"}, {".usdc", "USD"}, {".usdz", "USD"}, {".abc", "Alembic"}}) {
-    if (extension == known) throw InputError("{}: {} is not read; export the scene as glTF 2.0 (.glb)", file, name);
+  struct Format {
+    std::string_view extension, name, instead;
+  };
+  constexpr std::string_view kScene = "export the scene as glTF 2.0 (.glb)";
+  constexpr std::string_view kMesh = "export the mesh as X3D, OBJ or glTF 2.0 (.glb)";
+  for (const Format& format : {Format{".usd", "USD", kScene},
+                               {".usda", "USD", kScene},
+                               {".usdc", "USD", kScene},
+                               {".usdz", "USD", kScene},
+                               {".abc", "Alembic", kScene},
+                               {".wrl", "VRML", kMesh},
+                               {".vrml", "VRML", kMesh}}) {
+    if (extension == format.extension) throw InputError("{}: {} is not read; {}", file, format.name, format.instead);
   }
 }
 

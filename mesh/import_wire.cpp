@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mesh/import_wire.hpp"
 
+#include "base/utf8.hpp"
 #include "mesh/import.hpp"
 
 #include <glm/vec3.hpp>
@@ -14,27 +15,14 @@
 namespace penumbra::mesh {
 namespace {
 
-/// Returns the length of the well-formed UTF-8 sequence that `text` (not empty) starts with; 0 if it is ill-formed.
-std::size_t sequence_length(std::string_view text) {
-  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-  const unsigned char lead = byte(0);
-  const std::size_t length = lead < 0x80   ? 1
-                             : lead < 0xC2 ? 0
-                             : lead < 0xE0 ? 2
-                             : lead < 0xF0 ? 3
-                             : lead < 0xF5 ? 4
-                                           : 0;
-  if (length > text.size()) return 0;
-  for (std::size_t i = 1; i < length; ++i) {
-    if ((byte(i) & 0xC0) != 0x80) return 0;
-  }
-  // The second byte shows overlong forms, surrogates and code points beyond U+10FFFF.
-  if ((lead == 0xE0 && byte(1) < 0xA0) || (lead == 0xED && byte(1) > 0x9F) || (lead == 0xF0 && byte(1) < 0x90) ||
-      (lead == 0xF4 && byte(1) > 0x8F)) {
-    return 0;
-  }
-  if (lead == 0xC2 && byte(1) < 0xA0) return 0;  // C1 control characters: terminals interpret these, too
-  return length;
+/// Returns the length of the sequence that `text` starts with; 0 if it cannot be shown: terminals interpret control
+/// characters, those of C1, too.
+std::size_t printable_length(std::string_view text) {
+  const std::size_t length = utf8_length(text);
+  const auto first = static_cast<unsigned char>(text[0]);
+  const bool control = length == 1 ? first < 0x20 || first == 0x7F
+                                   : first == 0xC2 && length == 2 && static_cast<unsigned char>(text[1]) < 0xA0;
+  return control ? 0 : length;
 }
 
 }  // namespace
@@ -43,9 +31,8 @@ std::string printable(std::string_view text) {
   std::string result;
   result.reserve(text.size());
   while (!text.empty()) {
-    const std::size_t length = sequence_length(text);
-    const bool control = static_cast<unsigned char>(text[0]) < 0x20 || text[0] == 0x7F;
-    if (length == 0 || control) {
+    const std::size_t length = printable_length(text);
+    if (length == 0) {
       result += '?';
       text.remove_prefix(1);
     } else {

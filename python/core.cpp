@@ -24,6 +24,27 @@ namespace {
 using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
 using Indices = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>;
 
+/// Returns a message: names of files in it may have bytes that are not UTF-8, which become "\\xff".
+py::str message(std::string_view text) {
+  PyObject* const decoded =
+      PyUnicode_DecodeUTF8(text.data(), static_cast<py::ssize_t>(text.size()), "backslashreplace");
+  if (decoded == nullptr) throw py::error_already_set();
+  return py::reinterpret_steal<py::str>(decoded);
+}
+
+py::list messages(const std::vector<std::string>& texts) {
+  py::list list;
+  for (const std::string& text : texts) list.append(message(text));
+  return list;
+}
+
+/// Returns a file's name as Python's own functions give it.
+py::str file_name(const std::filesystem::path& file) {
+  PyObject* const decoded = PyUnicode_DecodeFSDefault(file.c_str());
+  if (decoded == nullptr) throw py::error_already_set();
+  return py::reinterpret_steal<py::str>(decoded);
+}
+
 std::vector<Vector> rows_of(const Doubles& array) {
   if (array.ndim() != 2 || array.shape(1) != 3) throw UsageError("vertices: expected an array of shape (V, 3)");
   std::vector<Vector> rows(static_cast<std::size_t>(array.shape(0)));
@@ -91,7 +112,7 @@ py::dict dict_of(const LightShape& shape) {
     }
     py::dict operator()(const Dome& d) const {
       return py::dict(py::arg("kind") = "dome", py::arg("up") = d.up, py::arg("rotate") = d.rotate,
-                      py::arg("half") = d.half, py::arg("image") = d.image.string(), py::arg("sampled") = d.sampled);
+                      py::arg("half") = d.half, py::arg("image") = file_name(d.image), py::arg("sampled") = d.sampled);
     }
   };
   return std::visit(Convert(), shape);
@@ -124,7 +145,7 @@ LightShape shape_of(const std::string& kind, const py::dict& d) {
     if (d.contains("up")) dome.up = wanted<Vector>(d, "up");
     if (d.contains("rotate")) dome.rotate = wanted<double>(d, "rotate");
     if (d.contains("half")) dome.half = wanted<bool>(d, "half");
-    if (d.contains("image")) dome.image = wanted<std::string>(d, "image");
+    if (d.contains("image")) dome.image = wanted<std::filesystem::path>(d, "image");
     if (d.contains("sampled")) dome.sampled = wanted<bool>(d, "sampled");
     return dome;
   }
@@ -143,10 +164,10 @@ RendererOptions options_of(std::string device, py::object log, py::object progre
   RendererOptions options;
   options.device = std::move(device);
   if (!log.is_none()) {
-    options.log = [log = std::move(log)](LogLevel level, std::string_view message) {
+    options.log = [log = std::move(log)](LogLevel level, std::string_view text) {
       constexpr std::array kNames = {"debug", "info", "warning", "error"};
       const py::gil_scoped_acquire locked;
-      log(kNames.at(static_cast<std::size_t>(level)), std::string(message));
+      log(kNames.at(static_cast<std::size_t>(level)), message(text));
     };
   }
   options.progress = [progress = std::move(progress)](std::string_view stage, double done) {
@@ -154,7 +175,9 @@ RendererOptions options_of(std::string device, py::object log, py::object progre
     if (PyErr_CheckSignals() != 0) throw py::error_already_set();
     if (progress.is_none()) return true;
     const py::object answer = progress(std::string(stage), done);
-    return answer.is_none() || answer.cast<bool>();
+    const int is_true = PyObject_IsTrue(answer.ptr());
+    if (is_true < 0) throw py::error_already_set();
+    return answer.is_none() || is_true == 1;
   };
   return options;
 }
@@ -176,15 +199,15 @@ PYBIND11_MODULE(_core, module) {
     try {
       std::rethrow_exception(std::move(thrown));
     } catch (const UsageError& e) {
-      PyErr_SetString(usage.ptr(), e.what());
+      PyErr_SetObject(usage.ptr(), message(e.what()).ptr());
     } catch (const InputError& e) {
-      PyErr_SetString(input.ptr(), e.what());
+      PyErr_SetObject(input.ptr(), message(e.what()).ptr());
     } catch (const ResourceError& e) {
-      PyErr_SetString(resource.ptr(), e.what());
+      PyErr_SetObject(resource.ptr(), message(e.what()).ptr());
     } catch (const Cancelled& e) {
-      PyErr_SetString(cancelled.ptr(), e.what());
+      PyErr_SetObject(cancelled.ptr(), message(e.what()).ptr());
     } catch (const Error& e) {
-      PyErr_SetString(error.ptr(), e.what());
+      PyErr_SetObject(error.ptr(), message(e.what()).ptr());
     }
   });
   using Unlocked = py::call_guard<py::gil_scoped_release>;
@@ -283,8 +306,15 @@ PYBIND11_MODULE(_core, module) {
       .def("triangle_count", &Scene::triangle_count)
       .def("size", &Scene::size)
       .def("set_size", &Scene::set_size)
-      .def("warnings", &Scene::warnings)
-      .def("save", &Scene::save, Unlocked());
+      .def("warnings", [](const Scene& scene) { return messages(scene.warnings()); })
+      .def("save", [](const Scene& scene, const std::filesystem::path& file) {
+        std::vector<std::string> warnings;
+        {
+          const py::gil_scoped_release unlocked;
+          warnings = scene.save(file);
+        }
+        return messages(warnings);
+      });
 
   py::class_<Picture>(module, "Picture")
       .def("width", &Picture::width)

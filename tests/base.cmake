@@ -5,5 +5,5 @@ find_package(OpenEXR REQUIRED)
 find_package(TBB REQUIRED)
 penumbra_test(base
   SOURCES unit/buckets.cpp unit/did_you_mean.cpp unit/exr.cpp unit/image.cpp unit/jpeg.cpp unit/kept_arrays.cpp unit/large_heap.cpp
-    unit/parallel.cpp unit/rgbe.cpp
+    unit/parallel.cpp unit/rgbe.cpp unit/utf8.cpp
   LIBRARIES penumbra_base JPEG::JPEG OpenEXR::OpenEXR TBB::tbb)

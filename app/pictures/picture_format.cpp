@@ -20,7 +20,8 @@ namespace {
 
 /// Reserved layer names: the picture's own layers, and the names under which programs show channels without a layer
 /// ("Combined" and "Depth" in Blender, the others in Nuke).
-constexpr std::array kOwnLayers = {"P",
+constexpr std::array kOwnLayers = {"",  // channels without a layer
+                                   "P",
                                    "Prel",
                                    "N",
                                    "object",
@@ -109,19 +110,29 @@ std::string list_of(std::span<const PictureChannel> channels, bool on_request) {
 
 std::vector<std::string> layer_names(std::span<const visibility::Light> lights) {
   std::set<std::string> taken(kOwnLayers.begin(), kOwnLayers.end());
-  std::vector<std::string> names;
-  for (const std::string& whole : whole_names(lights)) {
-    const std::string plain = without_dots(whole);
+  const std::vector<std::string> wholes = whole_names(lights);
+  std::vector<std::string> names(wholes.size());
+  const auto is_taken = [&](const std::string& name) {
+    return std::ranges::any_of(kEndings, [&](const char* end) { return taken.contains(name + end); });
+  };
+  const auto take = [&](std::size_t light, std::string name) {
+    for (const char* const end : kEndings) taken.insert(name + end);
+    names[light] = std::move(name);
+  };
+  // Names that can stay come first: what other lights are called does not change them.
+  for (std::size_t i = 0; i < wholes.size(); ++i) {
+    const bool stays = wholes[i] == cut(without_dots(wholes[i]), kLongestLayer);
+    if (stays && !is_taken(wholes[i])) take(i, wholes[i]);
+  }
+  for (std::size_t i = 0; i < wholes.size(); ++i) {
+    if (!names[i].empty()) continue;
+    const std::string plain = without_dots(wholes[i]);
     std::string name = cut(plain, kLongestLayer);
-    const auto is_taken = [&] {
-      return std::ranges::any_of(kEndings, [&](const char* end) { return taken.contains(name + end); });
-    };
-    for (int number = 2; is_taken(); ++number) {
+    for (int number = 2; is_taken(name); ++number) {
       const std::string end = fmt::format("_{}", number);
       name = cut(plain, kLongestLayer - end.size()) + end;
     }
-    for (const char* const end : kEndings) taken.insert(name + end);
-    names.push_back(name);
+    take(i, std::move(name));
   }
   return names;
 }

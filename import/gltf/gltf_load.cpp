@@ -19,6 +19,7 @@
 #include <deque>
 #include <limits>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -94,20 +95,32 @@ tinygltf::FsCallbacks confined_files(Confinement& confinement) {
   return files;
 }
 
-/// Decodes a URI's percent escapes.
+/// Returns the byte of a percent escape at the text's beginning; nullopt if there is none, or one of NUL, which no
+/// file's name has.
+std::optional<char> escaped_byte(std::string_view text) {
+  unsigned value = 0;
+  if (text.size() < 3 || text[0] != '%') return std::nullopt;
+  const bool is_hex = std::from_chars(text.data() + 1, text.data() + 3, value, 16).ptr == text.data() + 3;
+  return is_hex && value != 0 ? std::optional(static_cast<char>(value)) : std::nullopt;
+}
+
+/// Decodes a URI's percent escapes. A percent sign that begins no escape stands for itself.
 std::string decoded(std::string_view uri) {
   std::string text;
   for (std::size_t i = 0; i < uri.size(); ++i) {
-    unsigned value = 0;
-    const auto* end = uri.data() + i + 3;
-    if (uri[i] == '%' && i + 2 < uri.size() && std::from_chars(uri.data() + i + 1, end, value, 16).ptr == end) {
-      text += static_cast<char>(value);
-      i += 2;
-    } else {
-      text += uri[i];
-    }
+    const auto byte = escaped_byte(uri.substr(i));
+    text += byte.value_or(uri[i]);
+    if (byte) i += 2;
   }
   return text;
+}
+
+/// Returns whether each percent sign begins an escape.
+bool is_escaped(std::string_view uri) {
+  for (std::size_t at = uri.find('%'); at != std::string_view::npos; at = uri.find('%', at + 1)) {
+    if (!escaped_byte(uri.substr(at))) return false;
+  }
+  return true;
 }
 
 /// Returns a message without line ends, without the parser's numbers in brackets, and without the content of data URIs:
@@ -130,6 +143,31 @@ void forgive_default_binds(std::string& error) {
   constexpr std::string_view kComplaint = "'inverseBindMatrices' property is missing in Skin.\n";
   for (auto at = error.find(kComplaint); at != std::string::npos; at = error.find(kComplaint))
     error.erase(at, kComplaint.size());
+}
+
+/// Finds out which file each URI with percent signs means: the decoded name, or the name as it stands if that file
+/// alone exists, since some exporters do not escape a "50%20.bin". Writes its URI so that tinygltf, which decodes a
+/// "100%.bin" to other letters, finds the file. Returns whether a URI changed.
+bool settle_names(nlohmann::json& document, Confinement& confinement) {
+  bool changed = false;
+  for (const char* const list : {"buffers", "images"}) {
+    const auto found = document.find(list);
+    if (found == document.end() || !found->is_array()) continue;
+    for (nlohmann::json& owner : *found) {
+      if (!owner.is_object() || !owner.contains("uri") || !owner["uri"].is_string()) continue;
+      auto& uri = owner["uri"].get_ref<std::string&>();
+      if (uri.starts_with("data:") || uri.find('%') == std::string::npos) continue;
+      const std::string name = decoded(uri);
+      const bool as_it_stands = !confinement.open(name).is_open() && confinement.open(uri).is_open();
+      if (is_escaped(uri) && !as_it_stands) continue;
+      std::string escaped;
+      for (const char letter : as_it_stands ? uri : name)
+        escaped += letter == '%' ? "%25" : letter == '+' ? "%2B" : std::string(1, letter);
+      uri = escaped;
+      changed = true;
+    }
+  }
+  return changed;
 }
 
 /// Notes the number of bytes that each buffer takes from its file.
@@ -203,7 +241,8 @@ TakenOut load_gltf_model(const mesh::InputFile& input, const scenes::ReadOptions
     const GlbChunks chunks = binary ? glb_chunks(bytes, name) : GlbChunks{bytes, {}};
     bool is_utf8 = true;
     nlohmann::json document = document_of(chunks.json, name, is_utf8);
-    const bool mended = mend_gltf(document, name, options.lenient, taken_out) || !is_utf8;
+    bool mended = settle_names(document, confinement);
+    mended |= mend_gltf(document, name, options.lenient, taken_out) || !is_utf8;
     taken_out.no_utf8 = !is_utf8;
     note_lengths(document, confinement);
     const std::string text = mended ? document.dump() : std::string();

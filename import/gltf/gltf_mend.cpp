@@ -235,6 +235,19 @@ bool mend_draco(json& document, const std::string& file, bool lenient, TakenOut&
   return changed;
 }
 
+/// tinygltf reads a node's matrix if there is one, and its parts if not; so do three.js and Blender.
+void name_overruled(json& document, TakenOut& taken_out) {
+  const json* const nodes = array_of(document, "nodes");
+  for (std::size_t i = 0; nodes != nullptr && i < nodes->size(); ++i) {
+    const json& node = (*nodes)[i];
+    if (!node.contains("matrix")) continue;
+    if (!node.contains("translation") && !node.contains("rotation") && !node.contains("scale")) continue;
+    const auto name = node.find("name");
+    taken_out.overruled.push_back(name != node.end() && name->is_string() ? name->get<std::string>()
+                                                                          : fmt::format("node {}", i));
+  }
+}
+
 }  // namespace
 
 bool mend_gltf(json& document, const std::string& file, bool lenient, TakenOut& taken_out) {
@@ -247,6 +260,7 @@ bool mend_gltf(json& document, const std::string& file, bool lenient, TakenOut& 
   bool changed = mend_animations(document, taken_out);
   changed |= mend_uris(document, file);
   changed |= mend_draco(document, file, lenient, taken_out);
+  name_overruled(document, taken_out);
   return changed;
 }
 

@@ -20,6 +20,7 @@ struct TakenOut {
   std::vector<Pointer> pointers;          ///< each once
   std::size_t channels_without_node = 0;  ///< animation channels that glTF 2.0 (3.11) requires to ignore
   bool no_utf8 = false;                   ///< names had bytes that are not UTF-8, replaced by '?'
+  std::vector<std::string> overruled;     ///< nodes with a matrix beside translation, rotation or scale
   std::vector<std::string> compressed;    ///< primitives that exist only in compressed form; filled only if lenient
 };
 
@@ -31,7 +32,8 @@ struct TakenOut {
 /// buffers
 ///   the length of their data URI, which may be longer than `byteLength`;
 /// - primitives compressed with Draco that have an uncompressed copy use the copy; those without are refused
-///   (InputError with the primitive's place), or removed if `lenient`.
+///   (InputError with the primitive's place), or removed if `lenient`;
+/// - of a node with a matrix and translation, rotation or scale, which are exclusive (3.5.3), the matrix counts.
 /// Refuses files of which no part can be read without their compression (EXT_meshopt_compression). Returns whether the
 /// document changed. `file` is its name, for messages.
 bool mend_gltf(nlohmann::json& document, const std::string& file, bool lenient, TakenOut& taken_out);

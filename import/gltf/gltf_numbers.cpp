@@ -91,6 +91,11 @@ void check_place(const json& value, std::string_view rest, const std::string& po
   }
 }
 
+/// Returns whether an `asset.minVersion` (glTF 2.0, 5.9) is at most 2.0: "2.0", or "2" as some write.
+bool is_two_zero(const json& version) {
+  return version.is_string() && (version == "2.0" || version == "2");
+}
+
 }  // namespace
 
 void check_gltf_numbers(const json& document, const std::string& file) {
@@ -104,6 +109,10 @@ void check_gltf_numbers(const json& document, const std::string& file) {
   if (!version.is_string() || !version.get<std::string>().starts_with("2.")) {
     throw InputError("{}: /asset/version: glTF {} is not supported; export it again as glTF 2.0", file,
                      version.is_string() ? version.get<std::string>() : "of no version");
+  }
+  if (const auto least = asset->find("minVersion"); least != asset->end() && !is_two_zero(*least)) {
+    throw InputError("{}: /asset/minVersion: a reader of glTF {} is required; glTF 2.0 is what is read", file,
+                     least->is_string() ? least->get<std::string>() : least->dump());
   }
   constexpr std::uint64_t kInt = std::numeric_limits<std::int32_t>::max();
   for (const std::string_view place : kNumbers) check_place(document, place, "", {file, kInt});

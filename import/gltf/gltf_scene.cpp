@@ -90,6 +90,11 @@ class GltfScene {
       const bool moves = std::ranges::find(played, clip) != played.end() && changes_light(target);
       moves ? losses_.refuse(what, target) : losses_.mention(what, target);
     }
+    scenes::Losses overruled;
+    for (const std::string& node : taken_out.overruled)
+      overruled.mention("has a matrix together with translation, rotation or scale, of which the matrix alone is taken",
+                        node);
+    overruled.warn(scene_.warnings);
     if (taken_out.no_utf8) scene_.warnings.emplace_back("some names are no UTF-8; '?' stands for their letters");
     if (taken_out.channels_without_node > 0) {
       scene_.warnings.push_back(

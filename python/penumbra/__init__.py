@@ -8,20 +8,20 @@
 
 Lengths are in the scene's unit, Y is up, angles are in degrees. Arrays of a picture are read-only views of its memory, row
 by row from the top left. Calls release the interpreter's lock while they work, and Ctrl-C ends them. Errors are
-`penumbra.Error` with the command line's messages: `UsageError` for a call that cannot be meant, `InputError` for a scene or
-file that cannot be used, `ResourceError` where the machine refuses.
+`penumbra.Error` with the command line's messages: `UsageError` for a call that cannot be meant, arguments of a wrong type
+among them, `InputError` for a scene or file that cannot be used, `ResourceError` where the machine refuses.
 """
 
 from __future__ import annotations
 
-import copy as _copy
 import json as _json
 import os as _os
 import typing as _typing
+from collections.abc import Mapping as _Mapping
 
 import numpy as _np
 
-from . import _core
+from . import _arguments, _core
 from ._core import Cancelled, Error, InputError, ResourceError, UsageError
 
 __version__ = _core.version()
@@ -41,52 +41,14 @@ _SHAPES = {
     "sun": ("direction", "angle"),
     "dome": ("up", "rotate", "half", "image", "sampled"),
 }
+_PARTS = {  # of shapes: how each is checked
+    "center": _arguments.vector, "half_u": _arguments.vector, "half_v": _arguments.vector, "normal": _arguments.vector,
+    "direction": _arguments.vector, "up": _arguments.vector, "radius": _arguments.number, "angle": _arguments.number,
+    "rotate": _arguments.number, "half": _arguments.flag, "sampled": _arguments.flag,
+    "vertices": lambda name, value: _arguments.rows(name, value, "N").tolist(),
+    "image": lambda name, value: "" if value is None else _os.fsdecode(_arguments.path(name, value)),
+}
 _SPELLINGS = {"halfU": "half_u", "halfV": "half_v", "twoSided": "two_sided"}  # of scene files
-
-
-def _plain(value):
-    """Numpy numbers and arrays as JSON has them."""
-    if hasattr(value, "tolist"):
-        return value.tolist()
-    raise TypeError(f"{value!r} cannot stand in a scene")
-
-
-def _names(value):
-    return [] if value is None else [value] if isinstance(value, str) else list(value)
-
-
-def _size(size):
-    if size is None:
-        return 0, 0
-    try:
-        width, height = size
-        whole = all(int(side) == side and 1 <= side <= 0xffffffff for side in (width, height))
-    except (TypeError, ValueError, OverflowError):
-        whole = False
-    if not whole:
-        raise UsageError(f"size {size!r}: expected two whole numbers of pixels, at least 1")
-    return int(width), int(height)
-
-
-def _count(name, value):
-    """A whole number from 0 on, as int; None is 0."""
-    if value is None:
-        return 0
-    try:
-        count = int(value)
-    except (TypeError, ValueError, OverflowError):
-        count = -1
-    if count != value or not 0 <= count <= 0xffffffff:
-        raise UsageError(f"{name} {value!r}: expected a whole number, from 0 on")
-    return count
-
-
-def _faces(faces):
-    """Faces as an array of whole numbers; numpy would cut fractions off."""
-    faces = _np.asarray(faces)
-    if faces.dtype.kind not in "iu" and (faces.dtype.kind != "f" or not (_np.isfinite(faces) & (faces == _np.floor(faces))).all()):
-        raise UsageError(f"faces: expected whole numbers of vertices (F, 3), not {faces.dtype} with fractions or other values")
-    return faces
 
 
 class Instance(_typing.NamedTuple):
@@ -100,6 +62,8 @@ class Scene:
     """Triangle meshes, area lights and cameras: a value that can be changed and copied (`copy.copy`)."""
 
     def __init__(self, core=None):
+        if core is not None and not isinstance(core, _core.Scene):
+            raise UsageError(f"Scene({_arguments.shown(core)}): expected no argument; Scene.load reads a file, Scene.from_dict a dict")
         self._core = _core.Scene() if core is None else core
 
     def __copy__(self):
@@ -114,39 +78,43 @@ class Scene:
         """Reads a .json (penumbra-scene/1), .gltf or .glb file, or a mesh file. Around a mesh, and a glTF scene without
         lights, a studio is put (a light, a floor, a camera); with `studio` around any. `frame` is at frame / fps seconds of its animation; the
         other options are those of `penumbra render`."""
-        return cls(_core.Scene.load(_os.fspath(file), lenient, allow_outside, frame, fps, lamp_radius, sun_angle,
-                                    lumens_per_watt, _names(clips), studio))
+        arguments = _arguments
+        return cls(_core.Scene.load(
+            arguments.path("file", file), arguments.flag("lenient", lenient), arguments.flag("allow_outside", allow_outside),
+            arguments.finite("frame", frame), arguments.finite("fps", 24.0 if fps is None else fps),
+            arguments.finite("lamp_radius", lamp_radius), arguments.finite("sun_angle", sun_angle),
+            arguments.finite("lumens_per_watt", lumens_per_watt), arguments.names("clips", clips, numbers=True),
+            arguments.flag("studio", studio)))
 
     @classmethod
     def from_dict(cls, scene, folder=".", *, allow_outside=False):
         """Builds a scene from a dict as a penumbra-scene/1 file has it. A mesh may have arrays "vertices" (V, 3) and "faces"
         (F, 3) in place of a file or a shape. Names of files are relative to `folder`."""
+        if not isinstance(scene, _Mapping):
+            raise UsageError(f"Scene.from_dict({_arguments.shown(scene)}): expected a dict as a penumbra-scene/1 file has it")
         scene = dict(scene)
         scene.setdefault("format", "penumbra-scene/1")
         arrays = []
-        meshes = []
-        for index, mesh in enumerate(scene.get("meshes", [])):
-            if "vertices" in mesh or "faces" in mesh:
-                mesh = dict(mesh)
-                if not ("vertices" in mesh and "faces" in mesh):
-                    raise UsageError(f"mesh {index}: vertices and faces come together")
-                arrays.append((index, _np.asarray(mesh.pop("vertices"), float), _faces(mesh.pop("faces"))))
-                # The file's rules ask for a source; the arrays replace this one.
-                mesh["triangles"] = [[0, 0, 0, 1, 0, 0, 0, 1, 0]]
-            meshes.append(mesh)
-        scene["meshes"] = meshes
-        return cls(_core.Scene.parse(_json.dumps(scene, default=_plain), _os.fspath(folder), allow_outside, arrays))
+        meshes = scene.get("meshes", [])
+        if isinstance(meshes, (list, tuple)):
+            scene["meshes"] = [_without_arrays(index, mesh, arrays) for index, mesh in enumerate(meshes)]
+        text = _json.dumps(_arguments.plain(scene))
+        folder = _arguments.path("folder", folder, "a folder's name")
+        return cls(_core.Scene.parse(text, folder, _arguments.flag("allow_outside", allow_outside), arrays))
 
     def add_mesh(self, name, vertices, faces, *, color=(0.8, 0.8, 0.8), casts_shadow=True, receives_shadow=True):
         """Adds a mesh: vertices (V, 3), faces (F, 3). Returns its number."""
-        return self._core.add_mesh(name, vertices, _faces(faces), color, casts_shadow, receives_shadow)
+        return self._core.add_mesh(
+            _arguments.name_of("name", name), _arguments.rows("vertices", vertices), _arguments.faces("faces", faces),
+            _arguments.vector("color", color), _arguments.flag("casts_shadow", casts_shadow),
+            _arguments.flag("receives_shadow", receives_shadow))
 
     def add_instance(self, mesh, matrix):
         """Adds an instance of a mesh, by its name or number, which is stored once: `matrix` (4, 4), for column vectors, takes
         its vertices to the world. From its first instance on a mesh is there once for each of them, and no longer by itself.
         Returns an Instance, for set_transform."""
         mesh = self._mesh(mesh)
-        return Instance(mesh, self._core.add_instance(mesh, _np.asarray(matrix, float)))
+        return Instance(mesh, self._core.add_instance(mesh, _arguments.matrix("matrix", matrix)))
 
     def instance_count(self, mesh):
         """Returns how many instances a mesh has, by its name or number; 0: the mesh itself is in the scene."""
@@ -154,61 +122,74 @@ class Scene:
 
     def set_positions(self, mesh, vertices):
         """Other positions (V, 3) for the vertices of a mesh, by its name or number."""
-        self._core.set_positions(self._mesh(mesh), vertices)
+        self._core.set_positions(self._mesh(mesh), _arguments.rows("vertices", vertices))
 
     def set_transform(self, mesh, matrix):
         """Moves a mesh, by its name or number: `matrix` (4, 4), for column vectors, takes the positions that the mesh was
         added or read with to where they are; with instances, it moves them all. Of an Instance, it replaces the matrix."""
-        matrix = _np.asarray(matrix, float)
+        matrix = _arguments.matrix("matrix", matrix)
         if isinstance(mesh, Instance):
-            self._core.set_instance_transform(self._mesh(mesh.mesh), mesh.number, matrix)
+            number = _arguments.whole("number of the instance", mesh.number)
+            self._core.set_instance_transform(self._mesh(mesh.mesh), number, matrix)
         else:
             self._core.set_transform(self._mesh(mesh), matrix)
 
     def _mesh(self, mesh):
-        return self._core.mesh(mesh) if isinstance(mesh, str) else int(mesh)
+        expected = "a mesh's name, or its number from 0 on"
+        if isinstance(mesh, str):
+            return self._core.mesh(_arguments.text("mesh", mesh, expected))
+        if mesh is None:
+            raise UsageError(f"mesh None: expected {expected}")
+        return _arguments.whole("mesh", mesh, expected=expected)
 
     def add_light(self, name, kind, *, radiance=(10, 10, 10), two_sided=False, **shape):
         """Adds a light of a kind: rectangle(center, half_u, half_v), disk(center, normal, radius), ellipse(center, half_u,
         half_v), polygon(vertices), sphere(center, radius), sun(direction, angle) or dome(up, rotate, half, image, sampled), whose
         parts all have defaults."""
-        self._core.add_light(name, kind, _shape(kind, shape), tuple(radiance), two_sided)
+        self._core.add_light(_arguments.name_of("name", name), kind, _shape(kind, shape), _arguments.vector("radiance", radiance),
+                             _arguments.flag("two_sided", two_sided))
 
     def set_light(self, name, **changes):
         """Changes a light: parts of its shape, `radiance`, `two_sided`; `kind` and the whole of another shape."""
-        light = self._core.light(name)
+        light = self.light(name)
         changes = {_SPELLINGS.get(key, key): value for key, value in changes.items()}
-        options = {key: changes.pop(key) for key in ("radiance", "two_sided") if key in changes}
+        has_options = "radiance" in changes or "two_sided" in changes
+        radiance = _arguments.vector("radiance", changes.pop("radiance", light["radiance"]))
+        two_sided = _arguments.flag("two_sided", changes.pop("two_sided", light["two_sided"]))
         kind = changes.pop("kind", light["kind"])
-        shape = changes if kind != light["kind"] else {
-            key: changes.get(key, light[key]) for key in light if key not in ("kind", "radiance", "two_sided")} | changes
-        def set_options(values):
-            self._core.set_light_options(name, tuple(values["radiance"]), bool(values["two_sided"]))
-
-        if options:
-            set_options({**light, **options})
-        if changes or kind != light["kind"]:
+        if not isinstance(kind, str):
+            raise _unknown_kind(kind)
+        # kind and the whole of a shape, or parts of the shape that is there
+        kept = {} if kind != light["kind"] else {key: light[key] for key in light if key not in ("kind", "radiance", "two_sided")}
+        shape = _shape(kind, kept | changes) if changes or kind != light["kind"] else None
+        if has_options:
+            self._core.set_light_options(name, radiance, two_sided)
+        if shape is not None:
             try:
-                self._core.set_light_shape(name, kind, _shape(kind, shape))
+                self._core.set_light_shape(name, kind, shape)
             except Exception:
-                set_options(light)  # both or neither
+                if has_options:
+                    self._core.set_light_options(name, light["radiance"], light["two_sided"])  # both or neither
                 raise
 
     def remove_light(self, name):
-        self._core.remove_light(name)
+        self._core.remove_light(_arguments.name_of("name", name))
 
     def light(self, name):
         """A dict of the light: its kind, shape, radiance and two_sided."""
-        return self._core.light(name)
+        return self._core.light(_arguments.name_of("name", name))
 
     def set_camera(self, eye, target, up=(0, 1, 0), vertical_fov=45.0, height=None, name="camera", *,
                    aperture=0.0, focus_distance=None):
         """Adds a camera, or replaces that of the same name; it looks by default. `height` makes it orthographic. `aperture`:
         radius of a thin lens, sharp at `focus_distance` along the view axis (by default the target's), of pictures of several
         view samples a pixel; 0: everything is sharp."""
+        eye, target = _arguments.vector("eye", eye), _arguments.vector("target", target)
         if focus_distance is None:
             focus_distance = float(_np.linalg.norm(_np.subtract(eye, target)))
-        self._core.set_camera(tuple(eye), tuple(target), tuple(up), vertical_fov, height, name, aperture, focus_distance)
+        self._core.set_camera(eye, target, _arguments.vector("up", up), _arguments.number("vertical_fov", vertical_fov),
+                              None if height is None else _arguments.number("height", height), _arguments.name_of("name", name),
+                              _arguments.number("aperture", aperture), _arguments.number("focus_distance", focus_distance))
 
     @property
     def meshes(self):
@@ -233,7 +214,7 @@ class Scene:
 
     @size.setter
     def size(self, size):
-        self._core.set_size(*_size(size))
+        self._core.set_size(*_arguments.size(size))
 
     @property
     def warnings(self):
@@ -242,23 +223,38 @@ class Scene:
 
     def save(self, file):
         """Writes .json, .glb or .obj; returns warnings about what the format cannot hold."""
-        return self._core.save(_os.fspath(file))
+        return self._core.save(_arguments.path("file", file))
 
     def __repr__(self):
         return f"<penumbra.Scene: {self.triangle_count} triangles, lights {self.lights}, cameras {self.cameras}>"
 
 
+def _without_arrays(index, mesh, arrays):
+    """A mesh of a scene's dict with something in place of its arrays, which are added to `arrays`."""
+    if not isinstance(mesh, _Mapping) or not ("vertices" in mesh or "faces" in mesh):
+        return mesh
+    if not ("vertices" in mesh and "faces" in mesh):
+        raise UsageError(f"/meshes/{index}: vertices and faces come together")
+    mesh = dict(mesh)
+    vertices = _arguments.rows(f"/meshes/{index}/vertices", mesh.pop("vertices"))
+    arrays.append((index, vertices, _arguments.faces(f"/meshes/{index}/faces", mesh.pop("faces"))))
+    # The file's rules ask for a source; the arrays replace this one.
+    mesh["triangles"] = [[0, 0, 0, 1, 0, 0, 0, 1, 0]]
+    return mesh
+
+
+def _unknown_kind(kind):
+    return UsageError(f'light of kind {_arguments.shown(kind)}: expected {", ".join(_SHAPES)}')
+
+
 def _shape(kind, given):
-    if kind not in _SHAPES:
-        raise UsageError(f'light of kind "{kind}": expected {", ".join(_SHAPES)}')
+    if not isinstance(kind, str) or kind not in _SHAPES:
+        raise _unknown_kind(kind)
     shape = {_SPELLINGS.get(key, key): value for key, value in given.items()}
     for key in shape:
         if key not in _SHAPES[kind]:
             raise UsageError(f'a {kind} light has no "{key}"; it has {", ".join(_SHAPES[kind])}')
-    if shape.get("image") is not None:
-        shape["image"] = _os.fspath(shape["image"])
-    as_tuple = lambda value: value if _np.isscalar(value) else _np.asarray(value, float).tolist()
-    return {key: as_tuple(value) for key, value in shape.items()}
+    return {key: _PARTS[key](key, value) for key, value in shape.items()}
 
 
 class LightPicture:
@@ -359,7 +355,8 @@ class Renderer:
     def __init__(self, scene, *, device="", log=None, progress=None):
         """`device`: part of a Vulkan device's name, its index, or "cpu". `log(level, message)` gets messages,
         `progress(stage, done)` is called many times a second; the call ends with Cancelled if it returns False."""
-        self._core = _core.Renderer(_as_scene(scene)._core, device, log, progress)
+        self._core = _core.Renderer(_as_scene(scene)._core, _device(device), _arguments.function("log", log),
+                                    _arguments.function("progress", progress))
         self._scene = Scene(self._core.scene())
 
     @property
@@ -389,28 +386,33 @@ class Renderer:
         to be at most `pixel_tolerance` (0: none). A light is left out, with V = 0, where with nothing in between it would be at
         most the share `light_cutoff` of all lights together, in each of red, green and blue. `instances`: "copies", "shared"
         (without copies), or "auto": what costs less. All give the same picture."""
+        normals = _arguments.text("normals", normals)
         if normals not in ("shading", "geometric"):
             raise UsageError(f'normals "{normals}": expected shading or geometric')
-        width, height = _size(size)
-        texts = {str(key): _text(value) for key, value in (options or {}).items()}
-        return Picture(self._core.render(width, height, method or "", texts, _count("light_samples", light_samples), sample_pattern,
-                                         _count("sample_seed", sample_seed), _names(light), camera or "",
-                                         _count("pixel_samples", pixel_samples), pixel_tolerance,
-                                         light_cutoff, normals == "shading", masks, instances))
+        arguments = _arguments
+        width, height = arguments.size(size)
+        return Picture(self._core.render(
+            width, height, arguments.text("method", method, "a method's name"), arguments.options("options", options),
+            arguments.whole("light_samples", light_samples), arguments.text("sample_pattern", sample_pattern),
+            arguments.whole("sample_seed", sample_seed), arguments.names("light", light),
+            arguments.text("camera", camera, "a camera's name"), arguments.whole("pixel_samples", pixel_samples),
+            arguments.number("pixel_tolerance", pixel_tolerance), arguments.number("light_cutoff", light_cutoff),
+            normals == "shading", arguments.flag("masks", masks), arguments.text("instances", instances)))
 
 
-def _text(value):
-    if isinstance(value, bool):
-        return "on" if value else "off"
-    return str(value)
+def _device(device):
+    """Part of a device's name, or its index."""
+    if isinstance(device, int) and not isinstance(device, bool):
+        return str(device)
+    return _arguments.text("device", device, "part of a device's name, its index, or \"cpu\"")
 
 
 def _as_scene(scene):
     if isinstance(scene, Scene):
         return scene
-    if isinstance(scene, dict):
+    if isinstance(scene, _Mapping):
         return Scene.from_dict(scene)
-    return load(scene)
+    return load(_arguments.path("scene", scene, "a Scene, a dict (Scene.from_dict) or a file's name"))
 
 
 def load(file, **options):
@@ -432,13 +434,19 @@ def compare(scene, methods="default", *, reference="raytrace", reference_samples
     such as "edge-scatter:rows=exact"): a list of dicts as metrics.json's
     `methods` has them. `methods`: entries "NAME:key=value:…", or the groups geometry, image, all, default. `out`: a folder
     for pictures and the report."""
-    width, height = _size(size)
-    if not _names(methods):
+    arguments = _arguments
+    width, height = arguments.size(size)
+    entries = arguments.names("methods", methods, "an entry such as \"pcss:size=512\", a group, or a list of them")
+    if not entries:
         raise UsageError("methods: expected one or more entries, or a group")
-    text = _core.compare_json(_as_scene(scene)._core, _names(methods), reference, str(reference_samples), width, height,
-                              _count("light_samples", light_samples), sample_pattern, _names(light), camera,
-                              _count("runs", runs), error_budget, _os.fspath(out),
-                              device, log, progress)
+    if not isinstance(reference_samples, str):
+        reference_samples = arguments.whole("reference_samples", reference_samples, 1, 'a whole number, from 1 on, or "same"')
+    text = _core.compare_json(
+        _as_scene(scene)._core, entries, arguments.text("reference", reference), arguments.text("reference_samples", str(reference_samples)),
+        width, height, arguments.whole("light_samples", light_samples), arguments.text("sample_pattern", sample_pattern),
+        arguments.names("light", light), arguments.text("camera", camera, "a camera's name"), arguments.whole("runs", runs),
+        arguments.flag("error_budget", error_budget), arguments.path("out", "" if out is None else out, "a folder's name"),
+        _device(device), arguments.function("log", log), arguments.function("progress", progress))
     return _json.loads(text)["methods"]
 
 
@@ -464,36 +472,53 @@ def add_method(name, function, *, family="image", masks=False, lights=tuple(_SHA
     array (K, N): does pixel k see light sample j? `options`: a dict of names to (default, least, most) for numbers, whole
     if all three are int, or to a list of strings, the first of which is the default. `family`: "image" or "geometry".
     `lights`: kinds that it does; `textures`: V is weighted by light["weights"]. What the function raises ends the call."""
+    name = _arguments.name_of("name", name)
+    _arguments.function(f"method {name!r}: function", function, optional=False)
+    masks = _arguments.flag("masks", masks)
+    if not (options is None or isinstance(options, _Mapping)):
+        raise UsageError(f"options {_arguments.shown(options)}: expected a dict of names to (default, least, most) or a list of texts")
     described, types = [], {}
     for key, values in (options or {}).items():
-        if isinstance(values, list):
+        key = _arguments.name_of("options: the key", key)
+        if isinstance(values, list) and values and all(isinstance(value, str) for value in values):
             described.append(dict(name=key, default=values[0], choices=values, least=0.0, most=0.0, whole=False))
             types[key] = str
-        else:
+        elif isinstance(values, (tuple, list)) and len(values) == 3:
             default, least, most = values
-            whole = all(isinstance(value, int) for value in values)
-            described.append(dict(name=key, default=str(default), choices=[], least=float(least), most=float(most), whole=whole))
+            numbers = [_arguments.finite(f"options: {key}", value) for value in (default, least, most) if value is not None]
+            if len(numbers) != 3:
+                raise UsageError(f"options: {key} {values!r}: expected three numbers (default, least, most)")
+            whole = all(isinstance(value, (int, _np.integer)) for value in values)
+            described.append(dict(name=key, default=str(default), choices=[], least=numbers[1], most=numbers[2], whole=whole))
             types[key] = int if whole else float
+        else:
+            raise UsageError(f"options: {key} {_arguments.shown(values)}: expected (default, least, most), or a list of texts")
 
     def ask(values):
-        return function(Question(values), **{key: types[key](text) for key, text in values["options"].items()})
+        given = {key: types[key](text) for key, text in values["options"].items()}
+        return _arguments.values_of(f"method {name!r}", function(Question(values), **given), masks)
 
-    _core.add_method(name, ask, family, paper, exact_for, masks, _names(lights), textures, described)
+    _core.add_method(name, ask, _arguments.text("family", family), _arguments.text("paper", paper),
+                     _arguments.text("exact_for", exact_for), masks, _arguments.names("lights", lights, "kinds of lights"),
+                     _arguments.flag("textures", textures), described)
 
 
 def inspect(mesh, faces=None, *, weld=0.0, self_intersections=True, list_limit=100, log=None, progress=None):
     """Returns a mesh's defects and each method's verdict on it, as the dict that `penumbra inspect --json` prints. `mesh`: a
     file, or vertices (V, 3) with `faces` (F, 3). `log` and `progress` as of Renderer."""
+    options = (_arguments.number("weld", weld), _arguments.flag("self_intersections", self_intersections),
+               _arguments.whole("list_limit", list_limit), _arguments.function("log", log), _arguments.function("progress", progress))
     if faces is None:
-        text = _core.inspect_file(_os.fspath(mesh), weld, self_intersections, list_limit, log, progress)
-    else:
-        text = _core.inspect_arrays(mesh, _faces(faces), weld, self_intersections, list_limit, log, progress)
-    return _json.loads(text)
+        file = _arguments.path("mesh", mesh, "a file's name, or vertices together with `faces`")
+        return _json.loads(_core.inspect_file(file, *options))
+    return _json.loads(_core.inspect_arrays(_arguments.rows("vertices", mesh), _arguments.faces("faces", faces), *options))
 
 
 def wedges(scene, light="", *, construction="original", from_="centre", validate=False):
     """The penumbra wedges of a light: a dict as `penumbra wedges --json` writes it."""
-    return _json.loads(_core.wedges_json(_as_scene(scene)._core, light, construction, from_, validate))
+    return _json.loads(_core.wedges_json(
+        _as_scene(scene)._core, _arguments.text("light", light, "a light's name"), _arguments.text("construction", construction),
+        _arguments.text("from_", from_), _arguments.flag("validate", validate)))
 
 
 def methods():

@@ -26,7 +26,7 @@ class Scene:
     @classmethod
     def load(cls, file: _Path, *, lenient: bool = ..., allow_outside: bool = ..., frame: Optional[float] = ...,
              fps: float = ..., lamp_radius: Optional[float] = ..., sun_angle: Optional[float] = ...,
-             lumens_per_watt: Optional[float] = ..., clips: Union[str, Sequence[str]] = ...,
+             lumens_per_watt: Optional[float] = ..., clips: Union[str, int, Sequence[Union[str, int]]] = ...,
              studio: bool = ...) -> Scene: ...
     @classmethod
     def from_dict(cls, scene: Mapping[str, Any], folder: _Path = ..., *, allow_outside: bool = ...) -> Scene: ...
@@ -95,28 +95,28 @@ _Scene = Union[Scene, Mapping[str, Any], _Path]
 
 class Renderer:
     scene: Scene
-    def __init__(self, scene: _Scene, *, device: str = ..., log: Optional[_Log] = ...,
+    def __init__(self, scene: _Scene, *, device: Union[str, int] = ..., log: Optional[_Log] = ...,
                  progress: Optional[_Progress] = ...) -> None: ...
     def set_light(self, name: str, **changes: Any) -> None: ...
     def set_camera(self, eye: Sequence[float], target: Sequence[float], up: Sequence[float] = ...,
                    vertical_fov: float = ..., height: Optional[float] = ..., name: str = ..., *,
                    aperture: float = ..., focus_distance: Optional[float] = ...) -> None: ...
     def set_transform(self, mesh: Union[str, int, Instance], matrix: ArrayLike) -> None: ...
-    def render(self, size: Optional[Sequence[int]] = ..., method: str = ..., light_samples: int = ...,
+    def render(self, size: Optional[Sequence[int]] = ..., method: Optional[str] = ..., light_samples: int = ...,
                options: Optional[Mapping[str, Any]] = ..., light: Union[None, str, Sequence[str]] = ...,
-               camera: str = ..., *, sample_pattern: str = ..., sample_seed: int = ..., pixel_samples: int = ...,
+               camera: Optional[str] = ..., *, sample_pattern: str = ..., sample_seed: int = ..., pixel_samples: int = ...,
                pixel_tolerance: float = ..., light_cutoff: float = ..., normals: str = ..., masks: bool = ...,
                instances: str = ...) -> Picture: ...
 
 def load(file: _Path, **options: Any) -> Scene: ...
-def render(scene: _Scene, size: Optional[Sequence[int]] = ..., method: str = ..., light_samples: int = ...,
-           options: Optional[Mapping[str, Any]] = ..., light: Union[None, str, Sequence[str]] = ..., camera: str = ...,
-           *, device: str = ..., log: Optional[_Log] = ..., progress: Optional[_Progress] = ...,
+def render(scene: _Scene, size: Optional[Sequence[int]] = ..., method: Optional[str] = ..., light_samples: int = ...,
+           options: Optional[Mapping[str, Any]] = ..., light: Union[None, str, Sequence[str]] = ..., camera: Optional[str] = ...,
+           *, device: Union[str, int] = ..., log: Optional[_Log] = ..., progress: Optional[_Progress] = ...,
            **more: Any) -> Picture: ...
 def compare(scene: _Scene, methods: Union[str, Sequence[str]] = ..., *, reference: str = ...,
             reference_samples: Union[int, str] = ..., size: Optional[Sequence[int]] = ..., light_samples: int = ...,
-            sample_pattern: str = ..., light: Union[None, str, Sequence[str]] = ..., camera: str = ..., runs: int = ...,
-            error_budget: bool = ..., out: _Path = ..., device: str = ..., log: Optional[_Log] = ...,
+            sample_pattern: str = ..., light: Union[None, str, Sequence[str]] = ..., camera: Optional[str] = ..., runs: int = ...,
+            error_budget: bool = ..., out: _Path = ..., device: Union[str, int] = ..., log: Optional[_Log] = ...,
             progress: Optional[_Progress] = ...) -> list[dict[str, Any]]: ...
 class Question:
     options: dict[str, str]

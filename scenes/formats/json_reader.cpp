@@ -4,6 +4,7 @@
 #include "base/did_you_mean.hpp"
 #include "base/error.hpp"
 #include "base/memory.hpp"
+#include "base/utf8.hpp"
 #include "mesh/soup_memory.hpp"
 #include "scenes/formats/checks.hpp"
 #include "scenes/formats/json_document.hpp"
@@ -260,6 +261,17 @@ void append(mesh::TriangleSoup& soup, mesh::TriangleSoup mesh, std::uint32_t obj
   soup.source_face.insert(soup.source_face.end(), mesh.source_face.begin(), mesh.source_face.end());
 }
 
+/// Comes before all other rules, which another version of the format may not have.
+void require_version(const json& document, const std::string& file) {
+  constexpr std::string_view kVersions = "penumbra-scene/", kRead = "penumbra-scene/1";
+  if (!document.is_object() || !document.contains("format") || !document["format"].is_string()) return;
+  const auto& format = document["format"].get_ref<const std::string&>();
+  if (format.starts_with(kVersions) && format != kRead) {
+    throw InputError("{}: /format: \"{}\" is another version of the format; this program reads \"{}\" alone", file,
+                     on_one_line(format), kRead);
+  }
+}
+
 }  // namespace
 
 Scene read_json(const std::filesystem::path& file, const ReadOptions& options) {
@@ -268,6 +280,7 @@ Scene read_json(const std::filesystem::path& file, const ReadOptions& options) {
 
 Scene read_json_text(std::string_view text, const std::filesystem::path& file, const ReadOptions& options) {
   json document = parse_json(text, file.string());
+  require_version(document, file.string());
   enforce_schema(document, file.string());
 
   const Place root{file.string(), {}};

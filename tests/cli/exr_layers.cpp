@@ -63,7 +63,7 @@ TEST_F(Layers, EachLightHasItsOwn) {
   scene_with({"Plane.001", "a/b", "a_b", "N", "N_2_V"});
   const ExrFile all = render();
   const json lights = json::parse(all.attributes.at("penumbra.lights"));
-  const std::vector<std::string> layers = {"Plane_001", "a_b", "a_b_2", "N_2", "N_2_V_2"};
+  const std::vector<std::string> layers = {"Plane_001", "a_b_2", "a_b", "N_3", "N_2_V"};
   ASSERT_EQ(lights.size(), layers.size());
   for (const std::string& name : all.channel_names) {
     EXPECT_LE(std::ranges::count(name, '.'), 1) << name << ": Blender drops it";
@@ -90,6 +90,25 @@ TEST_F(Layers, EachLightHasItsOwn) {
   const Outcome twice = run({"render", path("scene.json"), "-o", path("x.exr"), "--light", "N", "--light", "N"});
   EXPECT_EQ(twice.code, 2);
   EXPECT_THAT(twice.err, HasSubstr("twice"));
+}
+
+TEST_F(Layers, NamesCanBeForetold) {
+  const auto layers_of = [&](const std::vector<std::string>& names) {
+    std::vector<visibility::Light> lights(names.size());
+    for (std::size_t i = 0; i < names.size(); ++i) lights[i].name = names[i];
+    return app::layer_names(lights);
+  };
+  using Names = std::vector<std::string>;
+  // Names that can be layers stay, whatever comes before them.
+  EXPECT_EQ(layers_of({"N", "N_2", "a.b", "a_b", "V", "Z", "id", "R"}),
+            (Names{"N_3", "N_2", "a_b_2", "a_b", "V", "Z", "id", "R"}));
+  EXPECT_EQ(layers_of({"a_b", "a.b", "a/b", "N_2", "N"}), (Names{"a_b", "a_b_2", "a_b_3", "N_2", "N_3"}));
+  for (const char* name : {"P", "Prel", "N", "object", "material", "triangle", "CryptoObject00", "Combined", "rgba"})
+    EXPECT_EQ(layers_of({name}), (Names{std::string(name) + "_2"}));
+  EXPECT_EQ(layers_of({"key", "key_V", "key_light"}), (Names{"key", "key_V_2", "key_light_2"}));
+  EXPECT_EQ(layers_of({std::string(60, 'x'), std::string(44, 'x')}),
+            (Names{std::string(42, 'x') + "_2", std::string(44, 'x')}));
+  EXPECT_EQ(layers_of({"", "."}), (Names{"_2", "_"}));
 }
 
 TEST_F(Layers, ThoseAskedForAreWritten) {

@@ -69,6 +69,65 @@ TEST_F(GltfAsWritten, BuffersMayBeLongerThanTheySay) {
   EXPECT_THAT(refusal_of_text(gltf), HasSubstr("short.bin"));
 }
 
+/// A percent sign that begins no escape, or one of a file's own name.
+TEST_F(GltfAsWritten, PercentSignsOfNames) {
+  Gltf gltf;
+  Gltf moved;  // other content: the triangle's second vertex
+  moved.data.replace(12, 4, bytes_of(2.f));
+  const auto second = [&](const std::string& uri) {
+    gltf.at("/buffers/0") = {{"byteLength", gltf.data.size()}, {"uri", uri}};
+    return read_text(gltf).soup.positions[1].x;
+  };
+  write("100%.bin", gltf.data);
+  EXPECT_EQ(second("100%.bin"), 1);
+  EXPECT_EQ(second("100%25.bin"), 1);
+  write("a+b 5%z.bin", gltf.data);
+  EXPECT_EQ(second("a+b%205%z.bin"), 1) << "escapes beside a sign that is none";
+  write("50%20.bin", gltf.data);
+  EXPECT_EQ(second("50%20.bin"), 1) << "the only file";
+  write("50 .bin", moved.data);
+  EXPECT_EQ(second("50%20.bin"), 2) << "what the escape means goes first";
+  EXPECT_EQ(second("50%2520.bin"), 1);
+  gltf.at("/buffers/0/uri") = "none%.bin";
+  EXPECT_THAT(refusal_of_text(gltf), HasSubstr("none%.bin"));
+  write("100%.bin%00", gltf.data);
+  gltf.at("/buffers/0/uri") = "50 .bin%00x";
+  EXPECT_THAT(refusal_of_text(gltf), HasSubstr("50 .bin%00x"));
+  // and of pictures
+  write("75%.png", "no picture");
+  Gltf painted;
+  painted.document["images"] = {{{"uri", "75%.png"}}};
+  painted.document["textures"] = {{{"source", 0}}};
+  painted.at("/materials/0/pbrMetallicRoughness")["baseColorTexture"] = {{"index", 0}};
+  EXPECT_THAT(read(painted).warnings, Contains(HasSubstr("Not a PNG file")));
+}
+
+TEST_F(GltfAsWritten, LeastVersions) {
+  Gltf gltf;
+  gltf.at("/asset")["minVersion"] = "2.0";
+  EXPECT_EQ(read(gltf).soup.triangles.size(), 3u);
+  for (const json& least : {json("2.1"), json("3.0"), json("20"), json(3.0)}) {
+    gltf.at("/asset")["minVersion"] = least;
+    EXPECT_THAT(refusal(gltf), HasSubstr("/asset/minVersion: a reader of glTF ")) << least;
+  }
+  gltf.at("/asset")["version"] = "2.1";
+  gltf.at("/asset").erase("minVersion");
+  EXPECT_EQ(read(gltf).soup.triangles.size(), 3u) << "a later file that asks for no more than 2.0";
+}
+
+/// A node with both is not valid; the matrix counts, as in three.js and Blender.
+TEST_F(GltfAsWritten, MatricesBesideParts) {
+  Gltf gltf;
+  gltf.at("/nodes/0")["matrix"] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 5, 0, 0, 1};
+  EXPECT_THAT(read(gltf).warnings, Not(Contains(HasSubstr("matrix"))));
+  gltf.at("/nodes/0")["translation"] = {0, 7, 0};
+  gltf.at("/nodes/2")["matrix"] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+  const Scene scene = read(gltf);
+  EXPECT_EQ(scene.soup.positions[1], glm::dvec3(6, 0, 0));
+  EXPECT_THAT(scene.warnings, Contains("'Body', 'Camera' has a matrix together with translation, rotation or scale, "
+                                       "of which the matrix alone is taken"));
+}
+
 TEST_F(GltfAsWritten, NoMessageRepeatsADataUri) {
   Gltf gltf;
   const std::string secret(64, 'Q');

@@ -234,7 +234,8 @@ TEST_F(MeshImport, RefusesBadFilesWithTheirPlace) {
                  {"vertex 0 of triangle 0 is not finite"});
 
   expect_refused("name.obj", binary_ply<false>(), {".ply", "name wrong"});
-  expect_refused("letter.doc", "Dear reader", {"no importer for '.doc'", "*.obj"});
+  expect_refused("letter.doc", "Dear reader", {"no importer for '.doc'", "export the mesh as OBJ"});
+  expect_refused("old.wrl", "#VRML V1.0 ascii\n", {"VRML is not read; export the mesh as X3D, OBJ or glTF 2.0"});
   EXPECT_THAT(penumbra::test::input_error([&] { import_mesh(folder_ / "missing.obj"); }), HasSubstr("No such file"));
   EXPECT_THAT(penumbra::test::input_error([&] { import_mesh(folder_); }), HasSubstr("folder"));
   EXPECT_THAT(penumbra::test::input_error([&] { import_mesh("/dev/zero"); }), HasSubstr("not a regular file"));

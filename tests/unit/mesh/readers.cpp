@@ -290,6 +290,27 @@ TEST_F(MeshReaders, ThreeDsChunksThatPromiseMoreThanThereIs) {
   expect_refused("length.3ds", file(3, 4000000000u), {"chunk 0x4110 at byte 26", "says that it has 4000000044 bytes"});
 }
 
+/// Opacity of 3D Studio is a percentage of transparency.
+TEST_F(MeshReaders, ThreeDsMaterialsThatLetLightThroughAreNamed) {
+  const auto file = [](std::uint16_t percent, bool used) {
+    const std::string name("glass\0", 6);
+    const std::string material =
+        chunk_3ds(0xAFFF, chunk_3ds(0xA000, name) + chunk_3ds(0xA050, chunk_3ds(0x0030, bytes_of(percent))));
+    const std::string positions = bytes_of(std::uint16_t{3}, 0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 1.f, 0.f);
+    std::string faces =
+        bytes_of(std::uint16_t{1}, std::uint16_t{0}, std::uint16_t{1}, std::uint16_t{2}, std::uint16_t{0});
+    if (used) faces += chunk_3ds(0x4130, name + bytes_of(std::uint16_t{1}, std::uint16_t{0}));
+    const std::string mesh = chunk_3ds(0x4100, chunk_3ds(0x4110, positions) + chunk_3ds(0x4120, faces));
+    return chunk_3ds(0x4D4D, chunk_3ds(0x3D3D, material + chunk_3ds(0x4000, std::string("a\0", 2) + mesh)));
+  };
+  const auto named =
+      testing::Contains(HasSubstr("materials that let light through, which is not read of this format: 'glass';"));
+  EXPECT_THAT(read("half.3ds", file(50, true)).notes, named);
+  EXPECT_THAT(read("clear.3ds", file(100, true)).notes, named);
+  EXPECT_THAT(read("solid.3ds", file(0, true)).notes, testing::Not(named));
+  EXPECT_THAT(read("unused.3ds", file(50, false)).notes, testing::Not(named));
+}
+
 TEST_F(MeshReaders, LightWaveOfOldIsRefusedByName) {
   expect_refused("old.lwo", std::string("FORM\0\0\0\x04LWOB", 12), {"LWOB", "not supported"});
 }
