@@ -17,7 +17,7 @@ if [[ ${1:-} == --one ]]; then
   trap 'rm -rf -- "$work"' EXIT
   IFS=: read -ra words <<<"$entry"
   for word in "${words[@]:1}"; do options+=(--method-option "$word"); done
-  if [[ $entry == *forest* || $entry == *counter-bits* ]]; then samples=16; fi  # as many as such counters hold
+  if [[ $entry == *forest* || $entry == *counter-bits* ]]; then samples=16; fi  # the digests were taken with 16
   if [[ $scene == *.gltf ]]; then options+=(--frame 8 --lamp-radius 0.05 --sun-angle 2); fi  # in the midst of its animation
   if [[ $light != - ]]; then options+=(--light "$light"); fi
   command=("$build/penumbra" --quiet render "$scene" -o "$work/out.exr" --size 64x64 --method "${words[0]}" "${options[@]}"

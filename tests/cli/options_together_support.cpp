@@ -166,7 +166,7 @@ bool options_exclude(const std::string& method, const std::map<std::string, std:
   if (method == "depth-complexity") {
     const bool forest = is("variant", "forest"), on_device = forest || is("variant", "laine") || is("crop", "off"),
                searches = is("search", "kd-tree") || is("search", "hemicube");
-    return (forest && (options.contains("crop") || row["light-samples"] == "5x7")) ||
+    return (forest && options.contains("crop")) ||
            (!forest && (options.contains("counter-bits") || options.contains("as"))) ||
            (on_device && is("engine", "native")) ||
            ((on_device || is("engine", "vulkan") || searches) && !all_planar) ||

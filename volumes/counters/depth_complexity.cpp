@@ -39,7 +39,7 @@ constexpr visibility::ChoiceOption kVariant{
     {{"soup", Variant::soup}, {"laine", Variant::laine}, {"forest", Variant::forest}},
     Variant::soup,
     "soup: signed multiplicities, any mesh; laine: silhouettes and one reference ray, closed meshes; forest: "
-    "silhouettes of the light's centre and hard volumes, at most 16 light samples"};
+    "silhouettes of the light's centre and hard volumes, in a pass for each 32 light samples"};
 constexpr visibility::ChoiceOption kSearch{
     "search",
     {{"hierarchy", Search::hierarchy}, {"kd-tree", Search::kd_tree}, {"hemicube", Search::hemicube}},
@@ -134,7 +134,7 @@ visibility::ErrorRepairs depth_complexity_repairs(const visibility::MethodDescri
   repair_of(repairs, ErrorCause::samples) = {
       .cause = ErrorCause::samples,
       .runs = {joined},
-      .words = fmt::format("the same layers at {} light samples, not 16 (soft-irregular:fusion=union)",
+      .words = fmt::format("the same layers at {} light samples (soft-irregular:fusion=union)",
                            visibility::kRepairSamples)};
   repairs.one_view = {joined};
   return repairs;
@@ -352,7 +352,7 @@ std::unique_ptr<visibility::Method> make_depth_complexity(const render::Machine&
                                                           const visibility::MethodOptions& given) {
   const visibility::ParsedOptions options = parse(depth_complexity_description(), given);
   if (options[kVariant] == Variant::forest) {
-    return make_packed_counters(machine.device(), options[kCounterBits], options[kAs]);
+    return make_packed_counters(machine.device(), {options[kCounterBits], options[kAs]});
   }
   const auto on_device = [machine, variant = options[kVariant], crops = options[kCrop]] {
     return std::make_unique<DepthComplexity>(machine.device(), variant, crops, false);

@@ -16,7 +16,7 @@ namespace penumbra::volumes {
 /// variant=soup (default, an extension): signed multiplicities and a certified reference; any triangle soup, every bit
 /// the truth of its pair. variant=laine (Laine et al. 2005): silhouettes count ±1 and one reference ray for each view
 /// sample gives the constant; correct for closed meshes, wrong where an open one folds over. variant=forest (Forest et
-/// al. 2008): only the silhouettes of the light's centre, at most 16 light samples (packed_counters.hpp).
+/// al. 2008): only the silhouettes of the light's centre (packed_counters.hpp).
 ///
 /// crop=off (soup and laine): every edge between p and the light is a candidate, silhouette or not; the masks are
 /// equal, and it is slower (Lehtinen et al. 2006).

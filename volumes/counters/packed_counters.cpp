@@ -3,7 +3,8 @@
 // counters of light samples in a few packed words for each view sample, changed by the silhouettes of the light's
 // centre where their wedges are on the screen; shadow volumes of the centre give the constant. Departures: integers in
 // 64 bits instead of floats that blend; any soup, by signed multiplicity; five certified signs instead of look-up
-// tables of ±1; cases left open by rounding or overflow are decided exactly (docs/depth-complexity.md).
+// tables of ±1; cases left open by rounding or overflow are decided exactly; any number of light samples, since the
+// wedges are rasterised again for each word of a mask (docs/depth-complexity.md).
 
 #include "volumes/counters/packed_counters.hpp"
 
@@ -58,13 +59,13 @@ LightHull hull_of(const Light& light) {
   return hull;
 }
 
-/// Returns the light's data that packed_counters.frag reads.
-std::vector<double> table_of(const Light& light) {
-  const gpu::WedgePush frame = wedge_push(light);
+/// Returns the data that packed_counters.frag reads in a pass over these light samples. If they are fewer than `count`,
+/// the last one is repeated, and its further counters are unused.
+std::vector<double> table_of(const gpu::WedgePush& frame, std::span<const glm::vec3> points, std::size_t count) {
   const auto vector = [](const double(&x)[3]) { return glm::dvec3(x[0], x[1], x[2]); };
   glm::dvec2 lower(0), upper(0);  // relative to the centre
   double off = 0;
-  for (const glm::vec3& l : light.points) {
+  for (const glm::vec3& l : points) {
     const glm::dvec3 from_center = glm::dvec3(l) - vector(frame.c);
     const glm::dvec2 at(glm::dot(vector(frame.u_dual), from_center), glm::dot(vector(frame.v_dual), from_center));
     lower = glm::min(lower, at);
@@ -74,7 +75,10 @@ std::vector<double> table_of(const Light& light) {
   const glm::dvec2 room = 0x1p-10 * (upper - lower);
   const double least = 0.5 * std::min(room.x, room.y);
   std::vector<double> table{lower.x - room.x, lower.y - room.y, upper.x + room.x, upper.y + room.y, least, off};
-  for (const glm::vec3& l : light.points) table.insert(table.end(), {l.x, l.y, l.z});
+  for (std::size_t j = 0; j < count; ++j) {
+    const glm::vec3& l = points[std::min(j, points.size() - 1)];
+    table.insert(table.end(), {l.x, l.y, l.z});
+  }
   return table;
 }
 
@@ -95,11 +99,10 @@ bool touches(const std::array<glm::vec3, 3>& corners, const glm::vec3& center, c
 
 class PackedCounters final : public DepthCounters {
  public:
-  PackedCounters(const render::Device& device, std::uint32_t bits, bool as_published)
+  PackedCounters(const render::Device& device, const PackedOptions& options)
       : description_(depth_complexity_description({{"variant", "forest"}})),
         device_(&device),
-        bits_(bits),
-        as_published_(as_published),
+        options_(options),
         count_(device, CountVariant::z_fail) {}
 
   [[nodiscard]] const visibility::MethodDescription& description() const override { return description_; }
@@ -119,7 +122,10 @@ class PackedCounters final : public DepthCounters {
     faces_.reset();
   }
   [[nodiscard]] std::uint32_t max_tile_rows() const override {
-    return std::min(count_.max_tile_rows(), raster_->max_tile_rows(*samples_));
+    const std::uint64_t row_bytes = std::uint64_t{12} * std::max(samples_->width, 1U) * light_->words_per_mask();
+    const std::uint64_t rows = std::max<std::uint64_t>(kMostMaskBytes / row_bytes, 1);
+    return std::min({count_.max_tile_rows(), raster_->max_tile_rows(*samples_),
+                     static_cast<std::uint32_t>(std::min<std::uint64_t>(rows, samples_->height))});
   }
   void evaluate(const Tile& tile) override;
 
@@ -145,20 +151,28 @@ class PackedCounters final : public DepthCounters {
   }
 
  private:
-  [[nodiscard]] std::uint32_t per_word() const { return 64 / bits_; }
-  [[nodiscard]] std::uint32_t words() const { return (light_->sample_count() + per_word() - 1) / per_word(); }
-  [[nodiscard]] std::uint32_t all_samples() const { return (1U << light_->sample_count()) - 1; }
+  [[nodiscard]] std::uint32_t per_word() const { return 64 / options_.counter_bits; }
+  /// Number of light samples that each pass counts; those of the last pass may be fewer.
+  [[nodiscard]] std::uint32_t per_pass() const { return std::min(light_->sample_count(), gpu::kMostPacked); }
+  [[nodiscard]] std::uint32_t words() const { return (per_pass() + per_word() - 1) / per_word(); }
+  [[nodiscard]] std::span<const glm::vec3> points_of(std::uint32_t pass) const {
+    const std::size_t first = std::size_t{pass} * gpu::kMostPacked;
+    return std::span(light_->points).subspan(first, std::min<std::size_t>(light_->points.size() - first, per_pass()));
+  }
+  [[nodiscard]] std::uint32_t all_samples(std::uint32_t pass) const { return ~0U >> (32 - points_of(pass).size()); }
   void refuse_what_reaches_through() const;
   [[nodiscard]] std::vector<gpu::WedgeReceiver> classify();
   [[nodiscard]] std::int64_t change_of(std::size_t pixel, std::uint32_t sample) const;
   [[nodiscard]] bool may_have_overflowed(std::size_t pixel) const;
-  void resolve(std::size_t pixel);
+  void resolve(std::size_t pixel, std::uint32_t pass);
+  void count_open(const std::vector<gpu::WedgeReceiver>& receivers);
   void answer();
+
+  static constexpr std::uint64_t kMostMaskBytes = std::uint64_t{1} << 28;  // three words for each word of a mask
 
   visibility::MethodDescription description_;
   const render::Device* device_;
-  std::uint32_t bits_;
-  bool as_published_;
+  PackedOptions options_;
   VolumeCount count_;
   visibility::TriangleTree tree_;
   std::vector<std::uint32_t> on_plane_;  // number of triangles on each SceneFloats::plane
@@ -171,24 +185,21 @@ class PackedCounters final : public DepthCounters {
   const ViewSamples* samples_ = nullptr;
 
   Tile tile_;
-  std::vector<std::uint32_t> above_;  // for each pixel, the light samples above its carrier's plane
+  // Words of a mask for each pixel, one for each pass over the light samples.
+  std::vector<std::uint32_t> above_;  // the light samples above the carrier's plane
   std::vector<std::uint32_t> open_;   // light samples left to exact predicates
   std::vector<std::uint32_t> masks_;
+  std::vector<std::uint8_t> overflowed_;  // for each pixel, 1 where a counter of some pass may have overflowed
+  std::vector<std::int32_t> counters_;    // with keeps_counters
   std::map<std::string, std::uint64_t> totals_;
   visibility::PassTimes host_times_;
 };
 
 void PackedCounters::prepare_light(const Light& light) {
   visibility::check_light(description_, light);
-  if (light.sample_count() > gpu::kMostPacked) {
-    throw UsageError(
-        "depth-complexity: variant=forest packs the counters of at most {} light samples; light \"{}\" has {}; take "
-        "--light-samples {}, or variant=soup, which has no such limit",
-        gpu::kMostPacked, light.name, light.sample_count(), gpu::kMostPacked);
-  }
   light_ = &light;
   refuse_what_reaches_through();
-  const std::vector<std::uint32_t> constants{light.sample_count(), bits_};
+  const std::vector<std::uint32_t> constants{per_pass(), options_.counter_bits};
   if (!raster_ || constants != constants_) {
     raster_ = std::make_unique<WedgeRaster>(
         *device_,
@@ -196,7 +207,6 @@ void PackedCounters::prepare_light(const Light& light) {
             .name = "wedges", .fragment = shaders::kPackedCountersFrag, .constants = constants, .words = words() + 1});
     constants_ = constants;
   }
-  raster_->set_table(table_of(light));
   count_.prepare_light(light);
   wedges_.edges = count_.volumes().edges;
   std::vector<WedgeEdge> edges;
@@ -220,59 +230,70 @@ void PackedCounters::refuse_what_reaches_through() const {
   }
 }
 
-/// Returns the receivers that the wedges apply to. Leaves masks at values that are known without wedges.
+/// Returns the receivers that the wedges apply to. Leaves masks at values that are known without wedges. The receivers
+/// are the same in each pass.
 std::vector<gpu::WedgeReceiver> PackedCounters::classify() {
   using Kind = VolumeCount::Kind;
   const std::span<const Kind> kinds = count_.kinds();
   const std::size_t first = std::size_t{tile_.first_row} * samples_->width;
   std::vector<gpu::WedgeReceiver> receivers(kinds.size());
-  above_.assign(kinds.size(), 0);
-  open_.assign(kinds.size(), 0);
-  masks_.assign(kinds.size(), all_samples());
+  const std::uint32_t passes = light_->words_per_mask();
+  above_.assign(kinds.size() * passes, 0);
+  open_.assign(kinds.size() * passes, 0);
+  masks_.assign(kinds.size() * passes, 0);
   for_each_index(kinds.size(), [&](std::size_t i) {
-    if (kinds[i] == Kind::lit) return;
-    masks_[i] = 0;
+    if (kinds[i] == Kind::lit) {
+      for (std::uint32_t pass = 0; pass < passes; ++pass) masks_[i * passes + pass] = all_samples(pass);
+      return;
+    }
     const glm::vec3& p = samples_->p[first + i];
     if (!visibility::in_front_of_light(*light_, p)) return;
     const auto carrier = static_cast<std::uint32_t>(samples_->triangle[first + i]);
-    const Horizon horizon =
-        CarrierHorizon(*scene_, tree_, carrier, samples_->facing[first + i], on_plane_[scene_->plane[carrier]] == 1)
-            .at(p, count_.center(), *light_);
-    above_[i] = horizon.above;
+    const CarrierHorizon plane(*scene_, tree_, carrier, samples_->facing[first + i],
+                               on_plane_[scene_->plane[carrier]] == 1);
     // p is on a triangle, which is crossed where p→l leaves it, but not met.
     const bool doubtful = count_.doubts()[i] != 0 || !appears_in_place(samples_->camera, p, first + i);
-    if (kinds[i] == Kind::dark || doubtful) {
-      open_[i] = horizon.above;
-    } else {
-      open_[i] = horizon.open;
-      receivers[i] = {p, 1};
+    const bool counted = kinds[i] != Kind::dark && !doubtful;
+    if (counted) receivers[i] = {p, 1};
+    for (std::uint32_t pass = 0; pass < passes; ++pass) {
+      const Horizon horizon = plane.at(p, count_.center(), points_of(pass));
+      above_[i * passes + pass] = horizon.above;
+      open_[i * passes + pass] = counted ? horizon.open : horizon.above;
     }
   });
   return receivers;
 }
 
-/// Returns the change of a counter by the edges: its digit.
+/// Returns the change by the edges of the counter of one of the pass's light samples: its digit.
 std::int64_t PackedCounters::change_of(std::size_t pixel, std::uint32_t sample) const {
-  const std::uint64_t half = std::uint64_t{1} << (bits_ - 1);
+  const std::uint32_t bits = options_.counter_bits;
+  const std::uint64_t half = std::uint64_t{1} << (bits - 1);
   std::uint64_t word = static_cast<std::uint64_t>(raster_->sums()[pixel * (words() + 1) + sample / per_word()]);
-  for (std::uint32_t i = 0; i < per_word(); ++i) word += half << (bits_ * i);
-  const std::uint64_t digit = word >> (bits_ * (sample % per_word())) & (2 * half - 1);
+  for (std::uint32_t i = 0; i < per_word(); ++i) word += half << (bits * i);
+  const std::uint64_t digit = word >> (bits * (sample % per_word())) & (2 * half - 1);
   return static_cast<std::int64_t>(digit) - static_cast<std::int64_t>(half);
 }
 
-/// Returns whether a counter may have overflowed: none has changed by more than the last word.
+/// Returns whether a counter of the pass may have overflowed: none has changed by more than the last word.
 bool PackedCounters::may_have_overflowed(std::size_t pixel) const {
-  const std::int64_t most = (std::int64_t{1} << (bits_ - 1)) - 1;
+  const std::int64_t most = (std::int64_t{1} << (options_.counter_bits - 1)) - 1;
   return raster_->sums()[pixel * (words() + 1) + words()] > most;
 }
 
-/// Computes the mask of a counted pixel.
-void PackedCounters::resolve(std::size_t pixel) {
-  if (!as_published_)
-    open_[pixel] |= may_have_overflowed(pixel) ? above_[pixel] : raster_->doubts()[pixel] & above_[pixel];
-  for (std::uint32_t j = 0; j < light_->sample_count(); ++j) {
-    const bool visible = count_.counts()[pixel] + change_of(pixel, j) == 0;
-    masks_[pixel] |= visible ? above_[pixel] & ~open_[pixel] & 1U << j : 0;
+/// Computes a counted pixel's word of a mask from the sums of its pass.
+void PackedCounters::resolve(std::size_t pixel, std::uint32_t pass) {
+  const std::size_t word = pixel * light_->words_per_mask() + pass;
+  const bool overflowed = may_have_overflowed(pixel);
+  overflowed_[pixel] |= overflowed ? 1U : 0U;
+  if (!options_.as_published) open_[word] |= overflowed ? above_[word] : raster_->doubts()[pixel] & above_[word];
+  const auto samples = static_cast<std::uint32_t>(points_of(pass).size());
+  for (std::uint32_t j = 0; j < samples; ++j) {
+    const std::int64_t counter = count_.counts()[pixel] + change_of(pixel, j);
+    const bool known = ((above_[word] & ~open_[word]) >> j & 1U) != 0;
+    masks_[word] |= known && counter == 0 ? 1U << j : 0;
+    if (!options_.keeps_counters || !known) continue;
+    const std::size_t sample = std::size_t{pass} * gpu::kMostPacked + j;
+    counters_[pixel * light_->sample_count() + sample] = static_cast<std::int32_t>(counter);
   }
 }
 
@@ -281,31 +302,46 @@ void PackedCounters::evaluate(const Tile& tile) {
   if (!faces_) faces_ = faces_of(wedges_, *samples_, WedgeTests::both, glm::dvec3(count_.center()));
   count_.count(tile);
   const std::vector<gpu::WedgeReceiver> receivers = classify();
-  raster_->add(*faces_, receivers, wedge_push(*light_), tile, samples_->width);
-  for_each_index(receivers.size(), [&](std::size_t i) {
-    if (receivers[i].counted != 0) resolve(i);
-  });
+  overflowed_.assign(receivers.size(), 0);
+  if (options_.keeps_counters) counters_.assign(receivers.size() * light_->sample_count(), DepthCounters::kNoCounter);
+  const gpu::WedgePush frame = wedge_push(*light_);
+  for (std::uint32_t pass = 0; pass < light_->words_per_mask(); ++pass) {
+    raster_->set_table(table_of(frame, points_of(pass), per_pass()));
+    raster_->add(*faces_, receivers, frame, tile, samples_->width);
+    for_each_index(receivers.size(), [&](std::size_t i) {
+      if (receivers[i].counted != 0) resolve(i, pass);
+    });
+  }
+  count_open(receivers);
+  answer();
+}
+
+void PackedCounters::count_open(const std::vector<gpu::WedgeReceiver>& receivers) {
   std::uint64_t overflows = 0, at_horizon = 0, open = 0;
+  const std::uint32_t passes = light_->words_per_mask();
   for (std::size_t i = 0; i < receivers.size(); ++i) {
-    overflows += receivers[i].counted != 0 && may_have_overflowed(i) ? 1U : 0U;
+    overflows += overflowed_[i];
     const bool dark = count_.kinds()[i] == VolumeCount::Kind::dark;
-    (dark ? at_horizon : open) += static_cast<std::uint64_t>(std::popcount(open_[i]));
+    for (std::uint32_t pass = 0; pass < passes; ++pass) {
+      (dark ? at_horizon : open) += static_cast<std::uint64_t>(std::popcount(open_[i * passes + pass]));
+    }
   }
   totals_["overflowPixels"] += overflows;
   totals_["horizonPairs"] += at_horizon;
   totals_["openPairs"] += open;
-  answer();
 }
 
 /// Decides open pairs exactly.
 void PackedCounters::answer() {
   std::vector<device::OpenBits> questions;
+  const std::uint32_t passes = light_->words_per_mask();
   for (std::size_t i = 0; i < open_.size(); ++i) {
-    if (open_[i] != 0) questions.push_back({static_cast<std::uint32_t>(i), 0, open_[i]});
+    if (open_[i] == 0) continue;
+    questions.push_back({static_cast<std::uint32_t>(i / passes), static_cast<std::uint32_t>(i % passes), open_[i]});
   }
   if (questions.empty()) return;
   const std::size_t first = std::size_t{tile_.first_row} * samples_->width;
-  const device::MaskLayout layout{.words = 1};
+  const device::MaskLayout layout{.words = passes};
   const std::vector<device::gpu::MaskWord> decided = host_times_.add("exact predicates", [&] {
     return device::decide({{*scene_, tree_, *samples_, *light_}, layout, first}, questions);
   });
@@ -315,15 +351,9 @@ void PackedCounters::answer() {
 }
 
 void PackedCounters::read_counters(std::span<std::int32_t> counters) {
-  const std::uint32_t n = light_->sample_count();
-  PENUMBRA_ASSERT(counters.size() == masks_.size() * n, "{} counters for {} pixels", counters.size(), masks_.size());
-  for (std::size_t i = 0; i < masks_.size(); ++i) {
-    for (std::uint32_t j = 0; j < n; ++j) {
-      const bool known = ((above_[i] & ~open_[i]) >> j & 1U) != 0;
-      counters[i * n + j] =
-          known ? static_cast<std::int32_t>(count_.counts()[i] + change_of(i, j)) : DepthCounters::kNoCounter;
-    }
-  }
+  PENUMBRA_ASSERT(options_.keeps_counters && counters.size() == counters_.size(), "{} counters, not {}",
+                  counters.size(), counters_.size());
+  std::ranges::copy(counters_, counters.begin());
 }
 
 std::map<std::string, std::uint64_t> PackedCounters::counters() const {
@@ -339,10 +369,10 @@ std::map<std::string, std::uint64_t> PackedCounters::counters() const {
 
 }  // namespace
 
-std::unique_ptr<DepthCounters> make_packed_counters(const render::Device& device, std::uint32_t counter_bits,
-                                                    bool as_published) {
-  PENUMBRA_ASSERT(counter_bits == 6 || counter_bits == 8 || counter_bits == 16, "{} bits", counter_bits);
-  return std::make_unique<PackedCounters>(device, counter_bits, as_published);
+std::unique_ptr<DepthCounters> make_packed_counters(const render::Device& device, const PackedOptions& options) {
+  const std::uint32_t bits = options.counter_bits;
+  PENUMBRA_ASSERT(bits == 6 || bits == 8 || bits == 16, "{} bits", bits);
+  return std::make_unique<PackedCounters>(device, options);
 }
 
 }  // namespace penumbra::volumes

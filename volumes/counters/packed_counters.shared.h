@@ -7,8 +7,8 @@ namespace penumbra::volumes::gpu {
 using uint = std::uint32_t;
 #endif
 
-/// Largest number of light samples.
-const uint kMostPacked = 16;
+/// Largest number of light samples of a pass: as many as a word of a mask has bits.
+const uint kMostPacked = 32;
 
 /// A counter is a digit of `bits` bits, from the lowest on. A sum of digits d_j · 2^(bits · j) modulo 2⁶⁴, in any
 /// order, determines each d_j as long as every |d_j| < 2^(bits − 1) at the end. The last word is the sum of |k_e| of

@@ -46,24 +46,24 @@ CarrierHorizon::CarrierHorizon(const visibility::SceneFloats& scene, const visib
   size_ = gpu::kDeterminantError * norm1(ab) * norm1(ac);
 }
 
-Horizon CarrierHorizon::at(const glm::vec3& p, const glm::vec3& center, const visibility::Light& light) const {
-  PENUMBRA_ASSERT(light.points.size() <= kMostSamples, "{} light samples", light.points.size());
+Horizon CarrierHorizon::at(const glm::vec3& p, const glm::vec3& center, std::span<const glm::vec3> points) const {
+  PENUMBRA_ASSERT(points.size() <= kMostSamples, "{} light samples", points.size());
   Horizon horizon;
-  for (std::size_t j = 0; j < light.points.size(); ++j) {
-    const double h = height(light.points[j]), e = error(light.points[j]);
-    const bool above = h > e || (h >= -e && visibility::above_horizon(corners_, facing_, light.points[j]));
+  for (std::size_t j = 0; j < points.size(); ++j) {
+    const double h = height(points[j]), e = error(points[j]);
+    const bool above = h > e || (h >= -e && visibility::above_horizon(corners_, facing_, points[j]));
     horizon.above |= above ? 1U << j : 0;
   }
   if (!is_behind(p)) return horizon;
   std::array<double, kMostSamples> reaches{};
   const double to_center = reach(p, center);
   double farthest = to_center;
-  for (std::size_t j = 0; j < light.points.size(); ++j) {
-    reaches[j] = std::max(to_center, reach(p, light.points[j]));
+  for (std::size_t j = 0; j < points.size(); ++j) {
+    reaches[j] = std::max(to_center, reach(p, points[j]));
     if ((horizon.above >> j & 1U) != 0) farthest = std::max(farthest, reaches[j]);
   }
   const double free = distance_to_edges(p, farthest);
-  for (std::size_t j = 0; j < light.points.size(); ++j) horizon.open |= reaches[j] < free ? 0 : 1U << j;
+  for (std::size_t j = 0; j < points.size(); ++j) horizon.open |= reaches[j] < free ? 0 : 1U << j;
   horizon.open &= horizon.above;
   return horizon;
 }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "visibility/light_samples.hpp"
 #include "visibility/scene_floats.hpp"
 #include "visibility/tree/triangle_tree.hpp"
 
@@ -9,6 +8,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 
 namespace penumbra::volumes {
 
@@ -28,8 +28,9 @@ class CarrierHorizon {
   CarrierHorizon(const visibility::SceneFloats& scene, const visibility::TriangleTree& tree, std::uint32_t carrier,
                  std::int8_t facing, bool alone);
 
-  /// Computes the horizon at p. `open` is meaningful only if the light's centre is above the plane.
-  [[nodiscard]] Horizon at(const glm::vec3& p, const glm::vec3& center, const visibility::Light& light) const;
+  /// Computes the horizon of at most 32 light samples at p. `open` is meaningful only if the light's centre is above
+  /// the plane.
+  [[nodiscard]] Horizon at(const glm::vec3& p, const glm::vec3& center, std::span<const glm::vec3> points) const;
 
  private:
   [[nodiscard]] double height(const glm::vec3& x) const;

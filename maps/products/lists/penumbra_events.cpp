@@ -5,6 +5,7 @@
 #include "maps/products/lists/penumbra_events.hpp"
 
 #include "base/error.hpp"
+#include "maps/products/lists/nearest_depths.comp.spv.hpp"
 #include "maps/products/lists/penumbra_compress.comp.spv.hpp"
 #include "maps/products/lists/penumbra_copy.comp.spv.hpp"
 #include "maps/products/lists/penumbra_events.shared.h"
@@ -54,6 +55,10 @@ PenumbraEvents::PenumbraEvents(const render::Device& device, double bound)
     : device_(&device),
       bound_(bound),
       samples_(device),
+      find_nearest_(device, {.name = "nearest depths",
+                             .spirv = shaders::kNearestDepthsComp,
+                             .push_bytes = sizeof(gpu::NearestDepthsPush),
+                             .constants = {}}),
       walk_(device, {.name = "walk maps",
                      .spirv = shaders::kPenumbraWalkComp,
                      .push_bytes = sizeof(gpu::EventsPush),
@@ -72,6 +77,7 @@ void PenumbraEvents::make(const MapSource& source) {
   render::grow(*device_, centre_, "centre's view", sizeof(gpu::LightView));
   centre_->write<gpu::LightView>(std::span(&source.centre, 1));
   render::grow(*device_, most_, "most events", sizeof(std::uint32_t));
+  find_nearest(source);
 
   const std::uint32_t texels = source.faces * source.size * source.size;
   const glm::vec2 nearest = nearest_casters(source);
@@ -105,7 +111,7 @@ void PenumbraEvents::make(const MapSource& source) {
                                  .sample_faces = samples_.faces(),
                                  .nearest = nearest};
       walk_.record(commands, push,
-                   {*centre_, samples_.views(), *part.maps, samples_.weights(), *events_, *counts_, *most_},
+                   {*centre_, samples_.views(), *part.maps, samples_.weights(), *events_, *counts_, *most_, *nearest_},
                    groups_of(band));
       if (++recorded % 96 == 0) source.times.add(commands.submit());
     }
@@ -141,6 +147,23 @@ void PenumbraEvents::make(const MapSource& source) {
   lists_->write<std::uint32_t>(words);
   source.counters["steps"] = steps.size();
   source.counters["mostEventsOfATexel"] = events;
+}
+
+void PenumbraEvents::find_nearest(const MapSource& source) {
+  render::grow(*device_, nearest_, "nearest depths", std::uint64_t{samples_.count()} * sizeof(std::uint32_t));
+  render::Commands commands(*device_);
+  commands.fill(*nearest_, ~0U);
+  if (samples_.faces() == 0) return static_cast<void>(commands.submit());
+  for (const SampleMaps::Part& part : samples_.parts()) {
+    const gpu::NearestDepthsPush push{.size = source.size,
+                                      .first_point = part.first,
+                                      .first_map = part.first_map,
+                                      .point_count = part.count,
+                                      .sample_faces = samples_.faces()};
+    find_nearest_.record(commands, push, {*part.maps, *nearest_},
+                         groups_of(part.count * samples_.faces() * source.size));
+    source.times.add(commands.submit());
+  }
 }
 
 std::vector<std::uint32_t> PenumbraEvents::compress(const MapSource& source, std::uint32_t texels,
@@ -187,7 +210,7 @@ std::vector<glm::uvec2> PenumbraEvents::gather(const MapSource& source, std::spa
 
 std::uint64_t PenumbraEvents::memory_bytes() const {
   std::uint64_t bytes = samples_.memory_bytes();
-  for (const auto* buffer : {&centre_, &events_, &counts_, &most_, &offsets_, &steps_, &lists_})
+  for (const auto* buffer : {&centre_, &nearest_, &events_, &counts_, &most_, &offsets_, &steps_, &lists_})
     bytes += *buffer ? (*buffer)->bytes() : 0;
   return bytes;
 }

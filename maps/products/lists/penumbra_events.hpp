@@ -22,6 +22,8 @@ class PenumbraEvents final : public MapProduct {
   [[nodiscard]] std::uint64_t memory_bytes() const override;
 
  private:
+  /// Finds the smallest depth in each light sample's maps.
+  void find_nearest(const MapSource& source);
   /// Sorts, sums and compresses a band's events; returns the number of steps of each texel.
   std::vector<std::uint32_t> compress(const MapSource& source, std::uint32_t texels, std::uint32_t capacity);
   /// Returns a band's steps, texel by texel.
@@ -31,8 +33,8 @@ class PenumbraEvents final : public MapProduct {
   const render::Device* device_;
   double bound_;
   SampleMaps samples_;
-  render::ComputePass walk_, compress_, copy_;
-  std::unique_ptr<render::Buffer> centre_, events_, counts_, most_, offsets_, steps_, lists_;
+  render::ComputePass find_nearest_, walk_, compress_, copy_;
+  std::unique_ptr<render::Buffer> centre_, nearest_, events_, counts_, most_, offsets_, steps_, lists_;
 };
 
 }  // namespace penumbra::maps

@@ -20,6 +20,14 @@ struct EventsPush {
   vec2 nearest;       // depth of the nearest caster to the light's plane, on either side
 };
 
+struct NearestDepthsPush {
+  uint size;
+  uint first_point;  // as in EventsPush
+  uint first_map;
+  uint point_count;
+  uint sample_faces;
+};
+
 struct CompressPush {
   uint texel_count;
   uint capacity;

@@ -22,6 +22,7 @@ layout(scalar, binding = 4) buffer Events { uvec2 events[]; };  // bits of t; we
 layout(scalar, binding = 5) buffer Counts { uint counts[]; };   // of each texel; events beyond the capacity are not
                                                                 // stored
 layout(scalar, binding = 6) buffer Most { uint most; };
+layout(scalar, binding = 7) readonly buffer Nearest { float nearest_of[]; };  // smallest depth in each sample's maps
 layout(scalar, push_constant) uniform Push { EventsPush push; };
 
 uint texel, count;
@@ -58,9 +59,10 @@ float crossing(float o, float d, float ow, float dw, float c, float from, float 
   return clamp(-here / slope, from, last);
 }
 
-// Traverses one face. o, d: the ray on the face.
-void walk(vec3 o, vec3 d, vec2 lower, vec2 upper, uint map, float far, float nearest, float farthest, uint weight) {
-  float t = nearest, last = farthest;
+// Traverses one face, from where the ray may be behind the nearest surface of the sample's maps, at depth `least`. o, d:
+// the ray on the face.
+void walk(vec3 o, vec3 d, vec2 lower, vec2 upper, uint map, float far, float nearest, float farthest, float least, uint weight) {
+  float t = d.z > 0.0 ? max(nearest, (least - o.z) / d.z) : nearest, last = farthest;
   clip(o.z, d.z, t, last);
   clip(o.x - lower.x * o.z, d.x - lower.x * d.z, t, last);
   clip(upper.x * o.z - o.x, upper.x * d.z - d.x, t, last);
@@ -120,12 +122,14 @@ void main() {
     const vec3 offset = centre.point - view.point;
     const vec3 o = vec3(dot(push.basis.u, offset), dot(push.basis.v, offset), mirrored * dot(push.basis.n, offset));
     const SideView own = view.side[s];
+    // The margin exceeds the rounding of where the ray is at this depth, however near the surface is to the light.
+    const float least = 0.999 * view.far * nearest_of[push.first_point + j] - 1e-5 * (abs(o.x) + abs(o.y) + abs(o.z));
     for (uint f = 0; f < own.face_count; ++f) {
       const bool own_window = own.face_count == 1;
       const vec2 own_lower = own_window ? own.lower : vec2(-1.0, f == 0 ? -1.0 : 0.0);
       const vec2 own_upper = own_window ? own.upper : vec2(1.0);
       walk(on_face(o, f), on_face(e, f), own_lower, own_upper, push.first_map + j * push.sample_faces + own.first_face + f, view.far, nearest,
-           farthest, weights[push.first_point + j]);
+           farthest, least, weights[push.first_point + j]);
     }
   }
   counts[texel] = count;

@@ -20,7 +20,7 @@ class PackedScenesBase : public tests::DeviceTest, public testing::WithParamInte
     const visibility::ViewSamples samples =
         render::VisibilityBuffer(device(), floats)
             .render(visibility::make_camera(scene.cameras[0], floats.origin, size, size));
-    const auto method = make_packed_counters(device(), 16);
+    const auto method = make_packed_counters(device(), {.keeps_counters = true});
     const tests::PackedTotals found = tests::expect_packed(*method, floats, samples, light, by_edges, GetParam());
     EXPECT_GT(found.known, found.pairs / 2);
     EXPECT_GT(found.by_edges, 0U);
