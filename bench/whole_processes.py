@@ -2,21 +2,23 @@
 # SPDX-License-Identifier: Apache-2.0
 """Processor seconds of whole processes, from start to file, user and system time of the process and of its children.
 
-    bench/whole_processes.py small|lamps|dense|motion [BUILD]
+    bench/whole_processes.py small|lamps|dense|motion|antialiasing [BUILD]
 
-Writes bench/results/NAME.json, of which bench/tables.py makes tables of the pages. `lamps` and `dense` need Blender and the
-add-on (target penumbra_blender_addon). What is compared takes turns; a number is the least of its runs, for others that work on the
-machine only add to it.
+Writes bench/results/NAME.json, of which bench/tables.py makes a table of bench/README.md or docs/pictures.md. `lamps` and `dense` need
+Blender and the add-on (target penumbra_blender_addon). What is compared takes turns; a number is the least of its runs, for others that
+work on the machine only add to it, or the median where that is said.
 
 small   a picture of a box, 64 × 64: what a process pays before its first pixel, by processes that do more and more of it
 lamps   200 and 1,000 lamps, 320 × 240, beside Cycles with 32 samples a pixel
 motion  an open shutter of 16 moments beside a still picture, where one of two bodies moves
 dense   504,080 triangles, 640 × 480: the program from the add-on's exchange file, and what Blender adds with the add-on
+antialiasing  pictures of shipped scenes with one and with 16 view samples a pixel: processor seconds and memory
 """
 
 import json
 import os
 import platform
+import statistics
 import struct
 import subprocess
 import sys
@@ -31,7 +33,8 @@ BOX = {"format": "penumbra-scene/1", "size": [64, 64], "camera": {"eye": [3, 3, 
        "lights": [{"name": "key", "rectangle": {"center": [1.5, 3, 1], "halfU": [0.4, 0, 0], "halfV": [0, 0, 0.4]}, "radiance": [10, 10, 10]}]}
 
 
-def processor_seconds(command, environment=None):
+def usage_of(command, environment=None):
+    """What the system counted for the process and its children: seconds, and the largest resident set."""
     with tempfile.TemporaryFile() as log:
         process = subprocess.Popen([str(part) for part in command], stdin=subprocess.DEVNULL, stdout=log, stderr=log, env=environment)
         _, status, usage = os.wait4(process.pid, 0)
@@ -39,6 +42,11 @@ def processor_seconds(command, environment=None):
         if process.returncode != 0:
             log.seek(0)
             raise SystemExit(f"{' '.join(map(str, command))}: exit code {process.returncode}\n{log.read().decode(errors='replace')[-2000:]}")
+    return usage
+
+
+def processor_seconds(command, environment=None):
+    usage = usage_of(command, environment)
     return usage.ru_utime + usage.ru_stime
 
 
@@ -144,7 +152,7 @@ def add_motion(glb, node, moves):
                     + struct.pack("<II", len(binary), 0x4E4942) + binary)
 
 
-def motion(_build, program, folder):
+def motion(program, folder):
     runs, rows = 3, []
     body = {"name": "body", "shape": {"type": "box", "center": [0, 0, 0], "halfSize": [0.2, 0.2, 0.2]}}
     for name in ("bunny", "large-penumbra", "contact"):
@@ -168,15 +176,57 @@ def motion(_build, program, folder):
          ["scene", "one moment, processor s", "16 moments", "times", "view samples that kept their answer, %"], rows, [None, ".2f", ".2f", ".1f", ".0f"])
 
 
+def four_lamps(folder):
+    """scenes/contact.json with three more rectangles, each at another height and of another size."""
+    scene = json.loads((ROOT / "scenes/contact.json").read_text(encoding="utf-8"))
+    for name, center, half in (("rim", [2.5, 3, -1.5], 0.3), ("fill", [-3, 2.5, 2], 0.8), ("top", [0, 5, 0], 0.15)):
+        scene["lights"].append({"name": name, "radiance": [20, 20, 20],
+                                "rectangle": {"center": center, "halfU": [half, 0, 0], "halfV": [0, 0, half]}})
+    path = folder / "four-lamps.json"
+    path.write_text(json.dumps(scene), encoding="utf-8")
+    return path
+
+
+def antialiasing(program, folder):
+    runs = 3
+    four = four_lamps(folder)
+    shipped = (("bunny", 512), ("room", 512), ("contact", 512), ("large-penumbra", 384), ("terrain-1m", 512))
+    pictures = [(f"`{name}`", ROOT / f"scenes/{name}.json", side, side) for name, side in shipped]
+    pictures += [("`contact`, four lamps", four, 512, 512), ("`contact`, four lamps", four, 1920, 1080)]
+    sixteen = ["--pixel-samples", 16, "--pixel-filter", "blackman-harris"]
+
+    def seconds_of(usage):
+        return usage.ru_utime + usage.ru_stime
+
+    rows = []
+    for name, scene, width, height in pictures:
+        render = [program, "render", scene, "-o", folder / "o.exr", "--size", f"{width}x{height}", "--quiet"]
+        single, several = [], []
+        for _ in range(runs):
+            single.append(usage_of(render))
+            several.append(usage_of([*render, *sixteen]))
+        one, some = (statistics.median(map(seconds_of, usages)) for usages in (single, several))
+        memory, larger = (statistics.median(usage.ru_maxrss / 1024 for usage in usages) for usages in (single, several))
+        every = processor_seconds([*render, *sixteen, "--pixel-tolerance", 0]) if width == height else None
+        rows.append([name, f"{width} × {height}", one, some, some / one, every and every / one, round(memory), round(larger), larger / memory])
+        print(rows[-1], flush=True)
+    save("antialiasing", "one and 16 view samples a pixel: processor seconds and memory",
+         f"Exact areas, `blackman-harris`; user and system seconds and largest resident set of whole processes, medians of {runs} runs in turns. "
+         "Factors are over one view sample a pixel; *all evaluated* is `--pixel-tolerance 0`, once.",
+         ["scene", "pixels", "s: 1 a pixel", "16", "factor", "all evaluated", "MiB: 1 a pixel", "16", "factor"], rows,
+         [None, None, ".2f", ".2f", ".1f", ".1f", None, None, ".1f"])
+
+
 def main():
-    if not sys.argv[1:] or sys.argv[1] not in ("small", "lamps", "dense", "motion"):
+    of_program, of_build = {"small": small, "motion": motion, "antialiasing": antialiasing}, {"lamps": lamps, "dense": dense}
+    if not sys.argv[1:] or sys.argv[1] not in of_program | of_build:
         sys.exit(__doc__)
     build = Path(sys.argv[2] if len(sys.argv) > 2 else ROOT / "build").resolve()
     with tempfile.TemporaryDirectory() as folder:
-        if sys.argv[1] == "small":
-            small(build / "penumbra", Path(folder))
+        if sys.argv[1] in of_program:
+            of_program[sys.argv[1]](build / "penumbra", Path(folder))
         else:
-            globals()[sys.argv[1]](build, build / "penumbra", Path(folder))
+            of_build[sys.argv[1]](build, build / "penumbra", Path(folder))
 
 
 main()
