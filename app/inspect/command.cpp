@@ -218,7 +218,7 @@ class InspectCommand : public Command {
     const std::size_t limit = list_.value_or(kListed);
     const nlohmann::ordered_json json =
         inspected_.several ? report_json(reports, limit) : report_json(reports.front(), repaired, limit);
-    // A file's name may contain bytes that are not UTF-8.
+    // A note may contain bytes that are not UTF-8.
     const std::string text = json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
     if (json_ == "-") {
       fmt::print("{}", text);

@@ -7,6 +7,7 @@
 #include "base/csv.hpp"
 #include "base/did_you_mean.hpp"
 #include "base/error.hpp"
+#include "base/utf8.hpp"
 
 #include <fmt/ranges.h>
 
@@ -118,7 +119,7 @@ std::string summary_header() {
 std::string summary_row(const FileReport& file) {
   if (!file.error.empty())
     return fmt::format("{:>10} {:>7} {:>9} {:>12} {:>17} {:>10}  {:<16} {}\n", "-", "-", "-", "-", "-", "-",
-                       "unreadable", file.error);
+                       "unreadable", on_one_line(file.error));
   const Diagnosis& d = file.total.diagnosis;
   const WorstVerdict worst = worst_verdict(file.total);
   return fmt::format("{:>10} {:>7} {:>9} {:>12} {:>17} {:>10}  {:<16} {}\n", d.triangles,
@@ -127,7 +128,7 @@ std::string summary_row(const FileReport& file) {
                                        : "no",
                      d.boundary_edges.count, text_of(non_manifold(d), "-"), text_of(count_of(d, kIntersections), "-"),
                      d.zero_area_triangles.count, fmt::format("{}:{}", name_of(worst.verdict), worst.methods),
-                     file.file.string());
+                     on_one_line(file.file.string()));
 }
 
 std::string report_csv(std::span<const FileReport> files) {
@@ -136,9 +137,9 @@ std::string report_csv(std::span<const FileReport> files) {
   for (const std::string_view key : keys) text += fmt::format(",{}", key);
   text += ",volume,worstVerdict,error\r\n";
   for (const FileReport& file : files) {
-    text += csv_field(file.file.string());
+    text += csv_field(as_utf8(file.file.string()));
     if (!file.error.empty()) {
-      text += std::string(keys.size() + 7, ',') + ',' + csv_field(file.error) + "\r\n";
+      text += std::string(keys.size() + 7, ',') + ',' + csv_field(as_utf8(file.error)) + "\r\n";
       continue;
     }
     const Diagnosis& d = file.total.diagnosis;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/inspect/report.hpp"
 
+#include "base/utf8.hpp"
+
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -71,14 +73,14 @@ ordered_json object_json(const FileReport& file, const ObjectReport& object, std
 }
 
 ordered_json file_json(const FileReport& file, std::size_t list_limit) {
-  if (!file.error.empty()) return {{"file", file.file.string()}, {"error", file.error}};
+  if (!file.error.empty()) return {{"file", as_utf8(file.file.string())}, {"error", as_utf8(file.error)}};
   auto objects = ordered_json::array();
   for (const ObjectReport& object : file.objects) {
     ordered_json json = {{"name", object.name}};
     json.update(object_json(file, object, list_limit));
     objects.push_back(std::move(json));
   }
-  ordered_json json = {{"file", file.file.string()},
+  ordered_json json = {{"file", as_utf8(file.file.string())},
                        {"notes", file.notes},
                        {"objects", objects},
                        {"total", object_json(file, file.total, list_limit)}};
@@ -93,7 +95,7 @@ ordered_json repair_json(const RepairReport& repaired) {
   for (const DefectRow& row : kDefects) counts[row.key] = (repaired.written.*row.counted).count;
   counts["selfIntersections"] = nullptr;
   if (repaired.written.self_intersections) counts["selfIntersections"] = repaired.written.self_intersections->count;
-  return {{"file", repaired.file.string()},
+  return {{"file", as_utf8(repaired.file.string())},
           {"triangles", repaired.triangles},
           {"done", done},
           {"left", repaired.left},

@@ -3,6 +3,8 @@
 
 #include "app/inspect/report.hpp"
 
+#include "base/utf8.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -166,7 +168,7 @@ std::string method_rows(const std::vector<MethodVerdict>& verdicts) {
 }  // namespace
 
 std::string report_table(const FileReport& file, const TableOptions& options) {
-  std::string text = fmt::format("{}\n", file.file.string());
+  std::string text = fmt::format("{}\n", on_one_line(file.file.string()));
   for (const std::string& note : file.notes) text += fmt::format("  note: {}\n", wrapped(note, 8));
   if (file.scene) text += facts_table(*file.scene);
   if (file.objects.size() > 1) text += object_rows(file);
@@ -177,7 +179,8 @@ std::string report_table(const FileReport& file, const TableOptions& options) {
 }
 
 std::string report_table(const RepairReport& repaired) {
-  std::string text = fmt::format("{}: {} triangles\n", repaired.file.string(), grouped(repaired.triangles));
+  std::string text =
+      fmt::format("{}: {} triangles\n", on_one_line(repaired.file.string()), grouped(repaired.triangles));
   for (const mesh::RepairStep& step : repaired.done) text += fmt::format("  done: {}\n", wrapped(step.what, 8));
   if (repaired.done.empty()) text += "  done: nothing, there was nothing to do\n";
   for (const std::string& what : repaired.left) text += fmt::format("  left: {}\n", wrapped(what, 8));

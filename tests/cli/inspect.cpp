@@ -260,6 +260,28 @@ TEST_F(Inspect, AFolderIsATableWithARowAFileInOrder) {
             2);
 }
 
+TEST_F(Inspect, NamesOfFilesStayOnTheirRow) {
+  std::filesystem::create_directories(path("odd"));
+  constexpr const char* kTetrahedron = "OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 2 0 3\n";
+  write("odd/a\nb\tc.off", kTetrahedron);
+  write("odd/caf\xe9.off", kTetrahedron);
+  write("odd/d\ne.off", "no mesh");
+  const Outcome outcome = run({"inspect", path("odd"), "--csv", path("out.csv"), "--json", path("out.json")});
+  EXPECT_EQ(outcome.code, 3);
+  EXPECT_EQ(std::ranges::count(outcome.out, '\n'), 4) << outcome.out;
+  EXPECT_THAT(outcome.out, AllOf(HasSubstr("/a\\nb\\tc.off\n"), HasSubstr("/caf\\xe9.off\n"), HasSubstr("e.off: ")));
+  EXPECT_EQ(outcome.out.find_first_of("\t\xe9"), std::string::npos);
+  const json files = json::parse(read("out.json"));  // throws at what is not UTF-8
+  EXPECT_EQ(files[0].at("file"), path("odd/a\nb\tc.off"));
+  EXPECT_EQ(files[1].at("file"), path("odd/caf\\xe9.off"));
+  EXPECT_TRUE(files[2].contains("error"));
+  const std::string csv = read("out.csv");
+  EXPECT_THAT(csv, HasSubstr("\n\"" + path("odd/a\nb\tc.off") + "\",4,4,1,"));
+  EXPECT_THAT(csv, HasSubstr("\n" + path("odd/caf\\xe9.off") + ",4,4,1,"));
+  EXPECT_EQ(csv.find('\xe9'), std::string::npos);
+  EXPECT_THAT(run({"inspect", path("odd/a\nb\tc.off")}).out, testing::StartsWith(path("odd/a\\nb\\tc.off") + "\n"));
+}
+
 /// Grey surface, white around it; the three edges of the missing triangle red in one view or both.
 TEST_F(Inspect, ThePictureShowsDefectsInTheirColours) {
   ASSERT_EQ(run({"inspect", cube(), "--png", path("cube.png")}).code, 0);
