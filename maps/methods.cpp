@@ -3,12 +3,14 @@
 
 #include "maps/methods.hpp"
 
+#include "engines/engine_by_light.hpp"
 #include "maps/backprojection/contours/methods.hpp"
 #include "maps/backprojection/patches/methods.hpp"
 #include "maps/backprojection/soft_shadow_map/methods.hpp"
 #include "maps/filters/methods.hpp"
 #include "maps/host/dome_suns.hpp"
 #include "maps/host/every_light.hpp"
+#include "maps/host/options.hpp"
 #include "maps/host/texel_widths.hpp"
 #include "maps/sampling/methods.hpp"
 #include "maps/screen/methods.hpp"
@@ -18,6 +20,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <string>
 #include <string_view>
 #include <utility>
 
@@ -76,6 +79,27 @@ engines::MethodRow slow_on_processors(engines::MethodRow row) {
   return row;
 }
 
+bool is_no_sphere(const visibility::Light& light) {
+  return light.kind != visibility::LightKind::sphere;
+}
+
+/// Row of deep-penumbra. A sphere is up to 54 disks, each with a list for every texel of a map of its own; three disks
+/// are side by side in a face of a cube. With a quarter of `size` texels on a side, such a face has about as many
+/// texels as that of another light, where whole maps would take minutes.
+engines::MethodRow deep_penumbra_row() {
+  engines::MethodRow row = maps::row<deep_penumbra_description, make_deep_penumbra>();
+  row.make = [make = row.make, describe = row.describe](const render::Machine& machine,
+                                                        const visibility::MethodOptions& options) {
+    visibility::MethodOptions of_disks = options;
+    const std::string size = visibility::complete_options(describe(options), options).at(kMapSize.name());
+    of_disks[kMapSize.name()] = std::to_string(std::max(std::stoul(size) / 4, 8UL));
+    return engines::make_engine_by_light({.usual = [=] { return make(machine, options); },
+                                          .other = [=] { return make(machine, of_disks); },
+                                          .is_usual = is_no_sphere});
+  };
+  return row;
+}
+
 /// Methods with penumbrae drawn along the borders of triangles, which are not the borders of holes.
 constexpr Given kWithoutHoles{.suns = true, .spheres = true, .holes = false};
 /// Methods with a flood on the screen, which would end at the border of the next disk of a lamp.
@@ -106,7 +130,7 @@ std::span<const engines::MethodRow> methods() {
       row<soft_shadow_map_description, make_soft_shadow_map>(),
       slow_on_processors(row<accumulate_description, make_accumulate>()),
       slow_on_processors(row<adaptive_light_description, make_adaptive_light>()),
-      row<deep_penumbra_description, make_deep_penumbra>(),
+      deep_penumbra_row(),
       row<layered_attenuation_description, make_layered_attenuation>(),
       row<occlusion_textures_description, make_occlusion_textures>(),
       row<convolution_description, make_convolution>(),

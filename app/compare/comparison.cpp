@@ -384,6 +384,7 @@ class Comparison {
       warn(fmt::format("no error budget under light \"{}\": it is cut in {} pieces", session_.lights[whole.first].name,
                        whole.count));
     }
+    std::vector<BudgetRuns> runs(truths_.size());
     for (std::size_t i = 0; i < entries_.size() && !hang_; ++i) {
       if (entries_[i].description.repairs == nullptr || visibility_[i].empty()) continue;
       try {
@@ -391,7 +392,7 @@ class Comparison {
           if (truths_[light].judged.empty() || wholes[light].count > 1) continue;
           BudgetAnswer answer = measure_error_budget({session_, session_.lights[wholes[light].first], truths_[light],
                                                       reference_request_, entries_[i], visibility_[i][light]},
-                                                     report_.error_limit, machine_, progress_);
+                                                     report_.error_limit, machine_, runs[light], progress_);
           report_.metrics.methods[i].lights[light].error_budget = std::move(answer.budget);
           report_.methods[i].lights[light].budget_pictures = std::move(answer.pictures);
         }

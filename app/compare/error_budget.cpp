@@ -15,10 +15,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <memory>
 #include <string>
-#include <tuple>
 #include <utility>
 
 namespace penumbra::app {
@@ -40,18 +38,25 @@ std::string why_whole(const Light& light) {
   return {};
 }
 
-class BudgetRuns {
+/// Number of repairs that a method runs.
+std::size_t count_of(const visibility::ErrorRepairs& repairs) {
+  const auto runs =
+      std::ranges::count_if(repairs.alone, [](const ErrorRepair& repair) { return !repair.runs.empty(); });
+  return static_cast<std::size_t>(runs) + (repairs.one_view.empty() ? 0 : 1) + (repairs.together.empty() ? 0 : 1);
+}
+
+class RepairRuns {
  public:
-  BudgetRuns(const BudgetQuestion& question, const render::Machine& machine, Progress& progress)
-      : question_(question), machine_(machine), progress_(progress) {
+  RepairRuns(const BudgetQuestion& question, const render::Machine& machine, BudgetRuns& runs, Progress& progress)
+      : question_(question), machine_(machine), runs_(runs), progress_(progress) {
     const Entry& entry = question.entry;
-    runs_[key_of({entry.description.name, visibility::complete_options(entry.description, entry.options)})] =
+    runs_.known[key_of({entry.description.name, visibility::complete_options(entry.description, entry.options)})] =
         std::make_shared<const std::vector<float>>(question.visibility.begin(), question.visibility.end());
   }
 
   /// Returns V of each pixel; nullptr, with the reason in `run`, if the run fails.
   std::shared_ptr<const std::vector<float>> visibility_of(BudgetRun& run, const std::string& stage) {
-    auto& known = runs_[key_of(run.run)];
+    auto& known = runs_.known[key_of(run.run)];
     try {
       if (!known) known = std::make_shared<const std::vector<float>>(evaluate(run.run, stage));
     } catch (...) {
@@ -65,8 +70,9 @@ class BudgetRuns {
   }
 
  private:
-  using Key = std::tuple<std::string, visibility::MethodOptions, std::uint32_t, std::uint32_t>;
-  static Key key_of(const RepairRun& run) { return {run.method, run.options, run.light_parts, run.light_samples}; }
+  static BudgetRuns::Key key_of(const RepairRun& run) {
+    return {run.method, run.options, run.light_parts, run.light_samples};
+  }
 
   std::vector<float> evaluate(const RepairRun& run, const std::string& stage) {
     const auto method = make_method(run.method, run.options, machine_);
@@ -98,8 +104,8 @@ class BudgetRuns {
 
   const BudgetQuestion& question_;
   render::Machine machine_;
+  BudgetRuns& runs_;
   Progress& progress_;
-  std::map<Key, std::shared_ptr<const std::vector<float>>> runs_;
 };
 
 /// Returns a picture of the change of V by a repair, over judged pixels.
@@ -113,11 +119,15 @@ Image8 picture_of(const BudgetQuestion& question, const std::vector<float>& repa
 }  // namespace
 
 BudgetAnswer measure_error_budget(const BudgetQuestion& question, double limit, const render::Machine& machine,
-                                  Progress& progress) {
+                                  BudgetRuns& known, Progress& progress) {
   const Entry& entry = question.entry;
   const std::string whole = why_whole(question.light);
   const visibility::ErrorRepairs repairs = entry.description.repairs(entry.description, entry.options);
-  BudgetRuns runs(question, machine, progress);
+  RepairRuns runs(question, machine, known, progress);
+  std::size_t begun = 0;
+  const auto next_stage = [&, all = count_of(repairs)](const char* repaired) {
+    return fmt::format("{}: {} repaired ({} of {})", entry.label, repaired, ++begun, all);
+  };
   BudgetAnswer answer;
   compare::ErrorBudget& budget = answer.budget;
   budget.rmse = compare::visibility_error(question.visibility, question.truth.reference, question.truth.judged)->rmse;
@@ -126,7 +136,7 @@ BudgetAnswer measure_error_budget(const BudgetQuestion& question, double limit, 
   };
 
   for (const ErrorRepair& repair : repairs.alone) {
-    const std::string stage = fmt::format("{}: {} repaired", entry.label, name_of(repair.cause));
+    const std::string stage = repair.runs.empty() ? std::string() : next_stage(name_of(repair.cause));
     BudgetPart& part = budget.parts.emplace_back(BudgetPart{.cause = repair.cause, .words = repair.words});
     std::shared_ptr<const std::vector<float>> last;
     BudgetRun last_made;
@@ -159,10 +169,11 @@ BudgetAnswer measure_error_budget(const BudgetQuestion& question, double limit, 
   // The most thorough repair that can be run.
   const auto first_of = [&](const std::vector<RepairRun>& wanted, const char* repaired) {
     BudgetRun made;
+    const std::string stage = wanted.empty() ? std::string() : next_stage(repaired);
     for (RepairRun run : wanted) {
       if (!whole.empty()) run.light_parts = 1;
       made = {run};
-      const auto visibility = runs.visibility_of(made, fmt::format("{}: {} repaired", entry.label, repaired));
+      const auto visibility = runs.visibility_of(made, stage);
       if (!visibility) continue;
       show(repaired, made, *visibility);
       break;

@@ -9,8 +9,13 @@
 #include "compare/error_budget.hpp"
 #include "compare/report.hpp"
 
+#include <cstdint>
+#include <map>
+#include <memory>
 #include <optional>
 #include <span>
+#include <string>
+#include <tuple>
 #include <vector>
 
 namespace penumbra::app {
@@ -25,14 +30,21 @@ struct BudgetQuestion {
   std::span<const float> visibility;         ///< with the requested options, of each pixel
 };
 
+/// V by the runs of repairs under one light, for its judged pixels: repairs of several methods may be the same run.
+struct BudgetRuns {
+  /// Method, options, parts of the light, light samples.
+  using Key = std::tuple<std::string, visibility::MethodOptions, std::uint32_t, std::uint32_t>;
+  std::map<Key, std::shared_ptr<const std::vector<float>>> known;
+};
+
 struct BudgetAnswer {
   compare::ErrorBudget budget;
   std::vector<compare::BudgetPicture> pictures;  ///< change of V by each repair; without repairs that change nothing
 };
 
 /// Runs the repairs of the method's description one after another. A run that the device or the scene rejects is noted
-/// and left out. `limit`: of the pictures' scale.
+/// and left out, and one in `runs` is not repeated. `limit`: of the pictures' scale.
 BudgetAnswer measure_error_budget(const BudgetQuestion& question, double limit, const render::Machine& machine,
-                                  Progress& progress);
+                                  BudgetRuns& runs, Progress& progress);
 
 }  // namespace penumbra::app

@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <system_error>
 #include <utility>
 
 #include <unistd.h>
@@ -26,15 +27,25 @@ constexpr auto kSilence = std::chrono::seconds(5);
 }  // namespace
 
 TerminalProgress::TerminalProgress(bool wanted)
-    : wanted_(wanted), on_terminal_(::isatty(STDERR_FILENO) != 0), last_draw_(std::chrono::steady_clock::now()) {}
+    : wanted_(wanted), on_terminal_(::isatty(STDERR_FILENO) != 0), last_draw_(std::chrono::steady_clock::now()) {
+  if (!wanted_ || on_terminal_) return;
+  try {
+    reporter_ = std::jthread([this](const std::stop_token& stop) { report_long_steps(stop); });
+  } catch (const std::system_error&) {
+    // No thread can be had: long steps are silent.
+  }
+}
 
 TerminalProgress::~TerminalProgress() {
+  reporter_ = {};
   clear();
 }
 
 void TerminalProgress::begin(std::string stage, std::uint64_t steps) {
   check_interrupt();
+  const std::scoped_lock lock(mutex_);
   stage_ = std::move(stage);
+  began_ = std::chrono::steady_clock::now();
   steps_ = std::max<std::uint64_t>(steps, 1);
   done_ = 0;
   if (on_terminal_) last_draw_ = {};
@@ -43,6 +54,7 @@ void TerminalProgress::begin(std::string stage, std::uint64_t steps) {
 
 void TerminalProgress::advance(std::uint64_t steps) {
   check_interrupt();
+  const std::scoped_lock lock(mutex_);
   done_ = std::min(done_ + steps, steps_);
   draw();
 }
@@ -63,9 +75,7 @@ void TerminalProgress::draw() {
   if (!wanted_) return;
   const auto now = std::chrono::steady_clock::now();
   if (!on_terminal_) {
-    if (now - last_draw_ < kSilence) return;
-    last_draw_ = now;
-    app::say(fmt::format("penumbra: info: {:3}% {}\n", 100 * done_ / steps_, stage_));
+    if (now - last_draw_ >= kSilence) draw_line(now);
     return;
   }
   if (now - last_draw_ < std::chrono::milliseconds(50) && done_ < steps_) return;  // a terminal is slower than a tile
@@ -75,6 +85,22 @@ void TerminalProgress::draw() {
   app::say(fmt::format("\r\033[K[{}{}] {:3}% {}", std::string(filled, '='), std::string(kWidth - filled, ' '),
                        100 * done_ / steps_, stage_));
   drawn_ = true;
+}
+
+void TerminalProgress::draw_line(std::chrono::steady_clock::time_point now) {
+  last_draw_ = now;
+  const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(now - began_).count();
+  app::say(fmt::format("penumbra: info: {:3}% {}{}\n", 100 * done_ / steps_, stage_,
+                       seconds >= kSilence.count() ? fmt::format(", {} s", seconds) : ""));
+}
+
+void TerminalProgress::report_long_steps(const std::stop_token& stop) {
+  std::unique_lock lock(mutex_);
+  while (!stop.stop_requested()) {
+    stopped_.wait_for(lock, stop, kSilence / 2, [] { return false; });
+    const auto now = std::chrono::steady_clock::now();
+    if (!stop.stop_requested() && done_ < steps_ && now - last_draw_ >= kSilence) draw_line(now);
+  }
 }
 
 }  // namespace penumbra::app

@@ -4,12 +4,17 @@
 #include "app/process/progress.hpp"
 
 #include <chrono>
+#include <condition_variable>
 #include <cstdint>
+#include <mutex>
+#include <stop_token>
 #include <string>
+#include <thread>
 
 namespace penumbra::app {
 
-/// Shows a bar on stderr if stderr is a terminal, else a line every five seconds; neither with --quiet. Each step also
+/// Shows a bar on stderr if stderr is a terminal, else a line every five seconds, during a long step too; neither with
+/// --quiet. Each step also
 /// checks for an interrupt (Interrupted). Messages go to spdlog.
 class TerminalProgress final : public Progress {
  public:
@@ -24,12 +29,18 @@ class TerminalProgress final : public Progress {
 
  private:
   void draw();
+  void draw_line(std::chrono::steady_clock::time_point now);
+  /// Writes a line wherever nothing was written for a while; runs until the destructor.
+  void report_long_steps(const std::stop_token& stop);
 
   bool wanted_ = false, on_terminal_ = false;
   std::string stage_;
   std::uint64_t steps_ = 0, done_ = 0;
   bool drawn_ = false;
-  std::chrono::steady_clock::time_point last_draw_;
+  std::chrono::steady_clock::time_point last_draw_, began_;
+  std::mutex mutex_;  // guards the members above
+  std::condition_variable_any stopped_;
+  std::jthread reporter_;  // only where there is no terminal
 };
 
 }  // namespace penumbra::app

@@ -52,6 +52,7 @@ class SamplePoints final : public MapProduct {
   void make(const MapSource& source) override;
   void record(render::Commands& /*commands*/, const MapSet& /*maps*/) override {}
   [[nodiscard]] const render::Buffer& buffer() const override { return *points_; }
+  [[nodiscard]] std::uint64_t memory_bytes() const override { return points_ ? points_->bytes() : 0; }
 
  private:
   const render::Device* device_;
