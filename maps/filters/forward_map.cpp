@@ -5,11 +5,14 @@
 // compared at each texel's centre (receiverPlane=off: the receiver's own depth).
 
 #include "maps/filters/forward_map.comp.spv.hpp"
+#include "maps/filters/forward_map_fitted.comp.spv.hpp"
 #include "maps/filters/methods.hpp"
 #include "maps/filters/repairs.hpp"
 #include "maps/host/map_method.hpp"
 #include "maps/host/mesh_verdict.hpp"
 
+#include <algorithm>
+#include <iterator>
 #include <memory>
 #include <utility>
 
@@ -42,6 +45,7 @@ visibility::MethodDescription forward_map_description() {
       .verdict_on = forward_map_verdict,
       .repairs = filter_repairs};
   description.options.push_back(kSplat.description());
+  std::ranges::copy(view_fit_descriptions(), std::back_inserter(description.options));
   return description;
 }
 
@@ -49,7 +53,8 @@ std::unique_ptr<visibility::Method> make_forward_map(const render::Device& devic
                                                      const visibility::MethodOptions& options) {
   MapRecipe recipe{.description = forward_map_description(),
                    .look_up_name = "forward map look-up",
-                   .look_up = shaders::kForwardMapComp};
+                   .look_up = shaders::kForwardMapComp,
+                   .fitted_look_up = shaders::kForwardMapFittedComp};
   recipe.constants = {visibility::parse_options(recipe.description, options)[kSplat]};
   return make_map_method(device, std::move(recipe), options);
 }

@@ -8,6 +8,7 @@
 
 #include "maps/filters/vssm.comp.spv.hpp"
 #include "maps/filters/vssm.shared.h"
+#include "maps/filters/vssm_fitted.comp.spv.hpp"
 #include "maps/host/map_fit.hpp"
 #include "maps/host/map_method.hpp"
 #include "maps/host/mesh_verdict.hpp"
@@ -20,11 +21,16 @@
 #include "maps/products/prefilter.hpp"
 #include "maps/products/shadow_depths.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
 #include <iterator>
+#include <map>
 #include <numbers>
+#include <optional>
+#include <string>
 #include <utility>
 
 namespace penumbra::maps {
@@ -92,6 +98,26 @@ constexpr auto kSlope = visibility::flag_option(
     "slope", false,
     "vsm, lvsm: adds the variance of depth within a texel, from the surface's slope, to each texel's square");
 
+/// Says that maps are smaller than the default, which this device cannot filter.
+std::optional<std::string> vssm_warning(const visibility::MethodOptions& /*options*/,
+                                        const std::map<std::string, std::uint64_t>& counters) {
+  const auto reduced = counters.find(kReducedSize);
+  if (reduced == counters.end()) return std::nullopt;
+  return fmt::format(
+      "vssm: maps have {0} texels a side in place of the default of {1}, whose means the device's buffers do not hold; "
+      "take filter=sat or fewer terms for {1}, or size={0}",
+      reduced->second, kMapSize.otherwise);
+}
+
+/// Returns the number of maps that a fit asks for on one side of a light: in a window, or at most, in a hemicube.
+std::uint32_t fewest_faces(const ViewFit& fit) {
+  if (fit.fit == Fit::tiles) return fit.tiles;
+  return fit.projection == Projection::cube || fit.fit == Fit::faces ? 5 : fit.slices();
+}
+std::uint32_t most_faces(const ViewFit& fit) {
+  return fit.fit == Fit::tiles ? std::max(fit.tiles, 5U) : 5 * fit.slices();
+}
+
 visibility::MeshVerdict vssm_verdict(const mesh::Diagnosis& mesh) {
   return judge_for_maps("one map, one mean height for all that shades a pixel, and a bound in place of a count", mesh);
 }
@@ -111,7 +137,8 @@ visibility::MethodDescription vssm_description() {
                                             .textures = false,
                                             .options = compared_map_option_descriptions(),
                                             .verdict_on = vssm_verdict,
-                                            .repairs = vssm_repairs};
+                                            .repairs = vssm_repairs,
+                                            .warning = vssm_warning};
   for (const auto& option :
        {kMoments.description(), kFilter.description(), kSubdivision.description(), kCuts.description(),
         kFixedWindow.description(), kLayers.description(), kTerms.description(), kOffset.description(),
@@ -119,7 +146,7 @@ visibility::MethodDescription vssm_description() {
         kClassifier.description(), kLeak.description(), kLeakCut.description(), kSlope.description()}) {
     description.options.push_back(option);
   }
-  std::ranges::copy(window_fit_descriptions(), std::back_inserter(description.options));
+  std::ranges::copy(view_fit_descriptions(), std::back_inserter(description.options));
   return description;
 }
 
@@ -202,27 +229,42 @@ std::unique_ptr<visibility::Method> make_vssm(const render::Device& device, cons
   }
   const bool bounds = model == gpu::kVariance || model == gpu::kExpVariance;
   const std::uint32_t cuts = bounds && subdivision != Subdivision::none ? parsed[kCuts] : 0;
+  // Windows on warped faces are cut for any moments. A series has up to 65 means a part: with three cuts, its loops
+  // would be more than the 65,535 iterations after which some drivers for processors end them.
+  const std::uint32_t image_cuts = moments == Moments::csm ? std::min(parsed[kCuts], 2U) : parsed[kCuts];
   const auto offset = static_cast<float>(parsed[kOffset]);
   const std::uint32_t window = parsed[kFixedWindow];
   MapRecipe recipe{.description = vssm_description(),
                    .look_up_name = "vssm look-up",
                    .look_up = shaders::kVssmComp,
+                   .fitted_look_up = shaders::kVssmFittedComp,
                    .constants = {model, cuts, subdivision == Subdivision::adaptive ? gpu::kAdaptive : gpu::kUniform,
                                  window, std::bit_cast<std::uint32_t>(offset),
                                  std::bit_cast<std::uint32_t>(static_cast<float>(parsed[kDamping])),
                                  parsed[kLeakCut] == LeakCut::smooth ? 1U : 0U,
-                                 parsed[kClassifier] == Classifier::farthest ? 1U : 0U}};
+                                 parsed[kClassifier] == Classifier::farthest ? 1U : 0U, image_cuts}};
   // An exponential subtracts nothing from a receiver's height.
   recipe.products.push_back(
       std::make_unique<ShadowDepths>(device, parsed[kDepth], moments == Moments::esm ? 0 : parsed[kBias]));
   auto nearest = std::make_unique<NearestCaster>(device);
   auto frame = std::make_unique<MapFrame>(device);
-  auto prefilter =
-      std::make_unique<Prefilter>(device,
-                                  PrefilterOptions{.kind = parsed[kFilter],
-                                                   .functions = functions(moments, push.count, push.exponent, offset),
-                                                   .slope = parsed[kSlope]},
-                                  Prefilter::Sources{.nearest = nearest.get(), .frame = frame.get()});
+  PrefilterOptions means{.kind = parsed[kFilter],
+                         .functions = functions(moments, push.count, push.exponent, offset),
+                         .slope = parsed[kSlope]};
+  visibility::MethodOptions given = options;
+  std::uint32_t size = parsed[kMapSize];
+  if (!parsed.given(kMapSize)) {
+    // The number of maps depends on the light: where one window's means would not fit, there is room for a hemicube's.
+    const ViewFit fit = view_fit(recipe.description.options, parsed);
+    const std::uint64_t most_bytes = device.limits().max_storage_buffer_range;
+    if (size_that_fits(means, size, fewest_faces(fit), most_bytes) != size) {
+      size = size_that_fits(means, size, most_faces(fit), most_bytes);
+      means.reduced_size = size;
+    }
+    given[kMapSize.name()] = fmt::format("{}", size);
+  }
+  auto prefilter = std::make_unique<Prefilter>(device, std::move(means),
+                                               Prefilter::Sources{.nearest = nearest.get(), .frame = frame.get()});
   recipe.products.push_back(std::move(nearest));
   recipe.products.push_back(std::move(frame));
   recipe.products.push_back(std::move(prefilter));
@@ -230,14 +272,14 @@ std::unique_ptr<visibility::Method> make_vssm(const render::Device& device, cons
       std::make_unique<LightPattern>(device, std::initializer_list<std::uint32_t>{kHorizonSamples}));
   recipe.products.push_back(std::make_unique<DepthPyramid>(device, PyramidKind::hsm));
   // Extent of the blocker search: see pcss. With a fixed filter width: see pcf.
-  const double beside = 2 * kWidestTangent * (window / 2) / parsed[kMapSize];
+  const double beside = 2 * kWidestTangent * (window / 2) / size;
   recipe.beside = [window, beside](const visibility::Light& light, const LightBasis& basis) {
     return window != 0 ? glm::dvec2(beside) : half_extent(light, basis) / half_width(light);
   };
   recipe.beside_texels = window / 2;
   recipe.push_words = sizeof(gpu::VssmPush) / sizeof(std::uint32_t);
   recipe.push = [push](const visibility::Light& /*light*/) { return push_words(push); };
-  return make_map_method(device, std::move(recipe), options);
+  return make_map_method(device, std::move(recipe), given);
 }
 
 }  // namespace penumbra::maps

@@ -13,64 +13,56 @@ const float kFaceBorder = 1.0 / 65536.0;
 
 float receiver_depth;  // depth along the view axis, set by scalar_main.glsl
 
-// Returns b across a face's rows (FittedFace::place).
-float face_row(FittedFace face, float b) {
-  if (face.ratio == 0.0) return b;
-  const float left = 1.0 - b * (1.0 - 1.0 / face.ratio);
-  if (!(left > 0.0)) return 2.0;
-  return face.margin - (1.0 - 2.0 * face.margin) * log(left) / log(face.ratio);
-}
-
 // Finds the position of a direction e = (x, y, |z|) and returns the index of its face, or the number of faces if no
 // face contains e.
 uint find_face(vec3 e, uint side, out vec2 place) {
   for (uint i = 0; i < table_of_faces.count; ++i) {
     const FittedFace face = fitted_faces[i];
     if (face.side != side || receiver_depth < face.from || receiver_depth >= face.to) continue;
-    if (face.ratio == kCircle) {
-      place = 0.5 + (0.5 - face.margin) * e.xy / (length(e) + e.z);
-    } else {
-      const float k = dot(face.row_k, e);
-      if (!(k > 0.0)) continue;
-      place = vec2(dot(face.row_a, e), dot(face.row_b, e)) / k;
-      place.y = face_row(face, place.y);
-    }
+    if (!face_place(face, e, place)) continue;
     if (all(greaterThanEqual(place, vec2(-kFaceBorder))) && all(lessThanEqual(place, vec2(1.0 + kFaceBorder)))) return i;
   }
   return table_of_faces.count;
 }
 
-// Returns the tap in direction d, which must not lie in the light's plane. A texel's width is its width at this
-// position.
+// Returns texel `cell` of face `number`, as a tap on the receiver's side of the light's plane, in direction e = (x, y,
+// |z|). A texel's width is its width at this position. A direction of 0: the texel looks behind the light's plane.
+Tap tap_in_face(LightView view, uint first_map, uint size, uint number, uvec2 cell, vec3 e) {
+  const FittedFace face = fitted_faces[number];
+  const vec2 centre = (vec2(cell) + 0.5) / float(size);
+  Tap tap;
+  tap.direction = face_direction(face, centre);
+  tap.texel = face_texel(face, centre, size);
+  const uint texel = ((first_map + number) * size + cell.y) * size + cell.x;
+  tap.far = view.far;
+  tap.along = dot(face.along, e);
+  tap.axis = int(face.axis);
+  tap.mirrored = 1.0;
+  tap.number = texel;
+  tap.depth = tap.second = view.far;
+  if (tap.direction != vec3(0.0)) {
+    tap.depth = view.far * maps[texel];
+    if (lookup.depth_use != kDepthFirst) tap.second = view.far * maps[texel + lookup.faces * size * size];
+  } else {
+    tap.direction = e / tap.along;
+  }
+  return tap;
+}
+
+// Returns the tap in direction d, which must not lie in the light's plane.
 Tap fetch(LightView view, uint first_map, uint size, vec3 d) {
   const uint side = d.z < 0.0 ? 1 : 0;
   const vec3 e = vec3(d.xy, abs(d.z));
   vec2 place;
   const uint number = find_face(e, side, place);
   const bool found = number < table_of_faces.count;
-  const FittedFace face = fitted_faces[found ? number : 0];
   const uvec2 cell = uvec2(clamp(floor((found ? place : vec2(0.0)) * float(size)), vec2(0.0), vec2(float(size - 1))));
-  const vec2 centre = (vec2(cell) + 0.5) / float(size);
-  const float half_texel = 0.5 / float(size);
-  Tap tap;
-  tap.direction = face_direction(face, centre);
-  const vec3 across = face_direction(face, centre + vec2(half_texel, 0.0)) - face_direction(face, centre - vec2(half_texel, 0.0));
-  const vec3 down = face_direction(face, centre + vec2(0.0, half_texel)) - face_direction(face, centre - vec2(0.0, half_texel));
-  const vec3 widest = max(abs(across), abs(down));
-  tap.texel = max(widest.x, max(widest.y, widest.z));
-  const uint texel = ((first_map + number) * size + cell.y) * size + cell.x;
-  tap.far = view.far;
-  tap.along = dot(face.along, e);
-  tap.axis = int(face.axis);
-  tap.mirrored = d.z < 0.0 ? -1.0 : 1.0;
-  tap.number = texel;
-  tap.depth = tap.second = view.far;
-  if (found && tap.direction != vec3(0.0)) {
-    tap.depth = view.far * maps[texel];
-    if (lookup.depth_use != kDepthFirst) tap.second = view.far * maps[texel + lookup.faces * size * size];
-  } else {
+  Tap tap = tap_in_face(view, first_map, size, found ? number : 0, cell, e);
+  if (!found) {
+    tap.depth = tap.second = view.far;
     tap.direction = e / tap.along;
   }
+  tap.mirrored = d.z < 0.0 ? -1.0 : 1.0;
   tap.direction.z *= tap.mirrored;
   return tap;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Directions in a fitted face.
+// Directions and places in a fitted face.
 #include "maps/host/fitted_face.shared.h"
 
 // Returns the b of a row of a face (FittedFace::direction).
@@ -21,3 +21,38 @@ vec3 face_direction(FittedFace face, vec2 place) {
   const float along = dot(face.along, d);
   return along > 0.0 ? d / along : vec3(0.0);
 }
+
+// Returns b across a face's rows (FittedFace::place); 2 beyond the logarithm's end.
+float face_row(FittedFace face, float b) {
+  if (face.ratio == 0.0) return b;
+  const float left = 1.0 - b * (1.0 - 1.0 / face.ratio);
+  if (!(left > 0.0)) return 2.0;
+  return face.margin - (1.0 - 2.0 * face.margin) * log(left) / log(face.ratio);
+}
+
+// Finds the place of a direction e = (x, y, |z|), which may lie beside the face. Returns false behind the face, where
+// there is none.
+bool face_place(FittedFace face, vec3 e, out vec2 place) {
+  place = vec2(2.0);
+  if (face.ratio == kCircle) {
+    place = 0.5 + (0.5 - face.margin) * e.xy / (length(e) + e.z);
+    return true;
+  }
+  const float k = dot(face.row_k, e);
+  if (!(k > 0.0)) return false;
+  place = vec2(dot(face.row_a, e), dot(face.row_b, e)) / k;
+  place.y = face_row(face, place.y);
+  return true;
+}
+
+// Returns the width of a texel around a place, at depth 1.
+float face_texel(FittedFace face, vec2 centre, uint size) {
+  const vec2 half_texel = vec2(0.5 / float(size), 0.0);
+  const vec3 across = face_direction(face, centre + half_texel) - face_direction(face, centre - half_texel);
+  const vec3 down = face_direction(face, centre + half_texel.yx) - face_direction(face, centre - half_texel.yx);
+  const vec3 widest = max(abs(across), abs(down));
+  return max(widest.x, max(widest.y, widest.z));
+}
+
+// Returns the distance from the light's plane at depth 1 in the direction of a place; 0 behind the plane.
+float face_height(FittedFace face, vec2 place) { return face.axis == 2 ? 1.0 : max(face_direction(face, place).z, 0.0); }

@@ -107,11 +107,6 @@ std::vector<visibility::OptionDescription> view_fit_descriptions() {
           kChanged.description(), kFocus.description(),      kAliasing.description(), kProjection.description()};
 }
 
-std::vector<visibility::OptionDescription> window_fit_descriptions() {
-  return {kWindowFit.description(), kViewBody.description(), kSnap.description(), kAliasing.description(),
-          kEvenProjection.description()};
-}
-
 std::string words_of(const ViewFit& fit) {
   if (fit.projection != Projection::window) return std::string("projection=") + kProjection.name_of(fit.projection);
   return std::string("fit=") + kFit.name_of(fit.fit);
@@ -126,9 +121,8 @@ ViewFit view_fit(std::span<const visibility::OptionDescription> options, const v
   fit.body = parsed[kViewBody];
   fit.snap = parsed[kSnap];
   fit.aliasing = parsed[kAliasing];
-  fit.fit = has(kCascades.name()) ? parsed[kFit] : parsed[kWindowFit];
-  fit.projection = has(kCascades.name()) ? parsed[kProjection] : parsed[kEvenProjection];
-  if (!has(kCascades.name())) return fit;
+  fit.fit = parsed[kFit];
+  fit.projection = parsed[kProjection];
   fit.cascades = parsed[kCascades];
   fit.split = parsed[kSplit];
   fit.split_share = parsed[kSplitShare];

@@ -49,13 +49,6 @@ inline constexpr visibility::ChoiceOption kFit{
     Fit::receivers,
     "region over which texels are spread: all receivers; the camera's view, in one window, in slices of depth or in "
     "tiles; a perspective of the view; or the faces of its frustum, each with a perspective"};
-/// Option of methods whose products support windows alone.
-inline constexpr visibility::ChoiceOption kWindowFit{
-    "fit",
-    {{"receivers", Fit::receivers}, {"view", Fit::view}},
-    Fit::receivers,
-    "region over which texels are spread: all receivers, or the camera's view; means over windows need even texels, so "
-    "there are no warps"};
 inline constexpr visibility::ChoiceOption kViewBody{
     "body",
     {{"visible", ViewBody::visible}, {"frustum", ViewBody::frustum}},
@@ -112,14 +105,6 @@ inline constexpr visibility::ChoiceOption kProjection{
     Projection::window,
     "fit=receivers: a window of directions (five faces where it would be too wide), always the five faces of half a "
     "cube, or a half space in the circle of a paraboloid"};
-/// Option of methods whose products support uniform texels alone.
-inline constexpr visibility::ChoiceOption kEvenProjection{
-    "projection",
-    {{"window", Projection::window}, {"cube", Projection::cube}},
-    Projection::window,
-    "fit=receivers: a window of directions (five faces where it would be too wide), or always the five faces of half a "
-    "cube; means over windows need even texels, so there is no paraboloid"};
-
 /// Values of all these options.
 struct ViewFit {
   Fit fit = Fit::receivers;
@@ -151,9 +136,8 @@ struct ViewFit {
   }
 };
 
-/// Return the options of methods that look up texels one by one, and of methods that support windows alone.
+/// Returns these options, as listed by `methods`.
 std::vector<visibility::OptionDescription> view_fit_descriptions();
-std::vector<visibility::OptionDescription> window_fit_descriptions();
 /// Returns "fit=tsm", or "projection=paraboloid".
 std::string words_of(const ViewFit& fit);
 /// Returns the choice of a method that has some of the options, or none.

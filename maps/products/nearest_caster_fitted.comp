@@ -30,7 +30,7 @@ void main() {
     const float depth = maps[row * push.size + x];
     if (!(depth < 1.0)) continue;
     const vec2 place = (vec2(x, row % push.size) + 0.5) / float(push.size);
-    const float height = face.axis == 2 ? 1.0 : face_direction(face, place).z;
+    const float height = face_height(face, place);
     if (height > 0.0) atomicMin(smallest, floatBitsToUint(depth * height * views[0].far));
   }
   barrier();

@@ -7,9 +7,11 @@
 #include "base/error.hpp"
 #include "maps/products/prefilter_level.comp.spv.hpp"
 #include "maps/products/prefilter_values.comp.spv.hpp"
+#include "maps/products/prefilter_values_fitted.comp.spv.hpp"
 
 #include <algorithm>
 #include <bit>
+#include <span>
 #include <utility>
 
 namespace penumbra::maps {
@@ -67,6 +69,18 @@ std::optional<PrefilterLayout> prefilter_layout(const PrefilterOptions& options,
   return layout;
 }
 
+std::uint32_t size_that_fits(const PrefilterOptions& options, std::uint32_t size, std::uint32_t faces,
+                             std::uint64_t buffer_bytes) {
+  constexpr std::uint32_t kStep = 64;
+  const auto fits = [&](std::uint32_t side) {
+    return prefilter_layout(options, side, faces, buffer_bytes).has_value();
+  };
+  if (fits(size)) return size;
+  std::uint32_t less = std::max((size - 1) / kStep, 1U) * kStep;
+  while (less > kStep && !fits(less)) less -= kStep;
+  return less;
+}
+
 Prefilter::Prefilter(const render::Device& device, PrefilterOptions options, const Sources& sources)
     : device_(&device),
       options_(std::move(options)),
@@ -105,15 +119,33 @@ void Prefilter::record(render::Commands& commands, const MapSet& maps) {
   const gpu::PrefilterValuesPush push{faces * maps.size * maps.size, options_.of_bits ? 1U : 0U,
                                       options_.slope ? 1U : 0U};
   if (maps.faces == 0) return;  // there is no receiver
-  values_.record(
-      commands, push,
-      {*table_, options_.of_bits ? sources_.bits->buffer() : maps.depths, maps.views, sources_.nearest->buffer(),
-       sources_.frame->buffer(), *images_[0], *images_[1], *images_[2], *images_[3]},
-      groups_of(push.texels));
+  record_values(commands, maps, push);
   if (options_.kind != PrefilterKind::table) return record_levels(commands, table);
   for (std::uint32_t i = 0; i < gpu::kPrefilterBuffers; ++i) {
     if (blocks_[i] > 0) sums_.record(commands, *images_[i], blocks_[i] * faces, maps.size);
   }
+}
+
+void Prefilter::record_values(render::Commands& commands, const MapSet& maps, const gpu::PrefilterValuesPush& push) {
+  std::vector<render::BufferReference> buffers{*table_,
+                                               options_.of_bits ? sources_.bits->buffer() : maps.depths,
+                                               maps.views,
+                                               sources_.nearest->buffer(),
+                                               sources_.frame->buffer(),
+                                               *images_[0],
+                                               *images_[1],
+                                               *images_[2],
+                                               *images_[3]};
+  const auto bytes = std::as_bytes(std::span(&push, 1));
+  if (maps.face_table == nullptr) return values_.record(commands, bytes, buffers, groups_of(push.texels));
+  if (!fitted_values_) {
+    fitted_values_.emplace(*device_, render::ComputePassOptions{.name = "prefilter values",
+                                                                .spirv = shaders::kPrefilterValuesFittedComp,
+                                                                .push_bytes = sizeof(gpu::PrefilterValuesPush),
+                                                                .constants = {}});
+  }
+  buffers.emplace_back(*maps.face_table);
+  fitted_values_->record(commands, bytes, buffers, groups_of(push.texels));
 }
 
 void Prefilter::record_levels(render::Commands& commands, const gpu::PrefilterTable& table) const {
@@ -152,6 +184,10 @@ std::vector<std::uint32_t> Prefilter::constants(std::uint32_t size, std::uint32_
   const auto layout = prefilter_layout(options_, size, faces, buffer_bytes());
   const bool one = layout && layout->blocks <= layout->table.per_buffer;
   return {static_cast<std::uint32_t>(options_.kind), one ? 1 : gpu::kPrefilterBuffers};  // if there is none: see record
+}
+
+void Prefilter::add_counters(std::map<std::string, std::uint64_t>& counters) const {
+  if (options_.reduced_size != 0) counters[kReducedSize] = options_.reduced_size;
 }
 
 std::uint64_t Prefilter::memory_bytes() const {

@@ -156,6 +156,34 @@ float mean_over(uint index, Box box, float log2_scale) {
 
 // ---- windows
 
+// Returns the part of a rectangle of texels that is in the map. `extent`: upper - lower. `alone`: beside the face there
+// is no caster.
+Box box_on(uint face, bool alone, vec2 lower, vec2 upper, vec2 extent) {
+  Box box;
+  box.face = face;
+  box.lower = clamp(lower, vec2(0.0), vec2(table.size));
+  box.upper = clamp(upper, vec2(0.0), vec2(table.size));
+  const vec2 inside = box.upper - box.lower;
+  // Exact comparison: for the part beside the map, an exponential of the whole depth would amplify the last digit of a
+  // fraction.
+  const bool whole = box.lower == lower && box.upper == upper;
+  // Beside the window of a map there is no caster; beside a face of a hemicube there are other faces, and the part on
+  // this face is assumed to be representative of them.
+  box.inside = inside.x > 0.0 && inside.y > 0.0 ? (alone && !whole ? inside.x * inside.y / (extent.x * extent.y) : 1.0)
+                                                : 0.0;
+  return box;
+}
+
+// Part of a window on a face.
+struct Image {
+  Box box;
+  vec2 centre, extent;  // in texels
+  bool fits;            // the part is this box, to within half a texel, and all of it is on one face
+};
+
+#ifdef FITTED_FACES
+#include "maps/products/prefilter_fitted.glsl"
+#else
 // Window of texels of one face, as requested by a look-up: it may extend beside the map.
 struct Window {
   uint face;   // of the light point
@@ -164,20 +192,10 @@ struct Window {
 };
 
 // Returns the part of a window that is in the map.
-Box box_of(Window window) {
-  Box box;
-  box.face = window.face;
-  box.lower = clamp(window.lower, vec2(0.0), vec2(table.size));
-  box.upper = clamp(window.upper, vec2(0.0), vec2(table.size));
-  const vec2 inside = box.upper - box.lower;
-  // Exact comparison: for the part beside the map, an exponential of the whole depth would amplify the last digit of a
-  // fraction.
-  const bool whole = box.lower == window.lower && box.upper == window.upper;
-  // Beside the window of a map there is no caster; beside a face of a hemicube there are other faces, and the part on
-  // this face is assumed to be representative of them.
-  box.inside = inside.x > 0.0 && inside.y > 0.0 ? (window.alone && !whole ? inside.x * inside.y / (window.extent.x * window.extent.y) : 1.0)
-                                                : 0.0;
-  return box;
+Box box_of(Window window) { return box_on(window.face, window.alone, window.lower, window.upper, window.extent); }
+
+Image image_of(Window window) {
+  return Image(box_of(window), 0.5 * (window.lower + window.upper), window.extent, true);
 }
 
 // Returns the light's box as seen from the receiver d through height z (> 0): around the receiver's own direction, half
@@ -218,4 +236,16 @@ float height_less_bias(LightView view, vec3 d, vec3 m) {
   const float across = abs(m.x) + abs(m.y) + abs(m.z) - abs(m[hit.axis]);
   const float slope = across < kSteepest * facing ? across / facing : kSteepest;
   return abs(d.z) * max(1.0 - lookup.bias * max(texels.x, texels.y) * (1.0 + slope), 0.0);
+}
+#endif
+
+// Returns part `index` of a level of cuts in four, in Morton order.
+Window part_of(Window window, uint level, uint index) {
+  if (level == 0) return window;
+  uvec2 cell = uvec2(0);
+  for (uint bit = 0; bit < level; ++bit) cell |= uvec2(index >> (2 * bit) & 1, index >> (2 * bit + 1) & 1) << bit;
+  window.extent /= float(1u << level);
+  window.lower += vec2(cell) * window.extent;
+  window.upper = window.lower + window.extent;
+  return window;
 }

@@ -8,8 +8,10 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace penumbra::maps {
@@ -34,7 +36,11 @@ struct PrefilterOptions {
   bool of_bits = false;            ///< texels are words of bits; else the maps' depths
   bool slope = false;              ///< squares of layers include the effect of the surface's slope within a texel
   std::uint64_t buffer_bytes = 0;  ///< size limit of a buffer; 0: the device's limit
+  std::uint32_t reduced_size = 0;  ///< size of maps, if it is a default reduced to what buffers hold; else 0
 };
+
+/// Counter of PrefilterOptions::reduced_size.
+inline constexpr const char* kReducedSize = "reducedSize";
 
 /// Functions of the texels of one light point's maps, prefiltered: a look-up computes their means over windows of any
 /// size by a number of fetches independent of the window (maps/products/prefilter.glsl).
@@ -59,15 +65,18 @@ class Prefilter final : public MapProduct {
   /// Returns the scheme and the number of its buffers.
   [[nodiscard]] std::vector<std::uint32_t> constants(std::uint32_t size, std::uint32_t faces) const override;
   [[nodiscard]] std::uint64_t memory_bytes() const override;
+  void add_counters(std::map<std::string, std::uint64_t>& counters) const override;
 
  private:
   [[nodiscard]] std::uint64_t buffer_bytes() const;
+  void record_values(render::Commands& commands, const MapSet& maps, const gpu::PrefilterValuesPush& push);
   void record_levels(render::Commands& commands, const gpu::PrefilterTable& table) const;
 
   const render::Device* device_;
   PrefilterOptions options_;
   Sources sources_;
   render::ComputePass values_, level_;
+  std::optional<render::ComputePass> fitted_values_;  ///< for MapSet::face_table
   SummedAreas sums_;
   std::unique_ptr<render::Buffer> table_;
   std::array<std::unique_ptr<render::Buffer>, gpu::kPrefilterBuffers> images_;
@@ -83,5 +92,10 @@ struct PrefilterLayout {
 };
 std::optional<PrefilterLayout> prefilter_layout(const PrefilterOptions& options, std::uint32_t size,
                                                 std::uint32_t faces, std::uint64_t buffer_bytes);
+
+/// Returns `size`, or, where buffers of `buffer_bytes` do not hold a look-up's data for it, the largest multiple of 64
+/// for which they do; at least 64.
+std::uint32_t size_that_fits(const PrefilterOptions& options, std::uint32_t size, std::uint32_t faces,
+                             std::uint64_t buffer_bytes);
 
 }  // namespace penumbra::maps

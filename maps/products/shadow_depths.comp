@@ -2,25 +2,5 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
-#include "maps/products/shadow_depths.shared.h"
-#include "maps/products/shadow_depths.glsl"
-
-// Replaces each texel's nearest depth by the depth at which its shadow begins. One invocation for each texel.
-
-layout(local_size_x = 64) in;
-layout(scalar, binding = 0) buffer Maps { float maps[]; };
-layout(scalar, binding = 1) readonly buffer Views { LightView views[]; };
-layout(scalar, push_constant) uniform Push { ShadowDepthsPush push; };
-
-void main() {
-  const uint texel = (gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x) * gl_WorkGroupSize.x +
-                     gl_LocalInvocationID.x;
-  const uint layer = push.faces * push.size * push.size;
-  if (texel >= layer) return;
-  const LightView view = views[0];
-  const uint face = texel / (push.size * push.size);
-  const SideView side = view.side[face >= view.side[0].first_face + view.side[0].face_count ? 1 : 0];
-  const vec2 extent = side.face_count == 1 ? side.upper - side.lower : vec2(2.0);
-  const float forgiven = min(push.bias * max(extent.x, extent.y) / float(push.size), 1.0);
-  if (maps[texel] < 1.0) maps[texel] = shadow_begins(push.depth_use, maps[texel], maps[layer + texel], forgiven);
-}
+// Computes the depths of shadows in windows and hemicubes: see shadow_depths_main.glsl.
+#include "maps/products/shadow_depths_main.glsl"

@@ -7,11 +7,13 @@
 #include "base/assert.hpp"
 #include "maps/products/shadow_depths.comp.spv.hpp"
 #include "maps/products/shadow_depths.shared.h"
+#include "maps/products/shadow_depths_fitted.comp.spv.hpp"
 
 namespace penumbra::maps {
 
 ShadowDepths::ShadowDepths(const render::Device& device, DepthUse depth, double bias)
-    : pass_(device, {.name = "shadow depths",
+    : device_(&device),
+      pass_(device, {.name = "shadow depths",
                      .spirv = shaders::kShadowDepthsComp,
                      .push_bytes = sizeof(gpu::ShadowDepthsPush),
                      .constants = {}}),
@@ -23,7 +25,17 @@ void ShadowDepths::record(render::Commands& commands, const MapSet& maps) {
   if (depth_ == DepthUse::first || maps.faces == 0) return;
   const gpu::ShadowDepthsPush push{maps.size, maps.faces, static_cast<std::uint32_t>(depth_), bias_};
   const std::uint64_t texels = std::uint64_t{maps.faces} * maps.size * maps.size;
-  pass_.record(commands, push, {maps.depths, maps.views}, (texels + 63) / 64);
+  const std::uint64_t groups = (texels + 63) / 64;
+  if (maps.face_table != nullptr) {
+    if (!fitted_) {
+      fitted_.emplace(*device_, render::ComputePassOptions{.name = "shadow depths",
+                                                           .spirv = shaders::kShadowDepthsFittedComp,
+                                                           .push_bytes = sizeof(gpu::ShadowDepthsPush),
+                                                           .constants = {}});
+    }
+    return fitted_->record(commands, push, {maps.depths, *maps.face_table}, groups);
+  }
+  pass_.record(commands, push, {maps.depths, maps.views}, groups);
 }
 
 const render::Buffer& ShadowDepths::buffer() const {

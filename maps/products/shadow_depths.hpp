@@ -4,6 +4,8 @@
 #include "maps/host/map_method.hpp"
 #include "render/compute_pass.hpp"
 
+#include <optional>
+
 namespace penumbra::maps {
 
 /// Option `depth` for methods that filter texels before the comparison: the first layer of the maps is replaced by the
@@ -19,7 +21,9 @@ class ShadowDepths final : public MapProduct {
   [[nodiscard]] std::uint64_t memory_bytes() const override { return 0; }
 
  private:
+  const render::Device* device_;
   render::ComputePass pass_;
+  std::optional<render::ComputePass> fitted_;  ///< for MapSet::face_table
   DepthUse depth_;
   float bias_;
   const render::Buffer* maps_ = nullptr;  ///< most recently changed maps

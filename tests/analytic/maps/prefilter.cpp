@@ -130,6 +130,23 @@ TEST_F(Prefilters, WhatNoBuffersHoldIsRefusedWithTheSizeThatDoes) {
   }
 }
 
+// A default size becomes the largest multiple of 64 that the buffers hold: no smaller than needed, the default itself
+// where it fits, and no less than 64 where nothing fits.
+TEST(PrefilterSizes, AreReducedToWhatBuffersHold) {
+  const maps::PrefilterOptions series{.kind = maps::PrefilterKind::windows,
+                                      .functions = std::vector<maps::PrefilterFunction>(65)};
+  for (const std::uint32_t faces : {1U, 4U}) {
+    for (const std::uint64_t bytes : {std::uint64_t{1} << 24, std::uint64_t{1} << 27, std::uint64_t{1} << 31}) {
+      const std::uint32_t size = maps::size_that_fits(series, 1024, faces, bytes);
+      EXPECT_TRUE(maps::prefilter_layout(series, size, faces, bytes)) << size;
+      EXPECT_TRUE(size == 1024 || !maps::prefilter_layout(series, size + 64, faces, bytes)) << size;
+      EXPECT_EQ(size % 64, 0U);
+    }
+  }
+  EXPECT_EQ(maps::size_that_fits(series, 1000, 1, std::uint64_t{1} << 33), 1000U);
+  EXPECT_EQ(maps::size_that_fits(series, 1024, 1, 1024), 64U);
+}
+
 // A disk's and a polygon's box have their second moments; a rectangle's is itself.
 TEST(LightBox, HasTheLightsOwnMoments) {
   scenes::Scene scene = scene_of(false);
