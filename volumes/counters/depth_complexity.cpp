@@ -134,8 +134,8 @@ visibility::ErrorRepairs depth_complexity_repairs(const visibility::MethodDescri
   repair_of(repairs, ErrorCause::samples) = {
       .cause = ErrorCause::samples,
       .runs = {joined},
-      .words = fmt::format("the same layers at {} light samples (soft-irregular:fusion=union)",
-                           visibility::kRepairSamples)};
+      .words =
+          fmt::format("the same layers at {} light samples (soft-irregular:fusion=union)", visibility::kRepairSamples)};
   repairs.one_view = {joined};
   return repairs;
 }
