@@ -172,10 +172,11 @@ bool options_exclude(const std::string& method, const std::map<std::string, std:
            ((on_device || is("engine", "vulkan") || searches) && !all_planar) ||
            (searches && (on_device || is("engine", "vulkan")));
   }
+  const bool circle = is("projection", "paraboloid");
+  const bool faces = circle || (options.contains("fit") && !is("fit", "receivers") && !is("fit", "view"));
+  if (method == "vssm" || method == "forward-map") return faces && is("rasteriser", "opengl");
   if (method == "shadow-map" || method == "pcf" || method == "pcss") {
     const auto is_set = [&](const char* key) { return options.contains(key) && std::stod(options.at(key)) != 0; };
-    const bool circle = is("projection", "paraboloid");
-    const bool faces = circle || (options.contains("fit") && !is("fit", "receivers") && !is("fit", "view"));
     const bool offset = is_set("offsetFactor") || is_set("offsetUnits");
     const bool mean = is("test", "mean"), taps = is_set("taps"), keep = is_set("keep");
     const bool receivers = !options.contains("fit") || is("fit", "receivers");
