@@ -33,6 +33,7 @@ std::string compare_json(const Scene& scene, const CompareOptions& options, cons
   if (options.runs != 0) comparison.runs = options.runs;
   comparison.error_budget = options.error_budget;
   comparison.writes = !options.out.empty();
+  comparison.reports_often = static_cast<bool>(renderer.progress);
   LibraryProgress progress(renderer);
   const compare::Metrics metrics = [&] {
     try {

@@ -27,6 +27,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -34,6 +35,16 @@ namespace penumbra {
 namespace {
 
 constexpr float kFar = 1e10F;  // Z of the background
+
+/// Returns the number of rows that methods evaluate between two calls of the progress function: some tenths of a second
+/// of work. All rows without such a function, and of pictures with several view samples a pixel, which have bands of
+/// their own (FrameRenderer::mean_bands).
+std::uint32_t band_rows(const RendererOptions& renderer, const scenes::Scene& scene, const RenderOptions& options) {
+  constexpr std::uint32_t kSamples = 1U << 16U;
+  if (!renderer.progress || options.pixel_samples > 1) return std::numeric_limits<std::uint32_t>::max();
+  const std::uint32_t width = options.width != 0 ? options.width : scene.width;
+  return std::max(kSamples / std::max(width, 1U), 1U);
+}
 
 /// Returns the number of view samples along each axis of a pixel. Throws UsageError for a number that is not a square.
 std::uint32_t pixel_side(std::uint32_t samples) {
@@ -245,7 +256,8 @@ Picture Renderer::render(const RenderOptions& options) {
                          .instances = shares ? &scene.instances : nullptr,
                          .same_meshes = same_meshes,
                          .light_cutoff = light_cutoff(options.light_cutoff),
-                         .keeps_masks = options.masks && options.pixel_samples == 1};
+                         .keeps_masks = options.masks && options.pixel_samples == 1,
+                         .band_rows = band_rows(state.options, scene.scene, options)};
   static_cast<void>(app::parse_light_samples(run));
   state.run = std::move(run);
   state.wish = std::move(wish);

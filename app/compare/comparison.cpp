@@ -319,6 +319,10 @@ class Comparison {
     if (wants_bits(entry)) bits.emplace(files_.of(entry.label, ".bits"), session_, lights.front());
     RunPlan plan = plan_of(entry, &entry == &reference_, options_);
     plan.lights = lights;
+    // Methods are evaluated in whole tiles, as they are timed.
+    constexpr std::uint32_t kJudgeSamples = 1U << 13U;
+    if (options_.reports_often && description.family == visibility::Family::reference)
+      plan.band_rows = std::max(kJudgeSamples / session_.width, 1U);
     // Map methods compute all pixels in little time, and their pictures are complete.
     if (description.family != visibility::Family::image) plan.pixels = wanted_;
     PackedMasks masks(lights.size());

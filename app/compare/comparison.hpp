@@ -30,8 +30,10 @@ struct ComparisonOptions {
   bool error_budget = false;    ///< compute the causes of error of each method
   std::filesystem::path stats;  ///< empty: only DIR/metrics.json
   TevPictures* tev = nullptr;   ///< shows each written picture
-  bool writes = true;           ///< writes all of DIR; false: writes nothing and only returns the result
-  std::optional<double> time;   ///< time of the scene in seconds; nullopt: at rest
+  /// References evaluate few pixels between two calls of Progress: for a caller that ends a comparison through it.
+  bool reports_often = false;
+  bool writes = true;          ///< writes all of DIR; false: writes nothing and only returns the result
+  std::optional<double> time;  ///< time of the scene in seconds; nullopt: at rest
   /// Pictures of earlier frames, by entry; null: this is no sequence.
   std::map<std::string, visibility::FrameMemory>* memories = nullptr;
   /// A method of a group (not requested by name) whose first run takes longer is left out, with a warning.

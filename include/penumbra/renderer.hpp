@@ -24,7 +24,8 @@ struct RendererOptions {
   std::string device = {};
   /// Receives each message of a call, on the calling thread. Empty: messages are dropped.
   std::function<void(LogLevel, std::string_view)> log = {};
-  /// Receives the name of the stage and its completed fraction, on the calling thread, many times a second. The call
+  /// Receives the name of the stage and its completed fraction, on the calling thread, several times a second; less
+  /// often where a method evaluates many view samples at once (several a pixel, timed methods of comparisons). The call
   /// ends with Cancelled if this function returns false.
   std::function<bool(std::string_view stage, double done)> progress = {};
 };

@@ -354,7 +354,7 @@ class Renderer:
 
     def __init__(self, scene, *, device="", log=None, progress=None):
         """`device`: part of a Vulkan device's name, its index, or "cpu". `log(level, message)` gets messages,
-        `progress(stage, done)` is called many times a second; the call ends with Cancelled if it returns False."""
+        `progress(stage, done)` is called several times a second; the call ends with Cancelled if it returns False."""
         self._core = _core.Renderer(_as_scene(scene)._core, _device(device), _arguments.function("log", log),
                                     _arguments.function("progress", progress))
         self._scene = Scene(self._core.scene())

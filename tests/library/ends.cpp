@@ -16,6 +16,8 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <limits>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -58,6 +60,36 @@ TEST_F(LibraryEnds, ProgressEndsACall) {
   renderer.scene().set_light("key", Rectangle{.center = {0, 4, 0}, .half_u = {0.5, 0, 0}, .half_v = {0, 0, -0.5}});
   static_cast<void>(renderer.render());  // shines up: nothing is lit
   EXPECT_THAT(messages, testing::Contains(HasSubstr("no visible point")));
+}
+
+/// The progress function is asked several times while one method evaluates one light, and its end is heard there; the
+/// picture is the one without it.
+TEST_F(LibraryEnds, AMethodIsHeardBetweenBands) {
+  const RenderOptions large{.width = 512, .height = 512, .method = "edge-scatter", .light_samples = 16};
+  int within = 0, most = std::numeric_limits<int>::max();
+  const auto count = [&](std::string_view stage, double done) {
+    if (stage == "edge-scatter" && done > 0 && done < 1) ++within;
+    return within < most;
+  };
+  Renderer renderer(Scene::load(scene_), {.progress = count});
+  const Picture banded = renderer.render(large);
+  EXPECT_GE(within, 3) << "512 rows in bands of 128";
+  const Picture whole = Renderer(Scene::load(scene_)).render(large);
+  EXPECT_TRUE(std::ranges::equal(banded.visibility(0), whole.visibility(0)));
+  EXPECT_TRUE(std::ranges::equal(banded.beauty(), whole.beauty()));
+  within = 0, most = 1;
+  EXPECT_THROW(renderer.render(large), Cancelled);
+  EXPECT_EQ(within, 1);
+
+  // 1,024 rays a pixel are the reference of comparisons: sixteen rows at once here.
+  std::set<double> shares;
+  const auto note = [&](std::string_view stage, double done) {
+    if (stage.starts_with("raytrace")) shares.insert(done);
+    return true;
+  };
+  static_cast<void>(compare_json(
+      Scene::load(scene_), {.methods = {"edge-scatter"}, .width = 512, .height = 128, .runs = 1}, {.progress = note}));
+  EXPECT_GE(shares.size(), 7U);
 }
 
 TEST_F(LibraryEnds, InspectionsEndToo) {
