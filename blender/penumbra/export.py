@@ -6,7 +6,7 @@ import os
 import bpy
 import numpy
 
-from . import glb, lamps, materials, sky, space, texels
+from . import glb, lamps, losses as loss_words, materials, sky, space, texels
 
 _SURFACES = {"MESH", "CURVE", "SURFACE", "META", "FONT"}
 _MESH_OR_NOTHING = "make a mesh of it, or hide it in renders"
@@ -41,8 +41,9 @@ class SceneWriter:
                 self._object(instance)
         self._world(os.path.dirname(path))
         if not self._shines and not self.glb.has_lamps:
+            unknown = "".join(f"; {sentence}" for sentence in loss_words.sentences(self.losses.refused))
             raise ValueError("there is no light in the scene: no lamp, no emissive material that is shown in renders, and no "
-                             "world that lights")
+                             f"world that lights{unknown}")
         if not self._placed:
             raise ValueError("there is no surface in the scene that is shown in renders")
         if region is not None:

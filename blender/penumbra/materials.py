@@ -193,6 +193,9 @@ class Reader:
     def _shader(self, node, groups):
         def at(*names):
             return At(find_socket(node.inputs, *names), groups)
+        normal = find_socket(node.inputs, "Normal")
+        if normal is not None and normal.is_linked:
+            self.losses.mention("has a normal or bump map, which is left out", self.name)
         if node.type == "BSDF_PRINCIPLED":
             return self._principled(node, at)
         if node.type == "BSDF_DIFFUSE":
@@ -276,8 +279,9 @@ class Reader:
         if any(used(*names) for names in (("Subsurface Weight", "Subsurface"), ("Specular IOR Level", "Specular"),
                                           ("Coat Weight", "Clearcoat"), ("Sheen Weight", "Sheen"))):
             self.losses.mention("is diffuse: gloss and what is below a surface are not rendered", self.name)
-        if find_socket(node.inputs, "Normal").is_linked:
-            self.losses.mention("has a normal or bump map, which is left out", self.name)
+        elif find_socket(node.inputs, "Specular") is not None or used("Diffuse Roughness"):
+            # Before Blender 4 the diffuse part is Burley's, brighter or darker at grazing angles by the roughness.
+            self.losses.mention("is a Lambert surface, however rough", self.name)
         shader.diffuse = tuple(alpha * x for x in color)
         shader.emission = tuple(alpha * x for x in shader.emission)
         shader.through = 1 - alpha

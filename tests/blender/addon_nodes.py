@@ -107,6 +107,20 @@ class Materials(unittest.TestCase):
         self.assertTrue(look(shader)[1].refused)
         self.assertTrue(look(principled(Metallic=1.0))[1].mentioned)
 
+    def test_what_changes_a_surface_is_mentioned(self):
+        """Bump on any shader; Principled's diffuse part, which is no Lambert surface before Blender 4, nor if it is rough in Blender 4."""
+        def mentioned(shader):
+            return " ".join(losses.sentences(look(shader)[1].mentioned))
+        for shader in (principled(), node("BSDF_DIFFUSE", Color=(1, 1, 1, 1), Roughness=0.0, Normal=None),
+                       node("BSDF_GLOSSY", Color=(1, 1, 1, 1), Normal=None)):
+            self.assertNotIn("bump", mentioned(shader))
+            shader.inputs["Normal"].link(node("BUMP"), "Normal")
+            self.assertIn("has a normal or bump map, which is left out", mentioned(shader), shader.type)
+        self.assertIn("is a Lambert surface", mentioned(principled(Specular=0.0, Roughness=1.0)))
+        self.assertNotIn("Lambert", mentioned(principled(Specular=0.5)))  # another sentence says that all is diffuse
+        self.assertIn("is a Lambert surface", mentioned(principled(Diffuse_Roughness=0.5)))
+        self.assertEqual(mentioned(principled(Diffuse_Roughness=0.0)), "")
+
     def test_mixed_surfaces_of_images_are_refused(self):
         mix = node("MIX_SHADER", Fac=0.5, First=None, Second=None)
         for name, value in (("First", (0.1, 0.1, 0.1, 1)), ("Second", (1, 1, 1, 1))):
