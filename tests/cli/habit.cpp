@@ -117,7 +117,7 @@ TEST_F(Habit, ManualPagesSayWhatHelpSays) {
     const std::string text = run({"man", command}).out;
     for (std::size_t at = 0; at < text.size(); at = text.find('\n', at) + 1) {
       if (text[at] == '.') {
-        EXPECT_THAT(head(text.substr(at), "\n"), testing::MatchesRegex("\\.(TH|SH|SS|TP|br)( .*)?"));
+        EXPECT_THAT(head(text.substr(at), "\n"), testing::MatchesRegex("\\.(TH|SH|SS|TP|br|nf|fi)( .*)?"));
       }
       if (text.find('\n', at) == std::string::npos) break;
     }
