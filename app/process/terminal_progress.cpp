@@ -23,18 +23,17 @@ namespace {
 
 /// Interval of lines, where there is no bar: shorter stages print nothing.
 constexpr auto kSilence = std::chrono::seconds(5);
+/// Work that has taken this long may have long steps. Before that no thread is spent on them, of which a process may
+/// have few.
+constexpr auto kShort = std::chrono::seconds(1);
 
 }  // namespace
 
 TerminalProgress::TerminalProgress(bool wanted)
-    : wanted_(wanted), on_terminal_(::isatty(STDERR_FILENO) != 0), last_draw_(std::chrono::steady_clock::now()) {
-  if (!wanted_ || on_terminal_) return;
-  try {
-    reporter_ = std::jthread([this](const std::stop_token& stop) { report_long_steps(stop); });
-  } catch (const std::system_error&) {
-    // No thread can be had: long steps are silent.
-  }
-}
+    : wanted_(wanted),
+      on_terminal_(::isatty(STDERR_FILENO) != 0),
+      made_(std::chrono::steady_clock::now()),
+      last_draw_(made_) {}
 
 TerminalProgress::~TerminalProgress() {
   reporter_ = {};
@@ -76,6 +75,7 @@ void TerminalProgress::draw() {
   const auto now = std::chrono::steady_clock::now();
   if (!on_terminal_) {
     if (now - last_draw_ >= kSilence) draw_line(now);
+    if (!reporter_.joinable() && now - made_ >= kShort) begin_reporting();
     return;
   }
   if (now - last_draw_ < std::chrono::milliseconds(50) && done_ < steps_) return;  // a terminal is slower than a tile
@@ -92,6 +92,14 @@ void TerminalProgress::draw_line(std::chrono::steady_clock::time_point now) {
   const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(now - began_).count();
   app::say(fmt::format("penumbra: info: {:3}% {}{}\n", 100 * done_ / steps_, stage_,
                        seconds >= kSilence.count() ? fmt::format(", {} s", seconds) : ""));
+}
+
+void TerminalProgress::begin_reporting() {
+  try {
+    reporter_ = std::jthread([this](const std::stop_token& stop) { report_long_steps(stop); });
+  } catch (const std::system_error&) {
+    // No thread can be had: long steps are silent.
+  }
 }
 
 void TerminalProgress::report_long_steps(const std::stop_token& stop) {

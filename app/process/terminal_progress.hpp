@@ -14,8 +14,7 @@
 namespace penumbra::app {
 
 /// Shows a bar on stderr if stderr is a terminal, else a line every five seconds, during a long step too; neither with
-/// --quiet. Each step also
-/// checks for an interrupt (Interrupted). Messages go to spdlog.
+/// --quiet. Each step also checks for an interrupt (Interrupted). Messages go to spdlog.
 class TerminalProgress final : public Progress {
  public:
   explicit TerminalProgress(bool wanted);
@@ -30,6 +29,7 @@ class TerminalProgress final : public Progress {
  private:
   void draw();
   void draw_line(std::chrono::steady_clock::time_point now);
+  void begin_reporting();
   /// Writes a line wherever nothing was written for a while; runs until the destructor.
   void report_long_steps(const std::stop_token& stop);
 
@@ -37,10 +37,10 @@ class TerminalProgress final : public Progress {
   std::string stage_;
   std::uint64_t steps_ = 0, done_ = 0;
   bool drawn_ = false;
-  std::chrono::steady_clock::time_point last_draw_, began_;
+  std::chrono::steady_clock::time_point made_, last_draw_, began_;
   std::mutex mutex_;  // guards the members above
   std::condition_variable_any stopped_;
-  std::jthread reporter_;  // only where there is no terminal
+  std::jthread reporter_;  // only where there is no terminal, and for work that is not short
 };
 
 }  // namespace penumbra::app
