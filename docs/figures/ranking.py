@@ -226,6 +226,9 @@ sample rightly, or so nearly that only the sampling error of their {SAMPLES} lig
         columns = [f"`{scene}`", size]
         for family, with_next in (("image", True), ("geometry", False)):
             order = best(cell, families, family, exact)
+            if not order:  # no method of the family can do the light
+                columns += ["–"] * (4 if with_next else 3)
+                continue
             winner = order[0]
             for entry in order:
                 if number(cell[entry]["rmse"]) == number(cell[winner]["rmse"]):
@@ -233,8 +236,8 @@ sample rightly, or so nearly that only the sampling error of their {SAMPLES} lig
             columns += [tied(cell, order), number(cell[winner]["rmse"])]
             behind = [entry for entry in order if number(cell[entry]["rmse"]) != number(cell[winner]["rmse"])][:5]
             if with_next:
-                columns.append(f"`{behind[0]}` {number(cell[behind[0]]['rmse'])}")
-            columns.append(reason(cell, pixels[name], winner, behind))
+                columns.append(f"`{behind[0]}` {number(cell[behind[0]]['rmse'])}" if behind else "–")
+            columns.append(reason(cell, pixels[name], winner, behind) if behind else "a tie" if len(order) > 1 else "alone")
         out.append("| " + " | ".join(columns) + " |")
     for title, entries in (("Image-based methods", images), ("Geometry-based methods that are not exact", volumes)):
         by_rmse, by_flip = ranked(cells, entries, "rmse"), ranked(cells, entries, "flip")
