@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/commands.hpp"
-#include "app/process/interrupt.hpp"
 #include "app/process/process.hpp"
 #include "render/device.hpp"
+#include "session/process/interrupt.hpp"
 
 #include <cstdlib>
 
 int main(int argc, char** argv) {
   try {
     penumbra::app::prepare_process();
-    penumbra::app::watch_for_interrupts();
+    penumbra::session::watch_for_interrupts();
     return penumbra::app::run_command_line(argc, argv);
   } catch (const penumbra::render::DeviceDoesNotAnswer&) {
     // The driver's threads may still be running: the handlers of a regular exit would destroy data used by these

@@ -3,7 +3,7 @@
 
 #include "bench/adaptive_rays.hpp"
 
-#include "app/process/stopwatch.hpp"
+#include "session/process/stopwatch.hpp"
 
 #include <utility>
 
@@ -12,7 +12,7 @@ namespace penumbra::bench {
 AdaptiveRays::Seconds AdaptiveRays::run(reference::PlainRays& rays, visibility::ViewSamples& samples,
                                         const visibility::Light& light, std::span<float> visibility) {
   Seconds seconds;
-  app::Stopwatch watch;
+  session::Stopwatch watch;
   rays.prepare_light(few_);
   seconds.light = watch.seconds();
   watch.restart();

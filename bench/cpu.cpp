@@ -3,11 +3,11 @@
 
 #include "bench/cpu.hpp"
 
-#include "app/session.hpp"
-#include "app/process/stopwatch.hpp"
 #include "mesh/edge_graph.hpp"
-#include "visibility/tree/tree_texels.hpp"
+#include "session/process/stopwatch.hpp"
+#include "session/session.hpp"
 #include "visibility/scene_floats.hpp"
+#include "visibility/tree/tree_texels.hpp"
 #include "volumes/edges/edge_set.hpp"
 #include "volumes/edges/edge_tree.hpp"
 #include "volumes/wedges/penumbra_wedge.hpp"
@@ -30,7 +30,7 @@ std::vector<double> time_runs(std::uint32_t runs, const Work& work) {
   work();
   std::vector<double> seconds;
   for (std::uint32_t run = 0; run < runs; ++run) {
-    const app::Stopwatch watch;
+    const session::Stopwatch watch;
     work();
     seconds.push_back(watch.seconds());
   }
@@ -122,7 +122,7 @@ void measure_cpu(const Options& options, const std::function<void(const CpuEntry
   for (const std::uint64_t triangles : options.triangles) {
     std::vector<double> medians;
     for (CpuEntry& entry : measure_edges(triangles, options.runs)) {
-      medians.push_back(app::median(entry.seconds));
+      medians.push_back(session::median(entry.seconds));
       if (!before.empty()) entry.growth = medians.back() / before[medians.size() - 1];
       sink(entry);
     }

@@ -3,12 +3,12 @@
 
 #include "bench/entry.hpp"
 
-#include "app/methods.hpp"
-#include "app/session.hpp"
 #include "base/error.hpp"
 #include "bench/cpu.hpp"
 #include "bench/question.hpp"
 #include "bench/runner.hpp"
+#include "session/methods.hpp"
+#include "session/session.hpp"
 
 #include <fmt/format.h>
 
@@ -20,9 +20,9 @@ namespace {
 
 using visibility::SamplePattern;
 
-app::MethodEntry oracle_entry() {
-  app::MethodEntry entry;
-  entry.label = entry.name = app::ray_judge().name;
+session::MethodEntry oracle_entry() {
+  session::MethodEntry entry;
+  entry.label = entry.name = session::ray_judge().name;
   return entry;
 }
 
@@ -40,7 +40,7 @@ class Field {
  public:
   Field(const Ground& ground, const Options& options)
       : ground_(ground), options_(options), oracle_(oracle_entry(), ground, ""), rays_(ground) {
-    for (const app::MethodEntry& method : options.methods) {
+    for (const session::MethodEntry& method : options.methods) {
       attempt(method.label, [&] {
         rivals_.push_back({std::make_unique<MethodRunner>(method, ground, options.device), method.label, false});
       });
@@ -144,7 +144,7 @@ std::vector<double> Times::shadow() const {
 
 Timing timing_of(std::vector<double> seconds) {
   const auto [lowest, highest] = std::ranges::minmax(seconds);
-  return {app::median(std::move(seconds)), lowest, highest};
+  return {session::median(std::move(seconds)), lowest, highest};
 }
 
 const Contestant* find_contestant(const Entry& entry, const std::string& name) {

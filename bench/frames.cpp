@@ -3,8 +3,8 @@
 
 #include "bench/frames.hpp"
 
-#include "app/process/stopwatch.hpp"
-#include "app/session.hpp"
+#include "session/process/stopwatch.hpp"
+#include "session/session.hpp"
 #include "visibility/light_samples.hpp"
 #include "visibility/scene_floats.hpp"
 #include "volumes/raster/wedge_builder.hpp"
@@ -48,7 +48,7 @@ struct Contender {
   /// Returns the seconds of a frame; adds counts over the frames to the members below.
   double run(const std::vector<visibility::Light>& lights) {
     edges = edges_on_host = facings_on_host = 0;
-    const app::Stopwatch watch;
+    const session::Stopwatch watch;
     for (const visibility::Light& light : lights) {
       const WedgeBuilder::Built built = builder.build(light);
       edges += built.wedges.edges.size();
@@ -90,7 +90,7 @@ void measure_frames(const Options& options, const render::Device& device,
       entry.name = fmt::format("wedges-per-frame/{}/triangles={}", contender.name, triangles);
       if (&contender == &contenders[1]) {
         entry.device = device.info().name;
-        entry.host_ratio = app::median(contenders[0].seconds) / app::median(contender.seconds);
+        entry.host_ratio = session::median(contenders[0].seconds) / session::median(contender.seconds);
       }
       entry.triangles = floats.triangles.size();
       entry.items = entry.edges = contender.edges / lights.size();

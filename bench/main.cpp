@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/machine.hpp"
 #include "base/error.hpp"
 #include "base/memory.hpp"
 #include "bench/cpu.hpp"
@@ -11,6 +10,7 @@
 #include "bench/sequence.hpp"
 #include "bench/whole_frame.hpp"
 #include "compare/machine.hpp"
+#include "session/machine.hpp"
 
 #include <fmt/format.h>
 
@@ -58,7 +58,7 @@ void print_head(const bench::Options& options, const render::Machine& machine) {
 }
 
 void run_frames(const bench::Options& options, Output& output) {
-  const render::Machine machine = app::make_machine(options.device);
+  const render::Machine machine = session::make_machine(options.device);
   print_head(options, machine);
   output.write(bench::cpu_table_head(), "");
   bench::measure_frames(options, machine.device(), [&](const bench::CpuEntry& entry) {
@@ -68,7 +68,7 @@ void run_frames(const bench::Options& options, Output& output) {
 }
 
 void run_whole_frames(const bench::Options& options, Output& output) {
-  const render::Machine machine = app::make_machine(options.device);
+  const render::Machine machine = session::make_machine(options.device);
   print_head(options, machine);
   output.write(bench::frame_table_head(), "");
   bench::measure_whole_frames(options, machine, [&](const bench::FrameEntry& entry) {
@@ -85,7 +85,7 @@ void run_sequences(const bench::Options& options, Output& output) {
 }
 
 void run_methods(const bench::Options& options, Output& output) {
-  const render::Machine machine = app::make_machine(options.device);
+  const render::Machine machine = session::make_machine(options.device);
   print_head(options, machine);
   output.write(bench::table_head(bench::takes_area(options)), "");
   for (const bench::Subject& subject : options.subjects) {

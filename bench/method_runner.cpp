@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Runs and times one method of the program.
 
-#include "app/methods.hpp"
-#include "app/process/stopwatch.hpp"
 #include "bench/runner.hpp"
 #include "compare/machine.hpp"
 #include "compare/metrics.hpp"
+#include "session/methods.hpp"
+#include "session/process/stopwatch.hpp"
 
 #include <fmt/format.h>
 
@@ -62,18 +62,18 @@ double Runner::spent() const {
   return std::accumulate(sums.begin(), sums.end(), 0.0);
 }
 
-MethodRunner::MethodRunner(const app::MethodEntry& entry, const Ground& ground, const std::string& device)
+MethodRunner::MethodRunner(const session::MethodEntry& entry, const Ground& ground, const std::string& device)
     : entry_(entry),
-      machine_(app::make_machine(device)),
-      method_(app::make_method(entry.name, entry.options, machine_)) {
-  const app::Stopwatch watch;
+      machine_(session::make_machine(device)),
+      method_(session::make_method(entry.name, entry.options, machine_)) {
+  const session::Stopwatch watch;
   method_->prepare_mesh(ground.floats);
   mesh_ = watch.seconds();
 }
 
 void MethodRunner::prepare(const Question& question) {
   const compare::Machine machine = compare::this_machine();
-  where_ = app::runs_on_device(entry_.name, entry_.options, question.light, machine_)
+  where_ = session::runs_on_device(entry_.name, entry_.options, question.light, machine_)
                ? machine_.device_name()
                : fmt::format("{}, {} threads", machine.processor, machine.threads);
   passes_.clear();
@@ -94,7 +94,7 @@ void MethodRunner::take_masks(const Question& question, const visibility::Tile& 
 
 Runner::Seconds MethodRunner::run_once(const Question& question, std::vector<float>& visibility, bool timed) {
   Seconds seconds;
-  app::Stopwatch watch;
+  session::Stopwatch watch;
   method_->prepare_light(question.light);
   seconds.light = watch.seconds();
   method_->prepare_view(question.ground.samples);  // shared by all methods, therefore not part of any method's time

@@ -3,10 +3,10 @@
 
 #include "bench/options.hpp"
 
-#include "app/methods.hpp"
-#include "app/parse.hpp"
 #include "base/error.hpp"
 #include "bench/adaptive_rays.hpp"
+#include "session/methods.hpp"
+#include "session/parse.hpp"
 
 #include <fmt/ranges.h>
 
@@ -69,7 +69,7 @@ constexpr std::string_view kJittered = ":pattern=jittered";
 
 template <typename Integer>
 Integer parse_number(const std::string& option, const std::string& text, Integer most) {
-  const auto number = app::parse_integer<Integer>(text);
+  const auto number = session::parse_integer<Integer>(text);
   if (!number || *number == 0 || *number > most)
     throw UsageError("{} {}: expected a whole number from 1 to {}", option, text, most);
   return *number;
@@ -95,15 +95,15 @@ Peer parse_peer(const std::string& text) {
 }
 
 /// Returns "name:key=value:key=value", the keys in their order.
-std::string contestant_name(const app::MethodEntry& entry) {
+std::string contestant_name(const session::MethodEntry& entry) {
   std::string name = entry.name;
   for (const auto& [key, value] : entry.options) name += fmt::format(":{}={}", key, value);
   return name;
 }
 
-void add_methods(std::vector<app::MethodEntry>& methods, const std::string& text) {
-  for (app::MethodEntry& entry : app::parse_methods(text)) {
-    if (entry.from_group && entry.name == app::ray_judge().name) continue;  // runs in any case
+void add_methods(std::vector<session::MethodEntry>& methods, const std::string& text) {
+  for (session::MethodEntry& entry : session::parse_methods(text)) {
+    if (entry.from_group && entry.name == session::ray_judge().name) continue;  // runs in any case
     entry.label = contestant_name(entry);
     methods.push_back(std::move(entry));
   }
@@ -132,7 +132,8 @@ const std::map<std::string, Take>& options_with_value() {
        }},
       {"--method", [](Reading& r, auto&, auto& value) { add_methods(r.options.methods, value); }},
       {"--peer", [](Reading& r, auto&, auto& value) { r.peers.push_back(value); }},
-      {"--reference", [](Reading& r, auto&, auto& value) { r.options.reference = app::describe_judge(value).name; }},
+      {"--reference",
+       [](Reading& r, auto&, auto& value) { r.options.reference = session::describe_judge(value).name; }},
       {"--reference-samples",
        [](Reading& r, auto& option, auto& value) {
          r.options.reference_samples = parse_number<std::uint32_t>(option, value, 1U << 20);
@@ -190,8 +191,8 @@ void set_defaults(Reading& reading) {
   if (options.triangles.empty()) options.triangles = {5'000, 50'000, 500'000};
   if (methods) options.subjects = make_subjects(reading.subjects);
   // contestants that always run
-  std::vector<std::string> rivals = {name_of(RayWork::all), app::ray_judge().name}, subjects, samples;
-  for (const app::MethodEntry& method : options.methods) rivals.push_back(method.label);
+  std::vector<std::string> rivals = {name_of(RayWork::all), session::ray_judge().name}, subjects, samples;
+  for (const session::MethodEntry& method : options.methods) rivals.push_back(method.label);
   for (const Peer& peer : options.peers) rivals.push_back(peer.name);
   for (const Subject& subject : options.subjects) subjects.push_back(subject.name);
   for (const std::uint32_t count : options.light_samples) samples.push_back(fmt::format("--light-samples {}", count));

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "app/options.hpp"
 #include "bench/subject.hpp"
+#include "session/options.hpp"
 
 #include <cstdint>
 #include <filesystem>
@@ -27,11 +27,11 @@ struct Peer {
 
 struct Options {
   std::vector<Subject> subjects;
-  std::vector<app::MethodEntry> methods;     ///< the labels are contestants' names, with options as given
-  std::vector<Peer> peers;                   ///< in addition to plain-rays, which always runs
-  std::vector<std::uint32_t> light_samples;  ///< 256 if none were given
-  bool samples_in_name = false;              ///< light samples were given on the command line
-  std::string reference;                     ///< a method of the family `reference`; empty: none
+  std::vector<session::MethodEntry> methods;  ///< the labels are contestants' names, with options as given
+  std::vector<Peer> peers;                    ///< in addition to plain-rays, which always runs
+  std::vector<std::uint32_t> light_samples;   ///< 256 if none were given
+  bool samples_in_name = false;               ///< light samples were given on the command line
+  std::string reference;                      ///< a method of the family `reference`; empty: none
   std::uint32_t reference_samples = 16384;
   std::string sample_pixels = "2000";  ///< for a reference that computes areas
   std::uint32_t runs = 5;              ///< timed runs, after one discarded run

@@ -3,11 +3,11 @@
 
 #include "bench/question.hpp"
 
-#include "app/methods.hpp"
-#include "app/sample_pixels.hpp"
 #include "base/assert.hpp"
 #include "compare/metrics.hpp"
 #include "engines/view_sampler.hpp"
+#include "session/methods.hpp"
+#include "session/sample_pixels.hpp"
 
 #include <fmt/format.h>
 
@@ -105,22 +105,22 @@ visibility::Light light_of(const Ground& ground, std::uint32_t samples,
 }
 
 bool takes_area(const Options& options) {
-  return !options.reference.empty() && app::describe_method(options.reference).gives_area();
+  return !options.reference.empty() && session::describe_method(options.reference).gives_area();
 }
 
 ReferenceVisibility make_reference(const Ground& ground, const Options& options, const render::Machine& machine) {
   PENUMBRA_ASSERT(!options.reference.empty(), "no reference was asked for");
-  const auto rays = app::make_method(app::ray_judge().name, {}, machine);
+  const auto rays = session::make_method(session::ray_judge().name, {}, machine);
   rays->prepare_mesh(ground.floats);
   if (!takes_area(options)) {
     return {fmt::format("{} at {} light samples", options.reference, options.reference_samples),
             dense_visibility(*rays, ground, options.reference_samples), ground.judged};
   }
-  const auto areas = app::make_method(options.reference, {}, machine);
+  const auto areas = session::make_method(options.reference, {}, machine);
   ReferenceVisibility reference;
   reference.name = options.reference;
-  reference.pixels = app::sample_pixels(penumbra_pixels(*rays, ground), options.sample_pixels, ground.samples.width,
-                                        ground.samples.height);
+  reference.pixels = session::sample_pixels(penumbra_pixels(*rays, ground), options.sample_pixels, ground.samples.width,
+                                            ground.samples.height);
   areas->want_pixels(reference.pixels);
   areas->prepare_mesh(ground.floats);
   const auto light = light_of(ground, 1);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Times ray casters on Embree.
 
-#include "app/process/stopwatch.hpp"
 #include "bench/runner.hpp"
 #include "compare/machine.hpp"
+#include "session/process/stopwatch.hpp"
 
 #include <fmt/format.h>
 
@@ -23,12 +23,12 @@ FastestRays::FastestRays(const Ground& ground) {
   double best = std::numeric_limits<double>::infinity();
   for (const int packet : {4, 8, 16}) {
     reference::PlainRays candidate({.width = packet});
-    const app::Stopwatch watch;
+    const session::Stopwatch watch;
     candidate.prepare_mesh(ground.floats);
     const double mesh = watch.seconds();
     candidate.prepare_light(light);
     candidate.evaluate(ground.samples, visibility);  // warms up
-    const app::Stopwatch again;
+    const session::Stopwatch again;
     candidate.evaluate(ground.samples, visibility);
     if (again.seconds() >= best) continue;
     best = again.seconds();
@@ -64,7 +64,7 @@ Runner::Seconds RayRunner::run_once(const Question& question, std::vector<float>
     return {spent.light, spent.evaluate};
   }
   Seconds seconds;
-  app::Stopwatch watch;
+  session::Stopwatch watch;
   rays_.rays().prepare_light(question.light);
   seconds.light = watch.seconds();
   watch.restart();

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "app/machine.hpp"
-#include "app/options.hpp"
 #include "bench/adaptive_rays.hpp"
 #include "bench/entry.hpp"
 #include "bench/question.hpp"
 #include "reference/plain_rays.hpp"
+#include "session/machine.hpp"
+#include "session/options.hpp"
 #include "visibility/method.hpp"
 
 #include <cstdint>
@@ -51,7 +51,7 @@ class Runner {
 /// total, not for each method.
 class MethodRunner final : public Runner {
  public:
-  MethodRunner(const app::MethodEntry& entry, const Ground& ground, const std::string& device);
+  MethodRunner(const session::MethodEntry& entry, const Ground& ground, const std::string& device);
 
   [[nodiscard]] Contestant result() const override;
   /// Stores the masks of the discarded run in `masks` and counts no pairs; for the oracle.
@@ -62,7 +62,7 @@ class MethodRunner final : public Runner {
   void prepare(const Question& question) override;
   void take_masks(const Question& question, const visibility::Tile& tile);
 
-  app::MethodEntry entry_;
+  session::MethodEntry entry_;
   std::string where_;
   render::Machine machine_;
   std::unique_ptr<visibility::Method> method_;

@@ -4,11 +4,11 @@
 #include "bench/sequence.hpp"
 
 #include "app/process/child_program.hpp"
-#include "app/process/stopwatch.hpp"
 #include "base/error.hpp"
 #include "bench/cpu.hpp"
 #include "bench/folder.hpp"
 #include "scenes/formats/writer.hpp"
+#include "session/process/stopwatch.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -154,7 +154,7 @@ SequenceEntry measure(const Subject& subject, const Options& options) {
   if (!options.device.empty()) command.insert(command.end(), {"--device", options.device});
   entry.load_before = load_of_machine();
   std::uint32_t next = 1;
-  const app::Stopwatch watch;
+  const session::Stopwatch watch;
   app::ChildProgram program(command);
   while (!program.has_ended()) {
     take_frames(folder, entry, next);

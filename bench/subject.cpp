@@ -3,9 +3,9 @@
 
 #include "bench/subject.hpp"
 
-#include "app/parse.hpp"
 #include "base/error.hpp"
 #include "scenes/formats/reader.hpp"
+#include "session/parse.hpp"
 
 #include <fmt/format.h>
 #include <glm/common.hpp>
@@ -58,7 +58,7 @@ std::vector<std::string> shipped_scenes(bool all) {
 Subject find_subject(const std::string& scene) {
   Subject subject;
   const auto triangles_after = [&](std::string_view shape) {
-    const auto triangles = app::parse_integer<std::uint64_t>(std::string_view(scene).substr(shape.size()));
+    const auto triangles = session::parse_integer<std::uint64_t>(std::string_view(scene).substr(shape.size()));
     if (!triangles) throw UsageError("--scene {}: expected a number of triangles, such as {}5000", scene, shape);
     return *triangles;
   };

@@ -3,9 +3,7 @@
 
 #include "bench/whole_frame.hpp"
 
-#include "app/pictures/frame_render.hpp"
 #include "app/process/terminal_progress.hpp"
-#include "app/process/stopwatch.hpp"
 #include "base/assert.hpp"
 #include "base/error.hpp"
 #include "bench/adaptive_rays.hpp"
@@ -13,6 +11,8 @@
 #include "bench/folder.hpp"
 #include "bench/moved_light.hpp"
 #include "reference/plain_rays.hpp"
+#include "session/pictures/frame_render.hpp"
+#include "session/process/stopwatch.hpp"
 #include "visibility/light_samples.hpp"
 #include "visibility/scene_floats.hpp"
 #include "visibility/view_samples.hpp"
@@ -65,7 +65,7 @@ class PlainProgram {
   }
 
   TwoFrames run() {
-    const app::Stopwatch watch;
+    const session::Stopwatch watch;
     reference::PlainRays rays({.width = packet_, .one_frame = true});
     rays.prepare_mesh(floats_);
     const double mesh = watch.seconds();
@@ -85,7 +85,7 @@ class PlainProgram {
 
   Seconds look(reference::PlainRays& rays, const visibility::Light& light, AdaptiveRays& adaptive) {
     Seconds seconds;
-    const app::Stopwatch watch;
+    const session::Stopwatch watch;
     visibility::ViewSamples samples = rays.look(camera_);
     seconds["view"] = watch.seconds();
     visibility_.resize(samples.size());
@@ -106,7 +106,7 @@ class PlainProgram {
 /// Method in `penumbra render`, from a scene in memory.
 class MethodFrame {
  public:
-  MethodFrame(const app::MethodEntry& method, const Subject& subject, std::uint32_t samples,
+  MethodFrame(const session::MethodEntry& method, const Subject& subject, std::uint32_t samples,
               const render::Machine& machine)
       : machine_(machine), wish_{method.name, method.options, true} {
     run_.scene = subject.name;
@@ -118,10 +118,10 @@ class MethodFrame {
   TwoFrames run(const scenes::Scene& scene, const scenes::Scene& next, const Folder& folder) {
     run_.lights = {scene.lights.front().name};
     app::TerminalProgress progress(false);
-    app::FrameRenderer renderer(run_, wish_, machine_, progress);
+    session::FrameRenderer renderer(run_, wish_, machine_, progress);
     const auto stats_of = [&](const scenes::Scene& shown) {
       renderer.render(shown, {}, {}, 0);
-      app::Exposure exposure;
+      session::Exposure exposure;
       return renderer.write({.picture = folder / "a.exr", .stats = {}, .png = folder / "a.png", .bits = {}}, exposure);
     };
     const compare::Stats first = stats_of(scene), second = stats_of(next);
@@ -138,8 +138,8 @@ class MethodFrame {
   }
 
   render::Machine machine_;
-  app::MethodWish wish_;
-  app::RunOptions run_;
+  session::MethodWish wish_;
+  session::RunOptions run_;
 };
 
 void add_run(FrameTimes& times, const TwoFrames& seconds) {
@@ -175,7 +175,7 @@ FrameEntry measure_one(const Subject& subject, const scenes::Scene& scene, const
   PlainProgram plain(scene, next, subject, samples);
   std::vector<MethodFrame> pictures;
   entry.contestants.push_back({"embree", {}, {}});
-  for (const app::MethodEntry& method : options.methods) {
+  for (const session::MethodEntry& method : options.methods) {
     pictures.emplace_back(method, subject, samples, machine);
     entry.contestants.push_back({method.label, {}, {}});
   }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "app/machine.hpp"
 #include "bench/options.hpp"
+#include "session/machine.hpp"
 
 #include <cstdint>
 #include <functional>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "app/process/failure.hpp"
 #include "base/error.hpp"
+#include "session/process/failure.hpp"
 
 namespace penumbra {
 
@@ -14,10 +14,10 @@ namespace penumbra {
     throw;
   } catch (const Error&) {
     throw;
-  } catch (const app::ThrownByCaller& caller) {
+  } catch (const session::ThrownByCaller& caller) {
     std::rethrow_exception(caller.thrown);
   } catch (...) {
-    throw ResourceError("{}", app::describe_current_exception().message);
+    throw ResourceError("{}", session::describe_current_exception().message);
   }
 }
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/compare/comparison.hpp"
-#include "app/options.hpp"
 #include "compare/stats.hpp"
 #include "library/as_error.hpp"
 #include "library/library_progress.hpp"
 #include "library/scene_state.hpp"
 #include "scenes/formats/checks.hpp"
+#include "session/comparison/comparison.hpp"
+#include "session/options.hpp"
 
 #include <penumbra/compare.hpp>
 
@@ -16,7 +16,7 @@ namespace penumbra {
 std::string compare_json(const Scene& scene, const CompareOptions& options, const RendererOptions& renderer) {
   const Scene::State& state = scene.state();
   scenes::check_scene(state.scene, "the scene", true, state.instances);
-  app::RunOptions run;
+  session::RunOptions run;
   run.scene = "the scene";
   run.out = options.out;
   run.device = renderer.device;
@@ -26,8 +26,8 @@ std::string compare_json(const Scene& scene, const CompareOptions& options, cons
   run.camera = options.camera;
   if (run.camera.empty() && state.camera) run.camera = state.scene.cameras[*state.camera].name;
   if (options.width != 0 || options.height != 0) run.size = fmt::format("{}x{}", options.width, options.height);
-  app::ComparisonOptions comparison;
-  comparison.methods = app::parse_methods(fmt::format("{}", fmt::join(options.methods, ",")));
+  session::ComparisonOptions comparison;
+  comparison.methods = session::parse_methods(fmt::format("{}", fmt::join(options.methods, ",")));
   comparison.reference = options.reference;
   comparison.reference_samples = options.reference_samples;
   if (options.runs != 0) comparison.runs = options.runs;
@@ -37,7 +37,7 @@ std::string compare_json(const Scene& scene, const CompareOptions& options, cons
   LibraryProgress progress(renderer);
   const compare::Metrics metrics = [&] {
     try {
-      return app::compare_methods(scenes::copied(state.scene, state.instances), run, comparison, progress);
+      return session::compare_methods(scenes::copied(state.scene, state.instances), run, comparison, progress);
     } catch (...) {
       progress.rethrow();
       throw_as_error();

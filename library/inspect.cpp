@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/inspect/examine.hpp"
-#include "app/inspect/report.hpp"
 #include "base/error.hpp"
 #include "library/as_error.hpp"
 #include "library/library_progress.hpp"
 #include "library/mesh_arrays.hpp"
+#include "session/inspect/examine.hpp"
+#include "session/inspect/report.hpp"
 
 #include <penumbra/inspect.hpp>
 
@@ -29,10 +29,10 @@ std::string json_of(const std::filesystem::path& file, const Read& read, const I
   LibraryProgress progress(host);
   const std::function<void()> step = [&] { progress.begin("reading", 1); };
   try {
-    const app::InspectedMesh mesh = read(step);
-    const app::FileReport report = app::examine(file, mesh, diagnosis, progress);
+    const session::InspectedMesh mesh = read(step);
+    const session::FileReport report = session::examine(file, mesh, diagnosis, progress);
     progress.rethrow();
-    return app::report_json(report, std::nullopt, options.list_limit)
+    return session::report_json(report, std::nullopt, options.list_limit)
         .dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
   } catch (...) {
     progress.rethrow();
@@ -45,13 +45,14 @@ std::string json_of(const std::filesystem::path& file, const Read& read, const I
 std::string inspect_json(const std::filesystem::path& file, const InspectOptions& options,
                          const RendererOptions& host) {
   return json_of(
-      file, [&](const std::function<void()>& step) { return app::read_inspected(file, false, &step); }, options, host);
+      file, [&](const std::function<void()>& step) { return session::read_inspected(file, false, &step); }, options,
+      host);
 }
 
 std::string inspect_json(std::span<const Vector> positions, std::span<const std::array<std::uint32_t, 3>> triangles,
                          const InspectOptions& options, const RendererOptions& host) {
   const auto read = [&](const std::function<void()>& /*step*/) {
-    app::InspectedMesh mesh;
+    session::InspectedMesh mesh;
     mesh.soup = soup_of(positions, triangles, "mesh");
     mesh.objects = {"mesh"};
     return mesh;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "app/process/progress.hpp"
+#include "session/process/progress.hpp"
 
 #include <penumbra/renderer.hpp>
 
@@ -10,13 +10,13 @@
 namespace penumbra {
 
 /// Passes progress of long work to the calling program's functions, and ends the work on their request.
-class LibraryProgress final : public app::Progress {
+class LibraryProgress final : public session::Progress {
  public:
   /// `options` must outlive this object.
   explicit LibraryProgress(const RendererOptions& options) : options_(options) {}
 
   void begin(std::string stage, std::uint64_t steps) override;
-  using app::Progress::advance;
+  using session::Progress::advance;
   void advance(std::uint64_t steps) override;
   void clear() override {}
   void say(Level level, const std::string& message) override;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/method_list.hpp"
-#include "app/methods.hpp"
+#include "session/method_list.hpp"
+#include "session/methods.hpp"
 
 #include <penumbra/methods.hpp>
 #include <penumbra/penumbra.hpp>
@@ -15,13 +15,13 @@ std::string version() {
 
 std::vector<MethodInfo> methods() {
   std::vector<MethodInfo> all;
-  for (const visibility::MethodDescription* method : app::all_methods()) {
+  for (const visibility::MethodDescription* method : session::all_methods()) {
     MethodInfo info{.name = method->name,
                     .family = visibility::name_of(method->family),
                     .paper = method->paper,
                     .output = visibility::name_of(method->output),
                     .exact_for = method->exact_for,
-                    .lights = app::light_names(*method),
+                    .lights = session::light_names(*method),
                     .options = {}};
     for (const visibility::OptionDescription& option : method->options) {
       info.options.push_back({.name = option.name,
@@ -38,7 +38,7 @@ std::vector<MethodInfo> methods() {
 }
 
 std::string methods_json() {
-  return app::methods_json().dump(2);
+  return session::methods_json().dump(2);
 }
 
 }  // namespace penumbra

@@ -2,14 +2,14 @@
 // Adds methods of the calling program to those of this program: each is a row of the table of methods whose method
 // calls the calling program's.
 
-#include "app/methods.hpp"
-#include "app/process/failure.hpp"
 #include "base/assert.hpp"
 #include "base/did_you_mean.hpp"
 #include "base/error.hpp"
 #include "library/float3.hpp"
 #include "library/light_shape.hpp"
 #include "scenes/light_kind.hpp"
+#include "session/methods.hpp"
+#include "session/process/failure.hpp"
 #include "visibility/masks/visible_share.hpp"
 #include "visibility/receivers.hpp"
 #include "visibility/share.hpp"
@@ -85,7 +85,7 @@ auto call(const Function& function) {
   } catch (const Error&) {
     throw;
   } catch (...) {
-    throw app::ThrownByCaller{std::current_exception()};
+    throw session::ThrownByCaller{std::current_exception()};
   }
 }
 
@@ -302,7 +302,7 @@ void add_method(const OwnMethodInfo& info, MakeOwnMethod make) {
     visibility::parse_options(description, options);
     return description;
   };
-  app::add_method(
+  session::add_method(
       {.description = description,
        .describe = describe,
        .make =

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "app/pictures/frame_render.hpp"
+#include "session/pictures/frame_render.hpp"
 #include "visibility/view_samples.hpp"
 
 #include <penumbra/picture.hpp>
@@ -17,7 +17,7 @@ struct Picture::State {
   std::uint32_t width = 0, height = 0;
   std::vector<std::string> lights, methods;       ///< for each light
   std::vector<std::size_t> words, light_samples;  ///< for each light; 0: no masks, no light samples
-  app::RenderedFrame frame;
+  session::RenderedFrame frame;
   glm::dvec3 origin{0};
   std::vector<glm::vec3> positions, relative_positions, normals;
   std::vector<float> depth;

@@ -1,14 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Renders pictures of one scene one after another, with the frame renderer of the command line.
 
-#include "app/light_methods.hpp"
-#include "app/machine.hpp"
-#include "app/methods.hpp"
-#include "app/options.hpp"
-#include "app/pictures/frame_render.hpp"
-#include "app/pictures/request.hpp"
-#include "app/process/stopwatch.hpp"
-#include "app/whole_lights.hpp"
 #include "base/error.hpp"
 #include "compare/stats.hpp"
 #include "library/as_error.hpp"
@@ -19,6 +11,14 @@
 #include "render/machine.hpp"
 #include "scenes/formats/checks.hpp"
 #include "scenes/instances.hpp"
+#include "session/light_methods.hpp"
+#include "session/machine.hpp"
+#include "session/methods.hpp"
+#include "session/options.hpp"
+#include "session/pictures/frame_render.hpp"
+#include "session/pictures/request.hpp"
+#include "session/process/stopwatch.hpp"
+#include "session/whole_lights.hpp"
 
 #include <penumbra/renderer.hpp>
 
@@ -71,8 +71,8 @@ void check_lights_and_cameras(const scenes::Scene& scene) {
     scenes::check_camera(camera, fmt::format("camera \"{}\"", camera.name));
 }
 
-app::RunOptions run_options(const RenderOptions& options) {
-  app::RunOptions run;
+session::RunOptions run_options(const RenderOptions& options) {
+  session::RunOptions run;
   run.scene = "the scene";
   if (options.light_samples != 0) run.light_samples = fmt::format("{}", options.light_samples);
   run.sample_pattern = options.sample_pattern;
@@ -90,9 +90,9 @@ std::string camera_of(const Scene::State& scene, const RenderOptions& options) {
   return scene.scene.cameras[*scene.camera].name;
 }
 
-std::shared_ptr<const Picture::State> picture_of(app::FrameRenderer& frames, double seconds) {
+std::shared_ptr<const Picture::State> picture_of(session::FrameRenderer& frames, double seconds) {
   auto picture = std::make_shared<Picture::State>();
-  const app::Session& session = frames.session();
+  const session::Session& session = frames.session();
   picture->width = session.width;
   picture->height = session.height;
   compare::Stats stats = frames.stats();
@@ -104,7 +104,7 @@ std::shared_ptr<const Picture::State> picture_of(app::FrameRenderer& frames, dou
     picture->light_samples.push_back(light.light_samples);
   }
   picture->frame = frames.take();
-  const std::vector<app::WholeLight> wholes = app::whole_lights(session.lights);
+  const std::vector<session::WholeLight> wholes = session::whole_lights(session.lights);
   std::vector<std::vector<std::uint32_t>> masks(wholes.size());
   for (std::size_t light = 0; light < wholes.size(); ++light) {
     const bool is_whole = wholes[light].count == 1 && wholes[light].first < picture->frame.masks.size();
@@ -177,7 +177,7 @@ Cancelled::~Cancelled() = default;
 
 struct Renderer::State {
   State(Scene made, RendererOptions wished)
-      : scene(std::move(made)), options(std::move(wished)), machine(app::make_machine(options.device)) {}
+      : scene(std::move(made)), options(std::move(wished)), machine(session::make_machine(options.device)) {}
 
   /// Throws UsageError during a call: its progress and log functions cannot start another.
   void require_idle() const {
@@ -200,11 +200,11 @@ struct Renderer::State {
   std::atomic<bool> working = false;
   render::Machine machine;
   LibraryProgress progress{options};
-  app::RunOptions run;
-  app::MethodWish wish;
-  std::uint64_t rendered = 0;                  // Scene::State::meshes of the most recent picture
-  bool shared = false;                         // the most recent picture was of instances without copies
-  std::unique_ptr<app::FrameRenderer> frames;  // refers to run, wish and progress
+  session::RunOptions run;
+  session::MethodWish wish;
+  std::uint64_t rendered = 0;                      // Scene::State::meshes of the most recent picture
+  bool shared = false;                             // the most recent picture was of instances without copies
+  std::unique_ptr<session::FrameRenderer> frames;  // refers to run, wish and progress
 };
 
 Renderer::Renderer(Scene scene, RendererOptions options)
@@ -222,24 +222,24 @@ const Scene& Renderer::scene() const {
 }
 
 Picture Renderer::render(const RenderOptions& options) {
-  const app::Stopwatch total;
+  const session::Stopwatch total;
   State& state = *state_;
   state.require_idle();
   const State::Working working(state);
   const Scene::State& scene = state.scene.state();
   const std::uint64_t meshes = scene.meshes;
   // Invalid options are rejected before any change, so that the kept data stay valid.
-  app::NamedMethod method = app::parse_method(options.method);
+  session::NamedMethod method = session::parse_method(options.method);
   for (const auto& [key, value] : options.options) {
     if (!method.options.emplace(key, value).second)
       throw UsageError("method {}: option {} is given twice", method.name, key);
   }
-  if (!method.name.empty()) static_cast<void>(app::describe_method(method.name, method.options));
-  app::MethodWish wish{std::move(method.name), std::move(method.options),
-                       options.light_samples != 0 || !options.sample_pattern.empty()};
+  if (!method.name.empty()) static_cast<void>(session::describe_method(method.name, method.options));
+  session::MethodWish wish{std::move(method.name), std::move(method.options),
+                           options.light_samples != 0 || !options.sample_pattern.empty()};
   const std::uint32_t side = pixel_side(options.pixel_samples);
-  const bool copies =
-      app::needs_copies(scene.scene, scene.instances, app::parse_instances(options.instances, wish), wish, side * side);
+  const bool copies = session::needs_copies(scene.scene, scene.instances,
+                                            session::parse_instances(options.instances, wish), wish, side * side);
   const bool shares = !copies && !scene.instances.empty();
   const bool same_meshes = options.pixel_samples == 1 && state.frames && state.frames->has_meshes() &&
                            state.rendered == meshes && !scene.scene.lights.empty() && !shares && !state.shared;
@@ -247,29 +247,29 @@ Picture Renderer::render(const RenderOptions& options) {
     check_lights_and_cameras(scene.scene);
   else
     scenes::check_scene(scene.scene, "the scene", true, scene.instances);
-  app::RunOptions run = run_options(options);
+  session::RunOptions run = run_options(options);
   run.camera = camera_of(scene, options);
-  const app::Frame frame{.number = {},
-                         .camera = run.camera,
-                         .pixel_side = side,
-                         .pixel_tolerance = pixel_tolerance(options.pixel_tolerance),
-                         .instances = shares ? &scene.instances : nullptr,
-                         .same_meshes = same_meshes,
-                         .light_cutoff = light_cutoff(options.light_cutoff),
-                         .keeps_masks = options.masks && options.pixel_samples == 1,
-                         .band_rows = band_rows(state.options, scene.scene, options)};
-  static_cast<void>(app::parse_light_samples(run));
+  const session::Frame frame{.number = {},
+                             .camera = run.camera,
+                             .pixel_side = side,
+                             .pixel_tolerance = pixel_tolerance(options.pixel_tolerance),
+                             .instances = shares ? &scene.instances : nullptr,
+                             .same_meshes = same_meshes,
+                             .light_cutoff = light_cutoff(options.light_cutoff),
+                             .keeps_masks = options.masks && options.pixel_samples == 1,
+                             .band_rows = band_rows(state.options, scene.scene, options)};
+  static_cast<void>(session::parse_light_samples(run));
   state.run = std::move(run);
   state.wish = std::move(wish);
   if (!state.frames) {
-    state.frames = std::make_unique<app::FrameRenderer>(state.run, state.wish, state.machine, state.progress);
+    state.frames = std::make_unique<session::FrameRenderer>(state.run, state.wish, state.machine, state.progress);
     state.frames->expect_frames();
   }
   try {
     state.frames->render(
-        same_meshes ? app::without_meshes(scene.scene)
-        : copies    ? scenes::copied(scene.scene, scene.instances, app::bytes_per_copy(state.wish, scene.scene.lights))
-                    : scene.scene,
+        same_meshes ? session::without_meshes(scene.scene)
+        : copies ? scenes::copied(scene.scene, scene.instances, session::bytes_per_copy(state.wish, scene.scene.lights))
+                 : scene.scene,
         frame, {}, 0);
     state.rendered = meshes;
     state.shared = shares;
@@ -279,7 +279,7 @@ Picture Renderer::render(const RenderOptions& options) {
   } catch (const render::DeviceDoesNotAnswer& error) {
     // Objects of a device at work must not be destroyed: the frame renderer is leaked deliberately.
     static_cast<void>(state.frames.release());
-    state.machine = app::make_machine(state.options.device);
+    state.machine = session::make_machine(state.options.device);
     throw ResourceError(error.what());
   } catch (...) {
     state.frames.reset();  // its data may belong partly to one scene and partly to another

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/wedges/built_wedges.hpp"
 #include "library/as_error.hpp"
 #include "library/library_progress.hpp"
 #include "library/scene_state.hpp"
 #include "scenes/formats/checks.hpp"
+#include "session/wedges/built_wedges.hpp"
 
 #include <penumbra/wedges.hpp>
 
@@ -31,9 +31,9 @@ std::string wedges_json(const Scene& scene, const WedgeOptions& options) {
     if (!instances.empty()) copies = scenes::copied(scene.state().scene, instances);
     const scenes::Scene& built_of = copies ? *copies : scene.state().scene;
     scenes::check_scene(built_of, "the scene");
-    const app::BuiltWedges wedges(built_of,
-                                  {options.light, options.construction, options.from, options.validate, &step});
-    return app::wedges_json(wedges.result());
+    const session::BuiltWedges wedges(built_of,
+                                      {options.light, options.construction, options.from, options.validate, &step});
+    return session::wedges_json(wedges.result());
   } catch (...) {
     progress.rethrow();
     throw_as_error();

@@ -27,7 +27,7 @@ penumbra_test(agreement FULL CorpusSweep.*
   unit/textured_lights_files.cpp
   unit/textured_lights_weights.cpp
   ${soup_sources}
-  LIBRARIES penumbra_app penumbra_compare penumbra_hybrids penumbra_maps penumbra_volumes penumbra_vsm penumbra_reference penumbra_scenes
+  LIBRARIES penumbra_session penumbra_compare penumbra_hybrids penumbra_maps penumbra_volumes penumbra_vsm penumbra_reference penumbra_scenes
             nlohmann_json::nlohmann_json PkgConfig::MINIZIP TBB::tbb ZLIB::ZLIB gmpxx gmp)
 penumbra_cgal_corpus(agreement_test)
 target_compile_definitions(agreement_test PRIVATE PENUMBRA_PROGRAM="$<TARGET_FILE:penumbra>")

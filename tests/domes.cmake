@@ -10,7 +10,7 @@ penumbra_test(domes
   cli/domes.cpp
   cli/program.cpp
   unit/dome_samples.cpp
-  LIBRARIES penumbra_app penumbra_volumes penumbra_vsm penumbra_reference penumbra_compare penumbra_scenes
+  LIBRARIES penumbra_session penumbra_volumes penumbra_vsm penumbra_reference penumbra_compare penumbra_scenes
             nlohmann_json::nlohmann_json)
 target_compile_definitions(domes_test PRIVATE PENUMBRA_PROGRAM="$<TARGET_FILE:penumbra>")
 add_dependencies(domes_test penumbra)

@@ -63,30 +63,33 @@ set(may_selftest maps/products/lists maps/products maps/host vsm engines/vectors
     ${all_visibility} scenes mesh/shapes mesh base)
 set(may_reference areas engines render ${all_visibility} scenes mesh base)
 set(may_compare ${all_visibility} scenes mesh base)
-set(may_app/process render base)
-set(may_app app/process network selftest compare reference areas engines engines/vectors hybrids maps vsm volumes volumes/wedges render/opengl render ${all_visibility}
+set(may_session/process render base)
+set(may_session session/process network compare reference areas engines engines/vectors hybrids maps vsm volumes volumes/wedges render/opengl render ${all_visibility}
     scenes/formats scenes mesh/diagnosis mesh base)
-foreach(room bake commands compare farm inspect pictures serve sweep view wedges)
+foreach(room pictures comparison inspect wedges)
+  set(may_session/${room} ${may_session} session)
+endforeach()
+list(APPEND may_session/comparison session/pictures)
+set(all_session session/pictures session/comparison session/inspect session/wedges session/process session)
+set(may_app/process ${may_session/process} session/process)
+set(may_app app/process selftest ${all_session} ${may_session})
+foreach(room bake commands compare farm inspect serve sweep view wedges)
   set(may_app/${room} ${may_app} app)
 endforeach()
-list(APPEND may_app/commands app/pictures)
-list(APPEND may_app/bake app/pictures)
-list(APPEND may_app/compare app/pictures)
-list(APPEND may_app/farm app/pictures)
-list(APPEND may_app/sweep app/pictures app/compare)
-list(APPEND may_app/view app/pictures app/inspect app/wedges)
-list(APPEND may_app/serve app/pictures app/view)
-set(may_library app app/compare app/inspect app/pictures app/process app/wedges compare render ${all_visibility}
+list(APPEND may_app/sweep app/compare)
+list(APPEND may_app/view app/inspect)
+list(APPEND may_app/serve app/view)
+set(may_library ${all_session} compare render ${all_visibility}
     scenes/formats scenes mesh base)
 set(may_python)
-set(may_bench ${may_app} app app/pictures volumes/raster volumes/edges mesh/shapes)
+set(may_bench app/process ${all_session} ${may_session} volumes/raster volumes/edges mesh/shapes)
 set(rooms base network mesh mesh/diagnosis mesh/shapes repair scenes scenes/formats import import/gltf import/gltf/emitters visibility
     visibility/tree visibility/skies visibility/lights
     visibility/masks visibility/alpha visibility/seen areas render/opengl render engines/device engines/vectors engines/pairs engines
     volumes/wedges volumes/edges/device volumes/edges/vectors volumes/edges volumes/raster volumes/soft volumes/counters volumes/scatter volumes vsm maps/host maps/products maps/products/lists
     maps/filters maps/sampling maps/single_shadow maps/screen maps/backprojection maps/backprojection/patches maps/backprojection/contours
     maps/backprojection/soft_shadow_map maps hybrids selftest reference compare
-    app/process app app/pictures app/bake app/commands app/compare app/sweep app/view app/serve app/farm app/inspect app/wedges library python bench)
+    session/process session session/pictures session/comparison session/inspect session/wedges app/process app app/bake app/commands app/compare app/sweep app/view app/serve app/farm app/inspect app/wedges library python bench)
 set(may_tests import ${rooms})
 list(APPEND rooms tests)
 
@@ -185,7 +188,7 @@ if(SELF_TEST)
   file(WRITE ${SELF_TEST}/base/a.hpp "#include \"mesh/soup.hpp\"\n")            # against the arrow
   file(WRITE ${SELF_TEST}/vsm/a.cpp "#include \"maps/filters/methods.hpp\"\n")          # one family on another
   file(WRITE ${SELF_TEST}/mesh/a.cpp "#include \"soup.hpp\"\n")                 # not from the root
-  file(WRITE ${SELF_TEST}/vsm/b.comp "  #  include \"app/runner.hpp\"\n")       # in a shader
+  file(WRITE ${SELF_TEST}/vsm/b.comp "  #  include \"session/runner.hpp\"\n")       # in a shader
   file(WRITE ${SELF_TEST}/maps/host/a.cpp "#include <vulkan/vulkan_raii.hpp>\n")     # a library outside its room
   file(WRITE ${SELF_TEST}/reference/a.hpp "#include <embree3/rtcore.h>\n")      # a library in a header
   file(WRITE ${SELF_TEST}/mesh/a.hpp "#include \"mesh/diagnosis/diagnosis.hpp\"\n")     # a room on one inside it that depends on it

@@ -3,10 +3,10 @@
 
 #include "app/bake/baked_mesh.hpp"
 
-#include "app/whole_lights.hpp"
 #include "base/did_you_mean.hpp"
 #include "base/error.hpp"
 #include "scenes/whole_view.hpp"
+#include "session/whole_lights.hpp"
 
 #include <fmt/ranges.h>
 #include <glm/geometric.hpp>
@@ -137,9 +137,9 @@ VertexPoints vertex_points(const scenes::Scene& scene, const BakedMesh& mesh, st
   return all;
 }
 
-void make_irradiance(RenderedFrame& frame, const Session& session) {
+void make_irradiance(session::RenderedFrame& frame, const session::Session& session) {
   constexpr auto kPi = std::numbers::pi_v<float>;
-  const std::vector<WholeLight> lights = whole_lights(session.lights);
+  const std::vector<session::WholeLight> lights = session::whole_lights(session.lights);
   for (std::size_t light = 0; light < frame.beauty.size(); ++light) {
     const std::int32_t index = session.lights[lights[light].first].index;
     for (std::size_t i = 0; i < frame.beauty[light].size(); ++i) {
@@ -154,7 +154,7 @@ void make_irradiance(RenderedFrame& frame, const Session& session) {
   }
 }
 
-void fill_margins(RenderedFrame& frame, std::span<const std::int64_t> sources) {
+void fill_margins(session::RenderedFrame& frame, std::span<const std::int64_t> sources) {
   const auto fill = [&](auto& values, const auto& nothing) {
     if (values.empty()) return;
     const auto before = values;

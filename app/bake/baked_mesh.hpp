@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "app/pictures/frame_render.hpp"
 #include "scenes/formats/reader.hpp"
 #include "scenes/scene.hpp"
+#include "session/pictures/frame_render.hpp"
 #include "visibility/lightmap.hpp"
 
 #include <cstdint>
@@ -43,10 +43,10 @@ struct VertexPoints {
 VertexPoints vertex_points(const scenes::Scene& scene, const BakedMesh& mesh, std::uint32_t width);
 
 /// Converts the beauty of white surfaces to irradiance; a light's own body receives none from that light.
-void make_irradiance(RenderedFrame& frame, const Session& session);
+void make_irradiance(session::RenderedFrame& frame, const session::Session& session);
 
 /// Fills texels around those of the mesh with the values of the nearest (margin_sources); alpha stays 0 there. Texels
 /// neither covered nor in the margin are 0.
-void fill_margins(RenderedFrame& frame, std::span<const std::int64_t> sources);
+void fill_margins(session::RenderedFrame& frame, std::span<const std::int64_t> sources);
 
 }  // namespace penumbra::app

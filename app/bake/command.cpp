@@ -4,16 +4,18 @@
 #include "app/bake/baked_mesh.hpp"
 #include "app/bake/vertex_file.hpp"
 #include "app/commands.hpp"
-#include "app/machine.hpp"
-#include "app/methods.hpp"
-#include "app/parse.hpp"
-#include "app/pictures/frames.hpp"
-#include "app/pictures/request.hpp"
-#include "app/process/output_files.hpp"
 #include "app/process/process.hpp"
 #include "app/process/terminal_progress.hpp"
+#include "app/run_options.hpp"
 #include "base/atomic_file.hpp"
 #include "base/error.hpp"
+#include "session/machine.hpp"
+#include "session/methods.hpp"
+#include "session/parse.hpp"
+#include "session/pictures/frames.hpp"
+#include "session/pictures/request.hpp"
+#include "session/process/output_files.hpp"
+#include "session/process/process_clock.hpp"
 
 #include <CLI/CLI.hpp>
 #include <spdlog/spdlog.h>
@@ -82,15 +84,16 @@ class BakeCommand : public Command {
   }
 
   int run(const GlobalOptions& global) override {
-    const PictureRequest request = checked_request();
+    const session::PictureRequest request = checked_request();
     const auto side = parse_side();
-    const OutputFiles outputs = claimed_outputs();
+    const session::OutputFiles outputs = claimed_outputs();
     TerminalProgress progress(!global.quiet);
-    const render::Machine machine = make_machine(options_.run.device);
+    const render::Machine machine = session::make_machine(options_.run.device);
     progress.begin("reading " + options_.run.scene.filename().string(), 1);
     std::optional<double> time;
     if (request.frames.front()) time = *request.frames.front() * request.seconds_per_frame;
-    scenes::Scene scene = read_session_scene(options_.run, time, {.lightmap = vertices_ ? nullptr : &lightmap_});
+    scenes::Scene scene =
+        session::read_session_scene(options_.run, time, {.lightmap = vertices_ ? nullptr : &lightmap_});
     outputs.refuse_inputs(scene.sources);
     const BakedMesh mesh = find_baked(scene, mesh_);
     progress.clear();
@@ -101,26 +104,27 @@ class BakeCommand : public Command {
     const std::vector<glm::dvec3> positions = vertices_ ? scene.soup.positions : std::vector<glm::dvec3>();
     const std::vector<mesh::Triangle> triangles = scene.soup.triangles;
 
-    FrameRenderer renderer(options_.run, request.wish, machine, progress);
+    session::FrameRenderer renderer(options_.run, request.wish, machine, progress);
     const auto sources = visibility::margin_sources(points, width_, vertices_ ? 0 : margin_);
     renderer.look_at_surface({[&](const visibility::SceneFloats& floats, const visibility::PinholeCamera& camera) {
                                 return visibility::surface_view_samples(floats, triangles, camera, points, side);
                               },
-                              [&](RenderedFrame& frame, const Session& session) {
+                              [&](session::RenderedFrame& frame, const session::Session& session) {
                                 make_irradiance(frame, session);
                                 if (!vertices_) fill_margins(frame, sources);
                               },
                               {{"penumbra.bake", fmt::format("mesh {}, coordinates {}, side {}: R G B are irradiance",
                                                              mesh_, lightmap_.set, side_)}}});
-    Frame frame;
+    session::Frame frame;
     frame.number = request.frames.front();
-    renderer.render(std::move(scene), frame, {}, seconds_since_start());
+    renderer.render(std::move(scene), frame, {}, session::seconds_since_start());
     if (vertices_) {
       write_vertices(renderer, positions);
       return 0;
     }
-    Exposure exposure = request.exposure;
-    const std::string made = summary(renderer.write({options_.run.out, options_.stats, options_.png, {}}, exposure));
+    session::Exposure exposure = request.exposure;
+    const std::string made =
+        session::summary(renderer.write({options_.run.out, options_.stats, options_.png, {}}, exposure));
     const auto covered = std::ranges::count_if(points, [](const auto& point) { return point.triangle >= 0; });
     spdlog::info("{} texels of \"{}\"; {}", covered, mesh_, made);
     return 0;
@@ -128,13 +132,13 @@ class BakeCommand : public Command {
 
  private:
   /// Checks the command line before any long work.
-  [[nodiscard]] PictureRequest checked_request() {
+  [[nodiscard]] session::PictureRequest checked_request() {
     std::string& size = options_.run.size;
     if (size.empty()) size = fmt::format("{}", kDefaultSide);
-    if (parse_integer<std::uint32_t>(size)) size = fmt::format("{0}x{0}", size);
-    std::tie(width_, height_) = parse_size(size);
+    if (session::parse_integer<std::uint32_t>(size)) size = fmt::format("{0}x{0}", size);
+    std::tie(width_, height_) = session::parse_size(size);
     // Checks the other options as `render` does, whose output's name ends in .exr.
-    PictureOptions as_picture = options_;
+    session::PictureOptions as_picture = options_;
     if (vertices_) {
       if (options_.run.out.extension() != ".ply")
         throw UsageError("-o {}: expected a name that ends in .ply (--vertices)", options_.run.out.string());
@@ -145,7 +149,7 @@ class BakeCommand : public Command {
     }
     if (options_.exposure == "first")
       throw UsageError("--exposure first: a bake has one frame; expected auto or stops");
-    return parse_request(as_picture);
+    return session::parse_request(as_picture);
   }
 
   [[nodiscard]] visibility::SurfaceSide parse_side() const {
@@ -154,9 +158,9 @@ class BakeCommand : public Command {
     throw UsageError("--side {}: expected front or back", side_);
   }
 
-  [[nodiscard]] OutputFiles claimed_outputs() const {
-    check_png_name(options_);
-    OutputFiles outputs;
+  [[nodiscard]] session::OutputFiles claimed_outputs() const {
+    session::check_png_name(options_);
+    session::OutputFiles outputs;
     outputs.add("-o", options_.run.out);
     outputs.add("--stats", options_.stats);
     outputs.add("--png", options_.png);
@@ -176,8 +180,8 @@ class BakeCommand : public Command {
     return at_vertices_.points;
   }
 
-  void write_vertices(FrameRenderer& renderer, const std::vector<glm::dvec3>& positions) const {
-    RenderedFrame frame = renderer.take();
+  void write_vertices(session::FrameRenderer& renderer, const std::vector<glm::dvec3>& positions) const {
+    session::RenderedFrame frame = renderer.take();
     make_irradiance(frame, renderer.session());
     write_vertex_ply(options_.run.out, positions, at_vertices_,
                      values_at_vertices(at_vertices_, frame, renderer.session()));
@@ -185,7 +189,7 @@ class BakeCommand : public Command {
                  at_vertices_.weights.size());
   }
 
-  PictureOptions options_;
+  session::PictureOptions options_;
   scenes::LightmapPlaces lightmap_;
   std::string mesh_, side_ = "front";
   std::uint32_t margin_ = 8, width_ = 0, height_ = 0;

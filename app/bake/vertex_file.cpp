@@ -3,9 +3,9 @@
 
 #include "app/bake/vertex_file.hpp"
 
-#include "app/pictures/picture_format.hpp"
 #include "base/atomic_file.hpp"
 #include "base/image.hpp"
+#include "session/pictures/picture_format.hpp"
 
 #include <fmt/format.h>
 
@@ -41,10 +41,10 @@ std::string header_of(std::size_t vertices, std::size_t faces, const std::vector
 
 }  // namespace
 
-std::vector<VertexLight> values_at_vertices(const VertexPoints& points, const RenderedFrame& frame,
-                                            const Session& session) {
+std::vector<VertexLight> values_at_vertices(const VertexPoints& points, const session::RenderedFrame& frame,
+                                            const session::Session& session) {
   std::vector<VertexLight> lights;
-  const std::vector<std::string> layers = layer_names(session.lights);
+  const std::vector<std::string> layers = session::layer_names(session.lights);
   std::vector<double> weights(points.vertices.size());
   const auto each = [&](const auto& add) {
     for (std::size_t i = 0; i < points.weights.size(); ++i) {

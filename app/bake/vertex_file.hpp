@@ -19,8 +19,8 @@ struct VertexLight {
 };
 
 /// Returns the means of the points' values at each vertex, weighted by the triangles' angles there.
-std::vector<VertexLight> values_at_vertices(const VertexPoints& points, const RenderedFrame& frame,
-                                            const Session& session);
+std::vector<VertexLight> values_at_vertices(const VertexPoints& points, const session::RenderedFrame& frame,
+                                            const session::Session& session);
 
 /// Writes a binary PLY: x y z in double (world space), red green blue (uchar, sRGB, the irradiance of all lights as
 /// bright as fits), V (the first light's), irradiance_r g b (of all lights), and <light>_V, _r, _g, _b of each light,

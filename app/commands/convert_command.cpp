@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/commands.hpp"
-#include "app/options.hpp"
-#include "app/process/output_files.hpp"
 #include "app/reading_options.hpp"
+#include "app/run_options.hpp"
 #include "base/error.hpp"
 #include "scenes/formats/reader.hpp"
 #include "scenes/formats/writer.hpp"
 #include "scenes/instances.hpp"
+#include "session/options.hpp"
+#include "session/process/output_files.hpp"
 
 #include <CLI/CLI.hpp>
 #include <spdlog/spdlog.h>
@@ -50,16 +51,16 @@ class ConvertCommand : public Command {
     if (std::ranges::find(kExtensions, out_.extension()) == kExtensions.end()) {
       throw UsageError("-o {}: expected a name that ends in .json, .glb or .obj", out_.string());
     }
-    scenes::ReadOptions reading = read_options(gltf_, allow_outside_);
+    scenes::ReadOptions reading = session::read_options(gltf_, allow_outside_);
     reading.lenient = lenient_;
-    reading.studio = parse_studio(studio_, camera_);
+    reading.studio = session::parse_studio(studio_, camera_);
     if (!camera_.empty() && reading.studio.fit_camera.empty() && !reading.studio.camera)
       throw UsageError("--camera {}: expected fit, or EX,EY,EZ:TX,TY,TZ[:FOV]", camera_);
     reading.needs_light = out_.extension() != ".obj";  // which contains none
     const scenes::WriteOptions writing{.lenient = lenient_, .instances = parse_instances()};
     scenes::Instances instances;
     reading.instances = &instances;
-    OutputFiles outputs;
+    session::OutputFiles outputs;
     outputs.add("-o", out_);
     outputs.refuse_inputs({&scene_, 1});
     outputs.require_writable();
@@ -86,8 +87,8 @@ class ConvertCommand : public Command {
 
   std::filesystem::path scene_, out_;
   bool allow_outside_ = false, lenient_ = false;
-  GltfOptions gltf_;
-  StudioOptions studio_;
+  session::GltfOptions gltf_;
+  session::StudioOptions studio_;
   std::string camera_, instances_;
 };
 

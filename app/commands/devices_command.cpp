@@ -2,12 +2,12 @@
 #include "app/commands.hpp"
 #include "app/commands/refused_methods.hpp"
 #include "app/commands/self_test_report.hpp"
-#include "app/machine.hpp"
 #include "base/error.hpp"
 #include "render/device.hpp"
 #include "render/opengl/context.hpp"
 #include "render/visibility_buffer.hpp"
 #include "selftest/self_test.hpp"
+#include "session/machine.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/ranges.h>
@@ -125,7 +125,7 @@ class DevicesCommand : public Command {
 
  private:
   [[nodiscard]] int run_self_test() const {
-    const render::Machine machine = make_machine(device_);
+    const render::Machine machine = session::make_machine(device_);
     const render::Device& device = machine.device();
     const SelfTestReport report(device, selftest::run_self_test(device));
     machine.check_validation();

@@ -2,10 +2,10 @@
 #include "app/command_words.hpp"
 #include "app/commands.hpp"
 #include "app/man_pages.hpp"
-#include "app/methods.hpp"
 #include "app/shell_completion.hpp"
 #include "base/did_you_mean.hpp"
 #include "base/error.hpp"
+#include "session/methods.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/ranges.h>
@@ -63,7 +63,7 @@ class CompletionCommand : public Command {
 
   int run(const GlobalOptions&) override {
     std::vector<std::string> methods;
-    for (const visibility::MethodDescription* method : all_methods()) methods.push_back(method->name);
+    for (const visibility::MethodDescription* method : session::all_methods()) methods.push_back(method->name);
     fmt::print("{}", shell_completion(shell_, words_of_commands(*cli_.get_parent()), methods));
     return 0;
   }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/commands.hpp"
-#include "app/method_list.hpp"
-#include "app/methods.hpp"
+#include "session/method_list.hpp"
+#include "session/methods.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/ranges.h>
@@ -23,16 +23,16 @@ void print_table(const std::vector<const MethodDescription*>& methods) {
   fmt::print("{:<18} {:<10} {:<8} {:<32} {}\n", "method", "family", "output", "lights", "paper");
   for (const MethodDescription* method : methods) {
     fmt::print("{:<18} {:<10} {:<8} {:<32} {}\n", method->name, visibility::name_of(method->family),
-               visibility::name_of(method->output), fmt::format("{}", fmt::join(light_names(*method), ", ")),
+               visibility::name_of(method->output), fmt::format("{}", fmt::join(session::light_names(*method), ", ")),
                method->paper);
     fmt::print("{:<18} exact for: {}\n", "", method->exact_for);
     for (const OptionDescription& option : method->options) {
       fmt::print("{:<18} {}={} (default: {}): {}\n", "", option.name, option.values(), option.default_value,
                  option.help);
     }
-    for (const auto& [option, value, with] : variants_of(*method)) {
+    for (const auto& [option, value, with] : session::variants_of(*method)) {
       fmt::print("{:<18} with {}={}: {}; {}{}{}\n", "", option, value, visibility::name_of(with.output),
-                 fmt::join(light_names(with), ", "), with.textures ? "" : "; no textures",
+                 fmt::join(session::light_names(with), ", "), with.textures ? "" : "; no textures",
                  with.any_pattern ? "" : "; light samples in rows alone");
     }
   }
@@ -47,7 +47,8 @@ void print_method(const MethodDescription& method) {
   line("paper", method.paper);
   line("output", visibility::name_of(method.output));
   line("exact for", method.exact_for);
-  line("lights", fmt::format("{}{}", fmt::join(light_names(method), ", "), method.textures ? "" : "; no textures"));
+  line("lights",
+       fmt::format("{}{}", fmt::join(session::light_names(method), ", "), method.textures ? "" : "; no textures"));
   if (!method.any_pattern) line("samples", "in rows alone (--sample-pattern rows or grid)");
   if (method.exact_area) {
     std::string with;
@@ -61,9 +62,9 @@ void print_method(const MethodDescription& method) {
   for (const OptionDescription& option : method.options) {
     fmt::print("  {}={} (default: {})\n      {}\n", option.name, option.values(), option.default_value, option.help);
   }
-  for (const auto& [option, value, with] : variants_of(method)) {
+  for (const auto& [option, value, with] : session::variants_of(method)) {
     fmt::print("  with {}={}: {}; {}{}{}\n", option, value, visibility::name_of(with.output),
-               fmt::join(light_names(with), ", "), with.textures ? "" : "; no textures",
+               fmt::join(session::light_names(with), ", "), with.textures ? "" : "; no textures",
                with.any_pattern ? "" : "; light samples in rows alone");
   }
 }
@@ -77,9 +78,9 @@ class MethodsCommand : public Command {
   }
 
   int run(const GlobalOptions&) override {
-    for (const std::string& name : names_) describe_method(name);  // throws for an unknown name
+    for (const std::string& name : names_) session::describe_method(name);  // throws for an unknown name
     if (json_) {
-      nlohmann::ordered_json json = methods_json();
+      nlohmann::ordered_json json = session::methods_json();
       if (!names_.empty()) {
         auto chosen = nlohmann::ordered_json::array();
         for (auto& row : json["methods"]) {
@@ -90,11 +91,11 @@ class MethodsCommand : public Command {
       }
       fmt::print("{}\n", json.dump(2));
     } else if (names_.empty()) {
-      print_table(all_methods());
+      print_table(session::all_methods());
     }
     for (std::size_t i = 0; !json_ && i < names_.size(); ++i) {
       if (i > 0) fmt::print("\n");
-      print_method(describe_method(names_[i]));
+      print_method(session::describe_method(names_[i]));
     }
     return 0;
   }

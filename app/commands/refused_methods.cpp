@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/commands/refused_methods.hpp"
 
-#include "app/methods.hpp"
 #include "base/error.hpp"
 #include "render/features.hpp"
 #include "render/machine.hpp"
+#include "session/methods.hpp"
 
 #include <fmt/format.h>
 
@@ -18,7 +18,7 @@ namespace {
 std::optional<std::string> why_not(const std::string& method, const visibility::MethodOptions& options,
                                    const render::Machine& machine) {
   try {
-    static_cast<void>(make_method(method, options, machine));
+    static_cast<void>(session::make_method(method, options, machine));
   } catch (const render::LacksFeature& error) {
     return error.what();
   } catch (const UsageError&) {     // options that exclude each other
@@ -34,7 +34,7 @@ std::vector<RefusedMethod> refused_methods(const render::DeviceInfo& device) {
   if (!device.usable() || device.lacks.empty()) return refused;
   const render::Device checks({.wanted = fmt::format("{}", device.index), .only_checks = true});
   const render::Machine machine(checks);
-  for (const visibility::MethodDescription* method : all_methods()) {
+  for (const visibility::MethodDescription* method : session::all_methods()) {
     if (const auto reason = why_not(method->name, {}, machine)) {
       refused.push_back({method->name, *reason});
       continue;

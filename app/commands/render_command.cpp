@@ -1,21 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 // Command `render`: frames and cameras one after another, with the next scene read in parallel.
 
-#include "app/process/terminal_progress.hpp"
 #include "app/commands.hpp"
-#include "app/machine.hpp"
-#include "app/methods.hpp"
-#include "app/pictures/frame_render.hpp"
-#include "app/pictures/frames.hpp"
-#include "app/pictures/picture_scene.hpp"
-#include "app/pictures/request.hpp"
-#include "app/pictures/tev_pictures.hpp"
-#include "app/process/interrupt.hpp"
-#include "app/process/output_files.hpp"
+#include "app/picture_options.hpp"
 #include "app/process/process.hpp"
-#include "app/process/stopwatch.hpp"
+#include "app/process/terminal_progress.hpp"
 #include "base/exr.hpp"
 #include "scenes/instances.hpp"
+#include "session/machine.hpp"
+#include "session/methods.hpp"
+#include "session/pictures/frame_render.hpp"
+#include "session/pictures/frames.hpp"
+#include "session/pictures/picture_scene.hpp"
+#include "session/pictures/request.hpp"
+#include "session/pictures/tev_pictures.hpp"
+#include "session/process/interrupt.hpp"
+#include "session/process/output_files.hpp"
+#include "session/process/process_clock.hpp"
+#include "session/process/stopwatch.hpp"
 #include "visibility/view_samples.hpp"
 
 #include <CLI/CLI.hpp>
@@ -47,21 +49,21 @@ class RenderCommand : public Command {
   }
 
   int run(const GlobalOptions& global) override {
-    request_ = parse_request(options_);
-    is_sequence_ = has_frame_number(options_.run.scene) && !std::filesystem::exists(options_.run.scene);
+    request_ = session::parse_request(options_);
+    is_sequence_ = session::has_frame_number(options_.run.scene) && !std::filesystem::exists(options_.run.scene);
     if (is_sequence_) read_rest();
-    Exposure exposure = request_.exposure;
+    session::Exposure exposure = request_.exposure;
     const bool all_cameras = options_.run.camera == "all";
     const std::vector<std::optional<double>>& frames = request_.frames;
     // Cameras' names are in the scene; everything else is checked before the scene is read.
     std::vector<std::string> cameras = {options_.run.camera};
-    OutputFiles outputs;
+    session::OutputFiles outputs;
     if (!all_cameras) outputs = claim(cameras);
     TerminalProgress progress(!global.quiet);
-    const render::Machine machine = make_machine(options_.run.device);
-    std::optional<TevPictures> tev;
+    const render::Machine machine = session::make_machine(options_.run.device);
+    std::optional<session::TevPictures> tev;
     if (!tev_.empty()) tev.emplace(tev_);
-    FrameRenderer renderer(options_.run, request_.wish, machine, progress);
+    session::FrameRenderer renderer(options_.run, request_.wish, machine, progress);
     if (tev) renderer.show_in(*tev);
 
     progress.begin("reading " + options_.run.scene.filename().string(), 1);
@@ -71,16 +73,16 @@ class RenderCommand : public Command {
       return 0;
     }
     // The device is made while the scene is read, mostly by another process.
-    machine.begin(!request_.wish.method.empty() && needs_device(request_.wish.method, request_.wish.options));
-    PictureScene now = read(frames[at]);
-    now.seconds = seconds_since_start();  // no other work has been done yet
+    machine.begin(!request_.wish.method.empty() && session::needs_device(request_.wish.method, request_.wish.options));
+    session::PictureScene now = read(frames[at]);
+    now.seconds = session::seconds_since_start();  // no other work has been done yet
     if (all_cameras) {
       cameras.clear();
       for (const scenes::Camera& camera : now.scene.cameras) {
         visibility::make_camera(camera, {}, 1, 1);  // fails now instead of after the other cameras' pictures
         cameras.push_back(camera.name);
       }
-      options_.camera_words = camera_words(cameras);
+      options_.camera_words = session::camera_words(cameras);
       outputs = claim(cameras);
     }
     outputs.refuse_inputs(now.scene.sources);
@@ -91,10 +93,11 @@ class RenderCommand : public Command {
       progress.clear();
       spdlog::warn("{} has no animation: every frame shows the same", now.scene.name);
     }
-    if (exposure.kind == Exposure::Kind::first && options_.skip_existing) {
+    if (exposure.kind == session::Exposure::Kind::first && options_.skip_existing) {
       // An incomplete first picture is rendered now, and determines the exposure again.
-      const std::filesystem::path first = files_of(options_, frames.front(), cameras.front()).picture;
-      if (is_whole_exr(first, kExposureAttribute)) exposure.stops = written_exposure(first).value_or(exposure.stops);
+      const std::filesystem::path first = session::files_of(options_, frames.front(), cameras.front()).picture;
+      if (is_whole_exr(first, session::kExposureAttribute))
+        exposure.stops = session::written_exposure(first).value_or(exposure.stops);
     }
 
     std::size_t last = at;
@@ -103,11 +106,11 @@ class RenderCommand : public Command {
       if (at != last + 1) renderer.forget_frames();  // the frames between were made by another run
       last = at;
       // The next scene is read while this one is rendered, by a process of its own.
-      std::future<PictureScene> coming;
+      std::future<session::PictureScene> coming;
       if (moves && next < frames.size())
         coming = std::async(std::launch::async, [this, frame = frames[next]] { return read(frame); });
       for (const std::string& camera : cameras) {
-        const FrameFiles files = files_of(options_, frames[at], camera);
+        const session::FrameFiles files = session::files_of(options_, frames[at], camera);
         if (options_.skip_existing) {
           if (files.all_there()) {
             renderer.forget_frames();
@@ -123,9 +126,9 @@ class RenderCommand : public Command {
                          moments_of(frames[at], moves, now.ahead), &now.instances, false, request_.light_cutoff},
                         files.bits, now.seconds);
         now.seconds = 0;  // counted once
-        const std::string made = summary(renderer.write(files, exposure));
+        const std::string made = session::summary(renderer.write(files, exposure));
         spdlog::info("{}{}", frames[at] ? files.picture.filename().string() + ": " : "", made);
-        check_interrupt();
+        session::check_interrupt();
       }
       if (coming.valid()) now = coming.get();
       at = next;
@@ -143,11 +146,11 @@ class RenderCommand : public Command {
       throw UsageError("{} is one file per frame: --frame or --frames must select whole frames", name);
     if (request_.moments > 1)
       throw UsageError("--motion-samples: {} is one file per frame, without moments between the files", name);
-    RunOptions first = options_.run;
-    first.scene = first_frame_path(first.scene);
+    session::RunOptions first = options_.run;
+    first.scene = session::first_frame_path(first.scene);
     first.studio = {};
     first.studio.never = true;
-    scenes::ReadOptions reading = read_options(first.gltf, first.allow_outside);
+    scenes::ReadOptions reading = session::read_options(first.gltf, first.allow_outside);
     reading.needs_light = false;
     options_.run.rest = std::make_shared<const scenes::Scene>(scenes::read_scene(first.scene, reading));
   }
@@ -164,31 +167,32 @@ class RenderCommand : public Command {
   }
 
   /// Returns the scenes at moment_times; empty if one scene is sufficient. `ahead`: what was read with the first one.
-  [[nodiscard]] std::vector<std::function<PictureScene()>> moments_of(
+  [[nodiscard]] std::vector<std::function<session::PictureScene()>> moments_of(
       std::optional<double> frame, bool moves, const std::shared_ptr<scenes::ScenesAhead>& ahead) const {
-    std::vector<std::function<PictureScene()>> all;
+    std::vector<std::function<session::PictureScene()>> all;
     if (!moves) return all;
     for (const double time : moment_times(frame))
-      all.emplace_back([this, time, ahead] { return read_picture_scene(options_.run, time, request_, ahead.get()); });
+      all.emplace_back(
+          [this, time, ahead] { return session::read_picture_scene(options_.run, time, request_, ahead.get()); });
     return all;
   }
 
-  [[nodiscard]] PictureScene read(std::optional<double> frame) const {
+  [[nodiscard]] session::PictureScene read(std::optional<double> frame) const {
     std::optional<double> time;
     if (frame && !is_sequence_) time = *frame * request_.seconds_per_frame;
-    RunOptions run = options_.run;
-    if (is_sequence_) run.scene = frame_path(run.scene, std::llround(*frame));
+    session::RunOptions run = options_.run;
+    if (is_sequence_) run.scene = session::frame_path(run.scene, std::llround(*frame));
     const auto ahead = std::make_shared<scenes::ScenesAhead>();
     ahead->times = moment_times(frame);
-    PictureScene scene = read_picture_scene(run, time, request_, ahead.get());
+    session::PictureScene scene = session::read_picture_scene(run, time, request_, ahead.get());
     scene.ahead = ahead;
     return scene;
   }
 
-  [[nodiscard]] OutputFiles claim(const std::vector<std::string>& cameras) const {
-    OutputFiles outputs = outputs_of(options_, request_.frames, cameras);
+  [[nodiscard]] session::OutputFiles claim(const std::vector<std::string>& cameras) const {
+    session::OutputFiles outputs = session::outputs_of(options_, request_.frames, cameras);
     outputs.require_writable();
-    check_png_name(options_);
+    session::check_png_name(options_);
     return outputs;
   }
 
@@ -199,8 +203,8 @@ class RenderCommand : public Command {
     return std::min(from, frames.size());
   }
 
-  PictureOptions options_;
-  PictureRequest request_;
+  session::PictureOptions options_;
+  session::PictureRequest request_;
   bool is_sequence_ = false;  // the scene is one file per frame
   std::string tev_;           // HOST:PORT
 };

@@ -1,19 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 // Command `compare`: options, tables and exit codes.
 
-#include "app/process/terminal_progress.hpp"
 #include "app/commands.hpp"
-#include "app/compare/comparison.hpp"
-#include "app/compare/comparison_entries.hpp"
 #include "app/compare/sequence.hpp"
-#include "app/methods.hpp"
-#include "app/options.hpp"
-#include "app/parse.hpp"
-#include "app/pictures/frame_render.hpp"
-#include "app/pictures/frames.hpp"
-#include "app/pictures/tev_pictures.hpp"
+#include "app/picture_options.hpp"
+#include "app/process/terminal_progress.hpp"
 #include "app/reading_options.hpp"
+#include "app/run_options.hpp"
 #include "base/error.hpp"
+#include "session/comparison/comparison.hpp"
+#include "session/comparison/comparison_entries.hpp"
+#include "session/methods.hpp"
+#include "session/options.hpp"
+#include "session/parse.hpp"
+#include "session/pictures/frame_render.hpp"
+#include "session/pictures/frames.hpp"
+#include "session/pictures/tev_pictures.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/ranges.h>
@@ -97,7 +99,7 @@ void print_budgets(const compare::Metrics& metrics) {
 /// two commands share some.
 std::vector<std::string> view_arguments(const CLI::App& given, const std::filesystem::path& scene) {
   CLI::App view;
-  RunOptions shared;
+  session::RunOptions shared;
   for (const char* name : {"--size", "--camera", "--device"}) view.add_option(name);
   add_allow_outside(view, shared.allow_outside);
   add_lenient(view, shared.lenient);
@@ -140,8 +142,8 @@ class CompareCommand : public Command {
     cli_.add_option("--reference", options_.reference,
                     fmt::format("reference of the errors: rays on light samples, areas (exact; slow, see "
                                 "--sample-pixels), or any method whose areas are exact, such as {}",
-                                exact_area_example()))
-        ->type_name(fmt::format("{}|NAME:key=value", fmt::join(judge_names(), "|")))
+                                session::exact_area_example()))
+        ->type_name(fmt::format("{}|NAME:key=value", fmt::join(session::judge_names(), "|")))
         ->capture_default_str();
     cli_.add_option("--reference-samples", options_.reference_samples,
                     "light samples of the reference; same: those of the methods, which are then compared pair by pair")
@@ -180,23 +182,23 @@ class CompareCommand : public Command {
   }
 
   int run(const GlobalOptions& global) override {
-    options_.methods = parse_methods(methods_);
-    options_.method_options = parse_method_options(run_.method_options);
+    options_.methods = session::parse_methods(methods_);
+    options_.method_options = session::parse_method_options(run_.method_options);
     options_.view_arguments = view_arguments(cli_, run_.scene);
     refuse_means();
     if (!max_rmse_text_.empty()) {
-      max_rmse_ = parse_number(max_rmse_text_);
+      max_rmse_ = session::parse_number(max_rmse_text_);
       if (!max_rmse_ || *max_rmse_ < 0)
         throw UsageError("--max-rmse {}: expected a number of 0 or more, such as 0.01", max_rmse_text_);
     }
-    const Exposure exposure = parse_exposure(exposure_);
-    if (exposure.kind == Exposure::Kind::fixed) options_.exposure = exposure.stops;
-    const double fps = parse_fps(fps_);
-    if (frame_) options_.time = parse_frame(*frame_) * (1 / fps);  // as in `render`
+    const session::Exposure exposure = session::parse_exposure(exposure_);
+    if (exposure.kind == session::Exposure::Kind::fixed) options_.exposure = exposure.stops;
+    const double fps = session::parse_fps(fps_);
+    if (frame_) options_.time = session::parse_frame(*frame_) * (1 / fps);  // as in `render`
     if (run_.camera == "all")
       throw UsageError("--camera all: errors are of one camera's pixels; name one, and compare once for each");
     TerminalProgress progress(!global.quiet);
-    std::optional<TevPictures> tev;
+    std::optional<session::TevPictures> tev;
     if (!tev_.empty()) options_.tev = &tev.emplace(tev_);
     const compare::Metrics metrics = compared(global.arguments, fps, progress);
     print_table(metrics);
@@ -232,7 +234,7 @@ class CompareCommand : public Command {
   }
 
   void refuse_means() const {
-    if (parse_integer<std::uint32_t>(pixel_samples_) != 1u) {
+    if (session::parse_integer<std::uint32_t>(pixel_samples_) != 1u) {
       throw UsageError("--pixel-samples {}: methods are compared at pixels' centres, one view sample each; expected 1",
                        pixel_samples_);
     }
@@ -241,12 +243,12 @@ class CompareCommand : public Command {
           "--pixel-filter {}: methods are compared at pixels' centres, which no filter weighs; expected box",
           pixel_filter_);
     }
-    if (parse_integer<std::uint32_t>(motion_samples_) != 1u)
+    if (session::parse_integer<std::uint32_t>(motion_samples_) != 1u)
       throw UsageError("--motion-samples {}: methods are compared at one moment; expected 1", motion_samples_);
     if (!shutter_.empty())
       throw UsageError("--shutter {}: methods are compared at one moment (--frame), not over an open shutter",
                        shutter_);
-    if (parse_number(aperture_) != 0.0 || !focus_distance_.empty())
+    if (session::parse_number(aperture_) != 0.0 || !focus_distance_.empty())
       throw UsageError("--aperture {}: methods are compared through the lens's middle; expected 0", aperture_);
     if (instances_ != "auto" && instances_ != "copies") {
       throw UsageError(
@@ -254,18 +256,18 @@ class CompareCommand : public Command {
           "or copies",
           instances_);
     }
-    if (parse_number(light_cutoff_) != 0.0)
+    if (session::parse_number(light_cutoff_) != 0.0)
       throw UsageError("--light-cutoff {}: every light's V is compared; expected 0", light_cutoff_);
     if (skip_existing_)
       throw UsageError("--skip-existing: a comparison is measured as a whole, so nothing of an earlier one is kept");
   }
 
   [[nodiscard]] compare::Metrics compared(const std::vector<std::string>& arguments, double fps,
-                                          Progress& progress) const {
+                                          session::Progress& progress) const {
     if (frames_.empty()) {
-      ComparisonOptions options = options_;
+      session::ComparisonOptions options = options_;
       if (!max_rmse_) options.most_seconds = kMostGroupSeconds;  // a method that did not run has not passed
-      return compare_methods(run_, options, arguments, progress);
+      return session::compare_methods(run_, options, arguments, progress);
     }
     if (frame_) throw UsageError("--frames {} and --frame {}: expected one of them", frames_, *frame_);
     if (options_.error_budget)
@@ -276,7 +278,8 @@ class CompareCommand : public Command {
       throw UsageError(
           "--sample-pixels {}: frames are compared at the same pixels; expected all, or pixels such as 10,20;30,40",
           pixels);
-    return compare_frames(run_, options_, numbers_of(parse_frames(frames_)), fps, arguments, progress);
+    return compare_frames(run_, options_, session::numbers_of(session::parse_frames(frames_)), fps, arguments,
+                          progress);
   }
 
   [[nodiscard]] bool exceeds_max_rmse(const compare::Metrics& metrics) const {
@@ -292,8 +295,8 @@ class CompareCommand : public Command {
     return exceeded;
   }
 
-  RunOptions run_;
-  ComparisonOptions options_;
+  session::RunOptions run_;
+  session::ComparisonOptions options_;
   std::string methods_ = "default";
   std::optional<double> max_rmse_;
   std::optional<std::string> frame_;

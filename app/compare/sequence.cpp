@@ -3,12 +3,12 @@
 
 #include "app/compare/sequence.hpp"
 
-#include "app/compare/comparison_files.hpp"
 #include "app/process/say_once.hpp"
-#include "app/session.hpp"
 #include "base/atomic_file.hpp"
 #include "base/error.hpp"
 #include "compare/metrics_csv.hpp"
+#include "session/comparison/comparison_files.hpp"
+#include "session/session.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -133,8 +133,8 @@ void take_sum(compare::MethodResult& result, EntrySum& sum, std::size_t frames) 
   result.error = sum.errors.error();
   result.flicker = sum.flicker.root();
   result.pops = sum.flicker.popping();
-  if (!sum.light.empty()) seconds.light = median(sum.light);
-  if (!sum.evaluate.empty()) seconds.evaluate = median(sum.evaluate);
+  if (!sum.light.empty()) seconds.light = session::median(sum.light);
+  if (!sum.evaluate.empty()) seconds.evaluate = session::median(sum.evaluate);
   seconds.total.reset();
   seconds.total = seconds.sum();
 }
@@ -167,11 +167,11 @@ Json frame_json(std::int64_t number, const compare::Metrics& metrics, std::span<
 
 }  // namespace
 
-compare::Metrics compare_frames(const RunOptions& run, const ComparisonOptions& options,
+compare::Metrics compare_frames(const session::RunOptions& run, const session::ComparisonOptions& options,
                                 std::span<const std::int64_t> frames, double fps,
-                                const std::vector<std::string>& arguments, Progress& progress) {
+                                const std::vector<std::string>& arguments, session::Progress& progress) {
   // Files are claimed before any long work; the last frame's comparison claims them again.
-  ComparisonFiles files(run.out, {.png = options.png, .bits = options.bits});
+  session::ComparisonFiles files(run.out, {.png = options.png, .bits = options.bits});
   files.claim(run.scene, options.methods, options.stats);
   compare::Metrics all;
   SayOnce said(progress);
@@ -180,14 +180,14 @@ compare::Metrics compare_frames(const RunOptions& run, const ComparisonOptions& 
   Json rows = Json::array();
   std::uint64_t judged = 0, horizon = 0;
   for (const std::int64_t number : frames) {
-    ComparisonOptions of_frame = options;
+    session::ComparisonOptions of_frame = options;
     of_frame.time = static_cast<double>(number) * (1 / fps);  // as in `render`
     of_frame.writes = number == frames.back();
     if (!of_frame.writes) of_frame.stats.clear();
     of_frame.memories = &memories;
     for (auto& [entry, memory] : memories) memory.next_frame();
-    EntryErrors errors;
-    all = compare_methods(run, of_frame, arguments, said, &errors);
+    session::EntryErrors errors;
+    all = session::compare_methods(run, of_frame, arguments, said, &errors);
     const std::size_t most = std::size_t{all.reference.width} * all.reference.height * frames.size();
     std::vector<Changes> flicker(errors.size());
     for (std::size_t i = 0; i < errors.size(); ++i) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "app/compare/comparison.hpp"
+#include "session/comparison/comparison.hpp"
 
 #include <cstdint>
 #include <span>
@@ -12,8 +12,8 @@ namespace penumbra::app {
 /// sequence: errors over all frames' judged pixels, medians of seconds, flicker, and `frames`. Flicker is, over pixels
 /// that are judged in a frame and in the previous one, the RMSE of the change of V less the reference's change. Throws
 /// as compare_methods().
-compare::Metrics compare_frames(const RunOptions& run, const ComparisonOptions& options,
+compare::Metrics compare_frames(const session::RunOptions& run, const session::ComparisonOptions& options,
                                 std::span<const std::int64_t> frames, double fps,
-                                const std::vector<std::string>& arguments, Progress& progress);
+                                const std::vector<std::string>& arguments, session::Progress& progress);
 
 }  // namespace penumbra::app

@@ -6,13 +6,14 @@
 #include "app/farm/slurm.hpp"
 #include "app/farm/tasks.hpp"
 #include "app/farm/workers.hpp"
-#include "app/pictures/picture_file.hpp"
-#include "app/pictures/request.hpp"
+#include "app/picture_options.hpp"
 #include "app/process/child_program.hpp"
-#include "app/process/output_files.hpp"
-#include "app/session.hpp"
 #include "base/atomic_file.hpp"
 #include "base/error.hpp"
+#include "session/pictures/picture_file.hpp"
+#include "session/pictures/request.hpp"
+#include "session/process/output_files.hpp"
+#include "session/session.hpp"
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
@@ -69,13 +70,13 @@ class SubmitCommand : public Command {
 
   int run(const GlobalOptions& global) override {
     if (options_.exposure.empty()) options_.exposure = "first";
-    request_ = parse_request(options_);
-    range_ = parse_frames(options_.frames);
-    frames_ = numbers_of(range_);
+    request_ = session::parse_request(options_);
+    range_ = session::parse_frames(options_.frames);
+    frames_ = session::numbers_of(range_);
     for (const std::string& option : sbatch_) refuse_option(option);
     read_cameras();
-    outputs_of(options_, request_.frames, cameras_);  // throws for files with the same name
-    check_png_name(options_);
+    session::outputs_of(options_, request_.frames, cameras_);  // throws for files with the same name
+    session::check_png_name(options_);
     words_ = words_for_all(global);
     folder_ = folder_of(absolute(options_.run.out));
     if (std::error_code error; !logs_.empty() && !std::filesystem::create_directories(logs_, error) && error)
@@ -135,7 +136,7 @@ class SubmitCommand : public Command {
 
   /// Returns the folder next to the pictures, named after them: OUT.####.exr → OUT.farm.
   static std::filesystem::path folder_of(const std::filesystem::path& out) {
-    const std::string name = sequence_name(out);
+    const std::string name = session::sequence_name(out);
     return out.parent_path() / ((name.empty() ? "frames" : name) + ".farm");
   }
 
@@ -144,20 +145,23 @@ class SubmitCommand : public Command {
     if (options_.run.camera != "all") return;
     cameras_.clear();  // their names are in the scene
     const double time = static_cast<double>(frames_.front()) * request_.seconds_per_frame;
-    for (const scenes::Camera& camera : read_session_scene(options_.run, time).cameras) cameras_.push_back(camera.name);
-    options_.camera_words = camera_words(cameras_);
+    for (const scenes::Camera& camera : session::read_session_scene(options_.run, time).cameras)
+      cameras_.push_back(camera.name);
+    options_.camera_words = session::camera_words(cameras_);
   }
 
   // ---- existing files
 
-  [[nodiscard]] bool has(std::int64_t frame) const { return is_there(options_, static_cast<double>(frame), cameras_); }
+  [[nodiscard]] bool has(std::int64_t frame) const {
+    return session::is_there(options_, static_cast<double>(frame), cameras_);
+  }
   [[nodiscard]] std::vector<std::int64_t> missing() const {
     std::vector<std::int64_t> frames = frames_;
     std::erase_if(frames, [this](std::int64_t frame) { return has(frame); });
     return frames;
   }
   [[nodiscard]] std::filesystem::path picture(std::int64_t frame) const {
-    return files_of(options_, static_cast<double>(frame), cameras_.front()).picture;
+    return session::files_of(options_, static_cast<double>(frame), cameras_.front()).picture;
   }
 
   // ---- rendering on this machine
@@ -173,8 +177,8 @@ class SubmitCommand : public Command {
   /// it: that frame is rendered if missing. If rendering fails, the next frame determines it, and so on; failed frames
   /// are added to `failed`.
   std::string decide_exposure(std::vector<FailedFrame>& failed) {
-    if (request_.exposure.kind == Exposure::Kind::automatic) return "auto";
-    if (request_.exposure.kind == Exposure::Kind::fixed) return fmt::format("{}", request_.exposure.stops);
+    if (request_.exposure.kind == session::Exposure::Kind::automatic) return "auto";
+    if (request_.exposure.kind == session::Exposure::Kind::fixed) return fmt::format("{}", request_.exposure.stops);
     for (const std::int64_t frame : frames_) {
       if (!has(frame)) {
         const std::vector<FailedFrame> now = render_frames(workers("first", 1), {frame});
@@ -186,7 +190,7 @@ class SubmitCommand : public Command {
           continue;
         }
       }
-      if (const auto stops = written_exposure(picture(frame))) return fmt::format("{}", *stops);
+      if (const auto stops = session::written_exposure(picture(frame))) return fmt::format("{}", *stops);
       spdlog::warn("{} does not say how it was exposed: the next frame decides", picture(frame).string());
     }
     return "auto";  // there is no frame left to be exposed
@@ -227,14 +231,14 @@ class SubmitCommand : public Command {
 
   /// Renders a frame here as the farm would, and returns its cost. Throws the error of the frame.
   FrameCost measure(std::int64_t frame, const std::string& exposure) {
-    PictureOptions named = options_;
+    session::PictureOptions named = options_;
     Workers here = workers(exposure, 1);
     here.logs = folder_;
     if (named.stats.empty()) {
       named.stats = folder_ / "first-frame.json";
       here.command.push_back("--stats=" + named.stats.string());
     }
-    here.is_there = [&](std::int64_t one) { return is_there(named, static_cast<double>(one), cameras_); };
+    here.is_there = [&](std::int64_t one) { return session::is_there(named, static_cast<double>(one), cameras_); };
     spdlog::info("frame {} is rendered here, to see how many frames a task can do", frame);
     const std::vector<FailedFrame> failed = render_frames(here, {frame});
     if (!failed.empty()) {
@@ -244,7 +248,8 @@ class SubmitCommand : public Command {
     FrameCost cost;
     for (const std::string& camera : cameras_) {
       const auto seconds =
-          nlohmann::json::parse(text_of_file(files_of(named, static_cast<double>(frame), camera).stats)).at("seconds");
+          nlohmann::json::parse(text_of_file(session::files_of(named, static_cast<double>(frame), camera).stats))
+              .at("seconds");
       const double total = seconds.at("total").get<double>();
       double own = 0;
       for (const char* phase : {"view", "light", "evaluate", "beauty", "write"}) own += seconds.value(phase, 0.0);
@@ -258,10 +263,11 @@ class SubmitCommand : public Command {
     BatchJob job;
     job.program = own_program();
     job.words = words_;
-    for (const FrameRange& task : cut_into_tasks(frames, range_.step, chunk, most)) job.tasks.push_back(text_of(task));
+    for (const session::FrameRange& task : cut_into_tasks(frames, range_.step, chunk, most))
+      job.tasks.push_back(text_of(task));
     job.sbatch = sbatch_;
     job.folder = folder_;
-    job.name = "penumbra-" + file_name_of(folder_.stem().string());
+    job.name = "penumbra-" + session::file_name_of(folder_.stem().string());
     job.summary = {"--frames=" + text_of(range_), "--exposure=" + asked_exposure(), fmt::format("--chunk={}", chunk),
                    fmt::format("--rounds={}", rounds_), fmt::format("--round={}", round_ + 1)};
     for (const std::string& option : sbatch_) job.summary.push_back("--sbatch=" + option);
@@ -269,7 +275,7 @@ class SubmitCommand : public Command {
   }
 
   [[nodiscard]] std::string asked_exposure() const {
-    using Kind = Exposure::Kind;
+    using Kind = session::Exposure::Kind;
     const Kind kind = request_.exposure.kind;
     return kind == Kind::first       ? "first"
            : kind == Kind::automatic ? "auto"
@@ -284,7 +290,7 @@ class SubmitCommand : public Command {
     }
     BatchJob job = job_of(frames, static_cast<std::size_t>(chunk_.value_or(1)), kDefaultMostTasks);
     job.exposure = asked_exposure();
-    if (request_.exposure.kind == Exposure::Kind::first) {
+    if (request_.exposure.kind == session::Exposure::Kind::first) {
       const std::filesystem::path first = absolute(picture(frames_.front()));
       job.exposure = first.string();
       if (!has(frames_.front()))
@@ -309,15 +315,15 @@ class SubmitCommand : public Command {
     }
     if (round_ > rounds_ || (round_ > 1 && !before.empty() && was_cancelled(before))) return report(frames);
 
-    OutputFolder made;
+    session::OutputFolder made;
     made.make(folder_);
     const std::size_t most = most_tasks(run_slurm({"scontrol", "show", "config"}));
     std::string exposure = asked_exposure();
     std::optional<FrameCost> cost;
-    if (request_.exposure.kind == Exposure::Kind::first) {
+    if (request_.exposure.kind == session::Exposure::Kind::first) {
       const std::int64_t first = frames_.front();
       if (!has(first)) cost = measure(first, "first");
-      const auto stops = written_exposure(picture(first));
+      const auto stops = session::written_exposure(picture(first));
       if (!stops) {
         throw InputError("{} does not say how it was exposed; remove it, or give --exposure in stops",
                          picture(first).string());
@@ -351,7 +357,7 @@ class SubmitCommand : public Command {
     return static_cast<int>(ExitCode::answer_is_no);
   }
 
-  PictureOptions options_;
+  session::PictureOptions options_;
   bool dry_run_ = false;
   int jobs_ = 0;
   std::optional<int> chunk_;
@@ -360,8 +366,8 @@ class SubmitCommand : public Command {
   std::filesystem::path logs_;
 
   // Parsed options:
-  PictureRequest request_;
-  FrameRange range_;
+  session::PictureRequest request_;
+  session::FrameRange range_;
   std::vector<std::int64_t> frames_;
   std::vector<std::string> cameras_;
   std::vector<std::string> words_;  // after the subcommand's name, for every task

@@ -3,9 +3,9 @@
 
 #include "app/farm/slurm.hpp"
 
-#include "app/parse.hpp"
 #include "app/process/child_program.hpp"
 #include "base/error.hpp"
+#include "session/parse.hpp"
 
 #include <algorithm>
 #include <cctype>
@@ -36,10 +36,10 @@ std::string run_slurm(const std::vector<std::string>& command) {
 }
 
 std::size_t most_tasks(std::string_view config) {
-  for (const std::string_view line : split(config, '\n')) {
+  for (const std::string_view line : session::split(config, '\n')) {
     const auto equals = line.find('=');
     if (equals == std::string_view::npos || trimmed(line.substr(0, equals)) != "MaxArraySize") continue;
-    const auto most = parse_integer<std::size_t>(trimmed(line.substr(equals + 1)));
+    const auto most = session::parse_integer<std::size_t>(trimmed(line.substr(equals + 1)));
     if (!most) break;
     if (*most < 1) throw ResourceError("this farm has no job arrays (MaxArraySize is 0); ask its administrator");
     return *most;
@@ -49,9 +49,9 @@ std::size_t most_tasks(std::string_view config) {
 
 std::string job_number(std::string_view printed) {
   // sbatch may print messages of the site first.
-  const std::string_view last = split(trimmed(printed), '\n').back();
+  const std::string_view last = session::split(trimmed(printed), '\n').back();
   const std::string_view number = last.substr(0, last.find(';'));
-  if (!parse_integer<std::uint64_t>(number))
+  if (!session::parse_integer<std::uint64_t>(number))
     throw ResourceError("sbatch printed \"{}\", and a job's number was expected", trimmed(printed));
   return std::string(number);
 }

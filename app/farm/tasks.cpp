@@ -20,11 +20,11 @@ std::size_t frames_per_task(const FrameCost& cost) {
   return static_cast<std::size_t>(std::max(1.0, std::ceil(seconds / cost.frame)));
 }
 
-std::vector<FrameRange> cut_into_tasks(std::span<const std::int64_t> missing, std::int64_t step, std::size_t size,
-                                       std::size_t most) {
+std::vector<session::FrameRange> cut_into_tasks(std::span<const std::int64_t> missing, std::int64_t step,
+                                                std::size_t size, std::size_t most) {
   PENUMBRA_ASSERT(size > 0 && most > 0, "tasks of no frames, or none");
   const std::size_t count = std::min(most, (missing.size() + size - 1) / size);
-  std::vector<FrameRange> tasks;
+  std::vector<session::FrameRange> tasks;
   for (std::size_t task = 0; task < count; ++task) {
     const std::size_t begin = task * missing.size() / count, end = (task + 1) * missing.size() / count;
     tasks.push_back({missing[begin], missing[end - 1], step});
@@ -32,7 +32,7 @@ std::vector<FrameRange> cut_into_tasks(std::span<const std::int64_t> missing, st
   return tasks;
 }
 
-std::string text_of(const FrameRange& range) {
+std::string text_of(const session::FrameRange& range) {
   return fmt::format("{}-{}x{}", range.first, range.last, range.step);
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "app/pictures/frames.hpp"
+#include "session/pictures/frames.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -23,11 +23,11 @@ std::size_t frames_per_task(const FrameCost& cost);
 /// Divides the missing frames of a sequence (ascending, `step` apart or a multiple of it) into runs of at most `size`,
 /// or of more, if there would be more than `most` runs otherwise. All runs have the same number of missing frames, or
 /// one more; each begins and ends with a missing frame. In between there may be existing frames.
-std::vector<FrameRange> cut_into_tasks(std::span<const std::int64_t> missing, std::int64_t step, std::size_t size,
-                                       std::size_t most);
+std::vector<session::FrameRange> cut_into_tasks(std::span<const std::int64_t> missing, std::int64_t step,
+                                                std::size_t size, std::size_t most);
 
 /// Returns "A-BxN", in the form of --frames.
-std::string text_of(const FrameRange& range);
+std::string text_of(const session::FrameRange& range);
 /// Returns "3, 7-9", for messages; frames that are `step` apart are joined.
 std::string list_of(std::span<const std::int64_t> frames, std::int64_t step);
 

@@ -6,9 +6,9 @@
 #include "app/farm/frame_logs.hpp"
 #include "app/farm/tasks.hpp"
 #include "app/process/child_program.hpp"
-#include "app/process/interrupt.hpp"
 #include "app/process/process.hpp"
 #include "base/error.hpp"
+#include "session/process/interrupt.hpp"
 
 #include <spdlog/spdlog.h>
 
@@ -89,7 +89,7 @@ class Supervisor {
     // One worker takes all frames; several get their part in four runs each, so that none has much left at the end.
     const std::size_t runs = workers.at_once == 1 ? 1 : 4 * workers.at_once;
     const std::size_t size = std::max<std::size_t>(1, (frames.size() + runs - 1) / runs);
-    for (const FrameRange& range : cut_into_tasks(frames, workers.step, size, frames.size() + 1)) {
+    for (const session::FrameRange& range : cut_into_tasks(frames, workers.step, size, frames.size() + 1)) {
       Run& run = waiting_.emplace_back();
       std::ranges::copy_if(frames, std::back_inserter(run.frames),
                            [&](std::int64_t frame) { return frame >= range.first && frame <= range.last; });
@@ -103,7 +103,7 @@ class Supervisor {
 
   std::vector<FailedFrame> run() {
     while (!waiting_.empty() || !running_.empty()) {
-      check_interrupt();
+      session::check_interrupt();
       while (!waiting_.empty() && running_.size() < workers_.at_once) {
         running_.push_back(std::make_unique<Worker>(workers_, std::move(waiting_.front())));
         waiting_.pop_front();
@@ -128,7 +128,7 @@ class Supervisor {
     std::vector<std::int64_t> missing = worker.run().frames;
     std::erase_if(missing, workers_.is_there);
     if (missing.empty()) return;
-    check_interrupt();  // a signal for all may reach the workers first
+    session::check_interrupt();  // a signal for all may reach the workers first
     const int code = worker.exit_code();
     if (code == static_cast<int>(ExitCode::usage)) throw UsageError("{}", worker.reason());
     const std::int64_t first = missing.front();

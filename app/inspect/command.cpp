@@ -4,18 +4,18 @@
 #include "app/commands.hpp"
 #include "app/inspect/counts.hpp"
 #include "app/inspect/defect_picture.hpp"
-#include "app/inspect/examine.hpp"
 #include "app/inspect/export.hpp"
 #include "app/inspect/inspected_files.hpp"
 #include "app/inspect/repaired_file.hpp"
-#include "app/inspect/report.hpp"
-#include "app/options.hpp"
-#include "app/process/output_files.hpp"
 #include "app/process/terminal_progress.hpp"
 #include "app/reading_options.hpp"
 #include "base/atomic_file.hpp"
 #include "base/error.hpp"
 #include "base/png.hpp"
+#include "session/inspect/examine.hpp"
+#include "session/inspect/report.hpp"
+#include "session/options.hpp"
+#include "session/process/output_files.hpp"
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
@@ -91,20 +91,20 @@ class InspectCommand : public Command {
   int run(const GlobalOptions& global) override {
     const FailOn fail_on(fail_on_text_, !no_intersections_);
     inspected_ = inspected_files(named_);
-    const OutputFiles outputs = checked_outputs();
+    const session::OutputFiles outputs = checked_outputs();
     TerminalProgress progress(!global.quiet);
     const bool prints = json_ != "-" && csv_ != "-", whole = !inspected_.several || global.verbose;
     if (prints && !whole) fmt::print("{}", summary_header());
-    std::vector<FileReport> reports;
-    std::optional<RepairReport> repaired;
+    std::vector<session::FileReport> reports;
+    std::optional<session::RepairReport> repaired;
     bool failed = false;
     for (std::size_t i = 0; i < inspected_.files.size(); ++i) {
       reports.push_back(report_on(i, outputs, repaired, progress));
-      const FileReport& report = reports.back();
+      const session::FileReport& report = reports.back();
       if (prints) {
         if (!whole) fmt::print("{}", summary_row(report));
         if (whole && report.error.empty())
-          fmt::print("{}", report_table(report, {table_limit(), methods_ || global.verbose}));
+          fmt::print("{}", session::report_table(report, {table_limit(), methods_ || global.verbose}));
         std::fflush(stdout);
       }
       const std::string found = fail_on.found_in(report);
@@ -112,25 +112,26 @@ class InspectCommand : public Command {
       if (!found.empty()) spdlog::error("{}: {} (--fail-on)", report.file.string(), found);
       if (inspected_.several && json_.empty()) forget_places(reports.back());
     }
-    if (repaired && prints) fmt::print("{}", report_table(*repaired));
+    if (repaired && prints) fmt::print("{}", session::report_table(*repaired));
     if (!json_.empty()) write_json(reports, repaired);
     if (csv_ == "-")
       fmt::print("{}", report_csv(reports));
     else if (!csv_.empty())
       write_file_atomically(csv_, report_csv(reports));
-    const bool all_read = std::ranges::all_of(reports, [](const FileReport& report) { return report.error.empty(); });
+    const bool all_read =
+        std::ranges::all_of(reports, [](const session::FileReport& report) { return report.error.empty(); });
     return static_cast<int>(!all_read ? ExitCode::input : failed ? ExitCode::answer_is_no : ExitCode::done);
   }
 
  private:
   /// Reads, examines, draws and repairs one file; errors of reading are in the report.
-  FileReport report_on(std::size_t number, const OutputFiles& outputs, std::optional<RepairReport>& repaired,
-                       Progress& progress) const {
+  session::FileReport report_on(std::size_t number, const session::OutputFiles& outputs,
+                                std::optional<session::RepairReport>& repaired, session::Progress& progress) const {
     const std::filesystem::path& file = inspected_.files[number];
     try {
-      const InspectedMesh mesh = read_inspected(file, allow_outside_);
+      const session::InspectedMesh mesh = session::read_inspected(file, allow_outside_);
       outputs.refuse_inputs(mesh.sources);
-      FileReport report = examine(file, mesh, diagnosis_options(), progress);
+      session::FileReport report = session::examine(file, mesh, diagnosis_options(), progress);
       if (!defects_.empty()) export_defects(defects_, mesh.soup, report.total);
       if (!png_.empty()) draw(picture_of(number), mesh, report, progress);
       if (!repaired_.empty())
@@ -142,15 +143,15 @@ class InspectCommand : public Command {
     } catch (const InputError& error) {
       progress.clear();
       spdlog::error("{}", error.what());
-      FileReport report;
+      session::FileReport report;
       report.file = file;
       report.error = error.what();
       return report;
     }
   }
 
-  static void draw(const std::filesystem::path& picture, const InspectedMesh& mesh, const FileReport& report,
-                   Progress& progress) {
+  static void draw(const std::filesystem::path& picture, const session::InspectedMesh& mesh,
+                   const session::FileReport& report, session::Progress& progress) {
     constexpr std::uint32_t kSide = 512;
     try {
       write_png(picture, defect_picture(mesh.soup, report.total, kSide));
@@ -161,8 +162,8 @@ class InspectCommand : public Command {
   }
 
   /// Locations of defects are needed only by the JSON, and may be many.
-  static void forget_places(FileReport& report) {
-    for (const DefectRow& row : kDefects) (report.total.diagnosis.*row.counted).first = {};
+  static void forget_places(session::FileReport& report) {
+    for (const session::DefectRow& row : session::kDefects) (report.total.diagnosis.*row.counted).first = {};
     if (report.total.diagnosis.self_intersections) report.total.diagnosis.self_intersections->first = {};
     report.objects = {};
     report.source_face = {};
@@ -171,13 +172,13 @@ class InspectCommand : public Command {
   /// Returns "defects.png" for one file; for several "defects-0001-bunny.png".
   [[nodiscard]] std::filesystem::path picture_of(std::size_t number) const {
     if (!inspected_.several) return png_;
-    std::string name = file_name_of(inspected_.files[number].stem().string());
+    std::string name = session::file_name_of(inspected_.files[number].stem().string());
     std::ranges::replace(name, ':', ',');
     return png_.parent_path() / fmt::format("{}-{:04}-{}.png", png_.stem().string(), number + 1, name);
   }
 
   /// Checks the command line before any long work.
-  [[nodiscard]] OutputFiles checked_outputs() const {
+  [[nodiscard]] session::OutputFiles checked_outputs() const {
     if (!(weld_ >= 0 && std::isfinite(weld_))) {
       throw UsageError("--weld {}: expected a distance, 0 or more, in the file's unit", weld_);
     }
@@ -192,7 +193,7 @@ class InspectCommand : public Command {
         throw UsageError("{}: {} FILEs are too many for one output", output->string(), inspected_.files.size());
     }
     if (!repaired_.empty()) mesh::require_repair();
-    OutputFiles outputs;
+    session::OutputFiles outputs;
     if (json_ != "-") outputs.add("--json", json_);
     if (csv_ != "-") outputs.add("--csv", csv_);
     outputs.add("--export-defects", defects_);
@@ -214,10 +215,11 @@ class InspectCommand : public Command {
     return options;
   }
 
-  void write_json(std::span<const FileReport> reports, const std::optional<RepairReport>& repaired) const {
+  void write_json(std::span<const session::FileReport> reports,
+                  const std::optional<session::RepairReport>& repaired) const {
     const std::size_t limit = list_.value_or(kListed);
-    const nlohmann::ordered_json json =
-        inspected_.several ? report_json(reports, limit) : report_json(reports.front(), repaired, limit);
+    const nlohmann::ordered_json json = inspected_.several ? session::report_json(reports, limit)
+                                                           : session::report_json(reports.front(), repaired, limit);
     // A note may contain bytes that are not UTF-8.
     const std::string text = json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
     if (json_ == "-") {

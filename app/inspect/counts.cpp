@@ -3,11 +3,11 @@
 
 #include "app/inspect/counts.hpp"
 
-#include "app/inspect/report.hpp"
 #include "base/csv.hpp"
 #include "base/did_you_mean.hpp"
 #include "base/error.hpp"
 #include "base/utf8.hpp"
+#include "session/inspect/report.hpp"
 
 #include <fmt/ranges.h>
 
@@ -31,7 +31,7 @@ constexpr const char* kIntersections = "selfIntersections";
 
 std::vector<std::string_view> keys_of_counts() {
   std::vector<std::string_view> keys;
-  for (const DefectRow& row : kDefects) keys.emplace_back(row.key);
+  for (const session::DefectRow& row : session::kDefects) keys.emplace_back(row.key);
   keys.emplace_back(kIntersections);
   for (const NumberRow& row : kNumbers) keys.emplace_back(row.key);
   return keys;
@@ -57,7 +57,7 @@ std::optional<std::uint64_t> non_manifold(const Diagnosis& d) {
 }  // namespace
 
 std::optional<std::uint64_t> count_of(const Diagnosis& diagnosis, std::string_view key) {
-  for (const DefectRow& row : kDefects) {
+  for (const session::DefectRow& row : session::kDefects) {
     if (key == row.key) return (diagnosis.*row.counted).count;
   }
   for (const NumberRow& row : kNumbers) {
@@ -90,7 +90,7 @@ FailOn::FailOn(std::string_view names, bool searches_intersections) {
   }
 }
 
-std::string FailOn::found_in(const FileReport& file) const {
+std::string FailOn::found_in(const session::FileReport& file) const {
   if (!file.error.empty()) return "";
   std::vector<std::string> found;
   const Diagnosis& total = file.total.diagnosis;
@@ -102,9 +102,9 @@ std::string FailOn::found_in(const FileReport& file) const {
   return fmt::format("{}", fmt::join(found, ", "));
 }
 
-WorstVerdict worst_verdict(const ObjectReport& object) {
+WorstVerdict worst_verdict(const session::ObjectReport& object) {
   WorstVerdict worst;
-  for (const MethodVerdict& said : object.verdicts) {
+  for (const session::MethodVerdict& said : object.verdicts) {
     if (said.verdict.verdict > worst.verdict) worst = {said.verdict.verdict, 0};
     if (said.verdict.verdict == worst.verdict) ++worst.methods;
   }
@@ -116,7 +116,7 @@ std::string summary_header() {
                      "non-manifold", "self-intersecting", "degenerate", "worst-verdict", "file");
 }
 
-std::string summary_row(const FileReport& file) {
+std::string summary_row(const session::FileReport& file) {
   if (!file.error.empty())
     return fmt::format("{:>10} {:>7} {:>9} {:>12} {:>17} {:>10}  {:<16} {}\n", "-", "-", "-", "-", "-", "-",
                        "unreadable", on_one_line(file.error));
@@ -131,12 +131,12 @@ std::string summary_row(const FileReport& file) {
                      on_one_line(file.file.string()));
 }
 
-std::string report_csv(std::span<const FileReport> files) {
+std::string report_csv(std::span<const session::FileReport> files) {
   std::string text = "file,triangles,vertices,components,closed,closedAsWound";
   const std::vector<std::string_view> keys = keys_of_counts();
   for (const std::string_view key : keys) text += fmt::format(",{}", key);
   text += ",volume,worstVerdict,error\r\n";
-  for (const FileReport& file : files) {
+  for (const session::FileReport& file : files) {
     text += csv_field(as_utf8(file.file.string()));
     if (!file.error.empty()) {
       text += std::string(keys.size() + 7, ',') + ',' + csv_field(as_utf8(file.error)) + "\r\n";

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "app/inspect/examine.hpp"
+#include "session/inspect/examine.hpp"
 
 #include <cstdint>
 #include <optional>
@@ -22,7 +22,7 @@ class FailOn {
   FailOn(std::string_view names, bool searches_intersections);
 
   /// Returns the listed defects found in a file, in words: "not closed, 3 boundaryEdges". Empty: none.
-  [[nodiscard]] std::string found_in(const FileReport& file) const;
+  [[nodiscard]] std::string found_in(const session::FileReport& file) const;
 
  private:
   std::vector<std::string_view> keys_;
@@ -37,14 +37,14 @@ struct WorstVerdict {
   visibility::Verdict verdict = visibility::Verdict::exact;
   std::size_t methods = 0;
 };
-WorstVerdict worst_verdict(const ObjectReport& object);
+WorstVerdict worst_verdict(const session::ObjectReport& object);
 
 /// Return the table of several files: its first line, and the row of a file. Columns have fixed widths and contain no
 /// blanks; the file's name is last.
 std::string summary_header();
-std::string summary_row(const FileReport& file);
+std::string summary_row(const session::FileReport& file);
 
 /// Returns all files as CSV (RFC 4180): one row for each file, with the keys of the JSON as names of columns.
-std::string report_csv(std::span<const FileReport> files);
+std::string report_csv(std::span<const session::FileReport> files);
 
 }  // namespace penumbra::app

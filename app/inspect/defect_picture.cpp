@@ -98,15 +98,15 @@ class View {
   double size_;
 };
 
-scenes::Bounds bounds_of_triangles(const ObjectReport& report) {
+scenes::Bounds bounds_of_triangles(const session::ObjectReport& report) {
   return {report.diagnosis.lower, report.diagnosis.upper};
 }
 
 }  // namespace
 
-Image8 defect_picture(const mesh::TriangleSoup& soup, const ObjectReport& report, std::uint32_t side) {
+Image8 defect_picture(const mesh::TriangleSoup& soup, const session::ObjectReport& report, std::uint32_t side) {
   const MarkedMesh marked = mark_defects(soup, report);
-  const visibility::SceneFloats scene = visibility::make_scene_floats(scene_of(soup, "mesh"));
+  const visibility::SceneFloats scene = visibility::make_scene_floats(session::scene_of(soup, "mesh"));
   scenes::Camera camera = scenes::camera_that_sees_all(bounds_of_triangles(report));
   Image8 image{2 * side, side, std::vector<Color8>(std::size_t{2} * side * side)};
   for (std::uint32_t half = 0; half < 2; ++half) {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "app/inspect/examine.hpp"
 #include "base/image.hpp"
 #include "mesh/triangle_soup.hpp"
+#include "session/inspect/examine.hpp"
 
 #include <cstdint>
 
@@ -13,6 +13,6 @@ namespace penumbra::app {
 /// and above, and from the opposite side. Edges and vertices with a defect are drawn over the surface, paler where the
 /// surface hides them. The picture is 2 `side` wide and `side` high. `report` must list all locations of the soup's
 /// defects. Throws InputError for coordinates out of a scene's range.
-Image8 defect_picture(const mesh::TriangleSoup& soup, const ObjectReport& report, std::uint32_t side);
+Image8 defect_picture(const mesh::TriangleSoup& soup, const session::ObjectReport& report, std::uint32_t side);
 
 }  // namespace penumbra::app

@@ -3,8 +3,8 @@
 
 #include "app/inspect/export.hpp"
 
-#include "app/inspect/report.hpp"
 #include "mesh/soup_ply.hpp"
+#include "session/inspect/report.hpp"
 
 #include <fmt/format.h>
 
@@ -65,7 +65,7 @@ void add_edges(mesh::PlyMesh& ply, const mesh::DefectPlace& place, const Legend&
 
 }  // namespace
 
-MarkedMesh mark_defects(const mesh::TriangleSoup& soup, const ObjectReport& report) {
+MarkedMesh mark_defects(const mesh::TriangleSoup& soup, const session::ObjectReport& report) {
   MarkedMesh marked;
   mesh::PlyMesh& ply = marked.ply;
   ply.positions = soup.positions;
@@ -87,7 +87,8 @@ MarkedMesh mark_defects(const mesh::TriangleSoup& soup, const ObjectReport& repo
   return marked;
 }
 
-void export_defects(const std::filesystem::path& file, const mesh::TriangleSoup& soup, const ObjectReport& report) {
+void export_defects(const std::filesystem::path& file, const mesh::TriangleSoup& soup,
+                    const session::ObjectReport& report) {
   mesh::write_ply(file, mark_defects(soup, report).ply);
 }
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "app/inspect/examine.hpp"
 #include "mesh/soup_ply.hpp"
+#include "session/inspect/examine.hpp"
 
 #include <cstdint>
 #include <filesystem>
@@ -36,10 +36,11 @@ struct MarkedMesh {
 
 /// Returns the marked mesh. `report` must list every location. An element with several defects has the colour of the
 /// last of these in the legend.
-MarkedMesh mark_defects(const mesh::TriangleSoup& soup, const ObjectReport& report);
+MarkedMesh mark_defects(const mesh::TriangleSoup& soup, const session::ObjectReport& report);
 
 /// Writes the marked triangles and edges as PLY.
-void export_defects(const std::filesystem::path& file, const mesh::TriangleSoup& soup, const ObjectReport& report);
+void export_defects(const std::filesystem::path& file, const mesh::TriangleSoup& soup,
+                    const session::ObjectReport& report);
 
 /// Returns the colours, one line for each defect.
 std::string defect_legend();

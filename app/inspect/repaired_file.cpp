@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/inspect/repaired_file.hpp"
 
-#include "app/process/interrupt.hpp"
 #include "base/error.hpp"
 #include "base/scratch_folder.hpp"
 #include "mesh/soup_files.hpp"
 #include "mesh/soup_ply.hpp"
 #include "scenes/formats/writer.hpp"
+#include "session/process/interrupt.hpp"
 
 #include <algorithm>
 #include <array>
@@ -26,19 +26,19 @@ void write_mesh(const std::filesystem::path& file, const mesh::TriangleSoup& sou
   } else if (ending == ".off") {
     mesh::write_off(file, soup);
   } else {
-    scenes::write_scene(scene_of(soup, file.stem().string()), file);
+    scenes::write_scene(session::scene_of(soup, file.stem().string()), file);
   }
 }
 
 /// Returns what a reader makes of a file with this soup; `file` tells its name and folder, and is not written.
-InspectedMesh read_again(const std::filesystem::path& file, const mesh::TriangleSoup& soup) {
-  const UnwindsAfterSignals unwinds;
+session::InspectedMesh read_again(const std::filesystem::path& file, const mesh::TriangleSoup& soup) {
+  const session::UnwindsAfterSignals unwinds;
   const std::filesystem::path parent = file.has_parent_path() ? file.parent_path() : ".";
   const ScratchFolder folder(parent);
   const std::filesystem::path written = folder.path() / file.filename();
   write_mesh(written, soup);
   try {
-    return read_inspected(written, false);
+    return session::read_inspected(written, false);
   } catch (const InputError& error) {
     std::string said = error.what();
     if (const std::size_t at = said.find(written.string()); at != std::string::npos)
@@ -54,15 +54,16 @@ void require_mesh_ending(const std::filesystem::path& file) {
     throw UsageError("{}: expected a name that ends in .ply, .obj, .stl, .off or .glb", file.string());
 }
 
-RepairReport repaired_file(const std::filesystem::path& file, const mesh::TriangleSoup& soup,
-                           const mesh::RepairOptions& repair, const mesh::DiagnosisOptions& diagnosis,
-                           Progress& progress) {
+session::RepairReport repaired_file(const std::filesystem::path& file, const mesh::TriangleSoup& soup,
+                                    const mesh::RepairOptions& repair, const mesh::DiagnosisOptions& diagnosis,
+                                    session::Progress& progress) {
   mesh::Repaired repaired = mesh::repair(soup, repair);
-  RepairReport report{file, repaired.soup.triangles.size(), std::move(repaired.done), std::move(repaired.left), {}};
+  session::RepairReport report{
+      file, repaired.soup.triangles.size(), std::move(repaired.done), std::move(repaired.left), {}};
   if (repaired.soup.triangles.empty())
     throw InputError("{}: not written, since nothing is left of the mesh: none of its triangles has an area",
                      file.string());
-  report.written = examine(file, read_again(file, repaired.soup), diagnosis, progress).total.diagnosis;
+  report.written = session::examine(file, read_again(file, repaired.soup), diagnosis, progress).total.diagnosis;
   write_mesh(file, repaired.soup);
   const std::uint64_t edges = report.written.non_manifold_edges.count,
                       vertices = report.written.non_manifold_vertices.count;

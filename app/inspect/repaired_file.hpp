@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "app/inspect/report.hpp"
-#include "app/process/progress.hpp"
 #include "mesh/repair.hpp"
+#include "session/inspect/report.hpp"
+#include "session/process/progress.hpp"
 
 #include <filesystem>
 
@@ -16,8 +16,8 @@ void require_mesh_ending(const std::filesystem::path& file);
 /// .glb (single precision), and reads and diagnoses the written file, so that the report describes the file: where
 /// sheets only touch, the repair gives each its own vertices, and a reader that joins vertices by position, including
 /// Penumbra's, joins them again.
-RepairReport repaired_file(const std::filesystem::path& file, const mesh::TriangleSoup& soup,
-                           const mesh::RepairOptions& repair, const mesh::DiagnosisOptions& diagnosis,
-                           Progress& progress);
+session::RepairReport repaired_file(const std::filesystem::path& file, const mesh::TriangleSoup& soup,
+                                    const mesh::RepairOptions& repair, const mesh::DiagnosisOptions& diagnosis,
+                                    session::Progress& progress);
 
 }  // namespace penumbra::app

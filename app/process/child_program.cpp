@@ -95,7 +95,7 @@ int ChildProgram::exit_code() {
 ProgramEnding run_program(std::vector<std::string> command) {
   ChildProgram program(std::move(command));
   while (!program.has_ended()) {
-    check_interrupt();
+    session::check_interrupt();
     std::this_thread::sleep_for(kLook);
   }
   return {program.exit_code(), program.take_output(), program.take_errors()};

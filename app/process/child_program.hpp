@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "app/process/interrupt.hpp"
 #include "base/child.hpp"
+#include "session/process/interrupt.hpp"
 
 #include <csignal>
 #include <string>
@@ -39,7 +39,7 @@ class ChildProgram {
   };
   static pid_t start(std::vector<std::string>& command, const Said& output, const Said& errors);
 
-  UnwindsAfterSignals unwinds_;
+  session::UnwindsAfterSignals unwinds_;
   Said said_[2];  // output, errors
   Child child_;
 };

@@ -3,21 +3,15 @@
 
 #include "app/process/process.hpp"
 
-#include "app/process/failure.hpp"
 #include "base/error.hpp"
 #include "base/memory.hpp"
+#include "session/process/failure.hpp"
 
-#include <algorithm>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
-#include <fstream>
-#include <iterator>
-#include <ctime>
-#include <sstream>
-#include <string>
 #include <system_error>
 
 #include <fcntl.h>
@@ -34,24 +28,6 @@ void occupy_closed_streams() {
     // stdout for reading only, so that writing results is an error; messages are dropped without an error.
     ::open("/dev/null", stream == STDERR_FILENO ? O_WRONLY : O_RDONLY);
   }
-}
-
-double boot_clock() {
-  timespec now{};
-  ::clock_gettime(CLOCK_BOOTTIME, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
-/// Returns the start on the boot clock: field 22 of proc(5)'s stat, in ticks. The second field, a name in brackets, may
-/// contain any characters.
-double start_of_process() {
-  std::ifstream file("/proc/self/stat");
-  const std::string text{std::istreambuf_iterator<char>(file), {}};
-  std::istringstream fields(text.substr(std::min(text.rfind(')'), text.size() - 1) + 1));
-  std::string field;
-  for (int number = 3; number < 22; ++number) fields >> field;
-  double ticks = 0;
-  return fields >> ticks ? ticks / static_cast<double>(::sysconf(_SC_CLK_TCK)) : boot_clock();
 }
 
 [[noreturn]] void end_after_uncaught() noexcept {
@@ -74,18 +50,13 @@ void prepare_process() {
   std::set_terminate(end_after_uncaught);
 }
 
-double seconds_since_start() {
-  static const double start = start_of_process();
-  return std::max(boot_clock() - start, 0.0);
-}
-
 void say(std::string_view text) noexcept {
   std::fwrite(text.data(), 1, text.size(), stderr);
   std::fflush(stderr);
 }
 
 int explain_current_exception() noexcept try {
-  const Failure failure = describe_current_exception();
+  const session::Failure failure = session::describe_current_exception();
   say(fmt::format("penumbra: error: {}\n", failure.message));
   return static_cast<int>(failure.code);
 } catch (...) {  // no memory even for the message

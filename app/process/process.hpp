@@ -10,10 +10,6 @@ namespace penumbra::app {
 /// An uncaught exception ends the process with exit code 4 and a message. Freed memory is kept (keep_freed_memory).
 void prepare_process();
 
-/// Returns the wall-clock seconds since the start of this process, to a hundredth; since the first call if the system
-/// does not provide the start.
-double seconds_since_start();
-
 /// Writes to stderr if possible; failures are ignored.
 void say(std::string_view text) noexcept;
 

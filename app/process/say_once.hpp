@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "app/process/progress.hpp"
+#include "session/process/progress.hpp"
 
 #include <set>
 #include <string>
@@ -10,12 +10,12 @@
 namespace penumbra::app {
 
 /// Passes everything on, but each message only once: for work that repeats the same steps.
-class SayOnce final : public Progress {
+class SayOnce final : public session::Progress {
  public:
-  explicit SayOnce(Progress& progress) : progress_(progress) {}
+  explicit SayOnce(session::Progress& progress) : progress_(progress) {}
 
   void begin(std::string stage, std::uint64_t steps) override { progress_.begin(std::move(stage), steps); }
-  using Progress::advance;
+  using session::Progress::advance;
   void advance(std::uint64_t steps) override { progress_.advance(steps); }
   void clear() override { progress_.clear(); }
   void say(Level level, const std::string& message) override {
@@ -23,7 +23,7 @@ class SayOnce final : public Progress {
   }
 
  private:
-  Progress& progress_;
+  session::Progress& progress_;
   std::set<std::string> said_;
 };
 

@@ -3,8 +3,8 @@
 
 #include "app/process/terminal_progress.hpp"
 
-#include "app/process/interrupt.hpp"
 #include "app/process/process.hpp"
+#include "session/process/interrupt.hpp"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -41,7 +41,7 @@ TerminalProgress::~TerminalProgress() {
 }
 
 void TerminalProgress::begin(std::string stage, std::uint64_t steps) {
-  check_interrupt();
+  session::check_interrupt();
   const std::scoped_lock lock(mutex_);
   stage_ = std::move(stage);
   began_ = std::chrono::steady_clock::now();
@@ -52,7 +52,7 @@ void TerminalProgress::begin(std::string stage, std::uint64_t steps) {
 }
 
 void TerminalProgress::advance(std::uint64_t steps) {
-  check_interrupt();
+  session::check_interrupt();
   const std::scoped_lock lock(mutex_);
   done_ = std::min(done_ + steps, steps_);
   draw();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "app/process/progress.hpp"
+#include "session/process/progress.hpp"
 
 #include <chrono>
 #include <condition_variable>
@@ -15,13 +15,13 @@ namespace penumbra::app {
 
 /// Shows a bar on stderr if stderr is a terminal, else a line every five seconds, during a long step too; neither with
 /// --quiet. Each step also checks for an interrupt (Interrupted). Messages go to spdlog.
-class TerminalProgress final : public Progress {
+class TerminalProgress final : public session::Progress {
  public:
   explicit TerminalProgress(bool wanted);
   ~TerminalProgress() override;
 
   void begin(std::string stage, std::uint64_t steps) override;
-  using Progress::advance;
+  using session::Progress::advance;
   void advance(std::uint64_t steps) override;
   void clear() override;
   void say(Level level, const std::string& message) override;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/commands.hpp"
-#include "app/options.hpp"
 #include "app/serve/service.hpp"
 #include "base/error.hpp"
+#include "session/options.hpp"
 
 #include <CLI/CLI.hpp>
 
@@ -25,7 +25,7 @@ class ServeCommand : public Command {
   }
 
   int run(const GlobalOptions& /*global*/) override {
-    static_cast<void>(parse_normals(run_.normals));
+    static_cast<void>(session::parse_normals(run_.normals));
     if (::isatty(STDIN_FILENO) != 0)
       throw UsageError("stdin is a terminal; another program sends the messages (docs/serve.md)");
     Service service(run_, STDIN_FILENO, STDOUT_FILENO);
@@ -34,7 +34,7 @@ class ServeCommand : public Command {
   }
 
  private:
-  RunOptions run_;
+  session::RunOptions run_;
 };
 
 }  // namespace

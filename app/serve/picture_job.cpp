@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/serve/picture_job.hpp"
 
-#include "app/machine.hpp"
-#include "app/options.hpp"
-#include "app/output.hpp"
-#include "app/pictures/picture_scene.hpp"
+#include "app/picture_options.hpp"
 #include "base/error.hpp"
+#include "session/machine.hpp"
+#include "session/options.hpp"
+#include "session/output.hpp"
+#include "session/pictures/picture_scene.hpp"
 
 #include <CLI/CLI.hpp>
 
@@ -16,8 +17,8 @@
 namespace penumbra::app {
 namespace {
 
-PictureOptions parse_picture(const std::vector<std::string>& arguments) {
-  PictureOptions options;
+session::PictureOptions parse_picture(const std::vector<std::string>& arguments) {
+  session::PictureOptions options;
   CLI::App app("", "render");
   add_picture_options(app, options);
   try {
@@ -29,36 +30,37 @@ PictureOptions parse_picture(const std::vector<std::string>& arguments) {
   return options;
 }
 
-auto format_key(const FormatOptions& format) {
+auto format_key(const session::FormatOptions& format) {
   return std::tie(format.layers, format.half, format.compression);
 }
 
 }  // namespace
 
 void PictureJob::run(const std::vector<std::string>& arguments) {
-  PictureOptions options = parse_picture(arguments);
-  PictureRequest request = parse_request(options);
+  session::PictureOptions options = parse_picture(arguments);
+  session::PictureRequest request = session::parse_request(options);
   if (request.frames.size() != 1 || options.run.camera == "all" || request.moments > 1)
     throw UsageError("one picture of one moment is made at a time");
-  OutputFiles outputs = outputs_of(options, request.frames, {options.run.camera});
+  session::OutputFiles outputs = session::outputs_of(options, request.frames, {options.run.camera});
   outputs.require_writable();
-  check_png_name(options);
+  session::check_png_name(options);
   const bool same_device = kept_ && kept_->options.run.device == options.run.device;
   const bool same = same_device && format_key(kept_->options.run.format) == format_key(options.run.format);
   if (!same) {
-    const render::Machine machine = same_device ? kept_->machine : make_machine(options.run.device);
+    const render::Machine machine = same_device ? kept_->machine : session::make_machine(options.run.device);
     kept_.reset();
     kept_ = std::make_unique<Kept>(Kept{options, request, machine, nullptr});
-    kept_->renderer = std::make_unique<FrameRenderer>(kept_->options.run, kept_->request.wish, machine, progress_);
+    kept_->renderer =
+        std::make_unique<session::FrameRenderer>(kept_->options.run, kept_->request.wish, machine, progress_);
     kept_->renderer->expect_frames();
   }
   kept_->options = std::move(options);
   kept_->request = std::move(request);
-  const PictureRequest& now = kept_->request;
+  const session::PictureRequest& now = kept_->request;
   try {
-    PictureScene read = read_picture_scene(kept_->options.run, std::nullopt, now);
+    session::PictureScene read = session::read_picture_scene(kept_->options.run, std::nullopt, now);
     outputs.refuse_inputs(read.scene.sources);
-    const FrameFiles files = files_of(kept_->options, now.frames.front(), kept_->options.run.camera);
+    const session::FrameFiles files = session::files_of(kept_->options, now.frames.front(), kept_->options.run.camera);
     kept_->renderer->render(std::move(read.scene),
                             {now.frames.front(),
                              kept_->options.run.camera,
@@ -70,8 +72,8 @@ void PictureJob::run(const std::vector<std::string>& arguments) {
                              false,
                              now.light_cutoff},
                             files.bits, read.seconds);
-    Exposure exposure = now.exposure;
-    progress_.info(summary(kept_->renderer->write(files, exposure)));
+    session::Exposure exposure = now.exposure;
+    progress_.info(session::summary(kept_->renderer->write(files, exposure)));
   } catch (...) {
     kept_.reset();  // its data may belong partly to one picture and partly to another
     throw;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "app/pictures/frame_render.hpp"
-#include "app/pictures/request.hpp"
-#include "app/process/progress.hpp"
 #include "render/machine.hpp"
+#include "session/pictures/frame_render.hpp"
+#include "session/pictures/request.hpp"
+#include "session/process/progress.hpp"
 
 #include <memory>
 #include <string>
@@ -17,7 +17,7 @@ namespace penumbra::app {
 class PictureJob {
  public:
   /// `progress` must outlive this object.
-  explicit PictureJob(Progress& progress) : progress_(progress) {}
+  explicit PictureJob(session::Progress& progress) : progress_(progress) {}
   /// Writes one picture. `arguments`: those of `penumbra render`. Throws Error if `render` would reject them, and for a
   /// sequence.
   void run(const std::vector<std::string>& arguments);
@@ -25,13 +25,13 @@ class PictureJob {
  private:
   /// Data that are constant from picture to picture.
   struct Kept {
-    PictureOptions options;
-    PictureRequest request;
+    session::PictureOptions options;
+    session::PictureRequest request;
     render::Machine machine;
-    std::unique_ptr<FrameRenderer> renderer;  // refers to these
+    std::unique_ptr<session::FrameRenderer> renderer;  // refers to these
   };
 
-  Progress& progress_;
+  session::Progress& progress_;
   std::unique_ptr<Kept> kept_;
 };
 

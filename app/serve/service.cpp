@@ -102,7 +102,7 @@ class Service::Renders {
   Inbox& inbox_;
 };
 
-Service::Service(RunOptions options, int input, int output)
+Service::Service(session::RunOptions options, int input, int output)
     : options_(std::move(options)), out_(output), inbox_(std::make_shared<Inbox>()) {
   options_.scene = "the scene";
   // the thread blocks on input and cannot be joined

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "app/options.hpp"
 #include "app/process/terminal_progress.hpp"
 #include "app/serve/message_pipe.hpp"
 #include "app/serve/picture_job.hpp"
 #include "app/serve/scene_parts.hpp"
 #include "app/view/live_renderer.hpp"
+#include "session/options.hpp"
 
 #include <atomic>
 #include <condition_variable>
@@ -24,7 +24,7 @@ namespace penumbra::app {
 class Service {
  public:
   /// Reads messages from `input` and writes to `output`, descriptors that stay open. `options`: device and normals.
-  Service(RunOptions options, int input, int output);
+  Service(session::RunOptions options, int input, int output);
   Service(const Service&) = delete;
   Service& operator=(const Service&) = delete;
   ~Service() = default;
@@ -54,7 +54,7 @@ class Service {
   /// Says that a message of this type is refused.
   void refuse(const std::string& type, const std::string& text);
 
-  RunOptions options_;
+  session::RunOptions options_;
   MessageSink out_;
 
   std::shared_ptr<Inbox> inbox_;  // shared with the reading thread, which may end after this object

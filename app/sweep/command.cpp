@@ -2,19 +2,20 @@
 // Command `sweep`: options and tables.
 
 #include "app/commands.hpp"
-#include "app/compare/comparison.hpp"
-#include "app/compare/comparison_entries.hpp"
-#include "app/methods.hpp"
-#include "app/options.hpp"
-#include "app/pictures/frames.hpp"
-#include "app/process/output_files.hpp"
 #include "app/process/terminal_progress.hpp"
-#include "app/session.hpp"
+#include "app/run_options.hpp"
 #include "app/sweep/sweep.hpp"
 #include "app/sweep/sweep_files.hpp"
 #include "base/atomic_file.hpp"
 #include "base/error.hpp"
 #include "compare/stats.hpp"
+#include "session/comparison/comparison.hpp"
+#include "session/comparison/comparison_entries.hpp"
+#include "session/methods.hpp"
+#include "session/options.hpp"
+#include "session/pictures/frames.hpp"
+#include "session/process/output_files.hpp"
+#include "session/session.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -70,7 +71,7 @@ class SweepCommand : public Command {
     cli_.add_option(
             "--reference", reference_,
             fmt::format("reference of the errors, as in `compare` (default: {} if it does the lights, else rays)",
-                        exact_area_example()))
+                        session::exact_area_example()))
         ->type_name("NAME");
     cli_.add_option("--reference-samples", options_.reference_samples, "light samples of the reference, if rays")
         ->type_name("M")
@@ -86,22 +87,22 @@ class SweepCommand : public Command {
   }
 
   int run(const GlobalOptions& global) override {
-    options_.methods = parse_methods(methods_);
-    options_.method_options = parse_method_options(run_.method_options);
+    options_.methods = session::parse_methods(methods_);
+    options_.method_options = session::parse_method_options(run_.method_options);
     const std::vector<SweptKey> over = parse_over(over_);
     if (options_.reference_samples == "same")
       throw UsageError("--reference-samples same: a sweep is judged by one reference; expected a number");
     std::optional<double> time;
-    if (frame_) time = parse_frame(*frame_) * (1 / parse_fps(fps_));
-    OutputFolder folder;
-    OutputFiles outputs;
+    if (frame_) time = session::parse_frame(*frame_) * (1 / session::parse_fps(fps_));
+    session::OutputFolder folder;
+    session::OutputFiles outputs;
     folder.make(run_.out);
     const auto csv = run_.out / "sweep.csv", json = run_.out / "sweep.json", svg = run_.out / "sweep.svg";
     for (const auto& file : {csv, json, svg}) outputs.add("-o", file);
     outputs.refuse_inputs({&run_.scene, 1});
     outputs.require_writable();
     TerminalProgress progress(!global.quiet);
-    const scenes::Scene scene = read_session_scene(run_, time);
+    const scenes::Scene scene = session::read_session_scene(run_, time);
     outputs.refuse_inputs(scene.sources);
     options_.reference = reference_.empty() ? best_reference(scene) : reference_;
     const Sweep sweep = sweep_methods(scene, run_, options_, over, progress);
@@ -119,8 +120,8 @@ class SweepCommand : public Command {
  private:
   /// Returns exact areas if the first method that computes them by options supports all lights, else rays.
   [[nodiscard]] std::string best_reference(const scenes::Scene& scene) const {
-    const std::string areas = exact_area_example();
-    const visibility::MethodDescription method = describe_reference(areas).description;
+    const std::string areas = session::exact_area_example();
+    const visibility::MethodDescription method = session::describe_reference(areas).description;
     std::vector<visibility::Light> lights;
     for (std::uint32_t i = 0; i < scene.lights.size(); ++i) {
       const bool is_chosen =
@@ -129,11 +130,11 @@ class SweepCommand : public Command {
       for (visibility::Light& light : visibility::make_light_pieces(scene, i, scene.origin.value_or(glm::dvec3(0)), {}))
         lights.push_back(std::move(light));
     }
-    return can_do(method, lights) ? areas : ray_judge().name;
+    return session::can_do(method, lights) ? areas : session::ray_judge().name;
   }
 
-  RunOptions run_;
-  ComparisonOptions options_;
+  session::RunOptions run_;
+  session::ComparisonOptions options_;
   std::string methods_ = "default", reference_, fps_;
   std::vector<std::string> over_;
   std::optional<std::string> frame_;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/sweep/ranges.hpp"
 
-#include "app/parse.hpp"
 #include "base/error.hpp"
+#include "session/parse.hpp"
 
 #include <fmt/format.h>
 
@@ -27,8 +27,8 @@ std::vector<std::string> values_of(std::string_view text, std::string_view whole
   if (dots == std::string_view::npos) return {std::string(text)};
   const std::string_view rest = text.substr(dots + 2);
   const auto plus = rest.find('+');
-  const auto first = parse_number(text.substr(0, dots)), last = parse_number(rest.substr(0, plus));
-  const auto step = plus == std::string_view::npos ? std::optional(0.0) : parse_number(rest.substr(plus + 1));
+  const auto first = session::parse_number(text.substr(0, dots)), last = session::parse_number(rest.substr(0, plus));
+  const auto step = plus == std::string_view::npos ? std::optional(0.0) : session::parse_number(rest.substr(plus + 1));
   if (!first || !last || !step || *last < *first) refuse(whole);
   if (plus == std::string_view::npos ? *first <= 0 : *step <= 0) refuse(whole);
   std::vector<std::string> values;
@@ -49,7 +49,7 @@ std::vector<SweptKey> parse_over(std::span<const std::string> texts) {
   std::vector<SweptKey> keys;
   for (const std::string& text : texts) {
     bool is_first = true;
-    for (const std::string_view part : split(text, ',')) {
+    for (const std::string_view part : session::split(text, ',')) {
       const auto equals = part.find('=');
       if (equals != std::string_view::npos) {
         const std::string_view name = part.substr(0, equals);

@@ -3,13 +3,13 @@
 
 #include "app/sweep/sweep.hpp"
 
-#include "app/compare/comparison_entries.hpp"
-#include "app/methods.hpp"
-#include "app/parse.hpp"
 #include "app/process/say_once.hpp"
-#include "app/session.hpp"
 #include "base/did_you_mean.hpp"
 #include "base/error.hpp"
+#include "session/comparison/comparison_entries.hpp"
+#include "session/methods.hpp"
+#include "session/parse.hpp"
+#include "session/session.hpp"
 
 #include <fmt/ranges.h>
 #include <glm/geometric.hpp>
@@ -53,7 +53,7 @@ bool is_of_light(const SweptKey& key) {
 }
 
 double positive(const std::string& key, const std::string& text) {
-  const auto value = parse_number(text);
+  const auto value = session::parse_number(text);
   if (!value || *value <= 0) throw UsageError("--over {}={}: expected a number above 0", key, text);
   return *value;
 }
@@ -127,7 +127,7 @@ scenes::Scene with_lights(scenes::Scene scene, const Values& sizes, const std::v
 
 /// Throws if a light that was named keeps its size; of the others, warns of those that keep theirs while others vary.
 void report_fixed_lights(const scenes::Scene& scene, std::span<const SweptKey> over,
-                         const std::vector<std::string>& names, Progress& progress) {
+                         const std::vector<std::string>& names, session::Progress& progress) {
   for (std::size_t i = 0; i < scene.lights.size(); ++i) {
     const scenes::AreaLight& light = scene.lights[i];
     if (!names.empty() && !is_named(light, names)) continue;
@@ -141,20 +141,21 @@ void report_fixed_lights(const scenes::Scene& scene, std::span<const SweptKey> o
   }
 }
 
-bool has_option(const MethodEntry& entry, const std::string& key) {
-  const auto& options = describe_method(entry.name).options;
+bool has_option(const session::MethodEntry& entry, const std::string& key) {
+  const auto& options = session::describe_method(entry.name).options;
   return std::ranges::find(options, key, &visibility::OptionDescription::name) != options.end();
 }
 
 /// Returns each entry with each combination of the swept options that it has and does not set itself.
-std::vector<MethodEntry> with_swept_options(std::span<const MethodEntry> entries, std::span<const SweptKey> keys) {
-  std::vector<MethodEntry> all;
+std::vector<session::MethodEntry> with_swept_options(std::span<const session::MethodEntry> entries,
+                                                     std::span<const SweptKey> keys) {
+  std::vector<session::MethodEntry> all;
   std::set<std::string> labels;
-  for (const MethodEntry& entry : entries) {
+  for (const session::MethodEntry& entry : entries) {
     const std::vector<SweptKey> own = keys_where(
         keys, [&](const SweptKey& key) { return has_option(entry, key.name) && !entry.options.contains(key.name); });
     for (const Values& values : products(own)) {
-      MethodEntry with = entry;
+      session::MethodEntry with = entry;
       for (const auto& [key, value] : values) {
         with.options[key] = value;
         with.label += fmt::format(":{}={}", key, value);
@@ -174,12 +175,12 @@ bool is_size_of_some(const std::string& key, const scenes::Scene& scene, const s
   return false;
 }
 
-bool counts_samples(const MethodEntry& entry) {
-  return describe_method(entry.name, entry.options).counts_light_samples();
+bool counts_samples(const session::MethodEntry& entry) {
+  return session::describe_method(entry.name, entry.options).counts_light_samples();
 }
 
 /// Throws for a key that would have no effect.
-void require_known_keys(std::span<const SweptKey> over, std::span<const MethodEntry> entries,
+void require_known_keys(std::span<const SweptKey> over, std::span<const session::MethodEntry> entries,
                         const scenes::Scene& scene, const std::vector<std::string>& lights) {
   for (const SweptKey& key : over) {
     if (is_of_light(key)) {
@@ -193,13 +194,13 @@ void require_known_keys(std::span<const SweptKey> over, std::span<const MethodEn
       if (std::ranges::any_of(entries, counts_samples)) continue;
       throw UsageError("--over {}: none of the methods counts light samples", key.name);
     }
-    if (std::ranges::any_of(entries, [&](const MethodEntry& entry) {
+    if (std::ranges::any_of(entries, [&](const session::MethodEntry& entry) {
           return has_option(entry, key.name) && !entry.options.contains(key.name);
         }))
       continue;
     std::vector<std::string> names = {kHalf, kAngle, kSamples};
-    for (const MethodEntry& entry : entries) {
-      for (const auto& option : describe_method(entry.name).options) {
+    for (const session::MethodEntry& entry : entries) {
+      for (const auto& option : session::describe_method(entry.name).options) {
         if (!entry.options.contains(option.name)) names.push_back(option.name);
       }
     }
@@ -247,9 +248,9 @@ std::vector<SweepSummary> summarize(std::span<const SweepRow> rows) {
 
 }  // namespace
 
-Sweep sweep_methods(const scenes::Scene& scene, const RunOptions& run, ComparisonOptions options,
-                    std::vector<SweptKey> over, Progress& progress) {
-  options.methods = with_method_options(options);
+Sweep sweep_methods(const scenes::Scene& scene, const session::RunOptions& run, session::ComparisonOptions options,
+                    std::vector<SweptKey> over, session::Progress& progress) {
+  options.methods = session::with_method_options(options);
   options.method_options.clear();
   require_known_keys(over, options.methods, scene, run.lights);
   Sweep sweep{std::move(over), {}, {}, {}};
@@ -257,32 +258,35 @@ Sweep sweep_methods(const scenes::Scene& scene, const RunOptions& run, Compariso
   const auto samples = keys_where(sweep.over, [](const SweptKey& key) { return key.name == kSamples; });
   const auto of_methods =
       keys_where(sweep.over, [](const SweptKey& key) { return !is_of_light(key) && key.name != kSamples; });
-  const std::vector<MethodEntry> entries = with_swept_options(options.methods, of_methods);
+  const std::vector<session::MethodEntry> entries = with_swept_options(options.methods, of_methods);
   options.writes = false;
   // Throws for invalid values before any long work.
-  for (const MethodEntry& entry : entries) static_cast<void>(describe_method(entry.name, entry.options));
-  std::vector<RunOptions> counts;
+  for (const session::MethodEntry& entry : entries)
+    static_cast<void>(session::describe_method(entry.name, entry.options));
+  std::vector<session::RunOptions> counts;
   for (const Values& count : products(samples)) {
     counts.push_back(run);
     if (!count.empty()) counts.back().light_samples = count.begin()->second;
-    static_cast<void>(parse_light_samples(counts.back()));
+    static_cast<void>(session::parse_light_samples(counts.back()));
   }
   const std::vector<Values> sizes = products(of_light);
-  for (const Values& light : sizes) static_cast<void>(with_lights(without_meshes(scene), light, run.lights));
+  for (const Values& light : sizes) static_cast<void>(with_lights(session::without_meshes(scene), light, run.lights));
 
   if (!of_light.empty()) report_fixed_lights(scene, of_light, run.lights, progress);
   SayOnce said(progress);
   for (const Values& light : sizes) {
     const scenes::Scene lit = with_lights(scene, light, run.lights);
     const std::size_t first_row = sweep.rows.size();
-    for (const RunOptions& with : counts) {
+    for (const session::RunOptions& with : counts) {
       options.methods.clear();
-      std::ranges::copy_if(entries, std::back_inserter(options.methods),
-                           [&](const MethodEntry& entry) { return &with == &counts.front() || counts_samples(entry); });
-      compare::Metrics metrics = compare_methods(lit, with, options, said);
+      std::ranges::copy_if(entries, std::back_inserter(options.methods), [&](const session::MethodEntry& entry) {
+        return &with == &counts.front() || counts_samples(entry);
+      });
+      compare::Metrics metrics = session::compare_methods(lit, with, options, said);
       if (sweep.reference.method.empty()) sweep.reference = metrics.reference;
       for (compare::MethodResult& result : metrics.methods) {
-        if (!samples.empty() && describe_method(result.stats.method, result.stats.options).counts_light_samples())
+        if (!samples.empty() &&
+            session::describe_method(result.stats.method, result.stats.options).counts_light_samples())
           result.entry += fmt::format(":{}={}", kSamples, with.light_samples);
         sweep.rows.push_back({light, std::move(result)});
       }

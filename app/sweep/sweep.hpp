@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "app/compare/comparison.hpp"
-#include "app/options.hpp"
-#include "app/process/progress.hpp"
 #include "app/sweep/ranges.hpp"
 #include "scenes/scene.hpp"
+#include "session/comparison/comparison.hpp"
+#include "session/options.hpp"
+#include "session/process/progress.hpp"
 
 #include <map>
 #include <optional>
@@ -46,7 +46,7 @@ struct Sweep {
 /// lights (light.half: the larger half of a light's extent in the scene's unit; light.angle: a sun's diameter in
 /// degrees), and for each number of light-samples if the method uses light samples. Throws UsageError for a key without
 /// effect, and as compare_methods().
-Sweep sweep_methods(const scenes::Scene& scene, const RunOptions& run, ComparisonOptions options,
-                    std::vector<SweptKey> over, Progress& progress);
+Sweep sweep_methods(const scenes::Scene& scene, const session::RunOptions& run, session::ComparisonOptions options,
+                    std::vector<SweptKey> over, session::Progress& progress);
 
 }  // namespace penumbra::app

@@ -4,9 +4,9 @@
 #include "app/sweep/sweep_files.hpp"
 
 #include "base/csv.hpp"
-#include "app/methods.hpp"
 #include "compare/error_plot.hpp"
 #include "compare/report_text.hpp"
+#include "session/methods.hpp"
 
 #include <fmt/format.h>
 
@@ -68,7 +68,7 @@ std::string drawing(std::span<const SweepRow> rows) {
     marks[row.result.stats.method].push_back(plot.marks.size());
     plot.marks.push_back({{},
                           fmt::format("{}: RMSE {:.3g}, {:.3g} s", row.result.entry, error->rmse, *seconds),
-                          visibility::name_of(describe_method(row.result.stats.method).family),
+                          visibility::name_of(session::describe_method(row.result.stats.method).family),
                           *seconds,
                           error->rmse});
   }

@@ -2,16 +2,17 @@
 // Command `view`: serves a scene to a browser.
 
 #include "app/commands.hpp"
-#include "app/options.hpp"
 #include "app/process/process.hpp"
 #include "app/process/terminal_progress.hpp"
 #include "app/reading_options.hpp"
-#include "app/session.hpp"
+#include "app/run_options.hpp"
 #include "app/view/file_watch.hpp"
 #include "app/view/live_view.hpp"
 #include "base/child.hpp"
 #include "base/descriptor.hpp"
 #include "base/error.hpp"
+#include "session/options.hpp"
+#include "session/session.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -91,11 +92,11 @@ class ViewCommand : public Command {
   }
 
   int run(const GlobalOptions& global) override {
-    if (!run_.size.empty()) static_cast<void>(parse_size(run_.size));
+    if (!run_.size.empty()) static_cast<void>(session::parse_size(run_.size));
     TerminalProgress progress(!global.quiet);
     progress.begin("reading " + run_.scene.filename().string(), 1);
     FileWatch files({run_.scene});  // set before reading: the scene is read again after changes during reading
-    WholeScene whole = read_whole_scene(run_, parse_instances(instances_, {}));
+    WholeScene whole = read_whole_scene(run_, session::parse_instances(instances_, {}));
     progress.clear();
     for (const std::string& warning : whole.scene.warnings) spdlog::warn("{}", warning);
     LiveView view(run_, std::move(whole), {host_, static_cast<std::uint16_t>(port_)});
@@ -129,7 +130,7 @@ class ViewCommand : public Command {
     return std::optional<Child>(std::in_place, start.pid);
   }
 
-  RunOptions run_;
+  session::RunOptions run_;
   std::string host_ = network::ServerPlace().host;
   int port_ = 0;
   std::uint32_t samples_ = 0;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "app/pictures/frame_render.hpp"
 #include "app/view/live_state.hpp"
 #include "app/view/whole_scene.hpp"
+#include "session/pictures/frame_render.hpp"
 #include "visibility/view_samples.hpp"
 
 #include <glm/vec2.hpp>
@@ -21,7 +21,7 @@ namespace penumbra::app {
 struct LiveAnswer {
   std::string method;               ///< with its options, in the page's form
   std::uint32_t light_samples = 0;  ///< 0: areas, or a method without light samples
-  RenderedFrame frame;
+  session::RenderedFrame frame;
   nlohmann::ordered_json seconds;  ///< as in stats.json
   double milliseconds = 0;         ///< of the shadow: phases light and evaluate
 };

@@ -3,14 +3,14 @@
 
 #include "app/view/live_renderer.hpp"
 
-#include "app/machine.hpp"
-#include "app/process/interrupt.hpp"
 #include "app/view/light_outline.hpp"
 #include "app/view/live_steps.hpp"
 #include "base/error.hpp"
 #include "base/scratch_folder.hpp"
 #include "scenes/formats/writer.hpp"
 #include "scenes/light_texture.hpp"
+#include "session/machine.hpp"
+#include "session/process/interrupt.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -29,7 +29,7 @@ using nlohmann::ordered_json;
 /// Returns what `write` writes to a file of this name.
 template <typename Write>
 std::string written(const std::string& name, Write write) {
-  const UnwindsAfterSignals unwinds;
+  const session::UnwindsAfterSignals unwinds;
   const ScratchFolder folder(std::filesystem::temp_directory_path());
   const std::filesystem::path file = folder.path() / name;
   write(file);
@@ -48,16 +48,16 @@ std::string plain_name(std::string name) {
 
 }  // namespace
 
-LiveRenderer::LiveRenderer(RunOptions options, WholeScene whole, LiveEvents events)
+LiveRenderer::LiveRenderer(session::RunOptions options, WholeScene whole, LiveEvents events)
     : options_(std::move(options)),
       events_(std::move(events)),
-      machine_(make_machine(options_.device)),
-      state_(live_state(without_meshes(whole.scene), options_.camera)),
+      machine_(session::make_machine(options_.device)),
+      state_(live_state(session::without_meshes(whole.scene), options_.camera)),
       run_(options_),
       steps_(std::make_unique<Steps>(*this)) {
-  file_ = std::make_shared<const scenes::Scene>(without_meshes(whole.scene));
+  file_ = std::make_shared<const scenes::Scene>(session::without_meshes(whole.scene));
   whole_ = std::make_shared<const WholeScene>(std::move(whole));
-  if (!options_.size.empty()) std::tie(state_.width, state_.height) = parse_size(options_.size);
+  if (!options_.size.empty()) std::tie(state_.width, state_.height) = session::parse_size(options_.size);
   thread_ = std::thread([this] { work(); });
 }
 
@@ -89,7 +89,7 @@ void LiveRenderer::update(LiveUpdate update, std::uint64_t client) {
   const std::lock_guard lock(mutex_);
   LiveState state = state_;
   if (update.scene) {
-    state.scene = without_meshes(update.scene->scene);
+    state.scene = session::without_meshes(update.scene->scene);
     const auto& lights = state.scene.lights;
     if (std::ranges::find(lights, state.display.light, &scenes::AreaLight::name) == lights.end())
       state.display.light = lights.front().name;

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "app/light_methods.hpp"
-#include "app/options.hpp"
-#include "app/pictures/frame_render.hpp"
 #include "app/view/live_pace.hpp"
 #include "app/view/live_picture.hpp"
 #include "app/view/live_state.hpp"
 #include "app/view/whole_scene.hpp"
 #include "render/machine.hpp"
+#include "session/light_methods.hpp"
+#include "session/options.hpp"
+#include "session/pictures/frame_render.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -64,7 +64,7 @@ struct LiveScenery {
 class LiveRenderer {
  public:
   /// `whole`: read with `options`.
-  LiveRenderer(RunOptions options, WholeScene whole, LiveEvents events);
+  LiveRenderer(session::RunOptions options, WholeScene whole, LiveEvents events);
   LiveRenderer(const LiveRenderer&) = delete;
   LiveRenderer& operator=(const LiveRenderer&) = delete;
   ~LiveRenderer();
@@ -122,7 +122,7 @@ class LiveRenderer {
   /// Returns whether a change has made the current picture obsolete.
   [[nodiscard]] bool is_overtaken(std::uint64_t revision) const;
   LiveAnswer answer(const Order& order, const std::string& entry, scenes::Scene& scene);
-  MethodWish wish_for(const Order& order, const std::string& entry);
+  session::MethodWish wish_for(const Order& order, const std::string& entry);
   [[nodiscard]] scenes::Scene scene_of(const Order& order) const;
   /// `scene`: scene_of(order), perhaps with other lights.
   void render(const Order& order, scenes::Scene scene, bool keeps_masks);
@@ -130,7 +130,7 @@ class LiveRenderer {
   void show();
   void failed(std::uint64_t revision, const std::string& message);
 
-  RunOptions options_;
+  session::RunOptions options_;
   LiveEvents events_;
   render::Machine machine_;
 
@@ -152,11 +152,11 @@ class LiveRenderer {
   std::exception_ptr thrown_;
 
   // Used only by the thread:
-  RunOptions run_;
-  MethodWish wish_;
+  session::RunOptions run_;
+  session::MethodWish wish_;
   std::unique_ptr<Steps> steps_;
-  std::unique_ptr<FrameRenderer> frames_;       // refers to run_, wish_ and steps_
-  std::shared_ptr<const WholeScene> rendered_;  // scene whose meshes frames_ has
+  std::unique_ptr<session::FrameRenderer> frames_;  // refers to run_, wish_ and steps_
+  std::shared_ptr<const WholeScene> rendered_;      // scene whose meshes frames_ has
   LivePace pace_;
   SlowMethods slow_;  // of slow_of_
   std::shared_ptr<const WholeScene> slow_of_;

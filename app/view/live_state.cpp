@@ -3,12 +3,12 @@
 
 #include "app/view/live_state.hpp"
 
-#include "app/methods.hpp"
-#include "app/options.hpp"
 #include "app/view/light_json.hpp"
 #include "base/did_you_mean.hpp"
 #include "base/error.hpp"
 #include "scenes/picture_size.hpp"
+#include "session/methods.hpp"
+#include "session/options.hpp"
 
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
@@ -81,8 +81,8 @@ LiveChange change_camera(LiveState& state, const json& message) {
 LiveChange change_method(LiveState& state, const json& message) {
   const auto entry = message.at("entry").get<std::string>();
   const bool is_other = message.at("slot").get<std::string>() == "b";
-  if (const NamedMethod method = parse_method(entry); !method.name.empty())
-    static_cast<void>(describe_method(method.name, method.options));
+  if (const session::NamedMethod method = session::parse_method(entry); !method.name.empty())
+    static_cast<void>(session::describe_method(method.name, method.options));
   if (!is_other)
     state.method = entry;
   else if (message.value("none", false))
@@ -103,9 +103,9 @@ LiveChange change_size(LiveState& state, const json& message) {
 
 LiveChange change_samples(LiveState& state, const json& message) {
   const auto count = message.at("count").get<std::uint32_t>();
-  RunOptions run;
+  session::RunOptions run;
   if (count != 0) run.light_samples = fmt::format("{}", count);
-  static_cast<void>(parse_light_samples(run));
+  static_cast<void>(session::parse_light_samples(run));
   state.light_samples = count;
   return LiveChange::picture;
 }

@@ -18,7 +18,7 @@ class LiveRenderer::GivenUp : public Error {
 };
 
 /// Passes messages on, each once, and stops final pictures that are obsolete.
-class LiveRenderer::Steps final : public Progress {
+class LiveRenderer::Steps final : public session::Progress {
  public:
   explicit Steps(const LiveRenderer& renderer) : renderer_(renderer) {}
 
@@ -27,7 +27,7 @@ class LiveRenderer::Steps final : public Progress {
 
   /// The search for view samples is always completed: a part of them could not be kept.
   void begin(std::string stage, std::uint64_t) override { can_stop_ = stage != "view samples" && stage != "receivers"; }
-  using Progress::advance;
+  using session::Progress::advance;
   void advance(std::uint64_t) override {
     if (can_stop_ && revision_ != 0 && renderer_.is_overtaken(revision_)) throw GivenUp();
   }

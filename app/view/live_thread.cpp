@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // Thread of LiveRenderer.
-#include "app/machine.hpp"
-#include "app/methods.hpp"
-#include "app/output.hpp"
-#include "app/process/interrupt.hpp"
-#include "app/process/stopwatch.hpp"
 #include "app/view/live_renderer.hpp"
 #include "app/view/live_steps.hpp"
-#include "app/whole_lights.hpp"
 #include "mesh/edge_graph.hpp"
 #include "render/device.hpp"
 #include "scenes/picture_size.hpp"
+#include "session/machine.hpp"
+#include "session/methods.hpp"
+#include "session/output.hpp"
+#include "session/process/interrupt.hpp"
+#include "session/process/stopwatch.hpp"
+#include "session/whole_lights.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -122,13 +122,13 @@ void LiveRenderer::failed(std::uint64_t revision, const std::string& message) {
 
 void LiveRenderer::read_again() {
   try {
-    InstanceUse use = InstanceUse::automatic;
+    session::InstanceUse use = session::InstanceUse::automatic;
     {
       const std::lock_guard lock(mutex_);
       use = whole_->use;
     }
     WholeScene read = read_whole_scene(options_, use);
-    auto file = std::make_shared<const scenes::Scene>(without_meshes(read.scene));
+    auto file = std::make_shared<const scenes::Scene>(session::without_meshes(read.scene));
     std::shared_ptr<const WholeScene> whole;
     {
       const std::lock_guard lock(mutex_);
@@ -137,7 +137,7 @@ void LiveRenderer::read_again() {
     const bool same = whole->instances.empty() && read.instances.empty() && same_meshes(whole->scene, read.scene);
     {
       const std::lock_guard lock(mutex_);
-      state_ = reloaded(state_, *file_, without_meshes(read.scene));
+      state_ = reloaded(state_, *file_, session::without_meshes(read.scene));
       file_ = std::move(file);
       if (!same || whole != whole_) {
         whole_ = std::make_shared<const WholeScene>(std::move(read));
@@ -146,7 +146,7 @@ void LiveRenderer::read_again() {
       ++revision_;
     }
     events_.reloaded();
-  } catch (const Interrupted&) {
+  } catch (const session::Interrupted&) {
     throw;
   } catch (const Error& error) {
     events_.say("error", error.what());  // the previous picture stays
@@ -164,39 +164,40 @@ scenes::Scene LiveRenderer::scene_of(const Order& order) const {
 
 void LiveRenderer::render(const Order& order, scenes::Scene scene, bool keeps_masks) {
   if (!frames_) {
-    frames_ = std::make_unique<FrameRenderer>(run_, wish_, machine_, *steps_);
+    frames_ = std::make_unique<session::FrameRenderer>(run_, wish_, machine_, *steps_);
     frames_->expect_frames();
   }
   const scenes::Instances& instances = order.whole->instances;
   const bool same_meshes = scene.soup.triangles.empty() && instances.empty();
   if (!instances.empty()) {
-    scenes::Scene lit = without_meshes(scene);
+    scenes::Scene lit = session::without_meshes(scene);
     std::erase_if(lit.lights,
                   [&](const auto& light) { return std::ranges::find(run_.lights, light.name) == run_.lights.end(); });
     require_no_copies(lit, instances, wish_);
   }
-  const Frame frame{.number = {},
-                    .camera = scene.cameras.front().name,
-                    .instances = &instances,
-                    .same_meshes = same_meshes,
-                    .keeps_masks = keeps_masks,
-                    .band_rows = kBand};
+  const session::Frame frame{.number = {},
+                             .camera = scene.cameras.front().name,
+                             .instances = &instances,
+                             .same_meshes = same_meshes,
+                             .keeps_masks = keeps_masks,
+                             .band_rows = kBand};
   if (!same_meshes) rendered_ = order.whole;
   frames_->render(std::move(scene), frame, {}, 0);
 }
 
 /// Quick pictures of areas, and of methods that are too slow for them, use light samples of the default method for
 /// light samples.
-MethodWish LiveRenderer::wish_for(const Order& order, const std::string& entry) {
-  NamedMethod method = parse_method(entry);
+session::MethodWish LiveRenderer::wish_for(const Order& order, const std::string& entry) {
+  session::NamedMethod method = session::parse_method(entry);
   const std::uint32_t asked = order.state.light_samples;
-  MethodWish wish{std::move(method.name), std::move(method.options), asked != 0};
+  session::MethodWish wish{std::move(method.name), std::move(method.options), asked != 0};
   std::uint32_t samples = asked;
   if (!order.is_final) {
     samples = std::min(order.quality.light_samples, asked != 0 ? asked : kMaskSamples);
-    if (wish.method.empty() || slow_.contains(entry) || describe_method(wish.method, wish.options).gives_area()) {
+    if (wish.method.empty() || slow_.contains(entry) ||
+        session::describe_method(wish.method, wish.options).gives_area()) {
       wish = {{}, {}, true};
-    } else if (describe_method(wish.method, wish.options).counts_light_samples()) {
+    } else if (session::describe_method(wish.method, wish.options).counts_light_samples()) {
       wish.samples = true;
     } else {
       samples = 0;
@@ -207,7 +208,7 @@ MethodWish LiveRenderer::wish_for(const Order& order, const std::string& entry) 
 }
 
 LiveAnswer LiveRenderer::answer(const Order& order, const std::string& entry, scenes::Scene& scene) {
-  const Stopwatch watch;
+  const session::Stopwatch watch;
   wish_ = wish_for(order, entry);
   render(order, std::move(scene), false);
   if (order.is_final)
@@ -226,7 +227,7 @@ LiveAnswer LiveRenderer::answer(const Order& order, const std::string& entry, sc
 }
 
 void LiveRenderer::make_picture(const Order& order) {
-  const Stopwatch watch;
+  const session::Stopwatch watch;
   const LiveState& state = order.state;
   if (std::exchange(slow_of_, order.whole) != order.whole) slow_.clear();
   try {
@@ -249,18 +250,18 @@ void LiveRenderer::make_picture(const Order& order) {
       if (lights_on(state).empty()) scene.lights.front().radiance = glm::dvec3(0);
       picture->answers.push_back(answer(order, *state.other, scene));
     }
-    const Session& session = frames_->session();
+    const session::Session& session = frames_->session();
     picture->revision = order.revision;
     picture->is_final = order.is_final;
     picture->full_width = width;
     picture->full_height = height;
-    picture->lights = whole_names(session.lights);
+    picture->lights = session::whole_names(session.lights);
     picture->samples = session.samples;
     picture->origin = session.floats.origin;
     for (std::int32_t& triangle : picture->samples.triangle) triangle = session.number_of(triangle);
     picture->triangles = session.triangle_count();
     if (order.is_final || !has_stops_) {
-      automatic_stops_ = std::log2(auto_exposure(session, picture->answers.front().frame.sum));
+      automatic_stops_ = std::log2(session::auto_exposure(session, picture->answers.front().frame.sum));
       has_stops_ = true;
     }
     picture->automatic_stops = automatic_stops_;
@@ -273,11 +274,11 @@ void LiveRenderer::make_picture(const Order& order) {
       pace_.took(1000 * watch.seconds());
   } catch (const GivenUp&) {
     final_milliseconds_ = std::max(final_milliseconds_, 1000 * watch.seconds());
-  } catch (const Interrupted&) {
+  } catch (const session::Interrupted&) {
     throw;
   } catch (const render::DeviceDoesNotAnswer& error) {
     static_cast<void>(frames_.release());  // objects of a device at work must not be destroyed
-    machine_ = make_machine(options_.device);
+    machine_ = session::make_machine(options_.device);
     failed(order.revision, error.what());
   } catch (const Error& error) {
     frames_.reset();  // its data may belong partly to one scene and partly to another
@@ -299,7 +300,7 @@ void LiveRenderer::make_masks(const Order& order) {
     wish_ = {{}, {}, true};
     steps_->set_revision(order.revision);
     render(order, scene_of(order), true);
-    const Session& session = frames_->session();
+    const session::Session& session = frames_->session();
     auto made = std::make_shared<LiveMasks>();
     made->revision = order.revision;
     made->light = state.display.light;
@@ -307,12 +308,12 @@ void LiveRenderer::make_masks(const Order& order) {
     made->shape = visibility::name_of(light.kind);
     made->places = light.coordinates;
     made->words = light.words_per_mask();
-    RenderedFrame frame = frames_->take();
+    session::RenderedFrame frame = frames_->take();
     if (session.lights.size() == 1 && !frame.masks.empty()) made->masks = std::move(frame.masks.front());
     const std::lock_guard lock(mutex_);
     masks_ = std::move(made);
   } catch (const GivenUp&) {
-  } catch (const Interrupted&) {
+  } catch (const session::Interrupted&) {
     throw;
   } catch (const Error& error) {
     frames_.reset();

@@ -3,12 +3,12 @@
 
 #include "app/view/live_view.hpp"
 
-#include "app/method_list.hpp"
 #include "app/view/message_text.hpp"
 #include "app/view/page.hpp"
 #include "base/error.hpp"
 #include "compare/error_picture.hpp"
 #include "network/requests.hpp"
+#include "session/method_list.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -44,8 +44,8 @@ std::string view_page() {
       kViewStyle, kViewMarkup, kViewScript);
 }
 
-LiveView::LiveView(RunOptions options, WholeScene whole, network::ServerPlace place)
-    : methods_(message_text(methods_json()["methods"])), error_scale_(message_text(error_scale())) {
+LiveView::LiveView(session::RunOptions options, WholeScene whole, network::ServerPlace place)
+    : methods_(message_text(session::methods_json()["methods"])), error_scale_(message_text(error_scale())) {
   network::ServerOptions serving;
   serving.place = std::move(place);
   serving.token = network::make_token();

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "app/options.hpp"
 #include "app/view/live_renderer.hpp"
 #include "app/view/space_view.hpp"
 #include "network/page_server.hpp"
 #include "scenes/scene.hpp"
+#include "session/options.hpp"
 
 #include <memory>
 #include <mutex>
@@ -17,7 +17,7 @@ namespace penumbra::app {
 /// Scene in a browser: the page's server, and the renderer of its pictures. All open pages show, and change, one state.
 class LiveView final : public network::PageHandler {
  public:
-  LiveView(RunOptions options, WholeScene whole, network::ServerPlace place);
+  LiveView(session::RunOptions options, WholeScene whole, network::ServerPlace place);
 
   LiveView(const LiveView&) = delete;
   LiveView& operator=(const LiveView&) = delete;

@@ -3,10 +3,10 @@
 
 #include "app/view/space_meshes.hpp"
 
-#include "app/inspect/examine.hpp"
 #include "app/inspect/export.hpp"
 #include "app/view/space_message.hpp"
 #include "mesh/diagnosis/diagnosis.hpp"
+#include "session/inspect/examine.hpp"
 
 #include <glm/common.hpp>
 #include <nlohmann/json.hpp>
@@ -140,11 +140,11 @@ std::string meshes_message(const scenes::Scene& scene, const visibility::SceneFl
 std::string defects_message(const scenes::Scene& scene, const glm::dvec3& origin) {
   ShownDefects shown;
   std::map<std::string_view, DefectKind> kinds;
-  ObjectParts parts(scene.soup, scene.objects.size());
+  session::ObjectParts parts(scene.soup, scene.objects.size());
   for (std::size_t object = 0; object < scene.objects.size(); ++object) {
     const mesh::TriangleSoup part = parts.soup_of(object);
     if (part.triangles.empty()) continue;
-    ObjectReport report;
+    session::ObjectReport report;
     report.diagnosis = mesh::diagnose({part.positions, part.triangles},
                                       {.search_intersections = false, .list_limit = kMostShownDefects});
     shown.add(mark_defects(part, report), origin);

@@ -104,7 +104,7 @@ void add_silhouettes(SpaceMessage& message, ordered_json& header, const volumes:
 }
 
 /// Adds the bodies of the wedges that are asked for, and what the floor cuts out of them.
-void add_bodies(SpaceMessage& message, ordered_json& header, const LightWedges& made, const volumes::Box& box,
+void add_bodies(SpaceMessage& message, ordered_json& header, const session::LightWedges& made, const volumes::Box& box,
                 const SpaceShadows& request, double floor) {
   std::vector<std::uint32_t> numbers;
   std::size_t with_body = 0;
@@ -142,7 +142,7 @@ void add_bodies(SpaceMessage& message, ordered_json& header, const LightWedges& 
   header["leftOut"] = request.wedge ? 0 : with_body - bodies.size();
 }
 
-void add_wedges(SpaceMessage& message, ordered_json& header, const LightWedges& made) {
+void add_wedges(SpaceMessage& message, ordered_json& header, const session::LightWedges& made) {
   Points edges;
   std::vector<std::uint32_t> sources, outcomes;
   std::map<std::string, std::size_t> counts;
@@ -232,7 +232,7 @@ std::string shadows_message(const volumes::Casters& casters, const visibility::L
                             const SpaceShadows& request) {
   ordered_json header = {{"light", light.name}};
   SpaceMessage message;
-  const LightWedges made = wedges_of(casters, light, request.wedges);
+  const session::LightWedges made = session::wedges_of(casters, light, request.wedges);
   const volumes::Box box = volumes::bounds_of(casters);
   const double floor = request.floor ? *request.floor - origin.y : box.lower.y;
   const glm::dvec3 point = light_point(light, request.place), shown = origin + point;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "app/wedges/built_wedges.hpp"
+#include "session/wedges/built_wedges.hpp"
 #include "visibility/light_samples.hpp"
 #include "volumes/wedges/wedge_casters.hpp"
 
@@ -24,7 +24,7 @@ inline constexpr std::size_t kMostNamedWedges = 1'000;
 
 /// Request of the 3D view: which of a light's shadows to show.
 struct SpaceShadows {
-  WedgeRequest wedges = {};                 ///< light, construction and from
+  session::WedgeRequest wedges = {};        ///< light, construction and from
   glm::dvec2 place{0};                      ///< point of the light, from which silhouettes are: light_point()
   std::optional<double> floor = {};         ///< height of the plane that bodies are cut by; nullopt: the lowest point
   std::optional<std::uint32_t> wedge = {};  ///< only this wedge's body; nullopt: all

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/view/space_view.hpp"
 
-#include "app/parse.hpp"
 #include "app/view/space_meshes.hpp"
 #include "app/view/space_message.hpp"
 #include "base/error.hpp"
 #include "network/requests.hpp"
+#include "session/parse.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -19,7 +19,7 @@ namespace {
 std::optional<double> number_in(std::string_view target, std::string_view name) {
   const std::optional<std::string> text = network::parameter_of(target, name);
   if (!text) return std::nullopt;
-  const std::optional<double> number = parse_number(*text);
+  const std::optional<double> number = session::parse_number(*text);
   if (!number) throw UsageError("{}={}: expected a number", name, *text);
   return number;
 }
@@ -27,7 +27,7 @@ std::optional<double> number_in(std::string_view target, std::string_view name) 
 std::optional<std::uint32_t> index_in(std::string_view target, std::string_view name) {
   const std::optional<std::string> text = network::parameter_of(target, name);
   if (!text) return std::nullopt;
-  const auto number = parse_integer<std::uint32_t>(*text);
+  const auto number = session::parse_integer<std::uint32_t>(*text);
   if (!number) throw UsageError("{}={}: expected a number from 0", name, *text);
   return number;
 }
@@ -112,7 +112,7 @@ std::string SpaceView::shadows(std::string_view target) {
   visibility::Light light;
   try {
     light = visibility::make_light(scenery.lights, static_cast<std::uint32_t>(found - lights.begin()), origin, {});
-    require_wedges(light);
+    session::require_wedges(light);
   } catch (const InputError& error) {
     return SpaceMessage().finish({{"light", found->name}, {"refused", error.what()}});
   }

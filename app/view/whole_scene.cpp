@@ -3,23 +3,25 @@
 
 #include "app/view/whole_scene.hpp"
 
-#include "app/pictures/request.hpp"
-#include "app/session.hpp"
 #include "base/error.hpp"
+#include "session/pictures/request.hpp"
+#include "session/session.hpp"
 
 #include <fmt/format.h>
 
 namespace penumbra::app {
 
-WholeScene read_whole_scene(const RunOptions& options, InstanceUse use) {
+WholeScene read_whole_scene(const session::RunOptions& options, session::InstanceUse use) {
   WholeScene read;
   read.use = use;
-  read.scene = read_session_scene(options, {}, {.instances = &read.instances});
+  read.scene = session::read_session_scene(options, {}, {.instances = &read.instances});
   if (read.instances.empty()) return read;
   const std::uint64_t triangles = scenes::triangle_count(read.scene, read.instances);
-  const auto copy = [&] { return scenes::copied(read.scene, read.instances, bytes_per_copy({}, read.scene.lights)); };
-  if (use == InstanceUse::copies) return {copy(), {}, use};
-  if (use == InstanceUse::automatic && triangles <= kMostCopies) {
+  const auto copy = [&] {
+    return scenes::copied(read.scene, read.instances, session::bytes_per_copy({}, read.scene.lights));
+  };
+  if (use == session::InstanceUse::copies) return {copy(), {}, use};
+  if (use == session::InstanceUse::automatic && triangles <= kMostCopies) {
     try {
       return {copy(), {}, use};
     } catch (const ResourceError&) {  // NOLINT(bugprone-empty-catch): without copies, then
@@ -32,12 +34,13 @@ WholeScene read_whole_scene(const RunOptions& options, InstanceUse use) {
   return read;
 }
 
-void require_no_copies(const scenes::Scene& scene, const scenes::Instances& instances, const MethodWish& wish) {
+void require_no_copies(const scenes::Scene& scene, const scenes::Instances& instances,
+                       const session::MethodWish& wish) {
   if (instances.empty()) return;
   // Throws for methods that look at more than what lies between view samples and lights.
-  static_cast<void>(needs_copies(scene, instances, parse_instances("shared", wish), wish, 1));
+  static_cast<void>(session::needs_copies(scene, instances, session::parse_instances("shared", wish), wish, 1));
   const std::uint64_t triangles = scenes::triangle_count(scene, instances);
-  if (triangles <= kMostCopies || counts_dome_samples(wish, scene.lights)) return;
+  if (triangles <= kMostCopies || session::counts_dome_samples(wish, scene.lights)) return;
   throw UsageError(
       "exact areas of a dome need all {} triangles of this scene; choose a number of light samples, or --instances "
       "copies",

@@ -2,15 +2,16 @@
 // Command `wedges`: options and output.
 
 #include "app/commands.hpp"
-#include "app/options.hpp"
-#include "app/process/output_files.hpp"
 #include "app/reading_options.hpp"
-#include "app/wedges/built_wedges.hpp"
+#include "app/run_options.hpp"
 #include "base/atomic_file.hpp"
 #include "base/did_you_mean.hpp"
 #include "base/error.hpp"
 #include "scenes/formats/reader.hpp"
 #include "scenes/picture_size.hpp"
+#include "session/options.hpp"
+#include "session/process/output_files.hpp"
+#include "session/wedges/built_wedges.hpp"
 #include "volumes/wedges/wedge_export.hpp"
 
 #include <CLI/CLI.hpp>
@@ -46,7 +47,7 @@ std::uint32_t find_named(const std::vector<Named>& all, const char* option, cons
 void look_through(scenes::Scene& scene, const std::string& camera, const std::string& size) {
   std::swap(scene.cameras.front(), scene.cameras[find_named(scene.cameras, "--camera", camera, scene)]);
   std::tie(scene.width, scene.height) =
-      size.empty() ? scenes::picture_size(scene, scene.cameras.front()) : parse_size(size);
+      size.empty() ? scenes::picture_size(scene, scene.cameras.front()) : session::parse_size(size);
 }
 
 class WedgesCommand : public Command {
@@ -85,37 +86,39 @@ class WedgesCommand : public Command {
   }
 
   int run(const GlobalOptions&) override {
-    OutputFiles outputs = named_outputs();
+    session::OutputFiles outputs = named_outputs();
     outputs.refuse_inputs({&scene_, 1});
     outputs.require_writable();
     scenes::Scene scene = scenes::read_scene(
-        scene_, {.allow_outside = allow_outside_, .lenient = lenient_, .studio = parse_studio(studio_, camera_)});
+        scene_,
+        {.allow_outside = allow_outside_, .lenient = lenient_, .studio = session::parse_studio(studio_, camera_)});
     outputs.refuse_inputs(scene.sources);
     for (const std::string& warning : scene.warnings) spdlog::warn("{}", warning);
     look_through(scene, camera_, size_);
-    const BuiltWedges built(scene, {light_, construction_, from_, validate_});
+    const session::BuiltWedges built(scene, {light_, construction_, from_, validate_});
     for (const std::string& warning : built.warnings) spdlog::warn("{}", warning);
-    WedgesResult result = built.result();
-    std::optional<Explanation> explanation;
+    session::WedgesResult result = built.result();
+    std::optional<session::Explanation> explanation;
     if (!explain_.empty()) {
-      const auto [x, y] = parse_pixel(explain_, scene);
-      explanation = explain({scene, built.floats, built.light, built.casters, built.casting, built.wedges}, x, y);
+      const auto [x, y] = session::parse_pixel(explain_, scene);
+      explanation =
+          session::explain({scene, built.floats, built.light, built.casters, built.casting, built.wedges}, x, y);
       result.explanation = &*explanation;
       if (!explanation->picture.empty()) result.svg = svg_;
     }
     if (!result.svg.empty()) write_file_atomically(result.svg, std::string_view(explanation->picture));
-    if (!json_.empty()) write_file_atomically(json_, std::string_view(wedges_json(result)));
+    if (!json_.empty()) write_file_atomically(json_, std::string_view(session::wedges_json(result)));
     if (!export_.empty()) {
       volumes::export_wedges(export_, {built.wedges, built.hull, volumes::bounds_of(built.casters), built.floats.origin,
                                        built.report ? std::span<const volumes::Violation>(built.report->violations)
                                                     : std::span<const volumes::Violation>()});
     }
-    print_wedges(result);
+    session::print_wedges(result);
     return static_cast<int>(built.holds() ? ExitCode::done : ExitCode::answer_is_no);
   }
 
  private:
-  [[nodiscard]] OutputFiles named_outputs() const {
+  [[nodiscard]] session::OutputFiles named_outputs() const {
     constexpr std::array kExtensions = {".glb", ".obj", ".ply"};
     if (!export_.empty() && std::ranges::find(kExtensions, export_.extension()) == kExtensions.end()) {
       throw UsageError("--export {}: expected a name that ends in .glb, .obj or .ply", export_.string());
@@ -123,7 +126,7 @@ class WedgesCommand : public Command {
     if (!svg_.empty() && svg_.extension() != ".svg") {
       throw UsageError("--svg {}: expected a name that ends in .svg", svg_.string());
     }
-    OutputFiles outputs;
+    session::OutputFiles outputs;
     outputs.add("--export", export_);
     outputs.add("--json", json_);
     outputs.add("--svg", svg_);
@@ -133,7 +136,7 @@ class WedgesCommand : public Command {
   std::filesystem::path scene_, export_, json_, svg_;
   std::string camera_, size_, light_, construction_ = "original", from_ = "centre", explain_;
   bool validate_ = false, allow_outside_ = false, lenient_ = false;
-  StudioOptions studio_;
+  session::StudioOptions studio_;
 };
 
 }  // namespace

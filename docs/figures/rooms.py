@@ -9,7 +9,7 @@ from drawing import FAINT, INK, Drawing
 
 ROOT = Path(__file__).parent.parent.parent
 SUFFIXES = {".hpp", ".cpp", ".h", ".comp", ".vert", ".frag", ".glsl"}
-FAMILY = {"app": "#f7e3b0", "bench": "#f7e3b0", "compare": "#f7e3b0", "volumes": "#d3e5f5", "vsm": "#d3e5f5",
+FAMILY = {"app": "#f7e3b0", "session": "#f7e3b0", "bench": "#f7e3b0", "compare": "#f7e3b0", "volumes": "#d3e5f5", "vsm": "#d3e5f5",
           "maps": "#d3e5f5", "reference": "#d8ecd8", "areas": "#d8ecd8", "engines": "#e6dcf0", "render": "#e6dcf0",
           "visibility": "#f5d9d4"}
 

@@ -2,10 +2,10 @@
 // Tests that each method does to a flawed mesh what `inspect` says it will, for every method of the table and every
 // defect of the generator. A verdict of "exact" allows no pair that the exact predicates decide otherwise.
 
-#include "app/methods.hpp"
-#include "app/pixel_samples.hpp"
-#include "mesh/shapes/broken_meshes.hpp"
 #include "areas/exact_area.hpp"
+#include "mesh/shapes/broken_meshes.hpp"
+#include "session/methods.hpp"
+#include "session/pixel_samples.hpp"
 #include "tests/agreement/differences.hpp"
 #include "volumes/wedges/layer_areas.hpp"
 #include "volumes/wedges/soft_visibility.hpp"
@@ -25,7 +25,7 @@ using visibility::Verdict;
 visibility::ViewSamples samples_of(const visibility::SceneFloats& floats, const visibility::PinholeCamera& camera) {
   std::vector<std::uint32_t> pixels(std::size_t{camera.width} * camera.height);
   std::iota(pixels.begin(), pixels.end(), 0U);
-  return app::samples_at(floats, camera, pixels);
+  return session::samples_at(floats, camera, pixels);
 }
 
 /// One defect on a floor, as methods see it.
@@ -132,12 +132,12 @@ class MeshVerdicts : public testing::Test {
 /// are approximate anyway.
 std::vector<std::unique_ptr<visibility::Method>> make_methods(const render::Machine& machine) {
   std::vector<std::unique_ptr<visibility::Method>> methods;
-  for (const visibility::MethodDescription* method : app::all_methods()) {
+  for (const visibility::MethodDescription* method : session::all_methods()) {
     if (!method->lights.contains(visibility::LightKind::rectangle)) continue;
     const bool is_map = method->family == visibility::Family::image;
     const visibility::MethodOptions options =
         is_map ? visibility::MethodOptions{{"size", "64"}} : visibility::MethodOptions{};
-    if (method->name != "raytrace") methods.push_back(app::make_method(method->name, options, machine));
+    if (method->name != "raytrace") methods.push_back(session::make_method(method->name, options, machine));
   }
   return methods;
 }
@@ -197,8 +197,8 @@ TEST_F(MeshVerdicts, AreWhatEachMethodDoesWithEachDefect) {
 /// The variants of depth-complexity: where `laine` is wrong, its verdict must have said so; `forest` errs on one side
 /// only.
 TEST_F(MeshVerdicts, NameWhereVariantsOfDepthComplexityFail) {
-  const auto laine = app::make_method("depth-complexity", {{"variant", "laine"}}, machine());
-  const auto forest = app::make_method("depth-complexity", {{"variant", "forest"}}, machine());
+  const auto laine = session::make_method("depth-complexity", {{"variant", "laine"}}, machine());
+  const auto forest = session::make_method("depth-complexity", {{"variant", "forest"}}, machine());
   std::size_t wrong = 0, bright = 0, promised = 0;
   for_each_defect([&](const std::string& defect, const FlawedStage& stage) {
     const Masks mapped = run(*laine, stage.floats, stage.light, stage.samples);

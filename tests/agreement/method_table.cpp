@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tests that methods do what the families' tables say of them.
-#include "app/methods.hpp"
+#include "session/methods.hpp"
 #include "tests/agreement/support.hpp"
 
 #include <set>
@@ -42,14 +42,15 @@ TEST_F(MethodTable, MakesWhatItDescribesAndKnowsWhichCountLightSamples) {
   const Stage ceiling_one = plate_over_floor(1, ceiling_light(3, 0.8)),
               ceiling_many = plate_over_floor(16, ceiling_light(3, 0.8)), sky_one = plate_over_floor(1, sky),
               sky_many = plate_over_floor(16, sky);
-  for (const visibility::MethodDescription* described : app::all_methods()) {
+  for (const visibility::MethodDescription* described : session::all_methods()) {
     visibility::MethodOptions options = small_maps(*described);
     const bool sky_alone = is_of_domes_alone(*described);
     if (sky_alone) options["radius"] = "0.2";
     const Stage &one = sky_alone ? sky_one : ceiling_one, &many = sky_alone ? sky_many : ceiling_many;
-    const auto method = app::make_method(described->name, options, device());
+    const auto method = session::make_method(described->name, options, device());
     EXPECT_EQ(method->description().name, described->name);
-    EXPECT_EQ(method->description().output, app::describe_method(described->name, options).output) << described->name;
+    EXPECT_EQ(method->description().output, session::describe_method(described->name, options).output)
+        << described->name;
     const std::vector<float> by_one = run(*method, one).visibility, by_many = run(*method, many).visibility;
     EXPECT_NE(*std::ranges::min_element(by_many), 1) << described->name << " sees no shadow";
     EXPECT_EQ(by_one != by_many, described->counts_light_samples()) << described->name;
@@ -59,20 +60,20 @@ TEST_F(MethodTable, MakesWhatItDescribesAndKnowsWhichCountLightSamples) {
 TEST_F(MethodTable, ListsEachMethodOnceTheDefaultFirst) {
   std::set<std::string> names;
   std::vector<visibility::Family> families;
-  for (const visibility::MethodDescription* method : app::all_methods()) {
+  for (const visibility::MethodDescription* method : session::all_methods()) {
     EXPECT_TRUE(names.insert(method->name).second) << method->name;
     if (families.empty() || families.back() != method->family) families.push_back(method->family);
   }
   using visibility::Family;
   EXPECT_EQ(families, (std::vector{Family::geometry, Family::image, Family::reference}));
-  EXPECT_EQ(app::all_methods()[0]->name, "edge-scatter");
-  EXPECT_EQ(app::all_methods()[1]->name, "view-sample") << "a row of another table, by its precedence";
-  EXPECT_EQ(app::ray_judge().name, "raytrace");
+  EXPECT_EQ(session::all_methods()[0]->name, "edge-scatter");
+  EXPECT_EQ(session::all_methods()[1]->name, "view-sample") << "a row of another table, by its precedence";
+  EXPECT_EQ(session::ray_judge().name, "raytrace");
 }
 
 TEST_F(MethodTable, WarnsWithEachOfItsOptions) {
   std::size_t asked = 0;
-  for (const visibility::MethodDescription* method : app::all_methods()) {
+  for (const visibility::MethodDescription* method : session::all_methods()) {
     if (method->warning == nullptr) continue;
     for (const visibility::OptionDescription& option : method->options) {
       ++asked;

@@ -2,9 +2,9 @@
 // Contents of OUT.exr that compositors use: layers of each light, mattes, matrices, names.
 #include "tests/cli/program.hpp"
 
-#include "app/pictures/cryptomatte.hpp"
-#include "app/pictures/picture_format.hpp"
 #include "base/exr.hpp"
+#include "session/pictures/cryptomatte.hpp"
+#include "session/pictures/picture_format.hpp"
 
 #include <fmt/format.h>
 #include <glm/matrix.hpp>
@@ -25,15 +25,16 @@ using testing::HasSubstr;
 /// Hashes that others give: Appleby's function on Wikipedia's examples, numbers of the Cryptomatte specification's own
 /// test.
 TEST(CryptomatteNames, AreThoseOfOthers) {
-  EXPECT_EQ(app::murmur3(""), 0u);
-  EXPECT_EQ(app::murmur3("test"), 0xba6bd213u);
-  EXPECT_EQ(app::murmur3("Hello, world!"), 0xc0363e43u);
-  EXPECT_EQ(app::murmur3("The quick brown fox jumps over the lazy dog"), 0x2e4ff723u);
-  EXPECT_FLOAT_EQ(app::cryptomatte_id("hello"), 6.0705627e-17f);
-  EXPECT_FLOAT_EQ(app::cryptomatte_id("cube"), -4.0846191e+15f);
-  EXPECT_FLOAT_EQ(app::cryptomatte_id("sphere"), 2.7901860e+15f);
-  EXPECT_FLOAT_EQ(app::cryptomatte_id("plane"), 3.6655762e-11f);
-  for (const char* name : {"a", "b", "Plane.001", ""}) EXPECT_TRUE(std::isnormal(app::cryptomatte_id(name))) << name;
+  EXPECT_EQ(session::murmur3(""), 0u);
+  EXPECT_EQ(session::murmur3("test"), 0xba6bd213u);
+  EXPECT_EQ(session::murmur3("Hello, world!"), 0xc0363e43u);
+  EXPECT_EQ(session::murmur3("The quick brown fox jumps over the lazy dog"), 0x2e4ff723u);
+  EXPECT_FLOAT_EQ(session::cryptomatte_id("hello"), 6.0705627e-17f);
+  EXPECT_FLOAT_EQ(session::cryptomatte_id("cube"), -4.0846191e+15f);
+  EXPECT_FLOAT_EQ(session::cryptomatte_id("sphere"), 2.7901860e+15f);
+  EXPECT_FLOAT_EQ(session::cryptomatte_id("plane"), 3.6655762e-11f);
+  for (const char* name : {"a", "b", "Plane.001", ""})
+    EXPECT_TRUE(std::isnormal(session::cryptomatte_id(name))) << name;
 }
 
 class Layers : public ProgramTest {
@@ -96,7 +97,7 @@ TEST_F(Layers, NamesCanBeForetold) {
   const auto layers_of = [&](const std::vector<std::string>& names) {
     std::vector<visibility::Light> lights(names.size());
     for (std::size_t i = 0; i < names.size(); ++i) lights[i].name = names[i];
-    return app::layer_names(lights);
+    return session::layer_names(lights);
   };
   using Names = std::vector<std::string>;
   // Names that can be layers stay, whatever comes before them.
@@ -212,16 +213,16 @@ TEST(TriangleNumbers, AreExactAsFloats) {
   for (const std::int64_t triangle :
        {std::int64_t{-1}, std::int64_t{0}, std::int64_t{1} << 20, (std::int64_t{1} << 24) - 2,
         (std::int64_t{1} << 24) - 1, std::int64_t{1} << 24, (std::int64_t{1} << 24) + 1, (std::int64_t{1} << 31) - 2}) {
-    const double whole = double{app::low_number(triangle)} + 0x1p24 * double{app::high_number(triangle)};
+    const double whole = double{session::low_number(triangle)} + 0x1p24 * double{session::high_number(triangle)};
     EXPECT_EQ(whole, static_cast<double>(triangle + 1));
   }
   std::vector<std::string> names;
-  for (const app::PictureChannel& channel : app::picture_channels({}, false, (std::uint64_t{1} << 24) - 1))
+  for (const session::PictureChannel& channel : session::picture_channels({}, false, (std::uint64_t{1} << 24) - 1))
     names.push_back(channel.name);
   EXPECT_THAT(names, testing::Contains("triangle.X"));
   EXPECT_THAT(names, testing::Not(testing::Contains("triangle_high.X")));
   names.clear();
-  for (const app::PictureChannel& channel : app::picture_channels({}, false, std::uint64_t{1} << 24))
+  for (const session::PictureChannel& channel : session::picture_channels({}, false, std::uint64_t{1} << 24))
     names.push_back(channel.name);
   EXPECT_THAT(names, testing::Contains("triangle_high.X"));
 }
@@ -276,7 +277,7 @@ TEST_F(Layers, ObjectsAreNamedAndCutOut) {
   scene_with({"key"});
   const ExrFile image = render();
   const json names = json::parse(image.attributes.at("penumbra.objects"));
-  const std::string key = "cryptomatte/" + fmt::format("{:08x}", app::murmur3("CryptoObject")).substr(0, 7) + "/";
+  const std::string key = "cryptomatte/" + fmt::format("{:08x}", session::murmur3("CryptoObject")).substr(0, 7) + "/";
   EXPECT_EQ(image.attributes.at(key + "name"), "CryptoObject");
   EXPECT_EQ(image.attributes.at(key + "conversion"), "uint32_to_float32");
   const json manifest = json::parse(image.attributes.at(key + "manifest"));
@@ -289,7 +290,7 @@ TEST_F(Layers, ObjectsAreNamedAndCutOut) {
     numbers.insert(number);
     EXPECT_EQ(coverage, image.floats.at("A")[i]);
     const float id =
-        number == 0 ? 0 : app::cryptomatte_id(names.at(static_cast<std::size_t>(number) - 1).get<std::string>());
+        number == 0 ? 0 : session::cryptomatte_id(names.at(static_cast<std::size_t>(number) - 1).get<std::string>());
     EXPECT_EQ(image.floats.at("CryptoObject00.R")[i], id);
     EXPECT_EQ(image.floats.at("material.X")[i], 0) << "a scene of JSON has no materials";
   }

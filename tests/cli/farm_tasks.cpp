@@ -16,7 +16,7 @@
 namespace penumbra::tests {
 namespace {
 
-using app::FrameRange;
+using session::FrameRange;
 using testing::AllOf;
 using testing::Contains;
 
@@ -39,7 +39,7 @@ TEST(FarmTasks, HaveEachMissingFrameOnce) {
           ASSERT_EQ(task.step, kStep);
           ASSERT_THAT(missing, AllOf(Contains(task.first), Contains(task.last)));
           const std::size_t before = found.size();
-          for (const std::int64_t frame : app::numbers_of(task)) {
+          for (const std::int64_t frame : session::numbers_of(task)) {
             if (std::ranges::binary_search(missing, frame)) found.push_back(frame);
           }
           least = std::min(least, found.size() - before);
@@ -74,14 +74,14 @@ TEST(FarmTasks, AreLargeEnoughAndNoLarger) {
 
 TEST(FarmTasks, AreWords) {
   EXPECT_EQ(app::text_of(FrameRange{-3, 9, 4}), "-3-9x4");
-  EXPECT_EQ(app::parse_frames(app::text_of(FrameRange{-9, -3, 2})).last, -3);
+  EXPECT_EQ(session::parse_frames(app::text_of(FrameRange{-9, -3, 2})).last, -3);
   const std::vector<std::int64_t> frames = {1, 3, 5, 9, 11, 20};
   EXPECT_EQ(app::list_of(frames, 2), "1-5, 9-11, 20");
   EXPECT_EQ(app::list_of(frames, 1), "1, 3, 5, 9, 11, 20");
-  EXPECT_EQ(app::sequence_name("shot10.####.exr"), "shot10");
-  EXPECT_EQ(app::sequence_name("a/shot_%04d.exr"), "shot");
-  EXPECT_EQ(app::sequence_name("shot.v2.exr"), "shot.v2");
-  EXPECT_EQ(app::sequence_name("####.exr"), "");
+  EXPECT_EQ(session::sequence_name("shot10.####.exr"), "shot10");
+  EXPECT_EQ(session::sequence_name("a/shot_%04d.exr"), "shot");
+  EXPECT_EQ(session::sequence_name("shot.v2.exr"), "shot.v2");
+  EXPECT_EQ(session::sequence_name("####.exr"), "");
 }
 
 TEST(FarmTasks, SlurmSaysHowManyThereMayBe) {

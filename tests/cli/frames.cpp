@@ -2,8 +2,8 @@
 // `render` of what moves: which frames, which files, and that a frame of a sequence is the frame by itself.
 #include "tests/cli/program.hpp"
 
-#include "app/pictures/frame_render.hpp"
 #include "base/exr.hpp"
+#include "session/pictures/frame_render.hpp"
 #include "tests/unit/import/gltf_file.hpp"
 
 #include <fmt/format.h>
@@ -281,7 +281,7 @@ TEST_F(Frames, OfALampThatIsHidden) {
 
 TEST(PictureMean, KnowsLightsByTheirNames) {
   const std::vector<float> alpha = {1};
-  app::PictureMean mean(1, 1);
+  session::PictureMean mean(1, 1);
   using Values = std::vector<std::vector<float>>;
   using Colors = std::vector<std::vector<glm::vec3>>;
   mean.add(alpha, {"A", "B"}, Values{{1}, {0.5f}}, Colors{{glm::vec3(4)}, {glm::vec3(2)}}, 1, {{0, 1}, 0});

@@ -3,8 +3,8 @@
 // against those whose every view sample was evaluated.
 #include "tests/cli/program.hpp"
 
-#include "app/pictures/interpolated_areas.hpp"
 #include "base/exr.hpp"
+#include "session/pictures/interpolated_areas.hpp"
 
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
@@ -60,7 +60,7 @@ class Function final : public visibility::Method {
 class InterpolatedAreas : public testing::Test {
  protected:
   static constexpr std::uint32_t kSide = 4, kWidth = 8 * kSide, kHeight = 6 * kSide;
-  static constexpr double kTolerance = app::kPixelTolerance;
+  static constexpr double kTolerance = session::kPixelTolerance;
 
   InterpolatedAreas() {
     scene_.object = {0, 1};
@@ -86,7 +86,7 @@ class InterpolatedAreas : public testing::Test {
   /// The largest difference from the function; the counter and `asked_` are of this call.
   double largest_error(const std::function<double(const glm::vec3&)>& function) {
     Function method(function);
-    app::InterpolatedAreas areas(method, scene_, kSide, kTolerance);
+    session::InterpolatedAreas areas(method, scene_, kSide, kTolerance);
     areas.prepare_light({});
     areas.prepare_view(samples_);
     double error = 0;
@@ -197,7 +197,7 @@ TEST_F(InterpolatedPictures, DifferLittleFromThoseWhoseEveryViewSampleIsEvaluate
       square += error * error;
       most = std::max(most, error);
     }
-    EXPECT_LT(std::sqrt(square / static_cast<double>(a.size())), app::kPixelTolerance / 4);
+    EXPECT_LT(std::sqrt(square / static_cast<double>(a.size())), session::kPixelTolerance / 4);
     EXPECT_LT(most, 0.03);
   }
 }

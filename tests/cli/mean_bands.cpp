@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pictures of several view samples a pixel that are evaluated in bands of rows: the same bits as evaluated at once.
-#include "app/machine.hpp"
-#include "app/options.hpp"
-#include "app/pictures/frame_render.hpp"
-#include "app/process/progress.hpp"
-#include "app/session.hpp"
 #include "engines/vectors/scan_conversion.hpp"
+#include "session/machine.hpp"
+#include "session/options.hpp"
+#include "session/pictures/frame_render.hpp"
+#include "session/process/progress.hpp"
+#include "session/session.hpp"
 #include "visibility/view_samples.hpp"
 
 #include <gmock/gmock.h>
@@ -20,7 +20,7 @@
 namespace penumbra::tests {
 namespace {
 
-class Silence final : public app::Progress {
+class Silence final : public session::Progress {
  public:
   using Progress::advance;
   void begin(std::string /*stage*/, std::uint64_t /*steps*/) override {}
@@ -29,30 +29,30 @@ class Silence final : public app::Progress {
   void say(Level /*level*/, const std::string& /*message*/) override {}
 };
 
-app::RunOptions options_of(const std::string& scene) {
-  app::RunOptions run;
+session::RunOptions options_of(const std::string& scene) {
+  session::RunOptions run;
   run.scene = std::string(PENUMBRA_SCENES) + "/" + scene;
   run.size = "40x70";
   return run;
 }
 
 struct Rendered {
-  app::RenderedFrame picture;
+  session::RenderedFrame picture;
   std::uint64_t left_out = 0;  // compare::LightCutoff::pairs
 };
 
-Rendered rendered(const app::RunOptions& run, app::Frame frame, std::uint64_t band_samples) {
-  const render::Machine machine = app::make_machine("");
-  const app::MethodWish wish;
+Rendered rendered(const session::RunOptions& run, session::Frame frame, std::uint64_t band_samples) {
+  const render::Machine machine = session::make_machine("");
+  const session::MethodWish wish;
   Silence silence;
-  app::FrameRenderer renderer(run, wish, machine, silence);
+  session::FrameRenderer renderer(run, wish, machine, silence);
   frame.band_samples = band_samples;
-  renderer.render(app::read_session_scene(run, std::nullopt), frame, {}, 0);
+  renderer.render(session::read_session_scene(run, std::nullopt), frame, {}, 0);
   const compare::Stats stats = renderer.stats();
   return {renderer.take(), stats.light_cutoff ? stats.light_cutoff->pairs : 0};
 }
 
-void expect_same_in_bands(const app::RunOptions& run, const app::Frame& frame) {
+void expect_same_in_bands(const session::RunOptions& run, const session::Frame& frame) {
   const auto [whole, left_out_of_whole] = rendered(run, frame, std::numeric_limits<std::uint64_t>::max());
   // 40 times 16 view samples in a row of pixels, 20 rows of these: four bands of 17 or 18 rows.
   const auto [bands, left_out_of_bands] = rendered(run, frame, 40 * 16 * 20);
@@ -68,10 +68,10 @@ void expect_same_in_bands(const app::RunOptions& run, const app::Frame& frame) {
 }
 
 TEST(MeanBands, AreTheWholePicture) {
-  for (const double tolerance : {app::kPixelTolerance, 0.0}) {
-    for (const app::PixelFilter& filter :
-         {app::PixelFilter{}, app::PixelFilter{app::PixelFilter::Kind::blackman_harris, 1.5}}) {
-      app::Frame frame;
+  for (const double tolerance : {session::kPixelTolerance, 0.0}) {
+    for (const session::PixelFilter& filter :
+         {session::PixelFilter{}, session::PixelFilter{session::PixelFilter::Kind::blackman_harris, 1.5}}) {
+      session::Frame frame;
       frame.pixel_side = 4;
       frame.filter = filter;
       frame.pixel_tolerance = tolerance;
@@ -81,15 +81,15 @@ TEST(MeanBands, AreTheWholePicture) {
 }
 
 TEST(MeanBands, AreTheWholePictureUnderAWideFilter) {
-  app::Frame frame;
+  session::Frame frame;
   frame.pixel_side = 4;
-  frame.filter = {app::PixelFilter::Kind::blackman_harris, 6};
+  frame.filter = {session::PixelFilter::Kind::blackman_harris, 6};
   expect_same_in_bands(options_of("room.json"), frame);
 }
 
 TEST(MeanBands, AreTheWholePictureWithoutFaintLights) {
-  for (const double tolerance : {app::kPixelTolerance, 0.0}) {
-    app::Frame frame;
+  for (const double tolerance : {session::kPixelTolerance, 0.0}) {
+    session::Frame frame;
     frame.pixel_side = 4;
     frame.pixel_tolerance = tolerance;
     frame.light_cutoff = 0.25;
@@ -98,12 +98,12 @@ TEST(MeanBands, AreTheWholePictureWithoutFaintLights) {
 }
 
 TEST(MeanBands, AreTheWholePictureOfMoments) {
-  const app::RunOptions run = options_of("contact.json");
-  app::Frame frame;
+  const session::RunOptions run = options_of("contact.json");
+  session::Frame frame;
   frame.pixel_side = 4;
   for (int i = 0; i < 2; ++i) {
     frame.moments.emplace_back([run, i] {
-      app::PictureScene read{app::read_session_scene(run, std::nullopt)};
+      session::PictureScene read{session::read_session_scene(run, std::nullopt)};
       for (scenes::Camera& camera : read.scene.cameras) camera.eye.x += 0.01 * i;
       return read;
     });
@@ -113,7 +113,7 @@ TEST(MeanBands, AreTheWholePictureOfMoments) {
 
 /// Some rows of a camera's picture have the view samples that the whole picture has there.
 TEST(MeanBands, RowsOfACameraAreThoseOfItsPicture) {
-  const scenes::Scene scene = app::read_session_scene(options_of("bunny.json"), std::nullopt);
+  const scenes::Scene scene = session::read_session_scene(options_of("bunny.json"), std::nullopt);
   const visibility::SceneFloats floats = visibility::make_scene_floats(scene);
   const auto whole_camera = visibility::make_camera(scene.cameras.front(), floats.origin, 90, 67);
   const visibility::ViewSamples whole = vectors::scan_view_samples(floats, whole_camera);

@@ -2,10 +2,10 @@
 // Tests that the host refuses a method's V outside of [0, 1], and form factors that are negative or no numbers, before
 // a file is written.
 #include "app/process/terminal_progress.hpp"
-#include "app/machine.hpp"
-#include "app/runner.hpp"
-#include "app/session.hpp"
 #include "base/error.hpp"
+#include "session/machine.hpp"
+#include "session/runner.hpp"
+#include "session/session.hpp"
 #include "tests/cli/program.hpp"
 
 #include <gmock/gmock.h>
@@ -58,13 +58,13 @@ class MethodAnswers : public ProgramTest {
   void run_method(OneWrong method) const {
     RunOptions options;
     options.scene = tiny_scene();
-    const render::Machine machine = app::make_machine("cpu");
+    const render::Machine machine = session::make_machine("cpu");
     app::TerminalProgress progress(false);
-    const app::Session session = app::open_session(options, std::nullopt, machine, 0, progress);
-    app::run_method(
-        method, session, {.lights = session.lights}, [](const app::TileResult&) {}, progress);
+    const session::Session session = session::open_session(options, std::nullopt, machine, 0, progress);
+    session::run_method(
+        method, session, {.lights = session.lights}, [](const session::TileResult&) {}, progress);
   }
-  using RunOptions = app::RunOptions;
+  using RunOptions = session::RunOptions;
 };
 
 TEST_F(MethodAnswers, AMeshBeyondTheMemoryIsRefusedBeforeTheMethodRuns) {

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/options.hpp"
+#include "session/options.hpp"
 
-#include "app/pictures/frames.hpp"
-#include "app/sample_pixels.hpp"
-#include "app/session.hpp"
 #include "base/error.hpp"
+#include "session/pictures/frames.hpp"
+#include "session/sample_pixels.hpp"
+#include "session/session.hpp"
 
 #include <gmock/gmock.h>
 
-namespace penumbra::app {
+namespace penumbra::session {
 namespace {
 
 using testing::ElementsAre;
@@ -102,4 +102,4 @@ TEST(Median, IsTheMiddle) {
 }
 
 }  // namespace
-}  // namespace penumbra::app
+}  // namespace penumbra::session

@@ -8,9 +8,9 @@
 
 #include "tests/cli/options_together.hpp"
 
-#include "app/compare/comparison_files.hpp"
-#include "app/options.hpp"
 #include "base/error.hpp"
+#include "session/comparison/comparison_files.hpp"
+#include "session/options.hpp"
 
 #include <fmt/ranges.h>
 #include <gmock/gmock.h>
@@ -307,7 +307,7 @@ class CompareTogether : public OptionsTogether, public testing::WithParamInterfa
     const std::string report = read("out/report.html");
     EXPECT_NE(report.rfind("</html>"), std::string::npos);
     std::vector<std::string> names = {"reference"};
-    for (const json& method : metrics.at("methods")) names.push_back(app::file_stem(method.at("entry")));
+    for (const json& method : metrics.at("methods")) names.push_back(session::file_stem(method.at("entry")));
     for (const std::string& name : names) {
       expect_whole_picture(path("out/" + name + ".exr"), row["sample-pixels"] == "all");
       if (!row["png"].empty()) expect_whole_png(path("out/" + name + ".png"));
@@ -367,7 +367,7 @@ class Refusals : public OptionsTogether {
         const std::string key = option.at("name");
         for (const std::string& value : wrong) {
           const std::string entry = fmt::format("{}:{}={}", method.at("name").get<std::string>(), key, value);
-          EXPECT_THAT([&] { app::parse_methods(entry); }, ThrowsMessage<UsageError>(HasSubstr(key))) << entry;
+          EXPECT_THAT([&] { session::parse_methods(entry); }, ThrowsMessage<UsageError>(HasSubstr(key))) << entry;
           if (value != wrong[tried % wrong.size()] || (given && !every_option)) continue;
           given = true;
           const std::vector<std::string> arguments = {"compare",   scenes_[0].file, "-o",

@@ -2,12 +2,12 @@
 // Several view samples a pixel: their mean under a filter, and the shares of a pixel in mattes.
 #include "tests/cli/program.hpp"
 
-#include "app/pictures/cryptomatte.hpp"
-#include "app/pictures/matte_shares.hpp"
-#include "app/pictures/picture_mean.hpp"
-#include "app/pictures/pixel_filter.hpp"
-#include "app/pictures/surfaces.hpp"
 #include "base/exr.hpp"
+#include "session/pictures/cryptomatte.hpp"
+#include "session/pictures/matte_shares.hpp"
+#include "session/pictures/picture_mean.hpp"
+#include "session/pictures/pixel_filter.hpp"
+#include "session/pictures/surfaces.hpp"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -22,8 +22,8 @@
 namespace penumbra::tests {
 namespace {
 
-using app::PixelFilter;
 using nlohmann::json;
+using session::PixelFilter;
 using testing::HasSubstr;
 
 /// Compares weights at offsets where Harris's four cosines are 1, 0 or −1.
@@ -40,8 +40,9 @@ TEST(PixelFilters, AreTheirFormula) {
   EXPECT_EQ(box.share(0.49), 1);
   EXPECT_EQ(box.share(0.5), 0);
   // A box takes a pixel's own view samples; a wider filter as many on both sides, but beyond the ends of the line.
-  for (const app::FilterTaps& taps : app::filter_taps(box, 3, 2)) EXPECT_EQ(taps.shares, (std::vector<double>{1, 1}));
-  const auto taps = app::filter_taps(wide, 3, 4);
+  for (const session::FilterTaps& taps : session::filter_taps(box, 3, 2))
+    EXPECT_EQ(taps.shares, (std::vector<double>{1, 1}));
+  const auto taps = session::filter_taps(wide, 3, 4);
   EXPECT_EQ(taps[1].first, 3u);
   ASSERT_EQ(taps[1].shares.size(), 6u);
   for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(taps[1].shares[i], taps[1].shares[5 - i]);
@@ -117,10 +118,10 @@ TEST_F(FilteredPictures, MattesAreShares) {
       const std::size_t from = (i / kWidth * kSide + k / kSide) * kWidth * kSide + i % kWidth * kSide + k % kSide;
       if (object[from] == 0) continue;
       const std::string name = names.at(static_cast<std::size_t>(object[from]) - 1).get<std::string>();
-      ++counts[app::cryptomatte_id(name)];
+      ++counts[session::cryptomatte_id(name)];
     }
     float before = 1;
-    for (std::size_t rank = 0; rank < app::Cryptomatte::kRanks; ++rank) {
+    for (std::size_t rank = 0; rank < session::Cryptomatte::kRanks; ++rank) {
       const std::string group = fmt::format("CryptoObject{:02}.", rank / 2);
       const float id = box.floats.at(group + "RB"[rank % 2])[i], part = box.floats.at(group + "GA"[rank % 2])[i];
       if (rank >= counts.size()) {
@@ -149,7 +150,7 @@ TEST_F(FilteredPictures, MattesAreShares) {
       const double share = share_of(k, i);
       shares += share;
       if (object[k] != 0 &&
-          app::cryptomatte_id(names.at(static_cast<std::size_t>(object[k]) - 1).get<std::string>()) == first)
+          session::cryptomatte_id(names.at(static_cast<std::size_t>(object[k]) - 1).get<std::string>()) == first)
         part += share;
     }
     ASSERT_NEAR(filtered.floats.at("CryptoObject00.G")[i], part / shares, 25 * 0x1p-24) << i;
@@ -157,8 +158,8 @@ TEST_F(FilteredPictures, MattesAreShares) {
 }
 
 TEST(MatteShares, KnowNamesOfAllPictures) {
-  const std::uint32_t nothing = app::Surfaces::kNothing;
-  app::MatteShares shares(1, 1, {});
+  const std::uint32_t nothing = session::Surfaces::kNothing;
+  session::MatteShares shares(1, 1, {});
   shares.add(std::vector<std::string>{"a", "b", "a"}, std::vector<std::uint32_t>{0, 1, 2, 1}, 2, {{0, 1}, 0});
   shares.add(std::vector<std::string>{"b", "c"}, std::vector<std::uint32_t>{0, 0, 1, nothing}, 2, {{0, 1}, 0});
   EXPECT_THAT(shares.names(), testing::ElementsAre("a", "b", "c"));
@@ -173,9 +174,9 @@ TEST(MatteShares, KnowNamesOfAllPictures) {
 }
 
 /// A filter that reaches beyond a pixel, with weights that differ.
-app::PixelFilter wide_filter() {
-  app::PixelFilter filter;
-  filter.kind = app::PixelFilter::Kind::blackman_harris;
+session::PixelFilter wide_filter() {
+  session::PixelFilter filter;
+  filter.kind = session::PixelFilter::Kind::blackman_harris;
   filter.width = 1.5;
   return filter;
 }
@@ -183,17 +184,17 @@ app::PixelFilter wide_filter() {
 /// A pixel of one name gets the sum of its taps as any other does, added up in their order: the same float.
 TEST(MatteShares, OfOneNameAreSumsOfTaps) {
   constexpr std::uint32_t kSide = 3, kAcross = 9, kDown = 7, kSamples = kSide * kAcross;
-  const app::PixelFilter filter = wide_filter();
+  const session::PixelFilter filter = wide_filter();
   std::mt19937 random(5);
   std::vector<std::uint32_t> of_sample(std::size_t{kSamples} * kSide * kDown);
   for (std::size_t i = 0; i < of_sample.size(); ++i) {  // one name on the left, two and the background on the right
     const std::uint32_t name = i % kSamples < kSamples / 2 ? 0 : static_cast<std::uint32_t>(random() % 3);
-    of_sample[i] = name == 2 ? app::Surfaces::kNothing : name;
+    of_sample[i] = name == 2 ? session::Surfaces::kNothing : name;
   }
-  app::MatteShares shares(kAcross, kDown, filter);
+  session::MatteShares shares(kAcross, kDown, filter);
   shares.add(std::vector<std::string>{"a", "b"}, of_sample, kSide, {{0, kDown}, 0});
   shares.settle();
-  const auto across = app::filter_taps(filter, kAcross, kSide), down = app::filter_taps(filter, kDown, kSide);
+  const auto across = session::filter_taps(filter, kAcross, kSide), down = session::filter_taps(filter, kDown, kSide);
   std::size_t alone = 0, mixed = 0;
   for (std::size_t y = 0; y < kDown; ++y) {
     for (std::size_t x = 0; x < kAcross; ++x) {
@@ -209,7 +210,7 @@ TEST(MatteShares, OfOneNameAreSumsOfTaps) {
       float all = 0;
       for (const std::uint32_t name : in_order) all += sums[name];
       const auto here = shares.of_pixel(x, y);
-      ASSERT_EQ(here.size(), sums.size() - sums.count(app::Surfaces::kNothing)) << x << " " << y;
+      ASSERT_EQ(here.size(), sums.size() - sums.count(session::Surfaces::kNothing)) << x << " " << y;
       for (const auto& share : here) ASSERT_EQ(share.part, sums.at(share.name) / all) << x << " " << y;
       ++(sums.size() == 1 ? alone : mixed);
     }
@@ -221,7 +222,7 @@ TEST(MatteShares, OfOneNameAreSumsOfTaps) {
 /// Rows that are added once have the bits of sums that are kept in double.
 TEST(PictureMean, OfRowsAddedOnceIsTheSame) {
   constexpr std::uint32_t kSide = 2, kAcross = 6, kDown = 8, kSamples = kSide * kAcross;
-  const app::PixelFilter filter = wide_filter();
+  const session::PixelFilter filter = wide_filter();
   std::mt19937 random(6);
   std::uniform_real_distribution<float> real(0, 1);
   const std::size_t samples = std::size_t{kSamples} * kSide * kDown;
@@ -235,8 +236,8 @@ TEST(PictureMean, OfRowsAddedOnceIsTheSame) {
     lit[0][i] = {real(random), real(random), real(random)};
   }
   const std::vector<std::string> names = {"A", "B"};
-  using Adds = app::PictureMean::Adds;
-  app::PictureMean often(kAcross, kDown, filter), once(kAcross, kDown, filter, Adds::once);
+  using Adds = session::PictureMean::Adds;
+  session::PictureMean often(kAcross, kDown, filter), once(kAcross, kDown, filter, Adds::once);
   often.add(alpha, names, seen, lit, kSide, {{0, kDown}, 0});
   for (std::uint32_t row = 0; row < kDown; row += 4) once.add(alpha, names, seen, lit, kSide, {{row, 4}, 0});
   EXPECT_EQ(once.take_visibility(names), often.take_visibility(names));

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Methods that take too long are left out of a comparison, unless they are named.
-#include "app/compare/comparison.hpp"
-#include "app/machine.hpp"
-#include "app/options.hpp"
 #include "app/process/terminal_progress.hpp"
-#include "app/runner.hpp"
-#include "app/session.hpp"
 #include "scenes/formats/reader.hpp"
+#include "session/comparison/comparison.hpp"
+#include "session/machine.hpp"
+#include "session/options.hpp"
+#include "session/runner.hpp"
+#include "session/session.hpp"
 #include "tests/cli/program.hpp"
 
 #include <gmock/gmock.h>
@@ -54,7 +54,7 @@ class Slow final : public visibility::Method {
   std::uint32_t each_tile_, each_row_;
 };
 
-class Warnings final : public app::Progress {
+class Warnings final : public session::Progress {
  public:
   void begin(std::string /*stage*/, std::uint64_t /*steps*/) override {}
   void advance(std::uint64_t /*steps*/) override {}
@@ -65,8 +65,8 @@ class Warnings final : public app::Progress {
 
 class SlowMethods : public ProgramTest {
  protected:
-  [[nodiscard]] app::RunOptions options() const {
-    app::RunOptions run;
+  [[nodiscard]] session::RunOptions options() const {
+    session::RunOptions run;
     run.scene = tiny_scene();
     return run;
   }
@@ -75,18 +75,18 @@ class SlowMethods : public ProgramTest {
 // 200 rows take 0.4 s or more: after a tenth of it the run ends, in tiles of 4, 8, 16 … rows, and says how long all
 // would take.
 TEST_F(SlowMethods, EndBetweenTiles) {
-  app::RunOptions run = options();
+  session::RunOptions run = options();
   run.size = "8x200";
-  const render::Machine machine = app::make_machine("cpu");
+  const render::Machine machine = session::make_machine("cpu");
   app::TerminalProgress progress(false);
-  const app::Session session = app::open_session(run, std::nullopt, machine, 0, progress);
-  const auto none = [](const app::TileResult&) {};
+  const session::Session session = session::open_session(run, std::nullopt, machine, 0, progress);
+  const auto none = [](const session::TileResult&) {};
   Slow slow;
-  app::RunPlan plan{.lights = session.lights, .discard_first = true, .most_seconds = 0.04};
+  session::RunPlan plan{.lights = session.lights, .discard_first = true, .most_seconds = 0.04};
   try {
-    app::run_method(slow, session, plan, none, progress);
+    session::run_method(slow, session, plan, none, progress);
     ADD_FAILURE() << "as long as it likes";
-  } catch (const app::TakesTooLong& found) {
+  } catch (const session::TakesTooLong& found) {
     EXPECT_GT(found.seconds, plan.most_seconds);
   }
   ASSERT_FALSE(slow.tiles.empty());
@@ -96,27 +96,27 @@ TEST_F(SlowMethods, EndBetweenTiles) {
   // The timed run is in one piece if the method is given the time that it takes.
   Slow patient;
   plan.most_seconds = 1e6;
-  EXPECT_EQ(app::run_method(patient, session, plan, none, progress).times.runs, 1U);
+  EXPECT_EQ(session::run_method(patient, session, plan, none, progress).times.runs, 1U);
   EXPECT_THAT(patient.tiles, testing::ElementsAre(4U, 8U, 16U, 32U, 64U, 76U, 200U));
   // A run without a discarded one has no limit.
   Slow first;
   plan.most_seconds = 0;
   plan.discard_first = false;
-  EXPECT_NO_THROW(app::run_method(first, session, plan, none, progress));
+  EXPECT_NO_THROW(session::run_method(first, session, plan, none, progress));
 }
 
 // Sixty-four tiles of 80 ms would take 5 s, one takes 80 ms: less than the limit, so the method is kept. Its warm-up is
 // not the time of the first run's six tiles.
 TEST_F(SlowMethods, AreNotThoseWhoseTilesCostMuch) {
-  app::RunOptions run = options();
+  session::RunOptions run = options();
   run.size = "8x200";
-  const render::Machine machine = app::make_machine("cpu");
+  const render::Machine machine = session::make_machine("cpu");
   app::TerminalProgress progress(false);
-  const app::Session session = app::open_session(run, std::nullopt, machine, 0, progress);
+  const session::Session session = session::open_session(run, std::nullopt, machine, 0, progress);
   Slow slow(80, 0);
-  const app::RunPlan plan{.lights = session.lights, .discard_first = true, .most_seconds = 0.2};
-  const auto none = [](const app::TileResult&) {};
-  const app::MethodRun done = app::run_method(slow, session, plan, none, progress);
+  const session::RunPlan plan{.lights = session.lights, .discard_first = true, .most_seconds = 0.2};
+  const auto none = [](const session::TileResult&) {};
+  const session::MethodRun done = session::run_method(slow, session, plan, none, progress);
   EXPECT_LE(slow.tiles.size(), 10U);
   // The last tile is the timed run.
   const double first = std::reduce(slow.seconds.begin(), slow.seconds.end() - 1), timed = slow.seconds.back();
@@ -126,16 +126,16 @@ TEST_F(SlowMethods, AreNotThoseWhoseTilesCostMuch) {
 // Slow methods of a group are left out by name, with the others' results in their places; a method that is named is
 // kept.
 TEST_F(SlowMethods, AreLeftOutOfGroupsByName) {
-  app::ComparisonOptions comparison;
-  comparison.methods = app::parse_methods("raytrace,geometry");
+  session::ComparisonOptions comparison;
+  comparison.methods = session::parse_methods("raytrace,geometry");
   comparison.writes = false;
   comparison.reference_samples = "16";
   comparison.runs = 1;
   comparison.most_seconds = 0;
-  app::RunOptions run = options();
+  session::RunOptions run = options();
   run.light_samples = "16";
   Warnings warnings;
-  const compare::Metrics metrics = app::compare_methods(scenes::read_scene(run.scene), run, comparison, warnings);
+  const compare::Metrics metrics = session::compare_methods(scenes::read_scene(run.scene), run, comparison, warnings);
   ASSERT_EQ(metrics.methods.size(), 1U);
   EXPECT_EQ(metrics.methods.front().entry, "raytrace");
   ASSERT_FALSE(metrics.left_out.empty());

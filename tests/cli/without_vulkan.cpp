@@ -2,7 +2,7 @@
 // Tests the program on a machine without a Vulkan driver: methods that run on the processor give the same bytes as with
 // a driver, and the others are refused by name.
 
-#include "app/methods.hpp"
+#include "session/methods.hpp"
 #include "tests/cli/program.hpp"
 
 #include <gmock/gmock.h>
@@ -39,8 +39,8 @@ class WithoutVulkan : public ProgramTest {
 
 TEST_F(WithoutVulkan, ProcessorMethodsGiveTheSameBytes) {
   std::vector<std::vector<std::string>> runs = {{}, {"--pixel-samples", "4"}};
-  for (const visibility::MethodDescription* method : app::all_methods()) {
-    if (!app::needs_device(method->name, {}) && does_lamps(*method)) runs.push_back({"--method", method->name});
+  for (const visibility::MethodDescription* method : session::all_methods()) {
+    if (!session::needs_device(method->name, {}) && does_lamps(*method)) runs.push_back({"--method", method->name});
   }
   ASSERT_GE(runs.size(), 9U);  // three with vector units, five more, and both references
   for (const std::vector<std::string>& more : runs) {
@@ -78,8 +78,8 @@ TEST_F(WithoutVulkan, CompareLeavesOutOfAGroupWhatNeedsADevice) {
   const auto metrics = nlohmann::json::parse(read("out/metrics.json"));
   std::vector<std::string> ran;
   for (const auto& entry : metrics.at("methods")) ran.push_back(entry.at("method"));
-  for (const visibility::MethodDescription* method : app::all_methods()) {
-    const bool needs = app::needs_device(method->name, {});
+  for (const visibility::MethodDescription* method : session::all_methods()) {
+    const bool needs = session::needs_device(method->name, {});
     if (!does_lamps(*method)) continue;
     EXPECT_EQ(std::ranges::count(ran, method->name) == 0, needs) << method->name;
     if (!needs) continue;

@@ -7,7 +7,7 @@ set -euo pipefail
 cd -- "$1"
 format=$(command -v clang-format-14 || command -v clang-format || true)
 [[ $format && $("$format" --version) == *' 14.'* ]] || { echo 'style: clang-format 14 is not installed (packages.txt)' >&2; exit 1; }
-rooms=(app areas base bench cmake compare engines examples hybrids import include library maps mesh network python reference render repair scenes selftest tests visibility volumes vsm)
+rooms=(app areas base bench cmake compare engines examples hybrids import include library maps mesh network python reference render repair scenes selftest session tests visibility volumes vsm)
 sources() { find "${rooms[@]}" -type f \( -name '*.cpp' -o -name '*.hpp' -o -name '*.h' \) -print0; }
 check() { xargs -0 -n 50 -P 2 "$format" --dry-run --Werror "$@"; }
 if [[ ${2:-} == --write ]]; then

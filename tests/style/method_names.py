@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""method_names.py SOURCE PROGRAM: fails where app/, bench/, compare/ or a script of theirs names a shadow method in a string. What
+"""method_names.py SOURCE PROGRAM: fails where app/, bench/, compare/, session/ or a script of theirs names a shadow method in a string. What
 there is to know of a method comes from its family's table; only what users get if they choose nothing is named."""
 
 import json
@@ -8,7 +8,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-DEFAULTS = {("app/compare/comparison.hpp", "raytrace"),
+DEFAULTS = {("session/comparison/comparison.hpp", "raytrace"),
             ("bench/options.cpp", "edge-scatter,view-sample"), ("bench/options.cpp", "edge-scatter,edge-scatter:rows=exact")}
 # Measures what papers, or a page, say of methods by name.
 OF_PAPERS = {"bench/time_ratios.py", "bench/domes.py", "bench/page_tables.py"}
@@ -25,7 +25,7 @@ def is_named(literal, names):
 
 
 def complaints(root, names):
-    for folder in ("app", "bench", "compare"):
+    for folder in ("app", "bench", "compare", "session"):
         for path in sorted((root / folder).rglob("*")):
             if path.suffix not in (".hpp", ".cpp", ".sh", ".py", ".js"):
                 continue

@@ -41,7 +41,7 @@ options=()
 case $what in
   all)  # of this tree, or files of it joined; findings in these count
     sources=$(grep -vF "$build/" <<<"$sources"; grep -F /Unity/ <<<"$sources")
-    options=(--checks=-bugprone-suspicious-include "--header-filter=^$source/(app|areas|base|bench|compare|engines|hybrids|import|maps|mesh|network|reference|render|repair|scenes|selftest|tests|visibility|volumes|vsm)/") ;;
+    options=(--checks=-bugprone-suspicious-include "--header-filter=^$source/(app|areas|base|bench|compare|engines|hybrids|import|maps|mesh|network|reference|render|repair|scenes|selftest|session|tests|visibility|volumes|vsm)/") ;;
   changed)
     wanted=$(changed_sources || true)  # no history, as in a shallow clone: nothing
     sources=$(grep -vF "$build/" <<<"$sources" | grep -Fxf <(sed "s,^,$source/," <<<"$wanted") || true)

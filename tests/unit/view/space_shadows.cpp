@@ -93,7 +93,7 @@ TEST(SpaceShadows, MessageHasTheLibrarysOwnSilhouettesAndWedges) {
       request.wedges.construction = construction;
       request.wedges.from = from;
       const SpaceAnswer answer = built.answer(request);
-      const BuiltWedges wedges(built.scene, request.wedges);
+      const session::BuiltWedges wedges(built.scene, request.wedges);
       ASSERT_EQ(answer.header["wedges"], wedges.wedges.size());
       const std::vector<float> edges = answer.floats("wedgeEdges");
       for (std::size_t i = 0; i < wedges.wedges.size(); ++i) {

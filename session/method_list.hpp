@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "visibility/method.hpp"
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <string>
+#include <vector>
+
+namespace penumbra::session {
+
+/// Returns the names of the kinds of lights supported by the method.
+std::vector<std::string> light_names(const visibility::MethodDescription& method);
+
+/// Method with one option set, where this option changes the method's description.
+struct Variant {
+  std::string option, value;
+  visibility::MethodDescription method;
+};
+
+/// Returns the variants: each option by itself, at all of its choices; for a number the first value with an effect,
+/// among the two least and the greatest.
+std::vector<Variant> variants_of(const visibility::MethodDescription& method);
+
+/// Returns the JSON printed by `methods --json`.
+nlohmann::ordered_json methods_json();
+
+}  // namespace penumbra::session

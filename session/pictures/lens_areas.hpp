@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "session/pictures/asked_areas.hpp"
+
+namespace penumbra::session {
+
+/// Areas at view samples through a lens. On blurred surfaces the view samples of neighbouring pixels are far apart, so
+/// that engines, which share work among neighbours, share little. Therefore the method is asked in an order of
+/// positions in space.
+class LensAreas final : public AskedAreas {
+ public:
+  explicit LensAreas(visibility::Method& method) : AskedAreas(method) {}
+
+ private:
+  std::vector<std::size_t> answer(const visibility::Tile& tile, std::span<AreaAnswer> answers) override;
+};
+
+}  // namespace penumbra::session

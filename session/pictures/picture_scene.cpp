@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "session/pictures/picture_scene.hpp"
+
+#include "session/process/stopwatch.hpp"
+#include "session/session.hpp"
+
+#include <utility>
+
+namespace penumbra::session {
+
+PictureScene read_picture_scene(const RunOptions& run, std::optional<double> time, const PictureRequest& request,
+                                scenes::ScenesAhead* ahead) {
+  const Stopwatch watch;
+  PictureScene read;
+  read.scene = read_session_scene(run, time, {.instances = &read.instances, .ahead = ahead});
+  set_lens(read.scene, request, run.camera);
+  if (needs_copies(read.scene, read.instances, request.instances, request.wish, request.view_samples())) {
+    const std::uint64_t bytes = bytes_per_copy(request.wish, read.scene.lights);
+    read.scene = copied(std::move(read.scene), std::exchange(read.instances, {}), bytes);
+  }
+  read.seconds = watch.seconds();
+  return read;
+}
+
+}  // namespace penumbra::session
