@@ -1,13 +1,17 @@
 #!/bin/bash
 # SPDX-License-Identifier: Apache-2.0
-# gpu.sh [FILE.json] [DEVICE] [largest side]: is every pass right on this machine's GPU, and how fast is it? Eight minutes at most. Runs
+# gpu.sh [FILE.json] [DEVICE] [largest side] [BOTH [OTHERS]]: is every pass right on this machine's GPU, and how fast is it? Eight minutes at most. Runs
 # from the unpacked tarball (cmake/tarball.sh), where nothing needs to be installed, or from a built clone. DEVICE as for --device.
 # Four parts, in FILE.json (gpu.json): the self-test; the bits of exact methods on the device against those of the processor's vector
 # units; seconds and milliseconds a pass of exact and image-based methods from 512x512 to 4K; errors and seconds of all that
-# `compare` takes by itself, at two sizes. Exit 1 where something is wrong: bits that differ, or a run that fails. A run that is
+# `compare` takes by itself, at two sizes. BOTH (exact methods with an option `engine`) and OTHERS replace the methods below: names with
+# spaces between. Exit 1 where something is wrong: bits that differ, or a run that fails. A run that is
 # out of time is not wrong.
 set -uo pipefail
 file=${1:-gpu.json} device=${2:-} largest=${3:-3840}
+read -ra both <<<"${4:-edge-scatter view-sample depth-complexity}"
+read -ra others <<<"${5:-soft-volume hard-volume shadow-map pcss vssm accumulate backproject}"
+judge=${both[0]}:rows=exact
 here=$(cd -- "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")" && pwd)
 if [[ -x $here/bin/penumbra ]]; then
   program=$here/bin/penumbra scenes=$here/share/penumbra/scenes commit=$(cat "$here/share/doc/penumbra/commit" 2>/dev/null)
@@ -50,7 +54,7 @@ picture() {
 
 bits=()
 for scene in contact thin fusion; do
-  for method in edge-scatter view-sample depth-complexity; do
+  for method in "${both[@]}"; do
     same=null
     if picture x-bits-device $method:engine=vulkan 512x512 256 $scene 270 && picture x-bits-vectors $method:engine=native 512x512 256 $scene 270; then
       if cmp -s "$work"/x-bits-{device,vectors}.bits; then same=true; else same=false wrong=1; fi
@@ -65,8 +69,7 @@ done
 speed=()
 for size in 512x512 1920x1080 3840x2160; do
   ((${size%x*} <= largest)) || continue
-  for method in edge-scatter:engine=vulkan view-sample:engine=vulkan depth-complexity:engine=vulkan soft-volume hard-volume shadow-map pcss vssm \
-    accumulate backproject; do
+  for method in "${both[@]/%/:engine=vulkan}" "${others[@]}"; do
     name=${method%%:*}
     counts=(256)  # of light samples, for methods that take any
     [[ $method != *engine=vulkan ]] || counts+=(1024)
@@ -84,7 +87,7 @@ done
 methods=()
 for size in 512x512 1920x1080; do
   ((${size%x*} <= largest)) || continue
-  if timeout "$(left 480)" "$program" compare "$scenes/self-shadow.json" "${on[@]}" --size "$size" --reference edge-scatter:rows=exact --runs 3 \
+  if timeout "$(left 480)" "$program" compare "$scenes/self-shadow.json" "${on[@]}" --size "$size" --reference "$judge" --runs 3 \
     -o "$work/compared" --stats "$work/metrics.json" --quiet >"$work/errors.txt" 2>&1; then
     methods+=("$(cat "$work/metrics.json")")
     say "$size, methods: compared"

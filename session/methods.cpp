@@ -149,6 +149,8 @@ std::unique_ptr<Method> make_method(std::string_view name, const MethodOptions& 
     return find_row(name).make(machine, options);
   } catch (const render::LacksFeature& error) {
     throw render::LacksFeature("{}: {}", name, error.what());
+  } catch (const ResourceError& error) {  // no driver, no usable device
+    throw ResourceError("{}: {}", name, error.what());
   }
 }
 

@@ -39,6 +39,8 @@ void ChildProgram::Said::read() {
   }
 }
 
+// fork in place of base/child's posix_spawn, which lets nothing be done between both programs: a worker must end with
+// this process even if this process is killed, and what the user ignores (nohup) stays ignored.
 pid_t ChildProgram::start(std::vector<std::string>& command, const Said& output, const Said& errors) {
   std::vector<char*> argv;
   for (std::string& word : command) argv.push_back(word.data());

@@ -268,7 +268,8 @@ class Comparison {
 
   void report_failure(const Entry& entry, const Failure& failure) {
     progress_.clear();
-    progress_.error(fmt::format("{}: {}", entry.label, failure.message));
+    const bool is_named = failure.message.starts_with(entry.label + ": ");
+    progress_.error(is_named ? failure.message : fmt::format("{}: {}", entry.label, failure.message));
     compare::MethodResult result;
     result.entry = entry.label;
     result.stats = stats_of(entry, session_.lights, {});

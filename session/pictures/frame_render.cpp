@@ -216,8 +216,18 @@ void FrameRenderer::add_panes() {
     picture_.beauty[light].assign(over[light].begin(), over[light].end());
 }
 
+void FrameRenderer::require_device() const {
+  if (wish_.method.empty() || !needs_device(wish_.method, wish_.options)) return;
+  try {
+    static_cast<void>(machine_.device());
+  } catch (const ResourceError& error) {
+    throw ResourceError("{}: {}", wish_.method, error.what());
+  }
+}
+
 void FrameRenderer::render(scenes::Scene scene, const Frame& frame, const std::filesystem::path& bits,
                            double read_seconds) {
+  require_device();
   picture_.frame = frame;
   if (memories_) (*memories_)[frame.camera].next_frame();
   spent_ = {.load = read_seconds};

@@ -184,6 +184,8 @@ class FrameRenderer {
   [[nodiscard]] SessionMaker& lit_maker() { return fine_ ? fine_->maker : maker_; }
   Kept& method_for(const LightMethod& wanted);
   void say_warnings();
+  /// Throws ResourceError, with the method's name, if the requested method needs a Vulkan device and there is none.
+  void require_device() const;
   void say_once(const std::vector<std::string>& warnings);
   /// Marks the lights in front of which there is a view sample.
   void mark_lights();
