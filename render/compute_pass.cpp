@@ -2,41 +2,19 @@
 #include "render/compute_pass.hpp"
 
 #include "base/assert.hpp"
-#include "render/bindings.hpp"
 #include "render/features.hpp"
+#include "render/pipelines.hpp"
 
 #include <algorithm>
-#include <map>
-#include <tuple>
 #include <utility>
 
 namespace penumbra::render {
 
-struct ComputePipelines {
-  /// Key of a pipeline in the device's cache.
-  struct Key {
-    std::string name;
-    std::vector<std::uint32_t> constants;
-    bool full_subgroups = false;
-    std::vector<std::uint32_t> spirv;
-    bool operator<(const Key& other) const {
-      return std::tie(name, constants, full_subgroups, spirv) <
-             std::tie(other.name, other.constants, other.full_subgroups, other.spirv);
-    }
-  };
-  struct One {
-    std::uint32_t push_bytes = 0;
-    Bindings bindings;
-    vk::raii::Pipeline pipeline{nullptr};
-  };
-  std::map<Key, One> made;
-};
-
 namespace {
 
-ComputePipelines::One make_pipeline(const Device& device, const ComputePassOptions& options) {
+KeptPipeline make_pipeline(const Device& device, const ComputePassOptions& options) {
   Device::State& state = device.state();
-  ComputePipelines::One made;
+  KeptPipeline made;
   require_features(device.info(), options.spirv, options.name);
   const ShaderInterface shader = reflect(options.spirv, options.name);
   made.push_bytes = shader.push_bytes;
@@ -61,16 +39,10 @@ ComputePipelines::One make_pipeline(const Device& device, const ComputePassOptio
   return made;
 }
 
-/// Returns the device's cached pipeline, made if it does not exist. Drivers compile for a long time (on processors for
-/// tenths of a second), and a method is made again for every run of an error budget.
-const ComputePipelines::One& pipeline_of(const Device& device, const ComputePassOptions& options) {
-  auto& kept = device.state().compute_pipelines;
-  if (!kept) kept = {new ComputePipelines, [](ComputePipelines* all) { delete all; }};
-  ComputePipelines::Key key{
-      options.name, options.constants, options.full_subgroups, {options.spirv.begin(), options.spirv.end()}};
-  const auto found = kept->made.find(key);
-  if (found != kept->made.end()) return found->second;
-  return kept->made.emplace(std::move(key), make_pipeline(device, options)).first->second;
+const KeptPipeline& pipeline_of(const Device& device, const ComputePassOptions& options) {
+  PipelineKey key(options.name, {options.full_subgroups ? 1U : 0U});
+  key.add(options.constants).add(options.spirv);
+  return pipelines_of(device.state()).find(std::move(key), [&] { return make_pipeline(device, options); });
 }
 
 }  // namespace
@@ -78,7 +50,7 @@ const ComputePipelines::One& pipeline_of(const Device& device, const ComputePass
 struct ComputePass::State {
   Device::State* device = nullptr;
   std::string name;
-  const ComputePipelines::One* pipeline = nullptr;
+  const KeptPipeline* pipeline = nullptr;
 };
 
 ComputePass::ComputePass(const Device& device, const ComputePassOptions& options) try

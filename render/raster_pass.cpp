@@ -3,8 +3,8 @@
 
 #include "base/assert.hpp"
 #include "base/error.hpp"
-#include "render/bindings.hpp"
 #include "render/features.hpp"
+#include "render/pipelines.hpp"
 
 namespace penumbra::render {
 
@@ -95,22 +95,18 @@ void DepthTarget::copy_to(Commands& commands, const Buffer& to, std::uint64_t of
 }
 
 struct RasterPass::State {
-  Device::State* device = nullptr;
   std::string name;
   bool depth = false;
   float cleared = 1;  // depth before the first draw
-  Bindings bindings;
-  vk::raii::Pipeline pipeline{nullptr};
+  const KeptPipeline* pipeline = nullptr;
 };
 
-RasterPass::RasterPass(const Device& device, const RasterPassOptions& options) try : state_(std::make_unique<State>()) {
-  State& s = *state_;
-  s.device = &device.state();
-  s.name = options.name;
-  s.depth = options.depth;
-  s.cleared = options.compare == DepthCompare::greater ? 0.0F : 1.0F;
-  require_features(device.info(), options.vertex, s.name);
-  require_features(device.info(), options.fragment, s.name);
+namespace {
+
+KeptPipeline make_pipeline(const Device& device, const RasterPassOptions& options) {
+  Device::State& state = device.state();
+  require_features(device.info(), options.vertex, options.name);
+  require_features(device.info(), options.fragment, options.name);
   // The two stages share one set; a stage may use fewer bindings than the other.
   ShaderInterface shader = reflect(options.vertex, options.name);
   if (!options.fragment.empty()) {
@@ -118,13 +114,13 @@ RasterPass::RasterPass(const Device& device, const RasterPassOptions& options) t
     shader.push_bytes = std::max(shader.push_bytes, fragment.push_bytes);
     if (fragment.bindings.size() > shader.bindings.size()) shader.bindings = fragment.bindings;
   }
-  PENUMBRA_ASSERT(shader.push_bytes == options.push_bytes, "{}: the shaders' push constants have {} bytes, C++'s {}",
-                  s.name, shader.push_bytes, options.push_bytes);
-  if (s.device->only_checks) return;
-  s.bindings =
-      Bindings(*s.device, s.name, shader, vk::ShaderStageFlagBits::eVertex | vk::ShaderStageFlagBits::eFragment);
+  KeptPipeline made;
+  made.push_bytes = shader.push_bytes;
+  if (state.only_checks) return made;
+  made.bindings =
+      Bindings(state, options.name, shader, vk::ShaderStageFlagBits::eVertex | vk::ShaderStageFlagBits::eFragment);
 
-  const vk::raii::Device& d = s.device->device;
+  const vk::raii::Device& d = state.device;
   const SpecializationConstants constants(options.constants);
   const vk::raii::ShaderModule vertex(
       d, vk::ShaderModuleCreateInfo({}, options.vertex.size_bytes(), options.vertex.data()));
@@ -147,17 +143,38 @@ RasterPass::RasterPass(const Device& device, const RasterPassOptions& options) t
                                                         VK_FALSE, 0, 0, 0, 1.0F);
   const vk::PipelineMultisampleStateCreateInfo multisample({}, vk::SampleCountFlagBits::e1);
   const bool keep_greater = options.compare == DepthCompare::greater;
-  const vk::PipelineDepthStencilStateCreateInfo depth({}, s.depth, s.depth,
+  const vk::PipelineDepthStencilStateCreateInfo depth({}, options.depth, options.depth,
                                                       keep_greater ? vk::CompareOp::eGreater : vk::CompareOp::eLess);
   const vk::PipelineColorBlendStateCreateInfo blend;
   const std::array dynamic{vk::DynamicState::eViewport, vk::DynamicState::eScissor};
   const vk::PipelineDynamicStateCreateInfo dynamic_state({}, dynamic);
   vk::StructureChain<vk::GraphicsPipelineCreateInfo, vk::PipelineRenderingCreateInfo> chain(
       vk::GraphicsPipelineCreateInfo({}, stages, &no_inputs, &assembly, nullptr, &viewport, &raster, &multisample,
-                                     &depth, &blend, &dynamic_state, s.bindings.layout()),
-      vk::PipelineRenderingCreateInfo(0, {}, s.depth ? vk::Format::eD32Sfloat : vk::Format::eUndefined));
-  s.pipeline = vk::raii::Pipeline(d, s.device->cache, chain.get<vk::GraphicsPipelineCreateInfo>());
-  s.device->name(s.pipeline, s.name);
+                                     &depth, &blend, &dynamic_state, made.bindings.layout()),
+      vk::PipelineRenderingCreateInfo(0, {}, options.depth ? vk::Format::eD32Sfloat : vk::Format::eUndefined));
+  made.pipeline = vk::raii::Pipeline(d, state.cache, chain.get<vk::GraphicsPipelineCreateInfo>());
+  state.name(made.pipeline, options.name);
+  return made;
+}
+
+const KeptPipeline& pipeline_of(const Device& device, const RasterPassOptions& options) {
+  PipelineKey key(options.name,
+                  {options.triangle_strip ? 1U : 0U, options.depth ? 1U : 0U,
+                   static_cast<std::uint32_t>(options.compare), static_cast<std::uint32_t>(options.cull)});
+  key.add(options.constants).add(options.vertex).add(options.fragment);
+  return pipelines_of(device.state()).find(std::move(key), [&] { return make_pipeline(device, options); });
+}
+
+}  // namespace
+
+RasterPass::RasterPass(const Device& device, const RasterPassOptions& options) try
+    : state_(std::make_unique<State>(State{.name = options.name,
+                                           .depth = options.depth,
+                                           .cleared = options.compare == DepthCompare::greater ? 0.0F : 1.0F,
+                                           .pipeline = &pipeline_of(device, options)})) {
+  PENUMBRA_ASSERT(state_->pipeline->push_bytes == options.push_bytes,
+                  "{}: the shaders' push constants have {} bytes, C++'s {}", options.name, state_->pipeline->push_bytes,
+                  options.push_bytes);
 } catch (const vk::SystemError& error) {
   fail(error, fmt::format("building the pass {}", options.name));
 }
@@ -172,7 +189,7 @@ void RasterPass::record(Commands& commands, std::span<const std::byte> push, Buf
   PENUMBRA_ASSERT(s.depth == (draw.depth != nullptr), "{}: depth target given: {}", s.name, draw.depth != nullptr);
   Commands::State& c = commands.state();
   c.open_pass(s.name);
-  s.bindings.bind(c, vk::PipelineBindPoint::eGraphics, push, buffers);
+  s.pipeline->bindings.bind(c, vk::PipelineBindPoint::eGraphics, push, buffers);
 
   vk::RenderingAttachmentInfo depth;
   const vk::Rect2D area({0, 0}, {draw.width, draw.height});
@@ -190,7 +207,7 @@ void RasterPass::record(Commands& commands, std::span<const std::byte> push, Buf
     rendering.setPDepthAttachment(&depth);
   }
   c.commands.beginRendering(rendering);
-  c.commands.bindPipeline(vk::PipelineBindPoint::eGraphics, *s.pipeline);
+  c.commands.bindPipeline(vk::PipelineBindPoint::eGraphics, *s.pipeline->pipeline);
   c.commands.setViewport(0, vk::Viewport(0, 0, static_cast<float>(draw.width), static_cast<float>(draw.height), 0, 1));
   c.commands.setScissor(0, area);
   c.commands.draw(draw.vertices, draw.instances, 0, 0);

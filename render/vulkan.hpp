@@ -26,8 +26,8 @@ struct ValidationLog {
   std::vector<std::string> messages;
 };
 
-/// The compute pipelines that a device has made and caches (compute_pass.cpp).
-struct ComputePipelines;
+/// The pipelines that a device has made and caches (pipelines.hpp).
+class Pipelines;
 
 struct Device::State {
   std::unique_ptr<ValidationLog> log;
@@ -51,7 +51,7 @@ struct Device::State {
   bool only_checks = false;  // as in DeviceOptions
   bool abandoned = false;    // see abandon()
   std::unique_ptr<opengl::Context> opengl;
-  std::unique_ptr<ComputePipelines, void (*)(ComputePipelines*)> compute_pipelines{nullptr, nullptr};
+  std::unique_ptr<Pipelines, void (*)(Pipelines*)> pipelines{nullptr, nullptr};
 
   void account(std::int64_t bytes) {
     allocated = static_cast<std::uint64_t>(static_cast<std::int64_t>(allocated) + bytes);
