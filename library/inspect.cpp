@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// Examines a mesh, from a file or in memory, as the command `inspect` does, and returns its report as JSON.
+
 #include "app/inspect/examine.hpp"
 #include "app/inspect/report.hpp"
 #include "base/error.hpp"
