@@ -375,7 +375,7 @@ TABLES = {
                                 None, names={f"defect-{name}": code(name) for name in DEFECTS}, merged=True),
     "textured-lights": by_entry("errors under a textured light", "`scenes/textured-light.json`, 256 × 256 pixels; errors of V over judged pixels against exact areas.", ("light samples", "method"),
                                 [((str(n), code(entry)), Run("textured-light", "256x256", AREAS, n), entry) for entry in ("view-sample", "accumulate", "pcss")
-                                 for n in ((64, 256, 1024, 4096) if entry != "pcss" else (256,))], (("RMSE", RMSE, ".4f"), ("largest error", LARGEST, ".3f"))),
+                                 for n in {"view-sample": (64, 256, 1024, 4096), "accumulate": (64, 256), "pcss": (256,)}[entry]], (("RMSE", RMSE, ".4f"), ("largest error", LARGEST, ".3f"))),
     "view-sample-planar": by_entry("view-sample-planar: pairs that a table's nearest texel gets wrong", "256 × 256 pixels, 256 light samples in rows; against rays to the same light samples.",
                                    ("scene", "`map`"),
                                    [((scene, str(size)), Run(scene, "256x256", SAME, 256), f"view-sample-planar:lookup=nearest:map={size}")
