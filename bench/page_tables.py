@@ -219,19 +219,6 @@ def defect_pairs():
                  (*(None for _ in range(8)), ".4f", ".4f", ".4f"), rows, merged=True)
 
 
-def structures():
-    scenes = ("broken", "bunny", "contact", "fusion", "parallel-square", "room", "textured-light", "thin")
-    run = {scene: Run(scene, SIZE, SAME, 64) for scene in scenes}
-    searches = ("depth-complexity", "depth-complexity:search=kd-tree", "depth-complexity:search=hemicube")
-    left_out = {("bunny", searches[2])}
-    rows = tuple((scene, Compared(run[scene], searches[1], ("triangles",)), Compared(run[scene], searches[1], ("counters", "wedges")),
-                  *(None if (scene, search) in left_out else Compared(run[scene], search, lambda m: m["counters"]["candidateEdges"] / 1e6) for search in searches),
-                  *(None if (scene, search) in left_out else Compared(run[scene], search, ("counters", "searchEntries")) for search in searches[1:])) for scene in scenes)
-    return Table("candidates of the papers' structures and of a hierarchy over edges", "128 × 128 pixels, 64 light samples; candidate edges of all view samples in millions, and what the "
-                 "structures hold. Empty: not run.", ("scene", "triangles", "wedges", "hierarchy", "kd-tree", "hemicube", "entries: kd-tree", "hemicube"),
-                 (None, None, None, ".3g", ".3g", ".3g", None, None), rows)
-
-
 def wedge_ratios():
     def of(scene, construction, key):
         return Answer(("wedges", f"scene:{scene}", "--validate", "--from", "centre", "--construction", construction, "--json"), lambda answer: answer["tightness"][key])
@@ -286,49 +273,49 @@ def seconds(title, scenes, entries, options, conditions):
 
 TABLES = {
     "plateaus": by_scene("plateaus: errors beside wedge-ramp and hard shadows", ERRORS, FIVE,
-                      (rmse("RMSE", "plateaus"), largest("largest error", "plateaus"), rmse("wedge-ramp: RMSE", "wedge-ramp"), rmse("hard-volume: RMSE", "hard-volume"))),
+                         (rmse("RMSE", "plateaus"), largest("largest error", "plateaus"), rmse("wedge-ramp: RMSE", "wedge-ramp"), rmse("hard-volume: RMSE", "hard-volume"))),
     "alias-free": by_scene("alias-free: errors of a hard shadow", ERRORS, FIVE,
-                        (rmse("`alias-free`: RMSE", "alias-free"), rmse("`hard-volume`", "hard-volume"), rmse("`shadow-map`", "shadow-map"),
-                         rmse("`edge-scatter`, 256 light samples", "edge-scatter"))),
+                           (rmse("`alias-free`: RMSE", "alias-free"), rmse("`hard-volume`", "hard-volume"), rmse("`shadow-map`", "shadow-map"),
+                            rmse("`edge-scatter`, 256 light samples", "edge-scatter"))),
     "wedge-ramp": by_scene("wedge-ramp: wedges, fragments and errors", ERRORS, FIVE,
-                        (*wedge_columns("wedge-ramp"), rmse("soft-volume: RMSE", "soft-volume"), rmse("hard-volume: RMSE", "hard-volume"))),
+                           (*wedge_columns("wedge-ramp"), rmse("soft-volume: RMSE", "soft-volume"), rmse("hard-volume: RMSE", "hard-volume"))),
     "soft-volume": by_scene("soft-volume: wedges, fragments and errors", ERRORS, FIVE, wedge_columns("soft-volume")),
     "soft-volume-blend": by_scene("soft-volume-blend: wedges, fragments and errors", ERRORS, FIVE,
-                               (*wedge_columns("soft-volume-blend"), rmse("soft-volume: RMSE", "soft-volume"), rmse("hard-volume: RMSE", "hard-volume"))),
+                                  (*wedge_columns("soft-volume-blend"), rmse("soft-volume: RMSE", "soft-volume"), rmse("hard-volume: RMSE", "hard-volume"))),
     "wedge-fragments": by_scene("fragments of soft-volume's wedges", "128 × 128 pixels. A fragment is a pixel of a wedge's footprint.", FIVE,
-                             tuple(count(head, entry, "fragments") for head, entry in (("`tests=none`", "soft-volume:tests=none"), ("`z`", "soft-volume:tests=z"), ("`both`", "soft-volume"),
-                                                                                       ("`both`, tight", "soft-volume:construction=tight")))),
+                                tuple(count(head, entry, "fragments") for head, entry in (("`tests=none`", "soft-volume:tests=none"), ("`z`", "soft-volume:tests=z"), ("`both`", "soft-volume"),
+                                                                                          ("`both`, tight", "soft-volume:construction=tight")))),
     "soft-irregular": by_scene("soft-irregular: errors, with leaks and with layers", ERRORS, ("contact", "fusion", "room"),
-                            (rmse("RMSE", "soft-irregular"), mean("mean error", "soft-irregular"), largest("largest error", "soft-irregular"),
-                             rmse("`umbra=layers`: RMSE", "soft-irregular:umbra=layers"), largest("largest error", "soft-irregular:umbra=layers"))),
+                               (rmse("RMSE", "soft-irregular"), mean("mean error", "soft-irregular"), largest("largest error", "soft-irregular"),
+                                rmse("`umbra=layers`: RMSE", "soft-irregular:umbra=layers"), largest("largest error", "soft-irregular:umbra=layers"))),
     "hard-volume-fragments": by_scene("fragments of hard-volume's variants", "512 × 512 pixels. A fragment is a pixel of the box that a face of a volume covers.",
-                                   ("fusion", "room", "thin", "bunny"), variants("fragments"), "512x512"),
+                                      ("fusion", "room", "thin", "bunny"), variants("fragments"), "512x512"),
     "hard-volume-updates": by_scene("changes of counts by hard-volume's variants", "512 × 512 pixels. A change is what a stencil would be written for.",
-                                 ("fusion", "room", "thin", "bunny"), variants("countUpdates"), "512x512"),
+                                    ("fusion", "room", "thin", "bunny"), variants("countUpdates"), "512x512"),
     "hard-volume-culled": by_scene("what hard-volume's variants leave out", "512 × 512 pixels.", ("fusion", "room", "thin", "bunny"),
-                                (count("`cc`: volumes", "hard-volume:variant=cc", "volumes"), count("culled", "hard-volume:variant=cc", "culledVolumes"),
-                                 count("cut", "hard-volume:variant=cc", "clampedVolumes"), count("`hierarchical`: triangles", "hard-volume:variant=hierarchical", "volumes"),
-                                 count("culled", "hard-volume:variant=hierarchical", "culledVolumes"), count("`tiles`: tiles", "hard-volume:variant=tiles", "tiles"),
-                                 count("whole", "hard-volume:variant=tiles", "wholeTiles")), "512x512"),
+                                   (count("`cc`: volumes", "hard-volume:variant=cc", "volumes"), count("culled", "hard-volume:variant=cc", "culledVolumes"),
+                                    count("cut", "hard-volume:variant=cc", "clampedVolumes"), count("`hierarchical`: triangles", "hard-volume:variant=hierarchical", "volumes"),
+                                    count("culled", "hard-volume:variant=hierarchical", "culledVolumes"), count("`tiles`: tiles", "hard-volume:variant=tiles", "tiles"),
+                                    count("whole", "hard-volume:variant=tiles", "wholeTiles")), "512x512"),
     "soft-volume-split": by_scene("soft-volume: errors with a split light", ERRORS, EIGHT,
-                               (*(column for entry, head in zip(SPLITS, ("`split=1`", "`split=2`", "`split=3`")) for column in errors(head, entry)),
-                                rmse("`coverage=table`: RMSE", "soft-volume:coverage=table"), rmse("hard-volume: RMSE", "hard-volume"))),
+                                  (*(column for entry, head in zip(SPLITS, ("`split=1`", "`split=2`", "`split=3`")) for column in errors(head, entry)),
+                                   rmse("`coverage=table`: RMSE", "soft-volume:coverage=table"), rmse("hard-volume: RMSE", "hard-volume"))),
     "layer-rays": by_scene("layer-rays beside other methods of one map", "64 × 64 pixels, 64 light samples, maps of 1024²; RMSE of V over judged pixels against exact areas (`edge-scatter:rows=exact`).",
-                        ("bunny", "contact", "fusion"),
-                        tuple(rmse(f"`{entry}`", entry) for entry in ("layer-rays:layers=1", "layer-rays:layers=4", "bitmask", "contour", "backproject", "shadow-map")), "64x64", 64),
+                           ("bunny", "contact", "fusion"),
+                           tuple(rmse(f"`{entry}`", entry) for entry in ("layer-rays:layers=1", "layer-rays:layers=4", "bitmask", "contour", "backproject", "shadow-map")), "64x64", 64),
     "hierarchical-penumbra": by_scene("errors of 256 light samples, and of view-sample-planar's table",
-                                   "128 × 128 pixels, 256 light samples in rows; errors of V over judged pixels against exact areas (`edge-scatter:rows=exact`).",
-                                   ("broken", "contact", "fusion", "parallel-square", "thin"),
-                                   (*errors("`hierarchical-penumbra`", "hierarchical-penumbra"), *errors("`view-sample:variant=sintorn`", "view-sample:variant=sintorn"),
-                                    *errors("`view-sample-planar:lookup=nearest`", "view-sample-planar:lookup=nearest")), SIZE, 256),
+                                      "128 × 128 pixels, 256 light samples in rows; errors of V over judged pixels against exact areas (`edge-scatter:rows=exact`).",
+                                      ("broken", "contact", "fusion", "parallel-square", "thin"),
+                                      (*errors("`hierarchical-penumbra`", "hierarchical-penumbra"), *errors("`view-sample:variant=sintorn`", "view-sample:variant=sintorn"),
+                                       *errors("`view-sample-planar:lookup=nearest`", "view-sample-planar:lookup=nearest")), SIZE, 256),
     "depth-complexity-forest": by_scene("errors of depth-complexity's silhouettes from the light's centre",
-                                     "256 × 256 pixels, 16 light samples in rows; errors of V over judged pixels against exact areas (`edge-scatter:rows=exact`). Every bit of "
-                                     "`depth-complexity` is right: its errors are those of 16 light samples.",
-                                     ("parallel-square", "contact", "broken", "fusion", "large-penumbra", "room", "self-shadow", "thin", "bunny"),
-                                     (count("silhouette edges", "depth-complexity:variant=forest", "silhouetteEdges"), *errors("`variant=forest`", "depth-complexity:variant=forest"),
-                                      mean("mean error", "depth-complexity:variant=forest"), *errors("`depth-complexity`", "depth-complexity"),
-                                      *(count(f"pixels that overflow {bits} bits", f"depth-complexity:variant=forest:counter-bits={bits}", "overflowPixels") for bits in (16, 8, 6))),
-                                     "256x256", 16),
+                                        "256 × 256 pixels, 16 light samples in rows; errors of V over judged pixels against exact areas (`edge-scatter:rows=exact`). Every bit of "
+                                        "`depth-complexity` is right: its errors are those of 16 light samples.",
+                                        ("parallel-square", "contact", "broken", "fusion", "large-penumbra", "room", "self-shadow", "thin", "bunny"),
+                                        (count("silhouette edges", "depth-complexity:variant=forest", "silhouetteEdges"), *errors("`variant=forest`", "depth-complexity:variant=forest"),
+                                         mean("mean error", "depth-complexity:variant=forest"), *errors("`depth-complexity`", "depth-complexity"),
+                                         *(count(f"pixels that overflow {bits} bits", f"depth-complexity:variant=forest:counter-bits={bits}", "overflowPixels") for bits in (16, 8, 6))),
+                                        "256x256", 16),
     "accuracy": by_entry("methods on the default scene", "`scenes/bunny.json`, 512 × 512 pixels, 256 light samples; against rays to the same light samples. Empty: the method gives V "
                          "alone and has no pairs.", ("method",),
                          entries_of(Run("bunny", "512x512", SAME, 256), (
@@ -339,10 +326,6 @@ TABLES = {
     "map-fits": map_fits(),
     "error-budget": budget("parts of the errors of image-based methods", ("backproject:size=64", "bitmask:size=64:occluder=patch", "contour:size=64", "pcss:size=64"),
                            ("resolution", "view", "layers", "fusion", "gaps", "bias")),
-    "error-budget-geometry": budget("parts of the errors of geometry-based methods",
-                                    ("soft-volume", "soft-volume:split=2", "soft-volume-blend", "soft-irregular", "wedge-ramp", "plateaus", "hard-volume",
-                                     "depth-complexity:variant=forest", "view-sample-planar:lookup=nearest:map=16", "edge-scatter"),
-                                    ("resolution", "view", "layers", "fusion", "samples", "falloff"), 16),
     "radiance": beauty(),
     "backproject": by_entry("backproject: ways to fill gaps", ERRORS, ("scene", "method"),
                             [((scene.rpartition("/")[2], code(entry)), Run(scene, SIZE, AREAS), entry)
@@ -376,24 +359,15 @@ TABLES = {
     "textured-lights": by_entry("errors under a textured light", "`scenes/textured-light.json`, 256 × 256 pixels; errors of V over judged pixels against exact areas.", ("light samples", "method"),
                                 [((str(n), code(entry)), Run("textured-light", "256x256", AREAS, n), entry) for entry in ("view-sample", "accumulate", "pcss")
                                  for n in {"view-sample": (64, 256, 1024, 4096), "accumulate": (64, 256), "pcss": (256,)}[entry]], (("RMSE", RMSE, ".4f"), ("largest error", LARGEST, ".3f"))),
-    "view-sample-planar": by_entry("view-sample-planar: pairs that a table's nearest texel gets wrong", "256 × 256 pixels, 256 light samples in rows; against rays to the same light samples.",
-                                   ("scene", "`map`"),
-                                   [((scene, str(size)), Run(scene, "256x256", SAME, 256), f"view-sample-planar:lookup=nearest:map={size}")
-                                    for scene, sizes in (("contact", (128, 1024)), ("fusion", (128, 1024)), ("bunny", (128, 1024)), ("thin", (128, 512))) for size in sizes],
-                                   (("wrong pairs", ("pairsDiffering",), None), ("of", ("pairsAll",), None), ("RMSE of V", RMSE, ".4f"), ("largest error", LARGEST, ".3f"))),
     "layer-rays-maps": by_entry("layer-rays: layers and maps", "128 × 128 pixels, 256 light samples; errors of V over judged pixels against exact areas. `board` is of 0.1 × 2.5, on its edge under the light.",
                                 ("scene", "method"),
                                 [((scene.rpartition("/")[2].partition("-")[0], code(entry)), Run(scene, SIZE, AREAS, 256), entry) for scene, entries in (
                                     ("papers/ball", (*(f"layer-rays:size={size}:layers=1:gap=0" for size in (32, 96, 288)), *(f"layer-rays:size={size}:layers=2" for size in (32, 96, 288)))),
                                     ("board-on-edge", ("layer-rays:size=256:layers=2", "layer-rays:size=256:layers=2:solid=on"))) for entry in entries], ERROR_COLUMNS),
-    "depth-complexity-structures": structures(),
     "wedges": wedge_ratios(),
     "coverage": coverage(),
     "self-test": self_test(),
     "file-sizes": file_sizes(),
-    "hierarchical-penumbra-seconds": seconds("processor seconds of methods that take pairs away", ("contact", "thin", "fusion", "bunny"),
-                                             ("hierarchical-penumbra", "view-sample:variant=sintorn", "view-sample-planar", "view-sample:engine=native", "raytrace"),
-                                             ("--size", "256x256", "--light-samples", "256"), "256 × 256 pixels, 256 light samples."),
     "soft-irregular-seconds": seconds("processor seconds of soft-irregular and of others", ("contact", "fusion", "large-penumbra", "room"),
                                       ("soft-irregular", "soft-irregular:umbra=layers", "soft-volume", "edge-scatter:rows=samples", "edge-scatter:rows=exact"),
                                       ("--size", "512x512"), "512 × 512 pixels; `rows=samples` with 256 light samples."),
