@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// penumbra-bench: runs the measurement that the options ask for. Each writes the rows of its table as they are
+// measured, and lines of JSON if there is a file for them.
+
 #include "base/error.hpp"
 #include "base/memory.hpp"
 #include "bench/cpu.hpp"

@@ -1,67 +1,110 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Measures tables of pages about methods: errors against exact areas, and counters.
+"""Measures tables of pages: errors against exact areas, counters, sizes of files, processor seconds.
 
-  bench/page_tables.py [--build build] [NAME …]     measures the named tables, all without names, and writes bench/results/NAME.json
+  bench/page_tables.py [--build build] [--commit C] [NAME …]     measures the named tables, all without names, and writes bench/results/NAME.json
+  bench/page_tables.py --scene NAME                              prints a scene of these tables that is not one of scenes/
 
-`bench/tables.py` then writes the pages. Errors and counters are of one `penumbra compare` a scene, with the methods of all named tables; they depend on no
-machine and no load. Uses Python's standard library alone."""
+`bench/tables.py` then writes the pages. Errors, counters and sizes depend on no machine and no load. Uses Python's standard library alone."""
 
 import argparse
 import json
-import os
-import platform
-import subprocess
 import sys
 import tempfile
-from dataclasses import dataclass
 from pathlib import Path
 
+sys.dont_write_bytecode = True
 ROOT = Path(__file__).resolve().parent.parent
-RESULTS = ROOT / "bench" / "results"
-AREAS = "edge-scatter:rows=exact"
+sys.path.insert(0, str(ROOT / "docs"))
+
+import map_fits_pictures  # noqa: E402
+from measured_tables import Answer, Bench, Compared, Megabytes, ProcessorSeconds, Run, Table, head_commit, measure  # noqa: E402
+
+AREAS = ("--reference", "edge-scatter:rows=exact")
+SAME = ("--reference-samples", "same")
 SIZE = "128x128"
 FIVE = ("parallel-square", "contact", "fusion", "room", "bunny")
+EIGHT = ("parallel-square", "contact", "broken", "fusion", "large-penumbra", "room", "self-shadow", "bunny")
+VARIANTS = ("z-fail", "zp+", "cc", "split", "hierarchical", "tiles")
+SPLITS = ("soft-volume", "soft-volume:split=2", "soft-volume:split=3")
+ERRORS = "128 × 128 pixels; errors of V over judged pixels against exact areas (`edge-scatter:rows=exact`)."
+
+RMSE, MEAN, LARGEST = ("error", "rmse"), ("error", "bias"), ("error", "max")
 
 
-@dataclass(frozen=True)
-class Compared:
-    """A column from metrics.json: `path` in the entry of a method."""
-    head: str
-    entry: str
-    path: tuple
-    form: str | None = ".4f"
+# Scenes that are not shipped
+
+def shipped(name):
+    return json.loads((ROOT / "scenes" / f"{name}.json").read_text(encoding="utf-8"))
 
 
-@dataclass(frozen=True)
-class Table:
-    title: str
-    conditions: str
-    scenes: tuple
-    columns: tuple
-    size: str = SIZE
-    light_samples: int | None = None
+def ball(half):
+    """scenes/papers/ball.json under a square light of this half-size."""
+    scene = shipped("papers/ball")
+    scene["lights"][0]["rectangle"] |= {"halfU": [half, 0, 0], "halfV": [0, 0, half]}
+    return scene
 
 
-@dataclass(frozen=True)
-class Measured:
-    title: str
-    conditions: str
-    columns: list
-    formats: list
-    rows: list
+def near_light():
+    """Things in front of a panel of light that stands on the floor."""
+    meshes = (("floor", [0, 0, 0.5], [2.5, 0, 0], [0, 0, -1.5]), ("board", [-0.6, 0.25, -0.7], [0.25, 0, 0.1], [0, 0.25, 0]),
+              ("post", [0.15, 0.6, -0.75], [0.06, 0, 0], [0, 0.6, 0]), ("shelf", [0.8, 0.12, -0.65], [0.3, 0, 0], [0, 0.03, 0.2]))
+    return {"format": "penumbra-scene/1", "size": [360, 270], "camera": {"eye": [0.3, 3, 1.3], "target": [0.1, 0, -0.2], "verticalFov": 38},
+            "meshes": [{"name": name, "quad": {"center": center, "halfU": u, "halfV": v}} for name, center, u, v in meshes],
+            "lights": [{"name": "panel", "rectangle": {"center": [0, 0.61, -1.01], "halfU": [1.2, 0, 0], "halfV": [0, 0.6, 0]}, "radiance": [6, 5.8, 5.4]}]}
 
+
+def defect(name):
+    """A part of the generator of broken meshes on a floor under a square light."""
+    return {"format": "penumbra-scene/1", "size": [192, 144], "camera": {"eye": [-1.6, 2.2, 2.6], "target": [0.15, 0.45, 0], "verticalFov": 40},
+            "meshes": [{"name": "floor", "quad": {"center": [0, 0, 0], "halfU": [3, 0, 0], "halfV": [0, 0, -3]}},
+                       {"name": "part", "shape": {"type": "broken", "defects": [name], "size": 4, "center": [0, 0.6, 0], "halfExtent": 0.5}}],
+            "lights": [{"name": "key", "rectangle": {"center": [-1.5, 4, 0.5], "halfU": [0.4, 0, 0], "halfV": [0, 0, 0.4]}}]}
+
+
+def lamps():
+    """scenes/bunny.json under 24 small lamps, six by four, in place of one."""
+    scene = shipped("bunny")
+    scene["lights"] = [{"name": f"lamp {6 * row + column}", "radiance": [22, 21, 19],
+                        "rectangle": {"center": [column - 2, 5, row - 1], "halfU": [0.1, 0, 0], "halfV": [0, 0, 0.1]}}
+                       for row in range(4) for column in range(6)]
+    return scene
+
+
+def board_on_edge():
+    """A thin board that stands on its edge right below the light, over a floor."""
+    scene = shipped("papers/ball")
+    scene["meshes"][1] = {"name": "board", "quad": {"center": [0, 2, 0], "halfU": [0, 0, 1.25], "halfV": [0, 0.05, 0]}}
+    return scene
+
+
+DEFECTS = ("none", "inside-out", "flipped-patch", "duplicate-face", "opposite-face", "doubled-box", "unmerged", "t-junction", "crack", "gap", "lost-gap", "collinear",
+           "repeated-vertex", "needle", "lid", "hollow", "hole", "holes", "fin", "spikes", "shared-edge", "bowtie", "crossing-sheets", "loose-triangles")
+HALVES = (0.1, 0.25, 0.5, 1)
+SCENES = {"near-light": near_light, "lamps": lamps, "board-on-edge": board_on_edge, "map-fits": map_fits_pictures.scene,
+          **{f"ball-{half}": lambda half=half: ball(half) for half in (*HALVES, 0.3, 2)}, **{f"defect-{name}": lambda name=name: defect(name) for name in DEFECTS}}
+
+
+# Columns: a head, a method and what is asked of it, a format
 
 def rmse(head, entry):
-    return Compared(head, entry, ("error", "rmse"))
+    return head, entry, RMSE, ".4f"
 
 
 def largest(head, entry):
-    return Compared(head, entry, ("error", "max"), ".2f")
+    return head, entry, LARGEST, ".2f"
+
+
+def mean(head, entry):
+    return head, entry, MEAN, "+.4f"
 
 
 def count(head, entry, name):
-    return Compared(head, entry, ("counters", name), None)
+    return head, entry, ("counters", name), None
+
+
+def errors(head, entry):
+    return rmse(f"{head}: RMSE", entry), largest("largest error", entry)
 
 
 def wedge_columns(entry):
@@ -69,134 +112,283 @@ def wedge_columns(entry):
             rmse("RMSE", entry), largest("largest error", entry))
 
 
-VARIANTS = ("z-fail", "zp+", "cc", "split", "hierarchical", "tiles")
-SPLITS = ("soft-volume", "soft-volume:split=2", "soft-volume:split=3")
-EIGHT = ("parallel-square", "contact", "broken", "fusion", "large-penumbra", "room", "self-shadow", "bunny")
-
-
 def variants(name):
     return tuple(count(f"`{variant}`", f"hard-volume:variant={variant}", name) for variant in VARIANTS)
 
 
-def errors(head, entry):
-    return (rmse(f"{head}: RMSE", entry), largest("largest error", entry))
+def by_scene(title, conditions, scenes, columns, size=SIZE, light_samples=None, *, reference=AREAS, names=None, merged=False):
+    """A row for each scene."""
+    runs = {scene: Run(scene, size, reference, light_samples) for scene in scenes}
+    return Table(title, conditions, ("scene", *(head for head, *_ in columns)), (None, *(form for *_, form in columns)),
+                 tuple(((names or {}).get(scene, scene), *(Compared(run, entry, of) for _, entry, of, _ in columns)) for scene, run in runs.items()), merged)
 
 
-ERRORS = "128 × 128 pixels; errors of V over judged pixels against exact areas (`edge-scatter:rows=exact`)."
+def by_entry(title, conditions, heads, rows, columns):
+    """A row for each (labels, run, method); columns are (head, what is asked, format)."""
+    return Table(title, conditions, (*heads, *(head for head, *_ in columns)), (*(None for _ in heads), *(form for *_, form in columns)),
+                 tuple((*labels, *(Compared(run, entry, of) for _, of, _ in columns)) for labels, run, entry in rows))
+
+
+ERROR_COLUMNS = (("RMSE", RMSE, ".4f"), ("mean error", MEAN, "+.4f"), ("largest error", LARGEST, ".2f"))
+UMBRA_COLUMNS = (("RMSE", RMSE, ".4f"), ("mean error", MEAN, "+.4f"), ("umbra: mean error", ("lights", 0, "classes", "umbra", "bias"), "+.4f"),
+                 ("largest", ("lights", 0, "classes", "umbra", "max"), ".2f"))
+
+
+def code(entry):
+    return f"`{entry}`"
+
+
+def entries_of(run_of, entries):
+    return [((code(entry),), run_of, entry) for entry in entries]
+
+
+# Tables of one page each that need more than a line
+
+def aliasing(method, name):
+    return method["counters"][name] / method["counters"]["aliasingPixels"]
+
+
+def map_fits():
+    run = Run("map-fits", None, ("--reference", "raytrace"), 16)
+    rows = []
+    for fit, size in map_fits_pictures.ROWS:
+        rows.append(((code(fit), f"{size}²"), run, f"shadow-map:size={size}:fit={fit}:aliasing=count"))
+    return by_entry("map fits: the aliasing error m", "A floor of 24 × 48 with plates above it, 192 × 144 pixels; 1,024 rays a pixel judge V.", ("`fit`", "each map"), rows,
+                    (("maps", ("counters", "mapFaces"), None), ("mean m", lambda m: aliasing(m, "aliasingThousandths") / 1000, ".2f"),
+                     ("largest", lambda m: m["counters"]["aliasingWorstThousandths"] / 1000, ".1f"), ("m > 1, %", lambda m: 100 * aliasing(m, "undersampledPixels"), ".0f"),
+                     ("storage factor", lambda m: aliasing(m, "neededTexels"), ".1f"), ("RMSE of V", RMSE, ".4f")))
+
+
+def change_by(cause):
+    """The part of a cause, to the four digits of the table, so that what is nothing there has no sign."""
+    def of(method):
+        change = method["errorBudget"][cause]
+        return None if change is None else round(change, 4) + 0.0
+
+    return of
+
+
+def budget(title, entries, causes, light_samples=None):
+    run = Run("fusion", "48x48", ("--reference", "exact"), light_samples, more=("--error-budget",))
+    return by_entry(title, "`scenes/fusion.json`, 48 × 48 pixels, judged by exact areas. Empty: no repair was run.", ("entry",), entries_of(run, entries),
+                    (("RMSE", ("errorBudgetRuns", "rmse"), ".4f"), *((cause, change_by(cause), "+.4f") for cause in causes),
+                     ("all but the view", ("errorBudgetRuns", "allButView", "rmse"), ".4f"), ("remainder", ("errorBudget", "remainder"), ".4f")))
+
+
+def beauty():
+    samples, relative = (16, 64, 256, 1024), ("beautyError", "relativeRmse")
+    cases = (("raytrace", "rows"), ("raytrace", "jittered"), ("soft-volume", "rows"))
+    rows = tuple((scene, f"`{method}`" + (f", {pattern}" if method == "raytrace" else ""),
+                  *(Compared(Run(scene, "256x192", AREAS, n, pattern), method, relative) for n in samples))
+                 for scene in ("near-light", "contact", "parallel-square") for method, pattern in cases)
+    return Table("errors of the beauty at four numbers of light samples", "256 × 192 pixels; √(mean e²) over the mean luminance, over all judged pixels, against exact areas "
+                 "(`edge-scatter:rows=exact`). `near-light` is the pictures' scene.", ("scene", "method", *map(str, samples)), (None, None, *(".4f" for _ in samples)), rows)
+
+
+def adaptive_light():
+    rows = []
+    for half in (0.1, 0.5, 1, 2):
+        run, entry = Run(f"ball-{half}", SIZE, AREAS, 128), "adaptive-light:size=256:shareOf=map:epsilon=0.0018"
+        rows.append((f"{half}", Compared(run, entry, ("counters", "maps")), Compared(run, entry, RMSE), Compared(run, f"{entry}:weights=area", RMSE),
+                     Compared(run, "accumulate:size=256", RMSE)))
+    return Table("adaptive-light under lights of four sizes", "`scenes/papers/ball.json` under a light of half-size s, 128 × 128 pixels, maps of 256², `shareOf=map:epsilon=0.0018`; "
+                 "errors of V over judged pixels against exact areas.", ("s", "maps", "RMSE", "`weights=area`: RMSE", "128 fixed maps (`accumulate`): RMSE"),
+                 (None, None, ".4f", ".4f", ".4f"), tuple(rows))
+
+
+def deep_penumbra():
+    run = Run("fusion", "256x256", AREAS, 64)
+    rows = [((str(size), bound), run, f"deep-penumbra:size={size}:bound={bound}") for size, bound in
+            ((64, "0.01"), (128, "0.01"), (256, "0"), (256, "0.01"), (256, "0.1"), (256, "0.5"), (512, "0.01"))]
+    rows += [((str(size), "`accumulate`"), run, f"accumulate:size={size}") for size in (256, 512)]
+    return by_entry("deep-penumbra: size and bound", "`scenes/fusion.json`, 256 × 256 pixels, 64 light samples; errors of V over judged pixels against exact areas.",
+                    ("size", "bound"), rows, (("RMSE", RMSE, ".4f"), ("off by more than 0.05, %", lambda m: 100 * m["error"]["over05"], ".1f"),
+                                              ("steps", lambda m: m["counters"].get("steps"), None)))
+
+
+def defect_pairs():
+    run = {name: Run(f"defect-{name}", None, SAME, 64) for name in DEFECTS}
+    few = {name: Run(f"defect-{name}", None, SAME, 16) for name in DEFECTS}
+    differing = ("pairsDiffering",)
+    rows = tuple((code(name), *(Compared(run[name], entry, differing) for entry in ("view-sample", "edge-scatter", "depth-complexity", "depth-complexity:variant=laine")),
+                  Compared(few[name], "depth-complexity:variant=forest", differing), Compared(run[name], "accumulate", differing), Compared(run[name], "accumulate", ("pairsAll",)),
+                  *(Compared(run[name], entry, RMSE) for entry in ("accumulate", "pcss", "shadow-map"))) for name in DEFECTS)
+    return Table("pairs that methods decide differently on broken meshes", "192 × 144 pixels, 64 light samples (`forest`: 16, a quarter of the pairs), maps of 1024²; against rays to the "
+                 "same light samples. Parts with the same figures share a row.",
+                 ("part", "`view-sample`", "`edge-scatter`", "`depth-complexity`", "`laine`", "`forest`", "`accumulate`", "of pairs", "its RMSE", "`pcss`: RMSE", "`shadow-map`: RMSE"),
+                 (*(None for _ in range(8)), ".4f", ".4f", ".4f"), rows, merged=True)
+
+
+def wedge_ratios():
+    def of(scene, construction, key):
+        return Answer(("wedges", f"scene:{scene}", "--validate", "--from", "centre", "--construction", construction, "--json"), lambda answer: answer["tightness"][key])
+
+    return Table("cross-sections of wedges over those of penumbrae", "`penumbra wedges SCENE --from centre --validate`: areas on planes that are half, once and twice as far beyond the "
+                 "edge as the light is on the other side.", ("scene", "wedges", "original: median", "p99", "largest", "tight: largest"), (None, None, ".2f", ".2f", ".2f", ".4f"),
+                 tuple((scene, Answer(("wedges", f"scene:{scene}", "--validate", "--from", "centre", "--construction", "original", "--json"), lambda answer: answer["counts"]["wedge"]),
+                        *(of(scene, "original", key) for key in ("median", "p99", "max")), of(scene, "tight", "max"))
+                       for scene in ("parallel-square", "broken", "contact", "fusion", "thin")))
+
+
+def coverage():
+    def of(scene, path):
+        def figure(answer):
+            answer = answer["coverage"]
+            if path == ("maxAgainstExact",) and not answer["singleLayer"]:
+                return None
+            for key in path:
+                answer = answer[key]
+            return answer
+
+        return Answer(("wedges", f"scene:{scene}", "--validate", "--from", "centre", "--construction", "original", "--json"), figure)
+
+    paths = (("samples",), ("singleLayer",), ("maxAgainstTriangles",), ("maxAgainstExact",), ("centreDifference", "mean"), ("centreDifference", "max"))
+    return Table("silhouettes' sums beside triangles and exact areas", "`penumbra wedges SCENE --validate`; of `textured-light` weights in place of areas.",
+                 ("scene", "samples", "single layer", "receiver − triangles", "receiver − exact", "centre − receiver: mean", "largest"),
+                 (None, None, None, ".0e", ".0e", ".4f", ".3f"),
+                 tuple((scene, *(of(scene, path) for path in paths)) for scene in ("parallel-square", "contact", "broken", "bunny", "fusion", "large-penumbra", "room", "self-shadow",
+                                                                                   "thin", "textured-light", "terrain-1m")))
+
+
+def self_test():
+    keys = ("pass", "compared", "differing", "largest", "allowed", "verdict", "against")
+
+    def rows(bench):
+        return [[check[key] if check[key] != 0 or key in ("compared", "differing") else None for key in keys] for check in bench.answer(("devices", "--self-test", "--json"))["checks"]]
+
+    return Table("the self-test on llvmpipe", "`penumbra devices --self-test` with Mesa 22.3.6 (LLVM 15.0.6, 256 bits), Vulkan and OpenGL. Empty: 0.", keys, (None, None, None, ".1e", ".1e", None, None), rows)
+
+
+def file_sizes():
+    kinds = (("all layers, with those on request", "--layers", "*,*_light,*_V"), ("default",), ("`--half`", "--half"), ("`--half --compression dwaa`", "--half", "--compression", "dwaa"),
+             ("`--layers beauty --half --compression dwaa`", "--layers", "beauty", "--half", "--compression", "dwaa"))
+    return Table("sizes of EXR files", "1920 × 1080 pixels, exact areas; megabytes (10⁶ bytes).", ("options", "`bunny`, one lamp", "the same with 24 lamps"), (None, ".2f", ".2f"),
+                 tuple((name, *(Megabytes(scene, ("--size", "1920x1080", *options)) for scene in ("bunny", "lamps"))) for name, *options in kinds))
+
+
+def seconds(title, scenes, entries, options, conditions):
+    return Table(title, f"{conditions} User and system time of the whole `penumbra render`, least of three.", ("scene", *map(code, entries)), (None, *(".2f" for _ in entries)),
+                 tuple((scene, *(ProcessorSeconds(scene, entry, options) for entry in entries)) for scene in scenes))
+
 
 TABLES = {
-    "plateaus": Table("plateaus: errors beside wedge-ramp and hard shadows", ERRORS, FIVE,
-                      (rmse("RMSE", "plateaus"), largest("largest error", "plateaus"), rmse("wedge-ramp: RMSE", "wedge-ramp"), rmse("hard-volume: RMSE", "hard-volume"))),
-    "alias-free": Table("alias-free: errors of a hard shadow", ERRORS, FIVE,
-                        (rmse("`alias-free`: RMSE", "alias-free"), rmse("`hard-volume`", "hard-volume"), rmse("`shadow-map`", "shadow-map"),
-                         rmse("`edge-scatter`, 256 light samples", "edge-scatter"))),
-    "wedge-ramp": Table("wedge-ramp: wedges, fragments and errors", ERRORS, FIVE,
-                        (*wedge_columns("wedge-ramp"), rmse("soft-volume: RMSE", "soft-volume"), rmse("hard-volume: RMSE", "hard-volume"))),
-    "soft-volume": Table("soft-volume: wedges, fragments and errors", ERRORS, FIVE, wedge_columns("soft-volume")),
-    "soft-volume-blend": Table("soft-volume-blend: wedges, fragments and errors", ERRORS, FIVE,
-                               (*wedge_columns("soft-volume-blend"), rmse("soft-volume: RMSE", "soft-volume"), rmse("hard-volume: RMSE", "hard-volume"))),
-    "wedge-fragments": Table("fragments of soft-volume's wedges", "128 × 128 pixels. A fragment is a pixel of a wedge's footprint.", FIVE,
-                             tuple(count(head, entry, "fragments") for head, entry in (("`tests=none`", "soft-volume:tests=none"), ("`z`", "soft-volume:tests=z"), ("`both`", "soft-volume"),
-                                                                                       ("`both`, tight", "soft-volume:construction=tight")))),
-    "soft-irregular": Table("soft-irregular: errors, with leaks and with layers", ERRORS, ("contact", "fusion", "room"),
-                            (rmse("RMSE", "soft-irregular"), Compared("mean error", "soft-irregular", ("error", "bias"), "+.4f"), largest("largest error", "soft-irregular"),
-                             rmse("`umbra=layers`: RMSE", "soft-irregular:umbra=layers"), largest("largest error", "soft-irregular:umbra=layers"))),
-    "hard-volume-fragments": Table("fragments of hard-volume's variants", "512 × 512 pixels. A fragment is a pixel of the box that a face of a volume covers.",
-                                   ("fusion", "room", "thin", "bunny"), variants("fragments"), "512x512"),
-    "hard-volume-updates": Table("changes of counts by hard-volume's variants", "512 × 512 pixels. A change is what a stencil would be written for.",
-                                 ("fusion", "room", "thin", "bunny"), variants("countUpdates"), "512x512"),
-    "hard-volume-culled": Table("what hard-volume's variants leave out", "512 × 512 pixels.", ("fusion", "room", "thin", "bunny"),
-                                (count("`cc`: volumes", "hard-volume:variant=cc", "volumes"), count("culled", "hard-volume:variant=cc", "culledVolumes"),
-                                 count("cut", "hard-volume:variant=cc", "clampedVolumes"), count("`hierarchical`: triangles", "hard-volume:variant=hierarchical", "volumes"),
-                                 count("culled", "hard-volume:variant=hierarchical", "culledVolumes"), count("`tiles`: tiles", "hard-volume:variant=tiles", "tiles"),
-                                 count("whole", "hard-volume:variant=tiles", "wholeTiles")), "512x512"),
-    "soft-volume-split": Table("soft-volume: errors with a split light", ERRORS, EIGHT,
-                               (*(column for entry, head in zip(SPLITS, ("`split=1`", "`split=2`", "`split=3`")) for column in errors(head, entry)),
-                                rmse("`coverage=table`: RMSE", "soft-volume:coverage=table"), rmse("hard-volume: RMSE", "hard-volume"))),
-    "layer-rays": Table("layer-rays beside other methods of one map", "64 × 64 pixels, 64 light samples, maps of 1024²; RMSE of V over judged pixels against exact areas (`edge-scatter:rows=exact`).",
-                        ("bunny", "contact", "fusion"),
-                        tuple(rmse(f"`{entry}`", entry) for entry in ("layer-rays:layers=1", "layer-rays:layers=4", "bitmask", "contour", "backproject", "shadow-map")), "64x64", 64),
-    "hierarchical-penumbra": Table("errors of 256 light samples, and of view-sample-planar's table",
-                                   "128 × 128 pixels, 256 light samples in rows; errors of V over judged pixels against exact areas (`edge-scatter:rows=exact`).",
-                                   ("broken", "contact", "fusion", "parallel-square", "thin"),
-                                   (*errors("`hierarchical-penumbra`", "hierarchical-penumbra"), *errors("`view-sample:variant=sintorn`", "view-sample:variant=sintorn"),
-                                    *errors("`view-sample-planar:lookup=nearest`", "view-sample-planar:lookup=nearest")), SIZE, 256),
-    "depth-complexity-forest": Table("errors of depth-complexity's silhouettes from the light's centre",
-                                     "256 × 256 pixels, 16 light samples in rows; errors of V over judged pixels against exact areas (`edge-scatter:rows=exact`). Every bit of "
-                                     "`depth-complexity` is right: its errors are those of 16 light samples.",
-                                     ("parallel-square", "contact", "broken", "fusion", "large-penumbra", "room", "self-shadow", "thin", "bunny"),
-                                     (count("silhouette edges", "depth-complexity:variant=forest", "silhouetteEdges"), *errors("`variant=forest`", "depth-complexity:variant=forest"),
-                                      Compared("mean error", "depth-complexity:variant=forest", ("error", "bias"), "+.4f"), *errors("`depth-complexity`", "depth-complexity"),
-                                      *(count(f"pixels that overflow {bits} bits", f"depth-complexity:variant=forest:counter-bits={bits}", "overflowPixels") for bits in (16, 8, 6))),
-                                     "256x256", 16),
+    "plateaus": by_scene("plateaus: errors beside wedge-ramp and hard shadows", ERRORS, FIVE,
+                         (rmse("RMSE", "plateaus"), largest("largest error", "plateaus"), rmse("wedge-ramp: RMSE", "wedge-ramp"), rmse("hard-volume: RMSE", "hard-volume"))),
+    "alias-free": by_scene("alias-free: errors of a hard shadow", ERRORS, FIVE,
+                           (rmse("`alias-free`: RMSE", "alias-free"), rmse("`hard-volume`", "hard-volume"), rmse("`shadow-map`", "shadow-map"),
+                            rmse("`edge-scatter`, 256 light samples", "edge-scatter"))),
+    "wedge-ramp": by_scene("wedge-ramp: wedges, fragments and errors", ERRORS, FIVE,
+                           (*wedge_columns("wedge-ramp"), rmse("soft-volume: RMSE", "soft-volume"), rmse("hard-volume: RMSE", "hard-volume"))),
+    "soft-volume": by_scene("soft-volume: wedges, fragments and errors", ERRORS, FIVE, wedge_columns("soft-volume")),
+    "soft-volume-blend": by_scene("soft-volume-blend: wedges, fragments and errors", ERRORS, FIVE,
+                                  (*wedge_columns("soft-volume-blend"), rmse("soft-volume: RMSE", "soft-volume"), rmse("hard-volume: RMSE", "hard-volume"))),
+    "wedge-fragments": by_scene("fragments of soft-volume's wedges", "128 × 128 pixels. A fragment is a pixel of a wedge's footprint.", FIVE,
+                                tuple(count(head, entry, "fragments") for head, entry in (("`tests=none`", "soft-volume:tests=none"), ("`z`", "soft-volume:tests=z"), ("`both`", "soft-volume"),
+                                                                                          ("`both`, tight", "soft-volume:construction=tight")))),
+    "soft-irregular": by_scene("soft-irregular: errors, with leaks and with layers", ERRORS, ("contact", "fusion", "room"),
+                               (rmse("RMSE", "soft-irregular"), mean("mean error", "soft-irregular"), largest("largest error", "soft-irregular"),
+                                rmse("`umbra=layers`: RMSE", "soft-irregular:umbra=layers"), largest("largest error", "soft-irregular:umbra=layers"))),
+    "hard-volume-fragments": by_scene("fragments of hard-volume's variants", "512 × 512 pixels. A fragment is a pixel of the box that a face of a volume covers.",
+                                      ("fusion", "room", "thin", "bunny"), variants("fragments"), "512x512"),
+    "hard-volume-updates": by_scene("changes of counts by hard-volume's variants", "512 × 512 pixels. A change is what a stencil would be written for.",
+                                    ("fusion", "room", "thin", "bunny"), variants("countUpdates"), "512x512"),
+    "hard-volume-culled": by_scene("what hard-volume's variants leave out", "512 × 512 pixels.", ("fusion", "room", "thin", "bunny"),
+                                   (count("`cc`: volumes", "hard-volume:variant=cc", "volumes"), count("culled", "hard-volume:variant=cc", "culledVolumes"),
+                                    count("cut", "hard-volume:variant=cc", "clampedVolumes"), count("`hierarchical`: triangles", "hard-volume:variant=hierarchical", "volumes"),
+                                    count("culled", "hard-volume:variant=hierarchical", "culledVolumes"), count("`tiles`: tiles", "hard-volume:variant=tiles", "tiles"),
+                                    count("whole", "hard-volume:variant=tiles", "wholeTiles")), "512x512"),
+    "soft-volume-split": by_scene("soft-volume: errors with a split light", ERRORS, EIGHT,
+                                  (*(column for entry, head in zip(SPLITS, ("`split=1`", "`split=2`", "`split=3`")) for column in errors(head, entry)),
+                                   rmse("`coverage=table`: RMSE", "soft-volume:coverage=table"), rmse("hard-volume: RMSE", "hard-volume"))),
+    "layer-rays": by_scene("layer-rays beside other methods of one map", "64 × 64 pixels, 64 light samples, maps of 1024²; RMSE of V over judged pixels against exact areas (`edge-scatter:rows=exact`).",
+                           ("bunny", "contact", "fusion"),
+                           tuple(rmse(f"`{entry}`", entry) for entry in ("layer-rays:layers=1", "layer-rays:layers=4", "bitmask", "contour", "backproject", "shadow-map")), "64x64", 64),
+    "hierarchical-penumbra": by_scene("errors of 256 light samples, and of view-sample-planar's table",
+                                      "128 × 128 pixels, 256 light samples in rows; errors of V over judged pixels against exact areas (`edge-scatter:rows=exact`).",
+                                      ("broken", "contact", "fusion", "parallel-square", "thin"),
+                                      (*errors("`hierarchical-penumbra`", "hierarchical-penumbra"), *errors("`view-sample:variant=sintorn`", "view-sample:variant=sintorn"),
+                                       *errors("`view-sample-planar:lookup=nearest`", "view-sample-planar:lookup=nearest")), SIZE, 256),
+    "depth-complexity-forest": by_scene("errors of depth-complexity's silhouettes from the light's centre",
+                                        "256 × 256 pixels, 16 light samples in rows; errors of V over judged pixels against exact areas (`edge-scatter:rows=exact`). Every bit of "
+                                        "`depth-complexity` is right: its errors are those of 16 light samples.",
+                                        ("parallel-square", "contact", "broken", "fusion", "large-penumbra", "room", "self-shadow", "thin", "bunny"),
+                                        (count("silhouette edges", "depth-complexity:variant=forest", "silhouetteEdges"), *errors("`variant=forest`", "depth-complexity:variant=forest"),
+                                         mean("mean error", "depth-complexity:variant=forest"), *errors("`depth-complexity`", "depth-complexity"),
+                                         *(count(f"pixels that overflow {bits} bits", f"depth-complexity:variant=forest:counter-bits={bits}", "overflowPixels") for bits in (16, 8, 6))),
+                                        "256x256", 16),
+    "accuracy": by_entry("methods on the default scene", "`scenes/bunny.json`, 512 × 512 pixels, 256 light samples; against rays to the same light samples. Empty: the method gives V "
+                         "alone and has no pairs.", ("method",),
+                         entries_of(Run("bunny", "512x512", SAME, 256), (
+                             "edge-scatter", "view-sample", "depth-complexity", "edge-scatter:rows=exact", "soft-volume-blend", "soft-volume", "hard-volume", "wedge-ramp", "accumulate",
+                             "occlusion-textures", "vssm", "pcss", "pcf", "convolution", "shadow-map")),
+                         (("RMSE of V", RMSE, ".4f"), ("largest error", LARGEST, ".2f"), ("wrong pairs", lambda m: m.get("pairsDiffering"), None),
+                          ("of", lambda m: m.get("pairsAll"), None))),
+    "map-fits": map_fits(),
+    "error-budget": budget("parts of the errors of image-based methods", ("backproject:size=64", "bitmask:size=64:occluder=patch", "contour:size=64", "pcss:size=64"),
+                           ("resolution", "view", "layers", "fusion", "gaps", "bias")),
+    "radiance": beauty(),
+    "backproject": by_entry("backproject: ways to fill gaps", ERRORS, ("scene", "method"),
+                            [((scene.rpartition("/")[2], code(entry)), Run(scene, SIZE, AREAS), entry)
+                             for scene, sizes in (("papers/plate-over-plate", (64,)), ("papers/ball", (32, 128))) for size in sizes
+                             for entry in (f"backproject:size={size}:fill={fill}" for fill in ("none", "edges", "diagonal", "shared"))], UMBRA_COLUMNS),
+    "backproject-peel": by_entry("backproject-peel: layers and samples", ERRORS, ("scene", "method"),
+                                 [((scene.rpartition("/")[2], code(entry)), Run(scene, SIZE, AREAS), entry) for scene, entries in (
+                                     ("papers/plate-over-plate", ("backproject-peel:size=64:layers=1:samples=0", "backproject-peel:size=64:layers=2:samples=0")),
+                                     ("papers/ball", tuple(f"backproject-peel:size=128:layers=3:samples={samples}{select}" for select in ("", ":select=deepest") for samples in (0, 121))))
+                                  for entry in entries], UMBRA_COLUMNS),
+    "bitmask": by_entry("bitmask: occluders and layers", "128 × 128 pixels, 256 light samples; against rays to the same light samples.", ("light's half-size", "method"),
+                        [((half, code(entry)), Run(f"ball-{half}", SIZE, SAME, 256), entry) for half in ("0.3", "1")
+                         for entry in (f"bitmask:size=48:occluder={occluder}:layers={layers}" for occluder in ("quad", "triangle", "patch") for layers in (1, 3))],
+                        (("wrong pairs", ("pairsDiffering",), None), ("of", ("pairsAll",), None), ("RMSE", RMSE, ".4f"), ("mean error", MEAN, "+.4f"))),
+    "packet": by_entry("packet: parts of the light", ERRORS, ("method",),
+                       entries_of(Run("papers/ball", SIZE, AREAS), ("contour:size=128", "packet:size=128", "packet:size=128:sublights=2", "packet:size=128:sublights=4",
+                                                                    "backproject-peel:size=128:layers=4")), ERROR_COLUMNS),
+    "soft-shadow-map": by_entry("soft-shadow-map: one pass and two", "`scenes/papers/ball.json` under lights of four half-sizes, 128 × 128 pixels; errors of V against exact areas, over judged "
+                                "pixels on which the ball's shadow falls.", ("light's half-size", "passes"),
+                                [((f"{half}", str(passes)), Run(f"ball-{half}", SIZE, AREAS), f"soft-shadow-map:passes={passes}") for half in HALVES for passes in (1, 2)],
+                                (("RMSE", ("lights", 0, "classes", "cast", "rmse"), ".4f"), ("mean error", ("lights", 0, "classes", "cast", "bias"), "+.4f"),
+                                 ("largest error", ("lights", 0, "classes", "cast", "max"), ".2f"), ("umbra: pixels", ("lights", 0, "classes", "umbra", "pixels"), None),
+                                 ("mean error there", ("lights", 0, "classes", "umbra", "bias"), "+.4f"))),
+    "adaptive-light": adaptive_light(),
+    "deep-penumbra": deep_penumbra(),
+    "defects-pairs": defect_pairs(),
+    "defects-volumes": by_scene("shadow volumes on broken meshes", "192 × 144 pixels; errors of V over judged pixels against exact areas. Parts with the same figures share a row.",
+                                tuple(f"defect-{name}" for name in DEFECTS), tuple(column for entry in ("soft-volume", "soft-volume-blend", "wedge-ramp", "hard-volume")
+                                                                                   for column in errors(code(entry), entry)),
+                                None, names={f"defect-{name}": code(name) for name in DEFECTS}, merged=True),
+    "textured-lights": by_entry("errors under a textured light", "`scenes/textured-light.json`, 256 × 256 pixels; errors of V over judged pixels against exact areas.", ("light samples", "method"),
+                                [((str(n), code(entry)), Run("textured-light", "256x256", AREAS, n), entry) for entry in ("view-sample", "accumulate", "pcss")
+                                 for n in {"view-sample": (64, 256, 1024, 4096), "accumulate": (64, 256), "pcss": (256,)}[entry]], (("RMSE", RMSE, ".4f"), ("largest error", LARGEST, ".3f"))),
+    "layer-rays-maps": by_entry("layer-rays: layers and maps", "128 × 128 pixels, 256 light samples; errors of V over judged pixels against exact areas. `board` is of 0.1 × 2.5, on its edge under the light.",
+                                ("scene", "method"),
+                                [((scene.rpartition("/")[2].partition("-")[0], code(entry)), Run(scene, SIZE, AREAS, 256), entry) for scene, entries in (
+                                    ("papers/ball", (*(f"layer-rays:size={size}:layers=1:gap=0" for size in (32, 96, 288)), *(f"layer-rays:size={size}:layers=2" for size in (32, 96, 288)))),
+                                    ("board-on-edge", ("layer-rays:size=256:layers=2", "layer-rays:size=256:layers=2:solid=on"))) for entry in entries], ERROR_COLUMNS),
+    "wedges": wedge_ratios(),
+    "coverage": coverage(),
+    "self-test": self_test(),
+    "file-sizes": file_sizes(),
+    "soft-irregular-seconds": seconds("processor seconds of soft-irregular and of others", ("contact", "fusion", "large-penumbra", "room"),
+                                      ("soft-irregular", "soft-irregular:umbra=layers", "soft-volume", "edge-scatter:rows=samples", "edge-scatter:rows=exact"),
+                                      ("--size", "512x512"), "512 × 512 pixels; `rows=samples` with 256 light samples."),
 }
-
-
-def compared(program, folder, scene, entries, size, light_samples):
-    """The entries of metrics.json by one run with all methods that any column asks of this scene."""
-    out = folder / "compared"
-    subprocess.run([program, "compare", ROOT / "scenes" / f"{scene}.json", "-o", out, "--methods", ",".join(entries), "--reference", AREAS, "--size", size, "--quiet",
-                    "--runs", "1", *(["--light-samples", str(light_samples), "--sample-pattern", "rows"] if light_samples else [])],
-                   check=True, stdout=subprocess.DEVNULL)
-    return dict(zip(entries, json.loads((out / "metrics.json").read_text(encoding="utf-8"))["methods"], strict=True))
-
-
-def value_of(metrics, column):
-    value = metrics[column.entry]
-    for key in column.path:
-        value = value[key]
-    return value
-
-
-def machine():
-    names = (line.partition(":")[2].strip() for line in Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines() if line.startswith("model name"))
-    return f"{next(names, platform.processor())}, {os.cpu_count()} threads, load {os.getloadavg()[1]:.0f}"
-
-
-def save(name, measured):
-    commit = subprocess.run(["git", "-C", ROOT, "rev-parse", "--short", "HEAD"], check=True, capture_output=True, text=True).stdout.strip()
-    data = {"title": measured.title, "commit": commit, "machine": machine(), "command": f"bench/page_tables.py {name}", "conditions": measured.conditions,
-            "columns": measured.columns, "formats": measured.formats, "rows": None}
-    rows = ",\n  ".join(json.dumps([rounded(cell) for cell in row], ensure_ascii=False) for row in measured.rows)
-    fields = [f' "{key}": ' + (f"[\n  {rows}\n ]" if key == "rows" else json.dumps(value, ensure_ascii=False)) for key, value in data.items()]
-    text = "{\n" + ",\n".join(fields) + "\n}"
-    (RESULTS / f"{name}.json").write_text(text + "\n", encoding="utf-8")
-
-
-def rounded(value):
-    """To four significant digits: the pages print fewer."""
-    return float(f"{value:.4g}") if isinstance(value, float) else value
-
-
-def measured_table(table, metrics):
-    return Measured(table.title, table.conditions, ["scene", *(column.head for column in table.columns)], [None, *(column.form for column in table.columns)],
-                    [[scene, *(value_of(metrics[scene], column) for column in table.columns)] for scene in table.scenes])
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--build", type=Path, default=ROOT / "build")
+    parser.add_argument("--commit", help="commit that the program was built from, where that is not the one checked out")
+    parser.add_argument("--scene", choices=SCENES, metavar="NAME", help="print this scene")
     parser.add_argument("names", nargs="*", metavar="NAME", help=", ".join(TABLES))
     asked = parser.parse_args()
+    if asked.scene:
+        print(json.dumps(SCENES[asked.scene](), indent=1))
+        return
     if unknown := set(asked.names) - TABLES.keys():
         parser.error(f"no table {', '.join(sorted(unknown))}; what there is: {', '.join(TABLES)}")
-    names = asked.names or list(TABLES)
     with tempfile.TemporaryDirectory() as folder:
-        measure({name: TABLES[name] for name in names}, asked.build / "penumbra", Path(folder))
+        measure({name: TABLES[name] for name in asked.names or TABLES}, Bench(asked.build / "penumbra", Path(folder), SCENES), asked.commit or head_commit())
 
 
-def measure(tables, program, folder):
-    """Runs each scene once a size and number of light samples, with the methods of all these tables."""
-    entries = {}
-    for table in tables.values():
-        for scene in table.scenes:
-            entries.setdefault((scene, table.size, table.light_samples), {}).update(dict.fromkeys(column.entry for column in table.columns))
-    metrics = {}
-    for (scene, size, light_samples), methods in entries.items():
-        print(f"{scene}: {', '.join(methods)}", flush=True)
-        metrics[scene, size, light_samples] = compared(program, folder, scene, list(methods), size, light_samples)
-    for name, table in tables.items():
-        save(name, measured_table(table, {scene: metrics[scene, table.size, table.light_samples] for scene in table.scenes}))
-
-
-main()
+if __name__ == "__main__":
+    main()

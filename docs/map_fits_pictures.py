@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""The picture and the table of docs/map-fits.md: map_fits_pictures.py PROGRAM. A long floor with plates over it, a camera
-near its end, a light so small that its shadows are hard: for each fit V's error, and 1/m, the inverse of the aliasing error.
+"""The picture of docs/map-fits.md: map_fits_pictures.py PROGRAM. A long floor with plates over it, a camera near its end, a light so small that its
+shadows are hard: for each fit V's error, and 1/m, the inverse of the aliasing error. bench/page_tables.py makes the table from the same scene.
 Python's standard library is all that it needs."""
 import json
 import pathlib
@@ -36,27 +36,20 @@ def scene():
 
 
 def run(program, folder, aliasing):
-    """Metrics of every fit, and a picture of each: V's error, or V."""
+    """A picture of every fit: V's error, or V."""
     entries = [f"shadow-map:size={size}:fit={fit}:aliasing={aliasing}" for fit, size in ROWS]
     (folder / "scene.json").write_text(json.dumps(scene()))
     out = folder / aliasing
     subprocess.run([program, "-q", "compare", folder / "scene.json", "-o", out, "--methods", ",".join(entries), "--runs", "1",
                     "--light-samples", "16"], check=True, stdout=subprocess.DEVNULL)
     rows_of = error_rows if aliasing == "count" else visibility_rows
-    return json.loads((out / "metrics.json").read_text())["methods"], {entry: rows_of(out, entry) for entry in entries}
+    return {entry: rows_of(out, entry) for entry in entries}
 
 
 def main():
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
-        methods, errors = run(sys.argv[1], folder, "count")
-        _, shown = run(sys.argv[1], folder, "show")
-        for (fit, size), method in zip(ROWS, methods):
-            counters = method["counters"]
-            pixels = counters["aliasingPixels"]
-            print(f"| `{fit}` | {counters['mapFaces']} × {size}² | {counters['aliasingThousandths'] / 1000 / pixels:.2f} | "
-                  f"{counters['aliasingWorstThousandths'] / 1000:.1f} | {100 * counters['undersampledPixels'] / pixels:.0f} % | "
-                  f"{counters['neededTexels'] / pixels:.1f} | {method['error']['rmse']:.4f} |")
+        errors, shown = run(sys.argv[1], folder, "count"), run(sys.argv[1], folder, "show")
         pictures = []
         for (fit, size) in ROWS:
             entry = f"shadow-map:size={size}:fit={fit}:aliasing="

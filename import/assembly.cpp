@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// Places parts within parts. Parts are first sorted from the leaves up (Kahn 1962): a part that is left over contains
+// itself, or a part that does. They are then placed from the roots down, by a stack in place of recursion.
+
 #include "import/assembly.hpp"
 
 #include "base/error.hpp"

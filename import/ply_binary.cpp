@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// Numbers of binary PLY bodies, of either byte order. Usual layouts (three coordinates of one type, lists of 32-bit
+// corners) are taken in bulk; all else is left to number().
+
 #include "import/ply_binary.hpp"
 
 #include <algorithm>

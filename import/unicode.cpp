@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// Text in UTF-16 or UTF-32 as UTF-8: the byte order mark names the encoding, and surrogates that are not a pair are
+// refused.
+
 #include "import/unicode.hpp"
 
 #include "base/error.hpp"

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// Walks the scene graph of X3D by a list in place of recursion, resolves each USE to the last DEF before it, and
+// checks in the end that every shape was placed, or is one that the file hides.
+
 #include "import/x3d.hpp"
 
 #include "import/assembly.hpp"

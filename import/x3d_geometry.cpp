@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// Polygons of X3D geometry nodes (ISO/IEC 19775-1, 11 and 13): lists as they are, fans and strips as triangles, round
+// solids with kX3dSides sides, and extrusions along their spine.
+
 #include "import/x3d_geometry.hpp"
 
 #include "import/text.hpp"

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// Translates the library's options of a comparison into those of the command `compare`, and runs it.
+
 #include "compare/stats.hpp"
 #include "library/as_error.hpp"
 #include "library/library_progress.hpp"

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// Examines a mesh, from a file or in memory, as the command `inspect` does, and returns its report as JSON.
+
 #include "base/error.hpp"
 #include "library/as_error.hpp"
 #include "library/library_progress.hpp"

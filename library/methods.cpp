@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// The version, and the methods with their options, as the families' tables describe them.
+
 #include "session/method_list.hpp"
 #include "session/methods.hpp"
 

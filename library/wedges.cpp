@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// Penumbra wedges of a scene as JSON, with instances copied first; the steps of building them become progress in
+// percent.
+
 #include "library/as_error.hpp"
 #include "library/library_progress.hpp"
 #include "library/scene_state.hpp"

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// Descriptor sets of one pipeline, made from what its shaders declare. Each bind takes a pool of its own, which lives
+// as long as the commands' recording.
+
 #include "render/bindings.hpp"
 
 #include "base/assert.hpp"

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// Compute pipelines, compiled once a device for each name, code and specialization. More workgroups than one dimension
+// takes are laid out in two.
+
 #include "render/compute_pass.hpp"
 
 #include "base/assert.hpp"

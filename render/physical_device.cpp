@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// Chooses a device: the one that is asked for; else discrete before integrated before virtual before processors, and
+// among those of one kind the one that lacks fewer features.
+
 #include "render/physical_device.hpp"
 
 #include "render/optional_features.hpp"

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// Depth images of 32-bit floats, whose rows can be copied to buffers, and raster passes (dynamic rendering) with such
+// an image or without.
+
 #include "render/raster_pass.hpp"
 
 #include "base/assert.hpp"

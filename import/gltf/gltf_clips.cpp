@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// Chooses animations: those that are named; else, in the file's order, each that moves nothing that one chosen before
+// it moves.
+
 #include "import/gltf/gltf_clips.hpp"
 
 #include "base/error.hpp"

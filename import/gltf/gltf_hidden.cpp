@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// Finds lamps that an animation hides by a scale of 0. The nodes are placed once more as if nothing were scaled to 0;
+// an emissive mesh whose points lie on a line as shown, and not as placed then, is hidden.
+
 #include "import/gltf/gltf_hidden.hpp"
 
 #include "base/error.hpp"

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// Sheets and boxes of cells on a lattice of integers, and the counts of their diagnosis as formulas: a closed surface
+// of n quads has n + 2 vertices (Euler), a sheet of n × n cells has 4 n boundary edges.
+
 #include "mesh/shapes/broken_lattice.hpp"
 
 #include <utility>

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// Places one part for each defect in rows on a lattice, and maps the lattice to space without rounding: the step is a
+// power of two, and the centre a multiple of it.
+
 #include "mesh/shapes/broken_meshes.hpp"
 
 #include "base/assert.hpp"

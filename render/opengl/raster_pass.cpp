@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// The raster passes of render/ by OpenGL: shaders compiled from text, push constants in a block of 128 bytes, depth
+// images as textures.
+
 #include "render/opengl/raster_pass.hpp"
 
 #include "base/assert.hpp"

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// Writes a scene as binary glTF: objects as meshes in world space, flat lights as emissive meshes, spheres and suns as
+// lamps of KHR_lights_punctual, and in extras what glTF cannot say.
+
 #include "scenes/formats/checks.hpp"
 #include "scenes/formats/glb_model.hpp"
 #include "scenes/formats/lights/light_formats.hpp"

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// Writes a scene as penumbra-scene/1, with numbers in the shortest digits that read back as the same double.
+
 #include "scenes/formats/lights/light_formats.hpp"
 #include "scenes/formats/writers.hpp"
 #include "scenes/picture_size.hpp"

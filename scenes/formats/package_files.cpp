@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// Finds a file of a Debian package in the lists that dpkg keeps. A link must lead to a file of the same package.
+
 #include "scenes/formats/package_files.hpp"
 
 #include "base/file_error.hpp"

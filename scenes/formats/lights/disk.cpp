@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// Disk lights in files: JSON in and out, what every file must fulfil, and the rim as a polygon of kRimSides corners
+// for glTF, which has no disks.
+
 #include "base/error.hpp"
 #include "scenes/formats/checks.hpp"
 #include "scenes/formats/json_meshes.hpp"

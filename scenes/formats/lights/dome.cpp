@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// Domes in files: where up is, a turn around it, all of the sky or half, and the name of a picture. glTF has no sky;
+// gltf/dome_extras.hpp of import/ reads one from extras.
+
 #include "base/error.hpp"
 #include "scenes/formats/checks.hpp"
 #include "scenes/formats/json_meshes.hpp"

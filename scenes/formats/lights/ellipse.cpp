@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// Ellipse lights in files: two half diameters, as a parallelogram has half sides, and the rim as a polygon of
+// kRimSides corners for glTF, which has no ellipses.
+
 #include "scenes/formats/lights/halves.hpp"
 
 namespace penumbra::scenes {

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// Lights in pieces in files: a list of shapes of other kinds, which emit as one light. A piece has no cone.
+
 #include "base/assert.hpp"
 #include "base/error.hpp"
 #include "scenes/formats/lights/light_formats.hpp"

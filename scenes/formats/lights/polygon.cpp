@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// Polygon lights in files. The normal is the sum of the cross products of a fan. A polygon must have an area, be flat
+// up to the rounding of single precision, and convex: no vertex lies outside of any edge.
+
 #include "base/error.hpp"
 #include "scenes/formats/checks.hpp"
 #include "scenes/formats/json_meshes.hpp"

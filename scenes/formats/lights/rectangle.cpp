@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// Rectangle lights in files: a centre and two half sides. Half sides that are not at right angles span a
+// parallelogram, of which readers warn.
+
 #include "scenes/formats/lights/halves.hpp"
 
 namespace penumbra::scenes {

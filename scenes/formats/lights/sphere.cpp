@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// Sphere lights in files, with or without a cone. For glTF a sphere is a point or spot lamp with the intensity of a
+// disk of its radius, radiance · π r².
+
 #include "base/error.hpp"
 #include "scenes/formats/checks.hpp"
 #include "scenes/formats/json_meshes.hpp"

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// Suns in files: a direction and an apparent diameter in degrees. For glTF a sun is a directional lamp, whose
+// intensity is the irradiance that the sun gives to a surface facing it.
+
 #include "base/error.hpp"
 #include "scenes/formats/checks.hpp"
 #include "scenes/formats/json_meshes.hpp"
