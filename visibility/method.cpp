@@ -62,6 +62,16 @@ void check_light(const MethodDescription& description, const Light& light) {
   }
   if (const std::string& through = left_to_host(description, light);
       !through.empty() && description.output != Output::mask) {
+    if (!description.draws_holes && description.output == Output::scalar && !is_dome(light.kind)) {
+      throw InputError(
+          "light \"{}\": its light passes through \"{}\" (alphaMode MASK or BLEND); method {} finds shadows by the "
+          "edges "
+          "of triangles, and what an alpha texture cuts out has other edges. Take a method that draws the holes of "
+          "MASK "
+          "(--method: shadow-map, pcss, backproject and most maps), or one whose output is a mask (--method: "
+          "edge-scatter, view-sample, raytrace), which is asked light sample by light sample",
+          light.name, through, description.name);
+    }
     throw InputError(
         "light \"{}\": its light passes through \"{}\" (alphaMode {}BLEND), which is asked light sample by light "
         "sample; method {}{} answers with {} alone. Take a method whose output is a mask (--method: edge-scatter, "

@@ -313,6 +313,20 @@ TEST_F(AlphaSurfaces, MethodsDoItOrAreRefused) {
   for (const json& method : metrics.at("methods")) EXPECT_EQ(method.at("pairsDiffering"), 0) << method.at("method");
 }
 
+/// Penumbrae along triangles' edges know no other edges; the methods that the refusal names draw the hole.
+TEST_F(AlphaSurfaces, MethodsOfEdgesSayWhyTheyRefuseHoles) {
+  half_a_card();
+  for (const char* method : {"smoothies", "penumbra-map", "silhouette-map", "plateaus"}) {
+    const Outcome outcome = render({"--method", method});
+    EXPECT_EQ(outcome.code, 3) << method;
+    EXPECT_THAT(outcome.err, AllOf(HasSubstr("\"Card\""), HasSubstr(method), HasSubstr("edges of triangles"),
+                                   HasSubstr("shadow-map, pcss, backproject"), HasSubstr("edge-scatter")));
+  }
+  for (const char* method : {"shadow-map", "pcss", "backproject", "brabec-seidel", "kirsch-doellner", "pcf"}) {
+    EXPECT_EQ(render({"--method", method}).code, 0) << method;
+  }
+}
+
 /// The card's texels leave the rectangle of x in [0, 2] at height 2: of the light at height 5, x in [-1, 1], the floor
 /// at x sees the share that is seen beside x = 0 or x = 2 there. Maps hold the texels themselves, and no pair is asked
 /// again.

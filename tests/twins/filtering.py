@@ -295,6 +295,19 @@ class Slices:
         return v
 
 
+class Convolution(Slices):
+    """Soler and Sillion 1998: all blockers in one plane, at their triangles' mean height by the area that the light's plane sees; of
+    objects that all receive, the largest as seen from there is no blocker."""
+
+    def __init__(self, map_, quads):
+        self.filter, self.map = Filter(map_, "vsm"), map_
+        turned = lambda v: in_frame(v) - in_frame([0, 0, 0])
+        seen = [abs(np.cross(turned(q["halfU"]), turned(q["halfV"]))[2]) for q in quads]
+        self.nearest = np.average([in_frame(q["center"])[2] for q in quads], weights=seen)
+        self.planes = [self.nearest]
+        self.bits = np.any([np.isfinite(map_.depth_of(q)) for q in quads], axis=0)[None].astype(float)
+
+
 class Twins(unittest.TestCase):
     def check(self, method, options, twin, tolerance, most_off=0.01):
         """`most_off`: pixels whose search says blocked or not by a hair, or whose place is a texel's border within float32."""
@@ -344,6 +357,9 @@ class Twins(unittest.TestCase):
     def test_slices(self):
         for count in (3, 8):
             self.check("occlusion-textures", {"slices": str(count)}, lambda m: Slices(m, m.quads, count), 1e-4)
+
+    def test_one_plane(self):
+        self.check("convolution", {}, lambda m: Convolution(m, m.quads), 1e-4)
 
     def test_fixed_window(self):
         self.check("vssm", {"window": "9", "subdivision": "none"}, lambda m: Filter(m, "vsm", window=9), 2e-4)

@@ -1,0 +1,150 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Maps that are warped, against numpy, from Wimmer et al. 2004 (LiSPSM), Martin and Tan 2004 (TSM), Stamminger and Drettakis 2002 (PSM)
+and Lloyd et al. 2008 (LogPSM), on the scenes and from the eye of fits.py: a pixel is dark where the ray through its texel's centre
+meets a plate before the plane of the pixel's own.
+
+Directions are e = (x, y, depth) below the light; (x, y) / depth is its post-perspective space, where its rays are parallel. PSM is
+written with the camera's 4 x 4 matrix: the line of a ray's image is cut by the plane across the light's image."""
+
+import unittest
+
+import numpy as np
+
+import penumbra
+from filtering import PIXELS, SCENES, scene_of
+from fits import EYE, FOV, HAIR, NAMES, TARGET, Seen
+from hard import depths
+
+FOCUS = 0.25  # the program's default
+SPARE = 1  # texels that are left free at each end of a map
+
+
+class Perspective:
+    """A perspective along the view's image: across its rows as they are, along them (n + d)/d of the way or its logarithm."""
+
+    def __init__(self, fit, seen, size):
+        self.size, self.logarithmic = size, fit == "logpsm"
+        plane = lambda e: np.asarray(e)[..., :2] / np.asarray(e)[..., 2:]
+        on_axis = lambda depth: plane(seen.eye + depth * seen.forward)
+        axis = on_axis(seen.far) - on_axis(seen.near)
+        self.along = axis / np.linalg.norm(axis)
+        self.across = np.array([-self.along[1], self.along[0]])
+        at = plane(seen.points) @ self.along
+        self.first, self.length = at.min(), at.max() - at.min()
+        eye = plane(seen.eye) @ self.along
+        near, far = self.first - eye, self.first + self.length - eye
+        if fit == "tsm":  # the focus is at four fifths of the rows: (n + d) y / (d (n + y)) = 0.8
+            y = on_axis(seen.near + FOCUS * (seen.far - seen.near)) @ self.along - self.first
+            self.n = 0.2 * self.length * y / (0.8 * self.length - y)
+        else:
+            middle = seen.points.sum(axis=0)
+            cosine = middle @ seen.forward / np.linalg.norm(middle) / np.linalg.norm(seen.forward)
+            self.n = (near + (np.sqrt(near * far) if fit == "lispsm" else 0)) / np.sqrt(1 - cosine**2)
+        self.margin = SPARE / size
+        places = np.array([self.warped(e) for e in seen.points])
+        self.lower, self.width = places.min(axis=0), places.max(axis=0) - places.min(axis=0)
+
+    def warped(self, e):
+        at = np.asarray(e)[:2] / e[2]
+        y = at @ self.along - self.first
+        row = np.log((self.n + y) / self.n) if self.logarithmic else y / (self.n + y)
+        return np.array([at @ self.across / (self.n + y), row])
+
+    def texel(self, e):
+        share = (self.warped(e) - self.lower) / self.width
+        return (self.margin + share * (1 - 2 * self.margin)) * self.size
+
+    def ray(self, texel):
+        share = ((texel + 0.5) / self.size - self.margin) / (1 - 2 * self.margin)
+        x, row = self.lower + share * self.width
+        y = self.n * (np.exp(row) - 1) if self.logarithmic else self.n * row / (1 - row)
+        return np.append((self.first + y) * self.along + x * (self.n + y) * self.across, 1.0)
+
+
+class Camera:
+    """The camera's own perspective."""
+
+    def __init__(self, fit, seen, size):
+        self.size, self.margin = size, SPARE / size
+        n, f = seen.near, seen.far
+        rows = np.array([np.append(r, -r @ seen.eye) for r in (seen.sideward, seen.upward, seen.forward, seen.forward)])
+        rows[2] = rows[2] * (f + n) / (f - n) - np.array([0, 0, 0, 2 * f * n / (f - n)])
+        images = np.column_stack([seen.points, np.ones(len(seen.points))]) @ rows.T
+        images = images[:, :3] / images[:, 3:]
+        middle = (images.min(axis=0) + images.max(axis=0)) / 2
+        light = rows[:, 3]  # of e = 0
+        # From the light's image at light[:3] / light[3] through the middle.
+        v = middle * light[3] - light[:3]
+        v /= np.linalg.norm(v)
+        up = np.array([0, 0, 1.0]) if abs(v[2]) < 0.9 else np.array([0, 1.0, 0])
+        up = up - v * (v @ up)
+        up /= np.linalg.norm(up)
+        plane = np.append(v, -v @ middle)
+        # light + t direction on the plane, for every direction e: t = -(plane . light) / (plane . direction).
+        directions = rows[:, :3]
+        image = np.outer(light, plane @ directions) - (plane @ light) * directions
+        self.matrix = np.stack([np.append(np.cross(up, v), 0) @ image, np.append(up, 0) @ image, image[3]])
+        if (self.matrix @ seen.points[0])[2] < 0:
+            self.matrix = -self.matrix
+        at = seen.points @ self.matrix.T
+        assert (at[:, 2] > 0).all(), "the eye need not go back"
+        at = at[:, :2] / at[:, 2:]
+        self.lower, self.width = at.min(axis=0), at.max(axis=0) - at.min(axis=0)
+
+    def texel(self, e):
+        at = self.matrix @ e
+        share = (at[:2] / at[2] - self.lower) / self.width
+        return (self.margin + share * (1 - 2 * self.margin)) * self.size
+
+    def ray(self, texel):
+        share = ((texel + 0.5) / self.size - self.margin) / (1 - 2 * self.margin)
+        ray = np.linalg.solve(self.matrix, np.append(self.lower + share * self.width, 1))
+        return ray / ray[2]
+
+
+class Twins(unittest.TestCase):
+    def check(self, fit, twin):
+        otherwise = 0
+        for size in (24, 61):
+            for name in NAMES:
+                scene = scene_of(SCENES[name])
+                scene["camera"] = {"eye": list(EYE), "target": list(TARGET), "verticalFov": FOV}
+                render = lambda options: penumbra.render(penumbra.Scene.from_dict(scene), size=(PIXELS, PIXELS), method="shadow-map",
+                                                         options=options | {"size": str(size)})
+                picture, even = render({"fit": fit, "focus": str(FOCUS)}), render({"fit": "view"})
+                seen = Seen(picture)
+                map_ = twin(fit, seen, size)
+                judged, off, dark, moved = 0, [], 0, 0
+                for (y, x), e, up in zip(seen.pixels, seen.points, seen.up):
+                    texel = map_.texel(e)
+                    if not up or (np.abs(texel - np.round(texel)) < HAIR).any():
+                        continue
+                    lit = min(depths(map_.ray(np.floor(texel)), SCENES[name]), default=np.inf) > e[2] * (1 - 1e-3)
+                    judged += 1
+                    dark += not lit
+                    moved += even.V[y, x] != lit
+                    if picture.V[y, x] != lit:
+                        off.append((int(y), int(x), bool(lit)))
+                print(f"fit={fit}:size={size} on {name}: {judged} pixels, {dark} dark, {moved} else with fit=view, {len(off)} off {off[:3]}")
+                self.assertGreater(judged, 200)
+                self.assertGreater(dark, 20)
+                otherwise += moved
+                # Outlines within 1/256 texel of a centre are the rasteriser's.
+                self.assertLessEqual(len(off), 1, (fit, name, off[:5]))
+        self.assertGreater(otherwise, 30, "another map would be found")
+
+    def test_lispsm(self):
+        self.check("lispsm", Perspective)
+
+    def test_tsm(self):
+        self.check("tsm", Perspective)
+
+    def test_logpsm(self):
+        self.check("logpsm", Perspective)
+
+    def test_psm(self):
+        self.check("psm", Camera)
+
+
+if __name__ == "__main__":
+    unittest.main()
