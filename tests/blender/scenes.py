@@ -485,6 +485,14 @@ def world_picture():
 
 
 @scene
+def world_picture_exact():
+    """A picture all around, constant in each of its texels, its light in closed form."""
+    stage()
+    pictured_world((0.4, -0.3, 2.1), strength=2, interpolation="Closest")
+    bpy.context.scene.penumbra.world = "EXACT"
+
+
+@scene
 def world_picture_turned():
     stage()
     pictured_world((0.4, -0.3, 2.1), strength=2)
