@@ -71,17 +71,10 @@ def lamps():
     return scene
 
 
-def board_on_edge():
-    """A thin board that stands on its edge right below the light, over a floor."""
-    scene = shipped("papers/ball")
-    scene["meshes"][1] = {"name": "board", "quad": {"center": [0, 2, 0], "halfU": [0, 0, 1.25], "halfV": [0, 0.05, 0]}}
-    return scene
-
-
 DEFECTS = ("none", "inside-out", "flipped-patch", "duplicate-face", "opposite-face", "doubled-box", "unmerged", "t-junction", "crack", "gap", "lost-gap", "collinear",
            "repeated-vertex", "needle", "lid", "hollow", "hole", "holes", "fin", "spikes", "shared-edge", "bowtie", "crossing-sheets", "loose-triangles")
 HALVES = (0.1, 0.25, 0.5, 1)
-SCENES = {"near-light": near_light, "lamps": lamps, "board-on-edge": board_on_edge, "map-fits": map_fits_pictures.scene,
+SCENES = {"near-light": near_light, "lamps": lamps, "map-fits": map_fits_pictures.scene,
           **{f"ball-{half}": lambda half=half: ball(half) for half in (*HALVES, 0.3, 2)}, **{f"defect-{name}": lambda name=name: defect(name) for name in DEFECTS}}
 
 
@@ -359,11 +352,10 @@ TABLES = {
     "textured-lights": by_entry("errors under a textured light", "`scenes/textured-light.json`, 256 × 256 pixels; errors of V over judged pixels against exact areas.", ("light samples", "method"),
                                 [((str(n), code(entry)), Run("textured-light", "256x256", AREAS, n), entry) for entry in ("view-sample", "accumulate", "pcss")
                                  for n in {"view-sample": (64, 256, 1024, 4096), "accumulate": (64, 256), "pcss": (256,)}[entry]], (("RMSE", RMSE, ".4f"), ("largest error", LARGEST, ".3f"))),
-    "layer-rays-maps": by_entry("layer-rays: layers and maps", "128 × 128 pixels, 256 light samples; errors of V over judged pixels against exact areas. `board` is of 0.1 × 2.5, on its edge under the light.",
-                                ("scene", "method"),
-                                [((scene.rpartition("/")[2].partition("-")[0], code(entry)), Run(scene, SIZE, AREAS, 256), entry) for scene, entries in (
-                                    ("papers/ball", (*(f"layer-rays:size={size}:layers=1:gap=0" for size in (32, 96, 288)), *(f"layer-rays:size={size}:layers=2" for size in (32, 96, 288)))),
-                                    ("board-on-edge", ("layer-rays:size=256:layers=2", "layer-rays:size=256:layers=2:solid=on"))) for entry in entries], ERROR_COLUMNS),
+    "layer-rays-maps": by_entry("layer-rays: layers and maps", "`scenes/papers/ball.json`, 128 × 128 pixels, 256 light samples; errors of V over judged pixels against exact areas.",
+                                ("method",), entries_of(Run("papers/ball", SIZE, AREAS, 256), (*(f"layer-rays:size={size}:layers=1:gap=0" for size in (32, 96, 288)),
+                                                                                               *(f"layer-rays:size={size}:layers=2" for size in (32, 96, 288)))),
+                                ERROR_COLUMNS),
     "wedges": wedge_ratios(),
     "coverage": coverage(),
     "self-test": self_test(),
