@@ -28,14 +28,18 @@ namespace penumbra::maps {
 
 namespace {
 
-/// Returns the kinds of light that a method is extended to with these options. A camera's view (fit=, reproject=) is
-/// not mapped to the space of a sun or of a lamp's disks, where the position of a map, or of a pixel, would be wrong.
+/// Returns the kinds of light that a method is extended to with these options. To a sun's space goes what is flat of a
+/// camera, the frustum and slices of depth, and what depends on a pixel's moves (fit=view, cascades, tiles); not the
+/// camera's own perspective (the warps, fit=faces), nor the picture before (reproject=). A lamp's disks each see a part
+/// of the view samples, and have a camera's fit for none.
 Given given_with(Given given, const visibility::MethodOptions& options) {
   const auto fit = options.find("fit");
   const auto reproject = options.find("reproject");
-  const bool sees_camera = (fit != options.end() && fit->second != "receivers") ||
-                           (reproject != options.end() && reproject->second != "off");
-  if (sees_camera) given.suns = given.spheres = false;
+  const bool fits = fit != options.end() && fit->second != "receivers";
+  const bool flat = fits && (fit->second == "view" || fit->second == "cascades" || fit->second == "tiles");
+  const bool reprojects = reproject != options.end() && reproject->second != "off";
+  if (fits || reprojects) given.spheres = false;
+  if ((fits && !flat) || reprojects) given.suns = false;
   return given;
 }
 

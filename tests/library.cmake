@@ -15,7 +15,7 @@ foreach(test module page)
   set_tests_properties(python.${test} PROPERTIES LABELS quick ENVIRONMENT "PYTHONPATH=${PROJECT_BINARY_DIR}/python;MPLBACKEND=Agg")
 endforeach()
 # Map methods against twins in numpy, written from their papers.
-foreach(twin backprojection filtered_fits filtering fits hard layers rays samples screen warps)
+foreach(twin backprojection filtered_fits filtering fits hard layers rays samples screen sun_fits warps)
   add_test(NAME twins.${twin} COMMAND ${Python_EXECUTABLE} ${CMAKE_CURRENT_SOURCE_DIR}/twins/${twin}.py)
   set_tests_properties(twins.${twin} PROPERTIES LABELS full ENVIRONMENT "PYTHONPATH=${PROJECT_BINARY_DIR}/python")
 endforeach()

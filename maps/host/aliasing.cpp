@@ -15,19 +15,21 @@ namespace penumbra::maps {
 namespace {
 
 /// Returns the displacements of a view sample on its plane when its pixel moves across and down.
-std::array<glm::dvec3, 2> moves_of(const visibility::ViewSamples& samples, std::size_t pixel) {
+std::array<glm::dvec3, 2> moves_of(const visibility::ViewSamples& samples, std::size_t pixel, const SceneSpace& space) {
   const visibility::PinholeCamera& camera = samples.camera;
   const auto x = static_cast<std::uint32_t>(pixel % samples.width),
              y = static_cast<std::uint32_t>(pixel / samples.width);
   const visibility::ViewRay ray = camera.ray(x, y);
-  const glm::dvec3 n(samples.n[pixel]), p(samples.p[pixel]);
+  const glm::dvec3 here(samples.p[pixel]), p = space.scene_point(here),
+                                           n = space.scene_normal(here, glm::dvec3(samples.n[pixel]));
   const double t = glm::dot(camera.forward, p - ray.start),
                scale = camera.half_height.value_or(t * camera.tan_half_fov);
   const std::array screen{(camera.across(x + 1) - camera.across(x)) * scale * camera.right,
                           (camera.upward(y + 1) - camera.upward(y)) * scale * camera.up};
   std::array<glm::dvec3, 2> moves{};
   for (std::size_t i = 0; i < 2; ++i) {
-    moves.at(i) = screen.at(i) - ray.direction * (glm::dot(n, screen.at(i)) / glm::dot(n, ray.direction));
+    moves.at(i) =
+        space.moves(here, screen.at(i) - ray.direction * (glm::dot(n, screen.at(i)) / glm::dot(n, ray.direction)));
   }
   return moves;
 }
@@ -35,8 +37,8 @@ std::array<glm::dvec3, 2> moves_of(const visibility::ViewSamples& samples, std::
 }  // namespace
 
 glm::dvec2 aliasing_error(const FittedFace& face, const SeenReceiver& receiver, const visibility::ViewSamples& samples,
-                          std::size_t pixel, const LightBasis& basis, std::uint32_t size) {
-  const auto moves = moves_of(samples, pixel);
+                          std::size_t pixel, const LightBasis& basis, std::uint32_t size, const SceneSpace& space) {
+  const auto moves = moves_of(samples, pixel, space);
   std::array<glm::dvec2, 2> texels{};
   for (std::size_t i = 0; i < 2; ++i) {
     const glm::dvec3 by(glm::dot(moves.at(i), basis.u), glm::dot(moves.at(i), basis.v),
@@ -55,14 +57,14 @@ bool faces_away(const visibility::ViewSamples& samples, std::size_t pixel, const
 
 Aliasing measure_aliasing(std::span<const FittedFace> faces, const visibility::SceneFloats& scene,
                           const visibility::Light& light, const visibility::ViewSamples& samples,
-                          const LightBasis& basis, std::uint32_t size) {
+                          const LightBasis& basis, std::uint32_t size, const SceneSpace& space) {
   Aliasing result{std::vector<float>(samples.size(), 0.0F), {}};
   std::vector<glm::dvec2> largest(faces.size(), glm::dvec2(0));
   std::uint64_t pixels = 0, under = 0, outside = 0;
   double sum = 0, worst = 0;
   for (std::size_t i = 0; i < samples.size(); ++i) {
     if (!visibility::is_receiver(scene, light, samples, i)) continue;
-    const auto receiver = seen_receiver(samples, i, basis, light.two_sided || is_body(light.kind));
+    const auto receiver = seen_receiver(samples, i, basis, light.two_sided || is_body(light.kind), space);
     if (!receiver) continue;
     if (faces_away(samples, i, basis)) continue;
     const FittedFace* face = face_for(faces, *receiver);
@@ -70,7 +72,7 @@ Aliasing measure_aliasing(std::span<const FittedFace> faces, const visibility::S
       ++outside;
       continue;
     }
-    glm::dvec2 errors = aliasing_error(*face, *receiver, samples, i, basis, size);
+    glm::dvec2 errors = aliasing_error(*face, *receiver, samples, i, basis, size, space);
     for (int axis = 0; axis < 2; ++axis) errors[axis] = std::min(errors[axis], kMostAliasing);
     glm::dvec2& most = largest[static_cast<std::size_t>(face - faces.data())];
     most = glm::max(most, errors);

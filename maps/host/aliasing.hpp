@@ -16,7 +16,7 @@ namespace penumbra::maps {
 /// both axes of a map (Eisemann et al. 2009, equation 3.2, with all its factors; Lloyd et al. 2008). More than 1:
 /// undersampled.
 glm::dvec2 aliasing_error(const FittedFace& face, const SeenReceiver& receiver, const visibility::ViewSamples& samples,
-                          std::size_t pixel, const LightBasis& basis, std::uint32_t size);
+                          std::size_t pixel, const LightBasis& basis, std::uint32_t size, const SceneSpace& space = {});
 
 /// Largest error counted: a larger one means that a surface is seen edge-on, from the eye or from the light.
 inline constexpr double kMostAliasing = 1e6;
@@ -35,6 +35,6 @@ struct Aliasing {
 };
 Aliasing measure_aliasing(std::span<const FittedFace> faces, const visibility::SceneFloats& scene,
                           const visibility::Light& light, const visibility::ViewSamples& samples,
-                          const LightBasis& basis, std::uint32_t size);
+                          const LightBasis& basis, std::uint32_t size, const SceneSpace& space = {});
 
 }  // namespace penumbra::maps

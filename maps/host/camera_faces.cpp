@@ -22,10 +22,15 @@ std::uint32_t CameraFaces::take(const render::Device& device, const Source& sour
                                 std::uint32_t size, gpu::LightView& view) {
   faces_ = std::move(faces);
   const visibility::PinholeCamera& camera = source.samples.camera;
-  return make(
-      device,
-      {.forward = camera.forward, .offset = static_cast<float>(-glm::dot(camera.forward, camera.eye)), .count = 0},
-      source.basis, size, view);
+  const glm::dvec4 depth = source.space.plane({camera.forward, -glm::dot(camera.forward, camera.eye)}),
+                   divisor = source.space.divisor();
+  return make(device,
+              {.forward = glm::vec3(depth),
+               .offset = static_cast<float>(depth.w),
+               .divisor = glm::vec3(divisor),
+               .divisor_offset = static_cast<float>(divisor.w),
+               .count = 0},
+              source.basis, size, view);
 }
 
 std::uint32_t CameraFaces::take_paraboloids(const render::Device& device, const LightBasis& basis, std::uint32_t size,
@@ -34,7 +39,9 @@ std::uint32_t CameraFaces::take_paraboloids(const render::Device& device, const 
   for (int side = 0; side < 2; ++side) {
     if (view.side[side].face_count > 0) faces_.push_back(paraboloid_face(side, size, spare));
   }
-  return make(device, {.forward = glm::vec3(0), .offset = 1, .count = 0}, basis, size, view);  // at any depth
+  // At any depth.
+  return make(device, {.forward = glm::vec3(0), .offset = 1, .divisor = glm::vec3(0), .divisor_offset = 1, .count = 0},
+              basis, size, view);
 }
 
 std::uint32_t CameraFaces::make(const render::Device& device, gpu::FaceTable table, const LightBasis& basis,

@@ -23,6 +23,7 @@ class CameraFaces {
     const visibility::Light& light;
     const LightBasis& basis;
     const visibility::ViewSamples& samples;
+    const SceneSpace& space;
   };
   /// Fits the faces, and writes the number of faces of each side to `view`, the view of the light's centre. Returns the
   /// total number.

@@ -6,6 +6,7 @@
 #include "base/assert.hpp"
 #include "maps/host/holes.hpp"
 #include "maps/host/lamp_disks.hpp"
+#include "maps/host/scene_space.hpp"
 #include "maps/host/sun_space.hpp"
 #include "visibility/all_triangles.hpp"
 #include "visibility/frame_memory.hpp"
@@ -131,6 +132,9 @@ void EveryLight::prepare_light(const Light& light) {
   if (given_.holes) own_.filtered_by.clear();
   own_.dimmed_by.clear();
   show(in_sun_space_ ? sun_->scene() : drawn());
+  if (auto* sees = dynamic_cast<SeesScene*>(method_.get())) {
+    sees->see_through(in_sun_space_ ? sun_->space() : SceneSpace());
+  }
   method_->prepare_light(own_);
 }
 

@@ -54,7 +54,7 @@ class FaceFitter {
   void add_side(int side, std::vector<FittedFace>& faces) {
     side_ = side;
     std::vector<BodyPoint> body =
-        in_front(body_points(scene_, light_, basis_, samples_, options_.fit.body, 0, kFarAway));
+        in_front(body_points(scene_, light_, basis_, samples_, options_.fit.body, 0, kFarAway, options_.space));
     if (body.empty()) return;
     const auto [nearest, farthest] = std::ranges::minmax(body, {}, &BodyPoint::depth);
     find_margin(body);
@@ -65,8 +65,9 @@ class FaceFitter {
       const double from = i == 0 ? 0 : depths[i], to = i + 1 == slices ? kFarAway : depths[i + 1];
       const double least = from * (1 - kOverlap), most = to * (1 + kOverlap);
       if (slices > 1 && options_.fit.body == ViewBody::frustum) {
-        add_slice(in_front(body_points(scene_, light_, basis_, samples_, ViewBody::frustum, least, most)), from, to,
-                  faces);
+        add_slice(
+            in_front(body_points(scene_, light_, basis_, samples_, ViewBody::frustum, least, most, options_.space)),
+            from, to, faces);
       } else {
         std::vector<BodyPoint> part;
         std::ranges::copy_if(body, std::back_inserter(part),
@@ -266,11 +267,11 @@ class FaceFitter {
     std::vector<Tile> tiles(1);
     for (std::size_t i = 0; i < samples_.size(); ++i) {
       if (!visibility::is_receiver(scene_, light_, samples_, i)) continue;
-      const auto receiver = seen_receiver(samples_, i, basis_, true);
+      const auto receiver = seen_receiver(samples_, i, basis_, true, options_.space);
       if (!receiver || receiver->side != side_ || faces_away(samples_, i, basis_)) continue;
       const auto at = whole.place(receiver->e);
       if (!at) continue;
-      const glm::dvec2 errors = aliasing_error(whole, *receiver, samples_, i, basis_, options_.size);
+      const glm::dvec2 errors = aliasing_error(whole, *receiver, samples_, i, basis_, options_.size, options_.space);
       tiles.front().asked.emplace_back(*at, std::log2(std::min(std::max(errors.x, errors.y), kMostAliasing)));
     }
     const std::size_t most_tiles = std::max(options_.fit.tiles / bases, 1U);

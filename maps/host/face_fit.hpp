@@ -58,6 +58,7 @@ struct FaceFitOptions {
   std::uint32_t spare = 1;   ///< texels on every side, for taps of look-ups beside a receiver
   glm::dvec2 beside{0};      ///< FitOptions::beside
   glm::dvec2 body_reach{0};  ///< FitOptions::body_reach
+  SceneSpace space = {};
 };
 
 /// Returns the faces of the light's centre; first those of the side where the light's normal points.
@@ -84,7 +85,7 @@ struct SeenReceiver {
   double depth = 0;
 };
 std::optional<SeenReceiver> seen_receiver(const visibility::ViewSamples& samples, std::size_t pixel,
-                                          const LightBasis& basis, bool both_sides);
+                                          const LightBasis& basis, bool both_sides, const SceneSpace& space = {});
 
 /// Returns the face used by a receiver: the first that contains the receiver; nullptr if there is none.
 const FittedFace* face_for(std::span<const FittedFace> faces, const SeenReceiver& receiver);

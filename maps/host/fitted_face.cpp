@@ -156,11 +156,12 @@ std::vector<FittedFace> faces_of(const gpu::LightView& view) {
 }
 
 std::optional<SeenReceiver> seen_receiver(const visibility::ViewSamples& samples, std::size_t pixel,
-                                          const LightBasis& basis, bool both_sides) {
+                                          const LightBasis& basis, bool both_sides, const SceneSpace& space) {
   const glm::dvec3 p(samples.p[pixel]), d = basis.local(p);
   if (d.z == 0 || (d.z < 0 && !both_sides)) return std::nullopt;
-  return SeenReceiver{
-      d.z < 0 ? 1 : 0, {d.x, d.y, std::abs(d.z)}, glm::dot(samples.camera.forward, p - samples.camera.eye)};
+  return SeenReceiver{d.z < 0 ? 1 : 0,
+                      {d.x, d.y, std::abs(d.z)},
+                      glm::dot(samples.camera.forward, space.scene_point(p) - samples.camera.eye)};
 }
 
 const FittedFace* face_for(std::span<const FittedFace> faces, const SeenReceiver& receiver) {

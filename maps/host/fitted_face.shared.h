@@ -23,8 +23,10 @@ struct FittedFace {
 
 // Head of the table of faces.
 struct FaceTable {
-  vec3 forward;  // a receiver's depth along the view axis is dot(forward, p) + offset
-  float offset;
+  vec3 forward;  // a receiver's depth along the view axis is (dot(forward, p) + offset) / (dot(divisor, p) +
+  float offset;  // divisor_offset)
+  vec3 divisor;  // 0, and 1 for the offset, but in another space than the scene's (SceneSpace)
+  float divisor_offset;
   uint count;
 };
 

@@ -34,7 +34,7 @@ constexpr std::uint32_t kBitsPerWord = 32;
 /// Memory limits of a batch of several light points, and of a tile's masks.
 constexpr std::uint64_t kBatchBytes = std::uint64_t{128} << 20, kMaskBytes = std::uint64_t{256} << 20;
 
-class MapMethod final : public visibility::Method, public visibility::PassesTriangles {
+class MapMethod final : public visibility::Method, public visibility::PassesTriangles, public SeesScene {
  public:
   MapMethod(const render::Device& device, MapRecipe recipe, const MapOptions& options)
       : device_(&device),
@@ -61,6 +61,7 @@ class MapMethod final : public visibility::Method, public visibility::PassesTria
   [[nodiscard]] const visibility::MethodDescription& description() const override { return recipe_.description; }
   void want_pixels(std::span<const std::uint32_t> pixels) override { receivers_.want(pixels); }
   void pass(const visibility::AllTriangles* all) override { all_ = all; }
+  void see_through(const SceneSpace& space) override { space_ = space; }
   void prepare_mesh(const visibility::SceneFloats& scene) override;
   void prepare_light(const visibility::Light& light) override;
   void prepare_view(const visibility::ViewSamples& samples) override;
@@ -143,6 +144,7 @@ class MapMethod final : public visibility::Method, public visibility::PassesTria
   visibility::PassTimes times_;
   std::map<std::string, std::uint64_t> counters_;
   const visibility::SceneFloats* scene_ = nullptr;
+  SceneSpace space_;                               // of the camera: the scene's, or that of a sun
   const visibility::AllTriangles* all_ = nullptr;  ///< of which the scene has a part; null: it is whole
   const visibility::Light* light_ = nullptr;
   const visibility::ViewSamples* samples_ = nullptr;
@@ -235,19 +237,20 @@ void MapMethod::fit_to_camera(FitOptions fit, const glm::vec3& centre) {
   const visibility::Light& light = *light_;
   const LightBounds bounds = light_bounds(light, basis_);
   if (recipe_.beside && recipe_.beside_texels == 0) fit.body_reach = glm::max(-bounds.lower, bounds.upper);
-  const std::vector<BodyPoint> body =
-      body_points(*scene_, light, basis_, *samples_, options_.fit.body, 0, std::numeric_limits<double>::infinity());
+  const std::vector<BodyPoint> body = body_points(*scene_, light, basis_, *samples_, options_.fit.body, 0,
+                                                  std::numeric_limits<double>::infinity(), space_);
   fit.body = &body;
   fit.snap = options_.fit.snap;
   fitted_ = fit_views(*scene_, light, basis_, std::span(&centre, 1), fit);
   if (!options_.fit.has_faces()) return;
-  FaceFitOptions choices{.fit = options_.fit, .size = options_.size, .spare = 1 + recipe_.beside_texels};
+  FaceFitOptions choices{
+      .fit = options_.fit, .size = options_.size, .spare = 1 + recipe_.beside_texels, .space = space_};
   if (recipe_.beside_texels == 0) {
     choices.beside = fit.beside;
     choices.body_reach = fit.body_reach;
   }
   if (options_.fit.queries()) choices.fit.tiles = 1;
-  fitted_.faces = faces_.fit(*device_, {*scene_, light, basis_, *samples_}, choices, fitted_.views.front());
+  fitted_.faces = faces_.fit(*device_, {*scene_, light, basis_, *samples_, space_}, choices, fitted_.views.front());
 }
 
 void MapMethod::make_maps() {
@@ -264,14 +267,14 @@ void MapMethod::query_tiles() {
   std::vector<std::optional<SeenReceiver>> receivers(samples_->size());
   for (std::size_t i = 0; i < receivers.size(); ++i) {
     if (visibility::is_receiver(*scene_, *light_, *samples_, i)) {
-      receivers[i] = seen_receiver(*samples_, i, basis_, light_->two_sided);
+      receivers[i] = seen_receiver(*samples_, i, basis_, light_->two_sided, space_);
     }
   }
   const visibility::Tile asked = tile_;
   const std::vector<FittedFace> whole = faces_.faces();
   const QueriedTiles tiles = queried_tiles(whole, receivers, options_.fit, [&](const std::vector<FittedFace>& faces) {
-    fitted_.faces =
-        faces_.take(*device_, {*scene_, *light_, basis_, *samples_}, faces, options_.size, fitted_.views.front());
+    fitted_.faces = faces_.take(*device_, {*scene_, *light_, basis_, *samples_, space_}, faces, options_.size,
+                                fitted_.views.front());
     make_fitted_maps();
     return whole_picture();
   });
@@ -530,7 +533,7 @@ void MapMethod::read_visibility(std::span<float> visibility) {
 void MapMethod::find_aliasing() {
   const std::vector<FittedFace> windows = faces_of(fitted_.views.front());
   aliasing_ = measure_aliasing(options_.fit.has_faces() ? faces_.faces() : windows, *scene_, *light_, *samples_, basis_,
-                               options_.size);
+                               options_.size, space_);
 }
 
 std::map<std::string, std::uint64_t> MapMethod::counters() const {

@@ -10,7 +10,8 @@ void main() {
     receiver_plane = receiver.plane;
     receiver_object = receiver.object;
 #ifdef FITTED_FACES
-    receiver_depth = dot(table_of_faces.forward, receiver.p) + table_of_faces.offset;
+    receiver_depth = (dot(table_of_faces.forward, receiver.p) + table_of_faces.offset) /
+                     (dot(table_of_faces.divisor, receiver.p) + table_of_faces.divisor_offset);
 #endif
     const vec3 d = to_basis(lookup.basis, receiver.p - view.point);
     v = on_emitting_side(d) ? visibility_of(view, d, -to_basis(lookup.basis, receiver.n)) : 0.0;

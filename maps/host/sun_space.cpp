@@ -125,6 +125,16 @@ glm::vec3 SunSpace::mapped(const glm::vec3& p) const {
   return glm::vec3(share * at.x, share * at.y, share * at.z);  // S² / q − S = S Z / q, since b = S
 }
 
+/// Here z counts from −S, where w is 0: with a position p, (X, Y, Z) = p / w, w = 1 + p.z / S.
+SceneSpace SunSpace::space() const {
+  glm::dmat4 to_scene(1);
+  to_scene[0] = glm::dvec4(u_, 0);
+  to_scene[1] = glm::dvec4(v_, 0);
+  to_scene[2] = glm::dvec4(n_ + middle_ / scale_, 1 / scale_);
+  to_scene[3] = glm::dvec4(middle_, 1);
+  return SceneSpace(to_scene);
+}
+
 visibility::ViewSamples SunSpace::mapped(const visibility::ViewSamples& samples) const {
   visibility::ViewSamples all = samples;
   // An eye too far along the sun's light has no image in this space.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "maps/host/scene_space.hpp"
 #include "visibility/all_triangles.hpp"
 #include "visibility/light_samples.hpp"
 #include "visibility/scene_floats.hpp"
@@ -40,6 +41,8 @@ class SunSpace final : public visibility::AllTriangles {
   /// Returns the disk. A sun of one direction is replaced by a disk with a tangent of 2⁻²⁰, less than a texel of any
   /// map.
   [[nodiscard]] const visibility::Light& light() const { return light_; }
+  /// Returns where the scene, and so the camera of its view samples, is from here.
+  [[nodiscard]] SceneSpace space() const;
   /// Returns view samples of the original scene, mapped to this space.
   [[nodiscard]] visibility::ViewSamples mapped(const visibility::ViewSamples& samples) const;
 

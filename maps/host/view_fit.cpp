@@ -7,6 +7,7 @@
 #include "visibility/receivers.hpp"
 
 #include <glm/geometric.hpp>
+#include <glm/vec4.hpp>
 
 #include <algorithm>
 #include <array>
@@ -61,14 +62,20 @@ std::vector<glm::dvec3> clipped(const std::vector<glm::dvec3>& polygon, const Pl
 
 std::vector<BodyPoint> points_in_frustum(const visibility::SceneFloats& scene, const visibility::Light& light,
                                          const LightBasis& basis, const visibility::PinholeCamera& camera, double from,
-                                         double to) {
-  const std::vector<Plane> planes = frustum(camera, from, to);
+                                         double to, const SceneSpace& space) {
+  std::vector<Plane> planes = frustum(camera, from, to);
+  for (Plane& plane : planes) {
+    const glm::dvec4 here = space.plane({plane.normal, plane.offset});
+    plane = {glm::dvec3(here), here.w};
+  }
   // A polygon cut by the light's plane becomes two, each up to this distance from the plane.
   const double gap = 0x1p-20 * glm::length(glm::dvec3(scene.upper) - glm::dvec3(scene.lower));
   const double height = glm::dot(basis.n, basis.center);
   const Plane before{basis.n, -height - gap}, behind{-basis.n, height - gap};
   std::vector<BodyPoint> points;
-  const auto add = [&](const glm::dvec3& x) { points.push_back({x, glm::dot(camera.forward, x - camera.eye)}); };
+  const auto add = [&](const glm::dvec3& x) {
+    points.push_back({x, glm::dot(camera.forward, space.scene_point(x) - camera.eye)});
+  };
   std::vector<std::uint8_t> whole(scene.positions.size(), 0);
   for (std::uint32_t i = 0; i < scene.triangles.size(); ++i) {
     if (!visibility::is_receiver(scene, light, i)) continue;
@@ -135,13 +142,13 @@ ViewFit view_fit(std::span<const visibility::OptionDescription> options, const v
 
 std::vector<BodyPoint> body_points(const visibility::SceneFloats& scene, const visibility::Light& light,
                                    const LightBasis& basis, const visibility::ViewSamples& samples, ViewBody body,
-                                   double from, double to) {
-  if (body == ViewBody::frustum) return points_in_frustum(scene, light, basis, samples.camera, from, to);
+                                   double from, double to, const SceneSpace& space) {
+  if (body == ViewBody::frustum) return points_in_frustum(scene, light, basis, samples.camera, from, to, space);
   std::vector<BodyPoint> points;
   for (std::size_t i = 0; i < samples.size(); ++i) {
     if (!visibility::is_receiver(scene, light, samples, i)) continue;
     const glm::dvec3 p(samples.p[i]);
-    const double depth = glm::dot(samples.camera.forward, p - samples.camera.eye);
+    const double depth = glm::dot(samples.camera.forward, space.scene_point(p) - samples.camera.eye);
     if (depth >= from && depth <= to) points.push_back({p, depth});
   }
   return points;

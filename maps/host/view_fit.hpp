@@ -2,6 +2,7 @@
 #pragma once
 
 #include "maps/host/light_basis.hpp"
+#include "maps/host/scene_space.hpp"
 #include "visibility/light_samples.hpp"
 #include "visibility/method_options.hpp"
 #include "visibility/scene_floats.hpp"
@@ -154,7 +155,7 @@ struct BodyPoint {
 /// on both of its sides, whose directions from the light's centre are beyond every window.
 std::vector<BodyPoint> body_points(const visibility::SceneFloats& scene, const visibility::Light& light,
                                    const LightBasis& basis, const visibility::ViewSamples& samples, ViewBody body,
-                                   double from, double to);
+                                   double from, double to, const SceneSpace& space = {});
 
 /// Returns the n + 1 depths that bound the slices, the first near and the last far (Eisemann et al. 2009, section
 /// 3.2.3.1). 0 < near ≤ far.
