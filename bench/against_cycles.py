@@ -1,18 +1,25 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: Apache-2.0
-"""Error against processor time of Penumbra and of Blender's Cycles, whole processes from start to file.
+"""Error against processor time and memory of Penumbra and of Blender's Cycles, whole processes from start to file.
 
-    bench/against_cycles.py measure [BUILD [SCENE …]]     renders and measures; writes bench/results/against-cycles.json; an hour
-    bench/against_cycles.py page [--check]      docs/against-cycles.md, its chart, and the README's sentences, from that file
+    bench/against_cycles.py measure [BUILD [SCENE|PART …]]     renders and measures; writes bench/results/against-cycles.json after each row; an hour and a half
+    bench/against_cycles.py page [--check]      docs/against-cycles.md, its charts, and the README's sentences, from that file
 
-With scenes named, rows of others stay as they are. `measure` needs Blender, the built program and the add-on (targets penumbra and penumbra_blender_addon).
+With scenes or parts named, other rows stay as they are. `measure` needs Blender, the built program and the add-on (targets penumbra and penumbra_blender_addon).
 
-Each scene (cycles/scenes.py) is rendered at its pixels' centres, and antialiased under a Blackman-Harris filter of 1.5 pixels, by
-four processes: the program from the add-on's exchange file; Blender with the add-on; and Blender with Cycles, direct light, at
-several light samples a pixel. They take turns, each several times; a time is the median of user and system seconds of
-the process and its children. The judge is Cycles: a crop that holds the most penumbra is rendered with many samples under two
-seeds. An error is the root of the mean squared difference from their mean, over the crop's mean; the judge's own noise, half the
-difference of the two seeds, is taken off in squares, and is the least that can be told.
+Each scene (cycles/scenes.py) is rendered in parts:
+
+centres      all at the pixels' centres
+antialiased  under a Blackman-Harris filter of 1.5 pixels, by 16 view samples a pixel of Penumbra
+lens         likewise, through a thin lens: each of the 16 view samples looks through its own point of the lens
+motion       one object moves while the shutter is open, at the pixels' centres, by 16 moments of Penumbra
+
+by four processes: the program from the add-on's exchange file; Blender with the add-on (which has no motion); and Blender with
+Cycles, direct light, at several light samples a pixel. They take turns, each several times; a time is the median of user and
+system seconds of the process and its children; memory is the largest resident set of one process. The judge is Cycles: a crop
+that holds the most penumbra (in motion: the most that moved) is rendered with many samples under two seeds. An error is the root of the mean squared
+difference from their mean, over the crop's mean; the judge's own noise, half the difference of the two seeds, is taken off in
+squares, and is the least that can be told. The ratio of Penumbra's mean over the crop to the judge's is kept, too.
 
 Cycles' error falls as one over the root of its samples, and its time is a constant and a share for each sample: so the
 seconds for an error that was not measured follow from two measured counts.
@@ -20,8 +27,8 @@ seconds for an error that was not measured follow from two measured counts.
 
 import json
 import os
-import platform
 import re
+import shutil
 import statistics
 import subprocess
 import sys
@@ -31,30 +38,34 @@ from pathlib import Path
 
 import numpy
 
+from animated_glb import add_motion
+from processes import processor, usage_of
+
 ROOT = Path(__file__).resolve().parent.parent
 HERE = ROOT / "bench/cycles"
 RESULT = ROOT / "bench/results/against-cycles.json"
-PAGE, CHART, README = ROOT / "docs/against-cycles.md", ROOT / "docs/images/against-cycles.svg", ROOT / "README.md"
+PAGE, README = ROOT / "docs/against-cycles.md", ROOT / "README.md"
+CHARTS = {"against-cycles": ("centres", "antialiased"), "against-cycles-blur": ("lens", "motion")}
 sys.path[:0] = [str(ROOT / "blender"), str(ROOT / "docs/figures"), str(ROOT / "docs/figures/papers")]
 
 WIDTH, HEIGHT = 640, 480
 CROP = 64, 48  # pixels
-CYCLES_SAMPLES = 64, 256
-JUDGE_SAMPLES = 4096  # for each of two seeds
+# Of Cycles, and of the judge for each of two seeds. A picture that is blurred by 16 samples has more error than one that is not, so fewer tell it.
+CYCLES_SAMPLES = {"centres": (64, 256), "antialiased": (64, 256), "lens": (16, 64), "motion": (16, 64)}
+JUDGE_SAMPLES = {"centres": 4096, "antialiased": 4096, "lens": 1024, "motion": 1024}
 RUNS = 3
 ERRORS = 0.03, 0.01, 0.002
 NAMES = {"small": "small lamp", "large_penumbrae": "large penumbrae", "dense": "504k triangles", "four_lamps": "four lamps", "sky": "sky picture"}
-
-
-def processor_seconds(command, environment, log):
-    """Runs `command`; user and system seconds of the process and of all descendants that were waited for."""
-    with open(log, "wb") as out:
-        process = subprocess.Popen([str(part) for part in command], stdin=subprocess.DEVNULL, stdout=out, stderr=out, env=environment)
-        _, status, usage = os.wait4(process.pid, 0)
-    process.returncode = os.waitstatus_to_exitcode(status)
-    if process.returncode != 0:
-        raise SystemExit(f"{' '.join(map(str, command))}: exit code {process.returncode}\n{Path(log).read_text(errors='replace')[-2000:]}")
-    return usage.ru_utime + usage.ru_stime
+PARTS = {"centres": "at pixels' centres", "antialiased": "antialiased, 16 view samples a pixel", "lens": "through a lens, 16 view samples a pixel",
+         "motion": "in motion, 16 moments"}
+BLURRED = "large_penumbrae", "dense", "four_lamps"  # the scenes of lens and motion
+ROWS = [(part, scene) for part in PARTS for scene in (BLURRED if part in ("lens", "motion") else NAMES)]
+FRAMES_A_SECOND = 24
+# Blender's frame 1 is frame 12 of the file, the middle of a second of animation. Cycles looks the moment of a sample up in a table of 256 entries, by which it
+# exposes the first 254 of 256 parts of the shutter's time: seen by measuring, since over the whole shutter the means of the two differ by 0.2 %, and over this
+# part of it by 0.01 % (large penumbrae, 64 moments). Penumbra's shutter is open as long as Cycles' is.
+SHUTTER = 0.5 * 254 / 256
+FRAME = 12 - 0.25 + SHUTTER / 2
 
 
 class Picture:
@@ -84,10 +95,9 @@ def same_surface(ours, theirs):
     return (near[0] < 2e-3) & (near[1] < 2e-3)
 
 
-def crop_of_most_penumbra(v):
-    """Left column and top row of the crop that holds the most pixels with 0 < V < 1."""
-    partly = ((v > 0) & (v < 1)).astype(float)
-    total = numpy.pad(partly.cumsum(0).cumsum(1), ((1, 0), (1, 0)))
+def crop_of_most(wanted):
+    """Left column and top row of the crop that holds the most pixels which are True."""
+    total = numpy.pad(wanted.astype(float).cumsum(0).cumsum(1), ((1, 0), (1, 0)))
     w, h = CROP
     inside = total[h:, w:] - total[:-h, w:] - total[h:, :-w] + total[:-h, :-w]
     top, left = numpy.unravel_index(inside.argmax(), inside.shape)
@@ -95,113 +105,138 @@ def crop_of_most_penumbra(v):
 
 
 class Scene:
-    def __init__(self, name, work, program, environment):
-        self.name, self.work, self.program, self.environment = name, work, program, environment
-        self.log = work / "log"
+    """A scene's files, as scenes.py wrote them; `facts`: triangles, lens and what moves."""
 
-    def blender(self, out, engine, samples=0, antialiased=False, seed=1, crop=None):
+    def __init__(self, name, facts, work, program, environment):
+        self.name, self.facts, self.work, self.program, self.environment = name, facts, work, program, environment
+        self.moving = work / f"{name}.moving.glb"
+        shutil.copy(work / f"{name}.glb", self.moving)
+        add_motion(self.moving, facts["mover"], [FRAMES_A_SECOND * step for step in facts["step"]])
+
+    def blender(self, out, engine, part, samples=0, seed=1, crop=None):
         command = ["blender", "-b", self.work / f"{self.name}.blend", "--python-exit-code", "1", "-P", HERE / "render.py", "--",
-                   out, engine, samples, int(antialiased), seed, self.program]
+                   out, engine, samples, part, seed, self.program]
         if crop is not None:
             (left, top), (w, h) = crop, CROP
             # Blender rounds a border down to pixels: a fortieth of a pixel more keeps rounding errors from taking one away.
             command += [(left + 0.025) / WIDTH, (left + w + 0.025) / WIDTH,
                         (HEIGHT - top - h + 0.025) / HEIGHT, (HEIGHT - top + 0.025) / HEIGHT]
-        return processor_seconds(command, self.environment, self.log)
+        return usage_of(command, self.environment)
 
-    def penumbra(self, out, antialiased):
-        command = [self.program, "render", self.work / f"{self.name}.glb", "-o", out, "--no-studio", "--size", f"{WIDTH}x{HEIGHT}"]
-        if antialiased:
+    def penumbra(self, out, part):
+        scene = self.moving if part == "motion" else self.work / f"{self.name}.glb"
+        command = [self.program, "render", scene, "-o", out, "--no-studio", "--size", f"{WIDTH}x{HEIGHT}"]
+        if part == "motion":
+            command += ["--fps", FRAMES_A_SECOND, "--frame", FRAME, "--motion-samples", 16, "--shutter", SHUTTER]
+        elif part != "centres":
             command += ["--pixel-samples", 16, "--pixel-filter", "blackman-harris", "--filter-width", 1.5]
-        return processor_seconds(command, self.environment, self.log)
+        if part == "lens":
+            command += ["--aperture", self.facts["aperture"], "--focus-distance", self.facts["focus"]]
+        return usage_of(command, self.environment)
 
-    def measure(self, antialiased):
+    def picture(self, part):
+        self.penumbra(self.work / "centre.exr", part)
+        return Picture(self.work / "centre.exr")
+
+    def measure(self, part):
         work, (w, h) = self.work, CROP
-        self.penumbra(work / "centre.exr", False)
-        centre = Picture(work / "centre.exr")
-        left, top = crop = crop_of_most_penumbra(centre.v)
+        centre = self.picture("centres")
+        partly = (centre.v > 0) & (centre.v < 1)
+        if part == "motion":
+            v = self.picture("motion").v
+            partly = (v > 0) & (v < 1) & (numpy.abs(v - centre.v) > 0.01)
+        left, top = crop = crop_of_most(partly)
         inside = numpy.s_[top:top + h, left:left + w]
         judges = []
         for seed in (1, 2):
-            self.blender(work / f"judge{seed}.exr", "CYCLES", JUDGE_SAMPLES, antialiased, seed, crop)
+            self.blender(work / f"judge{seed}.exr", "CYCLES", part, JUDGE_SAMPLES[part], seed, crop)
             judges.append(Picture(work / f"judge{seed}.exr"))
             if judges[-1].beauty.shape[:2] != (h, w):
                 raise SystemExit(f"{self.name}: Blender's crop is {judges[-1].beauty.shape}, not {h} x {w}")
         judged = numpy.full((h, w), True)
-        if not antialiased:
-            judged = same_surface([a[inside] for a in centre.shown], judges[0].shown)
+        if part in ("centres", "motion"):
+            self.blender(work / "still.exr", "CYCLES", "centres", 1, 1, crop)
+            judged = same_surface([a[inside] for a in centre.shown], Picture(work / "still.exr").shown)
         first, second = (one.beauty[judged] for one in judges)
         judge = (first + second) / 2
         noise = sqrt(numpy.mean((first - second) ** 2)) / 2
 
-        def error_of(path):
-            part = Picture(path).beauty[inside][judged]
-            return sqrt(max(numpy.mean((part - judge) ** 2) - noise ** 2, 0)) / judge.mean()
-
-        seconds, errors = {}, {}
+        entries = {}
+        engines = ["penumbra", "add-on", *(f"cycles {samples}" for samples in CYCLES_SAMPLES[part])]
+        if part == "motion":
+            engines.remove("add-on")
         for run in range(RUNS):
-            for engine in ("penumbra", "add-on", *(f"cycles {samples}" for samples in CYCLES_SAMPLES)):
-                if engine == f"cycles {CYCLES_SAMPLES[-1]}" and run > 0:
+            for engine in engines:
+                if engine == engines[-1] and run > 0:
                     continue  # minutes; its share a sample is what is wanted, and is large against what varies
                 out = work / "picture.exr"
                 out.unlink(missing_ok=True)
                 if engine == "penumbra":
-                    time = self.penumbra(out, antialiased)
+                    usage = self.penumbra(out, part)
                 elif engine == "add-on":
-                    time = self.blender(out, "PENUMBRA", antialiased=antialiased)
+                    usage = self.blender(out, "PENUMBRA", part)
                 else:
-                    time = self.blender(out, "CYCLES", engine.split()[1], antialiased, 3)
-                seconds.setdefault(engine, []).append(round(time, 3))
-                errors.setdefault(engine, error_of(out))
-                print(f"{self.name} {'antialiased' if antialiased else 'centres'}: {engine}: {time:.2f} s, error {errors[engine]:.5f}", flush=True)
-        return {"scene": self.name, "antialiased": antialiased, "crop": [left, top, w, h], "judgedPixels": int(judged.sum()), "leastError": noise / judge.mean(),
-                "entries": [{"entry": engine, "seconds": statistics.median(times), "runs": times, "error": errors[engine]}
-                            for engine, times in seconds.items()]}
+                    usage = self.blender(out, "CYCLES", part, engine.split()[1], 3)
+                entry = entries.setdefault(engine, {"entry": engine, "runs": [], "memories": []})
+                entry["runs"].append(round(usage.seconds, 3))
+                entry["memories"].append(round(usage.mebibytes))
+                if run == 0:
+                    part_of = Picture(out).beauty[inside][judged]
+                    entry["error"] = sqrt(max(numpy.mean((part_of - judge) ** 2) - noise ** 2, 0)) / judge.mean()
+                    entry["meanRatio"] = part_of.mean() / judge.mean()
+                print(f"{self.name} {part}: {engine}: {usage.seconds:.2f} s, {usage.mebibytes:.0f} MiB, error {entry['error']:.5f}, "
+                      f"mean over the judge's {entry['meanRatio']:.5f}", flush=True)
+        for entry in entries.values():
+            entry |= {"seconds": statistics.median(entry["runs"]), "mebibytes": statistics.median(entry.pop("memories"))}
+        return {"scene": self.name, "part": part, "crop": [left, top, w, h], "judgedPixels": int(judged.sum()),
+                "judgeSamples": 2 * JUDGE_SAMPLES[part], "leastError": noise / judge.mean(),
+                "entries": list(entries.values())}
 
 
-def measure(build, names):
-    git = lambda *arguments: subprocess.run(["git", "-C", ROOT, *arguments], capture_output=True, text=True).stdout.strip()
+def measure(build, wanted):
+    """Measures the rows of these scenes and parts, and writes each down as soon as it is known."""
+    unknown = set(wanted) - set(NAMES) - set(PARTS)
+    if unknown:
+        raise SystemExit(f"{', '.join(unknown)}: scenes are {', '.join(NAMES)}; parts are {', '.join(PARTS)}")
+    scenes, parts = set(wanted) & set(NAMES) or set(NAMES), set(wanted) & set(PARTS) or set(PARTS)
+    asked = [(part, scene) for part, scene in ROWS if part in parts and scene in scenes]
+    names = list(dict.fromkeys(scene for _, scene in asked))
+    commit = subprocess.run(["git", "-C", ROOT, "rev-parse", "--short=8", "HEAD"], capture_output=True, text=True, check=True).stdout.strip()
     blender = subprocess.run(["blender", "--version"], capture_output=True, text=True, check=True).stdout.split("\n")[0]
     with tempfile.TemporaryDirectory() as folder:
         work = Path(folder)
         environment = {**os.environ, "BLENDER_USER_SCRIPTS": str(work / "scripts"), "BLENDER_USER_CONFIG": str(work / "config")}
         (work / "scripts").mkdir()
-        program = build / "penumbra"
-        processor_seconds(["blender", "-b", "--factory-startup", "--python-exit-code", "1", "-P", HERE / "scenes.py", "--",
-                           build / "penumbra-blender.zip", work, WIDTH, HEIGHT, *names], environment, work / "log")
-        triangles = {line.split()[1]: int(line.split()[2]) for line in (work / "log").read_text().splitlines() if line.startswith("scene: ")}
-        rows = [Scene(name, work, program, environment).measure(antialiased) for name in names for antialiased in (False, True)]
-    state = {"commit": git("rev-parse", "--short", "HEAD"), "machine": processor(), "threads": os.cpu_count(),
-             "load": [round(x, 1) for x in os.getloadavg()]}
-    data = {"title": "error against processor seconds, beside Cycles", "command": "bench/against_cycles.py measure", **state, "blender": blender,
-            "size": [WIDTH, HEIGHT], "judgeSamples": 2 * JUDGE_SAMPLES, "triangles": triangles, "rows": rows}
-    if set(names) != set(NAMES):
-        kept = json.loads(RESULT.read_text())
-        measured = {(row["scene"], row["antialiased"]): row | {"measured": state} for row in rows}
-        old = {(row["scene"], row["antialiased"]): row for row in kept["rows"]}
-        data = kept | {"triangles": kept["triangles"] | triangles,
-                       "rows": [row for name in NAMES for antialiased in (False, True) if (row := (old | measured).get((name, antialiased)))]}
+        usage_of(["blender", "-b", "--factory-startup", "--python-exit-code", "1", "-P", HERE / "scenes.py", "--",
+                  build / "penumbra-blender.zip", work, WIDTH, HEIGHT, *names], environment)
+        made = {name: Scene(name, json.loads((work / f"{name}.json").read_text()), work, build / "penumbra", environment) for name in names}
+        for part, scene in asked:
+            row = made[scene].measure(part) | {"measured": {"commit": commit, "machine": processor(), "threads": os.cpu_count(),
+                                                            "load": [round(x, 1) for x in os.getloadavg()]}}
+            keep(row, made[scene].facts["triangles"], {"commit": commit, "machine": processor(), "blender": blender})
+
+
+def keep(row, triangles, state):
+    """Puts one row into the file of results."""
+    data = json.loads(RESULT.read_text()) if RESULT.exists() else {"rows": [], "triangles": {}}
+    rows = {(one["part"], one["scene"]): one for one in (*data["rows"], row)}
+    data.pop("judgeSamples", None)
+    data |= {"title": "error against processor seconds, beside Cycles", "command": "bench/against_cycles.py measure", **state, "size": [WIDTH, HEIGHT],
+             "triangles": data["triangles"] | {row["scene"]: triangles}, "rows": [rows[at] for at in ROWS if at in rows]}
     RESULT.write_text(json.dumps(data, indent=1) + "\n")
-
-
-def processor():
-    for line in Path("/proc/cpuinfo").read_text().splitlines():
-        if line.startswith("model name"):
-            return line.partition(":")[2].strip()
-    return platform.processor()
 
 
 class Line:
     """Cycles' seconds and error over its samples, through two measured counts."""
 
     def __init__(self, row):
-        entries = {entry["entry"]: entry for entry in row["entries"]}
-        low, high = (entries[f"cycles {samples}"] for samples in CYCLES_SAMPLES)
-        self.each = (high["seconds"] - low["seconds"]) / (CYCLES_SAMPLES[1] - CYCLES_SAMPLES[0])
-        self.start = low["seconds"] - self.each * CYCLES_SAMPLES[0]
+        entries = {int(name.split()[1]): entry for entry in row["entries"] if (name := entry["entry"]).startswith("cycles")}
+        (few, low), (many, high) = sorted(entries.items())
+        self.counts, self.each = (few, many), (high["seconds"] - low["seconds"]) / (many - few)
+        self.start = low["seconds"] - self.each * few
         self.most_error, self.least_seconds = low["error"], low["seconds"]  # measured
         # error = unit / sqrt(samples): the geometric mean of what both counts say of unit
-        self.unit = sqrt(low["error"] * high["error"]) * (CYCLES_SAMPLES[0] * CYCLES_SAMPLES[1]) ** 0.25
+        self.unit = sqrt(low["error"] * high["error"]) * (few * many) ** 0.25
 
     def seconds(self, error):
         return self.start + self.each * max(1, (self.unit / error) ** 2)
@@ -218,58 +253,95 @@ def number(value):
     return f"{value:.2f}" if value < 10 else f"{value:.1f}" if value < 100 else f"{value:,.0f}"
 
 
+def at_own_error(row):
+    """How many times as long Cycles takes for the error of Penumbra's picture; a bound where that is below what the judge can tell."""
+    ours = next(entry for entry in row["entries"] if entry["entry"] == "penumbra")
+    bound = "" if ours["error"] > row["leastError"] else "≥ "
+    return bound + Line(row).factor(max(ours["error"], row["leastError"]), ours["seconds"])
+
+
+def memory(entries, name):
+    return f"{entries[name]['mebibytes']:,.0f}" if "mebibytes" in entries.get(name, {}) else "–"
+
+
 def table(rows):
-    yield "| scene | Penumbra | through the add-on | its error | Cycles 64: error / s | Cycles 256: error / s | 3 %, 1 %, 0.2 %: times as long in Cycles |"
-    yield "| --- | --- | --- | --- | --- | --- | --- |"
+    few, many = CYCLES_SAMPLES[rows[0]["part"]]
+    yield (f"| scene | Penumbra, s | through the add-on | its error | Cycles {few}: error / s | Cycles {many}: error / s | times as long in Cycles: 3 %, 1 %, 0.2 % "
+           "| to Penumbra's error | MiB: Penumbra, add-on, Cycles | commit, load |")
+    yield "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |"
     for row in rows:
         entries = {entry["entry"]: entry for entry in row["entries"]}
         ours, line = entries["penumbra"], Line(row)
-        error = f"{ours['error']:.5f}" if ours["error"] > row["leastError"] else f"≤ {row['leastError']:.5f}"
-        cycles = " | ".join(f"{entries[f'cycles {samples}']['error']:.4f} / {number(entries[f'cycles {samples}']['seconds'])}" for samples in CYCLES_SAMPLES)
+        own = f"{ours['error']:.5f}" if ours["error"] > row["leastError"] else f"≤ {row['leastError']:.5f}"
+        cycles = " | ".join(f"{entries[f'cycles {samples}']['error']:.4f} / {number(entries[f'cycles {samples}']['seconds'])}" for samples in line.counts)
         # An error below what ours has is nothing that both reach.
         factors = ", ".join(line.factor(error, ours["seconds"]) if error >= ours["error"] else "–" for error in ERRORS)
-        later = f" ({row['measured']['commit']}, load {row['measured']['load'][0]})" if "measured" in row else ""
-        yield f"| {NAMES[row['scene']]}{later} | {number(ours['seconds'])} | {number(entries['add-on']['seconds'])} | {error} | {cycles} | {factors} |"
+        through = number(entries["add-on"]["seconds"]) if "add-on" in entries else "–"
+        memories = ", ".join(memory(entries, name) for name in ("penumbra", "add-on", f"cycles {few}"))
+        yield (f"| {NAMES[row['scene']]} | {number(ours['seconds'])} | {through} | {own} | {cycles} | {factors} | {at_own_error(row)} | {memories} "
+               f"| {row['measured']['commit']}, {row['measured']['load'][0]} |")
 
 
-def chart(data):
+def summary(rows):
+    """The times that Cycles takes to Penumbra's error, a column a part; and the most memory that each took."""
+    yield f"| scene | {' | '.join(PARTS)} | MiB: Penumbra, Cycles |"
+    yield "| --- |" + " --- |" * (len(PARTS) + 1)
+    found = {(row["scene"], row["part"]): row for row in rows}
+    for scene, name in NAMES.items():
+        cells = [at_own_error(found[scene, part]) if (scene, part) in found else "–" for part in PARTS]
+        most = [max((entry["mebibytes"] for (at, _), row in found.items() if at == scene for entry in row["entries"]
+                     if entry["entry"].startswith(kind) and "mebibytes" in entry), default=None) for kind in ("penumbra", "cycles")]
+        yield f"| {name} | {' | '.join(cells)} | {', '.join('–' if one is None else f'{one:,.0f}' for one in most)} |"
+
+
+def chart(data, parts):
     """The curves are Cycles', each mark on them four times the samples of the one before; the marks apart are Penumbra's."""
     from chart import STYLES, Chart, key, mark
     from drawing import Drawing
     d = Drawing(980, 440, "Error against processor time: Penumbra and Cycles")
     xs, ys = (0.1, 1000), (1e-4, 0.3)
-    for column, antialiased in enumerate((False, True)):
-        title = "antialiased, 16 view samples a pixel" if antialiased else "at pixels' centres"
-        plot = Chart(d, (70 + 470 * column, 40, 400, 300), xs, ys, title, "processor seconds of the whole process",
-                     "" if antialiased else "error", True, True, (0.1, 1, 10, 100, 1000), (1e-4, 1e-3, 1e-2, 1e-1))
-        for style, row in enumerate(row for row in data["rows"] if row["antialiased"] == antialiased):
-            entries = {entry["entry"]: entry for entry in row["entries"]}
-            line = Line(row)
-            counts = [4 ** k for k in range(3, 9) if line.start + line.each * 4 ** k <= xs[1]]
-            plot.curve([(line.start + line.each * count, line.unit / sqrt(count)) for count in counts], style)
-            ours = entries["penumbra"]
+    shown = []
+    for column, part in enumerate(parts):
+        plot = Chart(d, (70 + 470 * column, 40, 400, 300), xs, ys, PARTS[part], "processor seconds of the whole process",
+                     "" if column else "error", True, True, (0.1, 1, 10, 100, 1000), (1e-4, 1e-3, 1e-2, 1e-1))
+        for row in data["rows"]:
+            if row["part"] != part:
+                continue
+            style = list(NAMES).index(row["scene"])
+            shown.append(style)
+            line, count, points = Line(row), Line(row).counts[0], []
+            while line.start + line.each * count <= xs[1]:
+                points.append((line.start + line.each * count, line.unit / sqrt(count)))
+                count *= 4
+            plot.curve(points, style)
+            ours = next(entry for entry in row["entries"] if entry["entry"] == "penumbra")
             at = plot.at(max(ours["seconds"], xs[0]), max(ours["error"], row["leastError"], ys[0]))
             d.circle(at, 8, None, STYLES[style][0], 1.6)
             mark(d, at, *STYLES[style])
-    key(d, (70, 405), list(enumerate(NAMES[row["scene"]] for row in data["rows"] if not row["antialiased"])), 180)
-    d.text((70, 430), "Ringed: Penumbra. Curves: Cycles, 64 and 256 light samples a pixel, measured, and 1,024 … computed from these.", 12)
+    key(d, (70, 405), [(style, NAMES[list(NAMES)[style]]) for style in sorted(set(shown))], 180)
+    d.text((70, 430), "Ringed: Penumbra. Curves: Cycles; from mark to mark four times the light samples, through two counts that were measured.", 12)
     return d.finish()
 
 
 PAGE_TEXT = """# Error against time, beside Cycles
 
 Whole processes, from start to file: Penumbra's program, Blender with Penumbra's add-on, and Blender with Cycles (direct light, no
-denoising). The tables and the chart are generated from `bench/results/against-cycles.json`, which `bench/against_cycles.py measure`
-writes; that script's head says how errors and times are taken.
+denoising). The tables and the charts are generated from `bench/results/against-cycles.json`, which `bench/against_cycles.py measure`
+writes; that script's head says how errors, times and memory are taken.
 
 ![error against processor seconds](images/against-cycles.svg)
 
-Commit {commit}, {machine}, {threads} threads, load {load[0]} at the end, {blender}, {size[0]} × {size[1]} pixels; a scene that was
-measured later has its own commit and load. Under the sky picture Penumbra asks 256 directions, as its add-on does by itself. Times are
-processor seconds (user and system, medians of {runs}), so another process on the machine changes them less than the clock. The error is
-relative RMSE over a crop of {crop[2]} × {crop[3]} pixels full of penumbra, against Cycles with {judgeSamples} samples a pixel; "≤": below the
-judge's own noise. The last column extrapolates Cycles' error by one over the root of its samples, to more samples than 64 only ("≤" for fewer);
-"–": an error that Penumbra's picture does not reach.
+How many times as long Cycles takes to the error of Penumbra's picture, at pixels' centres, antialiased, through a lens and in motion, and the most memory that
+each took in these pictures ("≥": Penumbra's error is below what the judge can tell; "≤": Cycles' fewest samples have less error; "–": not measured):
+
+{summary}
+
+{machine}, {blender}, {size[0]} × {size[1]} pixels; each row has the commit of the program and the load of the machine at its end. Under the sky picture
+Penumbra asks 256 directions, as its add-on does by itself. Times are processor seconds (user and system, medians of {runs}; of Cycles' larger
+count one), so another process on the machine changes them less than the clock. Memory is the largest resident set of one process: Blender with the add-on has the program
+as its child, and the larger of the two counts. The error is relative RMSE over a crop of {crop[2]} × {crop[3]} pixels full of penumbra, against Cycles with
+8,192 samples a pixel (lens and motion: 2,048); "≤": below the judge's own noise. *Times as long* extrapolates Cycles' error by one over
+the root of its samples, to more samples than the fewer measured ones only ("≤" for less); "–": an error that Penumbra's picture does not reach.
 
 ## At pixels' centres
 
@@ -280,6 +352,24 @@ judge's own noise. The last column extrapolates Cycles' error by one over the ro
 Blackman-Harris filter of 1.5 pixels; Penumbra takes 16 view samples a pixel (`--pixel-samples 16 --pixel-filter blackman-harris`).
 
 {antialiased}
+
+## Through a lens
+
+![error against processor seconds through a lens and in motion](images/against-cycles-blur.svg)
+
+As antialiased, through a thin lens at f/0.25 that is sharp at 5.5 m: the scenes are metres wide, and at f/2 they would be sharp all over. The program gets
+`--aperture` and `--focus-distance`; the add-on takes both from Blender's camera. Each of 16 view samples has its own point of the lens and is evaluated: nothing
+is interpolated, and what is out of focus is noisy.
+
+{lens}
+
+## In motion
+
+One object moves by a quarter of a metre while the shutter is open, at even speed, seen at pixels' centres; the crop is where most shadow moves. The program
+takes 16 moments (`--motion-samples 16`) of an exchange file to which an animation was added; the add-on has [no motion blur](blender.md#motion-blur). Cycles
+exposes 254 of 256 parts of the time that it is told, from its start on (found by measuring), and Penumbra's `--shutter` is set to the same time.
+
+{motion}
 """
 
 
@@ -296,23 +386,24 @@ def at_one_percent(rows):
 
 
 def readme_sentences(data):
-    centres, filtered = (dict(at_one_percent([row for row in data["rows"] if row["antialiased"] == antialiased])) for antialiased in (False, True))
+    centres, filtered = (dict(at_one_percent([row for row in data["rows"] if row["part"] == part])) for part in ("centres", "antialiased"))
     lamps = max(times for scene, times in centres.items() if scene != "sky")
-    return (f"At an error of 1 % and without antialiasing, Cycles takes up to {lamps:.0f} times the processor time under lamps, and {centres['sky']:.0f} times under the "
+    return (f"![error against processor seconds, Penumbra and Cycles](docs/images/against-cycles.svg)\n\n"
+            f"At an error of 1 % and without antialiasing, Cycles takes up to {lamps:.0f} times the processor time under lamps, and {centres['sky']:.0f} times under the "
             f"picture of a sky. With 16\nview samples a pixel it takes {min(filtered.values()):.1f} to {max(filtered.values()):.0f} times as much "
-            "([scenes, errors and times](docs/against-cycles.md)).\n")
+            "([scenes, errors, times, memory](docs/against-cycles.md)).\n")
 
 
 def page(check):
     data = json.loads(RESULT.read_text())
-    text = PAGE_TEXT.format(**data, runs=RUNS, crop=data["rows"][0]["crop"], **{
-        name: "\n".join(table([row for row in data["rows"] if row["antialiased"] == antialiased]))
-        for name, antialiased in (("centres", False), ("antialiased", True))})
+    text = PAGE_TEXT.format(**data, runs=RUNS, crop=data["rows"][0]["crop"], summary="\n".join(summary(data["rows"])), **{
+        part: "\n".join(table([row for row in data["rows"] if row["part"] == part])) for part in PARTS})
     stale = False
     readme, blocks = BLOCK.subn(lambda found: found[1] + readme_sentences(data) + found[2], README.read_text())
     if blocks != 1:
         raise SystemExit(f"README.md has {blocks} blocks of results/against-cycles.json")
-    for path, content in ((PAGE, text), (CHART, chart(data)), (README, readme)):
+    charts = [(ROOT / f"docs/images/{name}.svg", chart(data, parts)) for name, parts in CHARTS.items()]
+    for path, content in ((PAGE, text), *charts, (README, readme)):
         if not check:
             path.write_text(content)
         elif not path.exists() or path.read_text() != content:

@@ -17,13 +17,14 @@ antialiasing  pictures of shipped scenes with one and with 16 view samples a pix
 
 import json
 import os
-import platform
 import statistics
-import struct
 import subprocess
 import sys
 import tempfile
 from pathlib import Path
+
+from animated_glb import add_motion
+from processes import processor, usage_of
 
 ROOT = Path(__file__).resolve().parent.parent
 RESULTS = ROOT / "bench/results"
@@ -33,21 +34,8 @@ BOX = {"format": "penumbra-scene/1", "size": [64, 64], "camera": {"eye": [3, 3, 
        "lights": [{"name": "key", "rectangle": {"center": [1.5, 3, 1], "halfU": [0.4, 0, 0], "halfV": [0, 0, 0.4]}, "radiance": [10, 10, 10]}]}
 
 
-def usage_of(command, environment=None):
-    """What the system counted for the process and its children: seconds, and the largest resident set."""
-    with tempfile.TemporaryFile() as log:
-        process = subprocess.Popen([str(part) for part in command], stdin=subprocess.DEVNULL, stdout=log, stderr=log, env=environment)
-        _, status, usage = os.wait4(process.pid, 0)
-        process.returncode = os.waitstatus_to_exitcode(status)
-        if process.returncode != 0:
-            log.seek(0)
-            raise SystemExit(f"{' '.join(map(str, command))}: exit code {process.returncode}\n{log.read().decode(errors='replace')[-2000:]}")
-    return usage
-
-
 def processor_seconds(command, environment=None):
-    usage = usage_of(command, environment)
-    return usage.ru_utime + usage.ru_stime
+    return usage_of(command, environment).seconds
 
 
 def in_turns(commands, runs, environment=None):
@@ -57,13 +45,6 @@ def in_turns(commands, runs, environment=None):
         for i, command in enumerate(commands):
             least[i] = min(least[i], processor_seconds(command, environment))
     return least
-
-
-def processor():
-    for line in Path("/proc/cpuinfo").read_text().splitlines():
-        if line.startswith("model name"):
-            return line.partition(":")[2].strip()
-    return platform.processor()
 
 
 def save(name, title, conditions, columns, rows, formats):
@@ -101,7 +82,7 @@ def make_scenes(build, folder, size, names):
 
 
 def blender(program, scene, out, engine, samples):
-    return ["blender", "-b", scene, "--python-exit-code", "1", "-P", ROOT / "bench/cycles/render.py", "--", out, engine, samples, 0, 1, program]
+    return ["blender", "-b", scene, "--python-exit-code", "1", "-P", ROOT / "bench/cycles/render.py", "--", out, engine, samples, "centres", 1, program]
 
 
 def lamps(build, program, folder):
@@ -131,39 +112,16 @@ def dense(build, program, folder):
          ["what", "processor seconds"], rows, [None, ".2f"])
 
 
-def add_motion(glb, node, moves):
-    """Adds an animation to a .glb file: the node of this name moves by `moves` (x, y, z) in a second."""
-    data = bytearray(glb.read_bytes())
-    length = struct.unpack_from("<I", data, 12)[0]
-    document, binary = json.loads(data[20:20 + length]), data[28 + length:]
-    at = len(binary)
-    start = document["nodes"][node].get("translation", [0, 0, 0])
-    binary += struct.pack("<8f", 0, 1, *start, *(a + b for a, b in zip(start, moves)))
-    document["buffers"][0]["byteLength"] = len(binary)
-    views, accessors = len(document["bufferViews"]), len(document["accessors"])
-    document["bufferViews"] += [{"buffer": 0, "byteOffset": at, "byteLength": 8}, {"buffer": 0, "byteOffset": at + 8, "byteLength": 24}]
-    document["accessors"] += [{"bufferView": views, "componentType": 5126, "count": 2, "type": "SCALAR", "min": [0], "max": [1]},
-                              {"bufferView": views + 1, "componentType": 5126, "count": 2, "type": "VEC3"}]
-    document["animations"] = [{"channels": [{"sampler": 0, "target": {"node": node, "path": "translation"}}],
-                               "samplers": [{"input": accessors, "output": accessors + 1}]}]
-    text = json.dumps(document).encode()
-    text += b" " * (-len(text) % 4)
-    glb.write_bytes(struct.pack("<4sIIII", b"glTF", 2, 28 + len(text) + len(binary), len(text), 0x4E4F534A) + text
-                    + struct.pack("<II", len(binary), 0x4E4942) + binary)
-
-
 def motion(program, folder):
     runs, rows = 3, []
-    body = {"name": "body", "shape": {"type": "box", "center": [0, 0, 0], "halfSize": [0.2, 0.2, 0.2]}}
+    body = {"name": "body", "shape": {"type": "box", "center": [0.4, 0, 0.4], "halfSize": [0.2, 0.2, 0.2]}}
     for name in ("bunny", "large-penumbra", "contact"):
         scene = json.loads((ROOT / "scenes" / f"{name}.json").read_text())
         scene["meshes"].append(body)
         (folder / "scene.json").write_text(json.dumps(scene))
         glb = folder / f"{name}.glb"
         processor_seconds([program, "convert", folder / "scene.json", "-o", glb, "--quiet"])
-        length = struct.unpack_from("<I", glb.read_bytes(), 12)[0]
-        nodes = json.loads(glb.read_bytes()[20:20 + length])["nodes"]
-        add_motion(glb, next(i for i, node in enumerate(nodes) if node.get("name") == "body"), [0.8, 0, 0.8])
+        add_motion(glb, "body", [0.8, 0, 0.8])
         stats = folder / "stats.json"
         picture = [program, "render", glb, "-o", folder / "o.exr", "--frame", "12", "--shutter", "0.5", "--size", "512x512", "--quiet"]
         blurred = [*picture, "--motion-samples", "16", "--stats", stats]
@@ -195,9 +153,6 @@ def antialiasing(program, folder):
     pictures += [("`contact`, four lamps", four, 512, 512), ("`contact`, four lamps", four, 1920, 1080)]
     sixteen = ["--pixel-samples", 16, "--pixel-filter", "blackman-harris"]
 
-    def seconds_of(usage):
-        return usage.ru_utime + usage.ru_stime
-
     rows = []
     for name, scene, width, height in pictures:
         render = [program, "render", scene, "-o", folder / "o.exr", "--size", f"{width}x{height}", "--quiet"]
@@ -205,8 +160,8 @@ def antialiasing(program, folder):
         for _ in range(runs):
             single.append(usage_of(render))
             several.append(usage_of([*render, *sixteen]))
-        one, some = (statistics.median(map(seconds_of, usages)) for usages in (single, several))
-        memory, larger = (statistics.median(usage.ru_maxrss / 1024 for usage in usages) for usages in (single, several))
+        one, some = (statistics.median(usage.seconds for usage in usages) for usages in (single, several))
+        memory, larger = (statistics.median(usage.mebibytes for usage in usages) for usages in (single, several))
         every = processor_seconds([*render, *sixteen, "--pixel-tolerance", 0]) if width == height else None
         rows.append([name, f"{width} × {height}", one, some, some / one, every and every / one, round(memory), round(larger), larger / memory])
         print(rows[-1], flush=True)

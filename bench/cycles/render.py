@@ -1,20 +1,24 @@
 # SPDX-License-Identifier: Apache-2.0
 """Renders one picture of an open file, for against_cycles.py. Runs inside Blender:
 
-    blender -b FILE.blend --python-exit-code 1 -P render.py -- OUT.exr ENGINE SAMPLES ANTIALIASED SEED PENUMBRA [X0 X1 Y0 Y1]
+    blender -b FILE.blend --python-exit-code 1 -P render.py -- OUT.exr ENGINE SAMPLES PART SEED PENUMBRA [X0 X1 Y0 Y1]
 
-`ENGINE`: CYCLES or PENUMBRA. `SAMPLES`: light samples a pixel of Cycles. `ANTIALIASED` 0: all at the pixel's centre; 1: under a
-Blackman-Harris filter of 1.5 pixels, by 16 view samples of Penumbra. X0 to Y1: the crop, as shares of the picture, Y upward.
+`ENGINE`: CYCLES or PENUMBRA. `SAMPLES`: light samples a pixel of Cycles. `PART` centres: all at the pixel's centre; motion: likewise, while
+the shutter is open for half a frame; antialiased: under a Blackman-Harris filter of 1.5 pixels, by 16 view samples of Penumbra; lens:
+likewise, through the camera's lens. X0 to Y1: the crop, as shares of the picture, Y upward.
 """
 
 import sys
 
 import bpy
 
-OUT, ENGINE, SAMPLES, ANTIALIASED, SEED, PENUMBRA, *CROP = sys.argv[sys.argv.index("--") + 1:]
+OUT, ENGINE, SAMPLES, PART, SEED, PENUMBRA, *CROP = sys.argv[sys.argv.index("--") + 1:]
 bpy.ops.preferences.addon_enable(module="cycles" if ENGINE == "CYCLES" else "penumbra")
 scene = bpy.context.scene
 render = scene.render
+is_filtered = PART in ("antialiased", "lens")
+scene.camera.data.dof.use_dof = PART == "lens"
+render.use_motion_blur, render.motion_blur_shutter = PART == "motion", 0.5
 render.engine, render.film_transparent, render.use_compositing, render.use_sequencer = ENGINE, True, False, False
 settings = render.image_settings
 settings.file_format, settings.color_depth, settings.exr_codec = "OPEN_EXR_MULTILAYER", "32", "ZIP"
@@ -28,12 +32,13 @@ if ENGINE == "CYCLES":
     cycles.samples, cycles.seed, cycles.max_bounces = int(SAMPLES), int(SEED), 0
     cycles.use_denoising, cycles.use_adaptive_sampling = False, False
     cycles.sample_clamp_direct = cycles.light_sampling_threshold = 0
-    cycles.pixel_filter_type = "BLACKMAN_HARRIS" if ANTIALIASED == "1" else "GAUSSIAN"
-    cycles.filter_width = 1.5 if ANTIALIASED == "1" else 0.01
+    cycles.motion_blur_position = "CENTER"
+    cycles.pixel_filter_type = "BLACKMAN_HARRIS" if is_filtered else "GAUSSIAN"
+    cycles.filter_width = 1.5 if is_filtered else 0.01
     if CROP:
         scene.view_layers[0].use_pass_position = scene.view_layers[0].use_pass_normal = True
 else:
     bpy.context.preferences.addons["penumbra"].preferences.program = PENUMBRA
-    scene.penumbra.pixel_samples = "16" if ANTIALIASED == "1" else "1"
+    scene.penumbra.pixel_samples = "16" if is_filtered else "1"
     scene.penumbra.pixel_filter, scene.penumbra.filter_width = "BLACKMAN_HARRIS", 1.5
 bpy.ops.render.render(write_still=True)

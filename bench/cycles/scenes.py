@@ -3,9 +3,12 @@
 
     blender -b --factory-startup --python-exit-code 1 -P scenes.py -- ADDON.zip FOLDER WIDTH HEIGHT [NAME …]
 
-Without names the five of against_cycles.py. Writes FOLDER/NAME.blend, and FOLDER/NAME.glb as the add-on hands it to the program.
+Without names the five of against_cycles.py. Writes FOLDER/NAME.blend, FOLDER/NAME.glb as the add-on hands it to the program, and
+FOLDER/NAME.json: `triangles`; `aperture` and `focus`, of the camera's lens, which is switched off; `mover`, the object that moves in Blender's animation,
+by `step` from frame to frame. The exchange file is of frame 1.
 """
 
+import json
 import os
 import random
 import sys
@@ -54,6 +57,7 @@ def lamp(name, kind, location, target=(0, 0, 0.5), **values):
 def camera(location=(4.2, -5.0, 3.4), target=(0, 0, 0.6), angle=40):
     data = bpy.data.cameras.new("Camera")
     data.angle = radians(angle)
+    data.dof.aperture_fstop, data.dof.focus_distance = 0.25, 5.5
     thing = bpy.data.objects.new("Camera", data)
     thing.location = location
     thing.rotation_euler = (Vector(target) - Vector(location)).to_track_quat("-Z", "Y").to_euler()
@@ -162,6 +166,29 @@ def lamps_1000():
     lamps(1000)
 
 
+STEP = (0.5, 0, 0)  # from frame to frame
+
+
+def let_move(thing):
+    """Moves the object from frame 0 to frame 2, at even speed, through its place at frame 1."""
+    place = thing.location.copy()
+    for frame, share in ((0, -1), (2, 1)):
+        thing.location = place + share * Vector(STEP)
+        thing.keyframe_insert("location", frame=frame)
+    for curve in thing.animation_data.action.fcurves:
+        for key in curve.keyframe_points:
+            key.interpolation = "LINEAR"
+    bpy.context.scene.frame_set(1)
+
+
+def lens_of(camera):
+    from penumbra.lamps import focus_of
+    camera.data.dof.use_dof = True
+    aperture, focus = focus_of(camera, camera.matrix_world)
+    camera.data.dof.use_dof = False
+    return {"aperture": aperture, "focus": focus}
+
+
 def write(name, build):
     from penumbra.export import SceneWriter
     from penumbra.frames import region_of
@@ -174,6 +201,9 @@ def write(name, build):
     build()
     if scene.camera is None:
         camera()
+    mover = next((bpy.data.objects[name] for name in ("Ball", "Box") if name in bpy.data.objects), None)
+    if mover is not None:
+        let_move(mover)
     scene.render.engine = "PENUMBRA"
     losses = Losses()
     writer = SceneWriter(bpy.context.evaluated_depsgraph_get(), losses, True)
@@ -182,7 +212,8 @@ def write(name, build):
         raise SystemExit(f"{name}: {losses.refused} {losses.mentioned}")
     bpy.ops.wm.save_as_mainfile(filepath=os.path.join(FOLDER, f"{name}.blend"))
     triangles = sum(len(polygon.vertices) - 2 for thing in scene.objects if thing.type == "MESH" for polygon in thing.data.polygons)
-    print(f"scene: {name} {triangles}", flush=True)
+    with open(os.path.join(FOLDER, f"{name}.json"), "w") as file:
+        json.dump({"triangles": triangles, **lens_of(scene.camera), "mover": mover.name if mover else None, "step": STEP}, file)
 
 
 bpy.ops.preferences.addon_install(filepath=ZIP)

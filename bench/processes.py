@@ -1,0 +1,44 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What a whole process takes, from its start to its end: for scripts that measure."""
+
+import json
+import platform
+import subprocess
+import sys
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+
+# A process begins with the largest resident set of the one that started it. So a small process starts what is measured, and waits for it.
+STARTER = """
+import json, os, subprocess, sys
+process = subprocess.Popen(sys.argv[2:], stdin=subprocess.DEVNULL)
+_, status, usage = os.wait4(process.pid, 0)
+with open(sys.argv[1], "w") as file:
+    json.dump([os.waitstatus_to_exitcode(status), usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1024], file)
+"""
+
+
+@dataclass
+class Usage:
+    seconds: float  # of processors, user and system, of the process and its children
+    mebibytes: float  # the largest resident set of one of them
+
+
+def usage_of(command, environment=None):
+    """Runs `command`, which has to end with exit code 0."""
+    command = [str(part) for part in command]
+    with tempfile.TemporaryFile() as log, tempfile.NamedTemporaryFile("r") as result:
+        subprocess.run([sys.executable, "-S", "-c", STARTER, result.name, *command], stdin=subprocess.DEVNULL, stdout=log, stderr=log, env=environment, check=True)
+        code, seconds, mebibytes = json.load(result)
+        if code != 0:
+            log.seek(0)
+            raise SystemExit(f"{' '.join(command)}: exit code {code}\n{log.read().decode(errors='replace')[-2000:]}")
+    return Usage(seconds, mebibytes)
+
+
+def processor():
+    for line in Path("/proc/cpuinfo").read_text().splitlines():
+        if line.startswith("model name"):
+            return line.partition(":")[2].strip()
+    return platform.processor()
