@@ -37,7 +37,8 @@ std::string compare_json(const Scene& scene, const CompareOptions& options, cons
   LibraryProgress progress(renderer);
   const compare::Metrics metrics = [&] {
     try {
-      return app::compare_methods(scenes::copied(state.scene, state.instances), run, comparison, progress);
+      return app::compare_methods(scenes::copied(state.scene, state.instances, app::bytes_per_copy(comparison)), run,
+                                  comparison, progress);
     } catch (...) {
       progress.rethrow();
       throw_as_error();

@@ -13,6 +13,7 @@
 #include "app/session.hpp"
 #include "base/atomic_file.hpp"
 #include "base/error.hpp"
+#include "scenes/instances.hpp"
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
@@ -144,7 +145,9 @@ class SubmitCommand : public Command {
     if (options_.run.camera != "all") return;
     cameras_.clear();  // their names are in the scene
     const double time = static_cast<double>(frames_.front()) * request_.seconds_per_frame;
-    for (const scenes::Camera& camera : read_session_scene(options_.run, time).cameras) cameras_.push_back(camera.name);
+    scenes::Instances instances;
+    const scenes::Scene scene = read_session_scene(options_.run, time, {.instances = &instances});
+    for (const scenes::Camera& camera : scene.cameras) cameras_.push_back(camera.name);
     options_.camera_words = camera_words(cameras_);
   }
 

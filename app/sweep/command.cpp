@@ -15,6 +15,7 @@
 #include "base/atomic_file.hpp"
 #include "base/error.hpp"
 #include "compare/stats.hpp"
+#include "mesh/soup_memory.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -101,7 +102,9 @@ class SweepCommand : public Command {
     outputs.refuse_inputs({&run_.scene, 1});
     outputs.require_writable();
     TerminalProgress progress(!global.quiet);
-    const scenes::Scene scene = read_session_scene(run_, time);
+    // Each comparison has a copy of the scene.
+    const scenes::Scene scene =
+        read_session_scene(run_, time, {.bytes_per_copy = mesh::soup_bytes(1, 1) + bytes_per_copy(options_)});
     outputs.refuse_inputs(scene.sources);
     options_.reference = reference_.empty() ? best_reference(scene) : reference_;
     const Sweep sweep = sweep_methods(scene, run_, options_, over, progress);

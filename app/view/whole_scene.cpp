@@ -14,7 +14,8 @@ namespace penumbra::app {
 WholeScene read_whole_scene(const RunOptions& options, InstanceUse use) {
   WholeScene read;
   read.use = use;
-  read.scene = read_session_scene(options, {}, {.instances = &read.instances});
+  read.scene =
+      read_session_scene(options, {}, {.instances = &read.instances, .bytes_per_copy = bytes_per_copy({}, {})});
   if (read.instances.empty()) return read;
   const std::uint64_t triangles = scenes::triangle_count(read.scene, read.instances);
   const auto copy = [&] { return scenes::copied(read.scene, read.instances, bytes_per_copy({}, read.scene.lights)); };

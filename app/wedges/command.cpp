@@ -88,8 +88,10 @@ class WedgesCommand : public Command {
     OutputFiles outputs = named_outputs();
     outputs.refuse_inputs({&scene_, 1});
     outputs.require_writable();
-    scenes::Scene scene = scenes::read_scene(
-        scene_, {.allow_outside = allow_outside_, .lenient = lenient_, .studio = parse_studio(studio_, camera_)});
+    scenes::Scene scene = scenes::read_scene(scene_, {.allow_outside = allow_outside_,
+                                                      .lenient = lenient_,
+                                                      .studio = parse_studio(studio_, camera_),
+                                                      .bytes_per_copy = BuiltWedges::kBytesPerTriangle});
     outputs.refuse_inputs(scene.sources);
     for (const std::string& warning : scene.warnings) spdlog::warn("{}", warning);
     look_through(scene, camera_, size_);

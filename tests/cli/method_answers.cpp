@@ -60,7 +60,7 @@ class MethodAnswers : public ProgramTest {
     options.scene = tiny_scene();
     const render::Machine machine = app::make_machine("cpu");
     app::TerminalProgress progress(false);
-    const app::Session session = app::open_session(options, std::nullopt, machine, 0, progress);
+    const app::Session session = app::open_session(options, std::nullopt, machine, 0, progress, 0);
     app::run_method(
         method, session, {.lights = session.lights}, [](const app::TileResult&) {}, progress);
   }

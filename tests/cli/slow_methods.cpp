@@ -79,7 +79,7 @@ TEST_F(SlowMethods, EndBetweenTiles) {
   run.size = "8x200";
   const render::Machine machine = app::make_machine("cpu");
   app::TerminalProgress progress(false);
-  const app::Session session = app::open_session(run, std::nullopt, machine, 0, progress);
+  const app::Session session = app::open_session(run, std::nullopt, machine, 0, progress, 0);
   const auto none = [](const app::TileResult&) {};
   Slow slow;
   app::RunPlan plan{.lights = session.lights, .discard_first = true, .most_seconds = 0.04};
@@ -112,7 +112,7 @@ TEST_F(SlowMethods, AreNotThoseWhoseTilesCostMuch) {
   run.size = "8x200";
   const render::Machine machine = app::make_machine("cpu");
   app::TerminalProgress progress(false);
-  const app::Session session = app::open_session(run, std::nullopt, machine, 0, progress);
+  const app::Session session = app::open_session(run, std::nullopt, machine, 0, progress, 0);
   Slow slow(80, 0);
   const app::RunPlan plan{.lights = session.lights, .discard_first = true, .most_seconds = 0.2};
   const auto none = [](const app::TileResult&) {};
