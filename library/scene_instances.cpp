@@ -2,9 +2,11 @@
 // Instances of the interface's scene: meshes that it has several times, stored once. A call that throws changes
 // nothing.
 
+#include "app/pictures/request.hpp"
 #include "library/as_error.hpp"
 #include "library/named.hpp"
 #include "library/scene_objects.hpp"
+#include "mesh/soup_memory.hpp"
 #include "scenes/formats/checks.hpp"
 
 #include <fmt/format.h>
@@ -13,6 +15,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <utility>
 
@@ -94,7 +97,8 @@ void adopt_instances(Scene::State& state) {
   scenes::Instances& instances = state.instances;
   if (!std::ranges::is_sorted(instances.all, {}, &scenes::Instance::object) ||
       !std::ranges::is_sorted(state.scene.soup.object)) {
-    state.scene = scenes::copied(std::move(state.scene), std::exchange(instances, {}));
+    const std::uint64_t bytes = app::bytes_per_copy({}, state.scene.lights);
+    state.scene = scenes::copied(std::move(state.scene), std::exchange(instances, {}), bytes);
     state.scene.warnings.emplace_back(
         "instances are copied: the file's nodes are in another order than its meshes, which cannot share triangles "
         "here");
@@ -155,7 +159,8 @@ std::unique_ptr<Scene::State> with_copies_of(const Scene::State& state, std::uin
     own.all.push_back(instance);
     own.all.back().soup_before = 0;
   }
-  const scenes::Scene copies = scenes::copied({}, own);
+  // The changed scene has them a second time; a triangle has up to three positions of its own.
+  const scenes::Scene copies = scenes::copied({}, own, mesh::soup_bytes(1, 3));
   auto changed = with_object(state, object, [&](scenes::Scene& to) { copy_object(copies, object, to); });
   drop_instances(*changed, object);
   return changed;

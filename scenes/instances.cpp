@@ -117,7 +117,8 @@ Scene copied(Scene scene, const Instances& instances, std::uint64_t more_bytes) 
   const auto what = fmt::format("a scene of {} triangles, {} instances of meshes among them, each as a copy", triangles,
                                 instances.all.size());
   constexpr std::string_view kRemedy =
-      "make its meshes smaller or fewer, or render it by a method that "
+      "make its meshes smaller or its instances fewer, or use `render`, which keeps instances shared with a method "
+      "that "
       "leaves them be (under a dome: with --light-samples, or a dome that is \"sampled\")";
   if (positions >= kNone) throw ResourceError("{}: {} vertices are more than 2^32; {}", what, positions, kRemedy);
   require_memory(mesh::soup_bytes(triangles, positions) + triangles * more_bytes, what, kRemedy);

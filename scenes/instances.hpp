@@ -104,8 +104,9 @@ class SoupBuilder {
   bool mirrors_ = false;
 };
 
-/// Returns the scene with every instance's triangles in its soup. `more_bytes`: memory for each triangle that is needed
-/// afterwards, beside the scene. Throws ResourceError, with the figures, if memory does not suffice.
-Scene copied(Scene scene, const Instances& instances, std::uint64_t more_bytes = 0);
+/// Returns the scene with every instance's triangles in its soup. `more_bytes`: memory for each triangle that the
+/// caller needs afterwards, beside the scene. Throws ResourceError, with the figures, before anything is copied if
+/// memory does not suffice.
+Scene copied(Scene scene, const Instances& instances, std::uint64_t more_bytes);
 
 }  // namespace penumbra::scenes

@@ -372,6 +372,7 @@ scenes::Scene read_session_scene(const RunOptions& options, std::optional<double
   reading.lightmap = beside.lightmap;
   reading.instances = beside.instances;
   reading.ahead = beside.ahead;
+  reading.bytes_per_copy = beside.bytes_per_copy;
   reading.rest = options.rest.get();
   if (!options.size.empty()) {
     const auto [width, height] = parse_size(options.size);
@@ -388,13 +389,13 @@ Session open_session(scenes::Scene scene, const RunOptions& options, const rende
 }
 
 Session open_session(const RunOptions& options, std::optional<double> time, const render::Machine& machine,
-                     std::uint32_t runs, Progress& progress) {
+                     std::uint32_t runs, Progress& progress, std::uint64_t bytes_per_copy) {
   progress.begin("reading " + options.scene.filename().string(), 1);
   // Errors of the command line are reported before any long work.
   SessionMaker maker(options, machine);
   machine.begin(false);
   const Stopwatch load;
-  scenes::Scene scene = read_session_scene(options, time);
+  scenes::Scene scene = read_session_scene(options, time, {.bytes_per_copy = bytes_per_copy});
   const double read_seconds = load.seconds();
   maker.show(std::move(scene), options.camera, runs, progress);
   Session session = maker.take();

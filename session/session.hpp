@@ -180,14 +180,15 @@ struct ReadBeside {
   scenes::LightmapPlaces* lightmap = nullptr;  ///< ReadOptions::lightmap
   scenes::Instances* instances = nullptr;      ///< ReadOptions::instances
   scenes::ScenesAhead* ahead = nullptr;        ///< ReadOptions::ahead
+  std::uint64_t bytes_per_copy = 0;            ///< ReadOptions::bytes_per_copy
 };
 /// Reads the scene at a time of its animation; at rest without a time.
 scenes::Scene read_session_scene(const RunOptions& options, std::optional<double> time, const ReadBeside& beside = {});
 
 /// Reads the scene and finds its view samples; once if `runs` is 0, else `runs` times after a discarded run. `time`:
-/// see read_session_scene. Throws UsageError, InputError or ResourceError.
+/// see read_session_scene; `bytes_per_copy`: see ReadOptions. Throws UsageError, InputError or ResourceError.
 Session open_session(const RunOptions& options, std::optional<double> time, const render::Machine& machine,
-                     std::uint32_t runs, Progress& progress);
+                     std::uint32_t runs, Progress& progress, std::uint64_t bytes_per_copy);
 
 /// Finds the view samples of a scene in memory.
 Session open_session(scenes::Scene scene, const RunOptions& options, const render::Machine& machine, std::uint32_t runs,

@@ -7,6 +7,7 @@
 #include "base/memory.hpp"
 #include "base/pages.hpp"
 #include "base/parallel.hpp"
+#include "visibility/floats_memory.hpp"
 #include "visibility/light_samples.hpp"
 #include "visibility/plane_ids.hpp"
 
@@ -140,8 +141,6 @@ std::vector<std::uint32_t> ranks(const SceneFloats& scene) {
 }
 
 SceneFloats make_scene_floats(const scenes::Scene& scene) {
-  constexpr std::uint64_t kTriangle = sizeof(Triangle) + 3 * sizeof(std::uint32_t) + 2;  // see SceneFloats
-  constexpr std::uint64_t kSorting = 3 * sizeof(std::uint32_t);
   // Sides of triangles have 32-bit indices (mesh/sorted_sides.hpp), and triangles 31-bit ones in the picture.
   constexpr std::uint64_t kMostTriangles = (std::uint64_t{1} << 32U) / 3;
   const std::uint64_t count_of_triangles = scene.soup.triangles.size();
@@ -149,7 +148,7 @@ SceneFloats make_scene_floats(const scenes::Scene& scene) {
     throw ResourceError("a scene of {} triangles; up to {} can be numbered here: make its meshes smaller",
                         count_of_triangles, kMostTriangles);
   }
-  require_memory(count_of_triangles * (kTriangle + kSorting) + scene.soup.positions.size() * sizeof(glm::vec3),
+  require_memory(count_of_triangles * kFloatsOfTriangle + scene.soup.positions.size() * sizeof(glm::vec3),
                  fmt::format("a scene of {} triangles", count_of_triangles), "make its meshes smaller");
   SceneFloats floats;
   floats.origin = scene.origin ? *scene.origin : center_of_bounds(scene.soup.positions);

@@ -21,12 +21,16 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <optional>
 #include <tuple>
 #include <utility>
 
 namespace penumbra::app {
 namespace {
+
+/// Memory for each triangle that the command itself takes: its corners once more, and its number in the baked mesh.
+constexpr std::uint64_t kOwnTriangle = sizeof(mesh::Triangle) + sizeof(std::uint32_t);
 
 constexpr std::uint32_t kDefaultSide = 512, kMostMargin = 1024;
 constexpr std::uint32_t kPointsInARow = 256;  // row length of the picture that holds the vertices' view samples
@@ -92,8 +96,9 @@ class BakeCommand : public Command {
     progress.begin("reading " + options_.run.scene.filename().string(), 1);
     std::optional<double> time;
     if (request.frames.front()) time = *request.frames.front() * request.seconds_per_frame;
-    scenes::Scene scene =
-        session::read_session_scene(options_.run, time, {.lightmap = vertices_ ? nullptr : &lightmap_});
+    scenes::Scene scene = session::read_session_scene(options_.run, time,
+                                             {.lightmap = vertices_ ? nullptr : &lightmap_,
+                                              .bytes_per_copy = kOwnTriangle + session::bytes_per_copy(request.wish, {})});
     outputs.refuse_inputs(scene.sources);
     const BakedMesh mesh = find_baked(scene, mesh_);
     progress.clear();

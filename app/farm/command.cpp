@@ -10,6 +10,7 @@
 #include "app/process/child_program.hpp"
 #include "base/atomic_file.hpp"
 #include "base/error.hpp"
+#include "scenes/instances.hpp"
 #include "session/pictures/picture_file.hpp"
 #include "session/pictures/request.hpp"
 #include "session/process/output_files.hpp"
@@ -145,8 +146,9 @@ class SubmitCommand : public Command {
     if (options_.run.camera != "all") return;
     cameras_.clear();  // their names are in the scene
     const double time = static_cast<double>(frames_.front()) * request_.seconds_per_frame;
-    for (const scenes::Camera& camera : session::read_session_scene(options_.run, time).cameras)
-      cameras_.push_back(camera.name);
+    scenes::Instances instances;
+    const scenes::Scene scene = session::read_session_scene(options_.run, time, {.instances = &instances});
+    for (const scenes::Camera& camera : scene.cameras) cameras_.push_back(camera.name);
     options_.camera_words = session::camera_words(cameras_);
   }
 

@@ -9,6 +9,7 @@
 #include "base/atomic_file.hpp"
 #include "base/error.hpp"
 #include "compare/stats.hpp"
+#include "mesh/soup_memory.hpp"
 #include "session/comparison/comparison.hpp"
 #include "session/comparison/comparison_entries.hpp"
 #include "session/methods.hpp"
@@ -102,7 +103,9 @@ class SweepCommand : public Command {
     outputs.refuse_inputs({&run_.scene, 1});
     outputs.require_writable();
     TerminalProgress progress(!global.quiet);
-    const scenes::Scene scene = session::read_session_scene(run_, time);
+    // Each comparison has a copy of the scene.
+    const scenes::Scene scene =
+        session::read_session_scene(run_, time, {.bytes_per_copy = mesh::soup_bytes(1, 1) + session::bytes_per_copy(options_)});
     outputs.refuse_inputs(scene.sources);
     options_.reference = reference_.empty() ? best_reference(scene) : reference_;
     const Sweep sweep = sweep_methods(scene, run_, options_, over, progress);

@@ -89,9 +89,10 @@ class WedgesCommand : public Command {
     session::OutputFiles outputs = named_outputs();
     outputs.refuse_inputs({&scene_, 1});
     outputs.require_writable();
-    scenes::Scene scene = scenes::read_scene(
-        scene_,
-        {.allow_outside = allow_outside_, .lenient = lenient_, .studio = session::parse_studio(studio_, camera_)});
+    scenes::Scene scene = scenes::read_scene(scene_, {.allow_outside = allow_outside_,
+                                                      .lenient = lenient_,
+                                                      .studio = session::parse_studio(studio_, camera_),
+                                                      .bytes_per_copy = session::BuiltWedges::kBytesPerTriangle});
     outputs.refuse_inputs(scene.sources);
     for (const std::string& warning : scene.warnings) spdlog::warn("{}", warning);
     look_through(scene, camera_, size_);

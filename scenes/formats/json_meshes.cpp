@@ -192,17 +192,24 @@ const json& transform_of(const json& instance, const Place& place) {
   return instance["transform"];
 }
 
-/// Replaces the mesh by a copy for each instance, one after the other.
-void apply_instances(const json& instances, const Place& place, SourceMesh& mesh) {
+/// Replaces the mesh by a copy for each instance, one after the other. `times`: how often the scene's reader has them
+/// in memory; `more_bytes`: ReadOptions::bytes_per_copy.
+void apply_instances(const json& instances, const Place& place, std::uint64_t times, std::uint64_t more_bytes,
+                     SourceMesh& mesh) {
   const std::size_t count = instances.size(), positions = mesh.soup.positions.size(),
                     triangles = mesh.soup.triangles.size();
   if (positions * count > std::numeric_limits<std::uint32_t>::max())
     throw InputError("{}: {} instances of {} vertices are more than 2^32", place.str(), count, positions);
   at_place(place, [&] {
-    require_memory(mesh::soup_bytes(triangles * count, positions * count),
-                   fmt::format("{} instances of {} triangles", count, triangles), "make them fewer or smaller");
+    require_memory(times * mesh::soup_bytes(triangles * count, positions * count) + triangles * count * more_bytes,
+                   fmt::format("{} instances of {} triangles, each as a copy", count, triangles),
+                   "make them fewer or smaller");
   });
   mesh::TriangleSoup all;
+  all.positions.reserve(positions * count);
+  all.triangles.reserve(triangles * count);
+  all.object.reserve(triangles * count);
+  all.source_face.reserve(triangles * count);
   for (std::size_t i = 0; i < count; ++i) {
     mesh::TriangleSoup one = mesh.soup;
     apply_transform(transform_of(instances[i], place / i), place / i, one);
@@ -233,14 +240,16 @@ std::vector<glm::dvec2> places_of_kept(std::vector<glm::dvec2> places, const std
   return result;
 }
 
-void require_room_for_meshes(const json& meshes, const Place& place, bool shared) {
+void require_room_for_meshes(const json& meshes, const Place& place, bool shared, std::uint64_t bytes_per_copy) {
   mesh::ShapeSize all, largest;
+  std::uint64_t copies = 0;  // triangles
   std::size_t number_of_largest = 0;
   std::uint64_t most = 0;  // bytes at the moment of highest memory use
   for (std::size_t i = 0; i < meshes.size(); ++i) {
     const mesh::ShapeSize size = size_of_mesh(meshes[i], place / i, shared);
     all.triangles += size.triangles;
     all.vertices += size.vertices;
+    if (!shared && meshes[i].contains("instances")) copies += size.triangles;
     // The first mesh becomes the scene's; of each other one, two copies exist until it has been appended.
     const std::uint64_t twice = i == 0 ? 0 : mesh::soup_bytes(size.triangles, size.vertices);
     most = std::max(most, mesh::soup_bytes(all.triangles, all.vertices) + twice);
@@ -249,10 +258,11 @@ void require_room_for_meshes(const json& meshes, const Place& place, bool shared
     number_of_largest = i;
   }
   at_place(place, [&] {
-    require_memory(most,
-                   fmt::format("a scene of {} triangles ({} of them in /meshes/{}, the largest of {})", all.triangles,
-                               largest.triangles, number_of_largest, meshes.size()),
-                   "make its meshes smaller");
+    require_memory(most + copies * bytes_per_copy,
+                   fmt::format("a scene of {} triangles ({} of them in /meshes/{}, the largest of {}{})", all.triangles,
+                               largest.triangles, number_of_largest, meshes.size(),
+                               copies > 0 ? "; instances are each as a copy" : ""),
+                   copies > 0 ? "make its meshes smaller or its instances fewer" : "make its meshes smaller");
   });
 }
 
@@ -343,7 +353,8 @@ mesh::TriangleSoup read_mesh(const json& mesh, const Place& place, const ReadOpt
   if (mesh.contains("transform")) apply_transform(mesh["transform"], place / "transform", soup);
   if (mesh.contains("fit")) apply_fit(mesh["fit"], place / "fit", soup);
   if (mesh.contains("instances") && options.instances == nullptr)
-    apply_instances(mesh["instances"], place / "instances", source);
+    apply_instances(mesh["instances"], place / "instances", scene.soup.triangles.empty() ? 1 : 2,
+                    options.bytes_per_copy, source);
   if (options.lightmap != nullptr) {
     source.places.resize(soup.positions.size(), kNoPlace);
     std::ranges::copy(source.places, std::back_inserter(options.lightmap->places));

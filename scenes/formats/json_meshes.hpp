@@ -49,9 +49,11 @@ void add_instances(const nlohmann::json& instances, const Place& place, mesh::Tr
                    const Scene& scene, Instances& to);
 
 /// Checks that all entries of "meshes" whose size is known in advance fit into memory together, before the first is
-/// made. Instances that are no copies (`shared`) count once. Files are not counted: their size is known only after
-/// reading. Throws ResourceError with the figures, and InputError for an impossible shape.
-void require_room_for_meshes(const nlohmann::json& meshes, const Place& place, bool shared);
+/// made. Instances that are no copies (`shared`) count once; copies count with `bytes_per_copy` of ReadOptions. Files
+/// are not counted: their size is known only after reading. Throws ResourceError with the figures, and InputError for
+/// an impossible shape.
+void require_room_for_meshes(const nlohmann::json& meshes, const Place& place, bool shared,
+                             std::uint64_t bytes_per_copy);
 
 /// Generates the mesh of a "shape".
 mesh::TriangleSoup read_shape(const nlohmann::json& shape);

@@ -292,7 +292,7 @@ Scene read_json_text(std::string_view text, const std::filesystem::path& file, c
   }
   scene.cameras = read_cameras(document, root, scene.warnings);
   scene.lights = read_lights(document, root, options, scene);
-  require_room_for_meshes(document["meshes"], root / "meshes", options.instances != nullptr);
+  require_room_for_meshes(document["meshes"], root / "meshes", options.instances != nullptr, options.bytes_per_copy);
   for (const json& value : document["meshes"]) {
     if (options.step != nullptr) (*options.step)();
     const std::size_t index = scene.objects.size();

@@ -68,21 +68,27 @@ Scene read_at_rest(const std::filesystem::path& file, ReadOptions options) {
 }  // namespace
 
 Scene read_scene(const std::filesystem::path& file, const ReadOptions& options) {
+  // Copies are made in one step, from shared meshes: then their number is known before memory is touched. Lightmap
+  // coordinates are read for each copy.
+  Instances to_copy;
+  ReadOptions reading = options;
+  if (options.instances == nullptr && options.lightmap == nullptr) reading.instances = &to_copy;
   std::string extension = file.extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
   Scene scene;
   const bool is_json = extension == ".json";
   if (is_json) {
-    scene = read_json(file, options);
+    scene = read_json(file, reading);
   } else if (extension == ".gltf" || extension == ".glb" || extension == ".fbx" || extension == ".dae") {
-    scene = read_gltf(file, options);
+    scene = read_gltf(file, reading);
   } else if (extension == ".blend") {
     throw InputError("{}: a file of Blender's own; export it as glTF 2.0 (.glb), or render it by Blender's add-on",
                      file.string());
   } else {
     scene = read_mesh_file(file, options);
   }
+  scene = copied(std::move(scene), std::exchange(to_copy, {}), options.bytes_per_copy);
   if (options.rest != nullptr && !scene.origin) {
     const Scene& rest = *options.rest;
     scene.origin = rest.origin ? *rest.origin : bounds_of(rest.soup.positions).middle();
@@ -95,7 +101,7 @@ Scene read_scene(const std::filesystem::path& file, const ReadOptions& options) 
   const bool is_around = lacks || studio.always || gets_floor || std::ranges::any_of(studio.lights, has_place) ||
                          !studio.fit_camera.empty();
   if (is_around && options.instances != nullptr)  // a studio encloses all instances, to the last bit
-    scene = copied(std::move(scene), std::exchange(*options.instances, {}));
+    scene = copied(std::move(scene), std::exchange(*options.instances, {}), options.bytes_per_copy);
   if (options.instances != nullptr && !studio.lights.empty()) sample_added_domes(scene, *options.instances, studio);
   const bool has_triangles =
       !scene.soup.triangles.empty() || (options.instances != nullptr && !options.instances->empty());

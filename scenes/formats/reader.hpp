@@ -55,6 +55,9 @@ struct ReadOptions {
   /// Receives meshes that the scene has several times (scenes/instances.hpp); null: they are copied into the scene's
   /// soup.
   Instances* instances = nullptr;
+  /// Memory for each triangle that the caller needs afterwards, beside the scene: instances become copies only where
+  /// this fits as well.
+  std::uint64_t bytes_per_copy = 0;
   /// glTF with a `time`: other times at which the scene will be wanted; scenes are taken from here, and read in advance
   /// while the file is parsed. Not with `lightmap`. Null: none.
   ScenesAhead* ahead = nullptr;

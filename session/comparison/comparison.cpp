@@ -29,6 +29,7 @@
 #include "session/runner.hpp"
 #include "session/session.hpp"
 #include "session/whole_lights.hpp"
+#include "visibility/floats_memory.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -74,7 +75,7 @@ class Comparison {
     if (options.writes) files_.claim(run.scene, options.methods, options.stats);
     const std::uint32_t looks = options.runs != 0 ? options.runs : kViewRuns;
     session_ = scene ? open_session(std::move(*scene), run, machine_, looks, progress)
-                     : open_session(run, options.time, machine_, looks, progress);
+                     : open_session(run, options.time, machine_, looks, progress, bytes_per_copy(options));
     if (options.writes) files_.refuse_inputs(session_.scene.sources);
     check_layers(format_, session_, false);
     progress.clear();
@@ -451,6 +452,14 @@ class Comparison {
 };
 
 }  // namespace
+
+std::uint64_t bytes_per_copy(const ComparisonOptions& options) {
+  std::uint64_t most = describe_reference(options.reference).description.bytes_per_triangle;
+  for (const MethodEntry& entry : options.methods) {
+    if (!entry.from_group) most = std::max(most, describe_method(entry.name).bytes_per_triangle);
+  }
+  return visibility::kFloatsOfTriangle + most;
+}
 
 compare::Metrics compare_methods(const RunOptions& run, const ComparisonOptions& options,
                                  const std::vector<std::string>& arguments, Progress& progress, EntryErrors* errors) {

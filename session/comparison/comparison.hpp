@@ -7,6 +7,7 @@
 #include "session/process/progress.hpp"
 #include "visibility/frame_memory.hpp"
 
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <limits>
@@ -45,6 +46,11 @@ struct ComparisonOptions {
 /// e = V − V of the reference at each pixel under the first light, for each entry; NaN for pixels that are not judged.
 /// Empty: the entry failed.
 using EntryErrors = std::vector<std::vector<float>>;
+
+/// Returns the memory that a comparison needs for each triangle of a copy, beside the scene's: the scene floats, and
+/// the most of what the reference and methods that were named take. Methods of a group that do not fit are left out
+/// later.
+std::uint64_t bytes_per_copy(const ComparisonOptions& options);
 
 /// Runs the reference, then each method on the same view samples, and writes all of DIR. Every light is judged; numbers
 /// given once are those of the first light. Seconds are sums over all lights. `arguments` is the command line, for the

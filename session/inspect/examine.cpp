@@ -23,9 +23,12 @@ namespace penumbra::session {
 namespace {
 
 constexpr std::uint32_t kUnusedPosition = std::numeric_limits<std::uint32_t>::max();
+/// Memory for each triangle, beside the scene: measured on a sphere of a million triangles, and rounded down.
+constexpr std::uint64_t kBytesPerTriangle = 200;
 
 InspectedMesh read_scene(const std::filesystem::path& file, bool allow_outside, const std::function<void()>* step) {
-  scenes::Scene scene = scenes::read_scene(file, {.allow_outside = allow_outside, .needs_light = false, .step = step});
+  scenes::Scene scene = scenes::read_scene(
+      file, {.allow_outside = allow_outside, .needs_light = false, .bytes_per_copy = kBytesPerTriangle, .step = step});
   InspectedMesh mesh;
   mesh.scene = facts_of(scene);
   mesh.soup = std::move(scene.soup);

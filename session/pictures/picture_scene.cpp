@@ -12,7 +12,8 @@ PictureScene read_picture_scene(const RunOptions& run, std::optional<double> tim
                                 scenes::ScenesAhead* ahead) {
   const Stopwatch watch;
   PictureScene read;
-  read.scene = read_session_scene(run, time, {.instances = &read.instances, .ahead = ahead});
+  read.scene = read_session_scene(
+      run, time, {.instances = &read.instances, .ahead = ahead, .bytes_per_copy = bytes_per_copy(request.wish, {})});
   set_lens(read.scene, request, run.camera);
   if (needs_copies(read.scene, read.instances, request.instances, request.wish, request.view_samples())) {
     const std::uint64_t bytes = bytes_per_copy(request.wish, read.scene.lights);

@@ -7,6 +7,7 @@
 #include "session/methods.hpp"
 #include "session/parse.hpp"
 #include "session/pictures/frames.hpp"
+#include "visibility/floats_memory.hpp"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -150,12 +151,13 @@ bool needs_copies(const scenes::Scene& scene, const scenes::Instances& instances
 }
 
 std::uint64_t bytes_per_copy(const MethodWish& wish, std::span<const scenes::AreaLight> lights) {
-  if (!wish.method.empty()) return describe_method(wish.method, wish.options).bytes_per_triangle;
+  constexpr std::uint64_t kFloats = visibility::kFloatsOfTriangle;
+  if (!wish.method.empty()) return kFloats + describe_method(wish.method, wish.options).bytes_per_triangle;
   const auto methods = all_methods();
   const auto areas = std::ranges::find_if(methods, [](const auto* method) { return method->exact_area.has_value(); });
-  const bool counts = wish.samples || std::ranges::all_of(lights, is_sampled);
-  return counts || areas == methods.end() ? visibility::MethodDescription().bytes_per_triangle
-                                          : (*areas)->bytes_per_triangle;
+  const bool counts = wish.samples || (!lights.empty() && std::ranges::all_of(lights, is_sampled));
+  return kFloats + (counts || areas == methods.end() ? visibility::MethodDescription().bytes_per_triangle
+                                                     : (*areas)->bytes_per_triangle);
 }
 
 bool answers_apart(const visibility::MethodDescription& method) {

@@ -67,7 +67,8 @@ InstanceUse parse_instances(const std::string& text, const MethodWish& wish);
 bool needs_copies(const scenes::Scene& scene, const scenes::Instances& instances, InstanceUse use,
                   const MethodWish& wish, std::uint32_t pixel_samples);
 
-/// Returns the memory that a method needs for each triangle of a copy, beside the scene's.
+/// Returns the memory that the scene floats and a method need for each triangle of a copy, beside the scene's. Without
+/// lights, which are not known before a scene is read: as for lights of which areas are asked.
 std::uint64_t bytes_per_copy(const MethodWish& wish, std::span<const scenes::AreaLight> lights);
 
 /// Parses the options. Throws UsageError; throws InputError if --exposure names a picture without an exposure

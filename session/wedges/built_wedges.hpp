@@ -9,6 +9,7 @@
 #include "volumes/wedges/wedge_tightness.hpp"
 #include "volumes/wedges/wedge_validation.hpp"
 
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
@@ -41,6 +42,9 @@ LightWedges wedges_of(const volumes::Casters& casters, const visibility::Light& 
 /// Wedges of one light of a scene, and the results of their proofs. Not movable, because its result refers to it.
 class BuiltWedges {
  public:
+  /// Memory for each triangle, beside the scene: measured on a sphere of a million triangles, and rounded down.
+  static constexpr std::uint64_t kBytesPerTriangle = 150;
+
   /// Builds and validates the wedges. Coverage is checked for the scene's first camera and size. Throws UsageError for
   /// an invalid request, InputError for a light without wedges.
   BuiltWedges(const scenes::Scene& scene, const WedgeRequest& request);

@@ -60,7 +60,7 @@ class MethodAnswers : public ProgramTest {
     options.scene = tiny_scene();
     const render::Machine machine = session::make_machine("cpu");
     app::TerminalProgress progress(false);
-    const session::Session session = session::open_session(options, std::nullopt, machine, 0, progress);
+    const session::Session session = session::open_session(options, std::nullopt, machine, 0, progress, 0);
     session::run_method(
         method, session, {.lights = session.lights}, [](const session::TileResult&) {}, progress);
   }

@@ -79,7 +79,7 @@ TEST_F(SlowMethods, EndBetweenTiles) {
   run.size = "8x200";
   const render::Machine machine = session::make_machine("cpu");
   app::TerminalProgress progress(false);
-  const session::Session session = session::open_session(run, std::nullopt, machine, 0, progress);
+  const session::Session session = session::open_session(run, std::nullopt, machine, 0, progress, 0);
   const auto none = [](const session::TileResult&) {};
   Slow slow;
   session::RunPlan plan{.lights = session.lights, .discard_first = true, .most_seconds = 0.04};
@@ -112,7 +112,7 @@ TEST_F(SlowMethods, AreNotThoseWhoseTilesCostMuch) {
   run.size = "8x200";
   const render::Machine machine = session::make_machine("cpu");
   app::TerminalProgress progress(false);
-  const session::Session session = session::open_session(run, std::nullopt, machine, 0, progress);
+  const session::Session session = session::open_session(run, std::nullopt, machine, 0, progress, 0);
   Slow slow(80, 0);
   const session::RunPlan plan{.lights = session.lights, .discard_first = true, .most_seconds = 0.2};
   const auto none = [](const session::TileResult&) {};

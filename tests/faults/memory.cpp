@@ -7,6 +7,9 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include <string>
+#include <vector>
+
 namespace penumbra::tests {
 namespace {
 
@@ -39,6 +42,18 @@ class MemoryFaults : public FaultTest {
     return write("soups.json", R"({"format": "penumbra-scene/1", "camera": {"eye": [0, 0, 5], "target": [0, 0, 0]},
       "lights": [{"rectangle": {"center": [0,4,0], "halfU": [1,0,0], "halfV": [0,0,1]}}], "meshes": [)" +
                                    meshes + "]}");
+  }
+  /// A scene of so many spheres, 960 triangles each, that share a mesh, and a floor under a light.
+  [[nodiscard]] std::string forest(int spheres, const std::string& light, const std::string& shape) const {
+    std::string places;
+    for (int i = 0; i < spheres; ++i)
+      places += fmt::format(R"({}{{"translate": [{}, 1, {}]}})", i == 0 ? "" : ", ", i % 80, i / 80);
+    return write("forest.json", R"({"format": "penumbra-scene/1", "size": [24, 16],
+      "camera": {"eye": [-3, 3, -3], "target": [9, 0, 9]}, "lights": [{")" +
+                                    light + "\": " + shape + R"(}], "meshes": [
+      {"name": "floor", "quad": {"center": [0, 0, 0], "halfU": [9, 0, 0], "halfV": [0, 0, -9]}},
+      {"shape": {"type": "sphere", "radius": 0.4, "segments": 32}, "instances": [)" +
+                                    places + "]}]}");
   }
   [[nodiscard]] Ending convert(const std::string& scene, std::vector<Limit> limits = {}) const {
     return run_under({.arguments = {"convert", scene, "-o", path("out.glb")}, .limits = std::move(limits)});
@@ -77,19 +92,36 @@ TEST_F(MemoryFaults, WhatDoesNotFitIsRefusedWithFigures) {
 /// Exact areas of a dome need a copy of each instance: with what the method takes of it, before any is made.
 TEST_F(MemoryFaults, CopiesThatDoNotFitAreRefusedBeforeTheyAreMade) {
   if (kSanitized) GTEST_SKIP() << "a sanitizer takes terabytes of addresses when it starts";
-  std::string places;
-  for (int i = 0; i < 4000; ++i)
-    places += fmt::format(R"({}{{"translate": [{}, 0, {}]}})", i == 0 ? "" : ", ", i % 80, i / 80);
-  const std::string scene = write("forest.json", R"({"format": "penumbra-scene/1", "size": [24, 16],
-    "camera": {"eye": [-3, 3, -3], "target": [9, 0, 9]}, "lights": [{"dome": {}}], "meshes": [
-    {"shape": {"type": "sphere", "radius": 0.4, "segments": 32}, "instances": [)" +
-                                                     places + "]}]}");
-  const Ending ending =
-      run_under({.arguments = {"render", scene, "-o", path("out.exr")}, .limits = {{RLIMIT_AS, rlim_t{1} << 30}}});
+  const Ending ending = run_under({.arguments = {"render", forest(4000, "dome", "{}"), "-o", path("out.exr")},
+                                   .limits = {{RLIMIT_AS, rlim_t{1} << 30}}});
   EXPECT_EQ(ending.code, 4) << ending.err;
   EXPECT_THAT(ending.err, AllOf(HasSubstr("4000 instances of meshes among them, each as a copy"), HasSubstr("GiB"),
                                 HasSubstr("--light-samples"), HasSubstr("\"sampled\"")));
   EXPECT_LT(ending.peak_bytes, 200u << 20) << "3.8 million triangles would take 120 MB alone";
+}
+
+/// Copies alone, 32 bytes for each of 9.6 million triangles, would fit in a gibibyte; what each command needs of them
+/// besides would not.
+TEST_F(MemoryFaults, EveryCommandThatCopiesCountsWhatItNeedsOfCopies) {
+  if (kSanitized) GTEST_SKIP() << "a sanitizer takes terabytes of addresses when it starts";
+  const std::string scene =
+      forest(10'000, "rectangle", R"({"center": [0, 9, 0], "halfU": [1, 0, 0], "halfV": [0, 0, 1]})");
+  const std::vector<std::vector<std::string>> commands = {
+      {"compare", scene, "--methods", "raytrace", "-o", path("compared")},
+      {"sweep", scene, "--methods", "pcss", "--over", "size=64,128", "-o", path("swept")},
+      {"bake", scene, "--mesh", "floor", "--size", "8", "-o", path("baked.exr")},
+      {"bake", scene, "--mesh", "floor", "--vertices", "-o", path("baked.ply")},
+      {"wedges", scene},
+      {"inspect", scene},
+      {"render", scene, "--floor", "auto", "--camera", "fit", "-o", path("studio.exr")},
+      {"convert", scene, "--instances", "copies", "-o", path("copies.glb")}};
+  for (const std::vector<std::string>& command : commands) {
+    const Ending ending = run_under({.arguments = command, .limits = {{RLIMIT_AS, rlim_t{1} << 30}}});
+    SCOPED_TRACE(command.front() + " … " + command.back());
+    EXPECT_EQ(ending.code, 4) << ending.err;
+    EXPECT_THAT(ending.err, AllOf(HasSubstr("needs about"), HasSubstr("GiB"), HasSubstr("each as a copy")));
+    EXPECT_LT(ending.peak_bytes, 200u << 20) << "copies would take 320 MB alone";
+  }
 }
 
 TEST_F(MemoryFaults, ControlGroupsCount) {

@@ -74,7 +74,7 @@ TEST(SeenPart, HasTheViewSamplesAndPairsOfTheWholeScene) {
       Forest forest = visibility::forest(random, shape);
       if (round == 1) forest.scene.cameras[0].height = 3;  // orthographic
       if (round == 2) forest.scene.objects[4].alpha = {scenes::Alpha::Mode::blend, 0.5, 0.5};
-      const SceneFloats whole = make_scene_floats(copied(forest.scene, forest.instances));
+      const SceneFloats whole = make_scene_floats(copied(forest.scene, forest.instances, 0));
       const PlacedMeshes meshes(forest.scene, forest.instances);
       ASSERT_EQ(meshes.origin(), whole.origin);
       const SampleRequest request{16, 0, 0, SamplePattern::sobol, 3};
@@ -202,7 +202,7 @@ TEST(SeenPart, HasABlockerOfEachPairWithADome) {
       forest.scene.lights.push_back(forest.scene.lights[0]);
       forest.scene.lights[1].shape = shapes()[3];
     }
-    const SceneFloats whole = make_scene_floats(copied(forest.scene, forest.instances));
+    const SceneFloats whole = make_scene_floats(copied(forest.scene, forest.instances, 0));
     const PlacedMeshes meshes(forest.scene, forest.instances);
     const SampleRequest request{100, 0, 0, SamplePattern::sobol, 3};
     std::vector<Light> lights;
@@ -253,7 +253,7 @@ TEST(SeenPart, OfADomeIsEverythingForAreas) {
   const Light light = make_light(forest.scene, 0, meshes.origin(), {});
   const PinholeCamera camera = make_camera(forest.scene.cameras[0], meshes.origin(), 8, 8);
   const SeenPart part = seen_part(meshes, camera, {&light, 1}, {0, camera.height});
-  const scenes::Scene whole = copied(forest.scene, forest.instances);
+  const scenes::Scene whole = copied(forest.scene, forest.instances, 0);
   EXPECT_EQ(part.scene.soup.triangles, whole.soup.triangles);
   EXPECT_EQ(part.scene.soup.positions, whole.soup.positions);
 }
