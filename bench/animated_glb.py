@@ -5,9 +5,9 @@ import json
 import struct
 
 
-def add_motion(path, name, moves):
+def add_motion(path, name, moves, place_at=0.5):
     """Adds an animation to the .glb file at `path`: the node of this name moves by `moves` (x, y, z, in its parent's axes) in a second, at even speed, and is in its
-    place after half of it. A node above it moves, since an animated node may have no matrix."""
+    place after `place_at` of it. A node above it moves, since an animated node may have no matrix."""
     data = path.read_bytes()
     length = struct.unpack_from("<I", data, 12)[0]
     document, binary = json.loads(data[20:20 + length]), bytearray(data[28 + length:])
@@ -17,7 +17,7 @@ def add_motion(path, name, moves):
         children[:] = [above if child == node else child for child in children]
     nodes.append({"name": f"{name} moves", "children": [node]})
     at = len(binary)
-    binary += struct.pack("<8f", 0, 1, *(-step / 2 for step in moves), *(step / 2 for step in moves))
+    binary += struct.pack("<8f", 0, 1, *(-place_at * step for step in moves), *((1 - place_at) * step for step in moves))
     document["buffers"][0]["byteLength"] = len(binary)
     views, accessors = len(document["bufferViews"]), len(document["accessors"])
     document["bufferViews"] += [{"buffer": 0, "byteOffset": at, "byteLength": 8}, {"buffer": 0, "byteOffset": at + 8, "byteLength": 24}]

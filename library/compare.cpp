@@ -39,8 +39,8 @@ std::string compare_json(const Scene& scene, const CompareOptions& options, cons
   LibraryProgress progress(renderer);
   const compare::Metrics metrics = [&] {
     try {
-      return session::compare_methods(scenes::copied(state.scene, state.instances, session::bytes_per_copy(comparison)), run,
-                                  comparison, progress);
+      return session::compare_methods(scenes::copied(state.scene, state.instances, session::bytes_per_copy(comparison)),
+                                      run, comparison, progress);
     } catch (...) {
       progress.rethrow();
       throw_as_error();

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Scene of the interface: reading, writing, lights and cameras, with the checks of a file for each change.
 
-#include "app/pictures/request.hpp"
 #include "base/error.hpp"
 #include "library/as_error.hpp"
 #include "library/library_progress.hpp"
@@ -16,6 +15,7 @@
 #include "scenes/formats/reader.hpp"
 #include "scenes/formats/writer.hpp"
 #include "scenes/light_texture.hpp"
+#include "session/pictures/request.hpp"
 
 #include <fmt/format.h>
 
@@ -101,7 +101,7 @@ Scene Scene::load(const std::filesystem::path& file, const LoadOptions& options)
   Scene scene;
   read_watched(options, [&](scenes::ReadOptions read) {
     read.instances = &scene.state_->instances;
-    read.bytes_per_copy = app::bytes_per_copy({}, {});
+    read.bytes_per_copy = session::bytes_per_copy({}, {});
     scene.state_->scene = scenes::read_scene(file, read);
     adopt_instances(*scene.state_);
   });

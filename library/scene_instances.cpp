@@ -2,12 +2,12 @@
 // Instances of the interface's scene: meshes that it has several times, stored once. A call that throws changes
 // nothing.
 
-#include "app/pictures/request.hpp"
 #include "library/as_error.hpp"
 #include "library/named.hpp"
 #include "library/scene_objects.hpp"
 #include "mesh/soup_memory.hpp"
 #include "scenes/formats/checks.hpp"
+#include "session/pictures/request.hpp"
 
 #include <fmt/format.h>
 #include <glm/common.hpp>
@@ -97,7 +97,7 @@ void adopt_instances(Scene::State& state) {
   scenes::Instances& instances = state.instances;
   if (!std::ranges::is_sorted(instances.all, {}, &scenes::Instance::object) ||
       !std::ranges::is_sorted(state.scene.soup.object)) {
-    const std::uint64_t bytes = app::bytes_per_copy({}, state.scene.lights);
+    const std::uint64_t bytes = session::bytes_per_copy({}, state.scene.lights);
     state.scene = scenes::copied(std::move(state.scene), std::exchange(instances, {}), bytes);
     state.scene.warnings.emplace_back(
         "instances are copied: the file's nodes are in another order than its meshes, which cannot share triangles "

@@ -32,7 +32,7 @@ std::string wedges_json(const Scene& scene, const WedgeOptions& options) {
     const scenes::Instances& instances = scene.state().instances;
     std::optional<scenes::Scene> copies;
     if (!instances.empty())
-      copies = scenes::copied(scene.state().scene, instances, app::BuiltWedges::kBytesPerTriangle);
+      copies = scenes::copied(scene.state().scene, instances, session::BuiltWedges::kBytesPerTriangle);
     const scenes::Scene& built_of = copies ? *copies : scene.state().scene;
     scenes::check_scene(built_of, "the scene");
     const session::BuiltWedges wedges(built_of,

@@ -96,9 +96,10 @@ class BakeCommand : public Command {
     progress.begin("reading " + options_.run.scene.filename().string(), 1);
     std::optional<double> time;
     if (request.frames.front()) time = *request.frames.front() * request.seconds_per_frame;
-    scenes::Scene scene = session::read_session_scene(options_.run, time,
-                                             {.lightmap = vertices_ ? nullptr : &lightmap_,
-                                              .bytes_per_copy = kOwnTriangle + session::bytes_per_copy(request.wish, {})});
+    scenes::Scene scene =
+        session::read_session_scene(options_.run, time,
+                                    {.lightmap = vertices_ ? nullptr : &lightmap_,
+                                     .bytes_per_copy = kOwnTriangle + session::bytes_per_copy(request.wish, {})});
     outputs.refuse_inputs(scene.sources);
     const BakedMesh mesh = find_baked(scene, mesh_);
     progress.clear();

@@ -104,8 +104,8 @@ class SweepCommand : public Command {
     outputs.require_writable();
     TerminalProgress progress(!global.quiet);
     // Each comparison has a copy of the scene.
-    const scenes::Scene scene =
-        session::read_session_scene(run_, time, {.bytes_per_copy = mesh::soup_bytes(1, 1) + session::bytes_per_copy(options_)});
+    const scenes::Scene scene = session::read_session_scene(
+        run_, time, {.bytes_per_copy = mesh::soup_bytes(1, 1) + session::bytes_per_copy(options_)});
     outputs.refuse_inputs(scene.sources);
     options_.reference = reference_.empty() ? best_reference(scene) : reference_;
     const Sweep sweep = sweep_methods(scene, run_, options_, over, progress);

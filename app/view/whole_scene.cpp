@@ -14,8 +14,8 @@ namespace penumbra::app {
 WholeScene read_whole_scene(const session::RunOptions& options, session::InstanceUse use) {
   WholeScene read;
   read.use = use;
-  read.scene =
-      session::read_session_scene(options, {}, {.instances = &read.instances, .bytes_per_copy = session::bytes_per_copy({}, {})});
+  read.scene = session::read_session_scene(
+      options, {}, {.instances = &read.instances, .bytes_per_copy = session::bytes_per_copy({}, {})});
   if (read.instances.empty()) return read;
   const std::uint64_t triangles = scenes::triangle_count(read.scene, read.instances);
   const auto copy = [&] {

@@ -2,10 +2,10 @@
 #include "scenes/formats/reader.hpp"
 
 #include "base/error.hpp"
-#include "scenes/formats/checks.hpp"
-#include "scenes/formats/gltf_reader.hpp"
 #include "mesh/import.hpp"
 #include "mesh/unused_vertices.hpp"
+#include "scenes/formats/checks.hpp"
+#include "scenes/formats/gltf_reader.hpp"
 #include "scenes/formats/json_meshes.hpp"
 #include "scenes/formats/json_reader.hpp"
 #include "scenes/formats/scenes_ahead.hpp"

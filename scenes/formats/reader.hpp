@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "scenes/scene.hpp"
 #include "mesh/import.hpp"
 #include "mesh/triangle_soup.hpp"
+#include "scenes/scene.hpp"
 #include "scenes/studio.hpp"
 
 #include <glm/vec2.hpp>

@@ -2,8 +2,8 @@
 #include "scenes/formats/writer.hpp"
 
 #include "base/error.hpp"
-#include "scenes/light_texture.hpp"
 #include "scenes/formats/writers.hpp"
+#include "scenes/light_texture.hpp"
 
 #include <algorithm>
 #include <cmath>

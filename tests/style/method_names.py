@@ -8,7 +8,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-DEFAULTS = {("session/comparison/comparison.hpp", "raytrace"),
+DEFAULTS = {("session/comparison/comparison.hpp", "raytrace"), ("bench/swimming.py", "exact"),
             ("bench/options.cpp", "edge-scatter,view-sample"), ("bench/options.cpp", "edge-scatter,edge-scatter:rows=exact")}
 # Measures what papers, or a page, say of methods by name.
 OF_PAPERS = {"bench/time_ratios.py", "bench/domes.py", "bench/page_tables.py"}
