@@ -9,6 +9,7 @@
 
 #include "base/error.hpp"
 #include "base/exr.hpp"
+#include "bench/embree_mesh.hpp"
 #include "scenes/formats/reader.hpp"
 #include "visibility/dome_picture.hpp"
 
@@ -317,27 +318,6 @@ Error error_of(const std::vector<float>& v, const std::vector<ViewSample>& sampl
   return {std::sqrt(squares / n), sum / n};
 }
 
-RTCScene embree_scene(RTCDevice device, const scenes::Scene& scene, const glm::dvec3& origin) {
-  RTCScene whole = rtcNewScene(device);
-  rtcSetSceneFlags(whole, RTC_SCENE_FLAG_ROBUST);
-  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-  const mesh::TriangleSoup& soup = scene.soup;
-  auto* const vertices = static_cast<float*>(rtcSetNewGeometryBuffer(
-      geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), soup.positions.size()));
-  for (std::size_t i = 0; i < soup.positions.size(); ++i)
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      vertices[3 * i + axis] = static_cast<float>((soup.positions[i] - origin)[static_cast<int>(axis)]);
-  auto* const corners = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(
-      geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(std::uint32_t), soup.triangles.size()));
-  for (std::size_t i = 0; i < soup.triangles.size(); ++i)
-    for (std::size_t k = 0; k < 3; ++k) corners[3 * i + k] = soup.triangles[i][k];
-  rtcCommitGeometry(geometry);
-  rtcAttachGeometry(whole, geometry);
-  rtcReleaseGeometry(geometry);
-  rtcCommitScene(whole);
-  return whole;
-}
-
 double processor_seconds() {
   timespec time{};
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
@@ -387,7 +367,7 @@ int run(const std::string& file, const std::string& truth, const std::vector<std
   const ExrFile picture = read_exr(truth);
   const std::vector<ViewSample> samples = view_samples(picture);
   RTCDevice device = rtcNewDevice(nullptr);
-  RTCScene whole = embree_scene(device, scene, picture.vectors.at("penumbra.origin"));
+  RTCScene whole = robust_scene(device, scene.soup, picture.vectors.at("penumbra.origin"));
   std::optional<ConstantDome> constant;
   std::optional<PictureDome> pictured;
   std::optional<std::pair<int, Tracer>> tracer;

@@ -6,6 +6,7 @@
 // visibility of these pixels.
 
 #include "base/error.hpp"
+#include "bench/embree_mesh.hpp"
 #include "scenes/formats/reader.hpp"
 #include "scenes/instances.hpp"
 #include "visibility/view_samples.hpp"
@@ -30,27 +31,6 @@ namespace {
 
 constexpr int kLanes = 8;
 
-/// Returns a hierarchy over one mesh.
-RTCScene mesh_scene(RTCDevice device, const mesh::TriangleSoup& soup) {
-  RTCScene scene = rtcNewScene(device);
-  rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
-  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-  auto* const vertices = static_cast<float*>(rtcSetNewGeometryBuffer(
-      geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), soup.positions.size()));
-  for (std::size_t i = 0; i < soup.positions.size(); ++i)
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      vertices[3 * i + axis] = static_cast<float>(soup.positions[i][static_cast<int>(axis)]);
-  auto* const corners = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(
-      geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(std::uint32_t), soup.triangles.size()));
-  for (std::size_t i = 0; i < soup.triangles.size(); ++i)
-    for (std::size_t k = 0; k < 3; ++k) corners[3 * i + k] = soup.triangles[i][k];
-  rtcCommitGeometry(geometry);
-  rtcAttachGeometry(scene, geometry);
-  rtcReleaseGeometry(geometry);
-  rtcCommitScene(scene);
-  return scene;
-}
-
 RTCScene whole_scene(RTCDevice device, const scenes::Scene& scene, const scenes::Instances& instances) {
   RTCScene whole = rtcNewScene(device);
   rtcSetSceneFlags(whole, RTC_SCENE_FLAG_ROBUST);
@@ -65,9 +45,9 @@ RTCScene whole_scene(RTCDevice device, const scenes::Scene& scene, const scenes:
     rtcAttachGeometry(whole, instance);
     rtcReleaseGeometry(instance);
   };
-  add(mesh_scene(device, scene.soup), glm::dmat4(1));
+  add(robust_scene(device, scene.soup), glm::dmat4(1));
   std::vector<RTCScene> meshes;
-  for (const auto& mesh : instances.meshes) meshes.push_back(mesh_scene(device, mesh->soup));
+  for (const auto& mesh : instances.meshes) meshes.push_back(robust_scene(device, mesh->soup));
   for (const scenes::Instance& instance : instances.all) add(meshes[instance.mesh], instance.placement.to_world);
   rtcCommitScene(whole);
   return whole;
