@@ -50,7 +50,7 @@ LiveView::LiveView(session::RunOptions options, WholeScene whole, network::Serve
   serving.place = std::move(place);
   serving.token = network::make_token();
   serving.page = view_page();
-  constexpr const char* kNumbers = "application/octet-stream";
+  constexpr const char* kBytes = "application/octet-stream";
   serving.files = {
       {"/scene.json", "application/json", "scene.json", [this](std::string_view) { return renderer_->scene_text(); }},
       {"/scene/picture", "image/x-exr", "picture.exr",
@@ -58,9 +58,9 @@ LiveView::LiveView(session::RunOptions options, WholeScene whole, network::Serve
          return renderer_->light_picture(network::parameter_of(target, "light").value_or(""));
        }},
       {"/three.js", "text/javascript", "", [](std::string_view) { return std::string(kThreeScript); }},
-      {"/space/meshes", kNumbers, "", [this](std::string_view) { return space_->meshes(); }},
-      {"/space/defects", kNumbers, "", [this](std::string_view) { return space_->defects(); }},
-      {"/space/shadows", kNumbers, "", [this](std::string_view target) { return space_->shadows(target); }}};
+      {"/space/meshes", kBytes, "", [this](std::string_view) { return space_->meshes(); }},
+      {"/space/defects", kBytes, "", [this](std::string_view) { return space_->defects(); }},
+      {"/space/shadows", kBytes, "", [this](std::string_view target) { return space_->shadows(target); }}};
   server_ = std::make_unique<network::PageServer>(std::move(serving), *this);
   renderer_ = std::make_unique<LiveRenderer>(
       std::move(options), std::move(whole),
