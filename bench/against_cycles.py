@@ -50,7 +50,7 @@ sys.path[:0] = [str(ROOT / "blender"), str(ROOT / "docs/figures"), str(ROOT / "d
 
 WIDTH, HEIGHT = 640, 480
 CROP = 64, 48  # pixels
-# Of Cycles, and of the judge for each of two seeds. A picture that is blurred by 16 samples has more error than one that is not, so fewer tell it.
+# Samples a pixel of Cycles, and of the judge for each of two seeds. A picture that is blurred by 16 samples has more error than one that is not, so fewer tell it.
 CYCLES_SAMPLES = {"centres": (64, 256), "antialiased": (64, 256), "lens": (16, 64), "motion": (16, 64)}
 JUDGE_SAMPLES = {"centres": 4096, "antialiased": 4096, "lens": 1024, "motion": 1024}
 RUNS = 3

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a picture of the library holds: its lights, V, colours and other layers, by light and by number.
+// Reads the layers of a picture of the library: its lights, V, colours and other layers, by light and by number.
 
 #include "library/picture_state.hpp"
 

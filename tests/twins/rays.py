@@ -110,7 +110,7 @@ def visibility(m, p, layers, gap, solid):
         if solid:
             answers.append(insides(m, p, sample, layers))
         stopped = any(s for s, _ in answers)
-        # Whatever surely stops a ray does so however the rest is rounded.
+        # A ray that is surely stopped stays so however the rest is rounded.
         sure = sure and not any(close for _, close in answers)
         count += not stopped
     return count / ACROSS**2, sure
