@@ -110,7 +110,7 @@ def visibility(m, p, layers, gap, solid):
         if solid:
             answers.append(insides(m, p, sample, layers))
         stopped = any(s for s, _ in answers)
-        # A ray that is surely stopped stays so however the rest is rounded.
+        # An answer close to its bound may be rounded to the other one, whatever the others say.
         sure = sure and not any(close for _, close in answers)
         count += not stopped
     return count / ACROSS**2, sure
