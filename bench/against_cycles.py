@@ -3,6 +3,7 @@
 """Error against processor time and memory of Penumbra and of Blender's Cycles, whole processes from start to file.
 
     bench/against_cycles.py measure [BUILD [SCENE|PART …]]     renders and measures; writes bench/results/against-cycles.json after each row; an hour and a half
+    bench/against_cycles.py memory [BUILD]      the memory alone, of rows that were measured without it; some minutes
     bench/against_cycles.py page [--check]      docs/against-cycles.md, its charts, and the README's sentences, from that file
 
 With scenes or parts named, other rows stay as they are. `measure` needs Blender, the built program and the add-on (targets penumbra and penumbra_blender_addon).
@@ -25,6 +26,7 @@ Cycles' error falls as one over the root of its samples, and its time is a const
 seconds for an error that was not measured follow from two measured counts.
 """
 
+import contextlib
 import json
 import os
 import re
@@ -134,6 +136,13 @@ class Scene:
             command += ["--aperture", self.facts["aperture"], "--focus-distance", self.facts["focus"]]
         return usage_of(command, self.environment)
 
+    def run(self, engine, out, part):
+        if engine == "penumbra":
+            return self.penumbra(out, part)
+        if engine == "add-on":
+            return self.blender(out, "PENUMBRA", part)
+        return self.blender(out, "CYCLES", part, engine.split()[1], 3)
+
     def picture(self, part):
         self.penumbra(self.work / "centre.exr", part)
         return Picture(self.work / "centre.exr")
@@ -171,12 +180,7 @@ class Scene:
                     continue  # minutes; its share a sample is what is wanted, and is large against what varies
                 out = work / "picture.exr"
                 out.unlink(missing_ok=True)
-                if engine == "penumbra":
-                    usage = self.penumbra(out, part)
-                elif engine == "add-on":
-                    usage = self.blender(out, "PENUMBRA", part)
-                else:
-                    usage = self.blender(out, "CYCLES", part, engine.split()[1], 3)
+                usage = self.run(engine, out, part)
                 entry = entries.setdefault(engine, {"entry": engine, "runs": [], "memories": []})
                 entry["runs"].append(round(usage.seconds, 3))
                 entry["memories"].append(round(usage.mebibytes))
@@ -193,6 +197,25 @@ class Scene:
                 "entries": list(entries.values())}
 
 
+def state():
+    """Commit, machine and Blender of a measurement."""
+    commit = subprocess.run(["git", "-C", ROOT, "rev-parse", "--short=8", "HEAD"], capture_output=True, text=True, check=True).stdout.strip()
+    blender = subprocess.run(["blender", "--version"], capture_output=True, text=True, check=True).stdout.split("\n")[0]
+    return {"commit": commit, "machine": processor(), "blender": blender}
+
+
+@contextlib.contextmanager
+def made(build, names):
+    """The scenes by name, written into a folder that is gone afterwards."""
+    with tempfile.TemporaryDirectory() as folder:
+        work = Path(folder)
+        environment = {**os.environ, "BLENDER_USER_SCRIPTS": str(work / "scripts"), "BLENDER_USER_CONFIG": str(work / "config")}
+        (work / "scripts").mkdir()
+        usage_of(["blender", "-b", "--factory-startup", "--python-exit-code", "1", "-P", HERE / "scenes.py", "--",
+                  build / "penumbra-blender.zip", work, WIDTH, HEIGHT, *names], environment)
+        yield {name: Scene(name, json.loads((work / f"{name}.json").read_text()), work, build / "penumbra", environment) for name in names}
+
+
 def measure(build, wanted):
     """Measures the rows of these scenes and parts, and writes each down as soon as it is known."""
     unknown = set(wanted) - set(NAMES) - set(PARTS)
@@ -200,28 +223,36 @@ def measure(build, wanted):
         raise SystemExit(f"{', '.join(unknown)}: scenes are {', '.join(NAMES)}; parts are {', '.join(PARTS)}")
     scenes, parts = set(wanted) & set(NAMES) or set(NAMES), set(wanted) & set(PARTS) or set(PARTS)
     asked = [(part, scene) for part, scene in ROWS if part in parts and scene in scenes]
-    names = list(dict.fromkeys(scene for _, scene in asked))
-    commit = subprocess.run(["git", "-C", ROOT, "rev-parse", "--short=8", "HEAD"], capture_output=True, text=True, check=True).stdout.strip()
-    blender = subprocess.run(["blender", "--version"], capture_output=True, text=True, check=True).stdout.split("\n")[0]
-    with tempfile.TemporaryDirectory() as folder:
-        work = Path(folder)
-        environment = {**os.environ, "BLENDER_USER_SCRIPTS": str(work / "scripts"), "BLENDER_USER_CONFIG": str(work / "config")}
-        (work / "scripts").mkdir()
-        usage_of(["blender", "-b", "--factory-startup", "--python-exit-code", "1", "-P", HERE / "scenes.py", "--",
-                  build / "penumbra-blender.zip", work, WIDTH, HEIGHT, *names], environment)
-        made = {name: Scene(name, json.loads((work / f"{name}.json").read_text()), work, build / "penumbra", environment) for name in names}
+    with made(build, list(dict.fromkeys(scene for _, scene in asked))) as all_scenes:
         for part, scene in asked:
-            row = made[scene].measure(part) | {"measured": {"commit": commit, "machine": processor(), "threads": os.cpu_count(),
-                                                            "load": [round(x, 1) for x in os.getloadavg()]}}
-            keep(row, made[scene].facts["triangles"], {"commit": commit, "machine": processor(), "blender": blender})
+            now = state()
+            row = all_scenes[scene].measure(part) | {"measured": {"commit": now["commit"], "machine": now["machine"], "threads": os.cpu_count(),
+                                                                  "load": [round(x, 1) for x in os.getloadavg()]}}
+            keep(row, all_scenes[scene].facts["triangles"], now)
 
 
-def keep(row, triangles, state):
+def measure_memory(build):
+    """Adds the largest resident set to rows that were measured without: one run of each entry but of Cycles' with many samples, which takes as much as with few."""
+    data = json.loads(RESULT.read_text())
+    asked = [row for row in data["rows"] if not any("mebibytes" in entry for entry in row["entries"])]
+    with made(build, list(dict.fromkeys(row["scene"] for row in asked))) as all_scenes:
+        for row in asked:
+            scene = all_scenes[row["scene"]]
+            for entry in row["entries"]:
+                if entry["entry"] == f"cycles {max(CYCLES_SAMPLES[row['part']])}":
+                    continue
+                entry["mebibytes"] = round(scene.run(entry["entry"], scene.work / "picture.exr", row["part"]).mebibytes)
+                print(f"{row['scene']} {row['part']}: {entry['entry']}: {entry['mebibytes']} MiB", flush=True)
+            row["memoryMeasured"] = {"commit": state()["commit"]}
+            RESULT.write_text(json.dumps(data, indent=1) + "\n")
+
+
+def keep(row, triangles, now):
     """Puts one row into the file of results."""
     data = json.loads(RESULT.read_text()) if RESULT.exists() else {"rows": [], "triangles": {}}
     rows = {(one["part"], one["scene"]): one for one in (*data["rows"], row)}
     data.pop("judgeSamples", None)
-    data |= {"title": "error against processor seconds, beside Cycles", "command": "bench/against_cycles.py measure", **state, "size": [WIDTH, HEIGHT],
+    data |= {"title": "error against processor seconds, beside Cycles", "command": "bench/against_cycles.py measure", **now, "size": [WIDTH, HEIGHT],
              "triangles": data["triangles"] | {row["scene"]: triangles}, "rows": [rows[at] for at in ROWS if at in rows]}
     RESULT.write_text(json.dumps(data, indent=1) + "\n")
 
@@ -339,7 +370,7 @@ each took in these pictures ("≥": Penumbra's error is below what the judge can
 {machine}, {blender}, {size[0]} × {size[1]} pixels; each row has the commit of the program and the load of the machine at its end. Under the sky picture
 Penumbra asks 256 directions, as its add-on does by itself. Times are processor seconds (user and system, medians of {runs}; of Cycles' larger
 count one), so another process on the machine changes them less than the clock. Memory is the largest resident set of one process: Blender with the add-on has the program
-as its child, and the larger of the two counts. The error is relative RMSE over a crop of {crop[2]} × {crop[3]} pixels full of penumbra, against Cycles with
+as its child, and the larger of the two counts. Rows at pixels' centres and antialiased that have an older commit got their memory at {memory_commit}. The error is relative RMSE over a crop of {crop[2]} × {crop[3]} pixels full of penumbra, against Cycles with
 8,192 samples a pixel (lens and motion: 2,048); "≤": below the judge's own noise. *Times as long* extrapolates Cycles' error by one over
 the root of its samples, to more samples than the fewer measured ones only ("≤" for less); "–": an error that Penumbra's picture does not reach.
 
@@ -396,7 +427,8 @@ def readme_sentences(data):
 
 def page(check):
     data = json.loads(RESULT.read_text())
-    text = PAGE_TEXT.format(**data, runs=RUNS, crop=data["rows"][0]["crop"], summary="\n".join(summary(data["rows"])), **{
+    memory_commit = ", ".join(dict.fromkeys(row["memoryMeasured"]["commit"] for row in data["rows"] if "memoryMeasured" in row))
+    text = PAGE_TEXT.format(**data, runs=RUNS, memory_commit=memory_commit, crop=data["rows"][0]["crop"], summary="\n".join(summary(data["rows"])), **{
         part: "\n".join(table([row for row in data["rows"] if row["part"] == part])) for part in PARTS})
     stale = False
     readme, blocks = BLOCK.subn(lambda found: found[1] + readme_sentences(data) + found[2], README.read_text())
@@ -416,6 +448,8 @@ def main():
     command, *rest = sys.argv[1:] or [""]
     if command == "measure":
         measure(Path(rest[0] if rest else ROOT / "build").resolve(), rest[1:] or list(NAMES))
+    elif command == "memory":
+        measure_memory(Path(rest[0] if rest else ROOT / "build").resolve())
     elif command == "page":
         raise SystemExit(page("--check" in rest))
     else:
