@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// The options `--allow-outside` and `--lenient`, with one help text for all commands that read scenes.
+
 #include "app/reading_options.hpp"
 
 #include <CLI/CLI.hpp>

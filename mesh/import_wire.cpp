@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// Numbers, texts and meshes in the answers of the helper processes. The reader trusts no length: an answer may come
+// from a process that a damaged file has taken over.
+
 #include "mesh/import_wire.hpp"
 
 #include "base/utf8.hpp"

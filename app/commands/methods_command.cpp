@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// `penumbra methods`: a table of all methods, one method in full, or both as JSON. Everything shown comes from
+// `MethodDescription`, so that a new method needs no line here.
+
 #include "app/commands.hpp"
 #include "session/method_list.hpp"
 #include "session/methods.hpp"

@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+// Parses a glTF or GLB file with tinygltf, which may open files in the file's own folder and below alone. Before
+// tinygltf sees it, the JSON's integers are checked, its URIs settled (escaped or not), and what tinygltf misreads is
+// mended.
+
 #include "import/gltf/gltf_load.hpp"
 
 #include "base/error.hpp"
