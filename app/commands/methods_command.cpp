@@ -77,7 +77,7 @@ class MethodsCommand : public Command {
   explicit MethodsCommand(CLI::App& app)
       : Command(app, "methods", "list the shadow methods: family, paper, output, what each is exact for, options") {
     cli_.add_option("NAME", names_, "methods that are shown in full; none: a table of all")->type_name("");
-    cli_.add_flag("--json", json_, "as JSON");
+    cli_.add_flag("--json", json_, "print JSON in place of the table");
   }
 
   int run(const GlobalOptions&) override {
