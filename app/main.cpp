@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// Entry of the program: the one place that catches what commands throw, and turns it into a message and an exit code.
+
 #include "app/commands.hpp"
 #include "app/process/process.hpp"
 #include "render/device.hpp"

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// The options `--allow-outside` and `--lenient`, with one help text for all commands that read scenes.
+
 #include "app/reading_options.hpp"
 
 #include <CLI/CLI.hpp>
@@ -12,8 +14,8 @@ void add_allow_outside(CLI::App& command, bool& allow_outside) {
 void add_lenient(CLI::App& command, bool& lenient) {
   command.add_flag(
       "--lenient", lenient,
-      "if the scene has what is not supported, or what the format of an output cannot hold, and that would "
-      "change shadows: leave it out with a warning instead of refusing");
+      "leave out, with a warning, what changes shadows and is not supported or does not fit the format of an output; "
+      "without this option such a scene is refused");
 }
 
 }  // namespace penumbra::app

@@ -40,13 +40,13 @@ void add_gltf_options(CLI::App& command, session::GltfOptions& gltf) {
   command
       .add_option(
           "--lumens-per-watt", gltf.lumens_per_watt,
-          "glTF: divide the intensities of lamps by N (default: 1; in files of Blender's exporter 683, the number "
-          "by which it multiplies; in files of its versions before 3.4.36 4 pi, for suns 1)")
+          "glTF: divide the intensities of lamps by N (default: 1; for files of Blender's exporter, which multiplies "
+          "by it, 683; for its versions before 3.4.36 4 pi, and 1 for suns)")
       ->type_name("N");
   command
       .add_option("--clip", gltf.clips,
                   "glTF: play this animation alone, by its name or its number from 0; may be given again (default: all "
-                  "that can be played at once, of several that move the same thing the first)")
+                  "that can be played at once; of several that move the same thing, only the first)")
       ->type_name("NAME|N")
       ->allow_extra_args(false);
 }
@@ -87,8 +87,8 @@ void add_run_options(CLI::App& command, session::RunOptions& options) {
   command.add_option("--size", options.size, "image size in pixels (default: the scene's)")->type_name("WxH");
   command
       .add_option("--light", options.lights,
-                  "only this light; may be given again, and the first comes first: channel V, --bits, error (default: "
-                  "all of the scene's)")
+                  "only this light; may be given again; channel V, --bits and errors are those of the first (default: "
+                  "all of the scene's, in its order)")
       ->type_name("NAME")
       ->allow_extra_args(false);
   command

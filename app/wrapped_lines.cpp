@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// Breaks text at words for a terminal of 40 to 100 columns. A column is a code point of UTF-8; wide characters do not
+// occur in the program's own texts.
+
 #include "app/wrapped_lines.hpp"
 
 #include <algorithm>

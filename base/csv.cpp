@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// Fields of comma-separated values, quoted as RFC 4180 has it.
+
 #include "base/csv.hpp"
 
 #include <fmt/format.h>

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// Constructors and destructors of the errors that a user can act on; out of line, so that each type's virtual table is
+// emitted once.
+
 #include "base/error.hpp"
 
 namespace penumbra {

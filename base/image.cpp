@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// Linear values to bytes of sRGB (IEC 61966-2-1) and back, computed in double.
+
 #include "base/image.hpp"
 
 #include "base/assert.hpp"

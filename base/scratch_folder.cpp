@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// A hidden folder of its own below another, removed with its content at the end of its life.
+
 #include "base/scratch_folder.hpp"
 
 #include "base/error.hpp"

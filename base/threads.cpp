@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// Starts a number of idle threads and ends them again, to learn in advance whether the system's limits allow them:
+// libraries that cannot start their threads wait forever, or end the process.
+
 #include "base/threads.hpp"
 
 #include "base/error.hpp"

@@ -7,6 +7,7 @@ methods that all tables want of each run. Uses Python's standard library alone."
 import json
 import os
 import platform
+import re
 import subprocess
 from dataclasses import dataclass, field
 from functools import cache
@@ -55,8 +56,7 @@ class ProcessorSeconds:
     options: tuple
 
     def value(self, bench):
-        return min(bench.usage(("render", bench.scene(self.scene), "-o", bench.folder / "timed.exr", "--layers", "V", "--method", self.entry, *self.options))
-                   for _ in range(3))
+        return min(bench.render(self.scene, "--layers", "V", "--method", self.entry, *self.options)[1] for _ in range(3))
 
 
 @dataclass(frozen=True)
@@ -66,9 +66,7 @@ class Megabytes:
     options: tuple
 
     def value(self, bench):
-        out = bench.folder / "sized.exr"
-        bench.program("render", bench.scene(self.scene), "-o", out, *self.options)
-        return out.stat().st_size / 1e6
+        return bench.render(self.scene, *self.options)[0].stat().st_size / 1e6
 
 
 @dataclass(frozen=True)
@@ -107,11 +105,27 @@ class Bench:
     def program(self, *arguments):
         return subprocess.run([self.program_path, *arguments, "--quiet"], check=True, capture_output=True, text=True).stdout
 
-    def usage(self, arguments):
-        before = os.times()
-        self.program(*arguments)
+    def render(self, scene, *options):
+        """The file that `penumbra render` writes, and the processor seconds that it takes."""
+        out, before = self.folder / "rendered.exr", os.times()
+        self.program("render", self.scene(scene), "-o", out, *options)
         after = os.times()
-        return after.children_user + after.children_system - before.children_user - before.children_system
+        return out, after.children_user + after.children_system - before.children_user - before.children_system
+
+    def printed(self, test, tests, pattern):
+        """The groups of each line that a test prints and that fits the pattern; those that are numbers as numbers."""
+        out = subprocess.run([self.program_path.with_name(test), f"--gtest_filter={tests}"], check=True, capture_output=True, text=True).stdout
+        found = [tuple(map(number, groups)) for groups in re.findall(pattern, out, re.M)]
+        if not found:
+            raise SystemExit(f"{test}, {tests}: prints no line that fits {pattern}")
+        return found
+
+    def lines(self, *options):
+        """The JSON lines of a run of penumbra-bench."""
+        out = self.folder / "lines.json"
+        out.unlink(missing_ok=True)
+        subprocess.run([self.program_path.with_name("penumbra-bench"), *options, "--json", out], check=True, capture_output=True)
+        return [json.loads(line) for line in out.read_text(encoding="utf-8").splitlines()]
 
     def scene(self, name):
         if name not in self.scenes:
@@ -140,6 +154,15 @@ class Bench:
         out = self.folder / "answer.json"
         self.program(*(self.scene(part.removeprefix("scene:")) if part.startswith("scene:") else part for part in command), out)
         return json.loads(out.read_text(encoding="utf-8"))
+
+
+def number(text):
+    for kind in (int, float):
+        try:
+            return kind(text)
+        except ValueError:
+            pass
+    return text
 
 
 def machine():

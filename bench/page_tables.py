@@ -212,13 +212,17 @@ def defect_pairs():
                  (*(None for _ in range(8)), ".4f", ".4f", ".4f"), rows, merged=True)
 
 
+def validated(scene, construction, of):
+    return Answer(("wedges", f"scene:{scene}", "--validate", "--from", "centre", "--construction", construction, "--json"), of)
+
+
 def wedge_ratios():
     def of(scene, construction, key):
-        return Answer(("wedges", f"scene:{scene}", "--validate", "--from", "centre", "--construction", construction, "--json"), lambda answer: answer["tightness"][key])
+        return validated(scene, construction, lambda answer: answer["tightness"][key])
 
     return Table("cross-sections of wedges over those of penumbrae", "`penumbra wedges SCENE --from centre --validate`: areas on planes that are half, once and twice as far beyond the "
                  "edge as the light is on the other side.", ("scene", "wedges", "original: median", "p99", "largest", "tight: largest"), (None, None, ".2f", ".2f", ".2f", ".4f"),
-                 tuple((scene, Answer(("wedges", f"scene:{scene}", "--validate", "--from", "centre", "--construction", "original", "--json"), lambda answer: answer["counts"]["wedge"]),
+                 tuple((scene, validated(scene, "original", lambda answer: answer["counts"]["wedge"]),
                         *(of(scene, "original", key) for key in ("median", "p99", "max")), of(scene, "tight", "max"))
                        for scene in ("parallel-square", "broken", "contact", "fusion", "thin")))
 
@@ -233,7 +237,7 @@ def coverage():
                 answer = answer[key]
             return answer
 
-        return Answer(("wedges", f"scene:{scene}", "--validate", "--from", "centre", "--construction", "original", "--json"), figure)
+        return validated(scene, "original", figure)
 
     paths = (("samples",), ("singleLayer",), ("maxAgainstTriangles",), ("maxAgainstExact",), ("centreDifference", "mean"), ("centreDifference", "max"))
     return Table("silhouettes' sums beside triangles and exact areas", "`penumbra wedges SCENE --validate`; of `textured-light` weights in place of areas.",
@@ -241,6 +245,91 @@ def coverage():
                  (None, None, None, ".0e", ".0e", ".4f", ".3f"),
                  tuple((scene, *(of(scene, path) for path in paths)) for scene in ("parallel-square", "contact", "broken", "bunny", "fusion", "large-penumbra", "room", "self-shadow",
                                                                                    "thin", "textured-light", "terrain-1m")))
+
+
+def coverage_solids():
+    def rows(bench):
+        lines = bench.printed("wedges_test", "CoverageErrors.Of*", r"^(sphere|cube below|cube beside), light of half-size ([\d.]+): (\d+) samples, mean ([\d.]+), max ([\d.]+);")
+        names = {"sphere": "a sphere of radius 0.5 below the light", "cube beside": "a cube of half-size 0.5 beside it", "cube below": "the same right below it"}
+        return [(names[solid], f"{half:g}", *rest) for solid, half, *rest in sorted(lines, key=lambda line: list(names).index(line[0]))]
+
+    return Table("errors by the centre's silhouettes under convex solids", "A solid about 1 above a floor, the light 4 above it; |V − exact| over 32 × 32 points of the floor, of those that "
+                 "see a part of the light.", ("solid", "light's half-size", "points", "mean", "largest"), (None, None, None, ".4f", ".3f"), rows)
+
+
+def radiance_samples():
+    def rows(bench):
+        return [(str(count), *rest) for count, *rest in bench.printed(
+            "compare_test", "RadianceNearLight.CellsBeat*", r"^ *(\d+): V ([\d.]+), rows: points ([\d.]+) cells ([\d.]+), jittered: points ([\d.]+) scaled ([\d.]+)")]
+
+    return Table("irradiance near a light: cells, samples and V", "The pictures' scene, 96 × 72 pixels; √(mean e²) over the mean, over view samples that see a part of the light, against `exact`.",
+                 ("light samples", "V · F_L (1.4), V from that many", "rows, plain sum (1.3)", "rows, cells", "jittered, plain sum (1.3)", "jittered, scaled"), (None, *(".4f",) * 5), rows)
+
+
+def own_depth():
+    def rows(bench):
+        means = {}
+        for method, tilt, mean in bench.printed("maps_test", "ReceiverPlane.OffATiltedPlane*", r"^([\w:=-]+), (\d+) degrees, own depth: V ([\d.]+) in the mean"):
+            means.setdefault(method, {})[tilt] = mean
+        return [(code(method), of[30], of[60]) for method, of in means.items()]
+
+    return Table("the receiver's own depth: a plane that shades itself", "A tilted plane with nothing above it, `receiverPlane=off` and no bias; V in the mean.", ("method", "30°", "60°"),
+                 (None, ".2f", ".2f"), rows)
+
+
+def deep_penumbra_bounds():
+    def rows(bench):
+        return [(f"{bound:g}", steps, worst) for bound, steps, _, worst in
+                bench.printed("maps_test", "DeepPenumbra.CompressedSteps*", r"^bound ([\d.]+): (\d+) steps of (\d+), off by ([\d.]+)")]
+
+    return Table("deep-penumbra: steps that are kept", "A small scene of a test, 24² texels, 64 light samples, 8,836 events.", ("bound", "steps", "largest error"), (None, None, ".4f"), rows)
+
+
+def cropped_edges():
+    def rows(bench):
+        return bench.printed("volumes_test", "Scenes/EdgeCropFull.*",
+                             r"^([\w-]+) 256x256: \d+ judged view samples; edges each: ([\d.]+) in the shaft, ([\d.]+) cropped, ([\d.]+) silhouettes")
+
+    return Table("edges that a view sample is given", "256 × 256 pixels, blocks of 8 × 8, the scene's first light; edges for each judged view sample.",
+                 ("scene", "in the shaft", "cropped", "silhouettes"), (None, ".1f", ".1f", ".1f"), rows)
+
+
+def edge_search():
+    searches = ("hierarchy", "kd-tree", "hemicube")
+    slow = {("bunny", "hemicube"), ("self-shadow", "hemicube")}
+
+    def figure(scene, search, of):
+        return None if (scene, search) in slow else Compared(Run(scene, "256x256", SAME, 16), f"depth-complexity:engine=native:search={search}", of)
+
+    def candidates(method):
+        return method["counters"]["candidateEdges"] / 1e6
+
+    return Table("candidates of three searches for edges", "256 × 256 pixels, 16 light samples, the scenes' own lights; candidate edges of all view samples, in millions, and what the structures hold. "
+                 "Empty: not run, since the hemicube takes minutes there.",
+                 ("scene", "wedges", "hierarchy", "kd-tree", "hemicube", "entries: kd-tree", "hemicube"), (None, None, ".3g", ".3g", ".3g", None, None),
+                 tuple((scene, figure(scene, "kd-tree", ("counters", "wedges")), *(figure(scene, search, candidates) for search in searches),
+                        *(figure(scene, search, ("counters", "searchEntries")) for search in searches[1:]))
+                       for scene in ("broken", "bunny", "contact", "fusion", "parallel-square", "room", "self-shadow", "textured-light", "thin")))
+
+
+def wedges_a_frame():
+    def rows(bench):
+        lines = {tuple(line["name"].split("/")[1:]): line for line in bench.lines("--wedges-per-frame")}
+        for (where, triangles), line in lines.items():
+            if where == "device":
+                yield [f"{line['triangles']:,}", line["edges"], *(1000 * lines[place, triangles]["seconds"]["median"] for place in ("device", "host")), line["hostRatio"]]
+
+    return Table("silhouettes and wedges of a moving light, device beside host", "`penumbra-bench --wedges-per-frame`: a light on a circle over a knot, everything built anew in each frame; milliseconds "
+                 "a frame, medians of five runs in turns.", ("triangles", "silhouettes a frame", "device", "host", "host / device"), (None, None, ".3g", ".3g", ".2g"), lambda bench: list(rows(bench)))
+
+
+def wedge_construction():
+    def rows(bench):
+        return [(line["name"].split("/")[2], line["seconds"]["median"], line["itemsPerSecond"])
+                for line in bench.lines("--cpu", "--triangles", "5000", "--edges", "100000", "--runs", "3") if "/wedges/" in line["name"]]
+
+    return Table("construction of wedges", "`penumbra-bench --cpu --edges 100000`: 100,000 edges of a knot under a square light, every plane proved; medians of three.",
+                 ("construction", "seconds", "wedges a second"), (None, ".3g", ",.0f"), rows)
 
 
 def self_test():
@@ -356,8 +445,24 @@ TABLES = {
                                 ("method",), entries_of(Run("papers/ball", SIZE, AREAS, 256), (*(f"layer-rays:size={size}:layers=1:gap=0" for size in (32, 96, 288)),
                                                                                                *(f"layer-rays:size={size}:layers=2" for size in (32, 96, 288)))),
                                 ERROR_COLUMNS),
+    "view-sample-planar": by_scene("view-sample-planar: pairs that a nearest texel decides wrongly", "256 × 256 pixels, 256 light samples in rows; against rays to the same light samples.",
+                                   ("contact", "fusion", "bunny", "thin"),
+                                   tuple(column for entry, head in (("view-sample-planar:lookup=nearest", "`map=128`"), ("view-sample-planar:lookup=nearest:map=512", "`map=512`"))
+                                         for column in ((f"{head}: wrong pairs", entry, ("pairsDiffering",), None), rmse("RMSE of V", entry), largest("largest error", entry)))
+                                   + (("of pairs", "view-sample-planar:lookup=nearest", ("pairsAll",), None),), "256x256", 256, reference=SAME),
+    "hierarchical-penumbra-seconds": seconds("processor seconds of methods with the same bits", ("contact", "thin"),
+                                             ("hierarchical-penumbra", "view-sample:variant=sintorn", "view-sample-planar", "view-sample:engine=native", "raytrace"),
+                                             ("--size", "256x256", "--light-samples", "256"), "256 × 256 pixels, 256 light samples."),
+    "depth-complexity-crop": cropped_edges(),
+    "depth-complexity-search": edge_search(),
     "wedges": wedge_ratios(),
+    "wedges-per-frame": wedges_a_frame(),
+    "wedges-construction": wedge_construction(),
     "coverage": coverage(),
+    "coverage-solids": coverage_solids(),
+    "radiance-samples": radiance_samples(),
+    "shadow-map-own-depth": own_depth(),
+    "deep-penumbra-bounds": deep_penumbra_bounds(),
     "self-test": self_test(),
     "file-sizes": file_sizes(),
     "soft-irregular-seconds": seconds("processor seconds of soft-irregular and of others", ("contact", "fusion", "large-penumbra", "room"),

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// Flattens what Assimp read: walks the nodes, puts each mesh into world space as often as it is shown, turns mirrored
+// triangles, and keeps vertex and face numbers of the file for messages.
+
 #include "import/assimp_scene.hpp"
 
 #include "base/error.hpp"

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// Scenes of FBX and COLLADA files: lamps, cameras and colours that Assimp found, as the program's own. Blender's
+// exporters write the power of a lamp in watts where others write candela.
+
 #include "import/foreign_scene.hpp"
 
 #include "base/error.hpp"

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// Parses the header of a PLY file and checks, before any memory is allocated, that the file is long enough for the
+// elements that the header announces.
+
 #include "import/ply_header.hpp"
 
 #include "base/error.hpp"

@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+// Reads a mesh file by its format: with readers of this folder for common formats, whose messages have lines and whose
+// faces are all kept, with Assimp for the others. The name's ending decides; if reading fails, the first bytes tell
+// whether the ending is wrong.
+
 #include "import/read.hpp"
 
 #include "base/error.hpp"

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// Collects lamps, cameras and colours of a file that Assimp read. Whether a camera is orthographic is not among what is
+// read here: the file's own bytes are searched for it.
+
 #include "import/scene_parts.hpp"
 
 #include "import/audit_collada.hpp"

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// Lines, words and numbers of text formats, independent of the locale.
+
 #include "import/text.hpp"
 
 #include <cctype>

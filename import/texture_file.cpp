@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// Pictures of lights (PNG, OpenEXR) and of skies (Radiance, too), told apart by their first bytes, with limits on the
+// file's length and the picture's side before decoding.
+
 #include "import/texture_file.hpp"
 
 #include "base/error.hpp"

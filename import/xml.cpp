@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// Elements, attributes and numbers of XML formats (AMF, 3MF), with line numbers in messages; prefixes of namespaces are
+// ignored.
+
 #include "import/xml.hpp"
 
 #include "import/text.hpp"

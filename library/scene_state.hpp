@@ -40,15 +40,15 @@ struct Scene::State {
   scenes::Scene scene;
   /// Meshes with instances, whose triangles are not in scene.soup; in the order of their objects.
   scenes::Instances instances = {};
-  std::vector<ObjectBox> boxes = {};  ///< of instances.meshes
-  /// For each of instances.all, where add_instance(), set_transform() or the file put it: before `moved`.
+  std::vector<ObjectBox> boxes = {};  ///< box of each of instances.meshes
+  /// Placement of each of instances.all by add_instance(), set_transform() or the file, before `moved` is applied.
   std::vector<scenes::Placement> placed = {};
-  /// Objects whose instances were moved together, and by what.
+  /// For objects whose instances were moved together: the common movement.
   std::map<std::uint32_t, scenes::Placement> moved = {};
   bool instances_moved = false;  ///< any instance was moved since the scene was made
-  /// For each object, set by its first set_transform().
+  /// Positions of each object at rest; set by its first set_transform().
   std::vector<std::optional<RestMesh>> rest = {};
-  /// For each object, or a prefix of the objects: the others keep all their vertices.
+  /// Vertices given for the first objects, one entry each; objects without an entry keep all their vertices.
   std::vector<GivenVertices> given = {};
   /// The origin given by the file, as of scenes that move: unchanged when meshes are added.
   std::optional<glm::dvec3> file_origin = {};

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// Runs `penumbra-import` on a foreign mesh file in a process with limits on time, memory and answer, and turns every
+// ending of that process into an error that says what the user can do.
+
 #include "mesh/import_helper.hpp"
 
 #include "base/error.hpp"

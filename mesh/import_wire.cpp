@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// Numbers, texts and meshes in the answers of the helper processes. The reader trusts no length: an answer may come
+// from a process that a damaged file has taken over.
+
 #include "mesh/import_wire.hpp"
 
 #include "base/utf8.hpp"
@@ -13,34 +16,9 @@
 #include <unistd.h>
 
 namespace penumbra::mesh {
-namespace {
-
-/// Returns the length of the sequence that `text` starts with; 0 if it cannot be shown: terminals interpret control
-/// characters, those of C1, too.
-std::size_t printable_length(std::string_view text) {
-  const std::size_t length = utf8_length(text);
-  const auto first = static_cast<unsigned char>(text[0]);
-  const bool control = length == 1 ? first < 0x20 || first == 0x7F
-                                   : first == 0xC2 && length == 2 && static_cast<unsigned char>(text[1]) < 0xA0;
-  return control ? 0 : length;
-}
-
-}  // namespace
 
 std::string printable(std::string_view text) {
-  std::string result;
-  result.reserve(text.size());
-  while (!text.empty()) {
-    const std::size_t length = printable_length(text);
-    if (length == 0) {
-      result += '?';
-      text.remove_prefix(1);
-    } else {
-      result += text.substr(0, length);
-      text.remove_prefix(length);
-    }
-  }
-  return result;
+  return on_one_line(text);
 }
 
 std::string WireReader::get_string() {

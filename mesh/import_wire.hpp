@@ -137,7 +137,7 @@ class WireReader {
 };
 
 /// Returns `text` with control characters (a hostile file must not control the terminal) and ill-formed UTF-8 (JSON
-/// writers throw on it) replaced by '?'.
+/// writers throw on it) as escapes such as "\xe9", from which a user can tell which file or object is meant.
 std::string printable(std::string_view text);
 
 /// A run of `count` numbers: `first`, each following one larger by the list's step.

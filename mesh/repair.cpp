@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// Repairs a mesh in the process `penumbra-repair`, which alone contains CGAL's GPL packages. The request travels
+// through a file in memory, the answer through a pipe.
+
 #include "mesh/repair.hpp"
 
 #include "base/descriptor.hpp"

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// Request and answer of `penumbra-repair`, field by field; both processes are built from this file.
+
 #include "mesh/repair_wire.hpp"
 
 namespace penumbra::mesh {

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// The reference methods: rays to light samples (Embree), and exact areas by a sweep. Both run on the processor and need
+// no device.
+
 #include "reference/methods.hpp"
 
 #include <array>

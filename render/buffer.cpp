@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// Buffers of a device, one allocation each, and copies to and from the host through a staging buffer where memory is
+// not host-visible. Each copy waits for its end, with a barrier that makes it visible to the host.
+
 #include "render/buffer.hpp"
 
 #include "base/assert.hpp"

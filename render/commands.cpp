@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// Records passes, puts a full barrier between them and measures each by timestamps. Drivers for processors run and
+// stamp passes at times of their own choice: there every pass is submitted and timed alone.
+
 #include "render/commands.hpp"
 
 #include "base/assert.hpp"

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// Makes a Vulkan 1.3 instance and device: chooses among physical devices, enables the features that exist, collects
+// messages of the validation layer, and where the loader makes no instance gives the loader's own reason.
+
 #include "render/device.hpp"
 
 #include "base/error.hpp"

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// Collects what a reader or writer cannot represent, each kind once with the names of its objects, and words it as an
+// error or a warning.
+
 #include "scenes/losses.hpp"
 
 #include "base/error.hpp"

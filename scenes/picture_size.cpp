@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// Width and height of a camera's picture: an aspect of its own keeps the longer side of the scene's.
+
 #include "scenes/picture_size.hpp"
 
 #include <algorithm>

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// Scenes, instances and textures as bytes between the import helper and this process, field by field by the lists of
+// scenes/scene_fields.hpp.
+
 #include "scenes/scene_wire.hpp"
 
 #include "scenes/scene_fields.hpp"

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// Makes the machine of a command; its device is created when a method first needs it.
+
 #include "session/machine.hpp"
 
 #include <cstdlib>

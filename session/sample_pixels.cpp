@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// Chooses the pixels of --sample-pixels: evenly spaced among the judged ones, or by their coordinates.
+
 #include "session/sample_pixels.hpp"
 
 #include "base/error.hpp"

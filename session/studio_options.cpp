@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// Parses --studio, --floor, --add-light and --camera into what is added around a scene.
+
 #include "session/studio_options.hpp"
 
 #include "base/error.hpp"

@@ -30,7 +30,7 @@ namespace {
 
 using pairs::PairCounts;
 
-constexpr double kPerTexel = 1;
+constexpr double kPerTexel = 1;  // view samples for each texel of a receiver, on average
 using pairs::kDeterminant;
 
 enum class Lookup : std::uint8_t { exact, nearest };

@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+// `penumbra convert`: reads a scene or a mesh, with a studio around it where asked, and writes what was understood in
+// world space, as .json, .glb or .obj. Every file that it will write is known, and refused if it is an input, before
+// reading begins.
+
 #include "app/commands.hpp"
 #include "app/reading_options.hpp"
 #include "app/run_options.hpp"

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// `penumbra devices`: lists Vulkan devices and OpenGL contexts with what they lack, and the methods that do not run
+// there; `--self-test` holds each pass of a device to its twin in C++.
+
 #include "app/commands.hpp"
 #include "app/commands/refused_methods.hpp"
 #include "app/commands/self_test_report.hpp"
@@ -90,13 +93,16 @@ class DevicesCommand : public Command {
   explicit DevicesCommand(CLI::App& app)
       : Command(
             app, "devices",
-            "list the devices of Vulkan and OpenGL, and say why one cannot be used at all, or not by some methods") {
-    cli_.add_flag("--json", json_, "as JSON");
+            "list the devices of Vulkan and OpenGL, with the reason why one cannot be used, or not by some methods") {
+    cli_.add_flag("--json", json_, "print JSON in place of the table");
     cli_.add_flag(
         "--self-test", self_test_,
         "hold every pass against its twin in C++, and both rasterisers (Vulkan's and OpenGL's) against double "
         "arithmetic and against each other, on this machine's device and drivers; exit 1 if one fails");
-    cli_.add_option("--device", device_, "with --self-test: a part of its name, its index, or cpu");
+    cli_.add_option("--device", device_,
+                    "with --self-test: Vulkan device to test: part of its name, its index, or cpu (default: "
+                    "the best)")
+        ->type_name("NAME|INDEX|cpu");
     cli_.footer(
         "OpenGL needs no display: EGL gives it a context without a surface. It draws the maps of methods with "
         "rasteriser=opengl; docs/rasterisers.md says what the self-test proves.");
@@ -104,6 +110,7 @@ class DevicesCommand : public Command {
 
   int run(const GlobalOptions&) override {
     if (self_test_) return run_self_test();
+    if (!device_.empty()) throw UsageError("--device {}: only --self-test takes a device; the table has all", device_);
     const auto devices = render::list_devices();
     if (devices.empty()) {
       spdlog::warn(

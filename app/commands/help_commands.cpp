@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// `penumbra help`, `version`, `completion` and `man`: all four write texts that are made from the same descriptions of
+// commands and options as `--help`.
+
 #include "app/command_words.hpp"
 #include "app/commands.hpp"
 #include "app/man_pages.hpp"

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// `penumbra methods`: a table of all methods, one method in full, or both as JSON. Everything shown comes from
+// `MethodDescription`, so that a new method needs no line here.
+
 #include "app/commands.hpp"
 #include "session/method_list.hpp"
 #include "session/methods.hpp"
@@ -74,7 +77,7 @@ class MethodsCommand : public Command {
   explicit MethodsCommand(CLI::App& app)
       : Command(app, "methods", "list the shadow methods: family, paper, output, what each is exact for, options") {
     cli_.add_option("NAME", names_, "methods that are shown in full; none: a table of all")->type_name("");
-    cli_.add_flag("--json", json_, "as JSON");
+    cli_.add_flag("--json", json_, "print JSON in place of the table");
   }
 
   int run(const GlobalOptions&) override {

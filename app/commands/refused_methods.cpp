@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// Finds the methods, and values of their options, that a device cannot run, by making each of them on a device that
+// only checks features: there is no second list of requirements that could differ from the passes' own.
+
 #include "app/commands/refused_methods.hpp"
 
 #include "base/error.hpp"

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// Output of `devices --self-test`: a row for each pass, as text or JSON. A pass for which the device lacks a feature,
+// or which needs an OpenGL that does not exist, counts as not run, not as failed.
+
 #include "app/commands/self_test_report.hpp"
 
 #include "base/error.hpp"

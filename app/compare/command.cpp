@@ -132,11 +132,11 @@ class CompareCommand : public Command {
         ->type_name("DIR");
     cli_.add_option(
             "--methods,--method", methods_,
-            "what to compare: names with options of their own, a:key=value,b; or geometry, image, all, or default, "
-            "those of geometry and image that do not take minutes, or on a device that is a processor seconds; a "
-            "method "
-            "of a group is left out, by name, if a run of it takes more than 30 seconds (not with --max-rmse or "
-            "--frames)")
+            "methods to compare: names, with options of their own (a:key=value,b); or a group: geometry, image, all, "
+            "or "
+            "default, which is geometry and image without the slow ones (minutes; where the device is a processor, "
+            "seconds). A method of a group that takes more than 30 seconds for one run is left out, with a warning, "
+            "except with --max-rmse or --frames")
         ->type_name("LIST")
         ->capture_default_str();
     cli_.add_option("--reference", options_.reference,
@@ -149,8 +149,9 @@ class CompareCommand : public Command {
                     "light samples of the reference; same: those of the methods, which are then compared pair by pair")
         ->type_name("M|same")
         ->capture_default_str();
-    cli_.add_option("--sample-pixels", options_.sample_pixels,
-                    "take the error over N judged pixels, all, or these: x,y;x,y; areas are found for no others")
+    cli_.add_option(
+            "--sample-pixels", options_.sample_pixels,
+            "pixels whose errors count: N of the judged pixels, all, or x,y;x,y…; areas are computed for these alone")
         ->type_name("N|all|x,y;...")
         ->capture_default_str();
     cli_.add_option("--max-rmse", max_rmse_text_, "exit with 1 if the error of a method exceeds this")->type_name("X");
@@ -162,8 +163,8 @@ class CompareCommand : public Command {
     cli_.add_flag("--bits", options_.bits, "also write DIR/<method>.bits: every pair's answer (mask methods)");
     cli_.add_flag(
         "--error-budget", options_.error_budget,
-        "why is each method wrong? Runs it again, often: without each cause of error alone, and without all of "
-        "them");
+        "measure why each method errs: run it again without each cause of error alone, and without all of them (ten to "
+        "twenty runs a method)");
     cli_.add_flag("--png", options_.png, "also write DIR/<method>.png: tone-mapped beauty image (sRGB)");
     cli_.add_option("--stats", options_.stats, "write metrics.json here as well")->type_name("FILE.json");
     cli_.add_option("--frame", frame_, "frame of the scene's animation, or a moment between two, such as 12.5")
@@ -216,19 +217,24 @@ class CompareCommand : public Command {
   /// Adds options of `render` that would change the measured quantity: known here so that the error message can give
   /// the reason.
   void add_refused_options() {
-    cli_.add_option("--pixel-samples", pixel_samples_, "1 alone: errors are of pixels' centres")->type_name("1");
-    cli_.add_option("--pixel-filter", pixel_filter_, "box alone: of one view sample there is nothing to weigh")
+    cli_.add_option("--pixel-samples", pixel_samples_, "only 1: errors are measured at pixels' centres")
+        ->type_name("1");
+    cli_.add_option("--pixel-filter", pixel_filter_, "only box: one view sample a pixel needs no weights")
         ->type_name("box");
-    cli_.add_option("--filter-width", filter_width_, "width of --pixel-filter; not supported by compare")
+    cli_.add_option("--filter-width", filter_width_,
+                    "not supported by compare: one view sample a pixel needs no weights")
         ->type_name("PIXELS");
-    cli_.add_option("--motion-samples", motion_samples_, "1 alone: errors are of one moment")->type_name("1");
-    cli_.add_option("--shutter", shutter_, "of --motion-samples; not here")->type_name("FRAMES");
-    cli_.add_option("--aperture", aperture_, "0 alone: errors are of what is seen through the lens's middle")
+    cli_.add_option("--motion-samples", motion_samples_, "only 1: errors are measured at one moment")->type_name("1");
+    cli_.add_option("--shutter", shutter_, "not supported by compare: errors are measured at one moment")
+        ->type_name("FRAMES");
+    cli_.add_option("--aperture", aperture_, "only 0: errors are measured through the middle of the lens")
         ->type_name("0");
-    cli_.add_option("--focus-distance", focus_distance_, "of --aperture; not here")->type_name("D");
-    cli_.add_option("--instances", instances_, "auto and copies alone: image-based methods draw every triangle")
+    cli_.add_option("--focus-distance", focus_distance_, "not supported by compare: nothing is out of focus")
+        ->type_name("D");
+    cli_.add_option("--instances", instances_, "only auto or copies: image-based methods draw every triangle")
         ->type_name("auto|copies");
-    cli_.add_option("--light-cutoff", light_cutoff_, "0 alone: errors are of V, which no light's strength changes")
+    cli_.add_option("--light-cutoff", light_cutoff_,
+                    "only 0: errors are those of V, which does not depend on a light's strength")
         ->type_name("0");
     cli_.add_flag("--skip-existing", skip_existing_, "not supported by compare: all methods are always measured");
   }

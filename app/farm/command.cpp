@@ -51,7 +51,9 @@ class SubmitCommand : public Command {
       return cli_.add_option(name, value, help)->excludes(jobs);
     };
     add("--chunk", chunk_,
-        "frames a task of the array (default: enough for a minute, by the first frame, which is rendered here)")
+        "number of frames in each task of the array (default: as many as take a minute, judged by the first frame, "
+        "which "
+        "is rendered here)")
         ->type_name("N")
         ->check(CLI::Range(1, 100'000));
     add("--rounds", rounds_, "largest number of times that missing frames are submitted, the first time included")
@@ -188,7 +190,8 @@ class SubmitCommand : public Command {
         constexpr std::size_t kEnough = 3;
         if (failed.size() == kEnough) throw Error(static_cast<ExitCode>(now.front().code), give_up(failed));
         if (!now.empty()) {
-          spdlog::warn("frame {}, which --exposure first asks, fails: the next one decides how all are exposed", frame);
+          spdlog::warn("frame {}, which would set the exposure (--exposure first), fails: the next frame sets it",
+                       frame);
           continue;
         }
       }

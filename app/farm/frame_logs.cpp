@@ -23,7 +23,7 @@ std::string node_name() {
   return name.data();
 }
 
-/// "penumbra: info: NAME.exr: …", the last line about a picture, written after its files.
+/// Returns whether the line is "penumbra: info: NAME.exr: …": the last one about a picture, written after its files.
 bool ends_a_picture(std::string_view line) {
   return line.starts_with("penumbra: info: ") && line.find(".exr: ") != std::string_view::npos;
 }

@@ -71,7 +71,8 @@ class InspectCommand : public Command {
                                   "with --repair: replace triangles that cross others of their part, moving "
                                   "the surface by at most 1 % of its size");
     for (auto* option : {holes, static_cast<CLI::Option*>(resolve)}) option->needs("--repair");
-    cli_.add_flag("--no-self-intersections", no_intersections_, "do not search them: the search that takes longest");
+    cli_.add_flag("--no-self-intersections", no_intersections_,
+                  "do not search for self-intersections, which takes longest");
     cli_.add_option(
             "--list", list_,
             fmt::format("places listed of each defect (default: {} in JSON, {} in the table)", kListed, kListedInTable))

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// Turns the arguments of `inspect` into a list of files: walks folders without following links, and looks into each
+// .json for the format of scenes, since other programs use the ending as well.
+
 #include "app/inspect/inspected_files.hpp"
 
 #include "base/error.hpp"

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// Repairs a mesh, writes it, and diagnoses what a reader makes of the written file: a format that joins vertices by
+// position can undo a repair, and the report must say so.
+
 #include "app/inspect/repaired_file.hpp"
 
 #include "base/error.hpp"

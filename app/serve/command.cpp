@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// `penumbra serve`: hands stdin and stdout to a Service and leaves without clean-up, since finishing a picture that
+// nobody waits for could take seconds.
+
 #include "app/commands.hpp"
 #include "app/serve/service.hpp"
 #include "base/error.hpp"

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// A picture of `serve`: the arguments of `render`, parsed by the same code, on a device and methods that are kept from
+// picture to picture.
+
 #include "app/serve/picture_job.hpp"
 
 #include "app/picture_options.hpp"

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// The message loop of `serve` (docs/serve.md): a thread reads messages, the main thread answers them in order, and the
+// log goes to the other program as messages, too. The end of the input cancels the picture in progress.
+
 #include "app/serve/service.hpp"
 
 #include "app/view/light_json.hpp"

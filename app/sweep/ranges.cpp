@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// Parses `--over KEY=…` of `sweep`: lists, A..B (each value twice the one before) and A..B+STEP, into at most 63 values
+// a key.
+
 #include "app/sweep/ranges.hpp"
 
 #include "base/error.hpp"

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// Notices that files on disk changed, by time and size, once two looks in a row agree: a program that is still writing
+// a file would otherwise be read half-way.
+
 #include "app/view/file_watch.hpp"
 
 #include <system_error>

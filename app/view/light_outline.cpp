@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+// Outline of what hides a light from a point, drawn in the light's own coordinates s, t in [−1, 1]. Triangles are
+// clipped as (s·height, t·height, height), before the division; a sphere or sun is the cone of directions that the
+// point sees.
+
 #include "app/view/light_outline.hpp"
 
 #include <glm/common.hpp>

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// Messages of `view` as bytes: JSON whose depth is bounded before it is parsed, and binary messages that begin with the
+// length of their JSON, padded to four bytes so that numbers after it can be read in place.
+
 #include "app/view/message_text.hpp"
 
 #include "base/error.hpp"

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// A binary message of the 3D view: named arrays of numbers one after the other, listed in the message's JSON.
+
 #include "app/view/space_message.hpp"
 
 #include "app/view/message_text.hpp"

@@ -74,10 +74,11 @@ class WedgesCommand : public Command {
                     "explain this pixel of the picture that `render` makes: the wedges that contain what it sees, what "
                     "each takes from the light or gives back, their sum, and the exact area")
         ->type_name("X,Y");
-    cli_.add_option("--size", size_, "size of that picture (default: as in `render`)")->type_name("WxH");
-    cli_.add_option("--camera", camera_, "camera of that picture, as in `render` (default: the scene's first)")
+    cli_.add_option("--size", size_, "size of the picture of --explain (default: as in `render`)")->type_name("WxH");
+    cli_.add_option("--camera", camera_,
+                    "camera of the picture of --explain, as in `render` (default: the scene's first)")
         ->type_name("NAME|fit|E:T[:FOV]");
-    cli_.add_option("--svg", svg_, "the light as seen from there, with projected edges")
+    cli_.add_option("--svg", svg_, "the light as seen from the pixel of --explain, with projected edges")
         ->type_name("FILE.svg")
         ->needs("--explain");
     add_allow_outside(cli_, allow_outside_);

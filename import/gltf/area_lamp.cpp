@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// An area lamp in a node's extras, as Blender's add-on and `convert` write it: the node's axes and the lamp's sizes
+// make a rectangle or an ellipse, which is a disk if it is round up to rounding.
+
 #include "import/gltf/area_lamp.hpp"
 
 #include "base/error.hpp"

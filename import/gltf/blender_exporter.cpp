@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// Tells from `asset.generator` whether Blender's exporter wrote a file, and whether that version wrote lamps in watts.
+
 #include "import/gltf/blender_exporter.hpp"
 
 #include <tiny_gltf.h>

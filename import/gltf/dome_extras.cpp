@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// A dome in a node's extras. The node's +Y is the dome's up axis; the turn about it is the angle from where the
+// shortest rotation of +Y leaves +X to the node's own +X.
+
 #include "import/gltf/dome_extras.hpp"
 
 #include "base/error.hpp"

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// Checks, in 64 bits, every property of an accessor that refers to its buffer: tinygltf checks almost none.
+
 #include "import/gltf/gltf_accessor.hpp"
 
 #include "base/error.hpp"
@@ -12,8 +14,6 @@
 #include <limits>
 #include <span>
 #include <string>
-
-// Checks, in 64 bits, every property of an accessor that refers to its buffer: tinygltf checks almost none.
 
 namespace penumbra::import {
 namespace {

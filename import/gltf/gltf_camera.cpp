@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// A glTF camera, perspective or orthographic, as the program's own; aperture, focus and shift of its lens come from the
+// extras, since glTF 2.0 has none of them.
+
 #include "import/gltf/gltf_camera.hpp"
 
 #include "base/error.hpp"

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// Judges the extensions that a file uses: understood, without effect on diffuse surfaces and lights, or a loss. An
+// unknown extension that the file requires is refused, unless losses are allowed (--lenient).
+
 #include "import/gltf/gltf_extensions.hpp"
 
 #include <fmt/format.h>

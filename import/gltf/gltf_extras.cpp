@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// Reads the program's own entries in `extras`. A value of another type belongs to another tool: it is mentioned and
+// ignored.
+
 #include "import/gltf/gltf_extras.hpp"
 
 #include "base/error.hpp"

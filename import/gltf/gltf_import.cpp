@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// Imports a glTF file as scene, or as mesh, at one time or several: parses it once, then poses its nodes and builds
+// what is shown for each time.
+
 #include "import/gltf/gltf_import.hpp"
 
 #include "base/error.hpp"

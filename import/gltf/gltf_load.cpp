@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+// Parses a glTF or GLB file with tinygltf, which may open files in the file's own folder and below alone. Before
+// tinygltf sees it, the JSON's integers are checked, its URIs settled (escaped or not), and what tinygltf misreads is
+// mended.
+
 #include "import/gltf/gltf_load.hpp"
 
 #include "base/error.hpp"
+#include "base/utf8.hpp"
 #include "mesh/import_wire.hpp"
 #include "mesh/opened_files.hpp"
 #include "import/gltf/glb_chunks.hpp"
@@ -10,6 +15,7 @@
 #include <fcntl.h>
 #include <sys/stat.h>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 #include <tiny_gltf.h>
 
@@ -182,16 +188,17 @@ void note_lengths(const nlohmann::json& document, Confinement& confinement) {
   }
 }
 
-/// Returns the text with '?' in place of bytes that are not UTF-8.
-std::string as_utf8(std::string_view text) {
+/// Returns JSON with the escape \\xe9 in place of a byte that is not UTF-8, which as the text of a string is \xe9.
+std::string with_escaped_bytes(std::string_view text) {
   std::string valid;
   valid.reserve(text.size());
   while (!text.empty()) {
-    const auto control = std::ranges::find_if(text, [](char c) { return static_cast<unsigned char>(c) < 0x20; });
-    const auto run = static_cast<std::size_t>(control - text.begin());
-    valid += mesh::printable(text.substr(0, run));
-    if (run < text.size()) valid += text[run];
-    text.remove_prefix(std::min(run + 1, text.size()));
+    const std::size_t length = utf8_length(text);
+    if (length == 0)
+      valid += fmt::format("\\\\x{:02x}", static_cast<unsigned char>(text.front()));
+    else
+      valid += text.substr(0, length);
+    text.remove_prefix(std::max<std::size_t>(length, 1));
   }
   return valid;
 }
@@ -202,7 +209,7 @@ nlohmann::json document_of(std::string_view text, const std::string& file, bool&
   try {
     nlohmann::json document = nlohmann::json::parse(text, nullptr, false);
     if (document.is_discarded()) {  // names in a code page of Windows, or no JSON at all
-      const std::string valid = as_utf8(text);
+      const std::string valid = with_escaped_bytes(text);
       is_utf8 = valid == text;
       document = nlohmann::json::parse(valid);
     }
@@ -262,8 +269,9 @@ TakenOut load_gltf_model(const mesh::InputFile& input, const scenes::ReadOptions
   }
   // Image files are opened here, by the names in the file and no other path.
   for (tinygltf::Image& image : model.images) {
-    if (image.uri.empty() || !image.image.empty()) continue;
     const std::string file = decoded(image.uri);
+    image.uri = file;  // in messages the file's own name, not a URI
+    if (file.empty() || !image.image.empty()) continue;
     mesh::note_opened_file(confinement.folder_name / file);  // no output may overwrite the file
     if (const Descriptor content = confinement.open(file); content.is_open()) {
       const std::string data = mesh::read_content(content.get(), file);

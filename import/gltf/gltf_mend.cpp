@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// Changes a file's JSON where tinygltf refuses or misreads what glTF 2.0, or its extensions, allow: targets of
+// KHR_animation_pointer, data URIs of other media types, Draco primitives with an uncompressed copy.
+
 #include "import/gltf/gltf_mend.hpp"
 
 #include "base/error.hpp"

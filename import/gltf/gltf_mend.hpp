@@ -19,7 +19,7 @@ struct TakenOut {
   };
   std::vector<Pointer> pointers;          ///< each once
   std::size_t channels_without_node = 0;  ///< animation channels that glTF 2.0 (3.11) requires to ignore
-  bool no_utf8 = false;                   ///< names had bytes that are not UTF-8, replaced by '?'
+  bool no_utf8 = false;                   ///< names had bytes that are not UTF-8, now escapes such as \xe9
   std::vector<std::string> overruled;     ///< nodes with a matrix beside translation, rotation or scale
   std::vector<std::string> compressed;    ///< primitives that exist only in compressed form; filled only if lenient
 };

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// Transforms of all nodes to the world, without recursion. A node that is reached twice (two parents, a cycle) is
+// refused; a node's matrix overrules its translation, rotation and scale.
+
 #include "import/gltf/gltf_nodes.hpp"
 
 #include "base/error.hpp"

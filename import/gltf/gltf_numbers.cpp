@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// Checks each integer of a file by its JSON pointer before tinygltf, which would take 2³² + 1 as 1, and a fraction as
+// its whole part, sees the file.
+
 #include "import/gltf/gltf_numbers.hpp"
 
 #include "base/error.hpp"

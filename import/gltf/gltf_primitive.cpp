@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// A primitive's vertices and triangles, from triangle lists, strips and fans (glTF 2.0, 3.7.2.1). Points and lines have
+// no area, and are left out.
+
 #include "import/gltf/gltf_primitive.hpp"
 
 #include "base/error.hpp"

@@ -95,7 +95,8 @@ class GltfScene {
       overruled.mention("has a matrix together with translation, rotation or scale, of which the matrix alone is taken",
                         node);
     overruled.warn(scene_.warnings);
-    if (taken_out.no_utf8) scene_.warnings.emplace_back("some names are no UTF-8; '?' stands for their letters");
+    if (taken_out.no_utf8)
+      scene_.warnings.emplace_back("some names are no UTF-8; their letters are shown as escapes such as \\xe9");
     if (taken_out.channels_without_node > 0) {
       scene_.warnings.push_back(
           fmt::format("{} animation channels name no node and are ignored", taken_out.channels_without_node));

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// Keeps a primitive that several nodes show once, as instances. Not shared are primitives with a skin, with morph
+// targets, or that emit light: each of these is its own geometry, or its own light.
+
 #include "import/gltf/gltf_shared.hpp"
 
 #include "import/gltf/gltf_instances.hpp"

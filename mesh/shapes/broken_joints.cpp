@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+// Defects of sheets, and of parts that touch, overlap or cross; s cells along an edge. Sheets stand upright.
+
 #include "mesh/shapes/broken_lattice.hpp"
 
 #include <array>
 #include <utility>
 
-/// Defects of sheets, and of parts that touch, overlap or cross; s cells along an edge. Sheets stand upright.
 namespace penumbra::mesh::broken {
 namespace {
 

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+// Defects in the surface of a closed box of s³ cells. Each is made once in every cell of the top's first row (s times)
+// unless noted; "patch" is a square of h = ⌈s/2⌉ cells in the top's first corner.
+
 #include "mesh/shapes/broken_lattice.hpp"
 
 #include <array>
 #include <utility>
 
-/// Defects in the surface of a closed box of s³ cells. Each is made once in every cell of the top's first row (s times)
-/// unless noted; "patch" is a square of h = ⌈s/2⌉ cells in the top's first corner.
 namespace penumbra::mesh::broken {
 namespace {
 

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+// Shapes put together from boxes and cylinders: fence, room, bars.
+
 #include "mesh/shapes/shape_builder.hpp"
 
 #include "base/assert.hpp"
 
 #include <utility>
 
-/// Shapes put together from boxes and cylinders: fence, room, bars.
 namespace penumbra::mesh {
 
 using namespace builder;

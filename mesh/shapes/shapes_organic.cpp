@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// Blob, knot, terrain and hair. Random numbers are hashes of small integers, so that the same seed gives the same mesh
+// on every machine.
+
 #include "mesh/shapes/shape_builder.hpp"
 
 #include "base/assert.hpp"
@@ -8,8 +11,6 @@
 
 #include <utility>
 
-/// Blob, knot, terrain and hair. Random numbers are hashes of small integers, so that the same seed gives the same mesh
-/// on every machine.
 namespace penumbra::mesh {
 
 using namespace builder;

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// Checks scenes of every format for what the methods rely on: finite numbers, coordinates and radiance within float's
+// range when summed, cameras that look somewhere.
+
 #include "scenes/formats/checks.hpp"
 
 #include "base/assert.hpp"

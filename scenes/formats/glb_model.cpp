@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// Builds a GLB in memory, one buffer and one accessor after the other. Positions get the bounds that glTF 2.0 demands.
+
 #include "scenes/formats/glb_model.hpp"
 
 #include "base/error.hpp"

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// Reads glTF scenes through the import helper, so that no parser of a foreign file runs in this process, and reads
+// further moments of an animation ahead where memory allows.
+
 #include "scenes/formats/gltf_reader.hpp"
 
 #include "base/descriptor.hpp"

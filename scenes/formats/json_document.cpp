@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// Parses JSON into a document in which every message can name its place: a pointer for values, line and column for
+// syntax. Duplicate keys, NUL characters and deep nesting are refused.
+
 #include "scenes/formats/json_document.hpp"
 
 #include "base/file_error.hpp"

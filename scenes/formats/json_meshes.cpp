@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// Meshes of a JSON scene: from files, triangles, quads and shapes, under transforms and instances. Memory for all
+// copies is required before the first is made.
+
 #include "scenes/formats/json_meshes.hpp"
 
 #include "base/file_error.hpp"

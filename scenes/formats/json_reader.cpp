@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// Reads penumbra-scene/1: version first, then the schema, then cameras, lights and objects, whose names refer to one
+// another.
+
 #include "scenes/formats/json_reader.hpp"
 
 #include "base/did_you_mean.hpp"

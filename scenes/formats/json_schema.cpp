@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// Validates a scene against the schema that is compiled in. Long lists of triangles are checked by a loop of their own
+// and set aside meanwhile.
+
 #include "scenes/formats/json_schema.hpp"
 
 #include "base/error.hpp"

@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+// Converts the keys of a "shape" to a generator's options. Meanings and bounds of keys are in the schema; defaults in
+// the options structs of mesh/shapes/shapes.hpp and mesh/shapes/broken_meshes.hpp (a test compares them with the
+// schema's).
+
 #include "scenes/formats/json_meshes.hpp"
 
 #include "base/assert.hpp"
@@ -11,9 +15,6 @@
 #include <array>
 #include <string_view>
 
-/// Converts the keys of a "shape" to a generator's options. Meanings and bounds of keys are in the schema; defaults in
-/// the options structs of mesh/shapes/shapes.hpp and mesh/shapes/broken_meshes.hpp (a test compares them with the
-/// schema's).
 namespace penumbra::scenes {
 namespace {
 

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// Finds the first violation of a JSON Schema in a document, and words it for the user.
+
 #include "scenes/formats/json_schema.hpp"
 
 #include "base/assert.hpp"

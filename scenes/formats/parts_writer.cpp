@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// Writes parts (named polygons with colours, such as wedges) as GLB, OBJ or PLY, in world space.
+
 #include "scenes/formats/parts_writer.hpp"
 
 #include "base/atomic_file.hpp"

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// Reads a scene of any format, and puts a studio around what has no light or camera.
+
 #include "scenes/formats/reader.hpp"
 
 #include "base/error.hpp"

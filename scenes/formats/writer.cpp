@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// Writes a scene as JSON, GLB or OBJ. What the format lacks is collected, and refused or warned of, before much is
+// written; the scene itself comes last, after the files that it names.
+
 #include "scenes/formats/writer.hpp"
 
 #include "base/error.hpp"

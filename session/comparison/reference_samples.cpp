@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// Light samples of a reference that has any: the methods' own, or a number of its own in the same pattern.
+
 #include "session/comparison/reference_samples.hpp"
 
 #include "base/error.hpp"

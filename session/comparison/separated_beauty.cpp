@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// Shades a picture with the reference's V times the unshadowed light, V · ∫G (docs/error-budget.md, Beauty): the error
+// that a method of scalar V makes even with the right V.
+
 #include "session/comparison/separated_beauty.hpp"
 
 #include "session/output.hpp"

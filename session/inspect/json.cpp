@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// The JSON of `inspect`: counts and places of each defect, in the numbers of the scene and of the file.
+
 #include "session/inspect/report.hpp"
 
 #include "base/utf8.hpp"

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// A method that composes pictures of chosen view samples for another method and puts the answers back in their places.
+// View samples that follow one another fill regions of 16 × 16 pixels in Z order, as engines take them.
+
 #include "session/pictures/asked_areas.hpp"
 
 #include "base/assert.hpp"

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// Parses --exposure, and reads the stops that an earlier picture's header keeps, so that a resumed sequence has one
+// brightness.
+
 #include "session/pictures/exposure.hpp"
 
 #include "base/error.hpp"

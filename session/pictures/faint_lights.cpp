@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// Leaves out lights whose unshadowed light is a small share of all light at a view sample (--light-cutoff). Sums are
+// taken 128 view samples at a time, over all lights, so that a thousand lights fit the processor's cache.
+
 #include "session/pictures/faint_lights.hpp"
 
 #include "base/memory.hpp"

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// Asks for exact areas of blurred surfaces in the order of view samples along a Z curve in space, 21 bits an axis.
+
 #include "session/pictures/lens_areas.hpp"
 
 #include <glm/common.hpp>

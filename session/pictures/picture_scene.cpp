@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// Reads the scene of a picture with the lens that the options ask for, makes copies of instances where the method needs
+// them, and times all of this.
+
 #include "session/pictures/picture_scene.hpp"
 
 #include "session/process/stopwatch.hpp"

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// Marks the view samples outside a spot lamp's cone, where its light is 0 whatever V is.
+
 #include "session/pictures/spot_cones.hpp"
 
 #include <tbb/parallel_for.h>

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// Reuses exact areas from one moment of a picture to the next where the surface and the light rest and no moving
+// triangle can be between. Moving triangles are held in at most 64 boxes, enlarged by far more than rounding.
+
 #include "session/pictures/still_areas.hpp"
 
 #include "base/assert.hpp"

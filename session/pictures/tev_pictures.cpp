@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// Sends a picture's channels to an open tev, under the names that they have in the EXR file.
+
 #include "session/pictures/tev_pictures.hpp"
 
 #include "session/pictures/picture_format.hpp"

@@ -60,7 +60,7 @@ scenes::Texture lattice_sky() {
   return sky;
 }
 
-/// Pairs of all seeds are counted: the full tests compare ten millions of them, if all run.
+/// Counts the pairs of all seeds that run: with those of label full ten million.
 class DomePairs : public testing::TestWithParam<std::uint32_t> {
  protected:
   static void SetUpTestSuite() { compared_ = blocked_ = 0; }

@@ -32,7 +32,7 @@ inline std::ostream& operator<<(std::ostream& out, PointLight kind) {
   return out << name_of(kind);
 }
 
-/// Convex, counter-clockwise, with corners on a lattice; what is affine to them.
+/// Convex polygons, counter-clockwise, with corners on a lattice: a light is an affine image of one.
 inline const std::vector<std::vector<glm::dvec2>>& lattice_polygons() {
   static const std::vector<std::vector<glm::dvec2>> polygons{
       {{-1, -1}, {1, -1}, {0, 1}},

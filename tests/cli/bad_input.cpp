@@ -41,7 +41,7 @@ std::vector<BadScene> bad_scenes() {
   return {
       {"NoJson", "{ \"format\": ", {"scene.json"}},
       {"Utf16", std::string("\xFF\xFE{\0\"\0", 6), {"scene.json: this is UTF-16; save it as UTF-8"}},
-      {"StrayByte", "{ \"format\": \xC0", {"scene.json: line 1", "?'"}},
+      {"StrayByte", "{ \"format\": \xC0", {"scene.json: line 1", "\\xc0'"}},
       {"WrongFormat", scene_text_with("/format", "\"other/1\""), {"/format", "penumbra-scene/1"}},
       {"WrongType", scene_text_with("/camera/eye", "\"here\""), {"/camera/eye"}},
       {"WrongTypeInList", scene_text_with("/meshes/0/color/1", "\"red\""), {"/meshes/0/color/1"}},

@@ -83,6 +83,7 @@ TEST_F(Tables, MethodsSayWhatAnOptionMakesOfThem) {
 
 TEST_F(Tables, DevicesSayWhatTheyCan) {
   EXPECT_EQ(run({"devices"}).code, 0);
+  EXPECT_EQ(run({"devices", "--device", "cpu"}).code, 2) << "an option that would change nothing";
   const json devices = json::parse(run({"devices", "--json"}).out).at("devices");
   for (const json& device : devices) {
     EXPECT_FALSE(device.at("name").get<std::string>().empty());

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""`--tev`, of pictures, comparisons and sequences: what arrives at a listener that understands tev's protocol is what the EXR has.   tev_pictures.py PROGRAM"""
+"""`--tev`, of pictures, comparisons and sequences: what arrives at a listener that understands tev's protocol is what the EXR has.
+  tev_pictures.py PROGRAM"""
 import pathlib
 import socket
 import struct

@@ -10,13 +10,13 @@
 
 namespace penumbra::visibility {
 
-/// Computes UnshadowedLight::whole() for many surface elements, on the processor's vector units: the same bits for
-/// every vector width.
+/// Surface elements of which some are chosen.
 struct SurfaceElements {
   std::span<const glm::vec3> p, n;
   std::span<const std::uint32_t> which;  ///< indices of the elements to compute
 };
-/// `whole`: one for each of `which`, in order. Single-threaded.
+/// Computes UnshadowedLight::whole() for many surface elements, on the processor's vector units: the same bits for
+/// every vector width. `whole`: one for each of `which`, in order. Single-threaded.
 void whole_form_factors(const Light& light, const SurfaceElements& elements, std::span<double> whole);
 
 }  // namespace penumbra::visibility

@@ -8,7 +8,7 @@
 
 // Looks up the soft shadow map at the view samples: V of the receiver's texel, or bilinear between the four texels
 // whose centres are around the sample. Pixels on occluders are marked by a 1 in their result: they have no soft shadow,
-// and see all of the light above their horizon. Texels without a receiver are lit, as are samples beside the map.
+// and see all of the light above their horizon. Texels without a receiver are lit, as are samples outside the map.
 
 layout(scalar, binding = 4) readonly buffer Visible { float visible[]; };
 #define LIGHT_TABLE 5

@@ -76,7 +76,7 @@ class SoftShadowMap final : public visibility::Method {
     std::uint32_t faces = 0;
     std::vector<float> depths;
   };
-  /// Surface of each texel stored by a map; empty texels: 1, of the farthest 0.
+  /// Surface that a map stores for each texel. The depth of an empty texel is 1; where the farthest is kept, 0.
   enum class Kept : std::uint8_t { nearest, nearest_two, farthest };
   /// Draws the chosen triangles. Of two layers the second is behind the first in the buffer, and is not read back.
   Map draw(CasterMaps& casters, std::span<const std::uint8_t> chosen, std::uint32_t size, Kept kept,

@@ -141,8 +141,8 @@ TEST_F(AdaptiveLight, ATiltedReceiverNeedsMoreMaps) {
   EXPECT_GT(last, 14U);
 }
 
-// The default of epsilon is a share of a number that grows with the picture. The paper's is a share of a number that
-// small pictures do not reach: they keep their four maps.
+// By default epsilon is a share of the pixels. The paper's is a share of a map's texels, which is more pixels than
+// small pictures have: they keep their four maps.
 TEST_F(AdaptiveLight, ByDefaultPicturesOfAnySizeAreRefinedAlike) {
   for (const double half : {0.04, 0.15}) {
     std::vector<std::uint64_t> found, published;

@@ -46,7 +46,7 @@ TEST_F(Vssm, IsItsTwin) {
         const double v = twin(i).v, is = found.visibility[i];
         soft += v > 0.02 && v < 0.98 ? 1 : 0;
         sum += std::abs(v - is);
-        // The search says blocked or not by a hair where a mean is at the receiver's own height within rounding: V may
+        // Where a mean of the search is at the receiver's own height, rounding decides whether anything blocks: V may
         // then be anything between the filter's answer and 1. A series' functions have 12 digits.
         off += std::abs(v - is) > 2e-4 ? 1 : 0;
       }
@@ -78,8 +78,8 @@ TEST_F(Vssm, LayersAreTheirTwinsAtAnyHeight) {
   }
 }
 
-// Exponentials are compared texel by texel where a window holds more that is farther than the receiver than what is
-// nearer: some texels of windows wider than 16, and those inside the map of windows that reach beside it.
+// Where most of a window is farther than the receiver, the mean of exponentials says little, and texels are compared
+// with the receiver one by one: every few texels of a window wider than 16, and those inside the map alone.
 TEST_F(Vssm, TexelByTexelItIsItsTwinAtAnyHeight) {
   const Stage stage(scene_with(scenes::Rectangle{{0, 4, 0}, {0.9, 0, 0}, {0, 0, 0.6}}), 24, 24, light_samples(1),
                     grid_samples(24, {0, 0.6, 0}, {1.9, 0, 0}, {0, 0.58, 0}, {0, 1, 0}));

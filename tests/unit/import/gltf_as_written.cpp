@@ -99,7 +99,7 @@ TEST_F(GltfAsWritten, PercentSignsOfNames) {
   painted.document["images"] = {{{"uri", "75%.png"}}};
   painted.document["textures"] = {{{"source", 0}}};
   painted.at("/materials/0/pbrMetallicRoughness")["baseColorTexture"] = {{"index", 0}};
-  EXPECT_THAT(read(painted).warnings, Contains(HasSubstr("Not a PNG file")));
+  EXPECT_THAT(read(painted).warnings, Contains(AllOf(HasSubstr("75%.png"), HasSubstr("Not a PNG file"))));
 }
 
 TEST_F(GltfAsWritten, LeastVersions) {
@@ -313,7 +313,7 @@ TEST_F(GltfAsWritten, TextOfWindows) {
   std::string text = gltf.document.dump();
   text[text.find("W_rfel") + 1] = '\xFC';
   const Scene scene = read_gltf(write("scene.gltf", "\xEF\xBB\xBF" + text));
-  EXPECT_EQ(scene.objects[0].name, "W?rfel");
+  EXPECT_EQ(scene.objects[0].name, "W\\xfcrfel");
   EXPECT_THAT(scene.warnings, Contains(HasSubstr("no UTF-8")));
   const auto path = write("scene.gltf", text.substr(0, text.size() - 1));
   EXPECT_THAT(test::input_error([&] { read_gltf(path); }), HasSubstr("parse error"));

@@ -171,7 +171,7 @@ TEST_F(GltfReader, NamesAreUniqueAndHarmless) {
   gltf.at("/nodes").push_back({{"name", "Lamp"}, {"mesh", 1}, {"translation", {0, 7, 0}}});
   gltf.at("/scenes/0/nodes").push_back(3);
   const Scene scene = read(gltf);
-  EXPECT_EQ(scene.objects[0].name, "Lamp?[31m");
+  EXPECT_EQ(scene.objects[0].name, "Lamp\\x1b[31m");
   EXPECT_EQ(scene.lights[0].name, "Lamp");
   EXPECT_EQ(scene.lights[1].name, "Lamp.2");
 }

@@ -91,7 +91,7 @@ TEST_F(ImportHelper, LiesAreFoundOut) {
     EXPECT_THAT(refusal(), HasSubstr("longer than the answer"));
   }
   use_helper(R"(printf 'PNBRIMP1\001\004\000\000\000\000\000\000\000a\033[m')");  // steers the terminal
-  EXPECT_EQ(refusal(), "a?[m");
+  EXPECT_EQ(refusal(), "a\\x1b[m");
 }
 
 TEST_F(ImportHelper, AnswersAreChecked) {
@@ -132,7 +132,7 @@ TEST_F(ImportHelper, AnswersAreChecked) {
       EXPECT_THROW(get_soup(from), WireError);
     }
   }
-  EXPECT_EQ(printable("a\tb\x7f\xc3\xa4\xff\xc2\x9b\xed\xa0\x80"), "a?b?\xc3\xa4????\?\?");
+  EXPECT_EQ(printable("a\tb\x7f\xc3\xa4\xff\xc2\x9b\xed\xa0\x80"), "a\\tb\\x7f\xc3\xa4\\xff\\xc2\\x9b\\xed\\xa0\\x80");
 }
 
 TEST_F(ImportHelper, SoupsArriveAsTheyWereSent) {

@@ -214,14 +214,14 @@ TEST_F(MeshReaders, AZeroByteDoesNotEndAMessage) {
     std::ranges::replace(text, '@', '\0');
     return text;
   };
-  expect_refused("zero.obj", with_zero("v 0 0 0\nv 1 0@7 0\n"), {"'0?7' is not a number"});
-  expect_refused("zero.off", with_zero("OFF\n3@1 1 0\n"), {"'3?1' is no number of vertices"});
-  expect_refused("zero.stl", with_zero("solid a\nfacet\nvertex 0 1@2 0\n"), {"'1?2' is not a coordinate"});
-  expect_refused("zero.ply", with_zero("ply\nformat as@cii 1.0\nend_header\n"), {"'as?cii' is no format"});
+  expect_refused("zero.obj", with_zero("v 0 0 0\nv 1 0@7 0\n"), {"'0\\x007' is not a number"});
+  expect_refused("zero.off", with_zero("OFF\n3@1 1 0\n"), {"'3\\x001' is no number of vertices"});
+  expect_refused("zero.stl", with_zero("solid a\nfacet\nvertex 0 1@2 0\n"), {"'1\\x002' is not a coordinate"});
+  expect_refused("zero.ply", with_zero("ply\nformat as@cii 1.0\nend_header\n"), {"'as\\x00cii' is no format"});
   expect_refused("zeros.ply",
                  ply_header("ascii", "face 1\nproperty list int int vertex_index") +
                      with_zero("0 0@1 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n"),
-                 {"line 10", "'0?1' is not a number"});
+                 {"line 10", "'0\\x001' is not a number"});
 }
 
 TEST_F(MeshReaders, PlyHeadersThatDoNotSay) {
