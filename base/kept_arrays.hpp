@@ -13,7 +13,7 @@ namespace penumbra {
 class KeptArrays {
  public:
   /// Bytes of the smallest array that is cached; the C library keeps smaller ones itself (keep_freed_memory).
-  static constexpr std::size_t kLeast = std::size_t{1} << 25U;
+  static constexpr std::size_t kLeast = std::size_t{1} << 22U;
 
   /// Enables the cache; nothing is cached before this call.
   void start_keeping();
@@ -40,7 +40,7 @@ class KeptArrays {
   void free_more_than(std::size_t room);
 
   mutable std::mutex mutex_;
-  std::array<Array, 64> kept_{};  // in no particular order
+  std::array<Array, 256> kept_{};  // in no particular order
   bool keeps_ = false;
   std::size_t kept_bytes_ = 0, used_bytes_ = 0, most_used_bytes_ = 0;
 };

@@ -88,8 +88,9 @@ std::uint64_t room_of_groups(const std::filesystem::path& mount, std::string pat
 }
 
 #ifdef __GLIBC__
-/// Largest threshold that glibc accepts; larger arrays go through kept_arrays().
-constexpr int kLargestInHeap = 1 << 25;
+/// Arrays of at least so many bytes do not lie in the heap: they begin at large pages, and the gaps between such arrays
+/// would lie idle (half of the largest resident set of a picture in bands). kept_arrays() keeps them.
+constexpr int kLeastOutsideHeap = KeptArrays::kLeast;
 std::atomic<bool> heap_lies_in_large_pages = false;
 
 /// Grows the C library's heap by a piece of address space, and asks the system for large pages there, so that a
@@ -108,7 +109,7 @@ void lay_heap_in_large_pages() {
   ::mallopt(M_TOP_PAD, kPiece);
   // Larger than what the heap has free, and smaller than what does not lie in the heap. (volatile: the compiler keeps
   // it.)
-  void* volatile more = std::malloc(kLargestInHeap - (1 << 16));
+  void* volatile more = std::malloc(kLeastOutsideHeap - (1 << 16));
   std::free(more);
   char* const end = static_cast<char*>(::sbrk(0));
   const std::size_t to_page = (kLargePage - reinterpret_cast<std::uintptr_t>(begin) % kLargePage) % kLargePage;
@@ -198,7 +199,7 @@ void give_back_memory() {
 void keep_freed_memory() {
   kept_arrays().start_keeping();
 #ifdef __GLIBC__
-  ::mallopt(M_MMAP_THRESHOLD, kLargestInHeap);
+  ::mallopt(M_MMAP_THRESHOLD, kLeastOutsideHeap);
   ::mallopt(M_TRIM_THRESHOLD, std::numeric_limits<int>::max());
   heap_lies_in_large_pages = true;
   lay_heap_in_large_pages();

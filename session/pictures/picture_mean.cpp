@@ -11,6 +11,71 @@
 #include <algorithm>
 
 namespace penumbra::session {
+namespace {
+
+/// Sums over the view samples of one row of pixels, weighted by the filter: down each column of view samples first,
+/// whose values lie side by side in memory, and then across. A sum's order of additions depends on the filter alone, so
+/// that the sum over equal values v is v times the sum of weights, to the bit where v is 0 or 1.
+class WeightedRow {
+ public:
+  /// `first`: the row's first row of view samples, counted from the first given one. All others must outlive this
+  /// object.
+  WeightedRow(const FilterTaps& down, std::span<const FilterTaps> across, std::size_t first, std::uint32_t side)
+      : down_(down), across_(across), first_(first), side_(side) {}
+
+  /// Adds the weights of each pixel.
+  void add_shares(std::span<double> sums) const {
+    double column = 0;
+    for (const double share : down_.shares) column += share;
+    for (std::size_t x = 0; x < sums.size(); ++x) {
+      double sum = 0;
+      for (const double share : across_[x].shares) sum += share * column;
+      sums[x] += sum;
+    }
+  }
+
+  /// Add to each pixel the weighted sum of its view samples' values; `values`: of all given rows.
+  void add(std::span<const float> values, std::span<double> sums) const {
+    const std::vector<double> columns = down_columns(values.data(), 1);
+    for (std::size_t x = 0; x < sums.size(); ++x) {
+      double sum = 0;
+      const double* column = columns.data() + across_[x].first;
+      for (const double share : across_[x].shares) sum += share * *column++;
+      sums[x] += sum;
+    }
+  }
+  void add(std::span<const glm::vec3> values, std::span<glm::dvec3> sums) const {
+    const std::vector<double> columns = down_columns(&values.data()->x, 3);
+    for (std::size_t x = 0; x < sums.size(); ++x) {
+      glm::dvec3 sum(0);
+      const double* column = columns.data() + 3 * across_[x].first;
+      for (const double share : across_[x].shares) {
+        sum += share * glm::dvec3(column[0], column[1], column[2]);
+        column += 3;
+      }
+      sums[x] += sum;
+    }
+  }
+
+ private:
+  /// Returns the weighted sum down each column of view samples of `numbers` numbers each.
+  [[nodiscard]] std::vector<double> down_columns(const float* values, std::size_t numbers) const {
+    std::vector<double> columns(across_.size() * side_ * numbers, 0.0);
+    const float* row = values + first_ * columns.size();
+    for (const double share : down_.shares) {
+      for (std::size_t i = 0; i < columns.size(); ++i) columns[i] += share * double{row[i]};
+      row += columns.size();
+    }
+    return columns;
+  }
+
+  const FilterTaps& down_;
+  std::span<const FilterTaps> across_;
+  std::size_t first_;
+  std::uint32_t side_;
+};
+
+}  // namespace
 
 PictureMean::PictureMean(std::uint32_t width, std::uint32_t height, const PixelFilter& filter, Adds adds)
     : width_(width), height_(height), filter_(filter), adds_(adds) {
@@ -59,57 +124,39 @@ void PictureMean::add(std::span<const float> alpha, const std::vector<std::strin
                       last_taps.first + last_taps.shares.size() <= band.first_sample_row + rows,
                   "rows {} to {} from {} rows of view samples from {} on", first_row, end_row, rows,
                   band.first_sample_row);
-  // Sums stay in registers from tap to tap; each is added up in the order of its taps, whatever is summed beside it.
+  const bool once = adds_ == Adds::once;
   tbb::parallel_for(first_row, end_row, [&](std::size_t y) {
-    const FilterTaps& rows_of = down[y];
-    const auto for_each_tap = [&](std::size_t x, auto add) {
-      for (std::size_t row = 0; row < rows_of.shares.size(); ++row) {
-        const std::size_t from = (rows_of.first + row - band.first_sample_row) * width + across[x].first;
-        for (std::size_t column = 0; column < across[x].shares.size(); ++column)
-          add(rows_of.shares[row] * across[x].shares[column], from + column);
-      }
+    const WeightedRow row(down[y], across, down[y].first - band.first_sample_row, side);
+    std::vector<double> shares_of(width_, 0.0);
+    row.add_shares(shares_of);
+    const auto pixels = [&](auto& all) { return std::span(all).subspan(y * width_, width_); };
+    const auto divided = [&](std::span<const double> sums, auto means) {
+      for (std::size_t x = 0; x < width_; ++x) means[x] = static_cast<float>(sums[x] / shares_of[x]);
     };
-    const bool once = adds_ == Adds::once;
-    std::vector<double> shares_of(once ? width_ : 0);  // of each pixel of the row
-    for (std::size_t x = 0; x < width_; ++x) {
-      const std::size_t pixel = y * width_ + x;
-      double shares = once ? 0 : sums_.shares[pixel], covered = once ? 0 : sums_.alpha[pixel];
-      for_each_tap(x, [&](double share, std::size_t from) {
-        shares += share;
-        covered += share * double{alpha[from]};
-      });
-      if (once) {
-        shares_of[x] = shares;
-        means_.alpha[pixel] = static_cast<float>(covered / shares);
-      } else {
-        sums_.shares[pixel] = shares;
-        sums_.alpha[pixel] = covered;
-      }
+    std::vector<double> sums(once ? width_ : 0);
+    std::vector<glm::dvec3> sums_of_three(once ? width_ : 0);
+    if (once) {
+      row.add(alpha, sums);
+      divided(sums, pixels(means_.alpha));
+    } else {
+      for (std::size_t x = 0; x < width_; ++x) sums_.shares[y * width_ + x] += shares_of[x];
+      row.add(alpha, pixels(sums_.alpha));
     }
     for (std::size_t light = 0; light < visibility.size(); ++light) {
-      const std::span<const float> seen = visibility[light];
-      const std::span<const glm::vec3> lit = beauty[light];
       const std::size_t number = numbers[light];
-      for (std::size_t x = 0; x < width_; ++x) {
-        const std::size_t pixel = y * width_ + x;
-        double share_seen = once ? 0 : sums_.visibility[number][pixel];
-        glm::dvec3 arriving = once ? glm::dvec3(0) : sums_.beauty[number][pixel];
-        if (lit.empty()) {
-          for_each_tap(x, [&](double share, std::size_t from) { share_seen += share * double{seen[from]}; });
-        } else {
-          for_each_tap(x, [&](double share, std::size_t from) {
-            share_seen += share * double{seen[from]};
-            arriving += share * glm::dvec3(lit[from]);
-          });
-        }
-        if (once) {
-          means_.visibility[number][pixel] = static_cast<float>(share_seen / shares_of[x]);
-          means_.beauty[number][pixel] = glm::vec3(arriving / shares_of[x]);
-        } else {
-          sums_.visibility[number][pixel] = share_seen;
-          sums_.beauty[number][pixel] = arriving;
-        }
+      if (!once) {
+        row.add(visibility[light], pixels(sums_.visibility[number]));
+        if (!beauty[light].empty()) row.add(beauty[light], pixels(sums_.beauty[number]));
+        continue;
       }
+      std::ranges::fill(sums, 0.0);
+      row.add(visibility[light], sums);
+      divided(sums, pixels(means_.visibility[number]));
+      if (beauty[light].empty()) continue;
+      std::ranges::fill(sums_of_three, glm::dvec3(0));
+      row.add(beauty[light], sums_of_three);
+      for (std::size_t x = 0; x < width_; ++x)
+        means_.beauty[number][y * width_ + x] = glm::vec3(sums_of_three[x] / shares_of[x]);
     }
   });
 }
