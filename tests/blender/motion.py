@@ -163,6 +163,26 @@ class Motion(unittest.TestCase):
             keyed(rig.pose.bones["Bone"], "location", (0, 0, 0), (1, 0.5, 0))
         self.check(self.build(bone))
 
+    def test_drivers_and_handlers_in_python(self):
+        """Blender runs them on other threads while the add-on waits for a moment to be evaluated."""
+        bpy.context.preferences.filepaths.use_scripts_auto_execute = True
+
+        def drive():
+            bpy.app.driver_namespace["away"] = lambda frame: 0.8 * (frame - FRAME)
+            driver = bpy.data.objects["Block"].driver_add("location", 0).driver
+            driver.type, driver.expression = "SCRIPTED", "away(frame)"
+        scene, seen = self.build(drive), []
+
+        def note(scene, _):
+            seen.append(scene.frame_current + scene.frame_subframe)
+        bpy.app.handlers.frame_change_post.append(note)
+        try:
+            inside.channels(scene, out("driven.exr"))
+        finally:
+            bpy.app.handlers.frame_change_post.remove(note)
+        self.assertLessEqual(set(self.times()), set(seen))
+        self.check(scene)
+
     def test_meshes_of_other_triangles_at_each_moment(self):
         def grow():
             modifier = bpy.data.objects["Block"].modifiers.new("Array", "ARRAY")
