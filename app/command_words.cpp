@@ -37,7 +37,7 @@ const std::map<std::string_view, std::string_view>& groups() {
     add("Light", {"light", "add-light", "light-samples", "sample-pattern", "sample-seed", "lamp-radius", "sun-angle",
                   "lumens-per-watt"});
     add("Picture", {"size", "camera", "normals", "pixel-samples", "pixel-filter", "filter-width", "motion-samples",
-                    "shutter", "aperture", "focus-distance", "exposure", "margin", "sample-pixels"});
+                    "moment", "shutter", "aperture", "focus-distance", "exposure", "margin", "sample-pixels"});
     add("Method", {"method", "methods", "method-option", "device", "reference", "reference-samples", "runs", "over",
                    "construction", "from", "error-budget"});
     add("General", {"help", "quiet", "verbose", "threads", "version"});

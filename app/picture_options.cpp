@@ -95,6 +95,16 @@ void add_picture_options(CLI::App& command, session::PictureOptions& options) {
                    "leave out pictures whose files are all there: resumes a sequence");
 }
 
+void add_moments(CLI::App& command, session::PictureOptions& options) {
+  command
+      .add_option(
+          "--moment", options.moments,
+          "file of the scene at a moment of the open shutter; may be given again, and R G B A and V are then the "
+          "mean over these files, in place of SCENE's; everything else is SCENE's")
+      ->type_name("FILE")
+      ->allow_extra_args(false);
+}
+
 void add_tev(CLI::App& command, std::string& address) {
   command.add_option("--tev", address, "show each picture in the tev that listens there, such as 127.0.0.1:14158")
       ->type_name("HOST:PORT");

@@ -15,7 +15,7 @@ antialiased  under a Blackman-Harris filter of 1.5 pixels, by 16 view samples a 
 lens         likewise, through a thin lens: each of the 16 view samples looks through its own point of the lens
 motion       one object moves while the shutter is open, at the pixels' centres, by 16 moments of Penumbra
 
-by four processes: the program from the add-on's exchange file; Blender with the add-on (which has no motion); and Blender with
+by four processes: the program from the add-on's exchange file; Blender with the add-on; and Blender with
 Cycles, direct light, at several light samples a pixel. They take turns, each several times; a time is the median of user and
 system seconds of the process and its children; memory is the largest resident set of one process. The judge is Cycles: a crop
 that holds the most penumbra (in motion: the most that moved) is rendered with many samples under two seeds. An error is the root of the mean squared
@@ -172,8 +172,6 @@ class Scene:
 
         entries = {}
         engines = ["penumbra", "add-on", *(f"cycles {samples}" for samples in CYCLES_SAMPLES[part])]
-        if part == "motion":
-            engines.remove("add-on")
         for run in range(RUNS):
             for engine in engines:
                 if engine == engines[-1] and run > 0:
@@ -397,8 +395,8 @@ is interpolated, and what is out of focus is noisy.
 ## In motion
 
 One object moves by a quarter of a metre while the shutter is open, at even speed, seen at pixels' centres; the crop is where most shadow moves. The program
-takes 16 moments (`--motion-samples 16`) of an exchange file to which an animation was added; the add-on has [no motion blur](blender.md#motion-blur). Cycles
-exposes 254 of 256 parts of the time that it is told, from its start on (found by measuring), and Penumbra's `--shutter` is set to the same time.
+takes 16 moments (`--motion-samples 16`) of an exchange file to which an animation was added; the add-on lets Blender evaluate as many moments ([how](blender.md#motion-blur)). Cycles
+exposes 254 of 256 parts of the time that it is told, from its start on (found by measuring), and Penumbra's shutter is open for the same time.
 
 {motion}
 """

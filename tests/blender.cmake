@@ -14,7 +14,7 @@ add_test(NAME blender.farm
          COMMAND ${PENUMBRA_SYSTEM_PYTHON} ${CMAKE_CURRENT_SOURCE_DIR}/blender/farm.py ${addon} $<TARGET_FILE:penumbra>
                  ${PROJECT_BINARY_DIR}/blender_farm)
 set_tests_properties(blender.farm PROPERTIES LABELS full TIMEOUT 1200)
-foreach(script engine panels surfaces baked cycles exported foreign compositor)
+foreach(script engine motion panels surfaces baked cycles exported foreign compositor)
   add_test(NAME blender.${script}
            COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/blender/run.sh ${script}.py ${addon} $<TARGET_FILE:penumbra>
                    ${PROJECT_BINARY_DIR}/blender_${script})

@@ -47,6 +47,7 @@ penumbra_test(cli FULL *EveryTriple* SHARDS Part/RenderTogether=2 Part/CompareTo
   cli/tables.cpp
   cli/wedges.cpp
   cli/without_vulkan.cpp
+  cli/moments.cpp
   LIBRARIES penumbra_app penumbra_mesh penumbra_visibility penumbra_base nlohmann_json::nlohmann_json ZLIB::ZLIB)
 target_compile_definitions(cli_test PRIVATE PENUMBRA_PROGRAM="$<TARGET_FILE:penumbra>"
   PENUMBRA_PUBLIC_CASES="${CMAKE_CURRENT_SOURCE_DIR}/public_cases")

@@ -45,6 +45,7 @@ class RenderCommand : public Command {
             "if their names have a place for the number")
         ->type_name("F")
         ->excludes(cli_.get_option("--frames"));
+    add_moments(cli_, options_);
     add_tev(cli_, tev_);
   }
 
@@ -87,7 +88,8 @@ class RenderCommand : public Command {
     }
     outputs.refuse_inputs(now.scene.sources);
     const bool moves = is_sequence_ || now.scene.motion.has_value();
-    if (moves && (frames.size() > 1 || request_.moments > 1)) renderer.expect_frames();
+    const bool in_files = !options_.moments.empty();
+    if (in_files || (moves && (frames.size() > 1 || request_.moments > 1))) renderer.expect_frames();
     if (frames.size() > 1) renderer.remember_frames();
     if (frames.front() && !moves) {
       progress.clear();
@@ -121,9 +123,11 @@ class RenderCommand : public Command {
             spdlog::warn("{} is cut off, or no file that this command wrote: it is made again", file.string());
         }
         const bool is_last = &camera == &cameras.back() && (coming.valid() || next >= frames.size());
+        auto moments =
+            in_files ? session::moments_in_files(options_, request_, now) : moments_of(frames[at], moves, now.ahead);
         renderer.render(is_last ? std::move(now.scene) : scenes::Scene(now.scene),
                         {frames[at], camera, request_.pixel_side, request_.filter, request_.pixel_tolerance,
-                         moments_of(frames[at], moves, now.ahead), &now.instances, false, request_.light_cutoff},
+                         std::move(moments), &now.instances, false, request_.light_cutoff},
                         files.bits, now.seconds);
         now.seconds = 0;  // counted once
         const std::string made = session::summary(renderer.write(files, exposure));

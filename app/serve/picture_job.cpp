@@ -24,6 +24,7 @@ session::PictureOptions parse_picture(const std::vector<std::string>& arguments)
   session::PictureOptions options;
   CLI::App app("", "render");
   add_picture_options(app, options);
+  add_moments(app, options);
   try {
     std::vector<std::string> reversed(arguments.rbegin(), arguments.rend());
     app.parse(reversed);
@@ -42,8 +43,8 @@ auto format_key(const session::FormatOptions& format) {
 void PictureJob::run(const std::vector<std::string>& arguments) {
   session::PictureOptions options = parse_picture(arguments);
   session::PictureRequest request = session::parse_request(options);
-  if (request.frames.size() != 1 || options.run.camera == "all" || request.moments > 1)
-    throw UsageError("one picture of one moment is made at a time");
+  if (request.frames.size() != 1 || options.run.camera == "all" || (request.moments > 1 && options.moments.empty()))
+    throw UsageError("one picture of one frame is made at a time, by moments in files (--moment) alone");
   session::OutputFiles outputs = session::outputs_of(options, request.frames, {options.run.camera});
   outputs.require_writable();
   session::check_png_name(options);
@@ -64,16 +65,10 @@ void PictureJob::run(const std::vector<std::string>& arguments) {
     session::PictureScene read = session::read_picture_scene(kept_->options.run, std::nullopt, now);
     outputs.refuse_inputs(read.scene.sources);
     const session::FrameFiles files = session::files_of(kept_->options, now.frames.front(), kept_->options.run.camera);
+    auto moments = session::moments_in_files(kept_->options, now, read);
     kept_->renderer->render(std::move(read.scene),
-                            {now.frames.front(),
-                             kept_->options.run.camera,
-                             now.pixel_side,
-                             now.filter,
-                             now.pixel_tolerance,
-                             {},
-                             &read.instances,
-                             false,
-                             now.light_cutoff},
+                            {now.frames.front(), kept_->options.run.camera, now.pixel_side, now.filter,
+                             now.pixel_tolerance, std::move(moments), &read.instances, false, now.light_cutoff},
                             files.bits, read.seconds);
     session::Exposure exposure = now.exposure;
     progress_.info(session::summary(kept_->renderer->write(files, exposure)));

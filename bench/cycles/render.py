@@ -18,7 +18,8 @@ scene = bpy.context.scene
 render = scene.render
 is_filtered = PART in ("antialiased", "lens")
 scene.camera.data.dof.use_dof = PART == "lens"
-render.use_motion_blur, render.motion_blur_shutter = PART == "motion", 0.5
+render.use_motion_blur = PART == "motion"
+render.motion_blur_shutter = 0.5
 render.engine, render.film_transparent, render.use_compositing, render.use_sequencer = ENGINE, True, False, False
 settings = render.image_settings
 settings.file_format, settings.color_depth, settings.exr_codec = "OPEN_EXR_MULTILAYER", "32", "ZIP"
@@ -41,4 +42,9 @@ else:
     bpy.context.preferences.addons["penumbra"].preferences.program = PENUMBRA
     scene.penumbra.pixel_samples = "16" if is_filtered else "1"
     scene.penumbra.pixel_filter, scene.penumbra.filter_width = "BLACKMAN_HARRIS", 1.5
+    if PART == "motion":  # open for as long as Cycles exposes (against_cycles.py), from where its shutter opens
+        from penumbra.motion import position_owner
+        position_owner(scene).motion_blur_position = "START"
+        render.motion_blur_shutter *= 254 / 256
+        scene.frame_set(scene.frame_current - 1, subframe=0.75)
 bpy.ops.render.render(write_still=True)

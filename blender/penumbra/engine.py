@@ -5,8 +5,9 @@ import os
 import traceback
 
 import bpy
+import numpy
 
-from . import background, exr, frames, losses, passes, program, serving, settings, viewport
+from . import background, exr, frames, losses, moments, motion, passes, program, serving, settings, viewport
 from .export import SceneWriter
 
 
@@ -50,19 +51,50 @@ class PenumbraEngine(viewport.ShownInViews, bpy.types.RenderEngine):
             writer = SceneWriter(depsgraph, lost, wanted.shading_normals)
             writer.write(glb, region)
             frames.check_render(scene, depsgraph.view_layer_eval, lost)
+            if motion.is_on(scene):
+                frames.check_motion(scene, lost)
             self._say(lost, wanted.lenient)
+            files = self._write_moments(depsgraph, glb, writer, region, lost)
+            if files is None:
+                return
             self.update_stats("", "Rendering")
-            command = program.arguments(binary, glb, picture, region.size, wanted)
+            command = program.arguments(binary, glb, picture, region.size, wanted, files)
             code, printed = serving.run(command, self.test_break, workspace)
             if code is None:
                 return
-            warnings, error = program.messages(printed, glb)
+            warnings, error = program.messages(printed, glb, *files)
             for warning in warnings:
                 self.report({"WARNING"}, warning)
             if code != 0:
                 raise Refused(error or f"{binary} ended with code {code}")
             with open(picture, "rb") as file:
                 self._show(depsgraph, exr.read(file.read()), workspace.folder, writer.background)
+
+    def _write_moments(self, depsgraph, whole, writer, region, lost):
+        """Writes the scene at each moment of the open shutter. Returns the files, none if nothing moves; None: cancelled. `whole`:
+        the file of the frame's own time, written by `writer`; `lost`: what was said of it."""
+        scene = depsgraph.scene
+        times, own = motion.moments_of(scene), (scene.frame_current, scene.frame_subframe)
+        if not times:
+            return []
+        lenient, news, found = scene.penumbra.lenient, [], moments.Moments(whole, writer, region)
+        try:
+            for number, time in enumerate(times):
+                self.update_stats("", f"Exporting moment {number + 1} of {len(times)}")
+                if self.test_break():
+                    return None
+                frame, rest = motion.whole_and_rest(time)
+                self.frame_set(frame, subframe=rest)
+                now = losses.Losses()
+                try:
+                    found.add(depsgraph, now)
+                except ValueError as error:
+                    raise ValueError(f"at {time:.6g}, while the shutter is open: {error}") from error
+                news.append(lost.take_news(now))
+        finally:
+            self.frame_set(own[0], subframe=own[1])
+        self._say(losses.together(news), lenient)
+        return found.files()
 
     def _say(self, lost, lenient):
         refused = losses.sentences(lost.refused)
@@ -85,6 +117,10 @@ class PenumbraEngine(viewport.ShownInViews, bpy.types.RenderEngine):
         wanted = {one.name for one in result.layers[0].passes}
         content = {f"{layer}.{name}": values for name, values in names.channels(picture).items()
                    if name.rpartition(".")[0] in wanted}
+        for name in wanted:  # a matte of several view samples a pixel, where one turned out to be enough
+            if name.startswith("Crypto"):
+                for letter in "RGBA":
+                    content.setdefault(f"{layer}.{name}.{letter}", numpy.zeros((picture.height, picture.width), numpy.float32))
         with open(file, "wb") as out:
             out.write(exr.encoded(content))
         result.load_from_file(file)
@@ -112,7 +148,7 @@ class PenumbraEngine(viewport.ShownInViews, bpy.types.RenderEngine):
                 self.register_pass(scene, renderlayer, name, 3, "XYZ", "VECTOR")
         for wanted, name in ((renderlayer.use_pass_cryptomatte_object, "CryptoObject"),
                              (renderlayer.use_pass_cryptomatte_material, "CryptoMaterial")):
-            for group in passes.matte_groups(name, scene.penumbra.pixel_samples) if wanted else ():
+            for group in passes.matte_groups(name, int(scene.penumbra.pixel_samples) * motion.samples_of(scene)) if wanted else ():
                 self.register_pass(scene, renderlayer, group, 4, "RGBA", "COLOR")
         if scene.penumbra.light_passes:
             for name, letters, kind in passes.Names(renderlayer.name).own_passes(frames.likely_lights(scene)):

@@ -7,6 +7,7 @@ import bpy
 import numpy
 
 from . import glb, lamps, losses as loss_words, materials, sky, space, texels
+from .changes import key_of
 
 _SURFACES = {"MESH", "CURVE", "SURFACE", "META", "FONT"}
 _MESH_OR_NOTHING = "make a mesh of it, or hide it in renders"
@@ -29,17 +30,38 @@ class SceneWriter:
         self.background = (0.0, 0.0, 0.0)  # colour to be composited behind everything
         self._meshes, self._materials, self._looks, self._images = {}, {}, {}, {}
         self._baked, self._shines = baked, False
+        self._named = {}  # meshes by their object's name, for other moments; None: several of one name
+        self._before = self._changes = None  # the writer of the frame's own time, and changes since
+        self._world_picture = sky.PICTURE
+        self._seen_by = self.scene.camera.original if self.scene.camera is not None else None
         self._balls, self._placed = [], []  # lamps of some size, and surfaces in the world, for tests of their
                                             # distances
 
+    def at_moment(self, changes, losses, beside, world_picture):
+        """Returns a writer of the scene at another moment, whose meshes and world are this one's where nothing has changed since
+        (changes.Changes). `beside`: name of the file that has the binary data of these meshes (Glb.without_nodes);
+        `world_picture`: name of the file of another picture of the world."""
+        other = SceneWriter(self.depsgraph, losses, self.shading_normals)
+        other._world_picture, other._seen_by = world_picture, self._seen_by  # markers may change the scene's camera
+        if not changes.all:
+            other.glb, other._images = self.glb.without_nodes(beside), dict(self._images)
+            other._before, other._changes = self, changes
+        return other
+
     def write(self, path, region):
         """`region`: pixels to render (frames.py); None: there is no picture."""
+        encoded = self.encoded(os.path.dirname(path), region)
+        with open(path, "wb") as file:
+            file.write(encoded)
+
+    def encoded(self, folder, region):
+        """Returns the file's bytes. `folder`: where it will be, for a picture of the world; `region`: as of write()."""
         for instance in self.depsgraph.object_instances:
             # A dependency graph of a view has what is hidden in renders alone.
             hidden = instance.object.hide_render or (instance.is_instance and instance.parent.hide_render)
             if instance.show_self and not (region is None and hidden):
                 self._object(instance)
-        self._world(os.path.dirname(path))
+        self._world(folder)
         if not self._shines and not self.glb.has_lamps:
             unknown = "".join(f"; {sentence}" for sentence in loss_words.sentences(self.losses.refused))
             raise ValueError("there is no light in the scene: no lamp, no emissive material that is shown in renders, and no "
@@ -51,8 +73,7 @@ class SceneWriter:
         else:  # without effect
             self.glb.camera("None", numpy.eye(4).tolist(), 1, (0, 0), half_angle=1)
         lamps.check_balls(self._balls, self._placed, self.losses)
-        with open(path, "wb") as file:
-            file.write(self.glb.encoded())
+        return self.glb.encoded()
 
     def _object(self, instance):
         thing = instance.object
@@ -98,13 +119,21 @@ class SceneWriter:
 
     def _mesh(self, thing, is_baked):
         """Returns the number of an object's mesh in the file, whether it emits light, and its corners; None for a mesh without faces."""
-        key = (is_baked, thing.data.as_pointer(), thing.original.as_pointer() if thing.type != "MESH" else 0,
-               tuple(material.name_full if material else "" for material in self._materials_of(thing)))
+        materials_ = tuple(material.name_full if material else "" for material in self._materials_of(thing))
+        key = (is_baked, thing.data.as_pointer(), thing.original.as_pointer() if thing.type != "MESH" else 0, materials_)
+        name = (thing.name_full, thing.data.name_full, materials_)
         if key not in self._meshes:
-            data = thing.to_mesh()
-            self._meshes[key] = self._primitives(thing, data, is_baked) if data is not None else None
-            thing.to_mesh_clear()
-        return self._meshes[key]
+            known = self._before._named.get(name) if self._before is not None else None
+            if known is not None and not self._changes.touch(thing, self.layer.material_override):
+                self._meshes[key] = known
+            else:
+                data = thing.to_mesh()
+                self._meshes[key] = self._primitives(thing, data, is_baked) if data is not None else None
+                thing.to_mesh_clear()
+        mesh = self._meshes[key]
+        # Instances that geometry nodes make have the name of their maker.
+        self._named[name] = mesh if self._named.setdefault(name, mesh) is mesh else None
+        return mesh
 
     def _primitives(self, thing, data, is_baked):
         data.calc_loop_triangles()
@@ -168,10 +197,9 @@ class SceneWriter:
         return self.glb.texture(number, 33071 if look.wrap == "EXTEND" else 10497, look.nearest)
 
     def _camera(self, region):
-        camera = self.scene.camera
-        if camera is None:
+        if self._seen_by is None:
             raise ValueError("the scene has no camera")
-        camera = camera.evaluated_get(self.depsgraph)
+        camera = self._seen_by.evaluated_get(self.depsgraph)
         lens = camera.data
         if lens.type not in ("PERSP", "ORTHO"):
             raise ValueError(f"camera '{camera.name}' is panoramic; perspective and orthographic ones are rendered")
@@ -191,10 +219,16 @@ class SceneWriter:
                 self.losses.mention(f"reaches beyond the clip end of camera '{camera.name}', and is shown there", placed.name)
 
     def _world(self, folder):
-        world = getattr(self.layer, "world_override", None) or self.scene.world
-        if world is not None:
-            self.background = sky.write(world, world.name, self.scene.penumbra.world, not self.scene.render.film_transparent,
-                                        self.glb, folder, self.losses)
+        world = getattr(self.layer, "world_override", None) or self.depsgraph.scene_eval.world
+        if world is None:
+            return
+        if self._before is not None and key_of(world) not in self._changes.blocks:
+            self.background = self._before.background
+            for dome in self._before.glb.domes:
+                self.glb.dome(*dome)
+            return
+        self.background = sky.write(world, world.name, self.scene.penumbra.world, not self.scene.render.film_transparent,
+                                    self.glb, os.path.join(folder, self._world_picture), self.losses)
 
 
 def encoded_image(image, look):

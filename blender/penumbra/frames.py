@@ -53,8 +53,6 @@ _ABSENT = {
 def check_render(scene, layer, lost):
     """Reports the settings of a scene and a view layer that are left out."""
     render = scene.render
-    if render.use_motion_blur:
-        lost.mention("has motion blur switched on, which is left out", scene.name)
     if render.use_simplify:
         lost.mention("is simplified as the render settings say", scene.name)
     if getattr(render, "use_freestyle", False):
@@ -62,6 +60,16 @@ def check_render(scene, layer, lost):
     absent = [name for key, name in _ABSENT.items() if getattr(layer, f"use_pass_{key}", False)]
     if absent:
         lost.mention(f"asks for passes that Penumbra does not have ({', '.join(absent)})", layer.name)
+
+
+def check_motion(scene, lost):
+    """Reports settings of Cycles' motion blur that are left out."""
+    for thing in scene.objects:
+        own = getattr(thing, "cycles", None)
+        if not thing.hide_render and not (getattr(own, "use_motion_blur", True) and getattr(own, "use_deform_motion", True)):
+            lost.mention("has motion blur switched off in Cycles (Object, Motion Blur), and is blurred here", thing.name)
+    if getattr(getattr(scene, "cycles", None), "rolling_shutter_type", "NONE") != "NONE":
+        lost.mention("has a rolling shutter, which is left out", scene.name)
 
 
 def likely_lights(scene):

@@ -23,7 +23,8 @@ class Glb:
     """A binary glTF file that grows by additions; `encoded` returns the complete file."""
 
     def __init__(self):
-        self._binary = bytearray()
+        self._binary, self.domes = bytearray(), []
+        self._beside = None  # name and length of the file that holds the binary data of another's meshes and images
         self._extensions = set()
         self.has_lamps = False
         self._document = {
@@ -137,18 +138,41 @@ class Glb:
         """Adds the sky: +Y of the matrix is up, -Z the direction of the picture's middle column; the picture is a
         separate file. `sampled`: counted in light samples, not as exact areas."""
         self.has_lamps = True
+        self.domes.append((name, matrix, radiance, image, visible, sampled))
         dome = {"radiance": list(radiance), "visible": visible, "sampled": sampled}
         if image is not None:
             dome["image"] = image
         self.node(name, matrix, {"dome": dome})
+
+    def without_nodes(self, beside):
+        """Returns a file with all meshes, materials and images of this one, under their numbers, and without nodes: another
+        moment of the scene. Their binary data stay what they are in a file named `beside`, to be filled by `binary`."""
+        other = Glb()
+        other._extensions, other._beside = set(self._extensions), (beside, len(self._binary))
+        for kind in ("accessors", "meshes", "materials", "images", "samplers", "textures"):
+            if kind in self._document:
+                other._document[kind] = list(self._document[kind])
+        other._document["bufferViews"] = [{**view, "buffer": 1} for view in self._document.get("bufferViews", [])]
+        return other
+
+    def binary(self):
+        return bytes(self._binary)
+
+    def placed(self):
+        """Returns what is where: all but meshes and materials, which nodes refer to by numbers."""
+        return json.dumps([self._document.get(kind) for kind in ("nodes", "cameras", "extensions")])
 
     def encoded(self):
         document = dict(self._document)
         if self._extensions:
             document["extensionsUsed"] = sorted(self._extensions)
         binary = bytes(self._binary) + b"\0" * (-len(self._binary) % 4)
+        if self._beside is not None:
+            binary = binary or b"\0" * 4  # no buffer is empty
         if binary:
             document["buffers"] = [{"byteLength": len(binary)}]
+        if self._beside is not None:
+            document["buffers"].append({"uri": self._beside[0], "byteLength": self._beside[1]})
         text = json.dumps(document, separators=(",", ":")).encode()
         text += b" " * (-len(text) % 4)
         chunks = struct.pack("<II", len(text), 0x4E4F534A) + text

@@ -1,6 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Parts of a scene that a picture will not show."""
 
+import re
+
+_NUMBER = re.compile(r"[0-9.]+(e[-+]?[0-9]+)?")
+
 
 class Losses:
     """`refused`: it would change a shadow, or take one away. `mentioned`: it changes how a surface looks, or is left out
@@ -14,6 +18,18 @@ class Losses:
 
     def mention(self, what, name):
         self.mentioned.setdefault(what, {})[name] = None
+
+    def take_news(self, other):
+        """Adds what `other` has and this has not, numbers in the texts apart: of one scene a little later. Returns that alone."""
+        news = Losses()
+        for mine, theirs, new in ((self.refused, other.refused, news.refused), (self.mentioned, other.mentioned, news.mentioned)):
+            known = {(_NUMBER.sub("", what), name) for what, names in mine.items() for name in names}
+            for what, names in theirs.items():
+                for name in names:
+                    if (_NUMBER.sub("", what), name) not in known:
+                        for into in (mine, new):
+                            into.setdefault(what, {})[name] = None
+        return news
 
 
 def together(several):

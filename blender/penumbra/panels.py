@@ -4,7 +4,7 @@ of add-ons."""
 
 import bpy
 
-from . import program
+from . import motion, program
 
 ENGINE = "PENUMBRA"
 # Panels of Blender for unsupported features, or replaced by one of the add-on's.
@@ -75,6 +75,25 @@ class PENUMBRA_PT_sampling(_Panel, bpy.types.Panel):
             layout.prop(settings, "pixel_filter")
             if settings.pixel_filter == program.BLACKMAN_HARRIS:
                 layout.prop(settings, "filter_width")
+
+
+class PENUMBRA_PT_motion_blur(_Panel, bpy.types.Panel):
+    bl_label = "Motion Blur"
+    bl_context = "render"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw_header(self, context):
+        self.layout.prop(context.scene.render, "use_motion_blur", text="")
+
+    def draw(self, context):
+        scene, layout = context.scene, self.split_layout()
+        layout.active = scene.render.use_motion_blur
+        layout.prop(scene.penumbra, "motion_samples")
+        owner = motion.position_owner(scene)
+        if owner is not None:
+            layout.prop(owner, "motion_blur_position", text="Position")
+        layout.prop(scene.render, "motion_blur_shutter")
+        layout.template_curve_mapping(scene.render, "motion_blur_shutter_curve")
 
 
 class PENUMBRA_PT_bake(_Panel, bpy.types.Panel):
@@ -267,8 +286,8 @@ class PENUMBRA_PT_override(_Panel, bpy.types.Panel):
         self.split_layout().prop(context.view_layer, "material_override")
 
 
-CLASSES = (PENUMBRA_PT_shadows, PENUMBRA_PT_sampling, PENUMBRA_PT_bake, PENUMBRA_PT_film, PENUMBRA_PT_light, PENUMBRA_PT_spot,
-           PENUMBRA_PT_light_nodes, PENUMBRA_PT_surface, PENUMBRA_PT_material_settings, PENUMBRA_PT_world,
+CLASSES = (PENUMBRA_PT_shadows, PENUMBRA_PT_sampling, PENUMBRA_PT_motion_blur, PENUMBRA_PT_bake, PENUMBRA_PT_film, PENUMBRA_PT_light,
+           PENUMBRA_PT_spot, PENUMBRA_PT_light_nodes, PENUMBRA_PT_surface, PENUMBRA_PT_material_settings, PENUMBRA_PT_world,
            PENUMBRA_PT_visibility, PENUMBRA_PT_passes, PENUMBRA_PT_override)
 
 

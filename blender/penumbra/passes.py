@@ -27,9 +27,10 @@ def layer_of(name):
     return plain.encode()[:_LONGEST_LAYER].decode("utf-8", "ignore")
 
 
-def matte_groups(name, pixel_samples):
-    """Returns the names of a matte's passes: with one view sample a pixel there is one object a pixel, with more up to six."""
-    return [f"{name}{group:02}" for group in range(1 if int(pixel_samples) == 1 else 3)]
+def matte_groups(name, view_samples):
+    """Returns the names of a matte's passes: with one view sample a pixel, at one moment, there is one object a pixel, with more
+    up to six."""
+    return [f"{name}{group:02}" for group in range(1 if int(view_samples) == 1 else 3)]
 
 
 # Number of bytes of a whole name, layer and channel included ("ViewLayer.Light Key.R"), kept by Blender.

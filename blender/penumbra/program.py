@@ -28,8 +28,8 @@ def find(wanted):
 _WITHOUT_LIGHTS = "beauty,V,Z,P,N,Crypto*"
 
 
-def arguments(program, scene, picture, size, settings):
-    """Returns the command that renders. `settings`: exactness, light_samples, method, pixel_samples, pixel_filter,
+def arguments(program, scene, picture, size, settings, moments=()):
+    """Returns the command that renders, the mean over the files of `moments` if there are any. `settings`: exactness, light_samples, method, pixel_samples, pixel_filter,
     filter_width, light_cutoff, shading_normals, lenient, device, light_passes."""
     command = [program, "render", scene, "-o", picture, "--no-studio", "--size", f"{size[0]}x{size[1]}"]
     command += _of_shadows(settings)
@@ -39,6 +39,8 @@ def arguments(program, scene, picture, size, settings):
             command += ["--pixel-filter", "blackman-harris", "--filter-width", f"{settings.filter_width:.6g}"]
     if settings.light_cutoff > 0:
         command += ["--light-cutoff", f"{settings.light_cutoff:.6g}"]
+    for moment in moments:
+        command += ["--moment", moment]
     command += _of_surfaces(settings)
     if not settings.light_passes:
         command += ["--layers", _WITHOUT_LIGHTS]
@@ -73,18 +75,18 @@ _IN_BLENDER = (
 )
 
 
-def messages(text, scene=""):
-    """Returns the warnings and the error (or None) in the program's output. `scene`: the exchange file, whose name the
-    messages omit."""
+def messages(text, *files):
+    """Returns the warnings, each once, and the error (or None) in the program's output. `files`: exchange files, whose names
+    the messages omit."""
     warnings, errors = [], []
     for line in text.splitlines():
         kind, _, what = line.removeprefix("penumbra: ").partition(": ")
-        for name in (scene, os.path.basename(scene)) if scene else ():
+        for name in (name for file in files for name in (file, os.path.basename(file))):
             what = what.replace(f"{name}: ", "").replace(name, "the scene")
         for pattern, words in _IN_BLENDER:
             what = pattern.sub(words, what)
         if kind == "warning":
-            warnings.append(what)
+            warnings += [what] if what not in warnings else []
         elif kind == "error":
             errors.append(what)
     return warnings, "; ".join(errors) or None

@@ -31,6 +31,8 @@ class PenumbraSettings(bpy.types.PropertyGroup):
         (program.BOX, "Box", "The mean of a pixel's own view samples"),
         (program.BLACKMAN_HARRIS, "Blackman-Harris", "As Cycles has it, neighbours' view samples included")])
     filter_width: FloatProperty(name="Width", default=1.5, min=1, max=10, description="Width of the filter, in pixels")
+    motion_samples: IntProperty(name="Moments", default=16, min=1, max=256, description="Moments of the open shutter, of which "
+                                "the picture is the mean")
     light_cutoff: FloatProperty(name="Light cutoff", default=0, min=0, max=1, precision=4, description="Leaves a light out of "
                                 "pixels where, with nothing in between, it would be at most this share of all lights; 0: nowhere")
     shading_normals: BoolProperty(name="Smooth shading", default=True, description="Cosines of smooth faces are those of "

@@ -15,6 +15,7 @@ from . import exr, graph, texels
 from .graph import At, Unknown, find_socket
 
 SAMPLED, EXACT, SEEN = "SAMPLED", "EXACT", "SEEN"
+PICTURE = "world.exr"  # name of the file
 _LARGEST = 8192  # texels a side, limit of the program
 
 
@@ -147,8 +148,8 @@ def picture(sky, mirrored):
     return values[:, ::-1] if mirrored else values
 
 
-def write(world, name, wanted, is_seen, glb, folder, losses):
-    """Adds the dome to the file, its picture to the folder. `wanted`: SAMPLED, EXACT or SEEN; `is_seen`: the film shows the world.
+def write(world, name, wanted, is_seen, glb, path, losses):
+    """Adds the dome to the file, and writes its picture, if it has one, to `path` in the same folder. `wanted`: SAMPLED, EXACT or SEEN; `is_seen`: the film shows the world.
     Returns the colour that is still to be put behind everything."""
     try:
         if world.use_nodes and world.node_tree is not None:
@@ -169,7 +170,7 @@ def write(world, name, wanted, is_seen, glb, folder, losses):
             losses.mention("is a world whose light is left out (World, Surface, Light)", name)
         if wanted == SEEN and lights is not seen:
             lights = Sky()
-        return _write(lights, seen, name, wanted, glb, folder, losses)
+        return _write(lights, seen, name, wanted, glb, path, losses)
     except Unknown as error:
         losses.refuse(f"is a world made by {error}, which is not evaluated; render it with a panoramic camera of Cycles into a "
                       "picture, and make that an Environment Texture (left out, it is black and lights nothing)", name)
@@ -178,7 +179,7 @@ def write(world, name, wanted, is_seen, glb, folder, losses):
     return (0.0, 0.0, 0.0)
 
 
-def _write(lights, seen, name, wanted, glb, folder, losses):
+def _write(lights, seen, name, wanted, glb, path, losses):
     if min(*lights.radiance, *seen.radiance) < 0:
         losses.refuse("is a world with a colour below 0", name)
         return (0.0, 0.0, 0.0)
@@ -189,15 +190,15 @@ def _write(lights, seen, name, wanted, glb, folder, losses):
             file, matrix = None, numpy.eye(4).tolist()
         else:
             matrix, mirrored = placed(looked_up(lights))
-            file = _save(picture(lights, mirrored), folder)
+            file = _save(picture(lights, mirrored), path)
         glb.dome(name, matrix, lights.radiance, file, seen.image is not None, wanted == SAMPLED)
     return seen.radiance if seen.image is None else (0.0, 0.0, 0.0)
 
 
-def _save(values, folder):
-    """Writes a picture's file. A program that reads meanwhile gets either the complete earlier file or the complete new one."""
-    path = os.path.join(folder, "world.exr")
+def _save(values, path):
+    """Writes a picture's file. A program that reads meanwhile gets either the complete earlier file or the complete new one.
+    Returns the file's name."""
     with open(path + ".part", "wb") as out:
         out.write(exr.encoded({letter: values[..., number] for number, letter in enumerate("RGB")}))
     os.replace(path + ".part", path)
-    return "world.exr"
+    return os.path.basename(path)

@@ -10,35 +10,13 @@ import numpy
 from gpu_extras.presets import draw_texture_2d
 
 from . import glb, losses, program, serving, settings
+from .changes import Changes, key_of
 from .export import SceneWriter
 from .viewpoint import Viewpoint
 
 _WORLD = "World"  # name of the world's thing
 _views = weakref.WeakSet()
 _TICK = 1 / 60  # seconds
-
-
-def _key(block):
-    return block.bl_rna.identifier, block.name_full
-
-
-class Changes:
-    """Changes that a dependency graph reports, by kind and name."""
-
-    def __init__(self, depsgraph):
-        self.blocks, self.all = set(), False
-        for update in depsgraph.updates:
-            block = update.id
-            if isinstance(block, (bpy.types.Image, bpy.types.Texture)) or \
-                    (isinstance(block, bpy.types.NodeTree) and not block.is_embedded_data):
-                self.all = True  # the objects with these materials are unknown here
-            elif not isinstance(block, bpy.types.Object) or update.is_updated_geometry or update.is_updated_shading:
-                self.blocks.add(_key(block))
-
-    def touch(self, thing, override):
-        """Returns whether an object's appearance, apart from its position, has changed. `override`: material of all surfaces, or None."""
-        blocks = [thing, thing.data, override, *(slot.material for slot in thing.material_slots)]
-        return self.all or any(block is not None and _key(block) in self.blocks for block in blocks)
 
 
 def _thing_of(instance):
@@ -108,7 +86,8 @@ class View:
         """Sends the things of the scene that have changed."""
         wanted = depsgraph.scene.penumbra
         self._start(wanted)
-        changes, marks, touched = Changes(depsgraph), {}, set()
+        changes, marks, touched = Changes(), {}, set()
+        changes.note(depsgraph)
         layer = depsgraph.view_layer_eval
         for thing, instance in _shown(depsgraph):
             marks.setdefault(thing, []).append(_mark(instance, layer))
@@ -116,7 +95,7 @@ class View:
                 touched.add(thing)
         world = _world_of(depsgraph)
         marks[_WORLD] = (world.name_full if world is not None else "", wanted.world, depsgraph.scene.render.film_transparent)
-        if changes.all or (world is not None and _key(world) in changes.blocks):
+        if changes.all or (world is not None and key_of(world) in changes.blocks):
             touched.add(_WORLD)
         touched |= {thing for thing, mark in marks.items() if self._marks.get(thing) != mark}
         self._put(depsgraph, touched, wanted)

@@ -6,7 +6,9 @@
 #include "session/pictures/frame_render.hpp"
 #include "session/pictures/request.hpp"
 
+#include <functional>
 #include <optional>
+#include <vector>
 
 namespace penumbra::session {
 
@@ -15,5 +17,12 @@ namespace penumbra::session {
 /// (ReadOptions::ahead); null: none. Throws UsageError, InputError or ResourceError.
 PictureScene read_picture_scene(const RunOptions& run, std::optional<double> time, const PictureRequest& request,
                                 scenes::ScenesAhead* ahead = nullptr);
+
+/// Returns functions that return the scenes in the files of --moment, for Frame::moments: to be called in their order,
+/// once each. While the caller works on one scene the next file is read, by a process of its own, so memory holds two.
+/// `own`: SCENE as it was read; its origin becomes that of all moments, so that what stands still has the same scene
+/// floats in each. The other arguments must outlive the functions, which throw as read_picture_scene() does.
+std::vector<std::function<PictureScene()>> moments_in_files(const PictureOptions& options,
+                                                            const PictureRequest& request, PictureScene& own);
 
 }  // namespace penumbra::session

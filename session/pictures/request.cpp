@@ -14,6 +14,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <utility>
 #include <variant>
 
@@ -60,15 +61,30 @@ void parse_means(const PictureOptions& options, PictureRequest& request) {
     request.light_cutoff = *cutoff;
   }
   request.moments = parse_count(options.motion_samples, "--motion-samples", 256, "a number from 1 to 256");
+  if (!options.moments.empty()) request.moments = static_cast<std::uint32_t>(options.moments.size());
   const auto shutter = parse_number(options.shutter.empty() ? "0.5" : options.shutter);
   if (!shutter || !(*shutter >= 0 && *shutter <= 100))
     throw UsageError("--shutter {}: expected frames from 0 to 100, such as 0.5", options.shutter);
   request.shutter_frames = *shutter;
-  if (!options.bits.empty() && (samples > 1 || request.moments > 1))
+  if (!options.bits.empty() && (samples > 1 || request.moments > 1 || !options.moments.empty()))
     throw UsageError(
-        "--bits: answers are of pixels' centres at one moment; leave out --pixel-samples and --motion-samples");
-  if (request.moments > 1 && options.frames.empty() && !options.frame)
+        "--bits: answers are of pixels' centres at one moment; leave out --pixel-samples, --motion-samples and "
+        "--moment");
+  if (request.moments > 1 && options.moments.empty() && options.frames.empty() && !options.frame)
     throw UsageError("--motion-samples {} needs a frame: --frame or --frames", options.motion_samples);
+}
+
+/// Throws UsageError for other moments beside those of --moment.
+void check_moments(const PictureOptions& options) {
+  if (options.moments.empty()) return;
+  if (options.frame || !options.frames.empty() || !options.motion_samples.empty() || !options.shutter.empty())
+    throw UsageError(
+        "--moment: the files are the moments of the open shutter; leave out --frame, --frames, --motion-samples and "
+        "--shutter");
+  if (options.run.camera == "all") throw UsageError("--moment: the moments are read for one camera; name one");
+  constexpr std::size_t kMost = 256;
+  if (options.moments.size() > kMost)
+    throw UsageError("--moment: {} files; up to {} moments are taken", options.moments.size(), kMost);
 }
 
 /// Reads --aperture and --focus-distance.
@@ -174,6 +190,7 @@ PictureRequest parse_request(const PictureOptions& options) {
       !options.run.light_samples.empty() || !options.run.sample_pattern.empty() || !options.bits.empty();
   request.exposure = parse_exposure(options.exposure);
   request.seconds_per_frame = 1 / parse_fps(options.fps);
+  check_moments(options);
   parse_means(options, request);
   parse_lens(options, request);
   request.instances = parse_instances(options.instances, request.wish);
@@ -242,6 +259,7 @@ OutputFiles outputs_of(const PictureOptions& options, const std::vector<std::opt
     }
   }
   outputs.refuse_inputs({&options.run.scene, 1});
+  outputs.refuse_inputs(options.moments);
   return outputs;
 }
 

@@ -23,7 +23,8 @@ struct PictureOptions {
   RunOptions run;
   std::string method, exposure, frames, fps, pixel_samples, pixel_filter, filter_width, pixel_tolerance, light_cutoff,
       motion_samples, shutter, aperture, focus_distance, instances;
-  std::optional<std::string> frame;  ///< for `render` alone
+  std::optional<std::string> frame;            ///< for `render` alone
+  std::vector<std::filesystem::path> moments;  ///< --moment: files of the scene at moments of the open shutter
   bool skip_existing = false;
   std::map<std::string, std::string> camera_words;  ///< --camera all: of the scene's cameras, set after the scene is
                                                     ///< read

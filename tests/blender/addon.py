@@ -20,7 +20,7 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 
 import numpy  # noqa: E402
 
-from penumbra import exr, frames, glb, lamps, losses, passes, program, space  # noqa: E402
+from penumbra import exr, frames, glb, lamps, losses, motion, passes, program, space  # noqa: E402
 from stubs import box  # noqa: E402
 
 IDENTITY = [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]
@@ -99,6 +99,93 @@ class Lenses(unittest.TestCase):
         render = box(pixel_aspect_x=1, pixel_aspect_y=1, use_multiview=False, use_border=True, border_min_x=0.1,
                      border_max_x=0.7, border_min_y=0, border_max_y=1)
         self.assertEqual(frames.region_of(render, 100, 30), frames.Region((100, 30), (60, 30), 10, 0))
+
+
+class Motion(unittest.TestCase):
+    def test_moments_are_middles_of_equal_parts(self):
+        for position, first in (("START", 7.125), ("CENTER", 6.625), ("END", 6.125)):
+            found = motion.moments(7, 1, position, 4, [1] * 257)
+            numpy.testing.assert_allclose(found, [first + i / 4 for i in range(4)], rtol=1e-14)
+        self.assertEqual(motion.moments(7, 1, "CENTER", 1, [1] * 257), [7])
+        numpy.testing.assert_allclose(motion.moments(0, 2, "START", 2, [0] * 257), [0.5, 1.5])  # never open: evenly
+
+    def test_a_shutter_that_opens_slowly(self):
+        """Open by t at time t: by then t² of all has been exposed."""
+        found = motion.moments(0, 1, "START", 8, numpy.linspace(0, 1, 257))
+        numpy.testing.assert_allclose(found, numpy.sqrt((numpy.arange(8) + 0.5) / 8), atol=1 / 256 ** 2)
+
+    def test_times_before_the_first_frame(self):
+        self.assertEqual([motion.whole_and_rest(time) for time in (2.25, -0.25, -3)], [(2, 0.25), (-1, 0.75), (-3, 0)])
+
+    def test_whose_position_counts(self):
+        cycles, eevee = box(motion_blur_position="END"), box(motion_blur_position="START")
+        scene = box(render=box(motion_blur_shutter=1), cycles=cycles, eevee=eevee)
+        self.assertIs(motion.position_owner(scene), cycles)
+        self.assertIs(motion.position_owner(box(render=box(), eevee=eevee)), eevee)
+        self.assertIs(motion.position_owner(box(render=cycles, cycles=eevee)), cycles)  # since Blender 4.2
+        self.assertIsNone(motion.position_owner(box(render=box())))
+
+    def test_another_moment_is_a_file_of_its_own(self):
+        """A thing that moves, one that is there at the second moment alone, and one whose mesh stays in the first file: the
+        picture is that of one file with all of them."""
+        settings = box(method="", exactness=program.EXACT, light_samples=1, pixel_samples=1, pixel_filter=program.BOX, filter_width=1.5,
+                       light_cutoff=0, shading_normals=False, lenient=False, device="", light_passes=True)
+
+        def square(file, name, height, half):
+            rows = numpy.array([(-half, -half, height), (half, -half, height), (half, half, height), (-half, half, height)], "<f4")
+            place = file.accessor(rows.tobytes(), "VEC3", bounds=(rows.min(axis=0), rows.max(axis=0)))
+            indices = file.accessor(numpy.array((0, 1, 2, 0, 2, 3), "<u4").tobytes(), "SCALAR", glb.UNSIGNED)
+            return file.mesh(name, [{"attributes": {"POSITION": place}, "indices": indices, "material": file.material(name, (0.7, 0.6, 0.5))}])
+
+        def place(file, floor, block, x):
+            file.node("Floor", IDENTITY, mesh=floor)
+            file.node("Block", at(x, 0, 0), mesh=block)
+            file.area_lamp("Key", at(0, 0, 4), "rectangle", (1, 1), (5, 5, 5))
+            file.camera("Shot", at(0, 0, 6), 2, (0, 0), half_angle=0.4)
+        with tempfile.TemporaryDirectory() as folder:
+            first, whole = glb.Glb(), glb.Glb()
+            place(first, *(numbers := (square(first, "Floor", 0, 3), square(first, "Block", 1, 0.5))), 0.5)
+            second = first.without_nodes("still.bin")
+            self.assertNotEqual(first.placed(), second.placed())
+            place(second, *numbers, -0.75)
+            second.node("Roof", IDENTITY, mesh=square(second, "Roof", 2, 0.25))
+            place(whole, square(whole, "Floor", 0, 3), square(whole, "Block", 1, 0.5), -0.75)
+            whole.node("Roof", IDENTITY, mesh=square(whole, "Roof", 2, 0.25))
+            same = first.without_nodes("still.bin")
+            place(same, *numbers, 0.5)
+            self.assertEqual(first.placed(), same.placed())
+            for name, data in (("still.bin", first.binary()), ("first.glb", first.encoded()), ("second.glb", second.encoded()),
+                               ("same.glb", same.encoded()), ("whole.glb", whole.encoded())):
+                with open(os.path.join(folder, name), "wb") as file:
+                    file.write(data)
+
+            def picture(name, *moments):
+                out = os.path.join(folder, "o.exr")
+                command = program.arguments(PENUMBRA, os.path.join(folder, name), out, (40, 20), settings,
+                                            [os.path.join(folder, moment) for moment in moments])
+                code, printed = program.run(command, lambda: False)
+                self.assertEqual(code, 0, printed)
+                with open(out, "rb") as file:
+                    return exr.read(file.read()).channels
+            one, other = picture("first.glb"), picture("whole.glb")
+            for name, values in picture("second.glb").items():
+                numpy.testing.assert_array_equal(values, other[name], name)
+            for name, values in picture("same.glb").items():
+                numpy.testing.assert_array_equal(values, one[name], name)
+            mean = picture("first.glb", "second.glb", "same.glb")
+            self.assertGreater(float(numpy.abs(one["V"] - other["V"]).max()), 0.5)
+            for name in ("R", "V", "Key.V"):
+                numpy.testing.assert_allclose(mean[name], (one[name] + other[name]) / 2, atol=2e-6)
+
+    def test_what_is_lost_a_moment_later_is_news_once(self):
+        all, later = losses.Losses(), losses.Losses()
+        all.refuse("is 0.5 away", "A")
+        later.refuse("is 0.25 away", "A")
+        later.refuse("is 0.25 away", "B")
+        later.mention("is metallic", "A")
+        news = all.take_news(later)
+        self.assertEqual((news.refused, news.mentioned), ({"is 0.25 away": {"B": None}}, {"is metallic": {"A": None}}))
+        self.assertEqual(losses.sentences(all.take_news(later).refused), [])
 
 
 class Space(unittest.TestCase):
@@ -283,6 +370,9 @@ class Programs(unittest.TestCase):
         alone = program.arguments("p", "s", "o", (3, 2), self.settings(light_passes=False))
         self.assertEqual(alone[10:], ["--layers", "beauty,V,Z,P,N,Crypto*", "--compression", "none"])
 
+        moved = program.arguments("p", "s", "o", (3, 2), self.settings(), ["a.glb", "b.glb"])
+        self.assertEqual(moved[8:], ["--moment", "a.glb", "--moment", "b.glb", "--normals", "geometric", "--compression", "none"])
+
     def test_matte_groups(self):
         self.assertEqual(passes.matte_groups("CryptoObject", "1"), ["CryptoObject00"])
         self.assertEqual(passes.matte_groups("CryptoObject", "4"), ["CryptoObject00", "CryptoObject01", "CryptoObject02"])
@@ -290,6 +380,8 @@ class Programs(unittest.TestCase):
     def test_messages(self):
         text = "penumbra: warning: a: b\npenumbra: something\npenumbra: error: c\n"
         self.assertEqual(program.messages(text), (["a: b"], "c"))
+        text = "".join(f"penumbra: warning: /tmp/x/moment-{i}.glb: 'Block' is metallic\n" for i in (1, 2))
+        self.assertEqual(program.messages(text, "/tmp/x/scene.glb", "/tmp/x/moment-1.glb", "/tmp/x/moment-2.glb"), (["'Block' is metallic"], None))
         text = "penumbra: error: /tmp/x/scene.glb: 'Pane' lets light through. Shadows would be wrong: --lenient renders all the same, and warns"
         self.assertEqual(program.messages(text, "/tmp/x/scene.glb")[1],
                          "'Pane' lets light through. Shadows would be wrong; 'Lenient' renders all the same")

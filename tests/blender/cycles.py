@@ -36,7 +36,11 @@ COUNTED = {"translucent", "cut_out", "world_color_counted", "world_and_lamp", "w
            "world_picture_texture_mapping", "world_picture_mirrored", "world_and_translucent", "forest"}
 # Scenes with several view samples a pixel: means are compared at every pixel. Penumbra takes 64, evenly spread; 64 random
 # ones would have twice the noise of Cycles' 256.
-BLURRED = {"depth_of_field", "orthographic_depth_of_field"}
+LENSES = {"depth_of_field", "orthographic_depth_of_field", "motion_and_lens"}
+# Scenes in motion, at pixels' centres but for the last: 64 moments, evenly spread. Cycles exposes the first 254 of 256 parts of
+# its shutter (docs/against-cycles.md, In motion), and is told of a time that is longer by as much.
+MOVING = {"motion_of_a_thing", "motion_of_the_camera", "motion_of_a_mesh", "motion_of_a_shining_thing", "motion_and_lens"}
+BLURRED = LENSES | MOVING
 # Further differences where Cycles means another shape: a point lamp of radius r at distance d is a disk to Cycles and a
 # ball here, which gives up to r² / d² more (spots' disks are in their cones); an icosphere of 1280 faces and its sphere
 # differ by 0.25 %; under the tube Cycles is 0.15 % below Lambert's closed form, which ours meets to 1e-6 (both at 509
@@ -55,19 +59,26 @@ def by_cycles(name, scene, seed, path):
     cycles.samples, cycles.seed, cycles.max_bounces = SAMPLES, seed, 0
     cycles.transparent_max_bounces, cycles.use_denoising, cycles.use_adaptive_sampling = 8, False, False
     cycles.sample_clamp_direct = cycles.light_sampling_threshold = 0
-    if name in BLURRED:
+    if name in LENSES:
         cycles.pixel_filter_type, cycles.filter_width = "BOX", 1
     else:
         cycles.pixel_filter_type, cycles.filter_width = "GAUSSIAN", 0.01  # a box would be a whole pixel
-    return colors(channels(scene, path))
+    shutter = scene.render.motion_blur_shutter
+    scene.render.motion_blur_shutter = shutter * 256 / 254
+    try:
+        return colors(channels(scene, path))
+    finally:
+        scene.render.motion_blur_shutter = shutter
 
 
 def by_penumbra(name, scene, path):
     scene.render.engine = "PENUMBRA"
     if name in COUNTED:
         scene.penumbra.exactness, scene.penumbra.light_samples = "SAMPLES", 4096
-    if name in BLURRED:
-        scene.penumbra.pixel_samples = "64"
+    if name in LENSES:
+        scene.penumbra.pixel_samples = "16" if name in MOVING else "64"
+    if name in MOVING:
+        scene.penumbra.motion_samples = 16 if name in LENSES else 64
     scene.view_layers[0].use_pass_normal = scene.view_layers[0].use_pass_z = True
     scene.view_layers[0].use_pass_position = True
     return channels(scene, path)

@@ -32,6 +32,8 @@ class Layout:
             raise AssertionError(f"{owner} has no {name}")
         self.shown.append(name)
 
+    template_curve_mapping = prop
+
     def template_node_view(self, tree, node, socket):
         self.shown.append(f"nodes from {socket.name}")
 
@@ -108,7 +110,8 @@ class Panels(unittest.TestCase):
         self.assertLessEqual({"world", "color"}, set(shown("world")))
         passes = {"use_pass_z", "use_pass_normal", "use_pass_position", "use_pass_cryptomatte_object", "light_passes"}
         self.assertLessEqual(passes | {"material_override"}, set(shown("view_layer")))
-        self.assertLessEqual({"exactness", "pixel_samples", "shading_normals", "film_transparent", "bake_size", "penumbra.bake"},
+        self.assertLessEqual({"exactness", "pixel_samples", "shading_normals", "film_transparent", "bake_size", "penumbra.bake",
+                              "motion_samples", "motion_blur_position", "motion_blur_shutter", "motion_blur_shutter_curve"},
                              set(shown("render")))
 
     def test_blenders_own_panels(self):

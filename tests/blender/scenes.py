@@ -203,6 +203,65 @@ def orthographic_depth_of_field():
     lamp("AREA", (1, -1, 4), (15, 15, 0), energy=300, shape="SQUARE", size=1.2)
 
 
+def keyed(owner, path, *values, frames=(1, 8)):
+    """Keys a property at these frames, linearly."""
+    for frame, value in zip(frames, values):
+        setattr(owner, path, value)
+        owner.keyframe_insert(path, frame=frame)
+    for curve in owner.id_data.animation_data.action.fcurves:
+        for key in curve.keyframe_points:
+            key.interpolation = "LINEAR"
+
+
+def in_motion():
+    """The stage under its lamp, in frame 4, at which the shutter opens for one frame."""
+    block = stage()
+    lamp("AREA", (1, -1, 4), (15, 15, 0), energy=300, shape="SQUARE", size=1.2)
+    scene = bpy.context.scene
+    scene.render.use_motion_blur, scene.render.motion_blur_shutter = True, 1
+    scene.cycles.motion_blur_position = "START"
+    scene.frame_set(4)
+    return block
+
+
+@scene
+def motion_of_a_thing():
+    keyed(in_motion(), "location", (-1.5, 0, 1), (3, 0.5, 1.4))
+
+
+@scene
+def motion_of_the_camera():
+    in_motion()
+    keyed(bpy.context.scene.camera, "location", (-1.5, -7, 5), (2, -7, 4))
+
+
+@scene
+def motion_of_a_mesh():
+    """A shape key."""
+    block = in_motion()
+    block.shape_key_add(name="Basis")
+    tall = block.shape_key_add(name="Tall")
+    for point in tall.data:
+        point.co *= 1 + 2 * point.co.z
+    keyed(tall, "value", 0, 1)
+
+
+@scene
+def motion_of_a_shining_thing():
+    """A panel that lights and moves; a thing that moves, too."""
+    keyed(in_motion(), "location", (-0.5, 0, 1), (1, 0.5, 1.2))
+    bpy.data.objects.remove(bpy.data.objects["Key"])
+    keyed(add("Panel", quad("Panel", emission((1, 0.6, 0.3), 8)), (0, 0, 4), (0, 0, 0), (0.5, 0.5, 1)), "location",
+          (-2.5, 0, 4), (3, -1, 3.5))
+
+
+@scene
+def motion_and_lens():
+    keyed(in_motion(), "location", (-1.5, 0, 1), (3, 0.5, 1.4))
+    field = bpy.data.cameras["Shot"].dof
+    field.use_dof, field.focus_distance, field.aperture_fstop, field.aperture_blades = True, 6, 0.1, 0
+
+
 @scene
 def sensor_fit():
     """The lens by the sensor's height, half the pixels, and a camera that is scaled."""

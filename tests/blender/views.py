@@ -106,10 +106,10 @@ class WithAProgram(unittest.TestCase):
 class WithoutAProgram(unittest.TestCase):
     def test_a_picture_of_the_world_is_replaced_whole(self):
         with tempfile.TemporaryDirectory() as folder:
-            self.assertEqual(sky._save(numpy.zeros((4, 8, 3)), folder), "world.exr")
+            self.assertEqual(sky._save(numpy.zeros((4, 8, 3)), os.path.join(folder, sky.PICTURE)), "world.exr")
             with open(os.path.join(folder, "world.exr"), "rb", buffering=0) as read:
                 begin = read.read(10)
-                sky._save(numpy.ones((2, 4, 3)), folder)
+                sky._save(numpy.ones((2, 4, 3)), os.path.join(folder, sky.PICTURE))
                 earlier = exr.read(begin + read.read())
             self.assertEqual(earlier.channels["R"].shape, (4, 8))
             self.assertEqual(os.listdir(folder), ["world.exr"])
