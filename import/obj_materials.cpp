@@ -59,16 +59,27 @@ std::optional<double> number_in(std::string_view text) {
   return read.ec == std::errc() ? std::optional(value) : std::nullopt;
 }
 
+/// Returns names in quotes, the first of them if there are many.
+std::string quoted(std::span<const std::string> names) {
+  constexpr std::size_t kMost = 8;
+  const std::size_t named = std::min(names.size(), kMost);
+  return fmt::format("'{}'{}", fmt::join(names.first(named), "', '"), named < names.size() ? ", …" : "");
+}
+
 }  // namespace
 
 std::optional<std::string> solid_materials_note(std::span<const std::string> materials) {
   if (materials.empty()) return std::nullopt;
-  constexpr std::size_t kMost = 8;
-  const std::size_t named = std::min(materials.size(), kMost);
   return fmt::format(
-      "materials that let light through, which is not read of this format: '{}'{}; their surfaces are taken as solid "
+      "materials that let light through, which is not read of this format: {}; their surfaces are taken as solid "
       "(glTF 2.0 keeps it)",
-      fmt::join(materials.first(named), "', '"), named < materials.size() ? ", …" : "");
+      quoted(materials));
+}
+
+std::optional<std::string> left_out_lamps_note(std::span<const std::string> lamps) {
+  if (lamps.empty()) return std::nullopt;
+  return fmt::format("lamps, which a mesh has not: {}; left out (scenes of glTF 2.0, FBX and COLLADA keep them)",
+                     quoted(lamps));
 }
 
 std::vector<std::string> transparent_materials(std::string_view obj, const mesh::InputFile& input) {

@@ -19,6 +19,7 @@
 #include "import/text.hpp"
 #include "import/unicode.hpp"
 #include "import/x3d.hpp"
+#include "mesh/import_wire.hpp"
 #include "mesh/opened_files.hpp"
 
 #include <assimp/DefaultLogger.hpp>
@@ -182,6 +183,10 @@ mesh::ImportedMesh read_with_assimp(const mesh::InputFile& input, const std::str
   mesh::ImportedMesh mesh = read_assimp_scene(*scene, file, options);
   if (parts == nullptr) {
     if (auto note = solid_materials_note(transparent_materials(*scene))) mesh.notes.push_back(*std::move(note));
+    std::vector<std::string> lamps;
+    for (const aiLight* light : std::span(scene->mLights, scene->mNumLights))
+      lamps.push_back(mesh::printable(light->mName.C_Str()));
+    if (auto note = left_out_lamps_note(lamps)) mesh.notes.push_back(*std::move(note));
   }
   const auto said = complaints.notes();
   mesh.notes.insert(mesh.notes.end(), said.begin(), said.end());

@@ -32,6 +32,7 @@ constexpr std::array<std::string_view, 17> kGroups = {
 constexpr std::array<std::string_view, 2> kTransforms = {"Transform", "CADPart"};
 /// Nodes whose surfaces are in another file or another node.
 constexpr std::array<std::string_view, 4> kElsewhere = {"Inline", "GeoLOD", "ProtoInstance", "ParticleSystem"};
+constexpr std::array<std::string_view, 3> kLamps = {"PointLight", "SpotLight", "DirectionalLight"};
 /// Nodes that refer to others by USE without showing them; sensors do so, too.
 constexpr std::array<std::string_view, 4> kTools = {"Script", "RigidBodyCollection", "CollisionCollection",
                                                     "CollisionSpace"};
@@ -81,6 +82,7 @@ class X3dReader {
     if (!ignored_.empty()) mesh.notes.push_back("ignored: " + listed(ignored_));
     const std::vector<std::string> transparent(transparent_.begin(), transparent_.end());
     if (auto note = solid_materials_note(transparent)) mesh.notes.push_back(*std::move(note));
+    if (auto note = left_out_lamps_note(lamps_)) mesh.notes.push_back(*std::move(note));
     return mesh;
   }
 
@@ -219,7 +221,14 @@ class X3dReader {
     if (may_show_surfaces(node)) {
       xml_.fail(node, "<{}> may hold surfaces, but is not supported; write what it shows as Transform and Shape", name);
     }
+    if (is_one_of(name, kLamps)) return note_lamp(node);
     ++ignored_[std::string(name)];
+  }
+  /// Keeps the name of a lamp that shines, or what kind of lamp it is if it has no name.
+  void note_lamp(const pugi::xml_node& node) {
+    if (!meant(node).attribute("on").as_bool(true)) return;
+    const std::string_view name = meant(node).attribute("DEF").value();
+    lamps_.push_back(mesh::printable(name.empty() ? local_name(node) : name));
   }
 
   /// Returns whether a node of an unsupported kind, or a node that it refers to by USE, may contain a surface.
@@ -327,6 +336,7 @@ class X3dReader {
   std::uint64_t shapes_ = 0, reached_ = 0, left_out_ = 0, curved_ = 0;
   Counts lines_, ignored_;
   std::set<std::string> transparent_;  // names of materials that let light through
+  std::vector<std::string> lamps_;     // that the file has, and that are left out
 };
 
 }  // namespace

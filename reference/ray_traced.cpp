@@ -12,6 +12,7 @@
 
 #include "base/assert.hpp"
 #include "base/error.hpp"
+#include "reference/common_answers.hpp"
 #include "reference/embree_packets.hpp"
 #include "reference/embree_scene.hpp"
 #include "reference/tracing_order.hpp"
@@ -62,7 +63,7 @@ void ignore_own_plane(const RTCFilterFunctionNArguments* hits) {
 }
 
 struct Counts {
-  std::atomic<std::uint64_t> rays = 0, short_rays = 0, horizon_pairs = 0;
+  std::atomic<std::uint64_t> rays = 0, short_rays = 0, horizon_pairs = 0, common_pairs = 0;
 };
 
 constexpr visibility::ChoiceOption kPacket{"packet",
@@ -83,7 +84,10 @@ class RayTraced final : public visibility::Method {
   void read_masks(std::span<std::uint32_t> masks) override;
   void read_visibility(std::span<float> visibility) override;
   [[nodiscard]] std::map<std::string, std::uint64_t> counters() const override {
-    return {{"rays", counts_.rays}, {"shortRays", counts_.short_rays}, {"horizonPairs", counts_.horizon_pairs}};
+    return {{"rays", counts_.rays},
+            {"shortRays", counts_.short_rays},
+            {"horizonPairs", counts_.horizon_pairs},
+            {"commonPairs", counts_.common_pairs}};
   }
   [[nodiscard]] std::uint64_t memory_bytes() const override {
     return (embree_ ? embree_->peak_bytes() : 0) + masks_.capacity() * sizeof(std::uint32_t);
@@ -94,7 +98,8 @@ class RayTraced final : public visibility::Method {
   struct Workspace {
     std::vector<glm::vec3> points, scaled;  // points of a sphere
     std::vector<std::uint32_t> above;
-    std::vector<std::uint32_t> above_all;  // of all pixels of a packet
+    std::vector<std::uint32_t> above_all;       // of all pixels of a packet
+    std::vector<std::uint32_t> clear, blocked;  // directions in which a block of pixels has one answer
   };
 
   [[nodiscard]] PixelContext context_of(const std::uint32_t* carrier_planes) const {
@@ -115,6 +120,15 @@ class RayTraced final : public visibility::Method {
   /// the tree, where the rays of one pixel part at its root. `pixels`: indices into the tile; at most kWidth.
   template <int kWidth>
   void trace_neighbours(const Tile& tile, std::span<const std::size_t> pixels, Workspace& work);
+  /// Pixels of a tile, from `top` and `left` to before `bottom` and `right`.
+  struct Block {
+    std::size_t top = 0, bottom = 0, left = 0, right = 0;
+  };
+  /// Finds the directions of a dome in which something large is in the way of all of these pixels and, where they lie
+  /// on one plane, those in which nothing is (elsewhere each pixel's neighbours may be).
+  void find_common(const Tile& tile, const Block& block, Workspace& work) const;
+  template <int kWidth>
+  void trace_to_dome(const Tile& tile, const Block& block, Workspace& work);
   template <int kWidth>
   void trace_tile(const Tile& tile);
 
@@ -124,6 +138,7 @@ class RayTraced final : public visibility::Method {
   const Light* light_ = nullptr;
   const ViewSamples* samples_ = nullptr;
   std::optional<EmbreeScene> embree_;
+  std::optional<CommonAnswers> common_answers_;  // made with the first dome
   std::vector<std::uint32_t> plane_of_primitive_;
   std::vector<glm::vec3> scaled_points_;  // points of a light that is not a sphere
   std::vector<std::uint32_t> order_;
@@ -167,6 +182,7 @@ void RayTraced::prepare_mesh(const SceneFloats& scene) {
   for (std::uint32_t i = 0; i < scene.triangles.size(); ++i) {
     if (scene.casts_shadow[i] != 0) casting.push_back(i);
   }
+  common_answers_.reset();
   embree_.reset();  // frees the old scene first, so that two are never in memory
   embree_.emplace(scene, std::move(casting), EmbreeScene::Filter::by_context);
 }
@@ -189,7 +205,11 @@ void RayTraced::prepare_light(const Light& light) {
   for (const glm::vec3& point : light.points) {
     scaled_points_.push_back(light.sun ? EmbreeRange::direction(point) : embree_->range().scaled(point));
   }
-  counts_.rays = counts_.short_rays = counts_.horizon_pairs = 0;
+  if (light.dome && !common_answers_)
+    common_answers_.emplace(*scene_, light.points);
+  else if (light.dome)
+    common_answers_->set_directions(light.points);
+  counts_.rays = counts_.short_rays = counts_.horizon_pairs = counts_.common_pairs = 0;
 }
 
 std::uint32_t RayTraced::max_tile_rows() const {
@@ -293,7 +313,9 @@ void RayTraced::trace_neighbours(const Tile& tile, std::span<const std::size_t> 
   std::array<std::uint32_t, kWidth> planes{};
   typename Packet<kWidth>::Rays rays{};
   work.above_all.assign(kWidth * words, 0);
-  std::uint64_t above_count = 0, pairs = 0;
+  std::uint64_t above_count = 0, asked_count = 0, pairs = 0;
+  const auto count_of = [](std::uint32_t word) { return static_cast<std::uint64_t>(std::popcount(word)); };
+  std::size_t known = pixels.size();  // pixel whose horizon is in work.above
   for (std::size_t lane = 0; lane < pixels.size(); ++lane) {
     const std::size_t pixel = std::size_t{tile.first_row} * samples_->width + pixels[lane];
     if (!visibility::is_receiver(*scene_, *light_, *samples_, pixel)) {
@@ -301,10 +323,19 @@ void RayTraced::trace_neighbours(const Tile& tile, std::span<const std::size_t> 
       continue;
     }
     const auto carrier = static_cast<std::uint32_t>(samples_->triangle[pixel]);
-    visibility::HorizonTest(*light_, scene_->corners(carrier), samples_->facing[pixel], bounds_)
-        .mask(light_->points, work.above);
-    std::ranges::copy(work.above, work.above_all.begin() + static_cast<std::ptrdiff_t>(lane * words));
-    for (const std::uint32_t word : work.above) above_count += static_cast<std::uint64_t>(std::popcount(word));
+    if (known == pixels.size() || samples_->triangle[pixel] != samples_->triangle[known] ||
+        samples_->facing[pixel] != samples_->facing[known]) {
+      visibility::HorizonTest(*light_, scene_->corners(carrier), samples_->facing[pixel], bounds_)
+          .mask(light_->points, work.above);
+    }
+    known = pixel;
+    for (std::size_t word = 0; word < words; ++word) {
+      const std::uint32_t above = work.above[word], asked = above & ~(work.clear[word] | work.blocked[word]);
+      above_count += count_of(above);
+      asked_count += count_of(asked);
+      mask_of(lane)[word] = above & work.clear[word];
+      work.above_all[word * kWidth + lane] = asked;
+    }
     pairs += light_->points.size();
     const glm::vec3 origin = embree_->range().scaled(samples_->p[pixel]);
     lanes(rays.org_x)[lane] = origin.x;
@@ -315,26 +346,77 @@ void RayTraced::trace_neighbours(const Tile& tile, std::span<const std::size_t> 
     planes[lane] = scene_->plane[carrier];
   }
   counts_.horizon_pairs.fetch_add(pairs - above_count, std::memory_order_relaxed);
-  counts_.rays.fetch_add(above_count, std::memory_order_relaxed);
+  counts_.rays.fetch_add(asked_count, std::memory_order_relaxed);
+  counts_.common_pairs.fetch_add(above_count - asked_count, std::memory_order_relaxed);
 
   PixelContext context = context_of(planes.data());
   alignas(64) int valid[kWidth] = {};
-  for (std::size_t sample = 0; sample < scaled_points_.size(); ++sample) {
-    const std::size_t word = sample / 32;
-    const std::uint32_t bit = 1U << (sample % 32);
-    int alive = 0;
+  for (std::size_t word = 0; word < words; ++word) {
+    std::array<std::uint32_t, kWidth> asked{}, seen{};
+    std::uint32_t left = 0;
     for (std::size_t lane = 0; lane < kWidth; ++lane) {
-      valid[lane] = (work.above_all[lane * words + word] & bit) != 0 ? -1 : 0;
-      alive |= valid[lane];
-      lanes(rays.dir_x)[lane] = scaled_points_[sample].x;
-      lanes(rays.dir_y)[lane] = scaled_points_[sample].y;
-      lanes(rays.dir_z)[lane] = scaled_points_[sample].z;
-      lanes(rays.tfar)[lane] = std::numeric_limits<float>::infinity();
+      asked[lane] = work.above_all[word * kWidth + lane];
+      left |= asked[lane];
     }
-    if (alive == 0) continue;
-    Packet<kWidth>::occluded(valid, embree_->handle(), &context.embree, &rays);
-    for (std::size_t lane = 0; lane < pixels.size(); ++lane) {
-      if (valid[lane] != 0 && lanes(rays.tfar)[lane] != kOccluded) mask_of(lane)[word] |= bit;
+    for (; left != 0; left &= left - 1) {
+      const auto bit = static_cast<std::uint32_t>(std::countr_zero(left));
+      const glm::vec3 direction = scaled_points_[32 * word + bit];
+      for (std::size_t lane = 0; lane < kWidth; ++lane) {  // without branches, so that compilers vectorise the loop
+        valid[lane] = -static_cast<int>(asked[lane] >> bit & 1U);
+        lanes(rays.dir_x)[lane] = direction.x;
+        lanes(rays.dir_y)[lane] = direction.y;
+        lanes(rays.dir_z)[lane] = direction.z;
+        lanes(rays.tfar)[lane] = std::numeric_limits<float>::infinity();
+      }
+      Packet<kWidth>::occluded(valid, embree_->handle(), &context.embree, &rays);
+      for (std::size_t lane = 0; lane < kWidth; ++lane)
+        seen[lane] |= static_cast<std::uint32_t>(lanes(rays.tfar)[lane] != kOccluded) << bit;
+    }
+    for (std::size_t lane = 0; lane < pixels.size(); ++lane) mask_of(lane)[word] |= seen[lane] & asked[lane];
+  }
+}
+
+void RayTraced::find_common(const Tile& tile, const Block& block, Workspace& work) const {
+  work.clear.assign(light_->words_per_mask(), 0);
+  work.blocked.assign(light_->words_per_mask(), 0);
+  std::uint32_t plane = SceneFloats::kNoPlane;
+  visibility::Bounds box;
+  bool is_flat = true;
+  for (std::size_t row = block.top; row < block.bottom; ++row) {
+    for (std::size_t x = block.left; x < block.right; ++x) {
+      const std::size_t pixel = (tile.first_row + row) * samples_->width + x;
+      if (!visibility::is_receiver(*scene_, *light_, *samples_, pixel)) continue;
+      const glm::vec3& p = samples_->p[pixel];
+      const std::uint32_t own = scene_->plane[static_cast<std::uint32_t>(samples_->triangle[pixel])];
+      if (plane == SceneFloats::kNoPlane) {
+        plane = own;
+        box = {p, p};
+      }
+      is_flat = is_flat && plane == own;
+      box = {glm::min(box.lower, p), glm::max(box.upper, p)};
+    }
+  }
+  if (plane == SceneFloats::kNoPlane) return;
+  common_answers_->add_blocked(box, work.blocked);
+  if (!is_flat) return;
+  for (std::size_t word = 0; word < work.clear.size(); ++word)
+    work.clear[word] = full_mask_[word] & ~work.blocked[word];
+  common_answers_->keep_clear(box, plane, work.clear);
+}
+
+template <int kWidth>
+void RayTraced::trace_to_dome(const Tile& tile, const Block& block, Workspace& work) {
+  constexpr std::size_t kRows = kWidth >= 16 ? 4 : kWidth >= 4 ? 2 : 1, kColumns = kWidth / kRows;
+  find_common(tile, block, work);
+  std::vector<std::size_t> neighbours;
+  for (std::size_t top = block.top; top < block.bottom; top += kRows) {
+    for (std::size_t left = block.left; left < block.right; left += kColumns) {
+      neighbours.clear();
+      for (std::size_t row = top; row < std::min(top + kRows, block.bottom); ++row) {
+        for (std::size_t x = left; x < std::min(left + kColumns, block.right); ++x)
+          neighbours.push_back(row * samples_->width + x);
+      }
+      trace_neighbours<kWidth>(tile, neighbours, work);
     }
   }
 }
@@ -345,18 +427,15 @@ void RayTraced::trace_tile(const Tile& tile) {
   const tbb::blocked_range2d<std::size_t> pixels(0, tile.row_count, 8, 0, samples_->width, 32);
   tbb::parallel_for(pixels, [&](const tbb::blocked_range2d<std::size_t>& block) {
     const std::vector<glm::vec3> room(is_body(light_->kind) ? light_->sample_count() : 0);
-    Workspace work{room, room, std::vector<std::uint32_t>(words), {}};
+    Workspace work{room, room, std::vector<std::uint32_t>(words), {}, {}, {}};
     if (light_->dome) {
-      constexpr std::size_t kRows = kWidth >= 16 ? 4 : kWidth >= 4 ? 2 : 1, kColumns = kWidth / kRows;
-      std::vector<std::size_t> neighbours;
+      constexpr std::size_t kRows = 8, kColumns = 16;
       for (std::size_t top = block.rows().begin(); top < block.rows().end(); top += kRows) {
         for (std::size_t left = block.cols().begin(); left < block.cols().end(); left += kColumns) {
-          neighbours.clear();
-          for (std::size_t row = top; row < std::min(top + kRows, block.rows().end()); ++row) {
-            for (std::size_t x = left; x < std::min(left + kColumns, block.cols().end()); ++x)
-              neighbours.push_back(row * samples_->width + x);
-          }
-          trace_neighbours<kWidth>(tile, neighbours, work);
+          trace_to_dome<kWidth>(
+              tile,
+              {top, std::min(top + kRows, block.rows().end()), left, std::min(left + kColumns, block.cols().end())},
+              work);
         }
       }
       return;

@@ -3,6 +3,7 @@
 penumbra_test(reference
   SOURCES
   analytic/ray_traced_closed_forms.cpp
+  property/common_answers.cpp
   property/ray_traced_pairs.cpp
   property/ray_traced_scales.cpp
   unit/hiding_objects.cpp

@@ -26,7 +26,6 @@ class DomeRays {
   void add(std::span<const SeenPoint> points, TriangleBits& seen) const;
 
  private:
-  struct Ray;
   class Walk;
   /// Effect of an object's triangles on this light.
   enum class Role : std::uint8_t { none, blocks, filters };

@@ -196,6 +196,18 @@ TEST_F(ForeignScenes, SolidMaterialsOfMeshesAreNamed) {
   EXPECT_THAT(notes("b.x3d", fmt::format(fmt::runtime(shape), 0)), Not(Contains(HasSubstr("light through"))));
 }
 
+TEST_F(ForeignScenes, LampsOfX3dMeshesAreNamed) {
+  const auto notes = [&](const char* name, const std::string& lamps) {
+    return mesh::import_mesh(write(name, "<X3D><Scene>" + lamps + R"(<Shape><IndexedFaceSet coordIndex="0 1 2 -1">
+<Coordinate point="0 0 0 1 0 0 0 1 0"/></IndexedFaceSet></Shape></Scene></X3D>)"))
+        .notes;
+  };
+  EXPECT_THAT(notes("lit.x3d", R"(<PointLight DEF="Key" location="0 3 0"/><Transform translation="1 0 0"><SpotLight/>
+<DirectionalLight DEF="Off" on="false"/></Transform>)"),
+              Contains(HasSubstr("lamps, which a mesh has not: 'Key', 'SpotLight'; left out")));
+  EXPECT_THAT(notes("unlit.x3d", R"(<DirectionalLight DEF="Off" on="false"/>)"), Not(Contains(HasSubstr("lamps"))));
+}
+
 TEST_F(ForeignScenes, UsdAndAlembicAreRefusedInOneLine) {
   for (const char* name : {"a.usd", "a.usda", "a.usdc", "a.USDZ", "a.abc"}) {
     const std::string said = test::input_error([&] { read_scene(write(name, "#usda 1.0")); });

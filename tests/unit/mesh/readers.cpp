@@ -290,6 +290,23 @@ TEST_F(MeshReaders, ThreeDsChunksThatPromiseMoreThanThereIs) {
   expect_refused("length.3ds", file(3, 4000000000u), {"chunk 0x4110 at byte 26", "says that it has 4000000044 bytes"});
 }
 
+/// A lamp of 3D Studio is an object with a position, and a chunk more if it is a spot.
+TEST_F(MeshReaders, ThreeDsLampsAreNamed) {
+  const std::string positions = bytes_of(std::uint16_t{3}, 0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 1.f, 0.f);
+  const std::string faces =
+      bytes_of(std::uint16_t{1}, std::uint16_t{0}, std::uint16_t{1}, std::uint16_t{2}, std::uint16_t{0});
+  const std::string mesh = chunk_3ds(0x4100, chunk_3ds(0x4110, positions) + chunk_3ds(0x4120, faces));
+  const std::string shape = chunk_3ds(0x4000, std::string("a\0", 2) + mesh);
+  const std::string lamp = chunk_3ds(0x4000, std::string("Key\0", 4) + chunk_3ds(0x4600, bytes_of(0.f, 3.f, 0.f)));
+  const std::string spot = chunk_3ds(0x4610, bytes_of(0.f, 0.f, 0.f, 40.f, 45.f));
+  const std::string rim =
+      chunk_3ds(0x4000, std::string("Rim\0", 4) + chunk_3ds(0x4600, bytes_of(2.f, 3.f, 0.f) + spot));
+  const auto file = [](const std::string& objects) { return chunk_3ds(0x4D4D, chunk_3ds(0x3D3D, objects)); };
+  EXPECT_THAT(read("lit.3ds", file(shape + lamp + rim)).notes,
+              testing::Contains(HasSubstr("lamps, which a mesh has not: 'Key', 'Rim'; left out")));
+  EXPECT_THAT(read("unlit.3ds", file(shape)).notes, testing::Not(testing::Contains(HasSubstr("lamps"))));
+}
+
 /// Opacity of 3D Studio is a percentage of transparency.
 TEST_F(MeshReaders, ThreeDsMaterialsThatLetLightThroughAreNamed) {
   const auto file = [](std::uint16_t percent, bool used) {
