@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Measures ratios of time that the papers sell, one method's over another's, into results/time-ratios.json.
 
-  bench/time_ratios.py [PROGRAM]           about half an hour on two busy cores
+  bench/time_ratios.py [PROGRAM]           about an hour on two busy cores
   bench/time_ratios.py PROGRAM --write-scenes FOLDER      the scenes as GLB files, for a machine without the packages that hold their meshes
   bench/time_ratios.py PROGRAM --gpu FOLDER FILE.json     on a GPU, from those scenes: into FILE.json
 
@@ -29,7 +29,7 @@ ROOT = Path(__file__).resolve().parent.parent
 sys.dont_write_bytecode = True
 sys.path[:0] = [str(ROOT / "docs" / "figures"), str(ROOT / "docs" / "figures" / "papers")]
 
-from experiment import ball, bunny, scene  # noqa: E402
+from experiment import ball, bunny, cross, dot, scene  # noqa: E402
 from schwaerzler import world_of  # noqa: E402
 
 RESULT = ROOT / "bench" / "results" / "time-ratios.json"
@@ -64,8 +64,50 @@ def omni():
     return world
 
 
+def bumpy_ball(rows=90, without_front=False):
+    """A closed ball with bumps as a scene's mesh, radius about 1 and 2 above the floor, and the text of its file; `without_front` leaves out the
+    triangles that face all of a light of half-size 0.5 and height 5."""
+    def at(row, column):
+        theta, phi = pi * row / rows, pi * column / rows
+        r = 1 + 0.1 * sin(9 * theta) * sin(9 * phi) * sin(theta)
+        return r * sin(theta) * cos(phi), 2 + r * cos(theta), -r * sin(theta) * sin(phi)
+
+    def number(row, column):
+        return 1 if row == 0 else 2 if row == rows else 3 + (row - 1) * 2 * rows + column % (2 * rows)
+
+    corners = [at(0, 0), at(rows, 0)] + [at(row, column) for row in range(1, rows) for column in range(2 * rows)]
+    triangles = []
+    for row in range(rows):
+        for column in range(2 * rows):
+            a, b, c, d = (number(row + i, column + j) for i, j in ((0, 0), (1, 0), (1, 1), (0, 1)))
+            triangles += [t for t in ((a, b, c), (a, c, d)) if len(set(t)) == 3]
+
+    def faces_the_light(t):
+        p, q, r = (corners[k - 1] for k in t)
+        normal = cross([x - y for x, y in zip(q, p)], [x - y for x, y in zip(r, p)])
+        return all(dot(normal, [x - y for x, y in zip((u, 5, v), p)]) > 0 for u in (-0.5, 0.5) for v in (-0.5, 0.5))
+
+    kept = [t for t in triangles if not without_front or not faces_the_light(t)]
+    text = "".join(f"v {x:.7g} {y:.7g} {z:.7g}\n" for x, y, z in corners) + "".join(f"f {a} {b} {c}\n" for a, b, c in kept)
+    return {**scene([{"name": "ball", "file": "ball.obj"}]), "files": {"ball.obj": text}}
+
+
 def questions():
-    """(paper, question, the paper's number, scene, size, options, methods): the ratio is the first method's time over the second's."""
+    """(paper, question, the paper's number, scene, size, options, methods): the ratio is the first method's time over the second's, in a
+    scene of its own if there are two."""
+    for body, world in (("bunny", standing(bunny(), 0.5)), ("ball", standing(ball(y=1.2), 0.5))):
+        yield ("Atty et al., 3.5", f"`soft-shadow-map` with two passes over one, map 128², {body}", "1.6 to 1.8", world, 256, [],
+               ("soft-shadow-map:passes=2:size=128", "soft-shadow-map:passes=1:size=128"))
+    one_pass = "soft-shadow-map:passes=1:size="
+    for less, more, claimed in ((1, 8, "8: linear in the polygons"), (1, 2, "2: linear in the polygons")):
+        yield ("Atty et al., fig. 21", f"`soft-shadow-map`, map 128²: {more} bunnies ({70 * more}k triangles) over {less} ({70 * less}k)", claimed,
+               (bunnies(more), bunnies(less)), 256, [], (one_pass + "128", one_pass + "128"))
+    for size, claimed in ((256, "4: linear in the map's pixels"), (512, "16: linear in the map's pixels")):
+        yield ("Atty et al., fig. 22", f"`soft-shadow-map`, 24k triangles, a ball: map {size}² over 128²", claimed,
+               scene([ball(segments=156)]), 256, [], (f"{one_pass}{size}", one_pass + "128"))
+    for size in (64, 128, 256):
+        yield ("Atty et al., fig. 24 (a)", f"`soft-shadow-map`, map {size}², a ball: light of half-size 1 over 0.1", "above 1",
+               (scene([ball()], half=1), scene([ball()], half=0.1)), 256, [], (f"{one_pass}{size}", f"{one_pass}{size}"))
     for count in (1, 2, 4, 8):
         yield ("Atty et al., fig. 25", f"`soft-shadow-map` (two passes, 210²) over `soft-volume`, {count} bunn{'y' if count == 1 else 'ies'}, {70 * count}k triangles",
                "falls with the polygons, below 1", bunnies(count), 256, [],
@@ -84,6 +126,9 @@ def questions():
            ("packet:size=512", "contour:size=512"))
     yield ("Yang et al., fig. 1 (b)", "`packet` over `contour`, map 512², `scenes/textured-light.json`, a window of nine panes", "0.1", "scenes/textured-light.json", 96, [],
            ("packet:size=512", "contour:size=512"))
+    for size in (96, 384):
+        yield ("Yang et al., fig. 12", f"`packet` without hierarchy, packets of 8 × 8 over 2 × 2, map 512², bunny, {size}² pixels", "falls as pictures grow",
+               standing(bunny(), 0.5), size, [], ("packet:hierarchy=off:packet=8x8:size=512", "packet:hierarchy=off:packet=2x2:size=512"))
     for layers in (2, 3):
         yield ("Bavoil et al., fig. 6", f"`backproject-peel` with {layers} layers over 1, bunny on the floor, map 512²", "1.42 to 1.54 with 3", standing(bunny(), 0.5), 128, [],
                (f"backproject-peel:size=512:layers={layers}", "backproject-peel:size=512:layers=1"))
@@ -94,6 +139,13 @@ def questions():
            ("vssm:moments=csm:size=1024", "vssm:moments=esm:size=1024"))
     yield ("course notes, 5.3.2.3", "`soft-volume` by table over by arc cosines, a ball", "above 1", standing(ball(y=1.2), 0.5), 512, [],
            ("soft-volume:coverage=table", "soft-volume"))
+    yield ("course notes, 5.3.3.2", "`view-sample` without the triangles that face all of the light over all of them, a bumpy ball of 32k triangles", "0.5",
+           (bumpy_ball(without_front=True), bumpy_ball()), 256, ["--light-samples", "256"], ("view-sample", "view-sample"))
+
+
+def scenes_of(world):
+    """Both methods' scenes."""
+    return world if isinstance(world, tuple) else (world, world)
 
 
 def processor_seconds(command):
@@ -144,13 +196,18 @@ def write_scenes(program, to):
     to.mkdir(parents=True, exist_ok=True)
     for number, (_, _, _, world, _, _, _) in enumerate(questions()):
         with tempfile.TemporaryDirectory() as name:
-            subprocess.run([program, "-q", "convert", scene_in(Path(name), world), "-o", to / f"{number}.glb"], check=True)
+            for k, one in enumerate(scenes_of(world)):
+                subprocess.run([program, "-q", "convert", scene_in(Path(name), one), "-o", to / f"{number}-{k}.glb"], check=True)
 
 
 def scene_in(folder, world):
+    """Writes a scene, and the files that it names, into a folder."""
     if not isinstance(world, dict):
         return ROOT / world
-    (folder / "scene.json").write_text(json.dumps(world), encoding="utf-8")
+    folder.mkdir(exist_ok=True)
+    for name, text in world.get("files", {}).items():
+        (folder / name).write_text(text, encoding="utf-8")
+    (folder / "scene.json").write_text(json.dumps({key: value for key, value in world.items() if key != "files"}), encoding="utf-8")
     return folder / "scene.json"
 
 
@@ -159,8 +216,7 @@ def measure_gpu(program, commit, scenes, result):
     rows = []
     for number, (paper, question, claimed, _, _, more, methods) in enumerate(questions()):
         with tempfile.TemporaryDirectory() as name:
-            folder, file = Path(name), scenes / f"{number}.glb"
-            turns = [[on_gpu(program, file, folder, method, 512, more) for method in methods] for _ in range(TURNS)]
+            turns = [[on_gpu(program, scenes / f"{number}-{k}.glb", Path(name), method, 512, more) for k, method in enumerate(methods)] for _ in range(TURNS)]
         whole, passes = (of_turns([[method[k] for method in turn] for turn in turns]) for k in range(2))
         rows.append([paper, question, claimed, whole[0], passes[0], passes[1], whole[2], passes[2]])
         print(" | ".join(rows[-1]), flush=True)
@@ -178,10 +234,10 @@ def measure(program, commit):
             continue
         with tempfile.TemporaryDirectory() as name:
             folder = Path(name)
-            scene_file = scene_in(folder, world)
+            asked_of = [(scene_in(folder / str(k), one), folder, method, size, more) for k, (one, method) in enumerate(zip(scenes_of(world), methods))]
             # About a second of runs, so that a clock tick counts for nothing.
-            runs = {method: max(1, min(20, round(1 / max(of_a_run(program, scene_file, folder, method, size, more, 1), 0.05)))) for method in methods}
-            seconds = [[of_a_run(program, scene_file, folder, method, size, more, runs[method]) for method in methods] for _ in range(TURNS)]
+            runs = [max(1, min(20, round(1 / max(of_a_run(program, *one, 1), 0.05)))) for one in asked_of]
+            seconds = [[of_a_run(program, *one, count) for one, count in zip(asked_of, runs)] for _ in range(TURNS)]
         rows[question] = [paper, question, claimed, *of_turns(seconds), commit]
         print(" | ".join(rows[question]), flush=True)
         write(RESULT, {"commit": commit, "machine": f"{device} on {cpu}, 2 threads that other programs used as well", "command": "bench/time_ratios.py",

@@ -78,6 +78,25 @@ class FilteredFits(unittest.TestCase):
             self.assertLess(errors[2], errors[0] / 3, fit)
             self.assertLess(errors[2], 0.01, fit)
 
+    def test_one_slice_of_pcf_is_one_window_but_for_its_margin(self):
+        # A slice leaves as many texels free on every side as pcf taps beside a receiver, and one more; a window one, and takes in the casters
+        # there. With that many texels more a slice has the window's texels, if no caster is beside the receivers: the floor, which is
+        # wider than what pixels show of it, casts nothing here.
+        for name in ("plate", "two plates"):
+            scene = scene_of(SCENES[name])
+            scene["meshes"][0]["castsShadow"] = False
+            scene["camera"] = {"eye": [0, 12, 0.01], "target": [0, 0, 0], "verticalFov": 60}
+            for window in (1, 3, 7):
+                render = lambda options: penumbra.render(penumbra.Scene.from_dict(scene), size=(64, 64), method="pcf",
+                                                         options=options | {"window": str(window)})
+                view = render({"fit": "view", "size": "128"})
+                slices = [render({"fit": "cascades", "cascades": "1", "size": str(size)}) for size in (128 + 2 * (window // 2), 128)]
+                here = floor_of(view)
+                off, moved = (int((one.V != view.V)[here].sum()) for one in slices)
+                print(f"pcf, window {window}, {name}: of {here.sum()} pixels {off} off with the window's texels, {moved} with as many texels")
+                self.assertGreater(((view.V > 0) & (view.V < 1))[here].sum() if window > 1 else (view.V < 1)[here].sum(), 10)
+                self.assertEqual(off, 0, (name, window))
+
 
 if __name__ == "__main__":
     unittest.main()
