@@ -6,6 +6,9 @@
 //   Kernel next_kernel(MapFace face, uint turn) a kernel after the first, on turns 1, 2 ...; empty: none
 // Parts are added as integers: the result does not depend on their order, nor on the number of rows of the map
 // processed at a time.
+#ifdef SORTS_OUT
+#include "maps/host/group_sort_main.glsl"
+#else
 shared uint sum_low, sum_high;  // sum_low + 2^15 sum_high
 uint sum = 0;                   // of this invocation
 
@@ -13,6 +16,7 @@ void before_tiles() {}
 void look_at(MapFace face, uvec2 cell) { sum = min(sum + hidden_by(face, cell), kWholeLight); }
 
 #include "maps/host/group_tiles.glsl"
+#include "maps/host/group_faces.glsl"
 
 void main() {
   const uint i = this_receiver();
@@ -24,15 +28,7 @@ void main() {
   const bool receives = receiver.n != vec3(0.0);
   const bool reached = receives && ask(receiver);
   if (reached) {
-    for (uint number = 0; number < asked.side.face_count; ++number) {
-      const MapFace face = face_of(asked.side, 0, lookup.size, number);
-      Kernel kernel = kernel_of(face);
-      look_at_kernel(face, kernel);
-      for (uint turn = 1; !is_empty(kernel); ++turn) {
-        kernel = next_kernel(face, turn);
-        if (!is_empty(kernel)) look_at_kernel(face, kernel);
-      }
-    }
+    look_at_faces();
     if (all_hidden) sum = kWholeLight;
     atomicAdd(sum_low, sum & 32767u);
     atomicAdd(sum_high, sum >> 15);
@@ -57,3 +53,4 @@ void main() {
   if (receives) v = reached ? visible_above(float(left) / float(kWholeLight), share_above()) : 0.0;
   results[result] = floatBitsToUint(v);
 }
+#endif

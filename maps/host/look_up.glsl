@@ -7,10 +7,13 @@
 // d: the receiver from the light point, m: its normal away from the light, both in the light's basis. The receiver is
 // on an emitting side. If many texels are processed for one receiver by a workgroup, the shader defines
 // GROUP_A_RECEIVER before including this file: group_scalar_main.glsl and group_mask_main.glsl list their requirements.
-// If a workgroup processes a packet of pixels, the shader defines GROUP_A_PACKET, and has its own main.
+// If a workgroup processes a packet of pixels, the shader defines GROUP_A_PACKET, and has its own main. Either defines
+// LISTED_GROUPS if it has a sorting pass (group_list.glsl).
 #include "maps/host/map_view.shared.h"
 
-#ifdef GROUP_A_PACKET
+#ifdef SORTS_OUT
+layout(local_size_x = kLookupGroup) in;
+#elif defined(GROUP_A_PACKET)
 layout(local_size_x_id = 0) in;  // a subgroup
 #elif defined(GROUP_A_RECEIVER)
 layout(local_size_x = 64) in;  // several subgroups: each may take as many turns of loops as a driver lets it
@@ -37,7 +40,11 @@ layout(scalar, push_constant) uniform Push {
 
 uint receiver_plane, receiver_object;  // of the receiver, set by scalar_main.glsl as in Receiver
 
+#ifdef LISTED_GROUPS
+#include "maps/host/group_list.glsl"
+#else
 uint this_group() { return gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x; }
+#endif
 
 // Returns the index of the receiver of this invocation, or of this workgroup, counted from the part's first.
 uint this_receiver() {

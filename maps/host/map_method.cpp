@@ -25,6 +25,7 @@
 #include <iterator>
 #include <limits>
 #include <map>
+#include <optional>
 #include <utility>
 
 namespace penumbra::maps {
@@ -42,7 +43,8 @@ class MapMethod final : public visibility::Method, public visibility::PassesTria
         options_(options),
         casters_(device, options.size, options.rasteriser),
         constants_(constants_for(1)),
-        look_up_(make_look_up()) {
+        look_up_(make_look_up()),
+        sort_(make_sort()) {
     PENUMBRA_ASSERT(!options_.fit.sees_camera() || (recipe_.points == MapPoints::centre && recipe_.sub_lights == 1),
                     "{}: only maps from the light's centre are fitted to a camera", recipe_.description.name);
     if (const std::uint32_t least = 2 * recipe_.beside_texels + 4; options_.fit.has_faces() && options_.size < least) {
@@ -78,11 +80,14 @@ class MapMethod final : public visibility::Method, public visibility::PassesTria
   [[nodiscard]] bool gives_masks() const { return recipe_.description.output == visibility::Output::mask; }
   /// Returns the number of result words of a pixel: its mask, or V.
   [[nodiscard]] std::uint32_t words_per_pixel() const { return gives_masks() ? light_->words_per_mask() : 1; }
+  [[nodiscard]] bool sorts_out() const { return !recipe_.sort_out.empty(); }
   /// Returns the bytes of results of `pixels` pixels; with workgroups that loop, two words a pixel more, in which
-  /// workgroups whose loops were ended mark this for this pass and the next, and the words of CutLoops.
+  /// workgroups whose loops were ended mark this for this pass and the next, and the words of CutLoops; with a list of
+  /// workgroups, another word a pixel, and GroupList.
   [[nodiscard]] std::uint64_t result_bytes(std::uint64_t pixels) const {
     if (!recipe_.group_a_receiver) return pixels * words_per_pixel() * sizeof(std::uint32_t);
-    return pixels * (words_per_pixel() + 2) * sizeof(std::uint32_t) + sizeof(gpu::CutLoops);
+    const std::uint64_t words = words_per_pixel() + (sorts_out() ? 3 : 2);
+    return pixels * words * sizeof(std::uint32_t) + (sorts_out() ? sizeof(gpu::GroupList) : 0) + sizeof(gpu::CutLoops);
   }
   /// Returns the number of light points whose maps are looked up one after the other for the same bits or V.
   [[nodiscard]] std::uint32_t point_count() const {
@@ -100,6 +105,7 @@ class MapMethod final : public visibility::Method, public visibility::PassesTria
   /// Returns the specialization constants of the look-up, for a light whose maps have `faces` faces: most have one.
   [[nodiscard]] std::vector<std::uint32_t> constants_for(std::uint32_t faces) const;
   [[nodiscard]] render::ComputePass make_look_up() const;
+  [[nodiscard]] std::optional<render::ComputePass> make_sort() const;
 
   /// Returns the number of workgroups for packets of pixels.
   [[nodiscard]] std::uint64_t packets(const Receivers::Part& part) const {
@@ -130,6 +136,11 @@ class MapMethod final : public visibility::Method, public visibility::PassesTria
   /// Runs all look-ups, and repeats workgroups whose loops were ended by the device, with fewer rows of a map at a
   /// time.
   void ask_all(const visibility::Tile& tile);
+  /// Returns the push constants of look-ups of a part of a tile, without rows.
+  [[nodiscard]] gpu::LookupPush push_of(const Receivers::Part& part, std::uint32_t first, std::uint32_t count) const;
+  [[nodiscard]] std::vector<render::BufferReference> buffers_of(const Receivers::Part& part) const;
+  /// Sorts out the workgroups of a tile that have nothing to look at, and keeps the number of the others.
+  void sort_out(const visibility::Tile& tile);
   /// Records the look-ups of a tile in the maps of `count` light points, `rows_at_once` rows of a map at a time.
   void ask(render::Commands& commands, const visibility::Tile& tile, std::uint32_t first, std::uint32_t count,
            std::uint32_t rows_at_once);
@@ -139,7 +150,9 @@ class MapMethod final : public visibility::Method, public visibility::PassesTria
   MapOptions options_;
   CasterMaps casters_;
   std::vector<std::uint32_t> constants_;
-  render::ComputePass look_up_;  ///< with the current constants
+  render::ComputePass look_up_;               ///< with the current constants
+  std::optional<render::ComputePass> sort_;   ///< of a recipe that sorts out
+  std::vector<std::uint32_t> listed_groups_;  ///< of each part of the tile, after sort_
   Receivers receivers_;
   visibility::PassTimes times_;
   std::map<std::string, std::uint64_t> counters_;
@@ -179,6 +192,17 @@ render::ComputePass MapMethod::make_look_up() const {
            .spirv = options_.fit.has_faces() ? recipe_.fitted_look_up : recipe_.look_up,
            .push_bytes = static_cast<std::uint32_t>(push_bytes),
            .constants = constants_}};
+}
+
+std::optional<render::ComputePass> MapMethod::make_sort() const {
+  if (!sorts_out()) return std::nullopt;
+  const std::size_t push_bytes = sizeof(gpu::LookupPush) + sizeof(std::uint32_t) * recipe_.push_words;
+  return std::optional<render::ComputePass>(
+      std::in_place, *device_,
+      render::ComputePassOptions{.name = recipe_.look_up_name + " (sorting)",
+                                 .spirv = recipe_.sort_out,
+                                 .push_bytes = static_cast<std::uint32_t>(push_bytes),
+                                 .constants = constants_});
 }
 
 void MapMethod::prepare_mesh(const visibility::SceneFloats& scene) {
@@ -308,6 +332,7 @@ void MapMethod::make_fitted_maps() {
   if (std::vector<std::uint32_t> constants = constants_for(faces); constants != constants_) {
     constants_ = std::move(constants);
     look_up_ = make_look_up();
+    sort_ = make_sort();
   }
 
   const std::uint64_t point_bytes =
@@ -407,34 +432,71 @@ void MapMethod::render_layers(render::Commands& commands, std::uint32_t part) {
   }
 }
 
+gpu::LookupPush MapMethod::push_of(const Receivers::Part& part, std::uint32_t first, std::uint32_t count) const {
+  return {.basis = basis_.rounded(),
+          .bias = static_cast<float>(options_.bias),
+          .size = options_.size,
+          .two_sided = is_body(light_->kind) ? 2u
+                       : light_->two_sided   ? 1u
+                                             : 0u,
+          .first_receiver = part.first_receiver,
+          .receiver_count = part.count,
+          .first_result = part.first_result,
+          .words_per_pixel = words_per_pixel(),
+          .first_point = first,
+          .point_count = count,
+          .faces = fitted_.faces,
+          .layers = recipe_.layers.count,
+          .depth_use = static_cast<std::uint32_t>(options_.depth),
+          .first_row = 0,
+          .last_row = options_.size - 1,
+          .width = receivers_.width(),
+          .own_depth = options_.receiver_plane ? 0u : 1u};
+}
+
+std::vector<render::BufferReference> MapMethod::buffers_of(const Receivers::Part& part) const {
+  std::vector<render::BufferReference> buffers{*part.receivers, *views_, *depths_, *results_};
+  if (options_.fit.has_faces()) buffers.emplace_back(faces_.table());
+  for (const std::unique_ptr<MapProduct>& product : recipe_.products) {
+    std::ranges::copy(product->buffers(), std::back_inserter(buffers));
+  }
+  return buffers;
+}
+
+void MapMethod::sort_out(const visibility::Tile& tile) {
+  const std::uint64_t list =
+      (results_->bytes() - sizeof(gpu::CutLoops) - sizeof(gpu::GroupList)) / sizeof(std::uint32_t);
+  gpu::GroupList head{.count = 0, .first = tile_pixels_ * (words_per_pixel() + 2)};
+  listed_groups_.clear();
+  for (const Receivers::Part& part : receivers_.parts(tile)) {
+    render::Commands commands(*device_);
+    commands.fill(*results_, 0, list * sizeof(std::uint32_t), sizeof(std::uint32_t));
+    commands.fill(*results_, head.first, (list + 1) * sizeof(std::uint32_t), sizeof(std::uint32_t));
+    std::vector<std::uint32_t> words = push_words(push_of(part, 0, 1));
+    words.insert(words.end(), own_push_.begin(), own_push_.end());
+    sort_->record(commands, std::as_bytes(std::span(words)), buffers_of(part),
+                  (packets(part) + gpu::kLookupGroup - 1) / gpu::kLookupGroup);
+    times_.add(commands.submit());
+    results_->read(std::span(&head.count, 1), list * sizeof(std::uint32_t));
+    listed_groups_.push_back(head.count);
+  }
+}
+
 void MapMethod::ask(render::Commands& commands, const visibility::Tile& tile, std::uint32_t first, std::uint32_t count,
                     std::uint32_t rows_at_once) {
-  for (const Receivers::Part& part : receivers_.parts(tile)) {
-    gpu::LookupPush push{.basis = basis_.rounded(),
-                         .bias = static_cast<float>(options_.bias),
-                         .size = options_.size,
-                         .two_sided = is_body(light_->kind) ? 2u
-                                      : light_->two_sided   ? 1u
-                                                            : 0u,
-                         .first_receiver = part.first_receiver,
-                         .receiver_count = part.count,
-                         .first_result = part.first_result,
-                         .words_per_pixel = words_per_pixel(),
-                         .first_point = first,
-                         .point_count = count,
-                         .faces = fitted_.faces,
-                         .layers = recipe_.layers.count,
-                         .depth_use = static_cast<std::uint32_t>(options_.depth),
-                         .first_row = 0,
-                         .last_row = 0,
-                         .width = receivers_.width(),
-                         .own_depth = options_.receiver_plane ? 0u : 1u};
-    std::vector<render::BufferReference> buffers{*part.receivers, *views_, *depths_, *results_};
-    if (options_.fit.has_faces()) buffers.emplace_back(faces_.table());
-    for (const std::unique_ptr<MapProduct>& product : recipe_.products) {
-      std::ranges::copy(product->buffers(), std::back_inserter(buffers));
+  const std::vector<Receivers::Part> parts = receivers_.parts(tile);
+  for (std::size_t k = 0; k < parts.size(); ++k) {
+    const Receivers::Part& part = parts[k];
+    gpu::LookupPush push = push_of(part, first, count);
+    const std::vector<render::BufferReference> buffers = buffers_of(part);
+    const std::uint64_t groups = sorts_out()                ? listed_groups_[k]
+                                 : recipe_.group_a_receiver ? packets(part)
+                                                            : part.groups();
+    if (groups == 0) continue;
+    if (sorts_out()) {
+      const std::uint64_t list = results_->bytes() - sizeof(gpu::CutLoops) - sizeof(gpu::GroupList);
+      commands.fill(*results_, listed_groups_[k], list, sizeof(std::uint32_t));
     }
-    const std::uint64_t groups = recipe_.group_a_receiver ? packets(part) : part.groups();
     for (std::uint32_t row = 0; row < options_.size; row += rows_at_once) {
       push.first_row = row;
       push.last_row = std::min(row + rows_at_once, options_.size) - 1;
@@ -478,6 +540,7 @@ void MapMethod::ask_all(const visibility::Tile& tile) {
     return;
   }
   PENUMBRA_ASSERT(point_count() == 1, "{}: workgroups ask one map", recipe_.description.name);
+  if (sorts_out()) sort_out(tile);
   const std::uint64_t end = results_->bytes() / sizeof(std::uint32_t) - sizeof(gpu::CutLoops) / sizeof(std::uint32_t);
   const auto set = [&](render::Commands& commands, std::uint64_t word, std::uint32_t value) {
     commands.fill(*results_, value, (end + word) * sizeof(std::uint32_t), sizeof(std::uint32_t));

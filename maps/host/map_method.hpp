@@ -123,6 +123,9 @@ struct MapRecipe {
   std::span<const std::uint32_t> look_up{};
   /// The look-up with FITTED_FACES, for options `fit` with maps other than windows. Empty: not supported by the method.
   std::span<const std::uint32_t> fitted_look_up{};
+  /// With group_a_receiver: the look-up with SORTS_OUT, which leaves workgroups that have nothing to look at out of the
+  /// look-up (group_list.glsl). Empty: all run.
+  std::span<const std::uint32_t> sort_out{};
   std::vector<std::uint32_t> constants{};  ///< specialization constants of the look-up, after those of the products
   std::vector<std::unique_ptr<MapProduct>> products{};
   /// Largest distance of the look-up's taps from a receiver's direction (FitOptions::beside), for a light. Empty: no

@@ -97,14 +97,22 @@ struct PeelPush {
   uint size;
 };
 
-// Last words of the results of look-ups by workgroups, some of whose loops a driver may end (group_kernel.glsl). Two
-// lists of one word for each receiver precede it: the workgroups that run in this pass, and those to be repeated.
+// Last words of the results of look-ups by workgroups, some of whose loops a driver may end (group_kernel.glsl). Three
+// lists of one word for each receiver precede it: the workgroups that run in this pass, those to be repeated, and the
+// numbers of those that a sorting pass left (GroupList).
 struct CutLoops {
   uint any;     // 1: some workgroup's loops were ended
   uint asked;   // first word of the first list; 0: all workgroups run
   uint to_ask;  // first word of the second list
 };
 const uint kCutLoopWords = 3;
+
+// Words before CutLoops, for look-ups with a sorting pass (group_list.glsl).
+struct GroupList {
+  uint count;  // of the part of the tile that was sorted last
+  uint first;  // first word of the list, whose entries for a part begin at the part's first result
+};
+const uint kGroupListWords = 2;
 
 // Push constants of every look-up, followed by the look-up's own.
 struct LookupPush {

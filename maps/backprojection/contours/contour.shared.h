@@ -10,6 +10,7 @@ inline constexpr uint kFlat = 0, kHierarchy = 1, kMinMax = 2;
 inline constexpr uint kMostPacketPixels = 64;
 inline constexpr uint kContourWhole = 1u << 22;
 inline constexpr uint kWorkCounts = 8;
+inline constexpr uint kTrivialPackets = 6;
 #else
 const uint kFlat = 0, kHierarchy = 1, kMinMax = 2;
 const uint kMostPacketPixels = 64;
@@ -17,6 +18,7 @@ const uint kMostPacketPixels = 64;
 // lights on either side of 0 fit.
 const int kContourWhole = 1 << 22;
 const uint kWorkCounts = 8;
+const uint kTrivialPackets = 6;  // index in WorkNumbers
 #endif
 
 struct ContourPush {

@@ -4,6 +4,7 @@
 #include "maps/backprojection/contours/contour_recipe.hpp"
 
 #include "maps/backprojection/contours/contour.comp.spv.hpp"
+#include "maps/backprojection/contours/contour_sort.comp.spv.hpp"
 #include "maps/backprojection/contours/contour.shared.h"
 #include "maps/backprojection/contours/contour_products.hpp"
 #include "maps/host/error_repairs.hpp"
@@ -39,8 +40,10 @@ visibility::ErrorRepairs contour_repairs(const visibility::MethodDescription& me
 
 MapRecipe contour_recipe(const render::Device& device, visibility::MethodDescription description,
                          const ContourChoices& choices, const visibility::ParsedOptions& options) {
-  MapRecipe recipe{
-      .description = std::move(description), .look_up_name = "contour look-up", .look_up = shaders::kContourComp};
+  MapRecipe recipe{.description = std::move(description),
+                   .look_up_name = "contour look-up",
+                   .look_up = shaders::kContourComp,
+                   .sort_out = shaders::kContourSortComp};
   recipe.whole_light = true;
   recipe.group_a_receiver = true;
   recipe.packet_width = choices.packet_width;

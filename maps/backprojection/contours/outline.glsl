@@ -57,6 +57,7 @@ vec2 vertex_on_light(uint pixel, bool own_here, ivec2 base, uint side, float dep
   return s.xy / max(s.z, kSlack * e.z);
 }
 
+#ifndef SORTS_OUT
 void add_edge(uint pixel, ivec2 base, uint edge, float depth_from, float depth_to) {
   const uint from = edge & 3, to = edge >> 2 & 3;
   const bool own_here = own_face(view.side[side_number].face_count, pixel_e[pixel]) == face_number;
@@ -109,3 +110,4 @@ void look_at_cell(ivec2 cell, uint first, uint members_asked) {
     for (uint i = 0; i < members_asked; ++i) add_edge(members[first + i], base, edges, depth.x, depth.y);
   }
 }
+#endif

@@ -98,6 +98,7 @@ void find_kernel(uint pixel) {
   if (pixel_inside[pixel] != 0 && lookup.first_row == 0) pixel_sum[pixel] += kContourWhole;
 }
 
+#ifndef SORTS_OUT
 // Yang 2009, equations 4 to 6, for members with kernels that lie in `cells` together: the probability that their
 // contours are the same, and the cost of a common search. A node costs 1; the relative costs of an edge and an area are
 // not tuned (docs/packet.md).
@@ -149,3 +150,4 @@ void choose_members(uint pixels) {
   if (view.side[side_number].face_count == 1 && is_coherent(cells)) together = 1;
   if (together == 0) ++done.parted;
 }
+#endif

@@ -7,6 +7,7 @@
 #include "maps/backprojection/patches/methods.hpp"
 
 #include "maps/backprojection/patches/backproject.comp.spv.hpp"
+#include "maps/backprojection/patches/backproject_sort.comp.spv.hpp"
 #include "maps/backprojection/patches/backproject.shared.h"
 #include "maps/backprojection/level_options.hpp"
 #include "maps/backprojection/light_table.hpp"
@@ -71,7 +72,8 @@ std::unique_ptr<visibility::Method> make_backproject(const render::Device& devic
                                                      const visibility::MethodOptions& options) {
   MapRecipe recipe{.description = backproject_description(options),
                    .look_up_name = "backproject look-up",
-                   .look_up = shaders::kBackprojectComp};
+                   .look_up = shaders::kBackprojectComp,
+                   .sort_out = shaders::kBackprojectSortComp};
   const visibility::ParsedOptions parsed = visibility::parse_options(recipe.description, options);
   recipe.whole_light = true;
   recipe.group_a_receiver = true;

@@ -6,6 +6,7 @@
 #include "maps/backprojection/patches/methods.hpp"
 
 #include "maps/backprojection/patches/backproject_peel.comp.spv.hpp"
+#include "maps/backprojection/patches/backproject_peel_sort.comp.spv.hpp"
 #include "maps/backprojection/patches/backproject_peel.shared.h"
 #include "maps/backprojection/light_table.hpp"
 #include "maps/host/map_method.hpp"
@@ -63,7 +64,8 @@ std::unique_ptr<visibility::Method> make_backproject_peel(const render::Device& 
                                                           const visibility::MethodOptions& options) {
   MapRecipe recipe{.description = backproject_peel_description(),
                    .look_up_name = "backproject-peel look-up",
-                   .look_up = shaders::kBackprojectPeelComp};
+                   .look_up = shaders::kBackprojectPeelComp,
+                   .sort_out = shaders::kBackprojectPeelSortComp};
   const visibility::ParsedOptions parsed = visibility::parse_options(recipe.description, options);
   const gpu::PeelLookPush push{parsed[kPeeledLayers], parsed[kSamples], parsed[kSelect]};
   recipe.whole_light = true;

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+// Workgroups of a look-up that has a sorting pass before it. Most receivers need no texel of the map: a pyramid says at
+// once that all of the light is seen from them, or none. A workgroup for each of these would cost as much as for others
+// on a driver that runs both sides of a branch; so the sorting pass, with an invocation for each workgroup, computes V
+// of these receivers, and lists the other workgroups. The sorting pass is the same shader with SORTS_OUT.
+
+uint launched_group() { return gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x; }
+uint group_list() { return results.length() - kCutLoopWords - kGroupListWords; }
+
+#ifdef SORTS_OUT
+// Returns the workgroup that this invocation sorts.
+uint this_group() { return launched_group() * gl_WorkGroupSize.x + gl_LocalInvocationID.x; }
+
+// Lists this invocation's workgroup. The order of the list changes no result.
+void list_group() {
+  const uint k = atomicAdd(results[group_list()], 1);
+  results[results[group_list() + 1] + lookup.first_result + k] = this_group();
+}
+#else
+// Returns the listed workgroup; all ones beyond the list.
+uint this_group() {
+  const uint k = launched_group();
+  return k < results[group_list()] ? results[results[group_list() + 1] + lookup.first_result + k] : 0xffffffffu;
+}
+#endif
