@@ -64,6 +64,7 @@ class ConvertCommand : public Command {
     const scenes::WriteOptions writing{.lenient = lenient_, .instances = parse_instances()};
     scenes::Instances instances;
     reading.instances = &instances;
+    reading.bytes_per_copy = scenes::writer_bytes_per_triangle(out_);  // a studio is built around copies
     session::OutputFiles outputs;
     outputs.add("-o", out_);
     outputs.refuse_inputs({&scene_, 1});

@@ -114,11 +114,12 @@ void lose_looks(const Scene& scene, const Instances& instances, const std::strin
   }
 }
 
-namespace {
+std::uint64_t writer_bytes_per_triangle(const std::filesystem::path& file) {
+  constexpr std::uint64_t kGlbOfTriangle = 100;  // measured on a sphere of a million triangles, and rounded down
+  return file.extension() == ".glb" ? kGlbOfTriangle : 0;
+}
 
-/// Memory of a .glb for each triangle before it is written, measured on a sphere of a million triangles, and rounded
-/// down. Texts are written piece by piece.
-constexpr std::uint64_t kGlbOfTriangle = 100;
+namespace {
 
 /// Returns whether the file has each mesh once, and not a copy for each instance.
 bool is_shared(const Scene& scene, const Instances& instances, const std::string& extension, WriteInstances use) {
@@ -137,7 +138,7 @@ std::vector<std::string> write_scene(const Scene& scene, const std::filesystem::
   if (extension != ".json" && extension != ".glb" && extension != ".obj")
     throw UsageError("{}: a scene is written as .json, .glb or .obj", file.string());
   if (!instances.empty() && !is_shared(scene, instances, extension, options.instances))
-    return write_scene(copied(scene, instances, extension == ".glb" ? kGlbOfTriangle : 0), file, options);
+    return write_scene(copied(scene, instances, writer_bytes_per_triangle(file)), file, options);
   AtomicFile output(file);
   Losses losses;
   Notes notes;

@@ -38,6 +38,9 @@ struct WriteOptions {
 std::vector<std::string> write_scene(const Scene& scene, const std::filesystem::path& file,
                                      const WriteOptions& options = {}, const Instances& instances = {});
 
+/// Returns the memory that write_scene takes for each triangle, which is none where texts are written piece by piece.
+std::uint64_t writer_bytes_per_triangle(const std::filesystem::path& file);
+
 /// Returns the files that write_scene writes in addition to `file`: textures.
 std::vector<std::filesystem::path> texture_files(const Scene& scene, const std::filesystem::path& file);
 

@@ -114,7 +114,8 @@ TEST_F(MemoryFaults, EveryCommandThatCopiesCountsWhatItNeedsOfCopies) {
       {"wedges", scene},
       {"inspect", scene},
       {"render", scene, "--floor", "auto", "--camera", "fit", "-o", path("studio.exr")},
-      {"convert", scene, "--instances", "copies", "-o", path("copies.glb")}};
+      {"convert", scene, "--instances", "copies", "-o", path("copies.glb")},
+      {"convert", scene, "--camera", "fit", "-o", path("around.glb")}};
   for (const std::vector<std::string>& command : commands) {
     const Ending ending = run_under({.arguments = command, .limits = {{RLIMIT_AS, rlim_t{1} << 30}}});
     SCOPED_TRACE(command.front() + " … " + command.back());
