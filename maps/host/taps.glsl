@@ -209,9 +209,11 @@ bool above_plane(Tap tap, vec3 d, vec3 m, float bias) {
 // Returns V of a receiver whose horizon leaves the fraction `above` of the light, if shadows leave the fraction `left`
 // of the whole light. Occluders are above the receiver's plane and are seen above its horizon: the hidden fractions add
 // up. If compared in its own depth, as published, a texel may also hide parts below the horizon: then the smaller of
-// the two is the best estimate.
+// the two is the best estimate. `precise`: where `left` is a constant, compilers would add the constants first, and a
+// sorting pass would round in another way than the look-up.
 float visible_above(float left, float above) {
-  return lookup.own_depth != 0 ? min(left, above) : max(left + (above - 1.0), 0.0);
+  precise const float both = left + (above - 1.0);
+  return lookup.own_depth != 0 ? min(left, above) : max(both, 0.0);
 }
 
 vec3 to_basis(LightBasis basis, vec3 x) { return vec3(dot(basis.u, x), dot(basis.v, x), dot(basis.n, x)); }
