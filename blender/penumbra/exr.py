@@ -112,5 +112,6 @@ def encoded(channels):
     lines = numpy.empty((height, 2 + width * len(names)), "<f4")
     heads = numpy.stack([numpy.arange(height), numpy.full(height, size)], axis=-1).astype("<i4")
     lines[:, :2] = heads.view("<f4")
-    lines[:, 2:] = numpy.stack([channels[name].astype("<f4") for name in names], axis=1).reshape(height, -1)
-    return header + table.tobytes() + lines.tobytes()
+    for i, name in enumerate(names):
+        lines[:, 2 + i * width:2 + (i + 1) * width] = channels[name]
+    return b"".join([header, table.tobytes(), lines.tobytes()])

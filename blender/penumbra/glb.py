@@ -166,19 +166,21 @@ class Glb:
         document = dict(self._document)
         if self._extensions:
             document["extensionsUsed"] = sorted(self._extensions)
-        binary = bytes(self._binary) + b"\0" * (-len(self._binary) % 4)
-        if self._beside is not None:
-            binary = binary or b"\0" * 4  # no buffer is empty
-        if binary:
-            document["buffers"] = [{"byteLength": len(binary)}]
+        filling = b"\0" * (-len(self._binary) % 4)
+        if self._beside is not None and not self._binary:
+            filling = b"\0" * 4  # no buffer is empty
+        size = len(self._binary) + len(filling)
+        if size:
+            document["buffers"] = [{"byteLength": size}]
         if self._beside is not None:
             document["buffers"].append({"uri": self._beside[0], "byteLength": self._beside[1]})
         text = json.dumps(document, separators=(",", ":")).encode()
         text += b" " * (-len(text) % 4)
-        chunks = struct.pack("<II", len(text), 0x4E4F534A) + text
-        if binary:
-            chunks += struct.pack("<II", len(binary), 0x004E4942) + binary
-        return struct.pack("<III", 0x46546C67, 2, 12 + len(chunks)) + chunks
+        chunks = [struct.pack("<II", len(text), 0x4E4F534A), text]
+        if size:
+            chunks += [struct.pack("<II", size, 0x004E4942), self._binary, filling]
+        # Joined at once: each further concatenation would copy all of a dense mesh.
+        return b"".join([struct.pack("<III", 0x46546C67, 2, 12 + sum(map(len, chunks))), *chunks])
 
 
 class OfThings(Glb):
