@@ -52,7 +52,7 @@ penumbra::Rectangle light_at(double x) {
   return {.center = {x, 5, 1}, .half_u = {0.5, 0, 0}, .half_v = {0, 0, 0.5}};
 }
 
-/// What changes before call i of a case.
+/// Case: a change of the scene before each call.
 struct Case {
   std::string name;
   std::function<void(penumbra::Scene& scene, penumbra::MeshId box, double offset)> change;

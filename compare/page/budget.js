@@ -17,7 +17,7 @@ function changeBar(change, largest) {
 const rmseBar = (rmse, largest) => budgetBar(1, 1, largest > 0 ? 78 * rmse / largest : 0, "worse");
 
 function causesTable(light, explained, largest) {
-  return tableOf(`Why each method is wrong under light “${report.lights[light].name}”: by how much its RMSE of V changes when one cause alone is repaired `
+  return tableOf(`Why each method is wrong${under(light)}: by how much its RMSE of V changes when one cause alone is repaired `
     + "(negative: the error shrinks), and what is left of it when all are.",
   ["Method", "RMSE as it is", ...kCauses, "remainder"],
   explained.map((result) => {

@@ -45,6 +45,7 @@ void look_at(MapFace face, uvec2 cell) {
 
 #include "maps/host/group_tiles.glsl"
 #endif
+#include "maps/host/group_faces.glsl"
 
 void main() {
   const uint i = this_receiver();
@@ -58,15 +59,7 @@ void main() {
   const bool receives = receiver.n != vec3(0.0);
   const bool reached = receives && ask(receiver);
   if (reached) {
-    for (uint number = 0; number < asked.side.face_count; ++number) {
-      const MapFace face = face_of(asked.side, 0, lookup.size, number);
-      Kernel kernel = kernel_of(face);
-      look_at_kernel(face, kernel);
-      for (uint turn = 1; !is_empty(kernel); ++turn) {
-        kernel = next_kernel(face, turn);
-        if (!is_empty(kernel)) look_at_kernel(face, kernel);
-      }
-    }
+    look_at_faces();
   }
   atomicAdd(looked_at_count, looked_at);
   barrier();

@@ -76,7 +76,7 @@ TEST_F(Moments, HaveOneOrigin) {
       picture("now.json", {"--moment", path("0.json"), "--moment", path("1.json"), "--moment", path("2.json")});
   EXPECT_GT(still(), 300u) << "of 48 x 32 at two moments";
   EXPECT_EQ(mean.floats.at("Prel.X"), now.floats.at("Prel.X"));
-  // Of one moment that is the scene itself: its picture.
+  // The mean over one moment, the scene itself, is its picture.
   const ExrFile same = picture("now.json", {"--moment", path("now.json")});
   for (const char* channel : {"R", "A", "V", "key.V", "P.X", "Z"})
     EXPECT_EQ(same.floats.at(channel), now.floats.at(channel)) << channel;

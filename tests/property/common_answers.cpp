@@ -50,7 +50,7 @@ std::vector<glm::vec3> some_directions(std::mt19937& random) {
   return directions;
 }
 
-/// What surely happens to a ray: it meets a triangle that is not on the plane `own`, or none.
+/// Sure outcome of a ray: it meets a triangle that is not on the plane `own`, or none.
 struct Ray {
   bool meets = false, misses = true;
 };
