@@ -28,7 +28,7 @@ void* KeptArrays::take(std::size_t bytes) {
   const std::scoped_lock lock(mutex_);
   Array* best = nullptr;
   for (Array& one : kept_) {
-    const bool fits = one.first != nullptr && one.bytes >= bytes && one.bytes - bytes <= bytes / 8;
+    const bool fits = one.first != nullptr && one.bytes >= bytes && one.bytes - bytes <= bytes / 2;
     if (fits && (best == nullptr || one.bytes < best->bytes)) best = &one;
   }
   if (best == nullptr) {

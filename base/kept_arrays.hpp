@@ -17,8 +17,8 @@ class KeptArrays {
 
   /// Enables the cache; nothing is cached before this call.
   void start_keeping();
-  /// Returns the smallest cached array of at least `bytes` bytes and at most an eighth more. Returns null if there is
-  /// none: the caller then allocates an array and calls settle(); cached arrays that would exceed the limit together
+  /// Returns the smallest cached array of at least `bytes` bytes and at most half as many more. Returns null if there
+  /// is none: the caller then allocates an array and calls settle(); cached arrays that would exceed the limit together
   /// with the new one are freed.
   [[nodiscard]] void* take(std::size_t bytes);
   /// Call after a take() that returned null: reports the size really allocated (0 if the array will never be given

@@ -114,7 +114,7 @@ set(kept_jpeglib base)
 set(kept_CLI app)
 set(kept_boost network)
 set(kept_gmpxx volumes areas)
-set(kept_hwy visibility/lights visibility/tree engines/vectors engines/pairs volumes/edges volumes/scatter volumes/counters vsm tests)
+set(kept_hwy visibility/lights visibility/seen visibility/tree engines/vectors engines/pairs volumes/edges volumes/scatter volumes/counters vsm tests)
 set(libraries vulkan spirv_cross EGL GL CGAL OpenMesh embree3 assimp pugixml minizip tiny_gltf valijson OpenEXR libdeflate png jpeglib CLI boost gmpxx hwy)
 
 # room_of(folder result): the innermost room that the folder is, or lies in; empty if none.

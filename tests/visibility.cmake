@@ -13,6 +13,8 @@ penumbra_test(visibility
   property/visibility/pair_truth.cpp
   property/visibility/planes.cpp
   property/visibility/seen_part.cpp
+  property/visibility/shaft_planes.cpp
+  property/visibility/triangle_bits.cpp
   property/visibility/triangle_tree.cpp
   unit/bits_file.cpp
   unit/visibility/box_groups.cpp

@@ -3,6 +3,7 @@
 
 #include "visibility/light_samples.hpp"
 #include "visibility/seen/placed_meshes.hpp"
+#include "visibility/seen/triangle_bits.hpp"
 #include "visibility/seen/view_rays.hpp"
 
 #include <glm/vec3.hpp>

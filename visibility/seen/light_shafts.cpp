@@ -11,7 +11,6 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -162,40 +161,16 @@ bool LightShaft::touches(const MiddleBox& box) const {
 }
 
 ShaftOfPart::ShaftOfPart(const LightShaft& shaft, const PlacedMeshes::Part& part) : part_(part) {
-  const BoxTree::Node& root = part.tree->root();
+  const MiddleBox& root = part.tree->root().box;
   shaft.for_each_plane([&](const LightShaft::Plane& plane) {
-    if (misses_ || count_ == kMost) return;
+    if (misses_) return;
+    const glm::dvec3 normal = plane.normal * part.linear;
     // Twice the part's room: for its corners, and for the rounding of the plane, which is less than theirs.
-    LightShaft::Plane& own = planes_[count_++];
-    own = {plane.normal * part.linear,
-           plane.most - glm::dot(plane.normal, part.offset) + 2 * part.room * sum_of_sides(plane.normal)};
-    Planes one = Planes{1} << (count_ - 1);
-    misses_ = !touches(root.box, one);
-    if (one == 0) --count_;
+    const double most = plane.most - glm::dot(plane.normal, part.offset) + 2 * part.room * sum_of_sides(plane.normal);
+    const double middle = glm::dot(normal, root.middle), half = glm::dot(glm::abs(normal), root.half);
+    misses_ = middle - half > most;
+    if (middle + half > most) planes_.add(normal, most);
   });
-}
-
-bool ShaftOfPart::touches(const MiddleBox& box, Planes& planes) const {
-  for (Planes left = planes; left != 0; left &= left - 1) {
-    const auto number = static_cast<std::uint32_t>(std::countr_zero(left));
-    const auto& [normal, most] = planes_[number];
-    const double middle = glm::dot(normal, box.middle), half = glm::dot(glm::abs(normal), box.half);
-    if (middle - half > most) return false;
-    if (middle + half <= most) planes &= ~(Planes{1} << number);
-  }
-  return true;
-}
-
-bool ShaftOfPart::touches(std::uint32_t triangle, Planes planes) const {
-  const auto& [a, b, c] = part_.soup->triangles[triangle];
-  const std::vector<glm::dvec3>& positions = part_.soup->positions;
-  for (; planes != 0; planes &= planes - 1) {
-    const auto& [normal, most] = planes_[static_cast<std::uint32_t>(std::countr_zero(planes))];
-    if (std::min({glm::dot(normal, positions[a]), glm::dot(normal, positions[b]), glm::dot(normal, positions[c])}) >
-        most)
-      return false;
-  }
-  return true;
 }
 
 }  // namespace penumbra::visibility

@@ -4,10 +4,10 @@
 #include "visibility/light_samples.hpp"
 #include "visibility/seen/box_tree.hpp"
 #include "visibility/seen/placed_meshes.hpp"
+#include "visibility/seen/shaft_planes.hpp"
 
 #include <glm/vec3.hpp>
 
-#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -78,47 +78,18 @@ class ShaftOfPart {
 
   /// Calls take(triangle) for the part's triangles that may reach into the shaft.
   template <typename Take>
-  void walk(const Take& take) const;
+  void walk(const Take& take) const {
+    if (misses_) return;
+    thread_local std::vector<std::uint32_t> triangles;
+    triangles.clear();
+    touched(*part_.tree, *part_.soup, planes_, triangles);
+    for (const std::uint32_t triangle : triangles) take(triangle);
+  }
 
  private:
-  /// A set of planes: those that cut a box, and must be compared with what is in it.
-  using Planes = std::uint64_t;
-  static constexpr std::uint32_t kMost = 64;  // more are left out, which makes the shaft larger
-
-  /// Returns whether the box reaches into the shaft, as far as `planes` tell; removes those it is inside of.
-  [[nodiscard]] bool touches(const MiddleBox& box, Planes& planes) const;
-  [[nodiscard]] bool touches(std::uint32_t triangle, Planes planes) const;
-
   const PlacedMeshes::Part& part_;
-  std::array<LightShaft::Plane, kMost> planes_;
-  std::uint32_t count_ = 0;
+  ShaftPlanes planes_;
   bool misses_ = false;  // the part is outside of the shaft
 };
-
-template <typename Take>
-void ShaftOfPart::walk(const Take& take) const {
-  struct Waiting {
-    std::uint32_t node;
-    Planes planes;
-  };
-  if (misses_) return;
-  const BoxTree& tree = *part_.tree;
-  std::array<Waiting, BoxTree::kDepth> stack;
-  std::uint32_t top = 0;
-  stack[top++] = {0, count_ == kMost ? ~Planes{0} : (Planes{1} << count_) - 1};
-  while (top > 0) {
-    Waiting waiting = stack[--top];
-    const BoxTree::Node& node = tree.node(waiting.node);
-    if (!touches(node.box, waiting.planes)) continue;
-    if (node.count > 0) {
-      for (const std::uint32_t triangle : tree.items(node)) {
-        if (touches(triangle, waiting.planes)) take(triangle);
-      }
-      continue;
-    }
-    stack[top++] = {node.first, waiting.planes};
-    stack[top++] = {waiting.node + 1, waiting.planes};
-  }
-}
 
 }  // namespace penumbra::visibility

@@ -8,6 +8,7 @@
 #include "mesh/soup_memory.hpp"
 #include "visibility/seen/dome_rays.hpp"
 #include "visibility/seen/light_shafts.hpp"
+#include "visibility/seen/triangle_bits.hpp"
 #include "visibility/seen/view_rays.hpp"
 
 #include <glm/common.hpp>
@@ -123,23 +124,26 @@ void for_each_seen(const PlacedMeshes& meshes, const TriangleBits& seen, const T
   const std::span<const PlacedMeshes::Part> parts = meshes.parts();
   const std::size_t instances = meshes.instances().all.size(), first_instance = parts.size() - instances;
   std::uint32_t own = 0, number = 0;
-  const auto take_own = [&](std::uint64_t end) {
-    for (; own < end; ++own, ++number) {
-      if (seen.has(own)) take(parts[0], own, number);
-    }
+  const auto take_own = [&](std::uint32_t end) {
+    if (end <= own) return;
+    seen.for_each(own, end, [&](std::uint64_t bit) {
+      const auto triangle = static_cast<std::uint32_t>(bit);
+      take(parts[0], triangle, number + (triangle - own));
+    });
+    number += end - own;
+    own = end;
   };
   for (std::size_t i = 0; i < instances; ++i) {
     const PlacedMeshes::Part& part = parts[first_instance + i];
-    take_own(part.instance->soup_before);
+    take_own(static_cast<std::uint32_t>(part.instance->soup_before));
     const auto count = static_cast<std::uint32_t>(part.soup->triangles.size());
-    if (seen.any(part.first_bit, part.first_bit + count)) {
-      for (std::uint32_t triangle = 0; triangle < count; ++triangle) {
-        if (seen.has(part.first_bit + triangle)) take(part, triangle, number + triangle);
-      }
-    }
+    seen.for_each(part.first_bit, part.first_bit + count, [&](std::uint64_t bit) {
+      const auto triangle = static_cast<std::uint32_t>(bit - part.first_bit);
+      take(part, triangle, number + triangle);
+    });
     number += count;
   }
-  take_own(meshes.scene().soup.triangles.size());
+  take_own(static_cast<std::uint32_t>(meshes.scene().soup.triangles.size()));
 }
 
 SeenPart part_of(const PlacedMeshes& meshes, TriangleBits& seen) {

@@ -10,31 +10,10 @@
 #include <glm/geometric.hpp>
 
 #include <array>
-#include <bit>
 #include <cmath>
 #include <optional>
 
 namespace penumbra::visibility {
-
-TriangleBits::TriangleBits(std::uint64_t triangles) : words_((triangles + 63) / 64) {}
-
-std::uint64_t TriangleBits::count() const {
-  std::uint64_t count = 0;
-  for (const auto& word : words_)
-    count += static_cast<std::uint64_t>(std::popcount(word.load(std::memory_order_relaxed)));
-  return count;
-}
-
-bool TriangleBits::any(std::uint64_t first, std::uint64_t end) const {
-  if (first == end) return false;
-  for (std::uint64_t word = first / 64; word <= (end - 1) / 64; ++word) {
-    std::uint64_t bits = words_[word].load(std::memory_order_relaxed);
-    if (word == first / 64) bits &= ~std::uint64_t{0} << first % 64;
-    if (word == (end - 1) / 64) bits &= ~std::uint64_t{0} >> (63 - (end - 1) % 64);
-    if (bits != 0) return true;
-  }
-  return false;
-}
 
 namespace {
 

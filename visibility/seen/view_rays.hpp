@@ -7,31 +7,10 @@
 #include <glm/vec3.hpp>
 
 #include <array>
-#include <atomic>
 #include <cstdint>
 #include <vector>
 
 namespace penumbra::visibility {
-
-/// A bit for each triangle of all parts. Several threads may set bits at once.
-class TriangleBits {
- public:
-  explicit TriangleBits(std::uint64_t triangles);
-
-  void set(std::uint64_t bit) {
-    std::atomic<std::uint64_t>& word = words_[bit / 64];
-    const std::uint64_t mask = std::uint64_t{1} << bit % 64;
-    if ((word.load(std::memory_order_relaxed) & mask) == 0) word.fetch_or(mask, std::memory_order_relaxed);
-  }
-  [[nodiscard]] std::uint64_t count() const;
-  [[nodiscard]] bool any(std::uint64_t first, std::uint64_t end) const;
-  [[nodiscard]] bool has(std::uint64_t bit) const {
-    return (words_[bit / 64].load(std::memory_order_relaxed) >> bit % 64 & 1) != 0;
-  }
-
- private:
-  std::vector<std::atomic<std::uint64_t>> words_;
-};
 
 /// A point at which lights may be evaluated.
 struct SeenPoint {
