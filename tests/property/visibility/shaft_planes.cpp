@@ -24,7 +24,7 @@ class ScatteredTriangles {
       const glm::dvec3 middle = 10.0 * point();
       for (int corner = 0; corner < 3; ++corner) soup_.positions.push_back(middle + 0.3 * point());
       soup_.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
-      const glm::dvec3 *const a = &soup_.positions[3 * i], lower = glm::min(a[0], glm::min(a[1], a[2])),
+      const glm::dvec3 *const a = &soup_.positions[std::size_t{3} * i], lower = glm::min(a[0], glm::min(a[1], a[2])),
                               upper = glm::max(a[0], glm::max(a[1], a[2]));
       boxes.push_back({0.5 * (lower + upper), 0.5 * (upper - lower)});
     }
