@@ -13,6 +13,7 @@
 #include "maps/host/receivers.hpp"
 #include "render/compute_pass.hpp"
 #include "visibility/all_triangles.hpp"
+#include "visibility/changed_defaults.hpp"
 #include "visibility/lights/light_parts.hpp"
 #include "visibility/masks/visible_share.hpp"
 #include "visibility/receivers.hpp"
@@ -35,7 +36,10 @@ constexpr std::uint32_t kBitsPerWord = 32;
 /// Memory limits of a batch of several light points, and of a tile's masks.
 constexpr std::uint64_t kBatchBytes = std::uint64_t{128} << 20, kMaskBytes = std::uint64_t{256} << 20;
 
-class MapMethod final : public visibility::Method, public visibility::PassesTriangles, public SeesScene {
+class MapMethod final : public visibility::Method,
+                        public visibility::PassesTriangles,
+                        public visibility::ChangesDefaults,
+                        public SeesScene {
  public:
   MapMethod(const render::Device& device, MapRecipe recipe, const MapOptions& options)
       : device_(&device),
@@ -74,6 +78,7 @@ class MapMethod final : public visibility::Method, public visibility::PassesTria
 
   std::vector<visibility::PassTime> take_pass_times() override { return times_.take(); }
   [[nodiscard]] std::map<std::string, std::uint64_t> counters() const override;
+  [[nodiscard]] visibility::MethodOptions changed_defaults() const override { return recipe_.changed_defaults; }
   [[nodiscard]] std::uint64_t memory_bytes() const override;
 
  private:
