@@ -360,14 +360,14 @@ writes; that script's head says how errors, times and memory are taken.
 
 ![error against processor seconds](images/against-cycles.svg)
 
-How many times as long Cycles takes to the error of Penumbra's picture, at pixels' centres, antialiased, through a lens and in motion, and the most memory that
+How many times as long Cycles takes to reach the error of Penumbra's picture, at pixels' centres, antialiased, through a lens and in motion, and the most memory that
 each took in these pictures ("≥": Penumbra's error is below what the judge can tell; "≤": Cycles' fewest samples have less error; "–": not measured):
 
 {summary}
 
 {machine}, {blender}, {size[0]} × {size[1]} pixels; each row has the commit of the program and the load of the machine at its end. Under the sky picture
-Penumbra asks 256 directions, as its add-on does by itself. Times are processor seconds (user and system, medians of {runs}; of Cycles' larger
-count one), so another process on the machine changes them less than the clock. Memory is the largest resident set of one process: Blender with the add-on has the program
+Penumbra takes 256 directions, the add-on's own choice. Times are processor seconds (user and system, medians of {runs}; one run of Cycles'
+larger count), so another process on the machine changes them less than the clock. Memory is the largest resident set of one process: Blender with the add-on has the program
 as its child, and the larger of the two counts. Rows at pixels' centres and antialiased that have an older commit got their memory at {memory_commit}. The error is relative RMSE over a crop of {crop[2]} × {crop[3]} pixels full of penumbra, against Cycles with
 8,192 samples a pixel (lens and motion: 2,048); "≤": below the judge's own noise. *Times as long* extrapolates Cycles' error by one over
 the root of its samples, to more samples than the fewer measured ones only ("≤" for less); "–": an error that Penumbra's picture does not reach.

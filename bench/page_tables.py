@@ -18,6 +18,8 @@ ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / "docs"))
 
 import map_fits_pictures  # noqa: E402
+import predicate_lines  # noqa: E402
+import scaling_tables  # noqa: E402
 from measured_tables import Answer, Bench, Compared, Megabytes, ProcessorSeconds, Run, Table, head_commit, measure  # noqa: E402
 
 AREAS = ("--reference", "edge-scatter:rows=exact")
@@ -463,6 +465,8 @@ TABLES = {
     "radiance-samples": radiance_samples(),
     "shadow-map-own-depth": own_depth(),
     "deep-penumbra-bounds": deep_penumbra_bounds(),
+    "predicates": predicate_lines.TABLE,
+    **scaling_tables.TABLES,
     "self-test": self_test(),
     "file-sizes": file_sizes(),
     "soft-irregular-seconds": seconds("processor seconds of soft-irregular and of others", ("contact", "fusion", "large-penumbra", "room"),

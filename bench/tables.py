@@ -18,10 +18,12 @@ ROOT = Path(__file__).resolve().parent.parent
 sys.dont_write_bytecode = True
 sys.path[:0] = [str(ROOT / "docs" / "figures"), str(ROOT / "docs" / "figures" / "papers")]
 
+import scaling  # noqa: E402
 import times  # noqa: E402
 
 RESULTS = ROOT / "bench" / "results"
 BLOCK = re.compile(r"(<!-- results/([\w-]+)\.json -->\n).*?(<!-- end -->)", re.S)
+DRAWN = {"times": times.table, **scaling.TABLES}
 OWN_PAGE = {"against-cycles"}  # another script writes the page
 PAGES = [page for page in (ROOT / "bench" / "README.md", *sorted((ROOT / "docs").glob("*.md"))) if "<!-- results/" in page.read_text(encoding="utf-8")]
 
@@ -54,11 +56,11 @@ def table(data):
 
 
 def block(name):
-    """The table of one file; that of all methods is kept, and drawn, with the papers' figures."""
-    if name != "times":
+    """The table of one file. Tables of drawn figures are made of the figures' numbers, which are kept with them."""
+    if name not in DRAWN:
         return table(read(RESULTS / f"{name}.json"))
-    kept = read(ROOT / "docs" / "figures" / "papers" / "times.json")
-    return f"Commit {kept['commit']}; {kept['device']}. {kept['data']['of']}.\n\n{times.table(kept['data'])}\n"
+    kept = read(ROOT / "docs" / "figures" / "papers" / f"{name}.json")
+    return f"Commit {kept['commit']}; {kept['device']}. {kept['data']['of']}.\n\n{DRAWN[name](kept['data'])}\n"
 
 
 def listing(files):

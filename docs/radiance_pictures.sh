@@ -1,6 +1,6 @@
 #!/bin/bash
 # SPDX-License-Identifier: Apache-2.0
-# radiance_pictures.sh [PENUMBRA]: the pictures of docs/radiance.md: things before a panel that stands on the floor, by `exact`
+# radiance_pictures.sh [PENUMBRA]: the pictures of docs/radiance.md: things in front of a panel that stands on the floor, by `exact`
 # and by a method that knows only V. bench/page_tables.py has the scene, and makes the second table.
 set -euo pipefail
 root=$(cd -- "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")/.." && pwd)

@@ -254,7 +254,8 @@ void Scene::set_camera(const Camera& camera) {
   if (place == cameras.end()) place = cameras.insert(cameras.end(), made);
   const scenes::Camera before = *place;
   *place = made;
-  place->aspect = before.aspect;  // of a camera that was read, and is moved
+  // The interface's Camera has neither: a camera that was read and is moved keeps both.
+  place->aspect = before.aspect;
   place->shift = before.shift;
   state_->camera = static_cast<std::size_t>(place - cameras.begin());
 }

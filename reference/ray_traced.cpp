@@ -8,13 +8,11 @@
 // contact shadows. Triangles that cast no shadow are not in the scene. Scene and rays are scaled so that float32
 // neither underflows nor overflows (EmbreeRange).
 
-#include "reference/methods.hpp"
+#include "reference/ray_traced.hpp"
 
 #include "base/assert.hpp"
 #include "base/error.hpp"
-#include "reference/common_answers.hpp"
-#include "reference/embree_packets.hpp"
-#include "reference/embree_scene.hpp"
+#include "reference/methods.hpp"
 #include "reference/tracing_order.hpp"
 #include "visibility/lights/horizon.hpp"
 #include "visibility/masks/visible_share.hpp"
@@ -27,12 +25,9 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <array>
-#include <atomic>
 #include <bit>
 #include <cmath>
 #include <limits>
-#include <optional>
 
 namespace penumbra::reference {
 namespace {
@@ -45,109 +40,10 @@ using visibility::ViewSamples;
 constexpr std::uint64_t kMaxMaskBytes = std::uint64_t{64} << 20;  // of one tile: an interrupt waits for the tile's end
 constexpr std::uint32_t kNeverMet = SceneFloats::kNoPlane;        // plane index of the light's own body
 
-/// The rays' pixels, for the filter function; Embree passes the address of the first member.
-struct PixelContext {
-  RTCIntersectContext embree;
-  const std::uint32_t* plane_of_primitive;
-  const std::uint32_t* carrier_planes;  ///< for each number (`id`) of a ray
-};
-
-void ignore_own_plane(const RTCFilterFunctionNArguments* hits) {
-  const auto& context = *reinterpret_cast<const PixelContext*>(hits->context);
-  for (unsigned i = 0; i < hits->N; ++i) {
-    if (hits->valid[i] == 0) continue;
-    const std::uint32_t plane = context.plane_of_primitive[RTCHitN_primID(hits->hit, hits->N, i)];
-    const std::uint32_t own = context.carrier_planes[RTCRayN_id(hits->ray, hits->N, i)];
-    if (plane == own || plane == kNeverMet) hits->valid[i] = 0;
-  }
-}
-
-struct Counts {
-  std::atomic<std::uint64_t> rays = 0, short_rays = 0, horizon_pairs = 0, common_pairs = 0;
-};
-
 constexpr visibility::ChoiceOption kPacket{"packet",
                                            {{"auto", 0}, {"1", 1}, {"4", 4}, {"8", 8}, {"16", 16}},
                                            0,
                                            "shadow rays traced together; auto: as the processor does"};
-
-class RayTraced final : public visibility::Method {
- public:
-  explicit RayTraced(const visibility::MethodOptions& options);
-
-  [[nodiscard]] const visibility::MethodDescription& description() const override { return description_; }
-  void prepare_mesh(const SceneFloats& scene) override;
-  void prepare_light(const Light& light) override;
-  void prepare_view(const ViewSamples& samples) override { samples_ = &samples; }
-  [[nodiscard]] std::uint32_t max_tile_rows() const override;
-  void evaluate(const Tile& tile) override;
-  void read_masks(std::span<std::uint32_t> masks) override;
-  void read_visibility(std::span<float> visibility) override;
-  [[nodiscard]] std::map<std::string, std::uint64_t> counters() const override {
-    return {{"rays", counts_.rays},
-            {"shortRays", counts_.short_rays},
-            {"horizonPairs", counts_.horizon_pairs},
-            {"commonPairs", counts_.common_pairs}};
-  }
-  [[nodiscard]] std::uint64_t memory_bytes() const override {
-    return (embree_ ? embree_->peak_bytes() : 0) + masks_.capacity() * sizeof(std::uint32_t);
-  }
-
- private:
-  /// One thread's workspace for one pixel.
-  struct Workspace {
-    std::vector<glm::vec3> points, scaled;  // points of a sphere
-    std::vector<std::uint32_t> above;
-    std::vector<std::uint32_t> above_all;       // of all pixels of a packet
-    std::vector<std::uint32_t> clear, blocked;  // directions in which a block of pixels has one answer
-  };
-
-  [[nodiscard]] PixelContext context_of(const std::uint32_t* carrier_planes) const {
-    PixelContext context{};
-    rtcInitIntersectContext(&context.embree);
-    context.embree.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-    context.embree.filter = ignore_own_plane;
-    context.plane_of_primitive = plane_of_primitive_.data();
-    context.carrier_planes = carrier_planes;
-    return context;
-  }
-  /// Removes the light samples too near to p for Embree from `above`, and decides them exactly.
-  void decide_short_rays(std::size_t pixel, const std::vector<glm::vec3>& scaled, std::vector<std::uint32_t>& above,
-                         std::span<std::uint32_t> visible);
-  template <int kWidth>
-  void trace_pixel(std::size_t pixel, Workspace& work, std::span<std::uint32_t> visible);
-  /// Traces rays to a dome, a ray of each of some neighbouring pixels at once: in one direction they stay together in
-  /// the tree, where the rays of one pixel part at its root. `pixels`: indices into the tile; at most kWidth.
-  template <int kWidth>
-  void trace_neighbours(const Tile& tile, std::span<const std::size_t> pixels, Workspace& work);
-  /// Pixels of a tile, from `top` and `left` to before `bottom` and `right`.
-  struct Block {
-    std::size_t top = 0, bottom = 0, left = 0, right = 0;
-  };
-  /// Finds the directions of a dome in which something large is in the way of all of these pixels and, where they lie
-  /// on one plane, those in which nothing is (elsewhere each pixel's neighbours may be).
-  void find_common(const Tile& tile, const Block& block, Workspace& work) const;
-  template <int kWidth>
-  void trace_to_dome(const Tile& tile, const Block& block, Workspace& work);
-  template <int kWidth>
-  void trace_tile(const Tile& tile);
-
-  visibility::MethodDescription description_;
-  int width_ = 0;  // 0: the processor's width
-  const SceneFloats* scene_ = nullptr;
-  const Light* light_ = nullptr;
-  const ViewSamples* samples_ = nullptr;
-  std::optional<EmbreeScene> embree_;
-  std::optional<CommonAnswers> common_answers_;  // made with the first dome
-  std::vector<std::uint32_t> plane_of_primitive_;
-  std::vector<glm::vec3> scaled_points_;  // points of a light that is not a sphere
-  std::vector<std::uint32_t> order_;
-  std::vector<std::uint32_t> full_mask_;
-  visibility::Bounds bounds_;
-  Tile tile_;                         // the last evaluated tile
-  std::vector<std::uint32_t> masks_;  // masks of that tile
-  Counts counts_;
-};
 
 visibility::MeshVerdict ray_traced_verdict(const mesh::Diagnosis& mesh) {
   return {visibility::Verdict::approximate,
@@ -157,6 +53,28 @@ visibility::MeshVerdict ray_traced_verdict(const mesh::Diagnosis& mesh) {
                                   {{mesh.needles.count, "needles, which make more such pairs"},
                                    {mesh.t_junctions.count, "T-junctions, which make more such pairs"},
                                    {mesh.zero_area_triangles.count, "triangles without area, which cast nothing"}})};
+}
+
+}  // namespace
+
+void RayTraced::ignore_own_plane(const RTCFilterFunctionNArguments* hits) {
+  const auto& context = *reinterpret_cast<const PixelContext*>(hits->context);
+  for (unsigned i = 0; i < hits->N; ++i) {
+    if (hits->valid[i] == 0) continue;
+    const std::uint32_t plane = context.plane_of_primitive[RTCHitN_primID(hits->hit, hits->N, i)];
+    const std::uint32_t own = context.carrier_planes[RTCRayN_id(hits->ray, hits->N, i)];
+    if (plane == own || plane == kNeverMet) hits->valid[i] = 0;
+  }
+}
+
+RayTraced::PixelContext RayTraced::context_of(const std::uint32_t* carrier_planes) const {
+  PixelContext context{};
+  rtcInitIntersectContext(&context.embree);
+  context.embree.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  context.embree.filter = ignore_own_plane;
+  context.plane_of_primitive = plane_of_primitive_.data();
+  context.carrier_planes = carrier_planes;
+  return context;
 }
 
 RayTraced::RayTraced(const visibility::MethodOptions& options) {
@@ -307,121 +225,6 @@ void RayTraced::trace_pixel(std::size_t pixel, Workspace& work, std::span<std::u
 }
 
 template <int kWidth>
-void RayTraced::trace_neighbours(const Tile& tile, std::span<const std::size_t> pixels, Workspace& work) {
-  const std::size_t words = light_->words_per_mask();
-  const auto mask_of = [&](std::size_t lane) { return std::span(masks_).subspan(pixels[lane] * words, words); };
-  std::array<std::uint32_t, kWidth> planes{};
-  typename Packet<kWidth>::Rays rays{};
-  work.above_all.assign(kWidth * words, 0);
-  std::uint64_t above_count = 0, asked_count = 0, pairs = 0;
-  const auto count_of = [](std::uint32_t word) { return static_cast<std::uint64_t>(std::popcount(word)); };
-  std::size_t known = pixels.size();  // pixel whose horizon is in work.above
-  for (std::size_t lane = 0; lane < pixels.size(); ++lane) {
-    const std::size_t pixel = std::size_t{tile.first_row} * samples_->width + pixels[lane];
-    if (!visibility::is_receiver(*scene_, *light_, *samples_, pixel)) {
-      std::ranges::copy(full_mask_, mask_of(lane).begin());
-      continue;
-    }
-    const auto carrier = static_cast<std::uint32_t>(samples_->triangle[pixel]);
-    if (known == pixels.size() || samples_->triangle[pixel] != samples_->triangle[known] ||
-        samples_->facing[pixel] != samples_->facing[known]) {
-      visibility::HorizonTest(*light_, scene_->corners(carrier), samples_->facing[pixel], bounds_)
-          .mask(light_->points, work.above);
-    }
-    known = pixel;
-    for (std::size_t word = 0; word < words; ++word) {
-      const std::uint32_t above = work.above[word], asked = above & ~(work.clear[word] | work.blocked[word]);
-      above_count += count_of(above);
-      asked_count += count_of(asked);
-      mask_of(lane)[word] = above & work.clear[word];
-      work.above_all[word * kWidth + lane] = asked;
-    }
-    pairs += light_->points.size();
-    const glm::vec3 origin = embree_->range().scaled(samples_->p[pixel]);
-    lanes(rays.org_x)[lane] = origin.x;
-    lanes(rays.org_y)[lane] = origin.y;
-    lanes(rays.org_z)[lane] = origin.z;
-    lanes(rays.mask)[lane] = 0xffffffffu;
-    lanes(rays.id)[lane] = static_cast<unsigned>(lane);
-    planes[lane] = scene_->plane[carrier];
-  }
-  counts_.horizon_pairs.fetch_add(pairs - above_count, std::memory_order_relaxed);
-  counts_.rays.fetch_add(asked_count, std::memory_order_relaxed);
-  counts_.common_pairs.fetch_add(above_count - asked_count, std::memory_order_relaxed);
-
-  PixelContext context = context_of(planes.data());
-  alignas(64) int valid[kWidth] = {};
-  for (std::size_t word = 0; word < words; ++word) {
-    std::array<std::uint32_t, kWidth> asked{}, seen{};
-    std::uint32_t left = 0;
-    for (std::size_t lane = 0; lane < kWidth; ++lane) {
-      asked[lane] = work.above_all[word * kWidth + lane];
-      left |= asked[lane];
-    }
-    for (; left != 0; left &= left - 1) {
-      const auto bit = static_cast<std::uint32_t>(std::countr_zero(left));
-      const glm::vec3 direction = scaled_points_[32 * word + bit];
-      for (std::size_t lane = 0; lane < kWidth; ++lane) {  // without branches, so that compilers vectorise the loop
-        valid[lane] = -static_cast<int>(asked[lane] >> bit & 1U);
-        lanes(rays.dir_x)[lane] = direction.x;
-        lanes(rays.dir_y)[lane] = direction.y;
-        lanes(rays.dir_z)[lane] = direction.z;
-        lanes(rays.tfar)[lane] = std::numeric_limits<float>::infinity();
-      }
-      Packet<kWidth>::occluded(valid, embree_->handle(), &context.embree, &rays);
-      for (std::size_t lane = 0; lane < kWidth; ++lane)
-        seen[lane] |= static_cast<std::uint32_t>(lanes(rays.tfar)[lane] != kOccluded) << bit;
-    }
-    for (std::size_t lane = 0; lane < pixels.size(); ++lane) mask_of(lane)[word] |= seen[lane] & asked[lane];
-  }
-}
-
-void RayTraced::find_common(const Tile& tile, const Block& block, Workspace& work) const {
-  work.clear.assign(light_->words_per_mask(), 0);
-  work.blocked.assign(light_->words_per_mask(), 0);
-  std::uint32_t plane = SceneFloats::kNoPlane;
-  visibility::Bounds box;
-  bool is_flat = true;
-  for (std::size_t row = block.top; row < block.bottom; ++row) {
-    for (std::size_t x = block.left; x < block.right; ++x) {
-      const std::size_t pixel = (tile.first_row + row) * samples_->width + x;
-      if (!visibility::is_receiver(*scene_, *light_, *samples_, pixel)) continue;
-      const glm::vec3& p = samples_->p[pixel];
-      const std::uint32_t own = scene_->plane[static_cast<std::uint32_t>(samples_->triangle[pixel])];
-      if (plane == SceneFloats::kNoPlane) {
-        plane = own;
-        box = {p, p};
-      }
-      is_flat = is_flat && plane == own;
-      box = {glm::min(box.lower, p), glm::max(box.upper, p)};
-    }
-  }
-  if (plane == SceneFloats::kNoPlane) return;
-  common_answers_->add_blocked(box, work.blocked);
-  if (!is_flat) return;
-  for (std::size_t word = 0; word < work.clear.size(); ++word)
-    work.clear[word] = full_mask_[word] & ~work.blocked[word];
-  common_answers_->keep_clear(box, plane, work.clear);
-}
-
-template <int kWidth>
-void RayTraced::trace_to_dome(const Tile& tile, const Block& block, Workspace& work) {
-  constexpr std::size_t kRows = kWidth >= 16 ? 4 : kWidth >= 4 ? 2 : 1, kColumns = kWidth / kRows;
-  find_common(tile, block, work);
-  std::vector<std::size_t> neighbours;
-  for (std::size_t top = block.top; top < block.bottom; top += kRows) {
-    for (std::size_t left = block.left; left < block.right; left += kColumns) {
-      neighbours.clear();
-      for (std::size_t row = top; row < std::min(top + kRows, block.bottom); ++row) {
-        for (std::size_t x = left; x < std::min(left + kColumns, block.right); ++x)
-          neighbours.push_back(row * samples_->width + x);
-      }
-      trace_neighbours<kWidth>(tile, neighbours, work);
-    }
-  }
-}
-
-template <int kWidth>
 void RayTraced::trace_tile(const Tile& tile) {
   const std::size_t words = light_->words_per_mask();
   const tbb::blocked_range2d<std::size_t> pixels(0, tile.row_count, 8, 0, samples_->width, 32);
@@ -478,8 +281,6 @@ void RayTraced::read_visibility(std::span<float> visibility) {
   const std::size_t first = std::size_t{tile_.first_row} * samples_->width;
   visibility::visible_shares(*light_, masks_, std::span(samples_->n).subspan(first, visibility.size()), visibility);
 }
-
-}  // namespace
 
 std::unique_ptr<visibility::Method> make_ray_traced(const visibility::MethodOptions& options) {
   return std::make_unique<RayTraced>(options);

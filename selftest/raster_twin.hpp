@@ -57,7 +57,7 @@ struct Judged {
 Judged judge_nearest(std::span<const Surface> surfaces, double found);
 /// Judges a layer behind the surface of the previous one; with the factor of peel.frag.
 Judged judge_behind(std::span<const Surface> surfaces, double found, double previous);
-/// 0 for an empty texel.
+/// `found`: the map's value, 0 for an empty texel.
 Judged judge_farthest(std::span<const Surface> surfaces, double found);
 
 /// Returns the largest possible difference of two maps of the same surfaces at a texel; infinite where a step decides

@@ -98,7 +98,7 @@ float auto_exposure(const Session& session, std::span<const glm::vec3> beauty, s
     const std::int32_t triangle = session.samples.triangle[i];
     const bool body = triangle >= 0 && session.floats.emits[static_cast<std::size_t>(triangle)] >= 0;
     const bool through_body = !lamps.empty() && lamps[i] != 0;
-    const bool sky = triangle < 0 && lamps.empty();  // of antialiased pixels a part is background
+    const bool sky = triangle < 0 && lamps.empty();  // not of antialiased pictures, whose pixels are background in part
     bodies[i] = body || sky || through_body ? 1 : 0;
   }
   return compare::auto_exposure(beauty, bodies);
@@ -222,7 +222,7 @@ std::string summary(const compare::Stats& stats) {
     add(questions, exact        ? "exact areas"
                    : light.area ? "an estimate of V"
                                 : fmt::format("{} light samples ({}){}", light.light_samples, light.sample_pattern,
-                                              light.in_part ? " beside exact areas" : ""));
+                                              light.in_part ? " and exact areas" : ""));
   }
   return fmt::format("{}: {}x{}, {} triangles, {}; shadow {:.3f} s on {}", fmt::join(methods, " + "), stats.width,
                      stats.height, stats.triangles, fmt::join(questions, " + "), stats.seconds.shadow().value_or(0),

@@ -7,6 +7,7 @@
 #include "base/pages.hpp"
 #include "session/process/stopwatch.hpp"
 #include "visibility/alpha/alpha_filter.hpp"
+#include "visibility/changed_defaults.hpp"
 #include "visibility/masks/visible_share.hpp"
 #include "visibility/share.hpp"
 
@@ -469,6 +470,7 @@ MethodRun run_method(visibility::Method& method, const Session& session, const R
   result.prepared = host.prepared();
   result.passes = method.take_pass_times();
   result.memory_bytes = method.memory_bytes();
+  result.changed_defaults = visibility::changed_defaults(method);
   result.times.total = total.seconds();
   return result;
 }

@@ -85,6 +85,8 @@ struct MethodRun {
   std::vector<visibility::PassTime> passes;    ///< of the last run
   std::map<std::string, std::uint64_t> counters;
   std::uint64_t memory_bytes = 0;
+  /// Options that the method changed itself (visibility::ChangesDefaults).
+  visibility::MethodOptions changed_defaults;
   const visibility::SceneFloats* prepared = nullptr;  ///< the method's current scene (RunPlan::prepared)
 };
 

@@ -99,14 +99,13 @@ constexpr auto kSlope = visibility::flag_option(
     "vsm, lvsm: adds the variance of depth within a texel, from the surface's slope, to each texel's square");
 
 /// Says that maps are smaller than the default, which this device cannot filter.
-std::optional<std::string> vssm_warning(const visibility::MethodOptions& /*options*/,
+std::optional<std::string> vssm_warning(const visibility::MethodOptions& options,
                                         const std::map<std::string, std::uint64_t>& counters) {
-  const auto reduced = counters.find(kReducedSize);
-  if (reduced == counters.end()) return std::nullopt;
+  if (!counters.contains(kReducedMaps)) return std::nullopt;
   return fmt::format(
       "vssm: maps have {0} texels a side in place of the default of {1}, whose means the device's buffers do not hold; "
       "take filter=sat or fewer terms for {1}, or size={0}",
-      reduced->second, kMapSize.otherwise);
+      options.at(kMapSize.name()), kMapSize.otherwise);
 }
 
 /// Returns the number of maps that a fit asks for on one side of a light: in a window, or at most, in a hemicube.
@@ -251,7 +250,6 @@ std::unique_ptr<visibility::Method> make_vssm(const render::Device& device, cons
   PrefilterOptions means{.kind = parsed[kFilter],
                          .functions = functions(moments, push.count, push.exponent, offset),
                          .slope = parsed[kSlope]};
-  visibility::MethodOptions given = options;
   std::uint32_t size = parsed[kMapSize];
   if (!parsed.given(kMapSize)) {
     // The number of maps depends on the light: where one window's means would not fit, there is room for a hemicube's.
@@ -259,9 +257,9 @@ std::unique_ptr<visibility::Method> make_vssm(const render::Device& device, cons
     const std::uint64_t most_bytes = device.limits().max_storage_buffer_range;
     if (size_that_fits(means, size, fewest_faces(fit), most_bytes) != size) {
       size = size_that_fits(means, size, most_faces(fit), most_bytes);
-      means.reduced_size = size;
+      means.is_reduced = true;
+      recipe.changed_defaults = {{kMapSize.name(), fmt::format("{}", size)}};
     }
-    given[kMapSize.name()] = fmt::format("{}", size);
   }
   auto prefilter = std::make_unique<Prefilter>(device, std::move(means),
                                                Prefilter::Sources{.nearest = nearest.get(), .frame = frame.get()});
@@ -279,7 +277,9 @@ std::unique_ptr<visibility::Method> make_vssm(const render::Device& device, cons
   recipe.beside_texels = window / 2;
   recipe.push_words = sizeof(gpu::VssmPush) / sizeof(std::uint32_t);
   recipe.push = [push](const visibility::Light& /*light*/) { return push_words(push); };
-  return make_map_method(device, std::move(recipe), given);
+  visibility::MethodOptions used = options;
+  used.insert(recipe.changed_defaults.begin(), recipe.changed_defaults.end());
+  return make_map_method(device, std::move(recipe), used);
 }
 
 }  // namespace penumbra::maps

@@ -9,6 +9,7 @@
 #include "maps/host/median_cut.hpp"
 #include "visibility/all_triangles.hpp"
 #include "visibility/axes_around.hpp"
+#include "visibility/changed_defaults.hpp"
 #include "visibility/masks/visible_share.hpp"
 
 #include <glm/geometric.hpp>
@@ -81,7 +82,9 @@ std::optional<DomeSun> sun_of(const Light& dome, std::vector<std::uint32_t> samp
   return sun;
 }
 
-class DomeOfSuns final : public visibility::Method, public visibility::PassesTriangles {
+class DomeOfSuns final : public visibility::Method,
+                         public visibility::PassesTriangles,
+                         public visibility::ChangesDefaults {
  public:
   DomeOfSuns(std::unique_ptr<Method> method, std::uint32_t suns)
       : method_(std::move(method)), count_(suns), description_(with_dome_suns(method_->description())) {}
@@ -103,6 +106,9 @@ class DomeOfSuns final : public visibility::Method, public visibility::PassesTri
     return dome_ == nullptr ? method_->counters() : counters_;
   }
   std::map<std::string, std::uint64_t> take_mesh_counters() override { return method_->take_mesh_counters(); }
+  [[nodiscard]] visibility::MethodOptions changed_defaults() const override {
+    return visibility::changed_defaults(*method_);
+  }
   [[nodiscard]] std::uint64_t memory_bytes() const override { return method_->memory_bytes(); }
 
  private:

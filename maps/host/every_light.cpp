@@ -9,6 +9,7 @@
 #include "maps/host/scene_space.hpp"
 #include "maps/host/sun_space.hpp"
 #include "visibility/all_triangles.hpp"
+#include "visibility/changed_defaults.hpp"
 #include "visibility/frame_memory.hpp"
 #include "visibility/receivers.hpp"
 
@@ -28,7 +29,8 @@ using visibility::ViewSamples;
 
 class EveryLight final : public visibility::Method,
                          public visibility::RemembersFrames,
-                         public visibility::PassesTriangles {
+                         public visibility::PassesTriangles,
+                         public visibility::ChangesDefaults {
  public:
   EveryLight(std::unique_ptr<Method> method, Given given)
       : method_(std::move(method)), given_(given), description_(for_every_light(method_->description(), given)) {}
@@ -49,6 +51,9 @@ class EveryLight final : public visibility::Method,
   std::vector<visibility::PassTime> take_pass_times() override { return method_->take_pass_times(); }
   [[nodiscard]] std::map<std::string, std::uint64_t> counters() const override;
   std::map<std::string, std::uint64_t> take_mesh_counters() override { return method_->take_mesh_counters(); }
+  [[nodiscard]] visibility::MethodOptions changed_defaults() const override {
+    return visibility::changed_defaults(*method_);
+  }
   [[nodiscard]] std::uint64_t memory_bytes() const override { return std::max(memory_, method_->memory_bytes()); }
 
  private:
@@ -66,7 +71,7 @@ class EveryLight final : public visibility::Method,
   Given given_;
   visibility::MethodDescription description_;
   const SceneFloats* scene_ = nullptr;
-  const visibility::AllTriangles* all_ = nullptr;  // of which the scene has a part; null: it is whole
+  const visibility::AllTriangles* all_ = nullptr;  // null: the scene has all triangles
   std::optional<SceneFloats> drawn_;               // with holes as casters, if any
   const SceneFloats* shown_ = nullptr;             // scene that the method has
   const Light* light_ = nullptr;                   // light given by the host

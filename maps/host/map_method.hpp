@@ -145,6 +145,7 @@ struct MapRecipe {
   std::uint32_t sub_lights = 1;
   /// Displacement of the map's window in texels (FitOptions::jitter) whenever maps are made. Null: none.
   const glm::dvec2* jitter = nullptr;
+  visibility::MethodOptions changed_defaults{};  ///< visibility::ChangesDefaults
   /// Layers of the map in addition to the second one, which the option `depth` may request.
   MapLayers layers{};
   /// Push constants of the shader after LookupPush: `push_words` words, for a light.

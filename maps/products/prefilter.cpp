@@ -187,7 +187,7 @@ std::vector<std::uint32_t> Prefilter::constants(std::uint32_t size, std::uint32_
 }
 
 void Prefilter::add_counters(std::map<std::string, std::uint64_t>& counters) const {
-  if (options_.reduced_size != 0) counters[kReducedSize] = options_.reduced_size;
+  if (options_.is_reduced) counters[kReducedMaps] = 1;
 }
 
 std::uint64_t Prefilter::memory_bytes() const {

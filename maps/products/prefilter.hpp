@@ -36,11 +36,11 @@ struct PrefilterOptions {
   bool of_bits = false;            ///< texels are words of bits; else the maps' depths
   bool slope = false;              ///< squares of layers include the effect of the surface's slope within a texel
   std::uint64_t buffer_bytes = 0;  ///< size limit of a buffer; 0: the device's limit
-  std::uint32_t reduced_size = 0;  ///< size of maps, if it is a default reduced to what buffers hold; else 0
+  bool is_reduced = false;         ///< the size of maps is a default reduced to what buffers hold
 };
 
-/// Counter of PrefilterOptions::reduced_size.
-inline constexpr const char* kReducedSize = "reducedSize";
+/// Counter of lights whose maps have a reduced size (PrefilterOptions::is_reduced).
+inline constexpr const char* kReducedMaps = "reducedMaps";
 
 /// Functions of the texels of one light point's maps, prefiltered: a look-up computes their means over windows of any
 /// size by a number of fetches independent of the window (maps/products/prefilter.glsl).

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Writes a scene as binary glTF: objects as meshes in world space, flat lights as emissive meshes, spheres and suns as
-// lamps of KHR_lights_punctual, and in extras what glTF cannot say.
+// lamps of KHR_lights_punctual, and extras for properties that glTF does not have.
 
 #include "scenes/formats/checks.hpp"
 #include "scenes/formats/glb_model.hpp"
@@ -363,7 +363,7 @@ void write_glb(const Scene& scene, const Instances& instances, AtomicFile& file,
                                   scene.lights[i].name, bodies[i]));
     if (bodies[i] > 0) continue;
     if (std::holds_alternative<Dome>(scene.lights[i].shape)) {
-      losses.refuse("is a dome, which glTF cannot say", scene.lights[i].name);
+      losses.refuse("is a dome, which glTF does not have", scene.lights[i].name);
       continue;
     }
     if (scene.lights[i].radiance == glm::dvec3(0))  // its outline would be read back as a surface that casts a shadow
@@ -380,12 +380,12 @@ void write_glb(const Scene& scene, const Instances& instances, AtomicFile& file,
     glb.add_camera(camera, camera.aspect.value_or(static_cast<double>(scene.width) / scene.height));
   }
   for (const Object& object : scene.objects) {
-    if (object.lit_by) losses.refuse("is lit by some lights alone, which glTF cannot say", object.name);
+    if (object.lit_by) losses.refuse("is lit only by some lights, which glTF cannot express", object.name);
   }
   for (std::size_t i = 0; i < scene.lights.size(); ++i) {
     const AreaLight& light = scene.lights[i];
     if (!light.unshaded_by.empty() && !(bodies[i] == 0 && is_lamp(light) && is_shadeless(scene, light)))
-      losses.refuse("has shadows of some meshes alone, which glTF cannot say", light.name);
+      losses.refuse("has shadows only of some meshes, which glTF cannot express", light.name);
   }
   file.write(glb.finish());
 }

@@ -297,7 +297,7 @@ class Comparison {
     for (const std::string& warning : of_method) progress_.warn(warning);
     judge.fill(result, done.run, pairs_of_reference, progress_);
     judge.count_texels(result.lights, done.run, entry.description,
-                       visibility::complete_options(entry.description, entry.options));
+                       visibility::complete_options(entry.description, result.stats.options));
     result.beauty_error = compare::beauty_error(done.beauty, reference_beauty_, truths_.front().judged);
     if (entry.description.output == Output::scalar && !separated_.empty()) {
       result.separation = compare::separation({done.beauty, separated_, reference_beauty_}, truths_.front().judged);
@@ -344,7 +344,8 @@ class Comparison {
     machine_.check_validation();
     progress_.clear();
     if (!options_.writes) return done;
-    const std::vector<MethodLabel> labels = labels_of(entry, lights, machine_);
+    const Entry used = as_run(entry, done.run);
+    const std::vector<MethodLabel> labels = labels_of(used, lights, machine_);
     const PictureContent written{session_, {lights, labels}, done.run.visibility, beauty.parts(), done.beauty};
     const std::filesystem::path file = files_.of(entry.label, ".exr");
     for (std::string& warning : write_picture(file, written, format_)) warn(std::move(warning));
@@ -356,7 +357,8 @@ class Comparison {
   [[nodiscard]] bool wants_bits(const Entry& entry) const { return session::wants_bits(entry, options_); }
 
   compare::Stats stats_of(const Entry& entry, std::span<const Light> lights, const MethodRun& run) {
-    const std::vector<MethodLabel> labels = labels_of(entry, lights, machine_);
+    const Entry used = as_run(entry, run);
+    const std::vector<MethodLabel> labels = labels_of(used, lights, machine_);
     return make_stats(session_, {lights, labels}, run);
   }
 

@@ -193,6 +193,11 @@ RunPlan plan_of(const Entry& entry, bool is_reference, const ComparisonOptions& 
   return plan;
 }
 
+Entry as_run(Entry entry, const MethodRun& run) {
+  entry.options.insert(run.changed_defaults.begin(), run.changed_defaults.end());
+  return entry;
+}
+
 std::vector<MethodLabel> labels_of(const Entry& entry, std::span<const visibility::Light> lights,
                                    const render::Machine& machine) {
   std::vector<MethodLabel> labels;

@@ -45,7 +45,10 @@ void require_explainable(std::span<const MethodEntry> methods);
 /// five, after a discarded one; one for a judge that computes areas. The caller sets lights and pixels.
 RunPlan plan_of(const Entry& entry, bool is_reference, const ComparisonOptions& options);
 
-/// Returns one label for each light: the device of a method may depend on the light.
+/// Returns the entry with the options that its method changed itself in a run (visibility::ChangesDefaults).
+Entry as_run(Entry entry, const MethodRun& run);
+
+/// Returns one label for each light, which refers to `entry`: the device of a method may depend on the light.
 std::vector<MethodLabel> labels_of(const Entry& entry, std::span<const visibility::Light> lights,
                                    const render::Machine& machine);
 

@@ -62,7 +62,7 @@ std::optional<SilhouetteCounts> count_silhouettes(const mesh::MeshView& mesh, co
 std::vector<MethodVerdict> verdicts_on(const mesh::Diagnosis& diagnosis, const InspectedMesh& mesh) {
   std::vector<MethodVerdict> verdicts;
   for (const visibility::MethodDescription* method : all_methods()) {
-    PENUMBRA_ASSERT(method->verdict_on != nullptr, "method {} says nothing of meshes", method->name);
+    PENUMBRA_ASSERT(method->verdict_on != nullptr, "method {} has no verdict on meshes", method->name);
     visibility::MeshVerdict verdict = method->verdict_on(diagnosis);
     if (diagnosis.largest_coordinate > scenes::kLargestCoordinate) {
       verdict = {visibility::Verdict::refused,

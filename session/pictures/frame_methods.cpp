@@ -280,10 +280,16 @@ MethodRun FrameRenderer::run_lights(BeautyAccumulator& beauty, BitsOutput* bits)
     // Time outside of the method's phases is spent on its results.
     const RunTimes& times = run.times;
     spent_.beauty += times.total - times.mesh - times.light - times.evaluate - times.view;
+    visibility::MethodOptions changed = run.changed_defaults;
     add_run(all, std::move(run));
+    return changed;
   };
-  for (const std::vector<std::size_t>& lights : same_methods(plan_.chosen))
-    run_with(plan_.chosen[lights.front()], {.lights = plan_.lights, .only = lights});
+  for (const std::vector<std::size_t>& lights : same_methods(plan_.chosen)) {
+    const visibility::MethodOptions changed =
+        run_with(plan_.chosen[lights.front()], {.lights = plan_.lights, .only = lights});
+    // For labels; the method itself is kept under the options that were asked for.
+    for (const std::size_t light : lights) plan_.chosen[light].options.insert(changed.begin(), changed.end());
+  }
   std::vector<std::size_t> in_part;
   std::vector<LightMethod> with;
   for (std::size_t i = 0; i < plan_.counting.size(); ++i) {

@@ -19,7 +19,7 @@ struct MaskMethod {
   const char* name;
   std::unique_ptr<visibility::Method> (*make)(const render::Device&, const visibility::MethodOptions&);
   bool any_light;        ///< otherwise only light samples in rows of a rectangle
-  bool no_rows = false;  ///< given none: light samples of rows that are not called that
+  bool no_rows = false;  ///< gets light samples without the information that they form rows
 
   [[nodiscard]] bool on_device() const { return !std::string_view(name).starts_with("native"); }
 

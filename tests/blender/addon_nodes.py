@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: Apache-2.0
-"""Tests what the add-on makes of materials' nodes, without Blender: surfaces, colours that are evaluated, images, and what is refused.
+"""Tests how the add-on converts materials' nodes, without Blender: surfaces, evaluated colours, images, and refusals.
 
     addon_nodes.py ADDON.zip
 """
@@ -69,7 +69,7 @@ class Materials(unittest.TestCase):
         self.assertFalse(lost.refused)
 
     def test_sockets_of_blender_4(self):
-        """Principled BSDF as Blender 4 names its inputs; in a language of its own, too, whose identifiers stay."""
+        """Principled BSDF with the inputs' names of Blender 4, also translated to another language: identifiers stay English."""
         def four(translate=str, **values):
             defaults = dict(Base_Color=(0.8, 0.8, 0.8, 1), Metallic=0.0, Roughness=0.5, IOR=1.5, Alpha=1.0, Normal=None,
                             Subsurface_Weight=0.0, Specular_IOR_Level=0.0, Transmission_Weight=0.0, Coat_Weight=0.0,
@@ -142,7 +142,7 @@ def colored(source, name="Color"):
 
 class Colors(unittest.TestCase):
     def test_constants(self):
-        """Values computed by hand: twice the contrast about a half; and a power of what is mixed."""
+        """Values computed by hand: twice the contrast about 0.5; the square of a mixed colour."""
         mixed = node("MIX_RGB", Fac=0.25, Color1=(0.2, 0.4, 0.8, 1), Color2=(1, 0, 0, 1))
         mixed.blend_type, mixed.use_clamp = "MIX", False
         gamma = node("GAMMA", Color=None, Gamma=2.0)
@@ -218,7 +218,7 @@ class Colors(unittest.TestCase):
 
 class Texels(unittest.TestCase):
     def test_between_texels(self):
-        """Halfway between two it is their mean, beyond the last that or the first; B-splines keep straight lines."""
+        """Linear interpolation gives the mean halfway between two texels, and beyond the last texel the last or (repeated) the first one; B-splines keep straight lines."""
         values = numpy.linspace(0, 1, 8).reshape(1, 8, 1).repeat(3, axis=2)
         fine = texels.finer(values, "Linear", "EXTEND")
         self.assertEqual(fine.shape, (16, 128, 3))
@@ -289,7 +289,7 @@ class Skies(unittest.TestCase):
             wanted = int(math.acos(z) / math.pi * 4) * 8 + int((0.5 - math.atan2(y, x) / (2 * math.pi)) * 8) % 8
             found = self.looked_up(direction, self.world_of(tuple(angles), tuple(2.5 * signs)))
             self.assertAlmostEqual(found * 32, wanted, places=4)
-            # A texture mapping is the way back.
+            # A texture mapping is the inverse.
             x, y, z = direction
             wanted = int(math.acos(z) / math.pi * 4) * 8 + int((0.5 - math.atan2(y, x) / (2 * math.pi)) * 8) % 8
             world = self.world_of(tuple(angles), tuple(2.5 * signs), "TEXTURE")

@@ -3,13 +3,12 @@
 
     run.sh cycles.py ADDON.zip PENUMBRA WORK [SCENE...]
 
-Cycles renders each scene
-twice, with different seeds: the difference is its noise. Exit 1 if any scene is off; a table either way.
+Cycles renders each scene twice, with different seeds: the difference is its noise. Prints a table, and exits 1 if any scene is off.
 
-Where no light is shaded, where all are, and between, by what the add-on says of V: ours over Cycles' sums is 1 within five
-standard errors and kBias, and pixel by pixel the difference is as large as Cycles' own noise. Where nothing is lit, Cycles
-sees nothing. Pixels whose neighbours show another surface are left out: whose the centre is, is decided by
-different roundings.
+The add-on's V divides pixels in three regions: all lights visible, none, and between. In lit and partly lit regions our sum over
+Cycles' sum is 1 within five standard errors and BIAS, and single pixels differ by no more than Cycles' own noise. In the umbra
+Cycles sees no light. Pixels whose neighbours show another surface are left out: at borders the two programs round differently
+which surface covers a pixel's centre.
 """
 
 import json
@@ -24,21 +23,21 @@ import scenes  # noqa: E402
 from inside import ARGUMENTS, OUT, channels, fresh  # noqa: E402
 
 SAMPLES = 256
-SCALE = int(os.environ.get("SCALE", "1"))  # pictures so many times as large, for people to look at
+SCALE = int(os.environ.get("SCALE", "1"))  # factor of the pictures' sides, for people to look at
 STANDARD_ERRORS = 5.0
 # Bias of Cycles in the ratio of sums, due to its single-precision sampling of lights: measured where nothing is shaded,
 # at up to 65536 samples, 2e-4.
 BIAS = 1e-3
 # Pixels beside an umbra's edge may see a last bit of light in Cycles, whose pixels are a hundredth wide and not points.
 EDGE = 1e-2
-# Light that passes holes and panes is counted in light samples: as many as there may be.
+# Scenes whose light is counted in light samples, here the largest number: it passes holes and panes, or comes from a world.
 COUNTED = {"translucent", "cut_out", "world_color_counted", "world_and_lamp", "world_picture", "world_picture_turned",
            "world_picture_texture_mapping", "world_picture_mirrored", "world_and_translucent", "forest"}
 # Scenes with several view samples a pixel: means are compared at every pixel. Penumbra takes 64, evenly spread; 64 random
 # ones would have twice the noise of Cycles' 256.
 LENSES = {"depth_of_field", "orthographic_depth_of_field", "motion_and_lens"}
 # Scenes in motion, at pixels' centres but for the last: 64 moments, evenly spread. Cycles exposes the first 254 of 256 parts of
-# its shutter (docs/against-cycles.md, In motion), and is told of a time that is longer by as much.
+# its shutter (docs/against-cycles.md, In motion), so that its shutter time is set longer by the same factor.
 MOVING = {"motion_of_a_thing", "motion_of_the_camera", "motion_of_a_mesh", "motion_of_a_shining_thing", "motion_and_lens"}
 BLURRED = LENSES | MOVING
 # Further differences where Cycles means another shape: a point lamp of radius r at distance d is a disk to Cycles and a
@@ -85,7 +84,7 @@ def by_penumbra(name, scene, path):
 
 
 def inner(found):
-    """Pixels that show the surface that all their neighbours show."""
+    """Returns the pixels that show the same surface as all their neighbours."""
     position = numpy.stack([found[f"Position.{axis}"] for axis in "XYZ"], axis=-1)
     normal = numpy.stack([found[f"Normal.{axis}"] for axis in "XYZ"], axis=-1)
     same = found["Combined.A"] == 1
@@ -106,7 +105,7 @@ def regions(found, lights):
 
 
 def compare(name, found, first, second):
-    """A row for each region that is there: what was found, and whether that is well."""
+    """Returns a row for each region of at least 20 pixels: figures, and whether they are well."""
     lights = [key[2:-2] for key in found if key.startswith("V ")]
     ours, theirs = colors(found), (first + second) / 2
     usable, rows = inner(found), []

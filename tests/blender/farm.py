@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: Apache-2.0
-"""The add-on as farms run it: `blender -b --addons penumbra FILE.blend … -f 1`, without saved preferences. What succeeds ends with 0
-and a file, what fails with another code and none; a killed Blender leaves nothing.
+"""Tests the add-on as farms run it: `blender -b --addons penumbra FILE.blend … -f 1`, without saved preferences. A frame that succeeds
+gives a file and exit code 0, one that fails gives no file and another code; a killed Blender leaves no files.
 
     farm.py ADDON.zip PENUMBRA WORK
 """
@@ -70,7 +70,7 @@ class Farm(unittest.TestCase):
                               text=True, timeout=300, **how)
 
     def frames(self, scene, *arguments):
-        """The run, and the frames that it wrote."""
+        """Renders frames; returns the run, and the files that it wrote."""
         run = self.blender("--addons", "penumbra", path(f"{scene}.blend"), "-o", path("out", "####"), "-F", "OPEN_EXR", *arguments)
         written = sorted(os.listdir(path("out"))) if os.path.isdir(path("out")) else []
         return run, [int(name[:4]) for name in written]

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""The report's tables, plots and words in a browser, as its script draws them from the JSON in the page: those of a real comparison
-against metrics.json, and those of JSON that was changed.
+"""Tests tables, plots and words of the report in a browser, where a script draws them from the JSON in the page: those of a real
+comparison are held against metrics.json, others come from JSON that the test changes.
   report_numbers.py PROGRAM SCENE [PHOTOGRAPHS]   PHOTOGRAPHS: a folder for pictures of the page, for people to look at"""
 import copy
 import csv
@@ -40,7 +40,7 @@ class Numbers:
         self.metrics = json.loads((folder / "metrics.json").read_text(encoding="utf-8"))
 
     def open(self, change=None, hash="", **window):
-        """`change`: of the JSON, in place."""
+        """Opens the page. `change`: function that changes its JSON in place."""
         data = copy.deepcopy(self.data)
         if change:
             change(data)
@@ -50,7 +50,7 @@ class Numbers:
         self.browser.open(path.as_uri() + hash, **window)
 
     def table(self, caption):
-        """Rows of [text, value, class of what is in the cell] of the table whose caption begins so; None without one."""
+        """Returns rows of [text, value, class of the cell's content] of the table whose caption begins with `caption`; None: there is no such table."""
         return self.browser.ask(f"""(() => {{
             const table = [...document.querySelectorAll('table.sortable')].find(t => t.caption.textContent.startsWith({json.dumps(caption)}));
             return table && [...table.rows].slice(1).map(row => [...row.cells].map(cell =>
@@ -115,7 +115,7 @@ def rows_under(page, caption, light):
 
 
 def check_sorting(page):
-    """Sorted by keys, and saved."""
+    """Tables are sorted by the keyboard, and saved."""
     page.open()
     browser = page.browser
     wanted = [method["errorAllLights"]["rmse"] for method in page.metrics["methods"]] + [page.metrics["sameSamples"]["errorAllLights"]["rmse"]]
@@ -161,7 +161,7 @@ def check_texts(page):
 
 
 def check_findings(page):
-    """The summary at a glance: ties are ties, and speeds are given between answers to the same question alone."""
+    """The summary names ties, and compares speeds only of methods that answer the same question."""
     def tie(data):
         for result, rmse in zip(data["metrics"]["methods"], (0.0034, 0.00340001, 0.0035)):
             result["errorAllLights"]["rmse"] = rmse
@@ -266,7 +266,7 @@ def check_foreign_texts(page):
 
 
 def check_plot(page):
-    """Marks lie where seconds and errors say, names in the drawing and on nothing else, errors of none on a line of their own."""
+    """Marks lie at their seconds and errors, names inside the drawing without overlap, errors of 0 on a line of their own."""
     seconds, errors = (0.02, 0.2, 0.2), (0.004, 0.03, 0.03)  # two of them on the same place
 
     def change(data):
@@ -312,8 +312,8 @@ def check_plot(page):
 
 
 def check_budget(page, photographs):
-    """The error budget: every light's table has the numbers of metrics.json, bars as long as they are and on their side, and
-    the runs behind them; sorted and opened by keys."""
+    """The error budget: every light's table has the numbers of metrics.json, with bars of the right length on the right side, and
+    the runs that gave them; the keyboard sorts and opens it."""
     browser, url = page.browser, (page.folder / "report.html").as_uri() + "#error-budget"
     browser.open(url)
     methods = page.metrics["methods"]

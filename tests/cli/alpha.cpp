@@ -113,7 +113,7 @@ TEST_F(AlphaSurfaces, AreasStayExactBesideWhatAPaneMayDim) {
       ASSERT_EQ(outcome.code, 0) << outcome.err;
       EXPECT_THAT(outcome.err,
                   AllOf(HasSubstr("\"Card\""), HasSubstr("256 light samples"), HasSubstr("exact areas elsewhere"),
-                        HasSubstr("256 light samples (rows) beside exact areas")));
+                        HasSubstr("256 light samples (rows) and exact areas")));
       const ExrFile seen = picture(), open = picture("open.exr"), counted = picture("counted.exr");
       std::size_t pixels_counted = 0;
       for (std::size_t i = 0; i < seen.floats.at("V").size(); ++i) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests which view samples methods are not asked about, because their answers are known or nobody looks: no bit of a
-// picture depends on it.
+// Tests which view samples methods do not evaluate, since V there is known or not written: no bit of a picture depends
+// on this.
 #include "tests/cli/program.hpp"
 
 #include "base/exr.hpp"
@@ -67,8 +67,8 @@ TEST_F(AskedSamples, BesideConesNothingIsAsked) {
   }
 }
 
-/// View samples that do not move, and before whose light nothing moves, are asked about once for several moments: the
-/// picture is the mean of its moments, each rendered alone.
+/// View samples are evaluated once for several moments where neither they nor casters between them and the light move.
+/// The picture is the mean of its moments, each rendered alone.
 TEST_F(AskedSamples, WhatIsStillIsAskedOnce) {
   (void)moving_scene();
   const std::vector<std::string> scene = {path("scene.glb"), "--camera", "B.2", "--size", "48x32", "--fps", "10"};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `compare` further on: errors by class of pixel, how often methods run, who may judge, and sequences.
+// More tests of `compare`: errors by class of pixel, numbers of runs, methods as reference, and sequences.
 #include "tests/cli/program.hpp"
 
 #include "base/exr.hpp"
@@ -28,8 +28,8 @@ class CompareFurther : public ProgramTest {
   [[nodiscard]] json metrics() const { return json::parse(read("dir/metrics.json")); }
 };
 
-/// Lit, penumbra and umbra share out the judged pixels, so their errors add up to the whole one; cast and self are
-/// among the shadowed ones. Here the wedge alone casts, on the floor and on itself.
+/// Each judged pixel is lit, in penumbra or in umbra, so the errors of these classes add up to the whole error. Pixels
+/// of cast and self shadows are in penumbra or umbra. Here the wedge alone casts, on the floor and on itself.
 TEST_F(CompareFurther, ErrorsByClassAddUp) {
   ASSERT_EQ(compare({"--methods", "pcss:size=64", "--reference", "exact"}).code, 0);
   const json all = metrics(), method = all.at("methods").at(0), classes = method.at("classes");
@@ -148,7 +148,7 @@ TEST_F(CompareFurther, AnyMethodWithExactAreasMayJudge) {
   EXPECT_THAT(refused.err, HasSubstr("edge-scatter:rows=exact"));
 }
 
-/// The sequence's numbers, computed again from comparisons of its frames alone: V of each is in their EXRs.
+/// Computes the numbers of a sequence again, from V in the EXRs of comparisons of single frames.
 TEST_F(CompareFurther, FramesHaveErrorsTogetherAndFlicker) {
   const std::string scene = moving_scene();
   const auto compared = [&](const std::vector<std::string>& when) {

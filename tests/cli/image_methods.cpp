@@ -3,6 +3,8 @@
 // it says. One comparison of all of them, judged by what metrics.json says.
 #include "tests/cli/program.hpp"
 
+#include "base/exr.hpp"
+
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
@@ -224,6 +226,43 @@ TEST_F(ImageMethods, ATexturedLightNearTheFloorTakesNoLongerThanItsOutlines) {
   const json counters = json::parse(read("stats.json")).at("counters");
   EXPECT_EQ(counters.at("mapFaces"), 20);
   EXPECT_LT(counters.at("cells").get<double>(), 1e-3 * counters.at("kernelCells").get<double>());
+}
+
+// Where a device cannot filter maps of the default size, options in files are those that were used, under one light and
+// under two, and texels are as wide as those of a size that is given.
+TEST_F(ImageMethods, OptionsHaveTheSizeOfMapsThatTheDeviceReduced) {
+  const std::string entry = "vssm:moments=csm:filter=n-buffer";
+  json scene = json::parse(kScene);
+  scene["lights"].push_back(scene["lights"][0]);
+  scene["lights"][1]["name"] = "other";
+  const std::string two_lights = write("two.json", scene.dump()).string();
+  const Outcome outcome = run({"render", two_lights, "-o", path("out.exr"), "--method", "vssm", "--method-option",
+                               "moments=csm", "--method-option", "filter=n-buffer", "--stats", path("stats.json")});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const json stats = json::parse(read("stats.json"));
+  const json& options = stats.at("options");
+  if (!stats.at("counters").contains("reducedMaps")) {  // large buffers
+    EXPECT_FALSE(options.contains("size"));
+    return;
+  }
+  const std::string size = options.at("size");
+  EXPECT_LT(std::stoi(size), 1024);
+  EXPECT_EQ(stats.at("counters").at("reducedMaps"), 2);
+  EXPECT_THAT(outcome.err, HasSubstr(size + " texels a side in place of the default of 1024"));
+  for (const json& light : stats.at("lights")) EXPECT_EQ(light.at("options"), options);
+  EXPECT_THAT(read_exr(path("out.exr")).attributes.at("penumbra.options"), HasSubstr("size=" + size));
+
+  const std::vector<std::string> entries{entry, entry + ":size=" + size};
+  const Outcome compared =
+      run({"compare", write("scene.json", kScene).string(), "-o", path("out"), "--methods",
+           entries[0] + "," + entries[1], "--reference", "exact", "--light-samples", "16", "--runs", "1"});
+  ASSERT_EQ(compared.code, 0) << compared.err;
+  const json methods = json::parse(read("out/metrics.json")).at("methods");
+  EXPECT_EQ(methods[0].at("options"), methods[1].at("options"));
+  const json &reduced = methods[0].at("lights")[0], &given = methods[1].at("lights")[0];
+  EXPECT_EQ(reduced.at("error"), given.at("error"));
+  EXPECT_EQ(reduced.at("penumbraWidth"), given.at("penumbraWidth"));
+  EXPECT_FALSE(reduced.at("penumbraWidth").at("texels").empty());
 }
 
 TEST_F(ImageMethods, WhatIsNoValueIsRefusedWithThoseThatAre) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A second driver for processors, SwiftShader, as Debian's package chromium brings it: subgroups of four lanes, neither
-// double precision nor 64-bit integers. What runs there is right there, too; what does not is refused by name.
+// double precision nor 64-bit integers. Methods that run on it are right there, too; others are refused by name.
 
 #include "tests/cli/program.hpp"
 
@@ -92,8 +92,8 @@ TEST_F(SecondDriver, ExactMethodsGiveTheSameBitsOnScenesFull) {
   }
 }
 
-/// Every pass that has a twin in C++, the maps' among them, is held against it there. Tables of sines and cosines
-/// (convolution) are as wrong as Vulkan lets a driver be: each by 2^-11, of which they hold the half.
+/// Each pass that has a twin in C++, passes of maps included, agrees with it. Tables of sines and cosines (convolution)
+/// may be off by half of 2^-11, the error that Vulkan permits for each sine: they store half of it.
 TEST_F(SecondDriver, PassesAreTheirTwinsFull) {
   const Outcome outcome = run_program({.arguments = {"devices", "--self-test", "--json"},
                                        .environment = kThere,

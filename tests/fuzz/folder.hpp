@@ -13,7 +13,7 @@
 
 namespace penumbra::fuzz {
 
-/// A folder of its own for a fuzz target's file, so that the files which it names beside itself are not there.
+/// A new, empty folder for the file of a fuzz target: other files that it refers to do not exist.
 class Folder {
  public:
   Folder() : path_((std::filesystem::temp_directory_path() / "penumbra-fuzz-XXXXXX").string()) {
@@ -26,7 +26,7 @@ class Folder {
   Folder(const Folder&) = delete;
   Folder& operator=(const Folder&) = delete;
 
-  /// The file of that name, with `data` in it.
+  /// Writes `data` to a file of this name, and returns its path.
   [[nodiscard]] std::filesystem::path write(const std::string& name, std::span<const std::uint8_t> data) const {
     std::filesystem::path file = std::filesystem::path(path_) / name;
     std::ofstream(file, std::ios::binary)

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""The page of `penumbra view` in headless Chromium, by pointer and by keys, against what the program writes.
+"""Tests the page of `penumbra view` in headless Chromium, by pointer and by keyboard, against files that the program writes.
   live_page.py PROGRAM SCENES [PHOTOGRAPHS]   PHOTOGRAPHS: a folder for pictures of the page, for people to look at"""
 import base64
 import json
@@ -99,7 +99,7 @@ class Page:
 
 
 def rendered(page, folder, name, *arguments):
-    """Returns what `render` makes of the saved scene, exposed as the page is."""
+    """Returns channels and pixels that `render` writes for the saved scene, with the exposure of the page."""
     scene = folder / f"{name}.json"
     scene.write_bytes(page.server.get("/scene.json")[2])
     stops = page.ask("document.getElementById('stops').dataset.stops")
@@ -136,7 +136,7 @@ def check_camera(page, folder):
     page.type("#paste-camera", json.dumps(near))
     same(page.camera()["eye"], near["eye"], "a camera that was pasted")
     page.ask("(() => { const c = document.getElementById('paste-camera'); c.value = '{'; c.dispatchEvent(new Event('change')); })()")
-    expect("no JSON" in page.ask("document.getElementById('trouble').textContent"), "what is none is said")
+    expect("no JSON" in page.ask("document.getElementById('trouble').textContent"), "text that is not JSON is named")
     page.ask("document.getElementById('paste-camera').value = ''")
     page.tick("home")
     x, y = page.place(0.5, 0.9)
@@ -294,7 +294,7 @@ def check_pixel(page, folder):
 
 
 def check_typed_pixel(page, folder):
-    """A pixel by its numbers, without a pointer: what it says, its outline in words, and the pivot there."""
+    """A pixel chosen by its numbers, without a pointer: its values, its outline in words, and the pivot there."""
     exr, _ = rendered(page, folder, "typed")
     page.browser.pointer("mouseMoved", 2, 2)
     x, y = min(((x, y) for y in range(64) for x in range(64)), key=lambda at: abs(exr["key.V"][at[1] * 64 + at[0]] - 0.5))
@@ -343,7 +343,7 @@ def check_report(page):
 
 
 def check_saving(browser, folder):
-    """The button saves the scene and the picture of its light, and `render` makes of them what the page shows."""
+    """The button saves the scene and the picture of its light, and `render` of the two gives the picture that the page shows."""
     into = folder / "saved"
     into.mkdir()
     with Server(PROGRAM, SCENES / "textured-light.json", "--size", "64x64") as server:

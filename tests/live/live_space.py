@@ -32,7 +32,7 @@ class Space:
             code = {"float32": "f", "uint32": "I", "int32": "i"}[array["type"]]
             self.arrays[array["name"]] = struct.unpack_from(f"<{array['count']}{code}", data, at)
             at += 4 * array["count"]
-        same(at, len(data), "an answer has the bytes that it says")
+        same(at, len(data), "an answer has as many bytes as its header")
 
 
 def ask(server, what, **parameters):
@@ -69,7 +69,7 @@ def check_shadows(server, scene, folder):
         places = [value for wedge in known["wedges"] for end in wedge["edge"] for value in end]
         expect(all(abs(a - b) <= 1e-6 * max(1, abs(b)) for a, b in zip(answer.arrays["wedgeEdges"], places)), "their edges")
         names = ["wedge", "split", "everywhere", "empty"]
-        same([names[number] for number in answer.arrays["outcomes"]], [wedge["outcome"] for wedge in known["wedges"]], "what became of each")
+        same([names[number] for number in answer.arrays["outcomes"]], [wedge["outcome"] for wedge in known["wedges"]], "the outcome of each edge")
         bodies = answer.arrays["bodies"]
         same(len(bodies) // 4, sum(wedge["outcome"] == "wedge" for wedge in known["wedges"]), "a body each")
         same(len(answer.arrays["bodyTriangles"]), 9 * sum(bodies[1::4]), "their triangles")

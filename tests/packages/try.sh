@@ -1,10 +1,10 @@
 #!/bin/bash
 # SPDX-License-Identifier: Apache-2.0
-# try.sh BUILD WORK: makes the Debian package and the tarball of a built tree, and tries both as strangers do: in a bare Debian 12 made by
-# debootstrap, as another user, in a folder with spaces, where /tmp cannot be written. Skipped (77) without root, debootstrap or mirror.
-#   the package: installed by apt; renders, compares, repairs, is imported by Python
-#   the tarball: where nothing is installed it renders and compares what needs no Vulkan, to the same bytes as the built tree; beside
-#     the package, whose driver it finds, also what needs Vulkan; gpu.sh writes what it says
+# try.sh BUILD WORK: makes the Debian package and the tarball of a built tree, and tries both in a bare Debian 12 made by debootstrap, as
+# another user, in a folder with spaces, where /tmp cannot be written. Skipped (77) without root, debootstrap or mirror.
+#   The package is installed by apt; the program renders, compares and repairs, and Python imports the module.
+#   The tarball is tried in a system without other packages, where methods that need no Vulkan give the same bytes as the built tree; and in
+#     the system with the package, whose driver it finds, where other methods run, too.
 set -euo pipefail
 build=$(readlink -f -- "$1") work=$2
 here=$(cd -- "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")" && pwd)

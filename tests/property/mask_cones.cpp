@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Spheres and suns, which every view sample sees otherwise, where nothing is in general position: every bit of the
-// methods that do them is the exact decision on the light points of its view sample, without tolerance.
+// Tests masks under spheres and suns, whose light points differ from view sample to view sample, with triangles that
+// touch them exactly: every bit of the methods for such lights is the exact decision on these points, without
+// tolerance.
 
 #include "tests/agreement/cracked_ball.hpp"
 #include "tests/agreement/mask_methods.hpp"
@@ -105,9 +106,8 @@ INSTANTIATE_TEST_SUITE_P(Lights, ConeLattices,
                                               std::get<0>(it.param));
                          });
 
-/// Triangles near the float point of a sphere that a view sample sees, with an edge through it as far as floats know,
-/// where rounding that point is off by more than anything else: far from zero, under a small light. What it takes of
-/// its bound is printed.
+/// Triangles near a light point of a sphere, with an edge through the point within float rounding, far from zero under
+/// a small light: rounding of the point is the largest error there. Prints the share of its bound that is used.
 class AimedSpheres : public tests::DeviceTest, public testing::WithParamInterface<tests::MaskMethod> {
  protected:
   /// `in_disk`: triangles through the light point itself, in the disk that the view sample sees up to a hundredth.
@@ -216,7 +216,7 @@ TEST_P(AimedSpheres, FewPairsAreOpenWhereASphereHoldsCasters) {
 INSTANTIATE_TEST_SUITE_P(Of, AimedSpheres, testing::ValuesIn(tests::kConeMethods),
                          [](const auto& it) { return std::string(it.param.name); });
 
-/// A wrong bit is told with the point that its p sees of a sphere, or the direction of a sun.
+/// The message about a wrong bit has the light point on the disk that p sees of a sphere, or the direction of a sun.
 TEST(WrongBits, AreToldWithTheirLightPoints) {
   for (const scenes::LightShape& shape :
        {scenes::LightShape(scenes::Sphere{{0, 4, 0}, 0.5}), scenes::LightShape(scenes::Sun{{0, -1, 0}, 10})}) {

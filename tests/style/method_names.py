@@ -11,7 +11,7 @@ from pathlib import Path
 DEFAULTS = {("session/comparison/comparison.hpp", "raytrace"), ("bench/swimming.py", "exact"),
             ("bench/options.cpp", "edge-scatter,view-sample"), ("bench/options.cpp", "edge-scatter,edge-scatter:rows=exact")}
 # Measures what papers, or a page, say of methods by name.
-OF_PAPERS = {"bench/time_ratios.py", "bench/domes.py", "bench/page_tables.py"}
+OF_PAPERS = {"bench/time_ratios.py", "bench/domes.py", "bench/page_tables.py", "bench/scaling_tables.py"}
 
 
 # Shell lines that hold what users get if they choose nothing.

@@ -13,7 +13,7 @@ import re
 import subprocess
 import sys
 
-# Built instead of the files that define the same.
+# Files that are built in place of others with the same types.
 ALTERNATIVES = {"render/opengl/absent.cpp"}
 
 TOKEN = re.compile(

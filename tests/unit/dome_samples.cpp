@@ -93,8 +93,8 @@ TEST(DomeSamplesMade, OfHalfADomeLieAboveItsPlane) {
   }
 }
 
-/// Faces look along their middles, light travels along u × v, and what they span together is all around: a direction
-/// is in the square of its own face, and in no other's.
+/// A face's middle is its direction, light travels along u × v, and the faces together cover all directions: each is in
+/// the square of one face.
 TEST(DomeFacesMade, CoverAllDirectionsOnce) {
   std::mt19937 random(3);
   for (int i = 0; i < 50; ++i) {
@@ -123,7 +123,7 @@ TEST(DomeFacesMade, CoverAllDirectionsOnce) {
   }
 }
 
-/// Light samples are the dome's, in whichever form they are asked for: in the order of faces, at their places.
+/// The faces' light samples together are those of the dome: in the order of faces, at the same places.
 TEST(DomeFacesMade, ShareTheLightSamples) {
   const Light light = dome_of(tests::dome_light(), 300);
   std::size_t count = 0;
@@ -171,7 +171,7 @@ TEST(DomePictures, OfBlackTexelsAreRefused) {
   EXPECT_THROW(dome_of(source, 16), InputError);
 }
 
-/// V counts each visible light sample with its cosine, and knows of no other above the plane.
+/// V is the sum of the cosines of visible light samples over that of all above the plane.
 TEST(DomeShares, WeighByCosines) {
   const Light light = dome_of(tests::dome_light(), 64);
   std::mt19937 random(4);

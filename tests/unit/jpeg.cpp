@@ -3,7 +3,7 @@
 
 #include "base/error.hpp"
 
-#include <cstdio>  // jpeglib.h takes it for granted
+#include <cstdio>  // before jpeglib.h, which does not include it
 
 #include <jpeglib.h>
 
@@ -75,10 +75,10 @@ TEST(Jpeg, DecodesColoursAndGrey) {
   }
 }
 
-/// Cyan 250 or 20, the other inks 20. Of Adobe's files these are shares that are missing: red is 250 · 20 / 255 or
-/// 20 · 20 / 255. Of others they are inks: (255 − 250) · (255 − 20) / 255 or 235² / 255. An ink is off by at most 2
-/// (the DCT and, of YCCK, the colours round), which the other ink, up to 235 / 255, makes smaller: 2 · 2 · 235 / 255
-/// < 4.
+/// Cyan 250 or 20, the other inks 20. In Adobe's files the numbers are 255 less the ink: red is 250 · 20 / 255 or
+/// 20 · 20 / 255. In other files they are inks: (255 − 250) · (255 − 20) / 255 or 235² / 255. Each of the two factors
+/// is off by at most 2 (the DCT and, in YCCK, the colours round), times the other one, up to 235 / 255: 2 · 2 · 235 /
+/// 255 < 4.
 TEST(Jpeg, MixesInks) {
   struct Case {
     std::optional<J_COLOR_SPACE> stored;

@@ -68,7 +68,7 @@ TEST_F(TexturedLightFiles, EightBitsOfColourAreSrgb) {
 }
 
 TEST_F(TexturedLightFiles, SixteenBitsOfGreyAreSrgbToo) {
-  // 0x0101 is what 8 bits call 1; 0x0001 is 257 times darker, which 8 bits cannot say.
+  // 0x0101 is 1 in 8 bits; 0x0001 is 257 times darker, less than 8 bits can hold.
   const auto texture = read(png_file(3, 1, 16, 0, {bytes_of({1, 1, 0, 1, 0x80, 0})})).lights[0].texture.value();
   EXPECT_FLOAT_EQ(texture.texels[0].r, static_cast<float>(1 / 255.0 / 12.92));
   EXPECT_FLOAT_EQ(texture.texels[1].g, static_cast<float>(1 / 65535.0 / 12.92));

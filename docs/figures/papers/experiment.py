@@ -42,8 +42,8 @@ def bunny(base=0.02, height=2.0):
 
 
 def scene(casters, half=0.5, light_y=5.0, floor=2.5, eye=0.01, half_z=None, center=(0.0, 0.0), floor_casts=False, strip=1):
-    """Casters under a square light above a square floor at height 0, which the camera sees all of from `eye` above it; or only
-    the middle of, a part in `strip`."""
+    """Returns a scene of casters under a square light above a square floor at height 0. The camera, `eye` above the floor, sees the middle
+    of the floor, 1 / `strip` of its side."""
     return {
         "format": "penumbra-scene/1",
         "size": [48, 48],
@@ -64,8 +64,8 @@ def dot(a, b):
 
 
 def judged(world, channels):
-    """Returns, for each pixel, whether errors are counted there: something is seen, and under a first light that is a rectangle it is in front
-    of this, all of which is above its tangent plane."""
+    """Returns, for each pixel, whether errors are counted there: it shows a surface, which lies in front of the first light, if that is a
+    rectangle, and has all of this light above its tangent plane."""
     if "dome" in world["lights"][0]:
         return [a > 0 for a in channels["A"]]
     light = world["lights"][0]["rectangle"]
@@ -75,8 +75,8 @@ def judged(world, channels):
     found = []
     for a, *p_n in zip(channels["A"], *(channels[f"{name}.{axis}"] for name in "PN" for axis in "XYZ")):
         p, n = p_n[:3], p_n[3:]
-        ways = [[x - y for x, y in zip(corner, p)] for corner in corners]
-        found.append(a > 0 and dot(normal, ways[0]) < 0 and all(dot(n, way) > 0 for way in ways))
+        segments = [[x - y for x, y in zip(corner, p)] for corner in corners]
+        found.append(a > 0 and dot(normal, segments[0]) < 0 and all(dot(n, segment) > 0 for segment in segments))
     return found
 
 
@@ -126,8 +126,8 @@ class Runner:
 
 
 def measures(found, entry, keep=None):
-    """Errors of an entry against the truth of its run. `s0` is the measure of Atty et al. 2006: the sum of |V − V_ref| over the
-    pixels in umbra or penumbra, a pixel. `leak`: share of the umbra with V > 0.05; `dark`: of what is lit with V < 0.95."""
+    """Errors of an entry against the truth of its run. `s0` is the measure of Atty et al. 2006: the sum of |V − V_ref| over
+    the number of pixels in umbra or penumbra. `leak`: share of the umbra with V > 0.05; `dark`: share of lit pixels with V < 0.95."""
     pairs = [(v, r) for v, r, a in zip(found[entry]["V"], found["truth"]["V"], found["truth"]["judged"]) if a]
     shadow = sum(r < 1 for _, r in pairs)
     umbra = [v for v, r in pairs if r == 0]

@@ -163,5 +163,29 @@ def draw_lights(data):
                       "lights", LIGHTS[1:], [str(n) for n in LIGHTS[1:]])
 
 
+def table(heads, rows):
+    lines = [heads, ["---:"] * len(heads), *rows]
+    return "\n".join(f"| {' | '.join(row)} |" for row in lines)
+
+
+def triangle_table(data):
+    (_, seconds, resident), *rows = data["rows"]
+    return table(["triangles", "processor seconds", "MiB resident", "microseconds a triangle", "bytes a triangle"],
+                 [[f"{t:,}", f"{s:.2f}", f"{m:.0f}", f"{1e6 * (s - seconds) / t:.2f}", f"{2**20 * (m - resident) / t:.0f}"] for t, s, m in rows])
+
+
+def pixel_table(data):
+    (_, _, seconds, resident), *rows = data["rows"]
+    return table(["pixels", "in penumbra", "processor seconds", "MiB resident", "microseconds a pixel", "bytes a pixel"],
+                 [[f"{p:,}", f"{q:,}", f"{s:.2f}", f"{m:.0f}", f"{1e6 * (s - seconds) / p:.2f}", f"{2**20 * (m - resident) / p:.0f}"] for p, q, s, m in rows])
+
+
+def light_table(data):
+    (_, seconds, resident), *rows = data["rows"]
+    return table(["lights", "processor seconds", "MiB resident", "milliseconds a light", "MiB a light"],
+                 [[f"{n}", f"{s:.2f}", f"{m:.0f}", f"{1e3 * (s - seconds) / (n - 1):.0f}", f"{max(m - resident, 0) / (n - 1):.1f}"] for n, s, m in rows])
+
+
+TABLES = {"scaling-triangles": triangle_table, "scaling-pixels": pixel_table, "scaling-lights": light_table}
 FIGURES = {"scaling-triangles": (measure_triangles, draw_triangles), "scaling-pixels": (measure_pixels, draw_pixels),
            "scaling-lights": (measure_lights, draw_lights)}

@@ -70,8 +70,8 @@ TEST_F(ExactRows, LatticeSoups) {
   EXPECT_GT(found.partly, found.pixels / 20);
 }
 
-/// An edge through the origin, and view samples so near to it that double, too, has the edge pass through them: on
-/// which side it passes, and whether before the light, exact predicates alone know.
+/// An edge through the origin, and view samples so near to it that it passes through them even in double: only exact
+/// predicates decide on which side it passes, and whether in front of the light.
 TEST_F(ExactRows, EdgesThroughP) {
   Found found;
   for (std::uint32_t seed = 0; seed < 200; ++seed) {
@@ -202,13 +202,13 @@ TEST_F(ExactRows, OtherRectangles) {
   EXPECT_GT(found.partly, 300U);
 }
 
-/// A sphere that a panel reaches into: every view sample asks for the exact area, also while what that takes is made on
-/// all cores. There are more threads than cores here, and those that wait look for other work.
+/// A panel that reaches into a sphere: every view sample needs the exact area, also while its data are being made on
+/// all cores. There are more threads than cores, and threads that wait take other work.
 TEST_F(ExactRows, ManyThreadsAskForExactAreasAtOnce) {
   scenes::Scene scene;
   tests::add_object(scene, "floor", tests::quad({0, 0, 0}, {4, 0, 0}, {0, 0, -4}));
   tests::add_object(scene, "panel", tests::quad({0.5, 2, 0}, {0.6, 0, 0}, {0, 0.1, -0.6}));
-  std::vector<tests::Corners> aside;  // many more places, which nobody sees
+  std::vector<tests::Corners> aside;  // many more triangles, outside of the picture
   for (int i = 0; i < 40000; ++i) {
     const int column = i % 200, row = i / 200;
     const auto more = tests::quad({100 + 0.01 * column, 0.01 * row, 0}, {0.002, 0, 0}, {0, 0.002, 0.001});

@@ -22,11 +22,11 @@ namespace {
 enum class Is : std::uint8_t {
   same,           ///< to the bit
   no_brighter,    ///< at any pixel; of masks: hides every bit that the other hides
-  within,         ///< at every pixel, by so much
+  within,         ///< at every pixel, up to Identity::by
   same_or_black,  ///< to the bit, or 0 there
 };
 
-/// "a is … b".
+/// The statement "V of variant `a` is … V of variant `b`".
 struct Identity {
   const char* name;
   const char* a;
@@ -101,7 +101,7 @@ constexpr Identity kMoreIdentities[] = {
     {"A12", "backproject:bias=0.1:search=none", Is::no_brighter, "backproject:bias=2:search=none"},
 };
 
-/// Number of levels of V: this many, or the number of light samples (0).
+/// Variant, and the number of steps of its V from 0 to 1; 0: the number of light samples.
 struct Levels {
   const char* way;
   std::uint32_t of;
@@ -169,7 +169,8 @@ class MapsIdentities : public MapsTest {
     }
     /// Returns null if the method refuses the light.
     const Masks* of(const std::string& words, const Place& place) {
-      if (place_ != place.name) found_.clear();  // places come and go at one address
+      if (place_ != place.name)
+        found_.clear();  // an address does not tell places apart: they are made one after the other
       place_ = place.name;
       const auto [at, fresh] = found_.try_emplace(words);
       if (fresh && can(words, place.stage)) at->second = run(method(words), place.stage);
@@ -192,7 +193,7 @@ class MapsIdentities : public MapsTest {
     std::string place_;
   };
 
-  /// The first pixel at which it does not hold; none if it does.
+  /// Returns the first pixel at which the identity does not hold; nullopt: it holds.
   static std::optional<std::size_t> first_wrong(const Identity& identity, const Masks& a, const Masks& b) {
     for (std::size_t i = 0; i < a.visibility.size(); ++i) {
       const float v = a.visibility[i], w = b.visibility[i];
@@ -245,7 +246,7 @@ class MapsIdentities : public MapsTest {
     }
   }
 
-  /// I25, and V in [0, 1].
+  /// Expects I25, and V in [0, 1].
   static void expect_independence(Pictures& pictures, const Place& place, const std::string& words) {
     const Masks* once = pictures.of(words, place);
     if (once == nullptr) return;
@@ -286,7 +287,7 @@ TEST_F(MapsIdentities, VIsACount) {
 TEST_F(MapsIdentities, NoPictureDependsOnOrderWindingTilesOrRepetition) {
   Pictures pictures(20);
   for (const Place& place : std::span(few_places()).last(2)) {
-    // The others are asked in the long test, and by tests of their own.
+    // The long test runs the other variants.
     for (const char* words : std::span(kWays).first(12)) expect_independence(pictures, place, words);
   }
 }

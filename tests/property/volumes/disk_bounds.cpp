@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Measures how much of its bound rows=exact uses of the places where it cuts edges and casters at the disk that a view
-// sample sees of a sphere, and tests that all that ends there has the same numbers.
+// Measures errors of the places where rows=exact cuts edges and casters at the disk that a view sample sees of a
+// sphere, as shares of their bounds, and tests that edges and cuts that end at one place there have the same
+// coordinates.
 
 #include "engines/vectors/cone_light.hpp"
 #include "engines/vectors/disk_plane.hpp"
@@ -93,7 +94,7 @@ class AtADisk {
   GridSample at_;
 };
 
-/// Returns use_of of the place where an edge passes through a sphere's disk (bound pass).
+/// Returns the error of the place where an edge passes through a sphere's disk, as a share of its bound.
 Use use_at_disk(const Case& of) {
   AtADisk rows(of, {});
   const auto found = rows.place(of.edge);
@@ -109,7 +110,7 @@ Use use_at_disk(const Case& of) {
   const mpq_class volume = determinant(u, v, n), cells = 8;
   const std::array exact{mpq_class(cells * (1 + determinant(place, v, n) / volume)),
                          mpq_class(cells * (1 + determinant(u, place, n) / volume))};
-  // The normal u × v points against the direction to the disk: behind it is below.
+  // The normal u × v points from the disk toward p: an end with a negative height is behind the disk.
   const bool first = sgn(heights[0]) < 0;
   const glm::dvec2 computed =
       first ? glm::dvec2(found->edge.x0, found->edge.y0) : glm::dvec2(found->edge.x1, found->edge.y1);
@@ -127,8 +128,8 @@ TEST(DiskBounds, WhereEdgesPassThrough) {
   expect_within("disk", search(through_a_disk, use_at_disk), 0.005);
 }
 
-/// An outline whose parts end an ulp from one another is open, and where that is the light's left side all rows above
-/// are of a wrong depth.
+/// An outline whose parts end one ulp apart is open. If its gap is at the light's left side, all rows above have a
+/// wrong depth.
 TEST(DiskBounds, EdgesAndCutsEndAtTheSamePlace) {
   std::mt19937 random(3);
   constexpr int kRounds = 3000;

@@ -258,7 +258,7 @@ TEST_P(Metamorphic, CutAtPointsExactlyOnThem) {
     differing += tests::differing_bits(plain.masks, anew.masks);
     for (const std::int32_t triangle : plain.samples.triangle) pairs += triangle < 0 ? 0 : 256;
   }
-  fmt::print("{} pieces more; with p anew {} of {} pairs differ\n", pieces, differing, pairs);
+  fmt::print("{} more triangles; with p from the cut triangles {} of {} pairs differ\n", pieces, differing, pairs);
   EXPECT_LE(static_cast<double>(differing), 2e-5 * static_cast<double>(pairs));
 }
 

@@ -51,7 +51,8 @@ std::string sentences(const Repaired& repaired) {
   return all;
 }
 
-/// No directed edge twice: an oriented manifold except at its vertices. Returns the number of open edges.
+/// Expects an oriented manifold: no directed edge twice, and one fan of triangles at each vertex. Returns the number of
+/// open edges.
 std::size_t expect_manifold(const TriangleSoup& soup) {
   std::set<std::pair<std::uint32_t, std::uint32_t> > directed;
   for (const Triangle& t : soup.triangles) {
@@ -60,7 +61,7 @@ std::size_t expect_manifold(const TriangleSoup& soup) {
   const auto open = std::ranges::count_if(directed, [&](const auto& edge) {
     return !directed.contains({edge.second, edge.first});
   });
-  // Each vertex has one fan: around it, as many runs of triangles as begin, or one that closes.
+  // From one triangle of a vertex (the first of an open fan), the walk around the vertex meets all of them.
   std::map<std::uint32_t, std::map<std::uint32_t, std::uint32_t> > next;
   for (const Triangle& t : soup.triangles) {
     for (std::size_t i = 0; i < 3; ++i) next[t[i]][t[(i + 1) % 3]] = t[(i + 2) % 3];
@@ -93,7 +94,7 @@ bool same(const TriangleSoup& a, const TriangleSoup& b) {
          a.source_face == b.source_face;
 }
 
-/// Everything that holds for any repair.
+/// Expects what every repair promises.
 void expect_kept_promises(const TriangleSoup& soup, const Repaired& repaired, const RepairOptions& options) {
   const TriangleSoup& after = repaired.soup;
   ASSERT_EQ(after.object.size(), after.triangles.size());

@@ -54,10 +54,10 @@ TEST(GlbWriter, ReadsBackInSinglePrecision) {
   EXPECT_LT(glm::distance(direction(again.cameras[0]), direction(scene.cameras[0])), 1e-9);
 }
 
-TEST(GlbWriter, SaysWhatGltfCannotHold) {
+TEST(GlbWriter, NamesLossesOfGltf) {
   const TemporaryFolder folder;
-  const char* const linked = "is lit by some lights alone, which glTF cannot say";
-  const char* const shading = "'bulb' has shadows of some meshes alone, which glTF cannot say";
+  const char* const linked = "is lit only by some lights, which glTF cannot express";
+  const char* const shading = "'bulb' has shadows only of some meshes, which glTF cannot express";
   for (const char* message : {linked, shading, "--lenient writes all the same"})
     expect_error(ExitCode::input, message, [&] { write_scene(read_text(kEverything), folder / "scene.glb"); });
   EXPECT_TRUE(folder.names().empty());
@@ -105,7 +105,7 @@ TEST(GlbWriter, LightsKeepTheirNames) {
   EXPECT_EQ(read_scene(folder / "scene.glb").lights.at(1).name, "key.2");
 }
 
-/// The outline of a light without a body is no geometry, and a light that is dark leaves none.
+/// Neither the outline of a light without a body nor a dark light becomes geometry.
 TEST(GlbWriter, DarkLightsLeaveNoGeometry) {
   const TemporaryFolder folder;
   Scene scene = read_text(kEverything);
