@@ -175,6 +175,14 @@ def of_a_run(runs, *asked):
     return (whole(1 + runs) - whole(1)) / runs
 
 
+def how_many_runs(program, scene_file, folder, method, size, more):
+    """Runs of about two seconds, beside which a whole process differs little from the next; one if a run takes long."""
+    def whole(count):
+        return compare(program, scene_file, folder, method, size, count, more)[0]
+    one = whole(1)
+    return 1 if one > 10 else max(1, min(50, round(2 / max((whole(6) - one) / 5, 0.01))))
+
+
 def of_no_run(program, scene_file, folder, _, size, more):
     """Processor seconds that each run of any method adds: `compare` runs a judge of areas once, however many runs it is told."""
     return max(0, of_a_run(20, program, scene_file, folder, "exact", size, more))
@@ -252,8 +260,7 @@ def measure(program, commit, only, turns):
         with tempfile.TemporaryDirectory() as name:
             folder = Path(name)
             asked_of = [(program, scene_in(folder / str(k), one), folder, method, size, more) for k, (one, method) in enumerate(zip(scenes_of(world), methods))]
-            # A few seconds of runs, beside which a whole process differs little from the next; one run if it takes long.
-            runs = [max(1, min(50, round(2 / max(compare(*one[:5], 1, more)[1]["seconds"]["shadow"], 0.01)))) for one in asked_of]
+            runs = [how_many_runs(*one) for one in asked_of]
             none = [of_no_run(*one) for one in asked_of] if isinstance(world, tuple) else [of_no_run(*asked_of[0])] * 2
             seconds = []
             for _ in range(turns):
