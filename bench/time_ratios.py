@@ -2,19 +2,22 @@
 # SPDX-License-Identifier: Apache-2.0
 """Measures ratios of time that the papers sell, one method's over another's, into results/time-ratios.json.
 
-  bench/time_ratios.py [PROGRAM]           about an hour on two busy cores
-  bench/time_ratios.py PROGRAM --write-scenes FOLDER      the scenes as GLB files, for a machine without the packages that hold their meshes
-  bench/time_ratios.py PROGRAM --gpu FOLDER FILE.json     on a GPU, from those scenes: into FILE.json
+  bench/time_ratios.py [PROGRAM]           about an hour and a half on two busy cores
+  bench/time_ratios.py --only TEXT …       of the questions whose paper or words have one of these texts
+  bench/time_ratios.py --write-scenes FOLDER      the scenes as GLB files, for a machine without the packages that hold their meshes
+  bench/time_ratios.py --gpu FOLDER FILE.json     on a GPU, from those scenes: into FILE.json
 
 Then bench/tables.py writes the table of docs/figures.md. Questions that have a row are left out: delete a row to measure it again. A
-row says of which commit it is.
+row says of which commit it is, and the machine's load.
 
 On a GPU a number is the clock's: `light` and `evaluate` as `compare` reports them, the median of five runs, and the sum of the passes'
 milliseconds by the GPU's own clock. Else it is processor seconds of a run (`light` and `evaluate`): those of a whole `penumbra compare` of one method with more runs less
-those with one run, a run. So what a program needs to start, to read, to compile shaders and to judge is in neither, and other
+those with one run, a run; and less what `compare` does once more for each run of any method, such as finding the view samples, which is measured
+in the same manner with a method that it runs once. So what a program needs to start, to read, to compile shaders and to judge is in neither, and other
 programs at work disturb less than they do a clock. The methods of a question are measured in turns; a ratio is the median of each
 turn's own."""
 
+import argparse
 import json
 import os
 import resource
@@ -102,9 +105,9 @@ def questions():
     for less, more, claimed in ((1, 8, "8: linear in the polygons"), (1, 2, "2: linear in the polygons")):
         yield ("Atty et al., fig. 21", f"`soft-shadow-map`, map 128²: {more} bunnies ({70 * more}k triangles) over {less} ({70 * less}k)", claimed,
                (bunnies(more), bunnies(less)), 256, [], (one_pass + "128", one_pass + "128"))
-    for size, claimed in ((256, "4: linear in the map's pixels"), (512, "16: linear in the map's pixels")):
-        yield ("Atty et al., fig. 22", f"`soft-shadow-map`, 24k triangles, a ball: map {size}² over 128²", claimed,
-               scene([ball(segments=156)]), 256, [], (f"{one_pass}{size}", one_pass + "128"))
+    for size, claimed in ((128, "4: linear in the map's pixels"), (64, "16: linear in the map's pixels")):
+        yield ("Atty et al., fig. 22", f"`soft-shadow-map`, 24k triangles, a ball: map 256² over {size}²", claimed,
+               scene([ball(segments=156)]), 256, [], (one_pass + "256", f"{one_pass}{size}"))
     for size in (64, 128, 256):
         yield ("Atty et al., fig. 24 (a)", f"`soft-shadow-map`, map {size}², a ball: light of half-size 1 over 0.1", "above 1",
                (scene([ball()], half=1), scene([ball()], half=0.1)), 256, [], (f"{one_pass}{size}", f"{one_pass}{size}"))
@@ -116,19 +119,23 @@ def questions():
         yield ("Schwärzler, section 4", f"`adaptive-light` over `accumulate`, 128 light samples, maps of 512², plate close to the floor, light of half-size {half:g}",
                "0.18 to 0.5, at worst 1.5", world_of("plate", half), 256, ["--light-samples", "128"],
                ("adaptive-light:size=512", "accumulate:size=512"))
+    # The paper's Guennebaud et al. 2007 looks at every cell of a kernel, which takes minutes a run with maps of 512².
+    yield ("Yang et al., fig. 11", "`packet` with 2 × 2 sub-lights over flat `contour`, map 128², bunny, light of half-size 1, 96² pixels", "0.33", standing(bunny(), 1), 96, [],
+           ("packet:sublights=2:size=128", "contour:size=128:traversal=flat"))
     # Four layers are as many maps as 2 × 2 sub-lights.
-    for other, claimed in (("contour:size=512", "0.33"), ("bitmask:size=512:layers=4", "0.19"), ("backproject-peel:size=512:layers=4", "0.21")):
+    for other, claimed in (("bitmask:size=512:layers=4", "0.19"), ("backproject-peel:size=512:layers=4", "0.21")):
         yield ("Yang et al., fig. 11", f"`packet` with 2 × 2 sub-lights over `{other}`, map 512², bunny, light of half-size 1", claimed, standing(bunny(), 1), 96, [],
                ("packet:sublights=2:size=512", other))
     yield ("Yang et al., fig. 11", "`packet` with 4 × 4 sub-lights over 2 × 2, map 512², bunny, light of half-size 1", "3.7", standing(bunny(), 1), 96, [],
            ("packet:sublights=4:size=512", "packet:sublights=2:size=512"))
-    yield ("Yang et al., fig. 1 (c)", "`packet` over `contour`, map 512², a spherical lamp closely surrounded by boxes", "0.05", omni(), 96, [],
-           ("packet:size=512", "contour:size=512"))
-    yield ("Yang et al., fig. 1 (b)", "`packet` over `contour`, map 512², `scenes/textured-light.json`, a window of nine panes", "0.1", "scenes/textured-light.json", 96, [],
-           ("packet:size=512", "contour:size=512"))
+    flat = "contour:size=64:traversal=flat"  # minutes a run with maps of 512²
+    yield ("Yang et al., fig. 1 (c)", "`packet` over flat `contour`, map 64², a spherical lamp closely surrounded by boxes, 48² pixels", "0.05", omni(), 48, [],
+           ("packet:size=64", flat))
+    yield ("Yang et al., fig. 1 (b)", "`packet` over flat `contour`, map 64², `scenes/textured-light.json`, a window of nine panes, 48² pixels", "0.1", "scenes/textured-light.json", 48,
+           [], ("packet:size=64", flat))
     for size in (96, 384):
-        yield ("Yang et al., fig. 12", f"`packet` without hierarchy, packets of 8 × 8 over 2 × 2, map 512², bunny, {size}² pixels", "falls as pictures grow",
-               standing(bunny(), 0.5), size, [], ("packet:hierarchy=off:packet=8x8:size=512", "packet:hierarchy=off:packet=2x2:size=512"))
+        yield ("Yang et al., fig. 12", f"`packet` without hierarchy, packets of 8 × 8 over 2 × 2, map 128², bunny, {size}² pixels", "falls as pictures grow",
+               standing(bunny(), 0.5), size, [], ("packet:hierarchy=off:packet=8x8:size=128", "packet:hierarchy=off:packet=2x2:size=128"))
     for layers in (2, 3):
         yield ("Bavoil et al., fig. 6", f"`backproject-peel` with {layers} layers over 1, bunny on the floor, map 512²", "1.42 to 1.54 with 3", standing(bunny(), 0.5), 128, [],
                (f"backproject-peel:size=512:layers={layers}", "backproject-peel:size=512:layers=1"))
@@ -148,25 +155,42 @@ def scenes_of(world):
     return world if isinstance(world, tuple) else (world, world)
 
 
-def processor_seconds(command):
+def compare(program, scene_file, folder, method, size, runs, more):
+    """Runs `penumbra compare` of one method. Returns its processor seconds and the method's part of metrics.json."""
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
-    subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
+    subprocess.run([program, "-q", "compare", scene_file, "-o", folder / "out", "--methods", method, "--size", f"{size}x{size}", "--reference-samples", "1",
+                    "--sample-pixels", "1", "--runs", str(runs), *more], check=True, stdout=subprocess.DEVNULL)
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+    ran = json.loads((folder / "out" / "metrics.json").read_text(encoding="utf-8"))["methods"][0]
+    if ran["failure"] is not None:
+        sys.exit(f"{method}: {ran['failure']}")
+    return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime, ran
 
 
-def of_a_run(program, scene_file, folder, method, size, more, runs):
+def of_a_run(runs, *asked):
+    """Processor seconds of one run, by the difference of 1 + `runs` runs and one."""
     def whole(count):
-        return processor_seconds([program, "-q", "compare", scene_file, "-o", folder / "out", "--methods", method, "--size", f"{size}x{size}",
-                                  "--reference-samples", "1", "--sample-pixels", "1", "--runs", str(count), *more])
+        program, scene_file, folder, method, size, more = asked
+        return compare(program, scene_file, folder, method, size, count, more)[0]
     return (whole(1 + runs) - whole(1)) / runs
+
+
+def how_many_runs(program, scene_file, folder, method, size, more):
+    """Runs of about two seconds, beside which a whole process differs little from the next; one if a run takes long."""
+    def whole(count):
+        return compare(program, scene_file, folder, method, size, count, more)[0]
+    one = whole(1)
+    return 1 if one > 10 else max(1, min(50, round(2 / max((whole(6) - one) / 5, 0.01))))
+
+
+def of_no_run(program, scene_file, folder, _, size, more):
+    """Processor seconds that each run of any method adds: `compare` runs a judge of areas once, however many runs it is told."""
+    return max(0, of_a_run(20, program, scene_file, folder, "exact", size, more))
 
 
 def on_gpu(program, scene_file, folder, method, size, more):
     """Seconds of the method, all and of its passes, as the program reports them."""
-    subprocess.run([program, "-q", "compare", scene_file, "-o", folder / "out", "--methods", method, "--size", f"{size}x{size}", "--reference-samples", "1",
-                    "--sample-pixels", "1", "--runs", "5", *more], check=True, stdout=subprocess.DEVNULL)
-    ran = json.loads((folder / "out" / "metrics.json").read_text(encoding="utf-8"))["methods"][0]
+    ran = compare(program, scene_file, folder, method, size, 5, more)[1]
     return ran["seconds"]["shadow"], sum(one["milliseconds"] for one in ran["passes"]) / 1000
 
 
@@ -225,35 +249,51 @@ def measure_gpu(program, commit, scenes, result):
                        "columns": ["paper", "question", "the paper's", "here", "passes alone", "their turns", "seconds", "seconds of passes"]}, rows)
 
 
-def measure(program, commit):
+def measure(program, commit, only, turns):
     asked = list(questions())
     rows = {row[1]: row for row in json.loads(RESULT.read_text(encoding="utf-8"))["rows"]} if RESULT.is_file() else {}
     device, cpu = name_of(program)
     for paper, question, claimed, world, size, more, methods in asked:
-        if question in rows:
+        if question in rows or (only and not any(text in f"{paper}: {question}" for text in only)):
             continue
+        loads = [os.getloadavg()[0]]
         with tempfile.TemporaryDirectory() as name:
             folder = Path(name)
-            asked_of = [(scene_in(folder / str(k), one), folder, method, size, more) for k, (one, method) in enumerate(zip(scenes_of(world), methods))]
-            # About a second of runs, so that a clock tick counts for nothing.
-            runs = [max(1, min(20, round(1 / max(of_a_run(program, *one, 1), 0.05)))) for one in asked_of]
-            seconds = [[of_a_run(program, *one, count) for one, count in zip(asked_of, runs)] for _ in range(TURNS)]
-        rows[question] = [paper, question, claimed, *of_turns(seconds), commit]
+            asked_of = [(program, scene_in(folder / str(k), one), folder, method, size, more) for k, (one, method) in enumerate(zip(scenes_of(world), methods))]
+            runs = [how_many_runs(*one) for one in asked_of]
+            none = [of_no_run(*one) for one in asked_of] if isinstance(world, tuple) else [of_no_run(*asked_of[0])] * 2
+            seconds = []
+            for _ in range(turns):
+                seconds.append([of_a_run(count, *one) - less for one, count, less in zip(asked_of, runs, none)])
+                loads.append(os.getloadavg()[0])
+        here, between, medians = of_turns(seconds)
+        load = " to ".join(dict.fromkeys(f"{end:.0f}" for end in (min(loads), max(loads))))
+        rows[question] = [paper, question, claimed, here, between + ("" if turns == TURNS else f" ({turns} turns)"), medians, load, commit]
         print(" | ".join(rows[question]), flush=True)
-        write(RESULT, {"commit": commit, "machine": f"{device} on {cpu}, 2 threads that other programs used as well", "command": "bench/time_ratios.py",
-                       "conditions": f"Processor seconds of a run, `light` and `evaluate`, medians of {TURNS} turns.",
-                       "columns": ["paper", "question", "the paper's", "here", "turns", "seconds", "commit"]}, [rows[one[1]] for one in asked if one[1] in rows])
+        kept = [rows[one[1]] for one in asked if one[1] in rows]
+        write(RESULT, {"commit": " and ".join(dict.fromkeys(row[-1] for row in kept)), "machine": f"{device} on {cpu}, 2 threads that other programs used as well",
+                       "command": "bench/time_ratios.py",
+                       "conditions": f"Processor seconds of a run, `light` and `evaluate`, medians of {TURNS} turns; the column of turns says how far turns differ.",
+                       "columns": ["paper", "question", "the paper's", "here", "turns", "seconds", "load", "commit"]}, kept)
 
 
 def main():
-    program = Path(sys.argv[1] if len(sys.argv) > 1 else ROOT / "build" / "penumbra").resolve()
-    if sys.argv[2:3] == ["--write-scenes"]:
-        return write_scenes(program, Path(sys.argv[3]))
-    git = ["git", "-C", ROOT]
-    commit = subprocess.run([*git, "rev-parse", "--short", "HEAD"], check=False, capture_output=True, text=True).stdout.strip() or "not known"
-    if sys.argv[2:3] == ["--gpu"]:
-        return measure_gpu(program, commit, Path(sys.argv[3]), Path(sys.argv[4]))
-    return measure(program, commit)
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("program", nargs="?", type=Path, default=ROOT / "build" / "penumbra")
+    parser.add_argument("--only", metavar="TEXT", nargs="+", help="questions whose paper or words have one of these texts")
+    parser.add_argument("--turns", type=int, default=TURNS, help="how often the methods of a question take turns")
+    parser.add_argument("--commit", help="commit that the program was built from, where that is not the one checked out")
+    parser.add_argument("--write-scenes", metavar="FOLDER", type=Path)
+    parser.add_argument("--gpu", metavar=("FOLDER", "FILE.json"), nargs=2, type=Path)
+    given = parser.parse_args()
+    program = given.program.resolve()
+    if given.write_scenes:
+        return write_scenes(program, given.write_scenes)
+    git = ["git", "-C", ROOT, "rev-parse", "--short=8", "HEAD"]
+    commit = given.commit or subprocess.run(git, check=False, capture_output=True, text=True).stdout.strip() or "not known"
+    if given.gpu:
+        return measure_gpu(program, commit, *given.gpu)
+    return measure(program, commit, given.only, given.turns)
 
 
 main()

@@ -88,7 +88,7 @@ Prefilter::Prefilter(const render::Device& device, PrefilterOptions options, con
       values_(device, {.name = "prefilter values",
                        .spirv = shaders::kPrefilterValuesComp,
                        .push_bytes = sizeof(gpu::PrefilterValuesPush),
-                       .constants = {}}),
+                       .constants = value_constants()}),
       level_(device, {.name = "prefilter level",
                       .spirv = shaders::kPrefilterLevelComp,
                       .push_bytes = sizeof(gpu::PrefilterLevelPush),
@@ -116,8 +116,7 @@ void Prefilter::record(render::Commands& commands, const MapSet& maps) {
     render::grow(*device_, images_[i], "prefiltered images",
                  std::max<std::uint64_t>(std::uint64_t{blocks_[i]} * table.block, 1) * sizeof(std::uint32_t));
   }
-  const gpu::PrefilterValuesPush push{faces * maps.size * maps.size, options_.of_bits ? 1U : 0U,
-                                      options_.slope ? 1U : 0U};
+  const gpu::PrefilterValuesPush push{faces * maps.size * maps.size};
   if (maps.faces == 0) return;  // there is no receiver
   record_values(commands, maps, push);
   if (options_.kind != PrefilterKind::table) return record_levels(commands, table);
@@ -142,10 +141,14 @@ void Prefilter::record_values(render::Commands& commands, const MapSet& maps, co
     fitted_values_.emplace(*device_, render::ComputePassOptions{.name = "prefilter values",
                                                                 .spirv = shaders::kPrefilterValuesFittedComp,
                                                                 .push_bytes = sizeof(gpu::PrefilterValuesPush),
-                                                                .constants = {}});
+                                                                .constants = value_constants()});
   }
   buffers.emplace_back(*maps.face_table);
   fitted_values_->record(commands, bytes, buffers, groups_of(push.texels));
+}
+
+std::vector<std::uint32_t> Prefilter::value_constants() const {
+  return {static_cast<std::uint32_t>(options_.kind), options_.of_bits ? 1U : 0U, options_.slope ? 1U : 0U};
 }
 
 void Prefilter::record_levels(render::Commands& commands, const gpu::PrefilterTable& table) const {

@@ -69,6 +69,7 @@ class Prefilter final : public MapProduct {
 
  private:
   [[nodiscard]] std::uint64_t buffer_bytes() const;
+  [[nodiscard]] std::vector<std::uint32_t> value_constants() const;  ///< of prefilter_values.glsl
   void record_values(render::Commands& commands, const MapSet& maps, const gpu::PrefilterValuesPush& push);
   void record_levels(render::Commands& commands, const gpu::PrefilterTable& table) const;
 

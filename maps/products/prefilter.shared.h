@@ -51,9 +51,7 @@ struct PrefilterLevelPush {
 };
 
 struct PrefilterValuesPush {
-  uint texels;   // number of texels of all faces
-  uint of_bits;  // texels are words of bits; else depths
-  uint slope;    // 1: squares of layers include the slope's part
+  uint texels;  // number of texels of all faces
 };
 
 #ifdef __cplusplus

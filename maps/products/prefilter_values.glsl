@@ -5,6 +5,10 @@
 // texel.
 
 layout(local_size_x = 64) in;
+// Constants: devices that do not skip what a condition leaves out would compute it for each value.
+layout(constant_id = 0) const uint kScheme = kTable;
+layout(constant_id = 1) const uint kOfBits = 0;  // 1: texels are words of bits; else depths
+layout(constant_id = 2) const uint kSlope = 0;   // 1: squares of layers include the slope's part
 layout(scalar, binding = 0) readonly buffer Table { PrefilterTable table; PrefilterValue values[]; };
 layout(scalar, binding = 1) readonly buffer Texels { uint texels[]; };  // bits of depths, or words of bits
 layout(scalar, binding = 2) readonly buffer Views { LightView views[]; };
@@ -70,17 +74,17 @@ void main() {
                      gl_LocalInvocationID.x;
   if (texel >= push.texels) return;
   const uint word = texels[texel];
-  const float t = push.of_bits != 0 ? 0.0 : height_of(texel, uintBitsToFloat(word));
+  const float t = kOfBits != 0 ? 0.0 : height_of(texel, uintBitsToFloat(word));
   for (uint i = 0; i < table.value_count; ++i) {
     const PrefilterValue value = values[i];
-    float x = prefilter_value(value, push.of_bits != 0 ? float(word >> uint(value.a) & 1) : t);
+    float x = prefilter_value(value, kOfBits != 0 ? float(word >> uint(value.a) & 1) : t);
     const float layer = value.a * t - value.b;  // outside a layer, heights are those of its border
-    if (push.slope != 0 && value.kind == kLayer && value.power == kSquared && layer > 0.0 && layer < 1.0) {
+    if (kSlope != 0 && value.kind == kLayer && value.power == kSquared && layer > 0.0 && layer < 1.0) {
       // Lauritzen 2007 (Eisemann et al. 2009, box "Depth bias"): a quarter of the squared derivatives.
       const vec2 slope = value.a * slope_of(texel, t);
       x += 0.25 * dot(slope, slope);
     }
-    if (table.scheme != kTable) {
+    if (kScheme != kTable) {
       write(value.first_block, texel, floatBitsToUint(x));
       continue;
     }

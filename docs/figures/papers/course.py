@@ -1,10 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
 """Figures of E. Eisemann, U. Assarsson, M. Schwarz, M. Wimmer, *Casting shadows in real time*, SIGGRAPH Asia 2009 courses: what
-filters, micropatches, slices and the fusion of occluders get wrong."""
+filters, micropatches, slices and the fusion of occluders get wrong, and how many silhouette edges meshes have."""
+
+import json
+import subprocess
+import tempfile
+from math import exp, log, sqrt
+from pathlib import Path
 
 from chart import STYLES, Chart, image, key, mark
 from drawing import DARK, INK, PALE, RED, Drawing
-from experiment import ball, box, measures, picture, rounded, scene, square
+from experiment import ball, box, cross, measures, picture, rounded, scene, square
 
 WIDTH = 96  # pixels of a row
 
@@ -311,6 +317,74 @@ def draw_layers(data):
     return d.finish()
 
 
+BALLS = (8, 32, 128, 512)  # segments
+MODELS = {"asteroid, low": "asteroid-low.3ds", "horse": "horse.3ds", "cat": "cat.3ds", "asteroid, high": "asteroid-high.3ds", "bunny": "bunny.obj"}
+
+
+def silhouettes(runner, body):
+    """The triangles of a body about 2 high around (0, 2, 0), and its silhouette edges: the mean over six lights 5 away on the axes of an
+    icosahedron, each facing the body."""
+    world = scene([body])
+    del world["meshes"][0]  # the floor
+    golden = (1 + sqrt(5)) / 2
+    world["lights"] = []
+    for k, axis in enumerate([(0, 1, golden), (0, -1, golden), (1, golden, 0), (-1, golden, 0), (golden, 0, 1), (golden, 0, -1)]):
+        away = [x / sqrt(1 + golden**2) for x in axis]
+        side = [x / sqrt(away[0]**2 + away[1]**2) for x in (away[1], -away[0], 0)]
+        world["lights"].append({"name": f"light {k}", "rectangle": {"center": [5 * away[0], 2 + 5 * away[1], 5 * away[2]], "halfU": [0.05 * x for x in side],
+                                                                    "halfV": [0.05 * x for x in cross(side, away)]}})
+    args = ["--methods", "soft-volume", "--reference-samples", "1", "--sample-pixels", "1", "--runs", "1", "--size", "8x8"]
+    command = "penumbra compare SCENE -o OUT " + " ".join(args)
+    if command not in runner.commands:
+        runner.commands.append(command)
+    with tempfile.TemporaryDirectory() as folder:
+        path, out = Path(folder) / "scene.json", Path(folder) / "out"
+        path.write_text(json.dumps(world), encoding="utf-8")
+        subprocess.run([runner.program, "-q", "compare", path, "-o", out, *args], check=True, stdout=subprocess.DEVNULL)
+        entry = json.loads((out / "metrics.json").read_text(encoding="utf-8"))["methods"][0]
+    assert entry["failure"] is None, entry["failure"]
+    runner.device = entry["device"]
+    return [entry["triangles"], rounded(entry["counters"]["silhouetteEdges"] / len(world["lights"]))]
+
+
+def measure_silhouettes(runner):
+    return {"balls": [[f"ball of {count} segments", *silhouettes(runner, ball(segments=count))] for count in BALLS],
+            "models": [[name, *silhouettes(runner, {"name": "model", "package": {"name": "glmark2-data", "file": f"models/{file}"}, "fit": {"height": 2.0, "base": [0, 1, 0]}})]
+                       for name, file in MODELS.items()]}
+
+
+def power_of(rows):
+    """Returns c and e of the curve c n^e nearest to the rows, least squares of the logarithms."""
+    logs = [(log(n), log(edges)) for _, n, edges in rows]
+    mean_n, mean_edges = (sum(pair[k] for pair in logs) / len(logs) for k in range(2))
+    e = sum((n - mean_n) * (edges - mean_edges) for n, edges in logs) / sum((n - mean_n)**2 for n, _ in logs)
+    return exp(mean_edges - e * mean_n), e
+
+
+def draw_silhouettes(data):
+    d = Drawing(900, 372, "Course notes, section 5.3.4: silhouette edges against triangles",
+                "A chart, both axes logarithmic: of a ball cut finer and finer silhouette edges grow with the square root of its triangles; of five models they grow "
+                "with nearly the number of triangles. All are far fewer than triangles.")
+    chart = Chart(d, (70, 50, 520, 250), (30, 5e5), (5, 4e4), "silhouette edges, mean over six lights", "triangles n", "", log_x=True, log_y=True, x_ticks=(100, 1000, 10000, 100000),
+                  x_names=("100", "1,000", "10,000", "100,000"), y_ticks=(10, 100, 1000, 10000))
+    ends = (40, 4e5)
+    chart.path([(n, n**0.8) for n in ends], INK, 1.5, "6 4")
+    fits = [power_of(rows) for rows in data.values()]
+    for style, (rows, (c, e)) in enumerate(zip(data.values(), fits)):
+        chart.path([(n, c * n**e) for n in ends], STYLES[style][0], 1.5)
+        chart.curve([row[1:] for row in rows], style, line=False)
+    d.line((625, 66), (647, 66), INK, 1.5, "6 4")
+    d.text((653, 70), "n^0.8, the notes' exponent", 12)
+    for style, (name, (c, e)) in enumerate(zip(("a ball, cut finer", "five models"), fits)):
+        key(d, (625, 94 + 24 * style), [(style, f"{name}: {c:.2f} n^{e:.2f}")])
+    for i, (name, n, edges) in enumerate(data["balls"] + data["models"]):
+        d.text((625, 154 + 18 * i), name, 11.5)
+        d.text((815, 154 + 18 * i), f"{n:,}", 11.5, anchor="end")
+        d.text((880, 154 + 18 * i), f"{edges:,.0f}" if edges >= 100 else f"{edges:.1f}", 11.5, anchor="end")
+    d.text((70, 358), "Lights of half-size 0.05, 5 from the middle of bodies 2 high, on six axes of an icosahedron.", 11.5)
+    return d.finish()
+
+
 FIGURES = {
     "course-fusion": (measure_fusion, draw_fusion),
     "course-layers": (measure_layers, draw_layers),
@@ -320,4 +394,5 @@ FIGURES = {
     "course-gaps": (measure_gaps, draw_gaps),
     "course-levels": (measure_levels, draw_levels),
     "course-slices": (measure_slices, draw_slices),
+    "course-silhouettes": (measure_silhouettes, draw_silhouettes),
 }

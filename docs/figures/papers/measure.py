@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Measures the numbers of the papers' figures with a built program, and draws the figures. Python's standard library and the
-bunny of Debian's glmark2-data are all that it needs.
+"""Measures the numbers of the papers' figures with a built program, and draws the figures. Python's standard library and the models
+of Debian's glmark2-data are all that it needs.
 
   docs/figures/papers/measure.py [NAME…] [--program build/penumbra]      all of them: an hour or two on two cores"""
 
