@@ -66,6 +66,21 @@ check wedges wedges "$source/scenes/room.json" --validate --json "$work/wedges.j
 check sweep sweep "$lights" -o "$work/sweep" --size 16x16 --light ball --methods edge-scatter,raytrace --over light-samples=4,16 --over light.half=0.2 \
   --runs 1 --device cpu
 check frames compare "$source/scenes/leaves.gltf" -o "$work/frames" --size 16x12 --methods edge-scatter,depth-complexity --frames 0-2 --runs 1 --device cpu
+# Instances without copies, under a sun and under a dome; moments of an open shutter; points of a lightmap.
+for moment in 0 0.1; do
+  cat >"$work/balls-$moment.json" <<JSON
+{"format": "penumbra-scene/1", "size": [24, 16], "camera": {"eye": [0, 2, 6], "target": [0, 0.5, 0], "verticalFov": 45},
+ "meshes": [{"name": "floor", "quad": {"center": [0, 0, 0], "halfU": [4, 0, 0], "halfV": [0, 0, -4]}},
+  {"name": "ball", "shape": {"type": "sphere", "center": [$moment, 0.5, 0], "radius": 0.3, "segments": 32},
+   "instances": [{"transform": {"translate": [-1, 0, 0]}}, {"transform": {"translate": [0, 0, 1], "scale": 0.7}}, {"transform": {"translate": [1, 0, 0]}}]}],
+ "lights": [{"name": "sun", "sun": {"direction": [-0.35, -0.87, -0.35], "angle": 2}}, {"name": "sky", "dome": {}}]}
+JSON
+done
+check instances render "$work/balls-0.json" -o "$work/balls.exr" --instances shared --light-samples 16
+check instances-areas render "$work/balls-0.json" -o "$work/balls.exr" --instances shared --light sun
+check dome-rays render "$work/balls-0.json" -o "$work/balls.exr" --method raytrace --light-samples 16
+check moments render "$work/balls-0.json" -o "$work/balls.exr" --moment "$work/balls-0.1.json" --pixel-samples 4
+check bake bake "$work/balls-0.json" --mesh floor --vertices -o "$work/floor.ply"
 check methods methods --json
 check self-test devices --self-test --device cpu
 exit $failed
