@@ -91,7 +91,7 @@ def tilted(meshes, degrees, towards):
     along, across = math.cos(math.radians(degrees)) * (-1 if towards else 1), math.sin(math.radians(degrees))
     ray = [along * f - across * u for f, u in zip(forward, upward)]
     center = [e + 12 * f - 40 * r for e, f, r in zip(eye, forward, ray)]
-    scene["lights"][0]["rectangle"] = {"center": center, "halfU": [0.001, 0, 0], "halfV": [0, -0.001 * ray[2], 0.001 * ray[1]]}
+    scene["lights"][0]["rectangle"] = {"center": center, "halfU": [0.001, 0, 0], "halfV": [0, 0.001 * ray[2], -0.001 * ray[1]]}
     return scene | {"meshes": meshes or scene["meshes"]}
 
 
