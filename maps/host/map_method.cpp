@@ -45,8 +45,10 @@ class MapMethod final : public visibility::Method, public visibility::PassesTria
         constants_(constants_for(1)),
         look_up_(make_look_up()),
         sort_(make_sort()) {
-    PENUMBRA_ASSERT(!options_.fit.sees_camera() || (recipe_.points == MapPoints::centre && recipe_.sub_lights == 1),
-                    "{}: only maps from the light's centre are fitted to a camera", recipe_.description.name);
+    PENUMBRA_ASSERT(!options_.fit.sees_camera() || recipe_.points == MapPoints::centre,
+                    "{}: only maps from centres are fitted to a camera", recipe_.description.name);
+    PENUMBRA_ASSERT(!options_.fit.has_faces() || recipe_.sub_lights == 1, "{}: maps of sub-lights are windows",
+                    recipe_.description.name);
     if (const std::uint32_t least = 2 * recipe_.beside_texels + 4; options_.fit.has_faces() && options_.size < least) {
       throw UsageError(
           "method {}: size={} leaves no room between what is tapped beside a map's ends; take size={} or more",
@@ -116,7 +118,7 @@ class MapMethod final : public visibility::Method, public visibility::PassesTria
 
   /// Fits the maps: to all receivers, or to the view of the camera.
   void fit_maps();
-  void fit_to_camera(FitOptions fit, const glm::vec3& centre);
+  void fit_to_camera(FitOptions fit, std::span<const glm::vec3> centres);
   void make_maps();
   /// Allocates the light's maps, and renders those of its centre.
   void make_fitted_maps();
@@ -246,7 +248,7 @@ void MapMethod::fit_maps() {
     }
   }
   if (recipe_.all_casters) fit.reach = reach_of_all(*scene_);
-  if (options_.fit.sees_camera()) return fit_to_camera(fit, centres.front());
+  if (options_.fit.sees_camera()) return fit_to_camera(fit, centres);
   fit.hemicube = options_.fit.projection == Projection::cube;
   fit.all = all_;
   fitted_ =
@@ -257,7 +259,7 @@ void MapMethod::fit_maps() {
   }
 }
 
-void MapMethod::fit_to_camera(FitOptions fit, const glm::vec3& centre) {
+void MapMethod::fit_to_camera(FitOptions fit, std::span<const glm::vec3> centres) {
   const visibility::Light& light = *light_;
   const LightBounds bounds = light_bounds(light, basis_);
   if (recipe_.beside && recipe_.beside_texels == 0) fit.body_reach = glm::max(-bounds.lower, bounds.upper);
@@ -265,7 +267,7 @@ void MapMethod::fit_to_camera(FitOptions fit, const glm::vec3& centre) {
                                                   std::numeric_limits<double>::infinity(), space_);
   fit.body = &body;
   fit.snap = options_.fit.snap;
-  fitted_ = fit_views(*scene_, light, basis_, std::span(&centre, 1), fit);
+  fitted_ = fit_views(*scene_, light, basis_, centres, fit);
   if (!options_.fit.has_faces()) return;
   FaceFitOptions choices{
       .fit = options_.fit, .size = options_.size, .spare = 1 + recipe_.beside_texels, .space = space_};

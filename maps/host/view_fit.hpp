@@ -50,6 +50,12 @@ inline constexpr visibility::ChoiceOption kFit{
     Fit::receivers,
     "region over which texels are spread: all receivers; the camera's view, in one window, in slices of depth or in "
     "tiles; a perspective of the view; or the faces of its frustum, each with a perspective"};
+/// The same option of methods that look kernels of texels up in one window or hemicube.
+inline constexpr visibility::ChoiceOption kWindowFit{
+    "fit",
+    {{"receivers", Fit::receivers}, {"view", Fit::view}},
+    Fit::receivers,
+    "region over which texels are spread: all receivers, or what the camera sees of them; with all that can shade it"};
 inline constexpr visibility::ChoiceOption kViewBody{
     "body",
     {{"visible", ViewBody::visible}, {"frustum", ViewBody::frustum}},
@@ -139,6 +145,8 @@ struct ViewFit {
 
 /// Returns these options, as listed by `methods`.
 std::vector<visibility::OptionDescription> view_fit_descriptions();
+/// Returns those of methods with kWindowFit.
+std::vector<visibility::OptionDescription> window_fit_descriptions();
 /// Returns "fit=tsm", or "projection=paraboloid".
 std::string words_of(const ViewFit& fit);
 /// Returns the choice of a method that has some of the options, or none.
