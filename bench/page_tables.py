@@ -9,6 +9,7 @@
 
 import argparse
 import json
+import math
 import sys
 import tempfile
 from pathlib import Path
@@ -73,10 +74,36 @@ def lamps():
     return scene
 
 
+def boards():
+    """Boards that face the eye of the scene of map fits, the larger the farther they are, over a floor."""
+    quads = [([x * (6 - z) * 0.22, 0.2 + 0.02 * k, z], [(6 - z) * 0.1, 0, (6 - z) * 0.1], [0, (6 - z) * 0.15, 0])
+             for k, z in enumerate((3, 1.5, -1, -4, -8, -14, -22, -34)) for x in (-1, 1)]
+    quads.append(([0, -4, -20], [20, 0, 0], [0, 0, -30]))
+    return [{"name": f"board {k}", "quad": {"center": center, "halfU": u, "halfV": v}} for k, (center, u, v) in enumerate(quads)]
+
+
+def tilted(meshes, degrees, towards):
+    """The camera of the scene of map fits, under a lamp at 40 from the point 12 before the eye, with rays at an angle to the view: from behind the eye, or
+    towards it."""
+    scene = map_fits_pictures.scene()
+    eye, target = scene["camera"]["eye"], scene["camera"]["target"]
+    length = math.dist(eye, target)
+    forward = [(b - a) / length for a, b in zip(eye, target)]
+    upward = [0, -forward[2], forward[1]]
+    along, across = math.cos(math.radians(degrees)) * (-1 if towards else 1), math.sin(math.radians(degrees))
+    ray = [along * f - across * u for f, u in zip(forward, upward)]
+    center = [e + 12 * f - 40 * r for e, f, r in zip(eye, forward, ray)]
+    scene["lights"][0]["rectangle"] = {"center": center, "halfU": [0.001, 0, 0], "halfV": [0, 0.001 * ray[2], -0.001 * ray[1]]}
+    return scene | {"meshes": meshes or scene["meshes"]}
+
+
+TILTS = [(degrees, towards) for towards in (False, True) for degrees in ((60, 30, 15) if towards else (90, 60, 30, 15))]
 DEFECTS = ("none", "inside-out", "flipped-patch", "duplicate-face", "opposite-face", "doubled-box", "unmerged", "t-junction", "crack", "gap", "lost-gap", "collinear",
            "repeated-vertex", "needle", "lid", "hollow", "hole", "holes", "fin", "spikes", "shared-edge", "bowtie", "crossing-sheets", "loose-triangles")
 HALVES = (0.1, 0.25, 0.5, 1)
 SCENES = {"near-light": near_light, "lamps": lamps, "map-fits": map_fits_pictures.scene,
+          **{f"{name}-{degrees}{'-towards' * towards}": lambda meshes=meshes, tilt=(degrees, towards): tilted(meshes(), *tilt)
+             for name, meshes in (("floor", list), ("boards", boards)) for degrees, towards in TILTS},
           **{f"ball-{half}": lambda half=half: ball(half) for half in (*HALVES, 0.3, 2)}, **{f"defect-{name}": lambda name=name: defect(name) for name in DEFECTS}}
 
 
@@ -152,6 +179,18 @@ def map_fits():
                     (("maps", ("counters", "mapFaces"), None), ("mean m", lambda m: aliasing(m, "aliasingThousandths") / 1000, ".2f"),
                      ("largest", lambda m: m["counters"]["aliasingWorstThousandths"] / 1000, ".1f"), ("m > 1, %", lambda m: 100 * aliasing(m, "undersampledPixels"), ".0f"),
                      ("storage factor", lambda m: aliasing(m, "neededTexels"), ".1f"), ("RMSE of V", RMSE, ".4f")))
+
+
+def tilted_views():
+    rows = [((name, f"{degrees}°", "towards the eye" if towards else "across" if degrees == 90 else "from behind"),
+             Run(f"{name}-{degrees}{'-towards' * towards}", None, ("--reference", "raytrace"), 16)) for name in ("floor", "boards") for degrees, towards in TILTS]
+    columns = [(f"`{fit}`: {head}" if head == "mean m" else head, f"shadow-map:size=256:fit={fit}:aliasing=count", of, form)
+               for fit in ("view", "lispsm", "psm")
+               for head, of, form in (("mean m", lambda m: aliasing(m, "aliasingThousandths") / 1000, ".2f"),
+                                      ("largest", lambda m: m["counters"]["aliasingWorstThousandths"] / 1000, ".1f"))]
+    return Table("map fits: the aliasing error m of tilted views", "The scene of map fits and boards that face its eye, 192 × 144 pixels, maps of 256²; the lamp's rays at an angle γ "
+                 "to the view.", ("scene", "γ", "light", *(head for head, *_ in columns)), (None, None, None, *(form for *_, form in columns)),
+                 tuple((*labels, *(Compared(run, entry, of) for _, entry, of, _ in columns)) for labels, run in rows))
 
 
 def change_by(cause):
@@ -408,6 +447,7 @@ TABLES = {
                          (("RMSE of V", RMSE, ".4f"), ("largest error", LARGEST, ".2f"), ("wrong pairs", lambda m: m.get("pairsDiffering"), None),
                           ("of", lambda m: m.get("pairsAll"), None))),
     "map-fits": map_fits(),
+    "map-fits-tilted": tilted_views(),
     "error-budget": budget("parts of the errors of image-based methods", ("backproject:size=64", "bitmask:size=64:occluder=patch", "contour:size=64", "pcss:size=64"),
                            ("resolution", "view", "layers", "fusion", "gaps", "bias")),
     "radiance": beauty(),

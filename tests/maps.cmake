@@ -61,6 +61,7 @@ penumbra_test(maps FULL MapsTable.*
   analytic/maps/backprojection/sphere_form.cpp
   analytic/maps/backprojection/subsampled.cpp
   analytic/maps/backprojection/umbra.cpp
+  analytic/maps/backprojection/view_fits.cpp
   LIBRARIES penumbra_selftest penumbra_maps penumbra_scenes penumbra_volumes penumbra_vsm penumbra_reference TBB::tbb)
 penumbra_shaders(maps_test analytic/maps/backprojection/lens.comp analytic/maps/box_means.comp analytic/maps/box_windows.comp)
 target_compile_definitions(maps_test PRIVATE PENUMBRA_DOCS="${PROJECT_SOURCE_DIR}/docs")

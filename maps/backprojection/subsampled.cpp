@@ -8,6 +8,7 @@
 
 #include "base/assert.hpp"
 #include "maps/backprojection/penumbra_width.hpp"
+#include "maps/host/scene_space.hpp"
 #include "visibility/receivers.hpp"
 
 #include <glm/geometric.hpp>
@@ -90,7 +91,7 @@ double between(const Level& coarse, const ObjectPixel& at, const Node& node, dou
   return sum / weights;  // the node's own parent is in the same square, less than `spacing` away
 }
 
-class Subsampled final : public visibility::Method {
+class Subsampled final : public visibility::Method, public SeesScene {
  public:
   /// With `widths` null, pixels are chosen by a grid.
   Subsampled(std::unique_ptr<visibility::Method> method, std::unique_ptr<visibility::Method> widths, std::uint32_t step)
@@ -99,6 +100,9 @@ class Subsampled final : public visibility::Method {
   }
 
   [[nodiscard]] const visibility::MethodDescription& description() const override { return description_; }
+  void see_through(const SceneSpace& space) override {
+    if (auto* sees = dynamic_cast<SeesScene*>(method_.get())) sees->see_through(space);
+  }
   void prepare_mesh(const visibility::SceneFloats& scene) override {
     scene_ = &scene;
     method_->prepare_mesh(scene);

@@ -270,11 +270,12 @@ std::unique_ptr<visibility::Method> make_vssm(const render::Device& device, cons
       std::make_unique<LightPattern>(device, std::initializer_list<std::uint32_t>{kHorizonSamples}));
   recipe.products.push_back(std::make_unique<DepthPyramid>(device, PyramidKind::hsm));
   // Extent of the blocker search: see pcss. With a fixed filter width: see pcf.
-  const double beside = 2 * kWidestTangent * (window / 2) / size;
+  const std::uint32_t taps_beside = window / 2;  // rounded down: the middle texel is none of them
+  const double beside = 2 * kWidestTangent * taps_beside / size;
   recipe.beside = [window, beside](const visibility::Light& light, const LightBasis& basis) {
     return window != 0 ? glm::dvec2(beside) : half_extent(light, basis) / half_width(light);
   };
-  recipe.beside_texels = window / 2;
+  recipe.beside_texels = taps_beside;
   recipe.push_words = sizeof(gpu::VssmPush) / sizeof(std::uint32_t);
   recipe.push = [push](const visibility::Light& /*light*/) { return push_words(push); };
   visibility::MethodOptions used = options;

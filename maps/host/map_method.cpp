@@ -90,7 +90,7 @@ void MapMethod::fit_maps() {
     }
   }
   if (recipe_.all_casters) fit.reach = reach_of_all(*scene_);
-  if (options_.fit.sees_camera()) return fit_to_camera(fit, centres.front());
+  if (options_.fit.sees_camera()) return fit_to_camera(fit, centres);
   fit.hemicube = options_.fit.projection == Projection::cube;
   fit.all = all_;
   fitted_ =
@@ -101,7 +101,7 @@ void MapMethod::fit_maps() {
   }
 }
 
-void MapMethod::fit_to_camera(FitOptions fit, const glm::vec3& centre) {
+void MapMethod::fit_to_camera(FitOptions fit, std::span<const glm::vec3> centres) {
   const visibility::Light& light = *light_;
   const LightBounds bounds = light_bounds(light, basis_);
   if (recipe_.beside && recipe_.beside_texels == 0) fit.body_reach = glm::max(-bounds.lower, bounds.upper);
@@ -109,7 +109,7 @@ void MapMethod::fit_to_camera(FitOptions fit, const glm::vec3& centre) {
                                                   std::numeric_limits<double>::infinity(), space_);
   fit.body = &body;
   fit.snap = options_.fit.snap;
-  fitted_ = fit_views(*scene_, light, basis_, std::span(&centre, 1), fit);
+  fitted_ = fit_views(*scene_, light, basis_, centres, fit);
   if (!options_.fit.has_faces()) return;
   FaceFitOptions choices{
       .fit = options_.fit, .size = options_.size, .spare = 1 + recipe_.beside_texels, .space = space_};

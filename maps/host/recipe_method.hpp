@@ -39,8 +39,10 @@ class MapMethod final : public visibility::Method,
         constants_(constants_for(1)),
         look_up_(make_look_up()),
         sort_(make_sort()) {
-    PENUMBRA_ASSERT(!options_.fit.sees_camera() || (recipe_.points == MapPoints::centre && recipe_.sub_lights == 1),
-                    "{}: only maps from the light's centre are fitted to a camera", recipe_.description.name);
+    PENUMBRA_ASSERT(!options_.fit.sees_camera() || recipe_.points == MapPoints::centre,
+                    "{}: only maps from centres are fitted to a camera", recipe_.description.name);
+    PENUMBRA_ASSERT(!options_.fit.has_faces() || recipe_.sub_lights == 1, "{}: maps of sub-lights are windows",
+                    recipe_.description.name);
     if (const std::uint32_t least = 2 * recipe_.beside_texels + 4; options_.fit.has_faces() && options_.size < least) {
       throw UsageError(
           "method {}: size={} leaves no room between what is tapped beside a map's ends; take size={} or more",
@@ -111,7 +113,7 @@ class MapMethod final : public visibility::Method,
 
   /// Fits the maps: to all receivers, or to the view of the camera.
   void fit_maps();
-  void fit_to_camera(FitOptions fit, const glm::vec3& centre);
+  void fit_to_camera(FitOptions fit, std::span<const glm::vec3> centres);
   void make_maps();
   /// Allocates the light's maps, and renders those of its centre.
   void make_fitted_maps();

@@ -114,6 +114,10 @@ std::vector<visibility::OptionDescription> view_fit_descriptions() {
           kChanged.description(), kFocus.description(),      kAliasing.description(), kProjection.description()};
 }
 
+std::vector<visibility::OptionDescription> window_fit_descriptions() {
+  return {kWindowFit.description(), kViewBody.description(), kSnap.description()};
+}
+
 std::string words_of(const ViewFit& fit) {
   if (fit.projection != Projection::window) return std::string("projection=") + kProjection.name_of(fit.projection);
   return std::string("fit=") + kFit.name_of(fit.fit);
@@ -127,6 +131,10 @@ ViewFit view_fit(std::span<const visibility::OptionDescription> options, const v
   if (!has(kFit.name())) return fit;
   fit.body = parsed[kViewBody];
   fit.snap = parsed[kSnap];
+  if (!has(kCascades.name())) {
+    fit.fit = parsed[kWindowFit];
+    return fit;
+  }
   fit.aliasing = parsed[kAliasing];
   fit.fit = parsed[kFit];
   fit.projection = parsed[kProjection];

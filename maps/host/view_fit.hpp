@@ -25,7 +25,7 @@ enum class Fit : std::uint8_t {
   view,       ///< receivers seen by the camera, in one window
   cascades,   ///< the same in slices of depth, each with a window (Engel 2006, Zhang et al. 2006)
   tiles,      ///< a quadtree of windows, finer where pixels need it (Giegl and Wimmer 2007, Lefohn et al. 2007)
-  lispsm,     ///< a perspective along the view, n = z_n + sqrt(z_n z_f) (Wimmer et al. 2004)
+  lispsm,     ///< a perspective along the view, n = (z_n + sqrt(z_n z_f)) / sin γ (Wimmer et al. 2004)
   tsm,        ///< the same, n from a region in focus (Martin and Tan 2004)
   psm,        ///< the camera's own perspective (Stamminger and Drettakis 2002)
   logpsm,     ///< a perspective from the eye and a logarithm along the view (Lloyd et al. 2008)
@@ -50,6 +50,12 @@ inline constexpr visibility::ChoiceOption kFit{
     Fit::receivers,
     "region over which texels are spread: all receivers; the camera's view, in one window, in slices of depth or in "
     "tiles; a perspective of the view; or the faces of its frustum, each with a perspective"};
+/// The same option of methods that look kernels of texels up in one window or hemicube.
+inline constexpr visibility::ChoiceOption kWindowFit{
+    "fit",
+    {{"receivers", Fit::receivers}, {"view", Fit::view}},
+    Fit::receivers,
+    "region over which texels are spread: all receivers, or what the camera sees of them; with all that can shade it"};
 inline constexpr visibility::ChoiceOption kViewBody{
     "body",
     {{"visible", ViewBody::visible}, {"frustum", ViewBody::frustum}},
@@ -139,6 +145,8 @@ struct ViewFit {
 
 /// Returns these options, as listed by `methods`.
 std::vector<visibility::OptionDescription> view_fit_descriptions();
+/// Returns those of methods with kWindowFit.
+std::vector<visibility::OptionDescription> window_fit_descriptions();
 /// Returns "fit=tsm", or "projection=paraboloid".
 std::string words_of(const ViewFit& fit);
 /// Returns the choice of a method that has some of the options, or none.
@@ -162,8 +170,9 @@ std::vector<BodyPoint> body_points(const visibility::SceneFloats& scene, const v
 std::vector<double> split_depths(const ViewFit& fit, double near, double far, std::uint32_t slices);
 
 /// Returns n_opt of Wimmer et al. 2004: the distance of the perspective's centre before the nearest visible point for
-/// which the largest errors along both axes are equal. 0 < near ≤ far are distances from the eye along the warped axis,
-/// and `sine` is that of the angle between the view and the light.
+/// which the errors along the warped axis are equal at both ends. 0 < near ≤ far are depths along the view axis at the
+/// ends of a map's axis across the light's rays, and `sine` is that of the angle γ between the view and the light: the
+/// ends are (far − near) / sine from each other.
 double lispsm_distance(double near, double far, double sine);
 
 /// Returns the distance of the perspective's centre that maps the point at `focus` of `length` from the nearest point

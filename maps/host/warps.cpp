@@ -42,16 +42,32 @@ glm::dmat3 perspective(const glm::dvec2& along, double nearest, double length, d
   return with_rows(a, b, k);
 }
 
-/// Returns the distance from the perspective's centre to the nearest visible point; nullopt where a perspective does
-/// not apply.
-std::optional<double> distance_of(Fit fit, const SeenBody& body, double near, double far, double focus_at) {
-  if (fit == Fit::tsm) return tsm_distance(far - near, focus_at);
-  if (!(near > 0)) return std::nullopt;
+/// Returns the sine of the angle γ between the view and the light's ray to the middle of the body.
+double sine_of(const SeenBody& body) {
   glm::dvec3 middle(0);
   for (const glm::dvec3& point : body.points) middle += point;
-  const double sine = glm::length(glm::cross(glm::normalize(middle), glm::normalize(body.forward)));
+  return glm::length(glm::cross(glm::normalize(middle), glm::normalize(body.forward)));
+}
+
+/// Returns the least depth along the view axis in units of the face, whose plane at the point with that depth is as
+/// far from the light as the point.
+double nearest_depth(const SeenBody& body) {
+  const auto depth = [&](const glm::dvec3& point) { return glm::dot(point - body.eye, body.forward); };
+  const glm::dvec3 nearest = std::ranges::min(body.points, {}, depth);
+  // Taps beside receivers may be behind the eye.
+  return std::max(depth(nearest), body.near) / nearest.z;
+}
+
+/// Returns the distance from the perspective's centre to the nearest visible point; nullopt where a perspective does
+/// not apply. The points lie between `near` and `far` from the eye's image.
+std::optional<double> distance_of(Fit fit, const SeenBody& body, double near, double far, double focus_at) {
+  if (fit == Fit::tsm) return tsm_distance(far - near, focus_at);
+  const double sine = sine_of(body);
   if (!(sine > 0)) return std::nullopt;
-  return fit == Fit::lispsm ? lispsm_distance(near, far, sine) : near / sine;
+  if (fit == Fit::logpsm) return near > 0 ? std::optional(near / sine) : std::nullopt;
+  // Depths change by the sine on the way across the light's rays.
+  const double nearest = nearest_depth(body);
+  return lispsm_distance(nearest, nearest + (far - near) * sine, sine);
 }
 
 Warp along_the_view(Fit fit, const SeenBody& body, double focus) {

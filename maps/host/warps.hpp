@@ -28,8 +28,8 @@ struct Warp {
                      ///< that of the nearest
 };
 
-/// Returns the warp; the identity where a warp has no effect: where the eye, seen from the light, is above the visible
-/// points, or the view is along the light's rays. `focus`: ViewFit::focus.
+/// Returns the warp; the identity where a warp has no effect: where the view is along the light's rays, or of logpsm
+/// where the eye, seen from the light, is above the visible points. `focus`: ViewFit::focus.
 Warp warp_of(Fit fit, const SeenBody& body, double focus);
 
 /// A face of the camera's frustum, seen from the light's centre: the homography from the directions in which rays leave

@@ -32,17 +32,27 @@ class Perspective:
         at = plane(seen.points) @ self.along
         self.first, self.length = at.min(), at.max() - at.min()
         eye = plane(seen.eye) @ self.along
-        near, far = self.first - eye, self.first + self.length - eye
+        near = self.first - eye
         if fit == "tsm":  # the focus is at four fifths of the rows: (n + d) y / (d (n + y)) = 0.8
             y = on_axis(seen.near + FOCUS * (seen.far - seen.near)) @ self.along - self.first
             self.n = 0.2 * self.length * y / (0.8 * self.length - y)
         else:
             middle = seen.points.sum(axis=0)
             cosine = middle @ seen.forward / np.linalg.norm(middle) / np.linalg.norm(seen.forward)
-            self.n = (near + (np.sqrt(near * far) if fit == "lispsm" else 0)) / np.sqrt(1 - cosine**2)
+            sine = np.sqrt(1 - cosine**2)
+            self.n = self.optimal(seen, sine) if fit == "lispsm" else near / sine
         self.margin = SPARE / size
         places = np.array([self.warped(e) for e in seen.points])
         self.lower, self.width = places.min(axis=0), places.max(axis=0) - places.min(axis=0)
+
+    def optimal(self, seen, sine):
+        """d / (sqrt(z1 / z0) - 1), with the view depths z0 of the nearest point and z1 of the far end of the map in the nearest point's
+        plane across the light: Wimmer and Scherzer 2006, the same as (z0 + sqrt(z0 z1)) / sine."""
+        depths = (seen.points - seen.eye) @ seen.forward
+        nearest = depths.argmin()
+        z0 = depths[nearest]
+        z1 = z0 + self.length * seen.points[nearest, 2] * sine
+        return self.length / (np.sqrt(z1 / z0) - 1)
 
     def warped(self, e):
         at = np.asarray(e)[:2] / e[2]
@@ -100,6 +110,80 @@ class Camera:
         share = ((texel + 0.5) / self.size - self.margin) / (1 - 2 * self.margin)
         ray = np.linalg.solve(self.matrix, np.append(self.lower + share * self.width, 1))
         return ray / ray[2]
+
+
+class Floor:
+    """A floor alone, seen by a camera of 4 : 3 from above it, under a light whose rays meet the view's axis at an angle of `degrees`: from
+    behind the eye (sign 1) or towards it (-1)."""
+
+    WIDE, HIGH, FAR, FOV = 96, 72, 40.0, 45.0
+
+    def __init__(self, degrees, sign):
+        eye, target = np.array([0, 1.6, 6]), np.array([0, 0.2, 0])
+        forward = (target - eye) / np.linalg.norm(target - eye)
+        right = np.array([1.0, 0, 0])
+        upward = np.cross(right, forward)
+        light = sign * np.cos(np.radians(degrees)) * forward - np.sin(np.radians(degrees)) * upward  # the way of its rays
+        lamp = eye + 12 * forward - self.FAR * light
+        frame = np.array([right, np.cross(light, right), light])
+        turn = lambda x: np.asarray(x) @ frame.T
+        half = np.tan(np.radians(self.FOV) / 2)
+        self.ray_of = lambda x, y: (forward + half * ((2 * x - self.WIDE) / self.HIGH)[..., None] * right
+                                    + half * (1 - 2 * y / self.HIGH)[..., None] * upward)
+        x, y = np.meshgrid(np.arange(self.WIDE) + 0.5, np.arange(self.HIGH) + 0.5)
+        here, across, down = (self.on_floor(eye, self.ray_of(x + i, y + j)) for i, j in ((0, 0), (1e-4, 0), (0, 1e-4)))
+        seen = (np.abs(here[..., 0]) < 12) & (here[..., 2] > -44) & (here[..., 2] < 6)
+        self.points = turn(here[seen] - lamp)
+        self.steps = [(turn(there[seen] - lamp) - self.points) / 1e-4 for there in (across, down)]
+        self.eye, self.forward = turn(eye - lamp), turn(forward)
+        depths = (self.points - self.eye) @ self.forward
+        self.near, self.far = depths.min(), depths.max()
+        quad = lambda center, u, v: {"center": list(center), "halfU": list(u), "halfV": list(v)}
+        self.scene = {"format": "penumbra-scene/1", "camera": {"eye": list(eye), "target": list(target), "verticalFov": self.FOV},
+                      "meshes": [{"name": "floor", "quad": quad([0, 0, -19], [12, 0, 0], [0, 0, -25])}],
+                      "lights": [{"name": "lamp", "radiance": [1e8] * 3,
+                                  "rectangle": quad(lamp, 0.001 * frame[0], 0.001 * frame[1])}]}
+
+    @staticmethod
+    def on_floor(eye, ray):
+        with np.errstate(divide="ignore", invalid="ignore"):
+            at = eye - eye[1] / ray[..., 1:2] * ray
+        return np.where(ray[..., 1:2] < 0, at, np.inf)
+
+    def errors(self, map_):
+        """m of every point: the longer column of the inverse of the change of texels by pixels."""
+        here = np.array([map_.texel(e) for e in self.points])
+        change = np.stack([np.array([map_.texel(e + 1e-4 * step) for e, step in zip(self.points, steps)]) - here
+                           for steps in self.steps], axis=-1) / 1e-4
+        return np.linalg.norm(np.linalg.inv(change), axis=-2).max(axis=-1)
+
+
+class WithoutTheSine(Perspective):
+    def optimal(self, seen, sine):
+        return super().optimal(seen, sine) * sine
+
+
+class EvenWindow(Perspective):
+    def optimal(self, seen, sine):
+        return 1e6 * self.length
+
+
+class Errors(unittest.TestCase):
+    def test_errors_of_tilted_views(self):
+        for sign in (1, -1):
+            for degrees in (90, 60, 30, 15):
+                if sign < 0 and degrees == 90:
+                    continue
+                floor, size = Floor(degrees, sign), 256
+                picture = penumbra.render(penumbra.Scene.from_dict(floor.scene), size=(floor.WIDE, floor.HIGH), method="shadow-map",
+                                          options={"fit": "lispsm", "size": str(size), "aliasing": "count"})
+                counters = picture.stats["counters"]
+                self.assertEqual(counters["aliasingPixels"], len(floor.points))
+                m, without, even = (floor.errors(twin("lispsm", floor, size)) for twin in (Perspective, WithoutTheSine, EvenWindow))
+                print(f"{degrees} degrees {'from behind' if sign > 0 else 'towards the eye'}: m {m.mean():.3f} (largest {m.max():.2f}), without "
+                      f"the sine {without.mean():.3f} ({without.max():.2f}), even {even.mean():.3f} ({even.max():.2f})")
+                self.assertAlmostEqual(counters["aliasingThousandths"] / 1000 / len(m), m.mean(), delta=2e-3 * m.mean())
+                self.assertAlmostEqual(counters["aliasingWorstThousandths"] / 1000, m.max(), delta=2e-3 * m.max())
 
 
 class Twins(unittest.TestCase):

@@ -10,6 +10,8 @@
 #include "maps/backprojection/contours/contour_recipe.hpp"
 #include "maps/backprojection/subsampled.hpp"
 
+#include <algorithm>
+#include <iterator>
 #include <utility>
 
 namespace penumbra::maps {
@@ -42,6 +44,7 @@ visibility::MethodDescription contour_description() {
     description.options.push_back(option);
   description.options.push_back(kSubsample.description());
   description.options.push_back(kSubsampleBy.description());
+  std::ranges::copy(window_fit_descriptions(), std::back_inserter(description.options));
   return description;
 }
 

@@ -16,6 +16,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <iterator>
 #include <string>
 #include <utility>
 #include <vector>
@@ -103,6 +104,7 @@ visibility::MethodDescription packet_description(const visibility::MethodOptions
     description.options.push_back(option);
   description.options.push_back(kSubsample.description());
   description.options.push_back(kSubsampleBy.description());
+  std::ranges::copy(window_fit_descriptions(), std::back_inserter(description.options));
   return description;
 }
 

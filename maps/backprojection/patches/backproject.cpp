@@ -20,6 +20,8 @@
 #include "maps/products/light_shape.hpp"
 #include "maps/products/nearest_caster.hpp"
 
+#include <algorithm>
+#include <iterator>
 #include <utility>
 
 namespace penumbra::maps {
@@ -61,6 +63,7 @@ visibility::MethodDescription backproject_description(const visibility::MethodOp
   description.options.push_back(kPatchSearch.description());
   description.options.push_back(kSubsample.description());
   description.options.push_back(kSubsampleBy.description());
+  std::ranges::copy(window_fit_descriptions(), std::back_inserter(description.options));
   if (visibility::parse_options(description, options)[kForm] == gpu::kFormSphere) {
     description.lights = visibility::kPlanarLights | visibility::kBodies;
     description.textures = false;  // a cap of directions has uniform brightness

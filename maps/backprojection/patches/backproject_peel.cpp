@@ -16,6 +16,8 @@
 #include "maps/products/depth_pyramid.hpp"
 #include "maps/products/nearest_caster.hpp"
 
+#include <algorithm>
+#include <iterator>
 #include <utility>
 
 namespace penumbra::maps {
@@ -57,6 +59,7 @@ visibility::MethodDescription backproject_peel_description() {
   description.options.push_back(kSelect.description());
   description.options.push_back(kSubsample.description());
   description.options.push_back(kSubsampleBy.description());
+  std::ranges::copy(window_fit_descriptions(), std::back_inserter(description.options));
   return description;
 }
 

@@ -21,6 +21,8 @@
 #include "maps/products/nearest_caster.hpp"
 #include "maps/products/work_counts.hpp"
 
+#include <algorithm>
+#include <iterator>
 #include <string>
 #include <utility>
 #include <vector>
@@ -67,6 +69,7 @@ visibility::MethodDescription bitmask_description(const visibility::MethodOption
                              kBitmaskSearch.description(), kSubsample.description(), kSubsampleBy.description()}) {
     description.options.push_back(option);
   }
+  std::ranges::copy(window_fit_descriptions(), std::back_inserter(description.options));
   if (visibility::parse_options(description, options)[kSubsample] > 1) description.output = visibility::Output::scalar;
   return description;
 }

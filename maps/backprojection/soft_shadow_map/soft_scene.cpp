@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
 
 namespace penumbra::maps {
@@ -22,6 +23,7 @@ constexpr double kWidestTangent = 4;
 
 struct Bounds {
   glm::dvec2 lower{kWidestTangent}, upper{-kWidestTangent};
+  double nearest = std::numeric_limits<double>::infinity(), deepest = 0;  ///< z
   bool any = false;
 
   void add(const glm::dvec3& corner) {
@@ -33,12 +35,70 @@ struct Bounds {
       lower[axis] = std::min(lower[axis], at);
       upper[axis] = std::max(upper[axis], at);
     }
+    nearest = std::min(nearest, z);
+    deepest = std::max(deepest, z);
     any = true;
   }
 };
 
 double farthest(const visibility::SceneFloats& scene, const glm::dvec3& x) {
   return glm::length(glm::max(glm::abs(glm::dvec3(scene.lower) - x), glm::abs(glm::dvec3(scene.upper) - x)));
+}
+
+/// Returns the bounds of the chosen triangles on one side of the light's plane.
+Bounds bounds_of(const visibility::SceneFloats& scene, const LightBasis& basis, std::span<const std::uint8_t> chosen,
+                 double sign) {
+  Bounds bounds;
+  for (std::size_t i = 0; i < chosen.size(); ++i) {
+    if (chosen[i] == 0) continue;
+    std::array<glm::dvec3, 3> local;
+    const auto corners = scene.corners(static_cast<std::uint32_t>(i));
+    std::ranges::transform(corners, local.begin(), [&](const glm::vec3& corner) {
+      const glm::dvec3 at = basis.local(corner);
+      return glm::dvec3(at.x, at.y, sign * at.z);
+    });
+    const auto in_front = std::ranges::count_if(local, [](const glm::dvec3& corner) { return corner.z > 0; });
+    if (in_front == 0) continue;
+    if (in_front < 3) {  // the triangle reaches the light's plane, and may be seen in any direction
+      for (const double side : {-1.0, 1.0}) bounds.add({side, side, 0});
+    } else {
+      for (const glm::dvec3& corner : local) bounds.add(corner);
+    }
+  }
+  return bounds;
+}
+
+/// Returns the width of a texel of a map with these bounds and a texel more all around.
+glm::dvec2 texel_of(const Bounds& bounds, std::uint32_t size) {
+  return glm::max((bounds.upper - bounds.lower) / (size - 2.0), glm::dvec2(kWidestTangent * 0x1p-20));
+}
+
+/// Returns the view whose windows have these bounds and a texel more all around.
+gpu::LightView view_of(const visibility::SceneFloats& scene, const LightBasis& basis,
+                       const std::array<Bounds, 2>& sides, std::uint32_t size, bool snap) {
+  gpu::LightView view{};
+  view.point = glm::vec3(basis.center);
+  view.far = static_cast<float>(std::max(farthest(scene, basis.center) * 1.0625, 1e-30));
+  std::uint32_t faces = 0;
+  for (int s = 0; s < 2; ++s) {
+    const Bounds& bounds = sides.at(s);
+    view.side[s].first_face = faces;
+    if (!bounds.any) continue;
+    const glm::dvec2 texel = texel_of(bounds, size);
+    for (int axis = 0; axis < 2; ++axis) {
+      double lower = bounds.lower[axis] - texel[axis], upper = bounds.upper[axis] + texel[axis];
+      if (snap) {
+        const SnappedSpan span = snapped(lower, upper, size);
+        lower = span.lower;
+        upper = span.lower + span.texel * size;
+      }
+      view.side[s].lower[axis] = static_cast<float>(lower);
+      view.side[s].upper[axis] = static_cast<float>(upper);
+    }
+    view.side[s].face_count = 1;
+    ++faces;
+  }
+  return view;
 }
 
 }  // namespace
@@ -83,39 +143,38 @@ SoftScene part_scene(const visibility::SceneFloats& scene, const visibility::Lig
 
 gpu::LightView fit_window(const visibility::SceneFloats& scene, const LightBasis& basis,
                           std::span<const std::uint8_t> chosen, std::uint32_t size, bool two_sided) {
-  gpu::LightView view{};
-  view.point = glm::vec3(basis.center);
-  view.far = static_cast<float>(std::max(farthest(scene, basis.center) * 1.0625, 1e-30));
-  std::uint32_t faces = 0;
-  for (int s = 0; s < (two_sided ? 2 : 1); ++s) {
-    Bounds bounds;
-    for (std::size_t i = 0; i < chosen.size(); ++i) {
-      if (chosen[i] == 0) continue;
-      std::array<glm::dvec3, 3> local;
-      const auto corners = scene.corners(static_cast<std::uint32_t>(i));
-      std::ranges::transform(corners, local.begin(), [&](const glm::vec3& corner) {
-        const glm::dvec3 at = basis.local(corner);
-        return glm::dvec3(at.x, at.y, s == 0 ? at.z : -at.z);
-      });
-      const auto in_front = std::ranges::count_if(local, [](const glm::dvec3& corner) { return corner.z > 0; });
-      if (in_front == 0) continue;
-      if (in_front < 3) {  // the triangle reaches the light's plane, and may be seen in any direction
-        for (const double sign : {-1.0, 1.0}) bounds.add({sign, sign, 0});
-      } else {
-        for (const glm::dvec3& corner : local) bounds.add(corner);
-      }
+  std::array<Bounds, 2> sides;
+  for (int s = 0; s < (two_sided ? 2 : 1); ++s) sides.at(s) = bounds_of(scene, basis, chosen, s == 0 ? 1 : -1);
+  return view_of(scene, basis, sides, size, false);
+}
+
+SoftViews fit_to_camera(const visibility::SceneFloats& scene, const LightBasis& basis, const SoftScene& parts,
+                        const SoftBody& body) {
+  std::array<Bounds, 2> receivers, occluders;
+  for (int s = 0; s < (body.two_sided ? 2 : 1); ++s) {
+    const double sign = s == 0 ? 1 : -1;
+    Bounds& seen = receivers.at(s);
+    for (const BodyPoint& point : body.points) {
+      const glm::dvec3 at = basis.local(point.p);
+      if (sign * at.z > 0) seen.add({at.x, at.y, sign * at.z});
     }
-    view.side[s].first_face = faces;
-    if (!bounds.any) continue;
+    if (!seen.any) continue;
+    occluders.at(s) = bounds_of(scene, basis, parts.occluders, sign);
+    Bounds& shading = occluders.at(s);
+    if (!shading.any) continue;
+    // An occluder at height z_c shades a receiver at height z up to reach · (1/z_c − 1/z) beside the receiver, and V is
+    // interpolated from texels up to one beside the receiver's.
+    const glm::dvec2 texel = texel_of(seen, body.receiver_size);
+    const double closer = std::max(0.0, 1 / std::max(shading.nearest, 0.0) - 1 / seen.deepest);
     for (int axis = 0; axis < 2; ++axis) {
-      const double texel = std::max((bounds.upper[axis] - bounds.lower[axis]) / (size - 2), kWidestTangent * 0x1p-20);
-      view.side[s].lower[axis] = static_cast<float>(bounds.lower[axis] - texel);
-      view.side[s].upper[axis] = static_cast<float>(bounds.upper[axis] + texel);
+      const double beside = 2 * texel[axis] + (body.reach[axis] > 0 ? body.reach[axis] * closer : 0);
+      shading.lower[axis] = std::max(shading.lower[axis], seen.lower[axis] - beside);
+      shading.upper[axis] = std::min(shading.upper[axis], seen.upper[axis] + beside);
+      if (shading.lower[axis] > shading.upper[axis]) shading.any = false;
     }
-    view.side[s].face_count = 1;
-    ++faces;
   }
-  return view;
+  return {view_of(scene, basis, receivers, body.receiver_size, body.snap),
+          view_of(scene, basis, occluders, body.occluder_size, body.snap)};
 }
 
 }  // namespace penumbra::maps

@@ -3,7 +3,10 @@
 
 #include "maps/host/light_basis.hpp"
 #include "maps/host/map_view.shared.h"
+#include "maps/host/view_fit.hpp"
 #include "visibility/scene_floats.hpp"
+
+#include <glm/vec2.hpp>
 
 #include <cstdint>
 #include <span>
@@ -25,5 +28,20 @@ SoftScene part_scene(const visibility::SceneFloats& scene, const visibility::Lig
 /// texel is added all around.
 gpu::LightView fit_window(const visibility::SceneFloats& scene, const LightBasis& basis,
                           std::span<const std::uint8_t> chosen, std::uint32_t size, bool two_sided);
+
+/// What a camera sees of the receivers (SoftScene), and the choices of maps for that.
+struct SoftBody {
+  std::span<const BodyPoint> points;
+  glm::dvec2 reach{0};  ///< extent of the light from its centre along u and v
+  std::uint32_t receiver_size = 0, occluder_size = 0;
+  bool two_sided = false, snap = false;
+};
+struct SoftViews {
+  gpu::LightView receivers, occluders;
+};
+/// Returns the same views of the points alone, and of what can shade them: the part of the occluders' window up to
+/// where they hide some of the light from a point. `snap`: texels stay in place while the body changes (snapped()).
+SoftViews fit_to_camera(const visibility::SceneFloats& scene, const LightBasis& basis, const SoftScene& parts,
+                        const SoftBody& body);
 
 }  // namespace penumbra::maps

@@ -8,6 +8,10 @@
 #include "maps/host/error_repairs.hpp"
 #include "maps/host/map_method.hpp"
 #include "maps/host/mesh_verdict.hpp"
+#include "maps/host/view_fit.hpp"
+
+#include <algorithm>
+#include <iterator>
 
 namespace penumbra::maps {
 namespace {
@@ -88,6 +92,7 @@ visibility::MethodDescription soft_shadow_map_description() {
         kPrecision.description(), kForm.description(), kFilter.description(), kSelf.description()}) {
     description.options.push_back(option);
   }
+  std::ranges::copy(window_fit_descriptions(), std::back_inserter(description.options));
   return description;
 }
 

@@ -22,14 +22,17 @@
 #include "maps/backprojection/light_table.hpp"
 #include "maps/host/map_method.hpp"
 #include "maps/host/receivers.hpp"
+#include "maps/host/scene_space.hpp"
 #include "maps/host/tile_visibility.hpp"
 #include "render/compute_pass.hpp"
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <array>
 #include <iterator>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -41,13 +44,17 @@ namespace {
 constexpr std::uint32_t kMostTurns = 60000;
 constexpr std::uint32_t kPassesPerSubmission = 96;
 
-class SoftShadowMap final : public visibility::Method {
+class SoftShadowMap final : public visibility::Method, public SeesScene {
  public:
   /// `self`: the method for V on occluders; null: their horizon.
   SoftShadowMap(const render::Device& device, const MapOptions& map, const SoftSettings& settings,
                 std::unique_ptr<visibility::Method> self);
 
   [[nodiscard]] const visibility::MethodDescription& description() const override { return description_; }
+  void see_through(const SceneSpace& space) override {
+    space_ = space;
+    if (auto* sees = dynamic_cast<SeesScene*>(self_.get())) sees->see_through(space);
+  }
   void prepare_mesh(const visibility::SceneFloats& scene) override {
     scene_ = &scene;
     if (self_) self_->prepare_mesh(scene);
@@ -78,9 +85,11 @@ class SoftShadowMap final : public visibility::Method {
   };
   /// Surface that a map stores for each texel. The depth of an empty texel is 1; where the farthest is kept, 0.
   enum class Kept : std::uint8_t { nearest, nearest_two, farthest };
-  /// Draws the chosen triangles. Of two layers the second is behind the first in the buffer, and is not read back.
-  Map draw(CasterMaps& casters, std::span<const std::uint8_t> chosen, std::uint32_t size, Kept kept,
+  /// Draws the triangles in a view. Of two layers the second is behind the first in the buffer, and is not read back.
+  Map draw(CasterMaps& casters, const gpu::LightView& view, std::uint32_t size, Kept kept,
            std::unique_ptr<render::Buffer>& buffer);
+  [[nodiscard]] SoftViews views() const;
+  void make_maps();
   /// Returns whether a pass's texels represent the farthest surfaces (section 3.5; figure 11b: in one pass, too).
   [[nodiscard]] bool of_farthest(std::uint32_t pass) const {
     return pass > 0 || settings_.patches == SoftPatches::bottom;
@@ -100,7 +109,9 @@ class SoftShadowMap final : public visibility::Method {
   visibility::PassTimes times_;
   std::map<std::string, std::uint64_t> counters_;
   const visibility::SceneFloats* scene_ = nullptr;
+  SceneSpace space_;  ///< of the camera
   const visibility::ViewSamples* samples_ = nullptr;
+  bool maps_are_old_ = false;  ///< made for another view
   const visibility::Light* light_ = nullptr;
   LightBasis basis_;
   LightTable light_table_;
@@ -139,11 +150,30 @@ SoftShadowMap::SoftShadowMap(const render::Device& device, const MapOptions& map
                         .constants = {}}),
       light_table_(device) {}
 
-SoftShadowMap::Map SoftShadowMap::draw(CasterMaps& casters, std::span<const std::uint8_t> chosen, std::uint32_t size,
-                                       Kept kept, std::unique_ptr<render::Buffer>& buffer) {
+SoftViews SoftShadowMap::views() const {
+  if (!map_.fit.sees_camera()) {
+    return {fit_window(*scene_, basis_, parts_.receivers, settings_.receiver_size, light_->two_sided),
+            fit_window(*scene_, basis_, parts_.occluders, map_.size, light_->two_sided)};
+  }
+  visibility::SceneFloats seen = *scene_;
+  seen.receives_shadow = parts_.receivers;
+  const std::vector<BodyPoint> points =
+      body_points(seen, *light_, basis_, *samples_, map_.fit.body, 0, std::numeric_limits<double>::infinity(), space_);
+  const LightBounds light = light_bounds(*light_, basis_);
+  return fit_to_camera(*scene_, basis_, parts_,
+                       {.points = points,
+                        .reach = glm::max(-light.lower, light.upper),
+                        .receiver_size = settings_.receiver_size,
+                        .occluder_size = map_.size,
+                        .two_sided = light_->two_sided,
+                        .snap = map_.fit.snap});
+}
+
+SoftShadowMap::Map SoftShadowMap::draw(CasterMaps& casters, const gpu::LightView& view, std::uint32_t size, Kept kept,
+                                       std::unique_ptr<render::Buffer>& buffer) {
   Map map;
   const std::uint32_t layers = kept == Kept::nearest_two ? 2 : 1;
-  map.view = fit_window(*scene_, basis_, chosen, size, light_->two_sided);
+  map.view = view;
   map.faces = map.view.side[0].face_count + map.view.side[1].face_count;
   check_faces_fit(*device_, size, layers * std::max(map.faces, 1u));
   map.depths.resize(std::size_t{std::max(map.faces, 1u)} * size * size);
@@ -175,19 +205,28 @@ void SoftShadowMap::prepare_light(const visibility::Light& light) {
   light_shape_ = shape.head;
   upright_ = shape.head.width * shape.head.height == 1;
   parts_ = part_scene(*scene_, light, basis_);
-  counters_ = {{"patches", 0}, {"fragments", 0}, {kPixelsOnOccluders, 0}};
 
   visibility::SceneFloats drawn = *scene_;
   drawn.casts_shadow = parts_.receivers;
   receiver_maps_.upload(drawn);
   drawn.casts_shadow = parts_.occluders;
   occluder_maps_.upload(drawn);
-  receiver_map_ = draw(receiver_maps_, parts_.receivers, settings_.receiver_size, Kept::nearest, receiver_depths_);
+  counters_ = {{"patches", 0}, {"fragments", 0}, {kPixelsOnOccluders, 0}};
+  // A camera's maps are made when there are view samples.
+  maps_are_old_ = map_.fit.sees_camera();
+  if (!maps_are_old_) make_maps();
+}
+
+void SoftShadowMap::make_maps() {
+  maps_are_old_ = false;
+  counters_["patches"] = counters_["fragments"] = 0;
+  const SoftViews views = this->views();
+  receiver_map_ = draw(receiver_maps_, views.receivers, settings_.receiver_size, Kept::nearest, receiver_depths_);
   render::grow(*device_, visible_, "soft shadow map", receiver_map_.depths.size() * sizeof(float));
   render::grow(*device_, counts_, "fragments", 2 * sizeof(std::uint32_t));
   for (std::uint32_t pass = 0; pass < settings_.passes; ++pass) {
     const Kept nearest = map_.depth == DepthUse::first ? Kept::nearest : Kept::nearest_two;
-    add_up(draw(occluder_maps_, parts_.occluders, map_.size, of_farthest(pass) ? Kept::farthest : nearest, occluders_),
+    add_up(draw(occluder_maps_, views.occluders, map_.size, of_farthest(pass) ? Kept::farthest : nearest, occluders_),
            pass);
   }
   render::grow(*device_, views_, "map views", sizeof(gpu::LightView));
@@ -274,6 +313,7 @@ void SoftShadowMap::add_up(const Map& occluders, std::uint32_t pass) {
 void SoftShadowMap::prepare_view(const visibility::ViewSamples& samples) {
   PENUMBRA_ASSERT(light_ != nullptr, "{}: prepare_view before prepare_light", description_.name);
   samples_ = &samples;
+  maps_are_old_ = map_.fit.sees_camera();
   if (self_) self_->prepare_view(samples);
   receivers_.upload(*device_, *scene_, *light_, samples);
 }
@@ -281,6 +321,7 @@ void SoftShadowMap::prepare_view(const visibility::ViewSamples& samples) {
 void SoftShadowMap::evaluate(const visibility::Tile& tile) {
   PENUMBRA_ASSERT(light_ != nullptr, "{}: evaluate before prepare_light", description_.name);
   if (!results_.begin(*device_, tile, receivers_)) return;
+  if (maps_are_old_) make_maps();
   if (self_) self_->evaluate(tile);
   on_occluder_.assign(results_.pixels(), 0);
   for (std::size_t i = 0; i < on_occluder_.size(); ++i) {
@@ -338,7 +379,7 @@ std::unique_ptr<visibility::Method> make_soft_shadow_map(const render::Device& d
   if (settings.self == SoftSelf::backproject) {
     const visibility::MethodOptions whole = visibility::complete_options(description, options);
     visibility::MethodOptions alike;
-    for (const char* key : {"size", "depth", "rasteriser"}) alike[key] = whole.at(key);
+    for (const char* key : {"size", "depth", "rasteriser", "fit", "body", "snap"}) alike[key] = whole.at(key);
     self = make_backproject(device, alike);
   }
   return std::make_unique<SoftShadowMap>(device, map, settings, std::move(self));

@@ -122,6 +122,44 @@ TEST_F(Overhead, ErrorsAlongTheViewAreThoseOfTheNotes) {
   EXPECT_NEAR((row(kNear + 0.25 * length) - row(kNear + 1e-9)) / (row(kFar - 1e-9) - row(kNear + 1e-9)), 0.8, 1e-4);
 }
 
+// Wimmer et al. 2004: at any angle γ between the view and parallel light, the errors of LiSPSM along the view are equal
+// at both ends of a level surface across the light. The eye's image may lie among the points: the surface is below the
+// eye.
+TEST(MapFits, LiSPSMHasEqualErrorsAtBothEndsOfATiltedView) {
+  constexpr double kHeight = 1e5, kLength = 24, kDepth = 2;
+  for (const double degrees : {75.0, 60.0, 30.0, 15.0}) {
+    const double sine = std::sin(glm::radians(degrees)), cosine = std::cos(glm::radians(degrees));
+    for (const double first : {-1.5, 0.0, 1.5}) {
+      // The point (0, first, kHeight) is kDepth before the eye, which is seen at b = 0.
+      const glm::dvec3 forward(0, sine, cosine);
+      const double below = (kDepth - first * sine) / cosine;
+      std::vector<glm::dvec3> points;
+      for (const double b : {first, first + kLength}) {
+        for (const double a : {-1.0, 1.0}) points.emplace_back(a, b, kHeight);
+      }
+      const maps::SeenBody body{.points = points,
+                                .near = kDepth,
+                                .far = kDepth + kLength * sine,
+                                .eye = {0, 0, kHeight - below},
+                                .forward = forward,
+                                .across = {2, 0, 0},
+                                .upward = {0, 0, 2}};
+      const maps::Warp warp = maps::warp_of(maps::Fit::lispsm, body, 0.25);
+      const auto row = [&](double b) {
+        const glm::dvec3 at = warp.matrix * glm::dvec3(0, b, kHeight);
+        return at.y / at.z;
+      };
+      const auto error = [&](double b) {
+        constexpr double kStep = 1e-3;
+        const double change = (row(b + kStep) - row(b - kStep)) / (2 * kStep), depth = kDepth + (b - first) * sine;
+        return 1 / (change * depth);
+      };
+      EXPECT_NEAR(error(first + kLength) / error(first), 1, 1e-3) << degrees << ", " << first;
+      EXPECT_LT(error(first + kLength / 4), error(first)) << degrees << ", " << first;
+    }
+  }
+}
+
 TEST_F(Overhead, PlacesAndDirectionsAreInverse) {
   for (const maps::Fit fit : {maps::Fit::view, maps::Fit::lispsm, maps::Fit::tsm, maps::Fit::psm, maps::Fit::logpsm}) {
     const maps::FittedFace one = face(fit);
