@@ -171,9 +171,10 @@ void Service::say(std::string_view level, const std::string& text) {
   out_.send_note(in_pipe(saying(level, text)));
 }
 
-void Service::refuse(const std::string& type, const std::string& text) {
+void Service::refuse(const json& message, const std::string& text) {
   ordered_json head = saying("error", text);
-  head["refused"] = type;
+  head["refused"] = message["type"];
+  if (const auto stamp = message.find("stamp"); stamp != message.end()) head["stamp"] = *stamp;
   out_.send_note(in_pipe(std::move(head)));
 }
 
@@ -195,10 +196,10 @@ void Service::answer(const PipeMessage& message) {
     else
       throw InputError("no message has the type \"{}\"", type);
   } catch (const json::exception& error) {
-    refuse(type, fmt::format("message \"{}\": {}", type, error.what()));
+    refuse(message.head, fmt::format("message \"{}\": {}", type, error.what()));
   } catch (const Error& error) {
     if (error.code() == ExitCode::interrupted) throw;
-    refuse(type, error.what());
+    refuse(message.head, error.what());
   }
 }
 
@@ -247,7 +248,7 @@ void Service::render(const json& message) {
     job_.run(arguments->get<std::vector<std::string>>());
   } catch (const Error& error) {
     if (error.code() == ExitCode::interrupted) throw;
-    refuse("render", error.what());
+    refuse(message, error.what());
     code = static_cast<int>(error.code());
   }
   out_.send(in_pipe({{"type", "done"}, {"code", code}}));

@@ -51,8 +51,8 @@ class Service {
   void render(const nlohmann::json& message);
   void send_picture(const LivePicture& picture);
   void say(std::string_view level, const std::string& text);
-  /// Says that a message of this type is refused.
-  void refuse(const std::string& type, const std::string& text);
+  /// Says that a message is refused, with its stamp if it has one.
+  void refuse(const nlohmann::json& message, const std::string& text);
 
   session::RunOptions options_;
   MessageSink out_;

@@ -2,6 +2,7 @@
 """A `penumbra serve` child and its messages (docs/serve.md). Knows nothing of Blender."""
 
 import collections
+import itertools
 import json
 import queue
 import struct
@@ -53,7 +54,9 @@ class Child:
         """`started` is called with the process id before anything else is done."""
         self.process = subprocess.Popen([program, "serve", *arguments], stdin=subprocess.PIPE, stdout=subprocess.PIPE)
         started(self.process.pid)
-        self.messages = queue.SimpleQueue()  # heads of all messages except pictures, in their order; None at the end
+        # Heads of all messages except pictures, in their order; None at the end. `arrival` of a head, and of a picture's,
+        # counts messages of both kinds.
+        self.messages = queue.SimpleQueue()
         self._picture, self._waiting, self._wake = None, collections.deque(), threading.Condition()
         self._ends = False
         for work in (self._write, self._read):
@@ -109,8 +112,9 @@ class Child:
 
     def _read(self):
         try:
-            stream = self.process.stdout
+            stream, arrivals = self.process.stdout, itertools.count()
             while (message := read_message(stream)) is not None:
+                message[0]["arrival"] = next(arrivals)
                 if message[0]["type"] == "picture":
                     picture = Picture(*message)
                     with self._wake:

@@ -54,6 +54,7 @@ class View:
         self._losses = {}  # by thing
         self._is_stale = False  # things that the scene has were refused
         self.picture, self.texture, self.said = None, None, ""
+        self._said_at, self._refused_stamp = -1, 0  # the arrival of what was said; the `show` that was refused last
         self.background = (0.0, 0.0, 0.0)
         self._marks, self._sent, self._order = {}, set(), []  # of things: data for comparison, names sent, and their
                                                               # order
@@ -81,6 +82,7 @@ class View:
         self.started_with = key
         self._marks, self._sent, self._order, self._losses, self._is_stale = {}, set(), [], {}, False
         self._viewpoint, self._wanted = None, None
+        self._said_at, self._refused_stamp = -1, 0
 
     def update(self, depsgraph):
         """Sends the things of the scene that have changed."""
@@ -172,13 +174,18 @@ class View:
                 refused = head.get("refused")
                 if refused == "put" or not self._is_stale:  # what is refused afterwards follows from it
                     self.said = program.messages(f"penumbra: error: {head['text']}")[1]
+                    self._said_at = head["arrival"]
+                if refused == "show":
+                    self._refused_stamp = head.get("stamp") or 0
                 if refused in ("put", "remove", "order"):
                     self._is_stale = True
                     self._marks, self._order = {}, []  # the next update sends all things again
         picture = self.child.take_picture()
         if picture is not None:
             self.picture, self.texture = picture, None
-            if picture.head["final"] and not self._is_stale:
+            # A picture of what was there before does not show that the error has passed.
+            is_newer = picture.head["arrival"] > self._said_at and (picture.head["stamp"] or 0) > self._refused_stamp
+            if picture.head["final"] and is_newer and not self._is_stale:
                 self.said = ""
 
     def draw(self, width, height, transparent):

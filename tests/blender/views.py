@@ -7,6 +7,7 @@ replaced while it is read.
 """
 
 import os
+import queue
 import sys
 import tempfile
 import time
@@ -104,6 +105,25 @@ class WithAProgram(unittest.TestCase):
 
 
 class WithoutAProgram(unittest.TestCase):
+    def test_an_error_stays_until_a_picture_of_what_came_later(self):
+        view = viewport.View()
+        view.child = mock.MagicMock(messages=queue.SimpleQueue())
+
+        def take(arrival, stamp, *heads):
+            for head in heads:
+                view.child.messages.put(head)
+            view.child.take_picture.return_value = mock.MagicMock(head={"final": True, "stamp": stamp, "arrival": arrival})
+            view.take_news()
+            return view.said
+
+        error = {"type": "say", "level": "error", "text": "no method magic", "refused": "show"}
+        self.assertIn("magic", take(1, 1, {**error, "stamp": 2, "arrival": 0}))  # the picture of the `show` before
+        self.assertIn("magic", take(2, 2))
+        self.assertEqual(take(3, 3), "")
+        unstamped = {"type": "say", "level": "error", "text": "there is no light", "arrival": 5}
+        self.assertIn("light", take(4, 4, unstamped))  # a picture that came before the error, taken with it
+        self.assertEqual(take(6, 4), "")
+
     def test_a_picture_of_the_world_is_replaced_whole(self):
         with tempfile.TemporaryDirectory() as folder:
             self.assertEqual(sky._save(numpy.zeros((4, 8, 3)), os.path.join(folder, sky.PICTURE)), "world.exr")
