@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <map>
 
@@ -80,7 +81,7 @@ gpu::LightView view_of(const visibility::SceneFloats& scene, const LightBasis& b
   view.point = glm::vec3(basis.center);
   view.far = static_cast<float>(std::max(farthest(scene, basis.center) * 1.0625, 1e-30));
   std::uint32_t faces = 0;
-  for (int s = 0; s < 2; ++s) {
+  for (std::size_t s = 0; s < 2; ++s) {
     const Bounds& bounds = sides.at(s);
     view.side[s].first_face = faces;
     if (!bounds.any) continue;
@@ -144,14 +145,15 @@ SoftScene part_scene(const visibility::SceneFloats& scene, const visibility::Lig
 gpu::LightView fit_window(const visibility::SceneFloats& scene, const LightBasis& basis,
                           std::span<const std::uint8_t> chosen, std::uint32_t size, bool two_sided) {
   std::array<Bounds, 2> sides;
-  for (int s = 0; s < (two_sided ? 2 : 1); ++s) sides.at(s) = bounds_of(scene, basis, chosen, s == 0 ? 1 : -1);
+  for (std::size_t s = 0; s < (two_sided ? 2U : 1U); ++s)
+    sides.at(s) = bounds_of(scene, basis, chosen, s == 0 ? 1 : -1);
   return view_of(scene, basis, sides, size, false);
 }
 
 SoftViews fit_to_camera(const visibility::SceneFloats& scene, const LightBasis& basis, const SoftScene& parts,
                         const SoftBody& body) {
   std::array<Bounds, 2> receivers, occluders;
-  for (int s = 0; s < (body.two_sided ? 2 : 1); ++s) {
+  for (std::size_t s = 0; s < (body.two_sided ? 2U : 1U); ++s) {
     const double sign = s == 0 ? 1 : -1;
     Bounds& seen = receivers.at(s);
     for (const BodyPoint& point : body.points) {
