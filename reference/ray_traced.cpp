@@ -35,7 +35,6 @@ namespace {
 using visibility::Light;
 using visibility::SceneFloats;
 using visibility::Tile;
-using visibility::ViewSamples;
 
 constexpr std::uint64_t kMaxMaskBytes = std::uint64_t{64} << 20;  // of one tile: an interrupt waits for the tile's end
 constexpr std::uint32_t kNeverMet = SceneFloats::kNoPlane;        // plane index of the light's own body

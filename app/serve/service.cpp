@@ -78,7 +78,8 @@ std::size_t read_some(int descriptor, std::span<char> into) {
 /// Adds a list of numbers as bytes, and its line to the head.
 template <typename T>
 void add_buffer(std::string& bytes, ordered_json& listed, ordered_json line, const std::vector<T>& numbers) {
-  line["channels"] = sizeof(T) / sizeof(float);
+  constexpr std::size_t kChannelBytes = sizeof(float);
+  line["channels"] = sizeof(T) / kChannelBytes;
   line["bytes"] = numbers.size() * sizeof(T);
   listed.push_back(std::move(line));
   bytes.append(reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(T));

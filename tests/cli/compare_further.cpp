@@ -32,7 +32,8 @@ class CompareFurther : public ProgramTest {
 /// of cast and self shadows are in penumbra or umbra. Here the wedge alone casts, on the floor and on itself.
 TEST_F(CompareFurther, ErrorsByClassAddUp) {
   ASSERT_EQ(compare({"--methods", "pcss:size=64", "--reference", "exact"}).code, 0);
-  const json all = metrics(), method = all.at("methods").at(0), classes = method.at("classes");
+  const json all = metrics();
+  const json &method = all.at("methods").at(0), &classes = method.at("classes");
   std::uint64_t pixels = 0;
   double squares = 0, sum = 0, largest = 0;
   for (const char* name : {"lit", "penumbra", "umbra"}) {
