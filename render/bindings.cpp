@@ -63,12 +63,19 @@ void Bindings::bind(Commands::State& commands, vk::PipelineBindPoint point, std:
   }
 }
 
-SpecializationConstants::SpecializationConstants(std::span<const std::uint32_t> values) {
-  for (std::uint32_t i = 0; i < values.size(); ++i) {
+SpecializationConstants::SpecializationConstants(std::vector<std::uint32_t> values) : values_(std::move(values)) {
+  for (std::uint32_t i = 0; i < values_.size(); ++i) {
     entries_.emplace_back(i, static_cast<std::uint32_t>(i * sizeof(std::uint32_t)), sizeof(std::uint32_t));
   }
-  info_ = vk::SpecializationInfo(static_cast<std::uint32_t>(entries_.size()), entries_.data(), values.size_bytes(),
-                                 values.data());
+  info_.setMapEntries(entries_).setData<std::uint32_t>(values_);
+}
+
+SpecializationConstants::SpecializationConstants(std::vector<std::uint32_t> values, std::uint32_t id, std::uint32_t value)
+    : SpecializationConstants([&] {
+        values.push_back(value);
+        return std::move(values);
+      }()) {
+  entries_.back().constantID = id;
 }
 
 }  // namespace penumbra::render

@@ -31,15 +31,17 @@ class Bindings {
   vk::raii::PipelineLayout layout_{nullptr};
 };
 
-/// Specialization constants 0, 1, 2 … in Vulkan's form; `values` must outlive this object.
+/// Specialization constants 0, 1, 2 … in Vulkan's form, and one with a number of its own.
 class SpecializationConstants {
  public:
-  explicit SpecializationConstants(std::span<const std::uint32_t> values);
+  explicit SpecializationConstants(std::vector<std::uint32_t> values);
+  SpecializationConstants(std::vector<std::uint32_t> values, std::uint32_t id, std::uint32_t value);
   SpecializationConstants(const SpecializationConstants&) = delete;
   SpecializationConstants& operator=(const SpecializationConstants&) = delete;
   [[nodiscard]] const vk::SpecializationInfo* get() const { return &info_; }
 
  private:
+  std::vector<std::uint32_t> values_;
   std::vector<vk::SpecializationMapEntry> entries_;
   vk::SpecializationInfo info_;
 };

@@ -6,6 +6,7 @@
 
 #include "base/assert.hpp"
 #include "render/features.hpp"
+#include "render/group_order.shared.h"
 #include "render/pipelines.hpp"
 
 #include <algorithm>
@@ -25,7 +26,8 @@ KeptPipeline make_pipeline(const Device& device, const ComputePassOptions& optio
   made.bindings = Bindings(state, options.name, shader, vk::ShaderStageFlagBits::eCompute);
 
   const vk::raii::Device& d = state.device;
-  const SpecializationConstants constants(options.constants);
+  const std::uint32_t strips = device.info().kind == "cpu" ? gpu::kStripsOnProcessor : 1;
+  const SpecializationConstants constants(options.constants, gpu::kStripsConstant, strips);
   const vk::raii::ShaderModule module(d,
                                       vk::ShaderModuleCreateInfo({}, options.spirv.size_bytes(), options.spirv.data()));
   const vk::PipelineShaderStageRequiredSubgroupSizeCreateInfo subgroup(device.limits().subgroup_size);

@@ -4,12 +4,11 @@
 // on a driver that runs both sides of a branch; so the sorting pass, with an invocation for each workgroup, computes V
 // of these receivers, and lists the other workgroups. The sorting pass is the same shader with SORTS_OUT.
 
-uint launched_group() { return gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x; }
 uint group_list() { return results.length() - kCutLoopWords - kGroupListWords; }
 
 #ifdef SORTS_OUT
 // Returns the workgroup that this invocation sorts.
-uint this_group() { return launched_group() * gl_WorkGroupSize.x + gl_LocalInvocationID.x; }
+uint this_group() { return group_in_turn() * gl_WorkGroupSize.x + gl_LocalInvocationID.x; }
 
 // Lists this invocation's workgroup. The order of the list changes no result.
 void list_group() {
@@ -19,7 +18,7 @@ void list_group() {
 #else
 // Returns the listed workgroup; all ones beyond the list.
 uint this_group() {
-  const uint k = launched_group();
+  const uint k = group_in_turn();
   return k < results[group_list()] ? results[results[group_list() + 1] + lookup.first_result + k] : 0xffffffffu;
 }
 #endif

@@ -37,13 +37,14 @@ layout(scalar, push_constant) uniform Push {
 };
 
 #include "maps/host/taps.glsl"
+#include "render/group_order.glsl"
 
 uint receiver_plane, receiver_object;  // of the receiver, set by scalar_main.glsl as in Receiver
 
 #ifdef LISTED_GROUPS
 #include "maps/host/group_list.glsl"
 #else
-uint this_group() { return gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x; }
+uint this_group() { return group_in_turn(); }
 #endif
 
 // Returns the index of the receiver of this invocation, or of this workgroup, counted from the part's first.
