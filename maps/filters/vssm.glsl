@@ -228,6 +228,16 @@ float lit_share(LightView view, Asking asking, Box box, float t, bool search, ou
   return lit;
 }
 
+// Returns the fraction of a window in one part after `cut` cuts in four.
+float part_weight(uint cut) { return 1.0 / float(1u << (2 * cut)); }
+
+// Moves on to the largest part that begins where this one ends; of parts that are cut up to `most` times.
+void next_part(inout uint at, inout uint cut, uint most) {
+  const uint parts = 1u << (2 * most);
+  at += parts >> (2 * cut);
+  if (at < parts) cut = most - uint(findLSB(at)) / 2;
+}
+
 float visibility_of(LightView view, vec3 d, vec3 m) {
   const uint s = d.z < 0.0 ? 1 : 0;
   const float height = abs(d.z);
@@ -260,39 +270,43 @@ float visibility_of(LightView view, vec3 d, vec3 m) {
   const uint most = kCuts > kImageCuts ? kCuts : kImageCuts, parts = 1u << (2 * most);
   uint at = 0, cut = 0;  // current part, in Morton order: index of its first smallest part, and its number of cuts
   for (;;) {
-    const Window part = part_of(window, cut, at >> (2 * (most - cut)));
-    const Image image = image_of(part);
-    const Box box = image.box;
-    const bool wider = max(image.extent.x, image.extent.y) > 1.0;  // than a texel
-    if (!image.fits && wider && cut < kImageCuts) {
-      ++cut;
-      continue;
+    // Cuts down to the next part that needs a mean, in a loop of its own: a driver that computes both sides of a branch
+    // would compute a mean for each part on the path, too.
+    Image image;
+    bool needs_mean = false, may_cut = false;
+    while (at < parts && !needs_mean) {
+      image = image_of(part_of(window, cut, at >> (2 * (most - cut))));
+      const bool wider = max(image.extent.x, image.extent.y) > 1.0;  // than a texel
+      if (!image.fits && wider && cut < kImageCuts) {
+        ++cut;
+        continue;
+      }
+      // No texel of the part is nearer than the receiver: lit, without a mean.
+      const bool open = kModel <= kExpVariance && heights_within(view, image.box, s).x >= asking.t;
+      may_cut = cut < kCuts && wider;
+      if (!open && may_cut && kSubdivision == kUniform) {
+        ++cut;
+        continue;
+      }
+      needs_mean = !open;
+      if (!open) continue;
+      lit += part_weight(cut);
+      next_part(at, cut, most);
     }
-    float share = 1.0, blocked = 0.0;
-    // No texel of the part is nearer than the receiver: lit, without a mean.
-    const bool open = kModel <= kExpVariance && heights_within(view, box, s).x >= asking.t;
-    const bool may_cut = cut < kCuts && wider;
-    if (!open && may_cut && kSubdivision == kUniform) {
-      ++cut;
-      continue;
-    }
-    if (!open) {
-      const float t =
-          cut == 0 ? exact : plane_height(view, asking, box.face, image.centre) + asking.slack;
-      share = lit_share(view, asking, box, t, search, blocked);
+    if (needs_mean) {
+      const Box box = image.box;
+      const float t = cut == 0 ? exact : plane_height(view, asking, box.face, image.centre) + asking.slack;
+      float blocked;
+      float share = lit_share(view, asking, box, t, search, blocked);
       if (may_cut && share >= 1.0) {
         ++cut;
         continue;
       }
       if (kCuts != 0 && share >= 1.0) share = lit_at_texels(view, asking, box, blocked);
-    }
-    const float weight = 1.0 / float(1u << (2 * cut));
-    lit += weight * share;
-    blockers += share < 1.0 ? weight * blocked : 0.0;
-    at += parts >> (2 * cut);
-    if (at < parts) {
-      cut = most - uint(findLSB(at)) / 2;  // the largest part that begins at this index
-      continue;
+      lit += part_weight(cut) * share;
+      blockers += share < 1.0 ? part_weight(cut) * blocked : 0.0;
+      next_part(at, cut, most);
+      if (at < parts) continue;
     }
     if (!search) break;
     if (lit >= 1.0 || (kModel == kFourier && own.scale * lit >= 1.0)) return horizon;
