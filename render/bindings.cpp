@@ -70,7 +70,8 @@ SpecializationConstants::SpecializationConstants(std::vector<std::uint32_t> valu
   info_.setMapEntries(entries_).setData<std::uint32_t>(values_);
 }
 
-SpecializationConstants::SpecializationConstants(std::vector<std::uint32_t> values, std::uint32_t id, std::uint32_t value)
+SpecializationConstants::SpecializationConstants(std::vector<std::uint32_t> values, std::uint32_t id,
+                                                 std::uint32_t value)
     : SpecializationConstants([&] {
         values.push_back(value);
         return std::move(values);

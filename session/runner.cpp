@@ -429,13 +429,14 @@ MethodRun run_method(visibility::Method& method, const Session& session, const R
   Host host(method, session, plan, sink, progress);
   std::vector<OneRun> runs;
   std::optional<OneRun> first;
-  double elapsed = 0;  // of timed runs
-  while (runs.empty() || (runs.size() < plan.runs && elapsed < plan.run_seconds)) {
+  double elapsed = 0, latest = 0;  // of timed runs
+  while (runs.empty() || (runs.size() < plan.runs && elapsed + latest <= plan.run_seconds)) {
     method.take_pass_times();  // discards those of earlier runs
     const bool is_first = !first && runs.empty(), is_discarded = is_first && plan.discard_first;
     const Stopwatch watch;
     OneRun times = host.run(is_first, is_discarded && std::isfinite(plan.most_seconds), result);
-    if (!is_discarded) elapsed += watch.seconds();
+    latest = is_discarded ? 0 : watch.seconds();
+    elapsed += latest;
     if (is_first) {
       result.times.mesh = times.mesh;  // later runs prepare meshes again only where lights' casters differ
       result.times.view = times.view;

@@ -41,7 +41,8 @@ struct RunPlan {
   std::span<const visibility::Light> lights;
   bool filtered_alone = false;  ///< for a light with filtered_by, evaluate only those view samples; NaN elsewhere
   std::uint32_t runs = 1;       ///< largest number of timed runs
-  double run_seconds = std::numeric_limits<double>::infinity();  ///< no further run begins after this time
+  /// Time of timed runs: another begins if one as long as the last would end within it.
+  double run_seconds = std::numeric_limits<double>::infinity();
   bool discard_first = false;  ///< one additional first run, as warm-up, which is not counted
   bool shades = false;         ///< form factors come with V, in the time of `evaluate` (Method::want_form_factors)
   std::optional<std::vector<std::uint32_t>> pixels = {};  ///< pixels to be evaluated (ascending); nullopt: every pixel

@@ -156,8 +156,8 @@ class CompareCommand : public Command {
         ->capture_default_str();
     cli_.add_option("--max-rmse", max_rmse_text_, "exit with 1 if the error of a method exceeds this")->type_name("X");
     cli_.add_option("--runs", options_.runs,
-                    "timed runs of each method, after a discarded one; their median counts (default: as many as begin "
-                    "within two seconds, at most five)")
+                    "timed runs of each method, after a discarded one; their median counts (default: as many as fit "
+                    "into two seconds, one to five)")
         ->type_name("N")
         ->check(CLI::Range(1, 1000));
     cli_.add_flag("--bits", options_.bits, "also write DIR/<method>.bits: every pair's answer (mask methods)");

@@ -78,8 +78,8 @@ class SweepCommand : public Command {
         ->type_name("M")
         ->capture_default_str();
     cli_.add_option("--runs", options_.runs,
-                    "timed runs of each entry, after a discarded one; their median counts (default: as many as begin "
-                    "within two seconds, at most five)")
+                    "timed runs of each entry, after a discarded one; their median counts (default: as many as fit "
+                    "into two seconds, one to five)")
         ->type_name("N")
         ->check(CLI::Range(1, 1000));
     cli_.add_option("--frame", frame_, "frame of the scene's animation, or a moment between two, such as 12.5")

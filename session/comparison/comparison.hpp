@@ -26,7 +26,7 @@ struct ComparisonOptions {
   std::string reference = "raytrace";
   std::string reference_samples = "1024";  ///< a number, or "same"
   std::string sample_pixels = "all";
-  std::uint32_t runs = 0;  ///< timed runs of each entry; 0: as many as begin within two seconds, at most five
+  std::uint32_t runs = 0;  ///< timed runs of each entry; 0: as many as fit into two seconds, one to five
   bool bits = false, png = false;
   bool error_budget = false;    ///< compute the causes of error of each method
   std::filesystem::path stats;  ///< empty: only DIR/metrics.json

@@ -41,7 +41,7 @@ std::vector<Entry> choose_entries(const ComparisonOptions& options, const Sessio
 /// Throws UsageError if none of these methods describes repairs of its error.
 void require_explainable(std::span<const MethodEntry> methods);
 
-/// Returns the number of runs of an entry: the requested number, else as many as begin within two seconds, at most
+/// Returns the number of runs of an entry: the requested number, else as many as fit into two seconds, one to
 /// five, after a discarded one; one for a judge that computes areas. The caller sets lights and pixels.
 RunPlan plan_of(const Entry& entry, bool is_reference, const ComparisonOptions& options);
 

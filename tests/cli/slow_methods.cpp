@@ -12,6 +12,7 @@
 #include <gmock/gmock.h>
 
 #include <chrono>
+#include <limits>
 #include <numeric>
 #include <string>
 #include <thread>
@@ -103,6 +104,21 @@ TEST_F(SlowMethods, EndBetweenTiles) {
   plan.most_seconds = 0;
   plan.discard_first = false;
   EXPECT_NO_THROW(session::run_method(first, session, plan, none, progress));
+}
+
+// Fifty rows take 0.1 s or more: a second run does not fit into 0.15 s after the first, which is made in any case.
+TEST_F(SlowMethods, RunAsOftenAsFits) {
+  session::RunOptions run = options();
+  run.size = "8x50";
+  const render::Machine machine = session::make_machine("cpu");
+  app::TerminalProgress progress(false);
+  const session::Session session = session::open_session(run, std::nullopt, machine, 0, progress, 0);
+  session::RunPlan plan{.lights = session.lights, .runs = 5, .run_seconds = 0.15};
+  const auto none = [](const session::TileResult&) {};
+  Slow slow;
+  EXPECT_EQ(session::run_method(slow, session, plan, none, progress).times.runs, 1U);
+  plan.run_seconds = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(session::run_method(slow, session, plan, none, progress).times.runs, 5U);
 }
 
 // Sixty-four tiles of 80 ms would take 5 s, one takes 80 ms: less than the limit, so the method is kept. Its warm-up is
