@@ -14,6 +14,7 @@
 #include "render/device.hpp"
 #include "session/comparison/comparison_entries.hpp"
 #include "session/comparison/comparison_files.hpp"
+#include "session/comparison/entry_run.hpp"
 #include "session/comparison/error_budget.hpp"
 #include "session/comparison/error_classes.hpp"
 #include "session/comparison/light_judge.hpp"
@@ -24,7 +25,6 @@
 #include "session/methods.hpp"
 #include "session/output.hpp"
 #include "session/pictures/picture_file.hpp"
-#include "session/pictures/tev_pictures.hpp"
 #include "session/process/failure.hpp"
 #include "session/runner.hpp"
 #include "session/session.hpp"
@@ -44,14 +44,6 @@ using visibility::Light;
 using visibility::MethodDescription;
 using visibility::Output;
 
-/// Run and the results computed during it.
-struct Finished {
-  MethodRun run;
-  std::vector<glm::vec3> beauty;
-  std::vector<std::string> masks;  ///< PackedMasks::finish()
-  Image8 picture = {};             ///< the beauty in sRGB
-};
-
 class Comparison {
  public:
   /// Limit of all lights' masks by rays, which are kept while the methods run.
@@ -69,7 +61,9 @@ class Comparison {
         reference_(describe_reference(options.reference)),
         same_samples_(options.reference_samples == "same"),
         files_(run.out, {.png = options.png, .bits = options.bits}),
-        machine_(make_machine(run.device)) {
+        machine_(make_machine(run.device)),
+        runner_({session_, machine_, options, files_, format_, wanted_, progress,
+                 [this](std::string text) { warn(std::move(text)); }}) {
     reference_request_ = reference_samples(run, options.reference_samples);
     if (options.error_budget) require_explainable(options.methods);
     if (options.writes) files_.claim(run.scene, options.methods, options.stats);
@@ -88,7 +82,7 @@ class Comparison {
       progress.warn(session_.scene.name + " has no animation: every frame shows the same");
     for (const std::string& warning : session_.warnings) progress.warn(warning);
     for (const Light& light : session_.lights) check_light(reference_.description, light);
-    if (wants_bits(reference_)) check_bits(reference_.description, session_.lights);
+    if (wants_bits(reference_, options)) check_bits(reference_.description, session_.lights);
     entries_ = choose_entries(options, session_, machine_, [this](std::string text) { warn(std::move(text)); });
     reference_lights_ = same_samples_ ? session_.lights : with_samples(session_, reference_request_);
     truths_ = choose_pixels(session_, options.sample_pixels);
@@ -157,9 +151,10 @@ class Comparison {
       require_memory(mask_bytes(), "the reference's masks",
                      "choose a smaller --size or fewer --light-samples, or leave out --reference-samples same");
     }
-    Finished done = run_one(reference_, reference_lights_, rays ? keep_rays() : TileSink([](const TileResult&) {}));
+    EntryRun done =
+        runner_.run(reference_, true, reference_lights_, rays ? keep_rays() : TileSink([](const TileResult&) {}));
     report_.exposure = options_.exposure ? std::exp2(*options_.exposure) : auto_exposure(session_, done.beauty);
-    report_.metrics.reference = stats_of(reference_, reference_lights_, done.run);
+    report_.metrics.reference = runner_.stats_of(reference_, reference_lights_, done.run);
     report_.metrics.judged_pixels = truths_.front().judged.size();
     report_.metrics.horizon_pixels = truths_.front().horizon.size();
     report_.reference = seen_by(reference_, done);
@@ -196,7 +191,7 @@ class Comparison {
     const auto method = make_method(rays.description.name, rays.options, machine_);
     PackedMasks masks(session_.lights.size());
     const TileSink keep = keep_rays();
-    Finished done;
+    EntryRun done;
     MethodRun run = run_method(
         *method, session_, {.lights = session_.lights, .runs = 1, .pixels = wanted_},
         [&](const TileResult& tile) {
@@ -207,7 +202,7 @@ class Comparison {
     done.run = of_whole_lights(std::move(run), session_);
     progress_.clear();
     compare::SampleCost cost;
-    cost.stats = stats_of(rays, session_.lights, done.run);
+    cost.stats = runner_.stats_of(rays, session_.lights, done.run);
     cost.stats.seconds = {};  // one run without warm-up
     cost.all_lights_error = error_of_all_lights(done.run, truths_);
     cost.lights = LightJudge(session_, truths_, 0).judge(done.run, progress_);
@@ -273,7 +268,7 @@ class Comparison {
     progress_.error(is_named ? failure.message : fmt::format("{}: {}", entry.label, failure.message));
     compare::MethodResult result;
     result.entry = entry.label;
-    result.stats = stats_of(entry, session_.lights, {});
+    result.stats = runner_.stats_of(entry, session_.lights, {});
     result.stats.seconds = {};
     result.failure = {static_cast<int>(failure.code), failure.message};
     report_.metrics.methods.push_back(std::move(result));
@@ -288,11 +283,11 @@ class Comparison {
     // Exact decisions take milliseconds each: a small number is sufficient for verdicts, and a large one is used if
     // pairs were requested.
     LightJudge judge(session_, truths_, pairs_of_reference ? 4000 : 400);
-    Finished done = run_one(entry, session_.lights, [&](const TileResult& tile) { judge.add(tile); });
+    EntryRun done = runner_.run(entry, false, session_.lights, [&](const TileResult& tile) { judge.add(tile); });
 
     compare::MethodResult result;
     result.entry = entry.label;
-    result.stats = stats_of(entry, session_.lights, done.run);
+    result.stats = runner_.stats_of(entry, session_.lights, done.run);
     const auto of_method = std::span(result.stats.warnings).subspan(session_.warnings.size());
     for (const std::string& warning : of_method) progress_.warn(warning);
     judge.fill(result, done.run, pairs_of_reference, progress_);
@@ -309,61 +304,8 @@ class Comparison {
     visibility_.push_back(std::move(done.run.visibility));
   }
 
-  /// Runs a method and writes its EXR and, if requested, its bits.
-  Finished run_one(const Entry& entry, const std::vector<Light>& lights, const TileSink& sink) {
-    const MethodDescription& description = entry.description;
-    const auto method = make_method(description.name, entry.options, machine_);
-    if (options_.memories != nullptr && &entry != &reference_) {
-      visibility::remember(*method, &(*options_.memories)[entry.label]);
-    }
-    BeautyAccumulator beauty(session_, lights);
-    std::optional<BitsOutput> bits;
-    if (wants_bits(entry)) bits.emplace(files_.of(entry.label, ".bits"), session_, lights.front());
-    RunPlan plan = plan_of(entry, &entry == &reference_, options_);
-    plan.lights = lights;
-    // Methods are evaluated in whole tiles, as they are timed.
-    constexpr std::uint32_t kJudgeSamples = 1U << 13U;
-    if (options_.reports_often && description.family == visibility::Family::reference)
-      plan.band_rows = std::max(kJudgeSamples / session_.width, 1U);
-    // Map methods compute all pixels in little time, and their pictures are complete.
-    if (description.family != visibility::Family::image) plan.pixels = wanted_;
-    PackedMasks masks(lights.size());
-    Finished done;
-    MethodRun run = run_method(
-        *method, session_, plan,
-        [&](const TileResult& tile) {
-          beauty.add(tile);
-          masks.add(tile);
-          if (bits && tile.light == 0) bits->add(tile);
-          sink(tile);
-        },
-        progress_);
-    done.run = of_whole_lights(std::move(run), session_);
-    done.beauty = beauty.sum();
-    done.masks = masks.finish();
-    machine_.check_validation();
-    progress_.clear();
-    if (!options_.writes) return done;
-    const Entry used = as_run(entry, done.run);
-    const std::vector<MethodLabel> labels = labels_of(used, lights, machine_);
-    const PictureContent written{session_, {lights, labels}, done.run.visibility, beauty.parts(), done.beauty};
-    const std::filesystem::path file = files_.of(entry.label, ".exr");
-    for (std::string& warning : write_picture(file, written, format_)) warn(std::move(warning));
-    if (options_.tev != nullptr) options_.tev->show(file.filename().string(), written);
-    if (bits) bits->commit();
-    return done;
-  }
-
-  [[nodiscard]] bool wants_bits(const Entry& entry) const { return session::wants_bits(entry, options_); }
-
-  compare::Stats stats_of(const Entry& entry, std::span<const Light> lights, const MethodRun& run) {
-    const Entry used = as_run(entry, run);
-    const std::vector<MethodLabel> labels = labels_of(used, lights, machine_);
-    return make_stats(session_, {lights, labels}, run);
-  }
-
   /// Returns the report's numbers of a run, and keeps its beauty as a picture in `done`.
-  compare::ReportEntry seen_by(const Entry& entry, Finished& done) {
+  compare::ReportEntry seen_by(const Entry& entry, EntryRun& done) {
     done.picture = to_srgb(session_.width, session_.height, done.beauty, report_.exposure);
     if (options_.png && options_.writes) write_png(files_.of(entry.label, ".png"), done.picture);
     return report_entry(session_, entry.description, {done.run, done.beauty, std::move(done.masks), reference_beauty_});
@@ -439,11 +381,12 @@ class Comparison {
   ComparisonFiles files_;
   render::Machine machine_;
   Session session_;
+  std::optional<std::vector<std::uint32_t>>
+      wanted_;  ///< pixels of all lights' truths, if --sample-pixels chose some; nullopt: every pixel
+  EntryRunner runner_;
   std::vector<Light> reference_lights_;
   std::vector<Entry> entries_;
   std::vector<LightTruth> truths_;  ///< of each light
-  std::optional<std::vector<std::uint32_t>>
-      wanted_;  ///< all their pixels, if --sample-pixels chose some; nullopt: every pixel
   std::vector<glm::vec3> reference_beauty_;
   Image8 reference_picture_;
   std::vector<glm::vec3> separated_;  ///< V of the reference · ∫G; empty: not requested, or unknown

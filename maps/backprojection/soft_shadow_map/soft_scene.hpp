@@ -29,7 +29,7 @@ SoftScene part_scene(const visibility::SceneFloats& scene, const visibility::Lig
 gpu::LightView fit_window(const visibility::SceneFloats& scene, const LightBasis& basis,
                           std::span<const std::uint8_t> chosen, std::uint32_t size, bool two_sided);
 
-/// What a camera sees of the receivers (SoftScene), and the choices of maps for that.
+/// Points of receivers (SoftScene) that a camera sees, to which maps are fitted, and what else the fit depends on.
 struct SoftBody {
   std::span<const BodyPoint> points;
   glm::dvec2 reach{0};  ///< extent of the light from its centre along u and v
