@@ -47,7 +47,7 @@ penumbra_test(maps FULL MapsTable.*
   analytic/maps/backprojection/bitmask.cpp
   analytic/maps/backprojection/bitmask_predicates.cpp
   analytic/maps/backprojection/contour.cpp
-  analytic/maps/backprojection/contour_ways.cpp
+  analytic/maps/backprojection/contour_variants.cpp
   analytic/maps/backprojection/contour_texture.cpp
   analytic/maps/backprojection/contour_claims.cpp
   analytic/maps/backprojection/fusion.cpp

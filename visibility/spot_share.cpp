@@ -88,7 +88,7 @@ double mean_over(const FacingDisk& disk) {
   const double darkest = least * disk.scale + disk.offset, brightest = most * disk.scale + disk.offset;
   if (brightest <= 0) return 0;
   if (darkest >= 1) {
-    // Means of 1 / way⁵ and of x² / way⁵ over the disk.
+    // Means of 1 / r⁵ and of x² / r⁵ over the disk, r the distance to its point.
     const double cube = rim * rim * rim, plain = (rim * rim + rim + 1) / (1.5 * cube * (rim + 1));
     const double squared = (2 * rim + 1) / (3 * cube * (rim + 1) * (rim + 1));
     return disk.cosine * plain - disk.tilt * disk.size * disk.sine * squared;

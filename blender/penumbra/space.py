@@ -56,10 +56,10 @@ def distances(triangles, point):
     corners = triangles - point
     nearest = numpy.full(len(corners), numpy.inf)
     for i in range(3):
-        a, way = corners[:, i], corners[:, (i + 1) % 3] - corners[:, i]
-        squared = numpy.einsum("ij,ij->i", way, way)
-        t = -numpy.einsum("ij,ij->i", a, way) / numpy.where(squared > 0, squared, 1)
-        nearest = numpy.minimum(nearest, numpy.linalg.norm(a + numpy.clip(t, 0, 1)[:, None] * way, axis=1))
+        a, edge = corners[:, i], corners[:, (i + 1) % 3] - corners[:, i]
+        squared = numpy.einsum("ij,ij->i", edge, edge)
+        t = -numpy.einsum("ij,ij->i", a, edge) / numpy.where(squared > 0, squared, 1)
+        nearest = numpy.minimum(nearest, numpy.linalg.norm(a + numpy.clip(t, 0, 1)[:, None] * edge, axis=1))
     normal = numpy.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     above = numpy.ones(len(corners), bool)  # whether the foot of the perpendicular is within the triangle
     for i in range(3):

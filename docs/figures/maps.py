@@ -8,7 +8,7 @@ from geometry import clip, crosses
 
 
 def nearest(casters, direction):
-    """The least height below the light's centre (0, 0) at which the way along (direction, 1) meets a caster."""
+    """The least height below the light's centre (0, 0) at which the ray along (direction, 1) meets a caster."""
     heights = []
     for (x0, z0), (x1, z1) in casters:
         # (x0 + t dx) = direction (z0 + t dz)

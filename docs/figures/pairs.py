@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """docs/definitions.md, docs/raytrace.md: light samples and the truth of a pair. docs/view-sample.md: half-planes, bits.
-docs/depth-complexity.md: counters along ways. docs/exact.md: the sweep."""
+docs/depth-complexity.md: counters along segments. docs/exact.md: the sweep."""
 
 from math import cos, hypot, pi, sin
 
@@ -227,7 +227,7 @@ def counters_figure():
             edges.append((q, r, k) if k > 0 else (r, q, -k))
     samples = [concentric(st) for row in rows_pattern(6, 6) for st in row]
     c0 = (-1, -1)
-    d = Drawing(780, 470, "Counters of a disk's light samples along straight ways from a corner")
+    d = Drawing(780, 470, "Counters of a disk's light samples along segments from a corner")
     d.text((20, 26), "A disk light as seen from *p*: a counter for each light sample", 14, bold=True)
     view = View(d, (20, 44, 420, 410), (-1.1, 1.1), (-1.1, 1.1))
     view.polygon(SQUARE, None, FAINT, 1.5, "5 3")
@@ -242,7 +242,7 @@ def counters_figure():
     assert start == 0
 
     def walk(x):
-        """Changes on the way from c₀ to x, in order: (place, change)."""
+        """Changes along the segment from c₀ to x, in order: (place, change)."""
         steps = []
         for q, r, k in edges:
             if crosses(c0, x, q, r):
@@ -273,9 +273,9 @@ def counters_figure():
     for i, target in enumerate(shown):
         steps = [change for _, change in walk(target)]
         text = f"{start} " + " ".join(("+ " if c > 0 else "− ") + str(abs(c)) for c in steps)
-        d.text((x, 112 + 22 * i), f"way {i + 1}: {text} = {start + sum(steps)}", 13, GREEN, bold=True)
+        d.text((x, 112 + 22 * i), f"segment {i + 1}: {text} = {start + sum(steps)}", 13, GREEN, bold=True)
     d.text((x, 170), "Edges run counter-clockwise around what", 12.5)
-    d.text((x, 187), "they hide. A way that crosses one from its", 12.5)
+    d.text((x, 187), "they hide. A segment that crosses one from its", 12.5)
     d.text((x, 204), "right to its left enters *k* triangles: +*k*.", 12.5)
     d.text((x, 236), "Tetrahedron: *k* = 2. Single triangle: *k* = 1.", 12.5)
     d.text((x, 268), f"*V* = {free} / {len(samples)}", 14, bold=True)

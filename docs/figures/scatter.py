@@ -12,7 +12,7 @@ LAMP = Light((0, 0, 6), (-2, 0, 0), (0, 1.2, 0))  # as seen from P, u runs to th
 
 
 def seen_at(s, t, share):
-    """The point on the way from P to the light point (s, t)."""
+    """The point on the segment from P to the light point (s, t)."""
     return mix(P, LAMP.point((s, t)), share)
 
 
@@ -125,7 +125,7 @@ def rows_figure():
     d.text((612, 198), "*k* = 2", 12)
     d.text((612, 222), "one triangle:", 12)
     d.text((612, 238), "*k* = 1", 12)
-    d.text((20, 500), "Edges run counter-clockwise around what they hide. On its way to the right, a row that crosses", 12.5)
+    d.text((20, 500), "Edges run counter-clockwise around what they hide. From left to right, a row that crosses", 12.5)
     d.text((20, 518), "a downward edge adds +*k*, one that crosses an upward edge adds −*k*.", 12.5)
     return d.finish()
 
@@ -197,10 +197,10 @@ def shaft_figure():
         normals = [mul(-1, n) for n in normals]
     angles = sorted(atan2(n[1], n[0]) for n in normals)
     axis, theta = (angles[0] + angles[-1]) / 2, (angles[-1] - angles[0]) / 2
-    ways = sorted(atan2(p[1] - x[1], p[0] - x[0]) for p in box for x in points)
+    directions = sorted(atan2(p[1] - x[1], p[0] - x[0]) for p in box for x in points)
     center = (600, 84)
     inset = View(d, (center[0] - 140, center[1] - 140, 280, 280), (-1, 1), (-1, 1))
-    inset.polygon([(0, 0)] + arc((0, 0), 0.95, ways[0], ways[-1]), "#dbe9f6")
+    inset.polygon([(0, 0)] + arc((0, 0), 0.95, directions[0], directions[-1]), "#dbe9f6")
     inset.polygon([(0, 0)] + arc((0, 0), 0.72, axis - theta, axis + theta), "#f6dcd8")
     for n in normals:
         inset.arrow((0, 0), mul(0.72, n), RED, 1, 5)
@@ -212,9 +212,9 @@ def shaft_figure():
     d.text((tip[0] + 4, tip[1] + 14), "axis", 12)
     d.text((460, 252), "red: normals of its facets, all within", 12.5, RED)
     d.text((460, 269), f"θ = {degrees(theta):.0f}° of the axis", 12.5, RED)
-    d.text((460, 290), "blue: all ways *d* from its edges to cluster 2", 12.5, BLUE)
-    worst = max(abs(w - axis) for w in (ways[0], ways[-1])) + theta
-    d.text((460, 311), f"A way and a normal are at most {degrees(worst):.0f}° apart,", 12.5)
+    d.text((460, 290), "blue: all directions *d* from its edges to cluster 2", 12.5, BLUE)
+    worst = max(abs(w - axis) for w in (directions[0], directions[-1])) + theta
+    d.text((460, 311), f"A direction and a normal are at most {degrees(worst):.0f}° apart,", 12.5)
     d.text((460, 328), "less than 90°: every *n* · *d* is positive.", 12.5)
     assert worst < pi / 2
     for i, (label, verdict) in enumerate(zip("123", verdicts)):
@@ -305,8 +305,8 @@ def tiles_figure():
     tiles = []                              # ((its light samples, from left to right), its lower left corner)
     for r in range(rows):
         row = sorted(by_height[r * of_row:(r + 1) * of_row])
-        way = min(q[1] for q in row)
-        tiles += [(row[i:i + tile], (row[i][0], way)) for i in range(0, of_row, tile)]
+        lowest = min(q[1] for q in row)
+        tiles += [(row[i:i + tile], (row[i][0], lowest)) for i in range(0, of_row, tile)]
     corners = [(-0.3, -0.72), (0.93, 0.1), (0.02, 0.42)]
     edges = [upward(corners[i], corners[(i + 1) % 3], 1) for i in range(3)]
     for its, corner in tiles:
@@ -349,9 +349,9 @@ def tiles_figure():
     d.legend((410, 84), [("line", INK, "an edge"), ("dot", RED, "changes by its multiplicity"), ("dot", LIGHT, "does not change"),
                          ("box", "#d3e6d4", f"{tested} tiles are tested, sample by sample"),
                          ("box", "#f4d6d2", f"{whole} tiles change as a whole: one number each"),
-                         ("line", BLUE, "the way to a light sample of a tested tile"), ("line", DARK, "and of one that changes as a whole")],
+                         ("line", BLUE, "the path to a light sample of a tested tile"), ("line", DARK, "and of one that changes as a whole")],
              step=24)
-    d.text((410, 274), "A row's way goes along its lowest light sample, and", 12.5)
+    d.text((410, 274), "A row's path goes along its lowest light sample, and", 12.5)
     d.text((410, 291), "from there up and to the right within a tile. So what", 12.5)
     d.text((410, 308), "an edge changes in a tile that it does not pass is", 12.5)
     d.text((410, 325), "the same for all of its light samples, whether or not", 12.5)
@@ -381,7 +381,7 @@ def change_on_the_way(edge, q, middle, left=-1.0):
 
 
 def points_figure():
-    """Light samples of a disk in rows of equal height, and the ways to two of them past an edge."""
+    """Light samples of a disk in rows of equal height, and the paths to two of them past an edge."""
     rows, count = 9, 84
     samples = scattered_samples(count)
     corners = [(0.42, -0.36), (0.74, 0.88), (-0.62, 0.13)]
@@ -396,8 +396,8 @@ def points_figure():
 
     low, high, jump = edges[2]      # from the triangle's left corner down to the right
     middle = middle_of((0, -0.05))
-    d = Drawing(760, 420, "Light samples of a disk in rows, and the ways to two of them")
-    d.text((20, 26), "The way to a light sample: up the left side, along its row's middle, then straight up or down", 14, bold=True)
+    d = Drawing(760, 420, "Light samples of a disk in rows, and the paths to two of them")
+    d.text((20, 26), "The path to a light sample: up the left side, along its row's middle, then straight up or down", 14, bold=True)
     view = View(d, (20, 42, 356, 356), (-1.05, 1.05), (-1.05, 1.05))
     view.polygon([(-1, middle - 1 / rows), (1, middle - 1 / rows), (1, middle + 1 / rows), (-1, middle + 1 / rows)], "#e8f3e8")
     view.polygon([(cos(i * pi / 60), sin(i * pi / 60)) for i in range(120)], None, LIGHT, 2)
@@ -415,7 +415,7 @@ def points_figure():
         view.dot(q, 3.2, RED if q in changed else LIGHT if q in in_row else PALE, stroke=INK, width=0.5)
     view.line(low, high, INK, 2.2)
     d.legend((410, 84), [("line", INK, "an edge"), ("dot", RED, "of this row: changes"), ("dot", LIGHT, "of this row: does not change"),
-                         ("line", BLUE, "the way to a light sample between its ends"), ("line", DARK, "and to one right of it")], step=24)
+                         ("line", BLUE, "the path to a light sample between its ends"), ("line", DARK, "and to one right of it")], step=24)
     d.text((410, 226), "All light samples of a row that are right of the edge's", 12.5)
     d.text((410, 243), "right end change alike: by its multiplicity if it crosses", 12.5)
     d.text((410, 260), "the row's middle, else not at all. Only those between its", 12.5)

@@ -37,8 +37,8 @@ def hard_volume_figure():
     view.text(eye, "camera", 12.5, (0, -12), anchor="middle")
     rows = []
     for i, p in enumerate(receivers):
-        way = sub(p, eye)
-        end = add(p, mul(1000, way))
+        direction = sub(p, eye)
+        end = add(p, mul(1000, direction))
         events = []
         for a, b in casters:
             for u, v in ((a, b), (a, away(a, 5000)), (b, away(b, 5000))):
@@ -52,7 +52,7 @@ def hard_volume_figure():
         view.arrow(p, stop, GREEN, 1.5, 8)
         terms = []
         for at, caster in events:
-            before = in_volume(sub(at, mul(1e-6, way)), caster)
+            before = in_volume(sub(at, mul(1e-6, direction)), caster)
             terms.append(1 if before else -1)
             if at[1] > bottom:
                 view.dot(at, 3.2, "#ffffff", stroke=INK)
@@ -113,7 +113,7 @@ def soft_volume_figure():
             a, b = edges[i]
             region = beyond(c, a, b)
             share = abs(area(region)) / 4
-            # An edge that runs clockwise around C is crossed on the way into the board: it takes light away.
+            # An edge that runs clockwise around C is crossed from outside the board: it takes light away.
             takes = det2(sub(a, c), sub(b, c)) < 0
             view.polygon(region, RED if takes else BLUE, opacity=0.22)
             view.line(a, b, RED if takes else BLUE, 3)
@@ -278,7 +278,7 @@ def plateaus_figure():
 
     def visible(x):
         """The share of the light that a board from far left to the edge leaves, in closed form."""
-        at = x + (edge[0] - x) * height / (height - (height - edge[1]))  # where the way from x through the edge meets the light
+        at = x + (edge[0] - x) * height / (height - (height - edge[1]))  # where the ray from x through the edge meets the light
         return min(max((lamp[1][0] - at) / 2, 0), 1)
 
     d = Drawing(800, 480, "The outer penumbra of a plateau from the side, beside the true visibility")

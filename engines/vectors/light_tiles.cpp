@@ -100,7 +100,7 @@ LightTiles make_light_tiles(std::span<const glm::vec2> places) {
   }
   std::int32_t row = 0;
   for (float step = 0; step <= LightTiles::kStepsPerCell * (tiles.rows.back().high + 0.5F) + 1; ++step) {
-    // One step early: looked-up values are rounded.
+    // The table begins a row one step early, since values that are looked up are rounded.
     const float height = (step - 1) / LightTiles::kStepsPerCell - 0.5F;
     while (static_cast<std::size_t>(row) + 1 < tiles.rows.size() &&
            tiles.rows[static_cast<std::size_t>(row)].high < height)

@@ -128,10 +128,10 @@ hn::Mask<D> between_rows(const WalkInput& in, const Extent& across, const Extent
   const D d;
   const auto set = [&](float x) { return hn::Set(d, x); };
   const Placing& place = in.alone->on_grid;
-  const V way = hn::Neg(level.high), longest = hn::Neg(level.low);
+  const V nearest = hn::Neg(level.high), longest = hn::Neg(level.low);
   const hn::Mask<D> bounded =
-      hn::And(hn::Gt(way, scaled(longest, 0.25F)), hn::Gt(way, set(256 * kRound * in.grid.reach)));
-  const V inverse = hn::Div(set(1), way), most = scaled(inverse, place.height);
+      hn::And(hn::Gt(nearest, scaled(longest, 0.25F)), hn::Gt(nearest, set(256 * kRound * in.grid.reach)));
+  const V inverse = hn::Div(set(1), nearest), most = scaled(inverse, place.height);
   const V least = hn::Div(set(place.height), longest);
   const auto places = [&](const Extent& from, float foot) {
     return Extent{hn::Add(set(foot), hn::Min(hn::Mul(from.low, least), hn::Mul(from.low, most))),

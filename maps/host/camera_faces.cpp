@@ -39,7 +39,7 @@ std::uint32_t CameraFaces::take_paraboloids(const render::Device& device, const 
   for (int side = 0; side < 2; ++side) {
     if (view.side[side].face_count > 0) faces_.push_back(paraboloid_face(side, size, spare));
   }
-  // At any depth.
+  // A paraboloid has points at all depths: its look-ups do not choose a face by depth.
   return make(device, {.forward = glm::vec3(0), .offset = 1, .divisor = glm::vec3(0), .divisor_offset = 1, .count = 0},
               basis, size, view);
 }

@@ -60,8 +60,8 @@ TEST_P(PointSoups, EveryPairIsTheExactDecision) {
   const PairCounts counts = look(device(), 0, 25);
   tests::expect_all_kinds(counts);
 }
-/// 60,000 under each kind of light, on each engine. On a device without the validation layer, which takes most of the
-/// time and reports nothing about these soups that it does not report about the 25.
+/// Looks at 60,000 soups under each kind of light, with each engine; on a device without the validation layer, which
+/// takes most of the time and reports nothing about these soups that it does not report about the 25.
 TEST_P(PointSoups, EveryPairFull) {
   constexpr std::uint32_t kSoups = 20'000, kAtOnce = 1000;
   const auto& [range, kind, engine] = GetParam();

@@ -59,17 +59,17 @@ def crossed_segments(question):
     """Returns which segments from p to the light's points no triangle meets, in double: (K, N)."""
     ends = question.points_of_pixel if question.points_of_pixel is not None else question.light["points"][None]
     p = question.p[:, None].astype(float)
-    way = ends - p if question.light["kind"] != "sun" else np.broadcast_to(ends, (len(p), *ends.shape[1:])).astype(float)
-    free = (way * question.n[:, None]).sum(-1) > 0
+    segment = ends - p if question.light["kind"] != "sun" else np.broadcast_to(ends, (len(p), *ends.shape[1:])).astype(float)
+    free = (segment * question.n[:, None]).sum(-1) > 0
     if question.light["kind"] != "sun" and question.light["kind"] != "sphere":
-        free &= (way * np.cross(question.light["u"], question.light["v"])).sum(-1) < 0
+        free &= (segment * np.cross(question.light["u"], question.light["v"])).sum(-1) < 0
     for face in question.faces[question.casts]:
         a, b, c = question.vertices[face].astype(float)
         normal = np.cross(b - a, c - a)
-        along = way @ normal
+        along = segment @ normal
         with np.errstate(divide="ignore", invalid="ignore"):
             t = ((a - p) @ normal) / along
-            hit = p + t[..., None] * way
+            hit = p + t[..., None] * segment
             inside = np.ones(t.shape, bool)
             for start, end in ((a, b), (b, c), (c, a)):
                 inside &= np.cross(end - start, hit - start) @ normal >= 0

@@ -41,7 +41,7 @@ inline scenes::Scene soup_scene(const std::vector<Corners>& soup, Lamp lamp) {
   return scene;
 }
 
-/// Some on the lattice itself.
+/// Returns a receiver; a third of them lie on the lattice of the corners.
 inline glm::vec3 soup_receiver(std::mt19937& random) {
   const double step = std::uniform_int_distribution<int>(0, 2)(random) == 0 ? 0.5 : 1.0 / 64;
   return {random_dyadic(random, -2, 2, step), -1, random_dyadic(random, -2, 2, step)};

@@ -96,7 +96,7 @@ TEST(LightTiles, AreFoundByStepsToTheRight) {
             ASSERT_GT(end, tile) << x;
           }
         }
-        // No more than a step's.
+        // The table begins no more than a step too early.
         if (first > row.first && x < 63) {
           ASSERT_LT(tiles.tile_high[first - 1], x + 0.01F);
         }

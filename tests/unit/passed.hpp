@@ -7,7 +7,7 @@
 
 namespace penumbra::tests {
 
-/// A self-test's check as a test's.
+/// Expects that a check of the self-test passed.
 inline void expect_passed(const selftest::Check& check) {
   EXPECT_TRUE(check.passed()) << check.pass << " against " << check.against << " (" << check.rule
                               << "): " << check.wrong << " of " << check.compared

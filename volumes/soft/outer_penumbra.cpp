@@ -36,7 +36,7 @@ double OuterPenumbra::depth_at(const glm::dvec3& p, const glm::dvec3& normal, co
   };
   double r = 0, s = 0;
   const glm::dvec3 from = end(first, r), to = end(last, s), direction = to - from;
-  // Minimum of distance over radius along from + t way, r + t (s − r): where its derivative is 0, or at an end.
+  // Minimum of distance over radius along from + t direction, r + t (s − r): where its derivative is 0, or at an end.
   const double square = glm::dot(direction, direction), slope = s - r;
   double nearest = 0;
   if (square > 0) {

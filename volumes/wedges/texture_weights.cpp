@@ -118,17 +118,17 @@ double TextureWeights::along_rim(double position) const {
 
 double TextureWeights::beyond(const Edge& edge, const glm::dvec2& reference) const {
   const double first = rim_position(reference, edge.from), last = rim_position(reference, edge.to);
-  double way = last - first;  // of 8, the length of the rim
+  double along = last - first;  // of 8, the length of the rim
   // An edge whose ends are less than 90° apart passes at most 6 of the rim's 8: of the four axis directions the edge
   // passes at most one, so the rest of the turn passes three neighbours, which have a whole side of the square between
-  // them. So, of `way` and way ± 8, one below 1 is right, whatever its rounded sign; above 1, the sign of `way` is
-  // certain.
-  if (glm::dot(edge.from - reference, edge.to - reference) > 0 && std::abs(std::remainder(way, 8.0)) < 1) {
-    way = std::remainder(way, 8.0);
+  // them. So, of `along` and along ± 8, one below 1 is right, whatever its rounded sign; above 1, the sign of `along`
+  // is certain.
+  if (glm::dot(edge.from - reference, edge.to - reference) > 0 && std::abs(std::remainder(along, 8.0)) < 1) {
+    along = std::remainder(along, 8.0);
   } else {
-    way += edge.side > 0 && way < 0 ? 8 : edge.side < 0 && way > 0 ? -8 : 0;
+    along += edge.side > 0 && along < 0 ? 8 : edge.side < 0 && along > 0 ? -8 : 0;
   }
-  const double round_trips = std::round((way - (last - first)) / 8);
+  const double round_trips = std::round((along - (last - first)) / 8);
   return along_rim(last) - along_rim(first) + round_trips - left_of(edge.from, edge.to);
 }
 

@@ -39,7 +39,7 @@ TEST_F(AdaptiveLight, WithoutToleranceIsAccumulateOverTheCornersOfAllCells) {
 
 TEST_F(AdaptiveLight, OnALineIsAccumulateOverItsPoints) {
   scenes::Scene scene = sphere_scene(0.5);
-  scene.lights.front() = rectangle_light({0, 5, 0}, {0.1, 0, 0}, {0, 0, 0.8});  // the longer way is v
+  scene.lights.front() = rectangle_light({0, 5, 0}, {0.1, 0, 0}, {0, 0, 0.8});  // v is the longer axis
   Stage stage(scene, 32, 32, light_samples(4));
   const Run all = adaptive(stage, {{"levels", "3"}, {"epsilon", "0"}, {"pcf", "off"}, {"form", "line"}});
   EXPECT_EQ(all.maps, 9U);
@@ -189,8 +189,8 @@ TEST_F(AdaptiveLight, AFilterOfNTexelsIsARampOfNLessOne) {
 }
 
 // Equation 3: heights are compared in parts of all that a map can hold, wherever they are. A board 4 below the light
-// and a floor 5 below it differ by 1 / 5 or 1 / 4 of their heights, and by 1 of a range that is no less than the way
-// from the light's corner to the floor's far one.
+// and a floor 5 below it differ by 1 / 5 or 1 / 4 of their heights, and by 1 of a range that is no less than the
+// distance from the light's corner to the floor's far one.
 TEST_F(AdaptiveLight, GammaIsAShareOfHeightsOrOfAMapsRange) {
   scenes::Scene scene = bare_floor(1, 1.5);
   scene.objects.front().casts_shadow = true;
@@ -264,7 +264,7 @@ TEST_F(AdaptiveLight, ATextureWeighsTheMaps) {
 TEST_F(AdaptiveLight, TexturesWeighPointsByTheLightOfTheirCells) {
   for (const bool line : {false, true}) {
     scenes::Scene scene = sphere_scene(0.5);
-    if (line) scene.lights.front() = rectangle_light({0, 5, 0}, {0.1, 0, 0}, {0, 0, 0.8});  // the longer way is v
+    if (line) scene.lights.front() = rectangle_light({0, 5, 0}, {0.1, 0, 0}, {0, 0, 0.8});  // v is the longer axis
     scenes::Texture texture;
     texture.width = 3;
     texture.height = 5;

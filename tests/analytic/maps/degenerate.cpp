@@ -3,7 +3,7 @@
 // given, 1 where nothing casts, and the same to the bit however large the scene is.
 
 #include "base/error.hpp"
-#include "tests/analytic/maps/ways.hpp"
+#include "tests/analytic/maps/map_variants.hpp"
 #include "tests/unit/textured_lights_support.hpp"
 
 #include <algorithm>
@@ -87,7 +87,7 @@ class MapsDegenerate : public MapsTest {
     auto& made = methods_[words];
     visibility::MethodOptions smallest{{"size", "8"}};
     if (words.starts_with("soft-shadow-map")) smallest["receiverSize"] = "8";
-    if (!made) made = Way(words).with(smallest).make(device());
+    if (!made) made = MapVariant(words).with(smallest).make(device());
     return *made;
   }
   static bool can(const visibility::Method& method, const visibility::Light& light) {
@@ -202,17 +202,17 @@ TEST_F(MapsDegenerate, WhatCastsNoShadowReceivesIt) {
        {"shadow-map", "pcf", "silhouette-map", "forward-map:splat=box", "pcf:projection=paraboloid", "backproject",
         "bitmask", "penumbra-map", "smoothies", "brabec-seidel", "parker", "arvo", "layer-rays", "contour", "packet",
         "accumulate", "adaptive-light:levels=1", "deep-penumbra", "layered-attenuation"}) {
-    const Way way = Way(words).with({{"size", "64"}});
-    const Masks expected = run(*way.make(device()), both.stage), found = run(*way.make(device()), one.stage);
+    const MapVariant variant = MapVariant(words).with({{"size", "64"}});
+    const Masks expected = run(*variant.make(device()), both.stage), found = run(*variant.make(device()), one.stage);
     EXPECT_LT(*std::ranges::min_element(expected.visibility), 0.5F) << words;
     const double off = rmse(
         one.stage, [](std::size_t) { return true; },
         [&](std::size_t i) { return static_cast<double>(found.visibility[i] - expected.visibility[i]); });
-    EXPECT_LE(off, way.method == "layered-attenuation" ? 0.1 : 0.0) << words;
+    EXPECT_LE(off, variant.method == "layered-attenuation" ? 0.1 : 0.0) << words;
   }
 }
 
-// A power of two rounds nothing.
+// Multiplying positions by a power of two rounds nothing.
 TEST_F(MapsDegenerate, TheScaleOfTheSceneChangesNoByte) {
   const Given one = given("", ceiling_light(2, 0.5), solids),
               large = given("", ceiling_light(2, 0.5), solids, std::ldexp(1.0, 24)),
@@ -251,7 +251,8 @@ TEST_F(MapsDegenerate, NoMapIsSmallerThanEightTexels) {
                             "layered-attenuation",
                             "deep-penumbra"}) {
     for (const char* size : {"0", "1", "7", "-8", "8.5", "1000000"}) {
-      EXPECT_THROW(std::ignore = Way(words).with({{"size", size}}).make(device()), UsageError) << words << " " << size;
+      EXPECT_THROW(std::ignore = MapVariant(words).with({{"size", size}}).make(device()), UsageError)
+          << words << " " << size;
     }
   }
 }

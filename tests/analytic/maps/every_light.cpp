@@ -205,9 +205,9 @@ TEST_F(EveryLight, TexelsOfMapsSeeThroughHoles) {
         const auto depth_at = [&](const glm::dvec2& beside) -> std::optional<double> {
           const glm::dvec2 at = face.lower + (glm::dvec2(i % kSize, i / kSize) + 0.5 + beside) *
                                                  (face.upper - face.lower) / double{kSize};
-          const glm::dvec3 way = at.x * face.a + at.y * face.b + face.w, n = glm::cross(leaf.u, leaf.v);
-          const double w = glm::dot(middle - maps.basis.center, n) / glm::dot(way, n);
-          const glm::dvec3 on = maps.basis.center + w * way - middle;
+          const glm::dvec3 direction = at.x * face.a + at.y * face.b + face.w, n = glm::cross(leaf.u, leaf.v);
+          const double w = glm::dot(middle - maps.basis.center, n) / glm::dot(direction, n);
+          const glm::dvec3 on = maps.basis.center + w * direction - middle;
           const double s = glm::dot(glm::cross(on, leaf.v), n) / glm::dot(n, n),
                        t = glm::dot(glm::cross(leaf.u, on), n) / glm::dot(n, n);
           if (std::max(std::abs(s), std::abs(t)) > 1 || !leaf.is_there(s, t)) return std::nullopt;
@@ -216,10 +216,10 @@ TEST_F(EveryLight, TexelsOfMapsSeeThroughHoles) {
         const auto board_at = [&](const glm::dvec2& beside) -> std::optional<double> {
           const glm::dvec2 at = face.lower + (glm::dvec2(i % kSize, i / kSize) + 0.5 + beside) *
                                                  (face.upper - face.lower) / double{kSize};
-          const glm::dvec3 way = at.x * face.a + at.y * face.b + face.w,
+          const glm::dvec3 direction = at.x * face.a + at.y * face.b + face.w,
                            centre = maps.basis.center + stage.floats.origin;
-          const double w = (1.6 - centre.y) / way.y;
-          const glm::dvec3 on = centre + w * way;
+          const double w = (1.6 - centre.y) / direction.y;
+          const glm::dvec3 on = centre + w * direction;
           if (on.x < board_from.x || on.x > board_to.x || on.z < board_from.y || on.z > board_to.y) return std::nullopt;
           return w / static_cast<double>(view.far);
         };
@@ -341,15 +341,15 @@ TEST_F(HalfASun, IsHiddenByAHalfPlaneInEveryMethodFull) {
 // texels begin, and so are the penumbrae.
 TEST_F(EveryLight, FoilsSeeASunAsAFarDisk) {
   constexpr double kFar = 400, kAngle = 24;
-  const glm::dvec3 way = glm::normalize(glm::dvec3(0.2, 1, -0.1));
+  const glm::dvec3 direction = glm::normalize(glm::dvec3(0.2, 1, -0.1));
   const auto stage_of = [&](const scenes::LightShape& shape) {
     scenes::Scene scene = floor_under(shaped(shape));
     scene.objects[0].casts_shadow = false;
     add_quad(scene, {0.2, 0.6, 0.1}, {0.5, 0.05, 0}, {0, 0, -0.5}).receives_shadow = false;
     return on_the_floor(scene, 24, 16);
   };
-  const Stage sun = stage_of(scenes::Sun{-way, kAngle}),
-              disk = stage_of(scenes::Disk{kFar * way, -way, kFar * std::tan(glm::radians(kAngle / 2))});
+  const Stage sun = stage_of(scenes::Sun{-direction, kAngle}),
+              disk = stage_of(scenes::Disk{kFar * direction, -direction, kFar * std::tan(glm::radians(kAngle / 2))});
   for (const Entry& entry : foils("256")) {
     const Masks of_sun = run_entry(entry, sun), of_disk = run_entry(entry, disk);
     const double off = error(of_sun, of_disk);
@@ -434,16 +434,17 @@ TEST_F(EveryLight, LampDisksFaceWhatTheyLight) {
   std::vector<visibility::Light> disks;
   for (std::uint32_t i = 0; i < maps::LampDisks::kCount; ++i) disks.push_back(lamp.disk(i));
   for (int i = 0; i < kDirections; ++i) {
-    const glm::dvec3 way = glm::normalize(glm::dvec3(normal(random), normal(random), normal(random)));
-    const visibility::Light& disk = disks[lamp.number_of(stage.light.center + glm::vec3(2.0 * way))];
+    const glm::dvec3 direction = glm::normalize(glm::dvec3(normal(random), normal(random), normal(random)));
+    const visibility::Light& disk = disks[lamp.number_of(stage.light.center + glm::vec3(2.0 * direction))];
     const glm::dvec3 u = glm::dvec3(disk.center_u) - glm::dvec3(disk.center),
                      v = glm::dvec3(disk.center_v) - glm::dvec3(disk.center);
-    const double cosine = glm::dot(glm::normalize(glm::cross(u, v)), way);
+    const double cosine = glm::dot(glm::normalize(glm::cross(u, v)), direction);
     farthest = std::max(farthest, glm::degrees(std::acos(cosine)));
     narrower += (1 - cosine) / kDirections;
     EXPECT_NEAR(glm::length(u), 0.3, 1e-6);
     const visibility::Light::Beam& beam = *disk.beam;
-    const glm::dvec2 at = glm::dvec2(glm::dot(way, beam.a), glm::dot(way, beam.b)) / glm::dot(way, beam.w);
+    const glm::dvec2 at =
+        glm::dvec2(glm::dot(direction, beam.a), glm::dot(direction, beam.b)) / glm::dot(direction, beam.w);
     EXPECT_TRUE(at.x > beam.lower.x - 1e-6 && at.x < beam.upper.x + 1e-6 && at.y > beam.lower.y - 1e-6 &&
                 at.y < beam.upper.y + 1e-6);
   }

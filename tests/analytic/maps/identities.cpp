@@ -5,7 +5,7 @@
 // of docs/predicates.md.
 
 #include "tests/analytic/maps/places.hpp"
-#include "tests/analytic/maps/ways.hpp"
+#include "tests/analytic/maps/map_variants.hpp"
 
 #include <array>
 #include <cmath>
@@ -103,7 +103,7 @@ constexpr Identity kMoreIdentities[] = {
 
 /// Variant, and the number of steps of its V from 0 to 1; 0: the number of light samples.
 struct Levels {
-  const char* way;
+  const char* variant;
   std::uint32_t of;
 };
 constexpr Levels kLevels[] = {{"shadow-map", 1}, {"pcf:window=5", 25},       {"pcf:window=4:receiverPlane=off", 16},
@@ -111,50 +111,50 @@ constexpr Levels kLevels[] = {{"shadow-map", 1}, {"pcf:window=5", 25},       {"p
                               {"accumulate", 0}, {"layered-attenuation", 0}, {"deep-penumbra:bound=0", 0}};
 
 /// Variants that are tested for everything that a picture must not depend on.
-constexpr const char* kWays[] = {"shadow-map",
-                                 "shadow-map:test=id",
-                                 "accumulate",
-                                 "adaptive-light:levels=2",
-                                 "adaptive-light:levels=2:compare=light",
-                                 "deep-penumbra",
-                                 "layered-attenuation",
-                                 "soft-shadow-map:passes=2",
-                                 "soft-shadow-map:form=scatter:depth=dual",
-                                 "backproject-peel",
-                                 "backproject-peel:samples=9:select=deepest",
-                                 "bitmask",
-                                 "bitmask:occluder=patch:layers=3:budget=40",
-                                 "bitmask:occluder=rect:level=2:receiverPlane=off",
-                                 "layer-rays:layers=3:solid=on",
-                                 "silhouette-map",
-                                 "forward-map",
-                                 "forward-map:splat=spline:receiverPlane=off",
-                                 "penumbra-map",
-                                 "smoothies",
-                                 "brabec-seidel",
-                                 "kirsch-doellner",
-                                 "parker",
-                                 "arvo",
-                                 "backproject",
-                                 "backproject:form=sphere",
-                                 "backproject:fill=shared:layers=2:depth=midpoint",
-                                 "contour",
-                                 "packet:sublights=2:receiverPlane=off",
-                                 "packet:subsample=4",
-                                 "pcf",
-                                 "pcf:test=object",
-                                 "pcf:keep=3",
-                                 "pcf:test=mean",
-                                 "shadow-map:test=object",
-                                 "shadow-map:history=4",
-                                 "pcss",
-                                 "pcss:receiverPlane=off:depth=dual",
-                                 "vssm",
-                                 "vssm:moments=csm:filter=n-buffer",
-                                 "vssm:moments=esm:filter=mip:depth=second",
-                                 "convolution",
-                                 "occlusion-textures",
-                                 "occlusion-textures:filter=n-buffer:depth=midpoint"};
+constexpr const char* kVariants[] = {"shadow-map",
+                                     "shadow-map:test=id",
+                                     "accumulate",
+                                     "adaptive-light:levels=2",
+                                     "adaptive-light:levels=2:compare=light",
+                                     "deep-penumbra",
+                                     "layered-attenuation",
+                                     "soft-shadow-map:passes=2",
+                                     "soft-shadow-map:form=scatter:depth=dual",
+                                     "backproject-peel",
+                                     "backproject-peel:samples=9:select=deepest",
+                                     "bitmask",
+                                     "bitmask:occluder=patch:layers=3:budget=40",
+                                     "bitmask:occluder=rect:level=2:receiverPlane=off",
+                                     "layer-rays:layers=3:solid=on",
+                                     "silhouette-map",
+                                     "forward-map",
+                                     "forward-map:splat=spline:receiverPlane=off",
+                                     "penumbra-map",
+                                     "smoothies",
+                                     "brabec-seidel",
+                                     "kirsch-doellner",
+                                     "parker",
+                                     "arvo",
+                                     "backproject",
+                                     "backproject:form=sphere",
+                                     "backproject:fill=shared:layers=2:depth=midpoint",
+                                     "contour",
+                                     "packet:sublights=2:receiverPlane=off",
+                                     "packet:subsample=4",
+                                     "pcf",
+                                     "pcf:test=object",
+                                     "pcf:keep=3",
+                                     "pcf:test=mean",
+                                     "shadow-map:test=object",
+                                     "shadow-map:history=4",
+                                     "pcss",
+                                     "pcss:receiverPlane=off:depth=dual",
+                                     "vssm",
+                                     "vssm:moments=csm:filter=n-buffer",
+                                     "vssm:moments=esm:filter=mip:depth=second",
+                                     "convolution",
+                                     "occlusion-textures",
+                                     "occlusion-textures:filter=n-buffer:depth=midpoint"};
 
 class MapsIdentities : public MapsTest {
  protected:
@@ -164,7 +164,7 @@ class MapsIdentities : public MapsTest {
     explicit Pictures(std::uint32_t size) : size_(fmt::format("{}", size)) {}
     visibility::Method& method(const std::string& words) {
       auto& made = methods_[words];
-      if (!made) made = Way(words).with(sizes_of(words)).make(device());
+      if (!made) made = MapVariant(words).with(sizes_of(words)).make(device());
       return *made;
     }
     /// Returns null if the method refuses the light.
@@ -233,16 +233,16 @@ class MapsIdentities : public MapsTest {
 
   static void expect_levels(Pictures& pictures, const Place& place) {
     for (const Levels& levels : kLevels) {
-      const Masks* found = pictures.of(levels.way, place);
+      const Masks* found = pictures.of(levels.variant, place);
       if (found == nullptr || place.stage.light.texture) continue;
       const double count = levels.of != 0 ? levels.of : place.stage.light.sample_count();
       std::set<float> values(found->visibility.begin(), found->visibility.end());
       for (const float v : values) {
         // The nearest float of a whole number's share.
         EXPECT_EQ(v, static_cast<float>(std::round(count * static_cast<double>(v)) / count))
-            << place.name << ", I10: " << levels.way;
+            << place.name << ", I10: " << levels.variant;
       }
-      EXPECT_LE(static_cast<double>(values.size()), count + 1) << place.name << ", B1: " << levels.way;
+      EXPECT_LE(static_cast<double>(values.size()), count + 1) << place.name << ", B1: " << levels.variant;
     }
   }
 
@@ -288,7 +288,7 @@ TEST_F(MapsIdentities, NoPictureDependsOnOrderWindingTilesOrRepetition) {
   Pictures pictures(20);
   for (const Place& place : std::span(few_places()).last(2)) {
     // The long test runs the other variants.
-    for (const char* words : std::span(kWays).first(12)) expect_independence(pictures, place, words);
+    for (const char* words : std::span(kVariants).first(12)) expect_independence(pictures, place, words);
   }
 }
 
@@ -298,7 +298,7 @@ TEST_F(MapsIdentities, HoldOnManyScenesFull) {
     expect_identities(pictures, place, kIdentities);
     expect_identities(pictures, place, kMoreIdentities);
     expect_levels(pictures, place);
-    for (const char* words : kWays) expect_independence(pictures, place, words);
+    for (const char* words : kVariants) expect_independence(pictures, place, words);
   });
 }
 

@@ -22,7 +22,7 @@ class LayeredAttenuation : public MapLists {
   struct Layered {
     std::vector<maps::gpu::LayerEntry> entries;  // as many for each texel
     std::size_t layers = 0;
-    std::vector<glm::dvec3> ways;  // of the texels' rays, 1 long along the light's normal
+    std::vector<glm::dvec3> directions;  // of the texels' rays, 1 long along the light's normal
   };
   /// A board over a floor, 3 below a light at 5; it rises by `tilt` toward x from its middle.
   static Layered board_over_floor(double tilt) {
@@ -38,7 +38,7 @@ class LayeredAttenuation : public MapLists {
     Layered found{entries_of(product, std::size_t{kBoardSize} * kBoardSize), product.layers(), {}};
     const auto face = maps::face_of(made.centre.views.front(), made.basis, 0);
     for (std::uint32_t y = 0; y < kBoardSize; ++y) {
-      for (std::uint32_t x = 0; x < kBoardSize; ++x) found.ways.push_back(face.direction(x, y, kBoardSize));
+      for (std::uint32_t x = 0; x < kBoardSize; ++x) found.directions.push_back(face.direction(x, y, kBoardSize));
     }
     return found;
   }
@@ -83,7 +83,7 @@ TEST_F(LayeredAttenuation, OneMapFromTheCentreIsItself) {
 TEST_F(LayeredAttenuation, EveryMapCountsOnceAndTheFloorIsCoveredWithoutGaps) {
   const Layered found = board_over_floor(0);
   std::size_t lit_floor = 0, uncovered = 0;
-  for (std::size_t texel = 0; texel < found.ways.size(); ++texel) {
+  for (std::size_t texel = 0; texel < found.directions.size(); ++texel) {
     std::uint32_t board = 0, floor = 0;
     for (std::size_t e = 0; e < found.layers; ++e) {
       const auto& entry = found.entries[texel * found.layers + e];
@@ -94,7 +94,7 @@ TEST_F(LayeredAttenuation, EveryMapCountsOnceAndTheFloorIsCoveredWithoutGaps) {
       (is_floor ? floor : board) += entry.weight;
     }
     // The board hides the floor from no sample where the centre's ray is far from it: |x| > 0.8 5/3 + 0.5 2/3 there.
-    const glm::dvec3 at = 5.0 * found.ways[texel];
+    const glm::dvec3 at = 5.0 * found.directions[texel];
     const double out = std::max(std::abs(at.x), std::abs(at.z));
     const double texel_width = 6.0 / (kBoardSize - 2);
     if (out < 0.8 * 5 / 3 - 0.5 * 2 / 3 - texel_width) {
@@ -104,7 +104,7 @@ TEST_F(LayeredAttenuation, EveryMapCountsOnceAndTheFloorIsCoveredWithoutGaps) {
     ++lit_floor;
     uncovered += floor != kBoardSamples ? 1 : 0;
   }
-  EXPECT_GT(lit_floor, found.ways.size() / 4);
+  EXPECT_GT(lit_floor, found.directions.size() / 4);
   EXPECT_EQ(uncovered, 0U);
 }
 
@@ -114,10 +114,10 @@ TEST_F(LayeredAttenuation, ATiltedBoardIsCoveredWithoutGaps) {
   const Layered found = board_over_floor(0.08);
   const double texel_width = 6.0 / (kBoardSize - 2) * 3 / 5;
   std::size_t inside = 0;
-  for (std::size_t texel = 0; texel < found.ways.size(); ++texel) {
-    const glm::dvec3& way = found.ways[texel];
+  for (std::size_t texel = 0; texel < found.directions.size(); ++texel) {
+    const glm::dvec3& direction = found.directions[texel];
     // The board is at height 2 + x / 10, that is at depth 3 - x / 10.
-    const glm::dvec3 at = 3 / (1 + 0.1 * way.x) * way;
+    const glm::dvec3 at = 3 / (1 + 0.1 * direction.x) * direction;
     if (std::max(std::abs(at.x), std::abs(at.z)) > 0.8 - 2 * texel_width) continue;
     std::uint32_t board = 0;
     for (std::size_t e = 0; e < found.layers; ++e) {
@@ -156,7 +156,8 @@ TEST_F(LayeredAttenuation, ATexelEndsWhereTheSurfaceCrossesItsBorder) {
     const double texel = (from.upper.x - from.lower.x) / kSize;
     for (std::uint32_t i = 0; i < kSize * kSize; ++i) {
       // The board is at depth 3 - slope x below the light.
-      const glm::dvec3 way = to.direction(i % kSize, i / kSize, kSize), at = 3 / (1 + slope * way.x) * way;
+      const glm::dvec3 direction = to.direction(i % kSize, i / kSize, kSize),
+                       at = 3 / (1 + slope * direction.x) * direction;
       if (std::abs(at.x) > 0.45 || std::abs(at.z) > 0.55) continue;
       const glm::dvec3 seen = at - glm::dvec3(kAside, 0, 0);
       const glm::dvec2 across = glm::dvec2(glm::dot(seen, from.a), glm::dot(seen, from.b)) / glm::dot(seen, from.w);

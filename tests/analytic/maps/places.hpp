@@ -86,7 +86,7 @@ inline Place shipped_place(const std::string& file, std::uint32_t side) {
   return place_of(file, scenes::read_scene(std::filesystem::path(PENUMBRA_SCENES) / file), side, light_samples(16));
 }
 
-/// One of each kind.
+/// Returns one place of each kind.
 inline const std::vector<Place>& few_places() {
   static const std::vector<Place> all = [] {
     std::vector<Place> made;

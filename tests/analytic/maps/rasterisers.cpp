@@ -155,7 +155,7 @@ struct Named {
   visibility::MethodOptions options;
 };
 
-/// Every method of maps/, small.
+/// Returns every method of maps/, with small maps.
 std::vector<Named> every_method() {
   return {{"shadow-map", maps::make_shadow_map, {{"depth", "midpoint"}}},
           {"pcf", maps::make_pcf, {}},

@@ -4,7 +4,7 @@
 
 #include "tests/analytic/maps/backprojection_scenes.hpp"
 #include "tests/analytic/maps/centre_maps.hpp"
-#include "tests/analytic/maps/ways.hpp"
+#include "tests/analytic/maps/map_variants.hpp"
 
 #include <numbers>
 
@@ -13,33 +13,33 @@ namespace {
 
 class ReceiverPlane : public MapsTest {
  protected:
-  static constexpr const char* kWays[] = {"shadow-map",
-                                          "pcf",
-                                          "pcss",
-                                          "backproject",
-                                          "backproject:form=sphere",
-                                          "backproject-peel:depth=first",
-                                          "bitmask",
-                                          "bitmask:occluder=patch",
-                                          "layer-rays",
-                                          "penumbra-map",
-                                          "smoothies",
-                                          "brabec-seidel:ids=off",
-                                          "parker",
-                                          "arvo",
-                                          "contour",
-                                          "packet"};
+  static constexpr const char* kVariants[] = {"shadow-map",
+                                              "pcf",
+                                              "pcss",
+                                              "backproject",
+                                              "backproject:form=sphere",
+                                              "backproject-peel:depth=first",
+                                              "bitmask",
+                                              "bitmask:occluder=patch",
+                                              "layer-rays",
+                                              "penumbra-map",
+                                              "smoothies",
+                                              "brabec-seidel:ids=off",
+                                              "parker",
+                                              "arvo",
+                                              "contour",
+                                              "packet"};
   static Masks picture(const Stage& stage, const char* words, visibility::MethodOptions more) {
     more.emplace("size", "64");
-    const Way way = Way(words).with(more);
-    return run(*way.make(device()), stage);
+    const MapVariant variant = MapVariant(words).with(more);
+    return run(*variant.make(device()), stage);
   }
 };
 
 // A receiver parallel to the light has one depth at every place where its plane is asked.
 TEST_F(ReceiverPlane, MakesNoDifferenceToWhatIsParallelToTheLight) {
   const Stage stage = on_floor(square_above_plate(), 10, light_samples(16));
-  for (const char* words : kWays) {
+  for (const char* words : kVariants) {
     EXPECT_EQ(picture(stage, words, {{"receiverPlane", "off"}}).visibility, picture(stage, words, {}).visibility)
         << words;
   }
@@ -56,7 +56,7 @@ TEST_F(ReceiverPlane, OffATiltedPlaneShadesItself) {
     scene.lights.push_back(ceiling_light(5, 0.25));
     scene.cameras.push_back(camera({0, 3, 3}, {0, 0, 0}));
     const Stage stage(scene, 16, 16, light_samples(16), grid_samples(16, {0, 0, 0}, 0.6 * along, {0, 0, 0.6}, up));
-    for (const char* words : kWays) {
+    for (const char* words : kVariants) {
       const Masks on = picture(stage, words, {{"bias", "0.02"}}),
                   off = picture(stage, words, {{"bias", "0"}, {"receiverPlane", "off"}});
       double sum = 0;

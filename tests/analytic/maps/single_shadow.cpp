@@ -7,7 +7,7 @@
 #include "reference/methods.hpp"
 #include "tests/analytic/maps/backprojection_scenes.hpp"
 #include "tests/analytic/maps/centre_maps.hpp"
-#include "tests/analytic/maps/ways.hpp"
+#include "tests/analytic/maps/map_variants.hpp"
 
 namespace penumbra::tests {
 namespace {
@@ -57,8 +57,8 @@ class MapsSingleShadow : public MapsTest {
   }
   static Masks line(const std::string& words, const scenes::Scene& scene, const std::vector<double>& at = places()) {
     const Stage stage = along_floor(scene, at, light_samples(1));
-    const Way way = Way(words).with({{"size", "512"}});
-    return run(*way.make(device()), stage);
+    const MapVariant variant = MapVariant(words).with({{"size", "512"}});
+    return run(*variant.make(device()), stage);
   }
   /// Texels are 1.6e-3 wide as the centre sees them, or 5e-3 where the window holds casters beside the floor: half a
   /// texel here and half there of the penumbra's width, times the steepest slope.
@@ -138,7 +138,7 @@ TEST_F(MapsSingleShadow, OuterPenumbraeOverestimateTheUmbraAndInnerOnesLoseIt) {
   const Masks truth = tests::run(*reference::make_exact({}), stage);
   const double umbra = dark_share(truth, 0.05F), shadow = dark_share(truth, 0.95F);
   const auto shares = [&](const char* words) {
-    const Masks found = run(*Way(words).with({{"size", "128"}}).make(device()), stage);
+    const Masks found = run(*MapVariant(words).with({{"size", "128"}}).make(device()), stage);
     const double dark = dark_share(found, 0.05F), shaded = dark_share(found, 0.95F);
     fmt::print("{}: umbra {:.2f} times, shadow {:.2f} times the true one\n", words, dark / umbra, shaded / shadow);
     return std::pair(dark / umbra, shaded / shadow);
@@ -214,7 +214,7 @@ TEST_F(MapsSingleShadow, ObjectIdsNeedNoBiasAndLoseSelfShadows) {
   const Stage plain(scene, 40, 40, light_samples(1));
   const std::size_t steps = scene.objects.size() - 1;
   const auto lit_on_steps = [&](const Stage& stage, const char* words) {
-    const Masks found = run(*Way(words).with({{"size", "128"}}).make(device()), stage);
+    const Masks found = run(*MapVariant(words).with({{"size", "128"}}).make(device()), stage);
     std::size_t lit = 0, all = 0;
     for (std::size_t i = 0; i < stage.samples.size(); ++i) {
       const std::int32_t triangle = stage.samples.triangle[i];

@@ -9,7 +9,7 @@
 #include "maps/single_shadow/width_map.hpp"
 #include "tests/analytic/maps/backprojection_scenes.hpp"
 #include "tests/analytic/maps/centre_maps.hpp"
-#include "tests/analytic/maps/ways.hpp"
+#include "tests/analytic/maps/map_variants.hpp"
 
 #include <map>
 #include <tuple>
@@ -49,8 +49,8 @@ std::vector<TwinEdge> twin_edges(const Stage& stage, const maps::LightBasis& bas
   std::vector<TwinEdge> found;
   for (const auto& [ends, sides] : edges) {
     if (sides.left == 0) continue;
-    const glm::dvec2 way = glm::normalize(glm::dvec2(sides.b) / sides.b.z - glm::dvec2(sides.a) / sides.a.z);
-    const glm::dvec2 left(-way.y, way.x);
+    const glm::dvec2 direction = glm::normalize(glm::dvec2(sides.b) / sides.b.z - glm::dvec2(sides.a) / sides.a.z);
+    const glm::dvec2 left(-direction.y, direction.x);
     found.push_back({sides.a, sides.b, sides.left > 0 ? -left : left});
   }
   return found;
@@ -59,14 +59,14 @@ std::vector<TwinEdge> twin_edges(const Stage& stage, const maps::LightBasis& bas
 /// The nearest of all triangles in a direction: z of the point where it is met; 0 if there is none.
 double nearest_surface(const Stage& stage, const maps::LightBasis& basis, const glm::dvec2& seen) {
   double nearest = std::numeric_limits<double>::infinity();
-  const glm::dvec3 way(seen, 1);
+  const glm::dvec3 direction(seen, 1);
   for (std::uint32_t i = 0; i < stage.floats.triangles.size(); ++i) {
     const auto corners = stage.floats.corners(i);
     const glm::dvec3 a = basis.local(corners[0]), b = basis.local(corners[1]), c = basis.local(corners[2]);
     const glm::dvec3 n = glm::cross(b - a, c - a);
-    const double depth = glm::dot(n, a) / glm::dot(n, way);
+    const double depth = glm::dot(n, a) / glm::dot(n, direction);
     if (!(depth > 0) || !(depth < nearest)) continue;
-    const glm::dvec3 q = depth * way;
+    const glm::dvec3 q = depth * direction;
     const auto inside = [&](const glm::dvec3& from, const glm::dvec3& to) {
       return glm::dot(n, glm::cross(to - from, q - from)) >= 0;
     };
@@ -124,8 +124,9 @@ class MapsOuterMap : public MapsTest {
     std::size_t drawn = 0, wrong = 0, near = 0, compared = 0;
     for (std::size_t texel = 0; texel < maps.texel_count(); ++texel) {
       const maps::Face face = maps::face_of(view, maps.basis, static_cast<std::uint32_t>(texel / (kSize * kSize)));
-      const glm::dvec3 way = face.direction(texel % kSize, texel / kSize % kSize, kSize);
-      const glm::dvec3 local(glm::dot(way, maps.basis.u), glm::dot(way, maps.basis.v), glm::dot(way, maps.basis.n));
+      const glm::dvec3 direction = face.direction(texel % kSize, texel / kSize % kSize, kSize);
+      const glm::dvec3 local(glm::dot(direction, maps.basis.u), glm::dot(direction, maps.basis.v),
+                             glm::dot(direction, maps.basis.n));
       const glm::dvec2 seen = glm::dvec2(local) / local.z;
       // Returns the answer of a twin whose texel lies `off` beside this one.
       const auto least = [&](const glm::dvec2& off) {
@@ -280,8 +281,8 @@ TEST_F(MapsSearchTwin, EveryTexelIsAskedThatCanMatter) {
     const glm::dvec2 texel = glm::dvec2(side.upper - side.lower) / static_cast<double>(kSize);
     const std::vector<float> depths = maps.read();
     const visibility::MethodOptions options{{"size", "64"}, {"radius", "140"}, {"falloff", "linear"}};
-    const Masks outer = run(*Way("parker").with(options).make(device()), stage),
-                both = run(*Way("brabec-seidel").with(options).make(device()), stage);
+    const Masks outer = run(*MapVariant("parker").with(options).make(device()), stage),
+                both = run(*MapVariant("brabec-seidel").with(options).make(device()), stage);
     std::size_t wrong = 0, between = 0, ties = 0;
     for (std::size_t i = 0; i < stage.samples.size(); ++i) {
       const glm::dvec3 e = maps.basis.local(stage.samples.p[i]);

@@ -254,7 +254,7 @@ class VssmTwin {
                                kLeastVariance * layers * layers);
     } else if (settings_.moments == "evsm") {
       const double c = settings_.exponent / 2, least = std::max(kLeastVariance, slack * slack) * c * c;
-      const auto warped = [&](double way) { return [=](double q) { return way * std::exp(way * c * (q - t)); }; };
+      const auto warped = [&](double sign) { return [=](double q) { return sign * std::exp(sign * c * (q - t)); }; };
       const auto bound = [&](const auto& f) {
         return chebyshev(mean(box, f), mean(box, [&](double q) { return f(q) * f(q); }), f(t), least);
       };

@@ -63,21 +63,21 @@ TEST_F(Vssm, TheSeriesEndsBeforeItJumpsBack) {
 // texels, or its scale or its offset tells a light's search that nothing blocks.
 TEST_F(Vssm, ALitPlaneIsHalfDarkUntilTheSeriesIsScaledOrShifted) {
   const Stage stage = floor_stage({{2, -4, 0.1}});
-  struct Way {
+  struct Series {
     double scale, offset, v;
     std::uint32_t window;
   };
-  for (const Way& way : {Way{1, 0, 0.5, 0}, Way{2, 0, 1, 0}, Way{1, 1, 1, 0}, Way{1, 0, 0.5, 3}, Way{1.5, 0, 0.75, 3},
-                         Way{2, 0, 1, 3}, Way{1, 1, 1, 3}}) {
+  for (const Series& series : {Series{1, 0, 0.5, 0}, Series{2, 0, 1, 0}, Series{1, 1, 1, 0}, Series{1, 0, 0.5, 3},
+                               Series{1.5, 0, 0.75, 3}, Series{2, 0, 1, 3}, Series{1, 1, 1, 3}}) {
     for (const std::uint32_t terms : {1U, 4U, 16U}) {
-      if (terms == 1 && way.offset > 0) continue;  // its span is cut off
+      if (terms == 1 && series.offset > 0) continue;  // its span is cut off
       const VssmSettings settings{.moments = "csm",
                                   .count = terms,
-                                  .scale = way.scale,
+                                  .scale = series.scale,
                                   .bias = 0,
-                                  .offset = way.offset,
+                                  .offset = series.offset,
                                   .damping = 0,
-                                  .window = way.window};
+                                  .window = series.window};
       const Masks found = run(maps::make_vssm, stage, options_of(settings));
       std::size_t plane = 0;
       for (std::size_t i = 0; i < stage.samples.size(); ++i) {
@@ -86,7 +86,7 @@ TEST_F(Vssm, ALitPlaneIsHalfDarkUntilTheSeriesIsScaledOrShifted) {
         if (x < 1.0) continue;
         ++plane;
         // 12 digits, and the sum of 2 / c_k over the terms: below 2.
-        EXPECT_NEAR(found.visibility[i], way.v, way.scale * 0x1p-10) << terms << " terms, scale " << way.scale;
+        EXPECT_NEAR(found.visibility[i], series.v, series.scale * 0x1p-10) << terms << " terms, scale " << series.scale;
       }
       EXPECT_GT(plane, 100U);
     }

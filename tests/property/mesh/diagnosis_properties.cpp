@@ -62,12 +62,12 @@ class Soups : public testing::TestWithParam<std::uint32_t> {
       const Point middle = {(a.x + b.x) / 2, (a.y + b.y) / 2, (a.z + b.z) / 2};
       soup[t] = {a, middle, c};
       soup.push_back({middle, b, c});
-      if (below(3) == 0) soup.push_back({a, b, middle});  // a collinear one, which fills the gap that is none
+      if (below(3) == 0) soup.push_back({a, b, middle});  // without area: joins the halves to the edge
     }
     return soup;
   }
 
-  /// Turns every third triangle or so.
+  /// Turns about a third of the triangles.
   std::vector<Corners> wound_at_random(std::vector<Corners> soup) {
     for (Corners& t : soup) {
       if (below(3) == 0) std::swap(t[1], t[2]);

@@ -83,7 +83,7 @@ class HardVolume : public tests::DeviceTest {
     return result;
   }
 
-  /// Triangle by triangle.
+  /// Returns the hard count of a segment from exact decisions, triangle by triangle.
   static std::int32_t exact_count(const Picture& picture, std::size_t pixel, const glm::vec3& l) {
     const auto carrier = static_cast<std::uint32_t>(picture.samples.triangle[pixel]);
     const glm::vec3& p = picture.samples.p[pixel];

@@ -95,7 +95,7 @@ glm::vec3 on_the_way(const Case& of, const glm::dvec2& place, double share) {
   return glm::vec3(glm::mix(glm::dvec3(of.p), target, share));
 }
 
-/// Any light, any edge.
+/// Returns a case with a light and an edge at random places, of random sizes.
 Case anywhere(tests::Numbers numbers) {
   const double size = std::exp2(1 - 6 * numbers.next()), tilt = numbers.next();
   const glm::dvec3 at = std::exp2(2 - 6 * numbers.next()) * numbers.vector();

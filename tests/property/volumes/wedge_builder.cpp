@@ -94,7 +94,7 @@ class WedgeBuilderTest : public tests::DeviceTest {
     ASSERT_EQ(found.left_out, expected.left_out);
   }
 
-  /// All of wedges --validate.
+  /// Expects of wedges all that `wedges --validate` checks.
   static void expect_valid(const Lit& stage, const visibility::Light& light, const LightHull& hull,
                            const LightWedges& wedges) {
     const Casters casters = casters_of(stage.floats, light);

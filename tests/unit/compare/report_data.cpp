@@ -134,7 +134,7 @@ TEST(ReportData, RadianceOverTheReferencesComesBackWithinTwoCodes) {
       EXPECT_LE(std::abs(got - code(pixels[i][c])), 2) << i << ' ' << c;
     }
   }
-  // Alike pictures are nearly nothing.
+  // A picture of equal pixels takes almost no bytes.
   const std::vector<glm::vec3> large(10000, {0.2f, 0.4f, 0.1f});
   EXPECT_LT(pack_radiance_over(large, large).size(), 200u);
 }

@@ -4,7 +4,7 @@
 
 #include "reference/methods.hpp"
 #include "tests/analytic/maps/backprojection_scenes.hpp"
-#include "tests/analytic/maps/ways.hpp"
+#include "tests/analytic/maps/map_variants.hpp"
 
 namespace penumbra::tests {
 namespace {
@@ -49,7 +49,7 @@ TEST_F(MapsHorizon, WhatIsHiddenIsTakenFromWhatIsAbove) {
       const Stage stage = stage_of(wall(aside, 0, to, false));
       const Masks exact = tests::run(*reference::make_exact({}), stage);
       for (const char* words : kHorizonWays) {
-        const Masks found = run(*Way(words).with({{"size", "128"}}).make(device()), stage);
+        const Masks found = run(*MapVariant(words).with({{"size", "128"}}).make(device()), stage);
         double most = 0;
         for (std::size_t i = 0; i < stage.samples.size(); ++i) {
           most = std::max(most, std::abs(static_cast<double>(found.visibility[i] - exact.visibility[i])));
@@ -71,7 +71,7 @@ TEST_F(MapsHorizon, TheWallsOwnBackHidesNothing) {
     const double above = (1 + aside) / 2;
     for (const char* words : kHorizonWays) {
       if (std::string(words).starts_with("soft")) continue;
-      const Masks found = run(*Way(words).with({{"size", "64"}}).make(device()), stage);
+      const Masks found = run(*MapVariant(words).with({{"size", "64"}}).make(device()), stage);
       for (std::size_t i = 0; i < stage.samples.size(); ++i) {
         // bitmask counts samples, 16 across.
         EXPECT_NEAR(found.visibility[i], above, std::string(words) == "bitmask" ? 0.07 : 1e-4)
@@ -88,7 +88,7 @@ TEST_F(MapsHorizon, WhatIsBelowThePlaneHidesNothingAboveTheHorizon) {
     const double above = (1 + aside) / 2;
     for (const char* words : kHorizonWays) {
       if (std::string(words).starts_with("soft")) continue;  // its maps know no planes
-      const Masks found = run(*Way(words).with({{"size", "64"}}).make(device()), stage);
+      const Masks found = run(*MapVariant(words).with({{"size", "64"}}).make(device()), stage);
       for (std::size_t i = 0; i < stage.samples.size(); ++i) {
         EXPECT_NEAR(found.visibility[i], above, std::string(words) == "bitmask" ? 0.07 : 0.03)
             << words << ", " << aside;

@@ -36,12 +36,12 @@ class RayTwin {
   /// Returns whether light sample j, moved by `off`, is hidden from pixel i.
   [[nodiscard]] bool hidden(std::size_t i, std::uint32_t j, const glm::dvec2& off) const {
     const glm::dvec3 e = basis_.local(stage_.samples.p[i]);
-    const glm::dvec3 way = basis_.local(stage_.light.points[j]) + glm::dvec3(off, 0) - e;
+    const glm::dvec3 direction = basis_.local(stage_.light.points[j]) + glm::dvec3(off, 0) - e;
     for (std::uint32_t y = 0; y < size_; ++y) {
       for (std::uint32_t x = 0; x < size_; ++x) {
-        if (meets_piece(e, way, x, y) || (solid_ && meets_column(e, way, x, y))) return true;
-        if (x + 1 < size_ && meets_wall(e, way, {x, y}, {x + 1, y}, 0)) return true;
-        if (y + 1 < size_ && meets_wall(e, way, {x, y}, {x, y + 1}, 1)) return true;
+        if (meets_piece(e, direction, x, y) || (solid_ && meets_column(e, direction, x, y))) return true;
+        if (x + 1 < size_ && meets_wall(e, direction, {x, y}, {x + 1, y}, 0)) return true;
+        if (y + 1 < size_ && meets_wall(e, direction, {x, y}, {x, y + 1}, 1)) return true;
       }
     }
     return false;
@@ -52,22 +52,24 @@ class RayTwin {
   [[nodiscard]] const std::vector<double>& at(const Cell& cell) const { return depths_[cell[1] * size_ + cell[0]]; }
   [[nodiscard]] glm::dvec2 corner(std::uint32_t x, std::uint32_t y) const { return lower_ + glm::dvec2(x, y) * texel_; }
 
-  [[nodiscard]] bool meets_piece(const glm::dvec3& e, const glm::dvec3& way, std::uint32_t x, std::uint32_t y) const {
+  [[nodiscard]] bool meets_piece(const glm::dvec3& e, const glm::dvec3& direction, std::uint32_t x,
+                                 std::uint32_t y) const {
     const glm::dvec2 from = corner(x, y), to = corner(x + 1, y + 1);
     return std::ranges::any_of(at({x, y}), [&](double depth) {
-      const glm::dvec2 q = glm::dvec2(e + way * ((depth - e.z) / way.z)) / depth;
+      const glm::dvec2 q = glm::dvec2(e + direction * ((depth - e.z) / direction.z)) / depth;
       return q.x >= from.x && q.x <= to.x && q.y >= from.y && q.y <= to.y;
     });
   }
 
   /// Returns whether the ray passes through the pyramid of a texel, between the column's ends.
-  [[nodiscard]] bool meets_column(const glm::dvec3& e, const glm::dvec3& way, std::uint32_t x, std::uint32_t y) const {
+  [[nodiscard]] bool meets_column(const glm::dvec3& e, const glm::dvec3& direction, std::uint32_t x,
+                                  std::uint32_t y) const {
     const glm::dvec2 from = corner(x, y), to = corner(x + 1, y + 1);
     const std::vector<double>& depths = at({x, y});
     for (std::size_t k = 1; k < depths.size(); k += 2) {
-      double first = (depths[k] - e.z) / way.z, last = (depths[k - 1] - e.z) / way.z;
+      double first = (depths[k] - e.z) / direction.z, last = (depths[k - 1] - e.z) / direction.z;
       const auto keep = [&](const glm::dvec3& n) {  // n · q >= 0
-        const double value = glm::dot(n, e), change = glm::dot(n, way);
+        const double value = glm::dot(n, e), change = glm::dot(n, direction);
         if (change == 0 && value < 0) last = -1;
         if (change > 0) first = std::max(first, -value / change);
         if (change < 0) last = std::min(last, -value / change);
@@ -82,13 +84,13 @@ class RayTwin {
   }
 
   /// The wall over the border between two neighbours along this axis.
-  [[nodiscard]] bool meets_wall(const glm::dvec3& e, const glm::dvec3& way, const Cell& one, const Cell& other,
+  [[nodiscard]] bool meets_wall(const glm::dvec3& e, const glm::dvec3& direction, const Cell& one, const Cell& other,
                                 int axis) const {
     const double border = corner(other[0], other[1])[axis];
-    const double change = way[axis] - border * way.z;
+    const double change = direction[axis] - border * direction.z;
     if (change == 0) return false;
     const double t = -(e[axis] - border * e.z) / change;
-    const glm::dvec3 q = e + t * way;
+    const glm::dvec3 q = e + t * direction;
     if (t <= 0 || t >= 1 || q.z <= 0) return false;
     const double across = q[1 - axis] / q.z, begins = corner(one[0], one[1])[1 - axis];
     if (across < begins || across >= begins + texel_[1 - axis]) return false;

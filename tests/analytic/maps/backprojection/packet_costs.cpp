@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tests which packets look for contours together (Yang et al. 2009, section 4.3, equations 4 to 6); the kernels of a
-// packet's pixels decide here. V is the same in both cases (MapsContourWays): only counters show whether a cost or a
-// chance is off.
+// packet's pixels decide here. V is the same in both cases (MapsContourVariants): only counters show whether a cost or
+// a chance is off.
 
 #include "maps/host/map_fit.hpp"
 #include "tests/analytic/maps/backprojection/contour_scenes.hpp"

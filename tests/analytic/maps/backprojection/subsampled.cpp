@@ -34,12 +34,13 @@ MethodOptions with(MethodOptions options, std::uint32_t step, const char* by = "
 
 TEST_F(MapsSubsampled, ComputedPixelsAreTheMethodsAndOthersLieBetweenThem) {
   const Stage stage(ball_and_speck(), 61, 53, light_samples(1));
-  const std::vector<std::pair<Factory, MethodOptions>> ways{{maps::make_contour, {{"size", "64"}}},
-                                                            {maps::make_packet, {{"size", "64"}, {"sublights", "2"}}},
-                                                            {maps::make_backproject, {{"size", "64"}}},
-                                                            {maps::make_backproject_peel, {{"size", "64"}}},
-                                                            {maps::make_bitmask, {{"size", "64"}}}};
-  for (const auto& [factory, options] : ways) {
+  const std::vector<std::pair<Factory, MethodOptions>> variants{
+      {maps::make_contour, {{"size", "64"}}},
+      {maps::make_packet, {{"size", "64"}, {"sublights", "2"}}},
+      {maps::make_backproject, {{"size", "64"}}},
+      {maps::make_backproject_peel, {{"size", "64"}}},
+      {maps::make_bitmask, {{"size", "64"}}}};
+  for (const auto& [factory, options] : variants) {
     const Masks whole = run(factory, stage, options);
     EXPECT_EQ(run(factory, stage, with(options, 1)).visibility, whole.visibility);
     for (const std::uint32_t step : {2U, 5U}) {
@@ -168,8 +169,8 @@ TEST_F(MapsSubsampled, PixelsAreChosenByThePenumbrasWidthOnThePicture) {
   std::uint64_t expected = 0, between = 0;
   for (std::uint32_t i = 0; i < stage.samples.size(); ++i) {
     if (!visibility::is_receiver(stage.floats, stage.light, stage.samples, i)) continue;
-    const glm::dvec3 way(stage.samples.eye - stage.samples.p[i]);
-    const double slant = std::abs(glm::dot(glm::dvec3(stage.samples.n[i]), way)) / glm::length(way),
+    const glm::dvec3 direction(stage.samples.eye - stage.samples.p[i]);
+    const double slant = std::abs(glm::dot(glm::dvec3(stage.samples.n[i]), direction)) / glm::length(direction),
                  pixel = 2 * std::tan(std::numbers::pi / 6) / 120 * static_cast<double>(stage.samples.depth[i]);
     std::uint32_t step = 1;
     while (!std::isinf(widths.visibility[i]) && 2 * step <= kMost &&

@@ -17,26 +17,26 @@ using visibility::MethodOptions;
 
 /// All variants of the search for the same contours.
 std::vector<std::pair<Factory, MethodOptions>> all_ways() {
-  std::vector<std::pair<Factory, MethodOptions>> ways;
+  std::vector<std::pair<Factory, MethodOptions>> variants;
   for (const char* search : {"none", "hsm", "mssm", "ysm"}) {
-    ways.push_back({maps::make_contour, {{"search", search}, {"traversal", "flat"}}});
+    variants.push_back({maps::make_contour, {{"search", search}, {"traversal", "flat"}}});
   }
   for (const char* traversal : {"hierarchy", "minmax"}) {
     for (const char* search : {"none", "hsm", "ysm"}) {
-      ways.push_back({maps::make_contour, {{"search", search}, {"traversal", traversal}}});
+      variants.push_back({maps::make_contour, {{"search", search}, {"traversal", traversal}}});
     }
   }
-  for (const char* packet : {"1x1", "2x2", "3x3", "8x8"}) ways.push_back({maps::make_packet, {{"packet", packet}}});
+  for (const char* packet : {"1x1", "2x2", "3x3", "8x8"}) variants.push_back({maps::make_packet, {{"packet", packet}}});
   for (const char* divergence : {"0", "0.31", "1"}) {
-    ways.push_back({maps::make_packet, {{"packet", "4x2"}, {"divergence", divergence}}});
+    variants.push_back({maps::make_packet, {{"packet", "4x2"}, {"divergence", divergence}}});
   }
-  ways.push_back({maps::make_packet, {{"packet", "5x5"}, {"divergence", "1"}, {"hierarchy", "off"}}});
-  ways.push_back({maps::make_packet, {{"packet", "3x7"}}});
-  ways.push_back({maps::make_packet, {{"packet", "64x1"}, {"divergence", "1"}}});
-  return ways;
+  variants.push_back({maps::make_packet, {{"packet", "5x5"}, {"divergence", "1"}, {"hierarchy", "off"}}});
+  variants.push_back({maps::make_packet, {{"packet", "3x7"}}});
+  variants.push_back({maps::make_packet, {{"packet", "64x1"}, {"divergence", "1"}}});
+  return variants;
 }
 
-class MapsContourWays : public ContourTest {
+class MapsContourVariants : public ContourTest {
  protected:
   static void expect_one_image(const Stage& stage, const char* size, const std::string& what) {
     const Masks first = run(maps::make_contour, stage, {{"size", size}, {"search", "none"}, {"traversal", "flat"}});
@@ -45,24 +45,24 @@ class MapsContourWays : public ContourTest {
     for (auto [factory, options] : all_ways()) {
       options["size"] = size;
       const std::vector<float> found = run(factory, stage, options).visibility;
-      std::string way;
-      for (const auto& [name, value] : options) way += fmt::format(" {}={}", name, value);
+      std::string variant;
+      for (const auto& [name, value] : options) variant += fmt::format(" {}={}", name, value);
       for (std::size_t i = 0; i < found.size(); ++i) {
         if (found[i] == first.visibility[i]) continue;
-        ADD_FAILURE() << what << way << ", pixel " << i << ": " << found[i] << " for " << first.visibility[i];
+        ADD_FAILURE() << what << variant << ", pixel " << i << ": " << found[i] << " for " << first.visibility[i];
         break;
       }
     }
   }
 };
 
-TEST_F(MapsContourWays, OneImageOnAShippedSceneOfAnySize) {
+TEST_F(MapsContourVariants, OneImageOnAShippedSceneOfAnySize) {
   const Stage stage(scenes::read_scene(std::filesystem::path(PENUMBRA_SCENES) / "bunny.json"), 41, 37,
                     light_samples(1));
   expect_one_image(stage, "100", "bunny");
 }
 
-TEST_F(MapsContourWays, OneImageInHemicubesOnBothSidesAndForEveryShape) {
+TEST_F(MapsContourVariants, OneImageInHemicubesOnBothSidesAndForEveryShape) {
   scenes::Scene room;
   add_quad(room, {0, 0, 0}, {3, 0, 0}, {0, 0, 3});
   add_quad(room, {0, 2, -3}, {3, 0, 0}, {0, 2, 0});
@@ -80,8 +80,8 @@ TEST_F(MapsContourWays, OneImageInHemicubesOnBothSidesAndForEveryShape) {
 }
 
 // Triangles that touch, overlap, stand through the light's plane, behind it and on the receivers: V is defined, in any
-// way of looking the same, and the same for another order of the triangles.
-TEST_F(MapsContourWays, OneImageOfSoupsAndWithinBounds) {
+// variant the same, and the same for another order of the triangles.
+TEST_F(MapsContourVariants, OneImageOfSoupsAndWithinBounds) {
   for (std::uint32_t seed = 0; seed < 4; ++seed) {
     std::mt19937 random(seed);
     const auto number = [&] { return static_cast<double>(random() % 7) - 3; };
@@ -107,7 +107,7 @@ TEST_F(MapsContourWays, OneImageOfSoupsAndWithinBounds) {
 }
 
 // Meshes with every defect that there is a name for, and soups whose corners, edges and planes coincide.
-TEST_F(MapsContourWays, OneImageOfBrokenMeshesAndLatticeSoups) {
+TEST_F(MapsContourVariants, OneImageOfBrokenMeshesAndLatticeSoups) {
   for (const std::uint32_t seed : {1U, 2U}) {
     const mesh::LatticeSoup soup{.triangles = 40, .cells = 3, .seed = seed, .center = {0, 1, 0}};
     expect_one_image(Stage(with_a_floor(mesh::make_lattice_soup(soup)), 12, 12, light_samples(1)), "24",
@@ -121,7 +121,7 @@ TEST_F(MapsContourWays, OneImageOfBrokenMeshesAndLatticeSoups) {
 
 // Nodes are entered for outlines alone, which grow as a map's side does, 4 times; areas would grow 16 times. The
 // light's plane cuts the floor: a hemicube's sideways faces see most of the floor, and what is beside the light.
-TEST_F(MapsContourWays, HierarchiesFollowOutlinesInHemicubes) {
+TEST_F(MapsContourVariants, HierarchiesFollowOutlinesInHemicubes) {
   scenes::Scene scene = contour_floor(0.6);
   add_object(scene, "ball", sphere({0, 1, 0}, 0.5, 24));
   scene.lights.front() = rectangle_light({0, 3, -2.5}, {1.2, 0, 0}, {0, 1, 0.6});

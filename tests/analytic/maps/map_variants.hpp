@@ -14,11 +14,11 @@
 namespace penumbra::tests {
 
 /// A method and its options.
-struct Way {
+struct MapVariant {
   std::string method;
   visibility::MethodOptions options;
 
-  explicit Way(const std::string& words) {
+  explicit MapVariant(const std::string& words) {
     std::stringstream fields(words);
     std::getline(fields, method, ':');
     for (std::string field; std::getline(fields, field, ':');) {
@@ -27,10 +27,10 @@ struct Way {
     }
   }
   /// Returns this variant with more options, for those that it leaves open.
-  [[nodiscard]] Way with(const visibility::MethodOptions& more) const {
-    Way way = *this;
-    way.options.insert(more.begin(), more.end());
-    return way;
+  [[nodiscard]] MapVariant with(const visibility::MethodOptions& more) const {
+    MapVariant variant = *this;
+    variant.options.insert(more.begin(), more.end());
+    return variant;
   }
   [[nodiscard]] std::unique_ptr<visibility::Method> make(const render::Device& device) const {
     static const std::map<std::string, Factory> factories{{"shadow-map", maps::make_shadow_map},
