@@ -365,7 +365,7 @@ def upward(a, b, k):
     return (a, b, -k) if a[1] < b[1] else (b, a, k)
 
 
-def change_on_the_way(edge, q, middle, left=-1.0):
+def change_along_the_path(edge, q, middle, left=-1.0):
     """Returns what an edge changes along a path to q: up the left side, along the row's middle, and then straight to q."""
     (x0, y0), (x1, y1), jump = edge
     spans, over = y0 <= middle < y1, x1 - x0
@@ -391,7 +391,7 @@ def points_figure():
         return -1 + (min(rows - 1, int((q[1] + 1) * rows / 2)) + 0.5) * 2 / rows
 
     for q in samples:
-        found = sum(change_on_the_way(edge, q, middle_of(q)) for edge in edges)
+        found = sum(change_along_the_path(edge, q, middle_of(q)) for edge in edges)
         assert found == inside(q, counter_clockwise(corners)), "closed outlines add up to the depth"
 
     low, high, jump = edges[2]      # from the triangle's left corner down to the right
@@ -404,13 +404,13 @@ def points_figure():
     view.line((-1, middle), (1, middle), GREEN, 1, dash="4 3")
     view.line((-1, -1), (-1, 1), FAINT, 1.2)
     in_row = sorted(q for q in samples if middle_of(q) == middle)
-    changed = [q for q in in_row if change_on_the_way((low, high, jump), q, middle)]
+    changed = [q for q in in_row if change_along_the_path((low, high, jump), q, middle)]
     beside = [q for q in in_row if min(low[0], high[0]) <= q[0] < max(low[0], high[0])]
-    shown = [beside[0], next(q for q in in_row if q[0] > max(low[0], high[0]))]
+    shown = [next(q for q in in_row if q[0] > max(low[0], high[0])), max(beside, key=lambda q: abs(q[1] - middle))]
     assert changed and len(changed) < len(in_row)
-    for q, color in zip(shown, (BLUE, DARK)):
+    for q, color, width in zip(shown, (DARK, BLUE), (4, 1.8)):  # the second on a part of the first
         for x, y in (((-1, -1), (-1, middle)), ((-1, middle), (q[0], middle)), ((q[0], middle), q)):
-            view.line(x, y, color, 1.8)
+            view.line(x, y, color, width)
     for q in samples:
         view.dot(q, 3.2, RED if q in changed else LIGHT if q in in_row else PALE, stroke=INK, width=0.5)
     view.line(low, high, INK, 2.2)
