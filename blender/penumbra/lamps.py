@@ -92,15 +92,16 @@ def is_linked(thing):
 
 
 class Ball:
-    """A lamp of some size. `is_disk`: Cycles has a disk that faces what it lights, which at distance d sends 1 + r² / d² times
-    less; of spots the cone says so (visibility::spot_share)."""
+    """A lamp with a radius, which is a ball here. `is_disk`: in Cycles the lamp is a disk that faces each receiver, which at
+    distance d gets 1 + r² / d² times less; for spot lamps the program computes that (visibility::spot_share)."""
 
     def __init__(self, name, center, radius, is_disk):
         self.name, self.center, self.radius, self.is_disk = name, center, radius, is_disk
 
 
 def check_balls(balls, surfaces, losses):
-    """`surfaces`: space.Placed. What stands within a ball would be black."""
+    """Refuses balls that reach one of the `surfaces` (space.Placed), which would be black inside; mentions balls that a
+    surface is so near to that it is brighter than in Cycles."""
     surfaces = space.Surfaces(surfaces)
     for ball in balls:
         surface, nearest = surfaces.nearest_to(ball.center, 8 * ball.radius)
@@ -116,7 +117,7 @@ def check_balls(balls, surfaces, losses):
 
 
 def write_lamp(lamp, name, matrix, glb, losses):
-    """Adds a lamp to the file. `matrix`: rows. One that is off, or has no size to be seen by, is none. Returns its Balls."""
+    """Adds a lamp to the file, unless it sends no light. `matrix`: rows. Returns its Balls."""
     factor = emission_of(lamp, losses, name)
     power = tuple(x * y for x, y in zip(power_of(lamp), factor))
     if min(power) < 0:

@@ -128,7 +128,7 @@ class Colors(unittest.TestCase):
                 self.beside_cycles(build)
 
     def test_constant_colours(self):
-        """Each node of constants: what is left of the picture is one colour."""
+        """Nodes whose inputs are all constants: each evaluates to one colour, so the surface has no picture."""
         one, two = (0.7, 0.6, 0.5, 1), (0.9, 0.5, 0.7, 1)
         nodes = [("ShaderNodeHueSaturation", dict(_0=0.6, _1=0.7, _2=1.1, _3=0.8, _4=one)),
                  ("ShaderNodeGamma", dict(_0=one, _1=1.7)), ("ShaderNodeBrightContrast", dict(_0=one, _1=0.1, _2=0.2)),

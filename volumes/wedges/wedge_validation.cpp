@@ -43,7 +43,7 @@ class Cover {
       ++report_.checks[static_cast<std::size_t>(Invariant::cover)];
       if (wedge.parent) {
         if (*wedge.parent >= i) {
-          fail(i, "a piece stands before what it is a piece of");
+          fail(i, "a piece comes before the wedge that was split");
         } else {
           pieces_[*wedge.parent].push_back(i);
         }
@@ -51,9 +51,9 @@ class Cover {
       }
       const std::uint32_t source = roots++;
       if (source >= input_.casting.wedges.size() || wedge.source != source) {
-        fail(i, "not the edge whose turn it is");
+        fail(i, "not the next edge of those requested");
       } else if (wedge.a != input_.casting.wedges[source].a || wedge.b != input_.casting.wedges[source].b) {
-        fail(i, "not the whole edge");
+        fail(i, "the ends are not those of the edge");
       }
     }
     if (roots != input_.casting.wedges.size()) {
@@ -67,7 +67,7 @@ class Cover {
     const Wedge& whole = input_.wedges[i];
     const std::vector<std::uint32_t>& pieces = pieces_[i];
     if ((whole.outcome == WedgeOutcome::split) != !pieces.empty())
-      return fail(i, "split and pieces do not go together");
+      return fail(i, "pieces of a wedge that is not split, or a split wedge without pieces");
     if (pieces.empty()) return;
     if (pieces.size() != 2) return fail(i, fmt::format("{} pieces", pieces.size()));
     const Wedge &one = input_.wedges[pieces[0]], &two = input_.wedges[pieces[1]];
@@ -76,7 +76,7 @@ class Cover {
                          glm::all(glm::lessThanEqual(middle, glm::max(whole.a, whole.b)));
     if (one.a != whole.a || two.a != middle || two.b != whole.b || !between ||
         !mesh::collinear(whole.a, middle, whole.b)) {
-      fail(i, "the pieces are not the edge");
+      fail(i, "the pieces together are not the edge");
     }
   }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// edge-scatter with rows=exact under spheres that casters reach into, as lamps have it whose own body does: areas of
-// what is before the disk that each view sample sees, against integers.
+// Exact areas by edge-scatter (rows=exact) under spheres that casters reach into, as the body of a lamp does. A view
+// sample sees such a sphere as a disk; the area of what lies in front of the disk is compared with integer arithmetic.
 
 #include "tests/agreement/cracked_ball.hpp"
 #include "tests/agreement/volumes/exact_rows.hpp"
@@ -60,7 +60,7 @@ TEST_F(SpheresThatHold, Balls) {
   EXPECT_LE(found.unproven, found.pixels / 100);
 }
 
-/// Triangles of any size and at any angle to the disk, far from zero, where all is rounded more.
+/// Triangles of any size and at any angle to the disk, far from the origin, where rounding errors are larger.
 TEST_F(SpheresThatHold, Triangles) {
   Found found;
   for (std::uint32_t seed = 0; seed < 40; ++seed) {
@@ -84,7 +84,7 @@ TEST_F(SpheresThatHold, Triangles) {
   EXPECT_LE(found.unproven, found.pixels / 20);
 }
 
-/// A lamp in a shade: two cones around the sphere, the lower one through it, as they are modelled, in rings.
+/// Lampshades as they are modelled: two cones of rings around the sphere, the lower of which passes through it.
 TEST_F(SpheresThatHold, LampShades) {
   Found found;
   for (std::uint32_t seed = 0; seed < 10; ++seed) {
@@ -108,7 +108,8 @@ TEST_F(SpheresThatHold, LampShades) {
   EXPECT_LE(found.unproven, found.pixels / 50);
 }
 
-/// Walls through the sphere whose edges are in no list, two of them; or one, and a ceiling that hides all of the light.
+/// Two walls through the sphere, so large that no list has their edges; or one wall, and a ceiling that hides all of
+/// the light.
 TEST_F(SpheresThatHold, Walls) {
   Found found;
   for (std::uint32_t seed = 0; seed < 10; ++seed) {
@@ -132,7 +133,7 @@ TEST_F(SpheresThatHold, Walls) {
   EXPECT_LE(found.unproven, found.pixels / 50);
 }
 
-/// All on multiples of a half: the sphere, what it holds and p.
+/// Returns a scene whose sphere and casters have coordinates that are multiples of a half.
 scenes::Scene halves_in_a_sphere(std::mt19937& random) {
   const auto half = [&](int low, int high) {
     return 0.5 * (low + static_cast<int>(random() % static_cast<unsigned>(high - low + 1)));
@@ -173,7 +174,7 @@ TEST_F(SpheresThatHold, Halves) {
   expect_right("halves", found);
 }
 
-/// A view sample alone gets the answer that it gets among others: neither lists nor what they leave out show.
+/// A view sample gets the same bits alone as among others, whichever edges the lists of its neighbours hold.
 TEST_F(SpheresThatHold, NeighboursDoNotMatter) {
   std::size_t partly = 0;
   for (std::uint32_t seed = 0; seed < 200; ++seed) {
@@ -229,8 +230,8 @@ TEST_F(SpheresThatHold, AnOutlineAtTheLeftSide) {
   EXPECT_EQ(found.unproven, 0U);
 }
 
-/// A panel nearly in the disk's plane, with a corner within rounding of it: where it passes through is anywhere along
-/// its sides.
+/// A panel that nearly lies in the disk's plane, with a corner within rounding of that plane: rounding decides where the
+/// panel passes through the plane.
 TEST_F(SpheresThatHold, PanelsInTheDisk) {
   for (const double below : {-1e-12, -3e-13, -2.5e-13, -1e-13, 0.0, 2e-13}) {
     for (const double above : {4e-13, 5e-13, 1e-12, 1e-9, 0.0}) {
