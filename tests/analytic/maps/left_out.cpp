@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Texels that are left out many at a time because none of them can shade a receiver: bounds decide, and here are the
-// inputs that come nearest to them.
+// Tests the bounds by which blocks of texels are skipped because none of them can shade a receiver, with inputs that
+// come nearest to the bounds.
 
 #include "tests/analytic/maps/backprojection_scenes.hpp"
 #include "tests/analytic/maps/backprojection/patch_twin.hpp"
@@ -42,8 +42,9 @@ TEST_F(MapsLeftOut, NothingThatIsJustAboveTheFloor) {
   }
 }
 
-// A long light, seen 240 texels wide, and a caster that hides the first few of them: what bounds of the light's image
-// may be off by is a few hundredths of that. The caster's edge stands at each place in a tile of eight texels.
+// A long light, whose image is 240 texels wide, and a caster that hides the first few of them. Bounds of the image may
+// be off by a few hundredths of what the caster hides. The caster's edge stands at each place in a tile of eight
+// texels.
 TEST_F(MapsLeftOut, NothingThatIsSeenOnTheLightsBorder) {
   constexpr std::uint32_t kSize = 256;
   constexpr double kTexel = 1.6 * 2 / 240;
