@@ -230,8 +230,8 @@ TEST_F(SpheresThatHold, AnOutlineAtTheLeftSide) {
   EXPECT_EQ(found.unproven, 0U);
 }
 
-/// A panel that nearly lies in the disk's plane, with a corner within rounding of that plane: rounding decides where the
-/// panel passes through the plane.
+/// A panel that nearly lies in the disk's plane, with a corner within rounding of that plane: rounding decides where
+/// the panel passes through the plane.
 TEST_F(SpheresThatHold, PanelsInTheDisk) {
   for (const double below : {-1e-12, -3e-13, -2.5e-13, -1e-13, 0.0, 2e-13}) {
     for (const double above : {4e-13, 5e-13, 1e-12, 1e-9, 0.0}) {

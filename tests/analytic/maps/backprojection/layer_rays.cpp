@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Compares each bit of layer-rays with a ray that is tried at every texel, wall and column of the layers. The surfaces are
-// those of patches; errors get smaller with every layer, and are large where a layer is missing.
+// Compares each bit of layer-rays with a ray that is tried at every texel, wall and column of the layers. The surfaces
+// are those of patches; errors get smaller with every layer, and are large where a layer is missing.
 
 #include "reference/methods.hpp"
 #include "tests/analytic/maps/backprojection_scenes.hpp"
