@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Measures ratios of time that the papers sell, one method's over another's, into results/time-ratios.json.
 
-  bench/time_ratios.py [PROGRAM]           about an hour and a half on two busy cores
+  bench/time_ratios.py [PROGRAM]           about half an hour on two threads
   bench/time_ratios.py --only TEXT …       of the questions whose paper or words have one of these texts
   bench/time_ratios.py --write-scenes FOLDER      the scenes as GLB files, for a machine without the packages that hold their meshes
   bench/time_ratios.py --gpu FOLDER FILE.json     on a GPU, from those scenes: into FILE.json
