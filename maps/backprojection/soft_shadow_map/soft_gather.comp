@@ -3,6 +3,7 @@
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 #include "maps/backprojection/soft_shadow_map/soft_shadow_map.shared.h"
+#include "render/group_order.glsl"
 
 // Computes the sums of Atty et al. 2006 by gathering: each texel of the receivers' map adds the occluder texels that
 // can hide light from it. An occluder between the receiver and the light, and no nearer to the light's plane than
@@ -29,7 +30,7 @@ float to_half(float x) {
 }
 
 void main() {
-  const uint i = (gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x) * gl_WorkGroupSize.x + gl_LocalInvocationID.x;
+  const uint i = group_in_turn() * gl_WorkGroupSize.x + gl_LocalInvocationID.x;
   if (i >= push.receiver_size * push.receiver_size) return;
   const uint result = push.receiver_first + i;
   const float stored = receiver_map[result];
