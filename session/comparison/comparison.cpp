@@ -41,7 +41,6 @@ namespace penumbra::session {
 namespace {
 
 using visibility::Light;
-using visibility::MethodDescription;
 using visibility::Output;
 
 class Comparison {

@@ -160,7 +160,9 @@ auto over_floor(std::uint32_t columns, std::uint32_t rows, double middle, double
     samples.width = columns;
     samples.height = rows;
     for (std::uint32_t i = 0; i < columns * rows; ++i) {
-      const double s = (2.0 * (i % columns) + 1) / columns - 1, t = (2.0 * (i / columns) + 1) / rows - 1;
+      const double s = (2.0 * (i % columns) + 1) / columns - 1;
+      const std::uint32_t row = i / columns;
+      const double t = (2.0 * row + 1) / rows - 1;
       samples.triangle.push_back(0);
       samples.p.emplace_back(glm::dvec3(middle + half * s, 0, rows == 1 ? 0.01 : half * t) - floats.origin);
       samples.n.emplace_back(0, 1, 0);

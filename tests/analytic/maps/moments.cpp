@@ -100,28 +100,6 @@ TEST_F(Vssm, TexelByTexelItIsItsTwinAtAnyHeight) {
   }
 }
 
-/// A floor under half-planes parallel to it and to the light.
-struct Strip {
-  double height, x0, x1;
-};
-scenes::Scene under_boards(const std::vector<Strip>& boards, double light = 0.5) {
-  scenes::Scene scene;
-  add_quad(scene, {0, 0, 0}, {2, 0, 0}, {0, 0, 2});
-  for (const Strip& board : boards) {
-    add_quad(scene, {(board.x0 + board.x1) / 2, board.height, 0}, {(board.x1 - board.x0) / 2, 0, 0}, {0, 0, 3})
-        .receives_shadow = false;
-  }
-  scene.lights.push_back(ceiling_light(4, light));
-  scene.cameras.push_back(camera({0, 1, 3}, {0, 0, 0}));
-  return scene;
-}
-
-/// The floor's middle, 48 × 48.
-Stage floor_stage(const std::vector<Strip>& boards, double light = 0.5) {
-  return {under_boards(boards, light), 48, 48, light_samples(1),
-          grid_samples(48, {0, 0, 0}, {1.2, 0, 0}, {0, 0, 1.2}, {0, 1, 0})};
-}
-
 // Eisemann et al. 2009, section 4.2.1: one flat blocker and one flat receiver, both parallel to the light, are two
 // depths, and of those the bound is the share itself.
 TEST_F(Vssm, OfTwoDepthsTheBoundIsTheShare) {

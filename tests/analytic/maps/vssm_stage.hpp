@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include <vector>
+
 namespace penumbra::tests {
 
 inline constexpr std::uint32_t kMapSize = 128;
@@ -46,6 +48,29 @@ inline scenes::Scene scene_with(const decltype(scenes::AreaLight::shape)& shape)
   scene.lights.back().shape = shape;
   scene.cameras.push_back(camera({0, 5, 4}, {0, 0, 0}, 40));
   return scene;
+}
+
+/// A board parallel to the floor and to the light, as wide as a half-plane along z.
+struct Strip {
+  double height, x0, x1;
+};
+/// Returns a floor under boards.
+inline scenes::Scene under_boards(const std::vector<Strip>& boards, double light = 0.5) {
+  scenes::Scene scene;
+  add_quad(scene, {0, 0, 0}, {2, 0, 0}, {0, 0, 2});
+  for (const Strip& board : boards) {
+    add_quad(scene, {(board.x0 + board.x1) / 2, board.height, 0}, {(board.x1 - board.x0) / 2, 0, 0}, {0, 0, 3})
+        .receives_shadow = false;
+  }
+  scene.lights.push_back(ceiling_light(4, light));
+  scene.cameras.push_back(camera({0, 1, 3}, {0, 0, 0}));
+  return scene;
+}
+
+/// Returns the middle of such a floor, by 48 × 48 view samples.
+inline Stage floor_stage(const std::vector<Strip>& boards, double light = 0.5) {
+  return {under_boards(boards, light), 48, 48, light_samples(1),
+          grid_samples(48, {0, 0, 0}, {1.2, 0, 0}, {0, 0, 1.2}, {0, 1, 0})};
 }
 
 class Vssm : public MapsTest {};

@@ -10,6 +10,8 @@
 #include "render/group_order.shared.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <span>
 #include <vector>
 
 namespace penumbra::render {
@@ -38,9 +40,9 @@ TEST_F(GroupOrder, NumbersEachWorkgroupOnce) {
     // Half of any eighth of a launch is in the first half of the picture, but for a strip at each end and the rest.
     if (count < 4096) continue;
     for (std::uint32_t part = 0; part < 8; ++part) {
-      const auto begin = number_of.begin() + part * (count / 8);
-      const auto in_first_half =
-          std::count_if(begin, begin + count / 8, [&](std::uint32_t n) { return n < count / 2; });
+      const std::size_t first = std::size_t{part} * (count / 8);
+      const auto in_first_half = std::ranges::count_if(std::span(number_of).subspan(first, count / 8),
+                                                       [&](std::uint32_t n) { return n < count / 2; });
       EXPECT_NEAR(static_cast<double>(in_first_half), count / 16.0, 2.0 * gpu::kStripsOnProcessor)
           << count << ", part " << part;
     }

@@ -4,21 +4,22 @@
 
 #include "reference/methods.hpp"
 #include "tests/analytic/maps/backprojection_scenes.hpp"
+#include "tests/analytic/maps/centre_maps.hpp"
 #include "tests/analytic/maps/map_variants.hpp"
 
 namespace penumbra::tests {
 namespace {
 
-constexpr const char* kHorizonWays[] = {"backproject",
-                                        "backproject:fill=none:search=none",
-                                        "backproject:fill=shared:search=mssm",
-                                        "backproject-peel:samples=0",
-                                        "contour",
-                                        "contour:search=none:traversal=flat",
-                                        "packet",
-                                        "packet:sublights=2",
-                                        "bitmask",
-                                        "soft-shadow-map:receiverSize=256"};
+constexpr const char* kHorizonVariants[] = {"backproject",
+                                            "backproject:fill=none:search=none",
+                                            "backproject:fill=shared:search=mssm",
+                                            "backproject-peel:samples=0",
+                                            "contour",
+                                            "contour:search=none:traversal=flat",
+                                            "packet",
+                                            "packet:sublights=2",
+                                            "bitmask",
+                                            "soft-shadow-map:receiverSize=256"};
 
 /// A wall in the plane x = 0, lit from x > 0 by a light that reaches 1 to either side of x = `aside` at height 5;
 /// boards stand before it, at height 3.5, from x = `from` to x = `to`. The wall casts a shadow or not.
@@ -48,7 +49,7 @@ TEST_F(MapsHorizon, WhatIsHiddenIsTakenFromWhatIsAbove) {
     for (const double to : {1.5, 0.3}) {
       const Stage stage = stage_of(wall(aside, 0, to, false));
       const Masks exact = tests::run(*reference::make_exact({}), stage);
-      for (const char* words : kHorizonWays) {
+      for (const char* words : kHorizonVariants) {
         const Masks found = run(*MapVariant(words).with({{"size", "128"}}).make(device()), stage);
         double most = 0;
         for (std::size_t i = 0; i < stage.samples.size(); ++i) {
@@ -69,7 +70,7 @@ TEST_F(MapsHorizon, TheWallsOwnBackHidesNothing) {
     scenes::Scene scene = wall(aside, 4, 5, true);
     const Stage stage = stage_of(scene);
     const double above = (1 + aside) / 2;
-    for (const char* words : kHorizonWays) {
+    for (const char* words : kHorizonVariants) {
       if (std::string(words).starts_with("soft")) continue;
       const Masks found = run(*MapVariant(words).with({{"size", "64"}}).make(device()), stage);
       for (std::size_t i = 0; i < stage.samples.size(); ++i) {
@@ -86,7 +87,7 @@ TEST_F(MapsHorizon, WhatIsBelowThePlaneHidesNothingAboveTheHorizon) {
   for (const double aside : {-0.4, 0.1, 0.4}) {
     const Stage stage = stage_of(wall(aside, -1.5, -0.02, false));
     const double above = (1 + aside) / 2;
-    for (const char* words : kHorizonWays) {
+    for (const char* words : kHorizonVariants) {
       if (std::string(words).starts_with("soft")) continue;  // its maps know no planes
       const Masks found = run(*MapVariant(words).with({{"size", "64"}}).make(device()), stage);
       for (std::size_t i = 0; i < stage.samples.size(); ++i) {
