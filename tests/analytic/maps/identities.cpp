@@ -263,7 +263,7 @@ class MapsIdentities : public MapsTest {
   }
 };
 
-TEST_F(MapsIdentities, HoldBetweenWays) {
+TEST_F(MapsIdentities, HoldBetweenVariants) {
   Pictures pictures(20);
   for (const Place& place : few_places()) expect_identities(pictures, place, kIdentities);
 }

@@ -2,6 +2,8 @@
 // Tests which requests the page's server answers.
 #include "network/requests.hpp"
 
+#include "base/error.hpp"
+
 #include <gtest/gtest.h>
 
 #include <set>
