@@ -13,9 +13,15 @@ function(penumbra_shader_output source ending path output)
   set(${output} ${made} PARENT_SCOPE)
 endfunction()
 
-# penumbra_embedded(target header…): builds the target with these headers on its include path.
+# penumbra_embedded(target header…): builds the target with these headers on its include path. They are a target of their
+# own: commands of `target` itself would wait for the libraries that it links, and objects of all that link it for these
+# commands.
 function(penumbra_embedded target)
-  target_sources(${target} PRIVATE ${ARGN})
+  get_property(count GLOBAL PROPERTY PENUMBRA_EMBEDDED)
+  math(EXPR count "0${count} + 1")
+  set_property(GLOBAL PROPERTY PENUMBRA_EMBEDDED ${count})
+  add_custom_target(${target}_embedded_${count} DEPENDS ${ARGN})
+  add_dependencies(${target} ${target}_embedded_${count})
   target_include_directories(${target} PRIVATE ${PROJECT_BINARY_DIR}/shaders)
 endfunction()
 
