@@ -55,7 +55,7 @@ struct Strip {
   double height, x0, x1;
 };
 /// Returns a floor under boards.
-inline scenes::Scene under_boards(const std::vector<Strip>& boards, double light = 0.5) {
+inline scenes::Scene under_strips(const std::vector<Strip>& boards, double light = 0.5) {
   scenes::Scene scene;
   add_quad(scene, {0, 0, 0}, {2, 0, 0}, {0, 0, 2});
   for (const Strip& board : boards) {
@@ -69,7 +69,7 @@ inline scenes::Scene under_boards(const std::vector<Strip>& boards, double light
 
 /// Returns the middle of such a floor, by 48 × 48 view samples.
 inline Stage floor_stage(const std::vector<Strip>& boards, double light = 0.5) {
-  return {under_boards(boards, light), 48, 48, light_samples(1),
+  return {under_strips(boards, light), 48, 48, light_samples(1),
           grid_samples(48, {0, 0, 0}, {1.2, 0, 0}, {0, 0, 1.2}, {0, 1, 0})};
 }
 

@@ -163,7 +163,7 @@ TEST_F(Vssm, OfTwoDepthsTheBoundOfExponentialsIsTheShare) {
 // a caster lay 1/1024 of the depth behind it, which exp(80 t) counted as 1.17 times lit.)
 TEST_F(Vssm, AFloorThatCastsNothingIsNoBrighter) {
   const auto with = [&](bool casts, const VssmSettings& settings) {
-    scenes::Scene scene = under_boards(std::vector<Strip>{{2, -0.7, 0.1}});
+    scenes::Scene scene = under_strips(std::vector<Strip>{{2, -0.7, 0.1}});
     scene.objects[0].casts_shadow = casts;
     const Stage stage(scene, 48, 48, light_samples(1),
                       grid_samples(48, {0, 0, 0}, {1.2, 0, 0}, {0, 0, 1.2}, {0, 1, 0}));
@@ -277,7 +277,7 @@ TEST_F(Vssm, TheExponentialFailsWhereTexelsLieBehindTheReceiver) {
 
 // A light without size has windows of one texel, the receiver's own.
 TEST_F(Vssm, APointLightIsTheShadowMap) {
-  scenes::Scene scene = under_boards({{2, -0.7, 0.1}}, 1e-6);
+  scenes::Scene scene = under_strips({{2, -0.7, 0.1}}, 1e-6);
   const Stage stage(scene, 64, 64, light_samples(1), grid_samples(64, {0, 0, 0}, {1.9, 0, 0}, {0, 0, 1.9}, {0, 1, 0}));
   const Masks hard = run(maps::make_shadow_map, stage, {{"size", "128"}});
   for (const char* moments : {"vsm", "lvsm", "evsm", "esm"}) {
