@@ -78,7 +78,7 @@ std::optional<std::string> solid_materials_note(std::span<const std::string> mat
 
 std::optional<std::string> left_out_lamps_note(std::span<const std::string> lamps) {
   if (lamps.empty()) return std::nullopt;
-  return fmt::format("lamps, which a mesh has not: {}; left out (scenes of glTF 2.0, FBX and COLLADA keep them)",
+  return fmt::format("lamps, which a mesh does not have: {}; left out (scenes of glTF 2.0, FBX and COLLADA keep them)",
                      quoted(lamps));
 }
 

@@ -204,7 +204,7 @@ TEST_F(ForeignScenes, LampsOfX3dMeshesAreNamed) {
   };
   EXPECT_THAT(notes("lit.x3d", R"(<PointLight DEF="Key" location="0 3 0"/><Transform translation="1 0 0"><SpotLight/>
 <DirectionalLight DEF="Off" on="false"/></Transform>)"),
-              Contains(HasSubstr("lamps, which a mesh has not: 'Key', 'SpotLight'; left out")));
+              Contains(HasSubstr("lamps, which a mesh does not have: 'Key', 'SpotLight'; left out")));
   EXPECT_THAT(notes("unlit.x3d", R"(<DirectionalLight DEF="Off" on="false"/>)"), Not(Contains(HasSubstr("lamps"))));
 }
 

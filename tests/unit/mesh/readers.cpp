@@ -303,7 +303,7 @@ TEST_F(MeshReaders, ThreeDsLampsAreNamed) {
       chunk_3ds(0x4000, std::string("Rim\0", 4) + chunk_3ds(0x4600, bytes_of(2.f, 3.f, 0.f) + spot));
   const auto file = [](const std::string& objects) { return chunk_3ds(0x4D4D, chunk_3ds(0x3D3D, objects)); };
   EXPECT_THAT(read("lit.3ds", file(shape + lamp + rim)).notes,
-              testing::Contains(HasSubstr("lamps, which a mesh has not: 'Key', 'Rim'; left out")));
+              testing::Contains(HasSubstr("lamps, which a mesh does not have: 'Key', 'Rim'; left out")));
   EXPECT_THAT(read("unlit.3ds", file(shape)).notes, testing::Not(testing::Contains(HasSubstr("lamps"))));
 }
 
