@@ -9,7 +9,7 @@ backprojection.py. A ray is stopped where
   - (`solid`) a part of it in a texel is between the first and the second layer, or the third and the fourth.
 
 Each is written for all texels at once: with r the depth of a point of the ray, the point is seen in the map at s + (p - s) r / p.z over
-r, a line in 1/r. V is a whole number of rays; pixels are left out of which a ray passes within a hair of what decides."""
+r, a line in 1/r. V is a whole number of rays; pixels are left out where a ray passes so near to a border that rounding decides."""
 
 import sys
 import unittest

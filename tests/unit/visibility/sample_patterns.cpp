@@ -112,7 +112,7 @@ TEST(SamplePatterns, JitteredHasOnePointInEachStratum) {
   }
 }
 
-/// All of a stratum, everywhere alike: 410 ± 19 of 4096 points are in each tenth of theirs.
+/// Points fill their strata evenly: each tenth of a stratum, across and along, holds 410 ± 19 of 4096 points.
 TEST(SamplePatterns, JitteredFillsItsStrata) {
   std::array<int, 10> across{}, along{};
   for (const glm::dvec2& q : samples(4096, SamplePattern::jittered, 5)) {
