@@ -37,16 +37,17 @@ constexpr std::uint32_t kListedInTable = 3;
 class InspectCommand : public Command {
  public:
   explicit InspectCommand(CLI::App& app)
-      : Command(app, "inspect", "what is wrong with meshes, and what each method will make of them") {
+      : Command(app, "inspect", "list defects of meshes, and each method's verdict on them") {
     cli_.add_option("FILE", named_,
                     "meshes (OBJ, PLY, OFF, STL …), scenes (.json, .gltf, .glb), or folders of them, taken with the "
                     "folders below")
         ->required()
         ->type_name("FILE|FOLDER");
     cli_.add_option("--json", json_,
-                    "the whole report as JSON, of several files an array; - for stdout, in place of the table")
+                    "the whole report as JSON, for several files an array; - for stdout, in place of the table")
         ->type_name("FILE");
-    cli_.add_option("--csv", csv_, "a row a file, with the counts of the JSON; - for stdout, in place of the table")
+    cli_.add_option("--csv", csv_,
+                    "a row for each file, with the counts of the JSON; - for stdout, in place of the table")
         ->type_name("FILE");
     cli_.add_option("--fail-on", fail_on_text_,
                     "exit with 1 if one of these counts of the JSON is not 0 in a file: boundaryEdges, needles …, "
@@ -54,14 +55,14 @@ class InspectCommand : public Command {
         ->type_name("NAME,…");
     cli_.add_flag("--methods", methods_, "list each method's verdict on the mesh, with its reason");
     cli_.add_option("--png", png_,
-                    "a picture of the mesh with its defects coloured (see below), from two sides; of several files "
+                    "a picture of the mesh with its defects coloured (see below), from two sides; for several files "
                     "OUT-0001-NAME.png and so on")
         ->type_name("OUT.png");
     cli_.add_option("--export-defects", defects_, "the mesh with its defects coloured (see below)")
         ->type_name("FILE.ply");
     cli_.add_option("--repair", repaired_, "repair what can be repaired, and say what was done and what was not")
         ->type_name("OUT.ply|.obj|.stl|.off|.glb");
-    cli_.add_option("--weld", weld_, "vertices at most this far apart (the file's unit) are one")
+    cli_.add_option("--weld", weld_, "merge vertices at most this far apart (in the file's unit)")
         ->type_name("T")
         ->default_str("0");
     auto* holes = cli_.add_option("--fill-holes", fill_holes_, "with --repair: close holes of up to N edges")
@@ -73,19 +74,22 @@ class InspectCommand : public Command {
     for (auto* option : {holes, static_cast<CLI::Option*>(resolve)}) option->needs("--repair");
     cli_.add_flag("--no-self-intersections", no_intersections_,
                   "do not search for self-intersections, which takes longest");
-    cli_.add_option(
-            "--list", list_,
-            fmt::format("places listed of each defect (default: {} in JSON, {} in the table)", kListed, kListedInTable))
+    cli_.add_option("--list", list_,
+                    fmt::format("number of places listed for each defect (default: {} in JSON, {} in the table)",
+                                kListed, kListedInTable))
         ->type_name("N");
     add_allow_outside(cli_, allow_outside_);
     cli_.footer(
-        "Prints the whole report of one file, but one table of several files or of a folder, a row a file; --verbose "
-        "prints the whole report of each. A file that cannot be read is a row with the reason; the others are done.\n"
+        "Prints the whole report of one file. For several files, or a folder, prints one table with a row for each "
+        "file; --verbose prints the whole report of each. A file that cannot be read has a row with the reason; the "
+        "other files are inspected.\n"
         "JSON of one FILE has \"notes\", \"objects\", their \"total\" and, at the top level, the total's keys: "
         "`penumbra inspect m.ply --json - | jq .boundaryEdges`; JSON of several files is an array of such entries. In "
-        "\"lists\", \"triangles\" are numbers in the order of `convert`, \"faces\" those of the mesh's own file.\n"
+        "\"lists\", \"triangles\" are numbers in the order in which `convert` writes triangles, \"faces\" are numbers "
+        "of faces in the mesh's own file.\n"
         "Exit code 0 if every file could be read, whatever is wrong with it; 3 if not; 1 if --fail-on found "
-        "something.\nColours of --export-defects and --png (of two, the lower in this list):\n" +
+        "something.\n"
+        "Colours of --export-defects and --png (where two defects meet, the colour of the lower one in this list):\n" +
         defect_legend());
   }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Repairs a mesh, writes it, and diagnoses what a reader makes of the written file: a format that joins vertices by
-// position can undo a repair, and the report must say so.
+// Repairs a mesh, writes it, reads the written file, and diagnoses the mesh that was read: a format that joins vertices
+// by position can undo a repair, and the report must say so.
 
 #include "app/inspect/repaired_file.hpp"
 
@@ -33,7 +33,7 @@ void write_mesh(const std::filesystem::path& file, const mesh::TriangleSoup& sou
   }
 }
 
-/// Returns what a reader makes of a file with this soup; `file` tells its name and folder, and is not written.
+/// Returns the mesh that is read from a file with this soup; `file` gives name and folder, and is not written.
 session::InspectedMesh read_again(const std::filesystem::path& file, const mesh::TriangleSoup& soup) {
   const session::UnwindsAfterSignals unwinds;
   const std::filesystem::path parent = file.has_parent_path() ? file.parent_path() : ".";

@@ -47,7 +47,7 @@ struct RepairReport {
 /// entry alone. For each defect the first `list_limit` locations are listed.
 nlohmann::ordered_json report_json(const FileReport& file, const std::optional<RepairReport>& repaired,
                                    std::size_t list_limit);
-/// Returns the entries of several files, as an array.
+/// Returns an array of the entries of several files.
 nlohmann::ordered_json report_json(std::span<const FileReport> files, std::size_t list_limit);
 
 /// Extent of a printed report.

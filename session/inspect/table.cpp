@@ -155,7 +155,7 @@ std::string verdict_counts(const std::vector<MethodVerdict>& verdicts) {
 }
 
 std::string method_rows(const std::vector<MethodVerdict>& verdicts) {
-  std::string text = "  what each method makes of it\n";
+  std::string text = "  each method's verdict on it\n";
   std::size_t width = 0;
   for (const MethodVerdict& said : verdicts) width = std::max(width, said.method.size());
   for (const MethodVerdict& said : verdicts) {
