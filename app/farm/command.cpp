@@ -52,8 +52,7 @@ class SubmitCommand : public Command {
     };
     add("--chunk", chunk_,
         "number of frames in each task of the array (default: as many as take a minute, judged by the first frame, "
-        "which "
-        "is rendered here)")
+        "which is rendered here)")
         ->type_name("N")
         ->check(CLI::Range(1, 100'000));
     add("--rounds", rounds_, "largest number of times that missing frames are submitted, the first time included")
@@ -64,7 +63,8 @@ class SubmitCommand : public Command {
         ->type_name("N")
         ->check(CLI::Range(1, 101))
         ->capture_default_str();
-    cli_.add_option("--logs", logs_, "folder for a log of each frame; tasks of the array write theirs beside their own")
+    cli_.add_option("--logs", logs_,
+                    "folder for a log of each frame; tasks of the array write these logs into the folder of their own")
         ->type_name("DIR");
     add("--sbatch", sbatch_, "option for sbatch: partition=NAME, time=HOURS:MM:SS, mem=8G …; may be given again")
         ->type_name("KEY[=VALUE]")

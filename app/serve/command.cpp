@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// `penumbra serve`: hands stdin and stdout to a Service and leaves without clean-up, since finishing a picture that
-// nobody waits for could take seconds.
+// `penumbra serve`: hands stdin and stdout to a Service and exits without clean-up, since finishing a picture that is
+// no longer wanted could take seconds.
 
 #include "app/commands.hpp"
 #include "app/serve/service.hpp"

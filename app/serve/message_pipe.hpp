@@ -64,7 +64,7 @@ class MessageSink {
 
   /// Writes messages in their order, without losses.
   void send(std::string message);
-  /// Like send(), but drops the message if a thousand are waiting: a reader who never reads stops nobody.
+  /// Like send(), but drops the message if a thousand are waiting: a client that never reads blocks nothing.
   void send_note(std::string message);
   /// Replaces a waiting picture whose writing has not begun.
   void send_picture(std::string message);

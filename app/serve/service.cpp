@@ -151,7 +151,7 @@ std::optional<PipeMessage> Service::next_message() {
       if (inbox_->fault) std::rethrow_exception(inbox_->fault);
       if (inbox_->ended) return std::nullopt;
     }
-    if (out_.is_closed()) throw ResourceError("stdout: nobody reads it any more");
+    if (out_.is_closed()) throw ResourceError("stdout: its reader has closed it");
     if (renderer_) renderer_->watch(std::chrono::milliseconds(0));
   }
 }

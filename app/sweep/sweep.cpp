@@ -125,7 +125,7 @@ scenes::Scene with_lights(scenes::Scene scene, const Values& sizes, const std::v
   return scene;
 }
 
-/// Throws if a light that was named keeps its size; of the others, warns of those that keep theirs while others vary.
+/// Throws if a light that was named keeps its size. Warns of other lights that keep their sizes while lights vary.
 void report_fixed_lights(const scenes::Scene& scene, std::span<const SweptKey> over,
                          const std::vector<std::string>& names, session::Progress& progress) {
   for (std::size_t i = 0; i < scene.lights.size(); ++i) {

@@ -81,7 +81,7 @@ class ViewCommand : public Command {
     cli_.add_option("--device", run_.device, "Vulkan device: part of its name, its index, or cpu (default: the best)")
         ->type_name("NAME|INDEX|cpu");
     cli_.add_option("--instances", instances_,
-                    "instances of meshes: as copies, which cost time and memory at the start; shared, found anew for "
+                    "instances of meshes: as copies, which cost time and memory at the start; shared, found again for "
                     "each picture, by methods that look from view samples to the light; or auto, as copies up to "
                     "5,000,000 triangles")
         ->type_name("auto|copies|shared");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lights by numbers: what a light is, changes of it, and the way back.
+// Lights by numbers: a light's values, changes of them, and undoing changes.
 let lights = [], off = [], solo = "", saved = { scene: "scene.json", pictures: {} }, history = [], undone = [], lightsBefore = "[]";
 const kinds = ["rectangle", "ellipse", "disk", "polygon", "sphere", "sun"];
 const kindOf = (light) => kinds.find((kind) => kind in light);

@@ -70,7 +70,7 @@ function placeOf(event) {
 
 const answerWords = (answer) => answer.method + (answer.lightSamples ? `, ${answer.lightSamples} light samples` : "");
 
-/// Names what is shown, and offers what belongs to the way of comparing.
+/// Names what is shown, and offers the controls of the kind of comparison.
 function nameShown() {
   const two = shown && shown.header.answers.length > 1 && shown.by.b, answers = shown ? shown.header.answers : [];
   byId("label-a").textContent = two && mode() !== "b" ? "A: " + answerWords(answers[0]) : "";

@@ -146,7 +146,7 @@ byId("show-seen").addEventListener("change", () => {
 const phases = ["load", "mesh", "view", "light", "evaluate", "beauty"];
 /// Sets a text where it is another, so that the browser lays out nothing that is as before.
 function say(element, text) { if (element.textContent !== text) element.textContent = text; }
-/// Sets the texts of a table's lines. Cells are made anew only where there is another number of them.
+/// Sets the texts of a table's lines. Cells are replaced only where their number changes.
 function showRows(section, rows, tag) {
   const cells = [...section.querySelectorAll("th, td")], texts = rows.flat();
   if (cells.length === texts.length && section.rows.length === rows.length) return cells.forEach((cell, i) => say(cell, texts[i]));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The eye outside: it turns around a point of the scene, by pointer and by keys.
+// The outside camera, which shows the scene in 3D: it turns around a point of the scene, by pointer and by keys.
 const outside = { target: [0, 0, 0], away: [0, 0, 1], size: 1 };
 const spaceCanvas = byId("space-canvas");
 let spacePointer = null;
