@@ -24,7 +24,7 @@ constexpr std::uint32_t kFewestRows = 16;  ///< pixel rows of a band: its neighb
 
 /// Pixel rows on either side of a band whose interpolated answers may differ from those of the whole picture
 /// (InterpolatedAreas): a view sample's cell has corners up to one row away, the slope at a corner takes the curvature
-/// of its neighbours, one row farther, and that takes theirs.
+/// of its neighbours, one row farther, and a curvature takes those neighbours' neighbours.
 constexpr std::uint32_t kRowsInterpolated = 3;
 
 }  // namespace

@@ -15,9 +15,9 @@
 namespace penumbra::session {
 
 /// Returns the names of whole lights' layers. A light's own name stays if it can be a layer: of two that differ by "_V"
-/// or "_light", which are a light's further layers, the first. Then the other lights get theirs: with dots and slashes,
-/// which create nested layers, and control characters as "_", cut where longer than hosts support (kLongestLayer), and
-/// with "_2", "_3" and so on if the name is reserved or taken.
+/// or "_light", which are a light's further layers, the first. Then the other lights get their names: with dots and
+/// slashes, which create nested layers, and control characters as "_", cut where longer than hosts support
+/// (kLongestLayer), and with "_2", "_3" and so on if the name is reserved or taken.
 std::vector<std::string> layer_names(std::span<const visibility::Light> lights);
 
 /// Blender keeps 50 bytes of a pass' name, including "_light".

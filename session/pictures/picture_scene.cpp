@@ -89,7 +89,8 @@ PictureScene read_picture_scene(const RunOptions& run, std::optional<double> tim
 
 std::vector<std::function<PictureScene()>> moments_in_files(const PictureOptions& options,
                                                             const PictureRequest& request, PictureScene& own) {
-  // A scene with instances has positions beside those of the soup. Its parts are asked anew at each moment anyway.
+  // A scene with instances has positions besides those of the soup. Its parts are evaluated again at each moment in any
+  // case.
   if (!options.moments.empty() && !own.scene.origin && own.instances.empty())
     own.scene.origin = scenes::bounds_of(own.scene.soup.positions).middle();
   const auto files = std::make_shared<MomentFiles>(options, request, own.scene);
