@@ -28,7 +28,8 @@ void write_sun(const LightShape& shape, TextStream& text) {
 void check_sun(const LightShape& shape, const std::string& where) {
   const auto& [direction, angle] = std::get<Sun>(shape);
   check_position(direction, where, "direction");
-  if (glm::length(direction) == 0) throw InputError("{}: the direction is zero; expected the way light travels", where);
+  if (glm::length(direction) == 0)
+    throw InputError("{}: the direction is zero; expected the direction in which light travels", where);
   if (!(angle >= 0 && angle < 180)) {
     throw InputError("{}: the angle is {} degrees; expected the sun's apparent diameter, from 0 to less than 180",
                      where, angle);
