@@ -140,7 +140,7 @@ def write_lamp(lamp, name, matrix, glb, losses):
     color = [x / strength for x in power]
     if lamp.type == "SUN":
         if lamp.angle > _WIDEST_SUN * (1 + 1e-6):
-            losses.refuse("is a sun wider than 120 degrees, which Cycles spreads unlike a sky", name)
+            losses.refuse("is a sun wider than 120 degrees, whose light Cycles does not spread evenly over directions", name)
         elif lamp.angle > _WIDE_SUN * (1 + 1e-6):
             losses.mention("is a sun wider than 90 degrees: as seen from surfaces that it does not stand straight above, it may be "
                            "2 % darker than in Cycles at 45 degrees and 8 % at 60", name)

@@ -159,7 +159,7 @@ def shaft_figure():
         return arc(center, radius, start, end, steps)
 
     def judge(points):
-        """Box, and what becomes of it: outside the shaft, all seen from one side, or needed."""
+        """Returns the box, and whether it is outside the shaft, all seen from one side, or needed."""
         x0, x1 = min(x for x, _ in points), max(x for x, _ in points)
         y0, y1 = min(y for _, y in points), max(y for _, y in points)
         corners = [(x0, y0), (x1, y0), (x1, y1), (x0, y1)]

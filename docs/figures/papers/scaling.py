@@ -20,8 +20,8 @@ SAMPLES = 256
 
 
 def run(runner, scene, size, runs):
-    """Medians of processor seconds and of the largest resident set in MiB. The program itself says how much that was: what
-    the system says of a child begins with the size of who started it."""
+    """Medians of processor seconds and of the largest resident set in MiB. The program itself says how much that was: the
+    system's number for a child begins with the size of the process that started it."""
     seconds, resident = [], []
     width, height = size if isinstance(size, tuple) else (size, size)
     with tempfile.TemporaryDirectory() as folder:
