@@ -5,7 +5,7 @@
 
 namespace penumbra {
 
-/// Empty folder for files that nobody keeps, removed with all that is in it by the destructor. Within
+/// Empty folder for temporary files. The destructor removes the folder with all that is in it. Within
 /// UnwindsAfterSignals a signal removes it, too.
 class ScratchFolder {
  public:

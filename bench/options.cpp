@@ -50,7 +50,7 @@ const char* const kHelp =
                        those of the frames' phases
   --frames N           of --sequence
   --cpu                instead of methods: edge graphs, edge records, hierarchies and penumbra wedges on the processor
-  --wedges-per-frame   instead of methods: silhouettes and wedges of a light that moves, built anew on the device and,
+  --wedges-per-frame   instead of methods: silhouettes and wedges of a light that moves, built again on the device and,
                        in turns with it, on the processor
   --triangles T        of the knots of --cpu (default 5000, 50000, 500000) and of --wedges-per-frame (default 10000,
                        100000, 1000000); may be given again

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a whole process takes, from its start to its end: for scripts that measure."""
+"""Measures processor time and memory of a whole process, from its start to its end. Used by scripts that measure."""
 
 import json
 import platform
@@ -21,8 +21,8 @@ with open(sys.argv[1], "w") as file:
 
 @dataclass
 class Usage:
-    seconds: float  # of processors, user and system, of the process and its children
-    mebibytes: float  # the largest resident set of one of them
+    seconds: float  # processor time, user and system, of the process and its children
+    mebibytes: float  # the largest resident set among the process and its children
 
 
 def usage_of(command, environment=None):

@@ -29,11 +29,11 @@ struct Subject {
 /// Subjects as given on the command line: texts become parts of stable names.
 struct SubjectRequest {
   std::vector<std::string> scenes;    ///< names, files, "knot:N"; empty: the shipped scenes
-  std::vector<std::string> halves;    ///< empty: the scenes' own, and of the shipped bunny also 0.3 and 2
+  std::vector<std::string> halves;    ///< empty: the scenes' own, and for the shipped bunny also 0.3 and 2
   std::vector<std::string> lights;    ///< kinds; empty: the scenes' own
   std::vector<std::string> patterns;  ///< empty: rows
   std::vector<std::uint32_t> sizes;   ///< empty: 512
-  bool all = false;                   ///< also the large shipped scene
+  bool all = false;                   ///< adds the large shipped scene
 };
 /// Makes all combinations. Throws UsageError for an unknown name or value.
 std::vector<Subject> make_subjects(const SubjectRequest& request);
@@ -42,11 +42,11 @@ std::vector<Subject> make_subjects(const SubjectRequest& request);
 scenes::Scene read_subject(const Subject& subject);
 
 /// Returns a torus knot, closed and shadowing itself, of exactly `triangles` triangles. Throws UsageError if there is
-/// none: a knot has 2 · segments · sides.
+/// none: a knot has 2 · segments · sides triangles.
 mesh::KnotShape knot_of(std::uint64_t triangles);
 
 /// Returns a sphere of latitudes and about twice as many longitudes, of exactly `triangles` triangles. Throws
-/// UsageError if there is none: a sphere has 2 · segments · (rings − 1).
+/// UsageError if there is none: a sphere has 2 · segments · (rings − 1) triangles.
 mesh::SphereShape sphere_of(std::uint64_t triangles);
 
 /// Returns the scene of sphere_of(triangles), arranged as knot_scene().

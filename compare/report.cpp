@@ -24,7 +24,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Writes the packed numbers, each in an element that no browser runs; the JSON names them. Exact methods share theirs.
+/// Writes the packed numbers, each in an element that no browser runs; the JSON names them. Exact methods share their
+/// numbers.
 class Blobs {
  public:
   Json add(const std::string& packed) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // All that the page shows: `report`, whose `metrics` is metrics.json (compare/report.cpp writes both), and the numbers behind
 // the pictures. The page carries these deflated (zlib) as base64, each in an element that no browser
-// runs; nothing is unpacked before somebody looks at it. compare/report_data.hpp packs what is unpacked here.
+// runs; nothing is unpacked before it is shown. compare/report_data.hpp packs what is unpacked here.
 
 const report = JSON.parse(document.getElementById("report-data").textContent);
 

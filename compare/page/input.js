@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pointer, keys and controls of the viewer, and the ways into it from the page.
+// Pointer, keys and controls of the viewer, and the page's links that open it.
 
 function setPixel(pixel, hold) {
   state.held = hold && pixel !== null;

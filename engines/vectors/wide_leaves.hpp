@@ -69,7 +69,7 @@ class WideLeaves {
   /// Makes the wanted leaves again, in place; all must have been made at once.
   template <typename Wanted>
   void make_again(const Wanted& wanted, const Make& make) {
-    PENUMBRA_ASSERT(blocks_.empty(), "{} leaves are made when somebody asks", count_);
+    PENUMBRA_ASSERT(blocks_.empty(), "{} leaves are made at first use", count_);
     for_each_index(own_.size(), [&](std::size_t number) {
       if (wanted(number)) make(number, own_[number] = {});
     });

@@ -59,7 +59,7 @@ LightHull hull_of(std::span<const Light> pieces) {
   LightHull hull;
   double size = 0;
   for (const Light& light : pieces) {
-    PENUMBRA_ASSERT(!light.dome, "light {}: ways to a dome go everywhere", light.name);
+    PENUMBRA_ASSERT(!light.dome, "light {}: segments to a dome have all directions", light.name);
     const glm::dvec3 center = light.center;
     if (light.sun) {
       const glm::dvec3 u = light.sun->tangent * glm::dvec3(light.sun->axis_u),

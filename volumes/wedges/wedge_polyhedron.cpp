@@ -218,7 +218,8 @@ std::optional<std::string> flaw_of(const Polyhedron& polyhedron) {
   for (const PolyhedronFace& face : polyhedron.faces) {
     for (std::size_t i = 0; i < face.loop.size(); ++i) {
       const auto edge = std::pair(face.loop[i], face.loop[(i + 1) % face.loop.size()]);
-      if (!edges.insert(edge).second) return fmt::format("edge {} {} runs twice the same way", edge.first, edge.second);
+      if (!edges.insert(edge).second)
+        return fmt::format("edge {} {} runs twice in the same direction", edge.first, edge.second);
     }
   }
   for (const auto& [from, to] : edges) {

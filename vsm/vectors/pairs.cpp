@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// View-sample mapping on a processor: a vector of triangles for one view sample, and their spans of light columns row
-// by row (scan conversion). Cases that float arithmetic cannot decide go to test_carefully.
+// View-sample mapping on a processor: tests a vector of triangles against one view sample, and finds the spans of light
+// columns that the triangles cover, row by row (scan conversion). Cases that float arithmetic cannot decide go to
+// test_carefully. The paper and our departures are on docs/view-sample.md.
 
 #include "vsm/vectors/pairs.hpp"
 
@@ -87,7 +88,7 @@ class SampleTest {
     });
   }
 
-  /// Finds spans of columns that triangles cover, row by row between the two edges that cross the row. (bound span)
+  /// Finds spans of columns that triangles cover: in each row, between the two edges that cross the row. (bound span)
   std::size_t convert(std::size_t i, std::size_t landed) {
     const D d;
     const I di;
@@ -160,7 +161,7 @@ class SampleTest {
   Projection project_;
 };
 
-/// Converts rows of columns to the mask's columns of rows.
+/// Transposes blocked light samples, stored row by row, into the mask, which is stored column by column.
 void write_mask(const LightGrid& grid, Blocked& blocked, SampleMask& mask) {
   const hn::CappedTag<std::uint16_t, 16> d;
   fill(grid, true, mask);
