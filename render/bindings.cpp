@@ -63,20 +63,16 @@ void Bindings::bind(Commands::State& commands, vk::PipelineBindPoint point, std:
   }
 }
 
-SpecializationConstants::SpecializationConstants(std::vector<std::uint32_t> values) : values_(std::move(values)) {
-  for (std::uint32_t i = 0; i < values_.size(); ++i) {
-    entries_.emplace_back(i, static_cast<std::uint32_t>(i * sizeof(std::uint32_t)), sizeof(std::uint32_t));
+SpecializationConstants::SpecializationConstants(std::vector<std::uint32_t> values,
+                                                 std::span<const NumberedConstant> others)
+    : values_(std::move(values)) {
+  constexpr std::uint32_t kBytes = sizeof(std::uint32_t);
+  for (std::uint32_t i = 0; i < values_.size(); ++i) entries_.emplace_back(i, i * kBytes, kBytes);
+  for (const NumberedConstant& other : others) {
+    entries_.emplace_back(other.id, static_cast<std::uint32_t>(values_.size()) * kBytes, kBytes);
+    values_.push_back(other.value);
   }
   info_.setMapEntries(entries_).setData<std::uint32_t>(values_);
-}
-
-SpecializationConstants::SpecializationConstants(std::vector<std::uint32_t> values, std::uint32_t id,
-                                                 std::uint32_t value)
-    : SpecializationConstants([&] {
-        values.push_back(value);
-        return std::move(values);
-      }()) {
-  entries_.back().constantID = id;
 }
 
 }  // namespace penumbra::render

@@ -31,11 +31,15 @@ class Bindings {
   vk::raii::PipelineLayout layout_{nullptr};
 };
 
-/// Specialization constants 0, 1, 2 … in Vulkan's form, and one with a number of its own.
+/// A specialization constant by its number in the shader.
+struct NumberedConstant {
+  std::uint32_t id, value;
+};
+
+/// Specialization constants in Vulkan's form: 0, 1, 2 … and others by their numbers.
 class SpecializationConstants {
  public:
-  explicit SpecializationConstants(std::vector<std::uint32_t> values);
-  SpecializationConstants(std::vector<std::uint32_t> values, std::uint32_t id, std::uint32_t value);
+  explicit SpecializationConstants(std::vector<std::uint32_t> values, std::span<const NumberedConstant> others = {});
   SpecializationConstants(const SpecializationConstants&) = delete;
   SpecializationConstants& operator=(const SpecializationConstants&) = delete;
   [[nodiscard]] const vk::SpecializationInfo* get() const { return &info_; }

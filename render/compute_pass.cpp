@@ -26,8 +26,8 @@ KeptPipeline make_pipeline(const Device& device, const ComputePassOptions& optio
   made.bindings = Bindings(state, options.name, shader, vk::ShaderStageFlagBits::eCompute);
 
   const vk::raii::Device& d = state.device;
-  const std::uint32_t strips = device.info().kind == "cpu" ? gpu::kStripsOnProcessor : 1;
-  const SpecializationConstants constants(options.constants, gpu::kStripsConstant, strips);
+  const NumberedConstant strips{gpu::kStripsConstant, device.info().kind == "cpu" ? gpu::kStripsOnProcessor : 1};
+  const SpecializationConstants constants(options.constants, std::span(&strips, 1));
   const vk::raii::ShaderModule module(d,
                                       vk::ShaderModuleCreateInfo({}, options.spirv.size_bytes(), options.spirv.data()));
   const vk::PipelineShaderStageRequiredSubgroupSizeCreateInfo subgroup(device.limits().subgroup_size);

@@ -17,9 +17,10 @@ namespace penumbra::render {
 struct ComputePassOptions {
   std::string name;  ///< labels timestamps, debug regions and errors
   std::span<const std::uint32_t> spirv;
-  std::uint32_t push_bytes = 0;            ///< sizeof the push-constant struct; checked against the shader
-  std::vector<std::uint32_t> constants{};  ///< specialization constants 0, 1, 2 …
-  bool full_subgroups = false;             ///< the workgroup is a whole number of subgroups of Limits::subgroup_size
+  std::uint32_t push_bytes = 0;  ///< sizeof the push-constant struct; checked against the shader
+  /// Specialization constants 0, 1, 2 …; the pass sets one more by itself (render/group_order.glsl).
+  std::vector<std::uint32_t> constants{};
+  bool full_subgroups = false;  ///< the workgroup is a whole number of subgroups of Limits::subgroup_size
 };
 
 /// A compute pipeline whose bindings (set 0, storage and uniform texel buffers, binding 0 … n−1) and push-constant size

@@ -7,10 +7,10 @@
 namespace penumbra::render::gpu {
 using uint = std::uint32_t;
 inline constexpr uint kStripsConstant = 100;
+/// Value of this constant on processors. A strip of a picture of 512 x 512 pixels is eight rows.
 inline constexpr uint kStripsOnProcessor = 64;
 }  // namespace penumbra::render::gpu
 #else
-const uint kStripsConstant = 100;    // specialization constant that every compute pass sets
-const uint kStripsOnProcessor = 64;  // its value where workgroups take turns
+const uint kStripsConstant = 100;  // specialization constant that every compute pass sets
 #endif
 #endif  // PENUMBRA_RENDER_GROUP_ORDER

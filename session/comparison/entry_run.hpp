@@ -23,7 +23,7 @@
 
 namespace penumbra::session {
 
-/// What an entry of a comparison gave.
+/// Results of one entry of a comparison.
 struct EntryRun {
   MethodRun run;                   ///< of whole lights (whole_lights.hpp)
   std::vector<glm::vec3> beauty;   ///< of all lights, linear
@@ -31,7 +31,7 @@ struct EntryRun {
   Image8 picture = {};             ///< the beauty in sRGB, once an exposure is known
 };
 
-/// What all runs of a comparison share; every reference must outlive the runner.
+/// Scene, machine and options that all runs of a comparison share. Every reference must outlive the runner.
 struct EntrySurroundings {
   const Session& session;
   const render::Machine& machine;

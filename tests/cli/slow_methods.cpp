@@ -71,21 +71,26 @@ class SlowMethods : public ProgramTest {
     run.scene = tiny_scene();
     return run;
   }
+  /// Opens the tiny scene in that many pixels, "8x50".
+  [[nodiscard]] session::Session open(const std::string& size) {
+    session::RunOptions run = options();
+    run.size = size;
+    return session::open_session(run, std::nullopt, machine_, 0, progress_, 0);
+  }
+
+  const render::Machine machine_ = session::make_machine("cpu");
+  app::TerminalProgress progress_{false};
 };
 
 // 200 rows take 0.4 s or more: after a tenth of it the run ends, in tiles of 4, 8, 16 … rows, and says how long all
 // would take.
 TEST_F(SlowMethods, EndBetweenTiles) {
-  session::RunOptions run = options();
-  run.size = "8x200";
-  const render::Machine machine = session::make_machine("cpu");
-  app::TerminalProgress progress(false);
-  const session::Session session = session::open_session(run, std::nullopt, machine, 0, progress, 0);
+  const session::Session session = open("8x200");
   const auto none = [](const session::TileResult&) {};
   Slow slow;
   session::RunPlan plan{.lights = session.lights, .discard_first = true, .most_seconds = 0.04};
   try {
-    session::run_method(slow, session, plan, none, progress);
+    session::run_method(slow, session, plan, none, progress_);
     ADD_FAILURE() << "as long as it likes";
   } catch (const session::TakesTooLong& found) {
     EXPECT_GT(found.seconds, plan.most_seconds);
@@ -97,42 +102,34 @@ TEST_F(SlowMethods, EndBetweenTiles) {
   // The timed run is in one piece if the method is given the time that it takes.
   Slow patient;
   plan.most_seconds = 1e6;
-  EXPECT_EQ(session::run_method(patient, session, plan, none, progress).times.runs, 1U);
+  EXPECT_EQ(session::run_method(patient, session, plan, none, progress_).times.runs, 1U);
   EXPECT_THAT(patient.tiles, testing::ElementsAre(4U, 8U, 16U, 32U, 64U, 76U, 200U));
   // A run without a discarded one has no limit.
   Slow first;
   plan.most_seconds = 0;
   plan.discard_first = false;
-  EXPECT_NO_THROW(session::run_method(first, session, plan, none, progress));
+  EXPECT_NO_THROW(session::run_method(first, session, plan, none, progress_));
 }
 
 // Fifty rows take 0.1 s or more: a second run does not fit into 0.15 s after the first, which is made in any case.
 TEST_F(SlowMethods, RunAsOftenAsFits) {
-  session::RunOptions run = options();
-  run.size = "8x50";
-  const render::Machine machine = session::make_machine("cpu");
-  app::TerminalProgress progress(false);
-  const session::Session session = session::open_session(run, std::nullopt, machine, 0, progress, 0);
+  const session::Session session = open("8x50");
   session::RunPlan plan{.lights = session.lights, .runs = 5, .run_seconds = 0.15};
   const auto none = [](const session::TileResult&) {};
   Slow slow;
-  EXPECT_EQ(session::run_method(slow, session, plan, none, progress).times.runs, 1U);
+  EXPECT_EQ(session::run_method(slow, session, plan, none, progress_).times.runs, 1U);
   plan.run_seconds = std::numeric_limits<double>::infinity();
-  EXPECT_EQ(session::run_method(slow, session, plan, none, progress).times.runs, 5U);
+  EXPECT_EQ(session::run_method(slow, session, plan, none, progress_).times.runs, 5U);
 }
 
 // Sixty-four tiles of 80 ms would take 5 s, one takes 80 ms: less than the limit, so the method is kept. Its warm-up is
 // not the time of the first run's six tiles.
 TEST_F(SlowMethods, AreNotThoseWhoseTilesCostMuch) {
-  session::RunOptions run = options();
-  run.size = "8x200";
-  const render::Machine machine = session::make_machine("cpu");
-  app::TerminalProgress progress(false);
-  const session::Session session = session::open_session(run, std::nullopt, machine, 0, progress, 0);
+  const session::Session session = open("8x200");
   Slow slow(80, 0);
   const session::RunPlan plan{.lights = session.lights, .discard_first = true, .most_seconds = 0.2};
   const auto none = [](const session::TileResult&) {};
-  const session::MethodRun done = session::run_method(slow, session, plan, none, progress);
+  const session::MethodRun done = session::run_method(slow, session, plan, none, progress_);
   EXPECT_LE(slow.tiles.size(), 10U);
   // The last tile is the timed run.
   const double first = std::reduce(slow.seconds.begin(), slow.seconds.end() - 1), timed = slow.seconds.back();
