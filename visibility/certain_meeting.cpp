@@ -11,7 +11,7 @@
 namespace penumbra::visibility {
 namespace {
 
-/// Vector from p; `off`: error of its end, if it has one.
+/// Segment from p (`ends`) or ray; `off`: error of the segment's end.
 struct Direction {
   glm::dvec3 direction;
   double off = 0;
@@ -24,9 +24,10 @@ std::optional<bool> decide(const glm::dvec3& p, const Direction& from_p, const s
   const std::array squared{glm::dot(d[0], d[0]), glm::dot(d[1], d[1]), glm::dot(d[2], d[2])};
   // An error of l changes a determinant as much as a vector longer by 2⁴⁶ times the error.
   const double way_length = glm::length(direction) + 0x1p46 * off, way_squared = way_length * way_length;
-  // A determinant of three differences, each right to 2⁻⁵³ of itself in each coordinate, has three such errors, and
-  // rounds six products of three, each at most the product of the rows' lengths, and their sums: fewer than 16 · 2⁻⁵³ ·
-  // 6 of that product. The bound is squared where nothing underflows; smaller values are not certain.
+  // Each difference has a relative error of 2⁻⁵³ in each coordinate, so a determinant of three has three such errors.
+  // It also rounds six products of three factors, each at most the product of the rows' lengths, and their sums: in all
+  // less than 16 · 2⁻⁵³ · 6 of that product. The bound is squared where nothing underflows; smaller values are not
+  // certain.
   constexpr double kError = 0x1p-46 * 0x1p-46, kTiny = 0x1p-900;
   const auto sign = [](double value, double size_squared) {
     const double bound = kError * size_squared;

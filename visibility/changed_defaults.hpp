@@ -5,10 +5,10 @@
 
 namespace penumbra::visibility {
 
-/// A method that may use another value than the default of an option that was not given.
+/// A method that may replace the default of an option that the user did not give.
 class ChangesDefaults {
  public:
-  /// Returns these options with the values that are used, since the device cannot do the defaults. The host writes them
+  /// Returns the options whose defaults the device does not support, with the values used instead. The host writes them
   /// wherever it writes the user's options.
   [[nodiscard]] virtual MethodOptions changed_defaults() const = 0;
 
@@ -16,7 +16,7 @@ class ChangesDefaults {
   ~ChangesDefaults() = default;
 };
 
-/// Returns the options that the method itself changed; of other methods none.
+/// Returns the options that the method itself changed; none for other methods.
 inline MethodOptions changed_defaults(const Method& method) {
   const auto* const changes = dynamic_cast<const ChangesDefaults*>(&method);
   return changes == nullptr ? MethodOptions() : changes->changed_defaults();

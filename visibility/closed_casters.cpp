@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Closed parts of a mesh, and the layer of triangles of each that counts toward a light.
+// Finds the closed parts of a mesh, and the one layer of each that counts as a caster for a light.
 
 #include "visibility/closed_casters.hpp"
 
@@ -47,8 +47,8 @@ ClosedCasters::ClosedCasters(const MeshView& mesh, const EdgeGraph& graph) {
   turn_ = std::move(found.turn);
 }
 
-/// Returns whether the winding number of the part around c is not 0, by the crossings of a segment that ends beyond the
-/// part's box.
+/// Returns whether the winding number of the part around c is not 0, by the crossings of the part with a segment from c
+/// to a point outside of the part's box.
 bool ClosedCasters::is_around(const Part& part, const MeshView& mesh, const Light& light, const glm::vec3& c) const {
   const glm::dvec3 at(c);
   if (glm::any(glm::lessThan(at, part.lower)) || glm::any(glm::greaterThan(at, part.upper))) return false;

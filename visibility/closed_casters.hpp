@@ -12,32 +12,33 @@
 #include <vector>
 
 /// Counts one layer of each solid. Methods that add hidden areas, instead of uniting them, would count a closed surface
-/// twice: a segment that enters it leaves it again. So of a *closed part* only those triangles count through which
-/// segments toward the light leave into the region that contains the light's centre. Seen from a point outside, each
-/// solid counts once; seen from inside (a view sample that rounding put below its own surface), also once. Open
-/// surfaces count completely.
+/// twice: a segment that enters it leaves it again. So the only triangles of a *closed part* that count are those
+/// through which segments toward the light pass into the region that contains the light's centre. Seen from a point
+/// outside, each solid counts once; seen from inside (a view sample that rounding put below its own surface), also
+/// once. Open surfaces count completely.
 ///
 /// A closed part consists of triangles connected through edges, exactly two at every edge, that can be wound
-/// consistently. A soup with a hole, a fin or a T-junction is open, and a segment through both its sides counts two.
+/// consistently. A soup with a hole, a fin or a T-junction is open, and a segment through both its sides is counted
+/// twice.
 namespace penumbra::visibility {
 
-/// The closed parts of a mesh. Found once: lights may move.
+/// The closed parts of a mesh. They are found once and stay valid when lights move.
 class ClosedCasters {
  public:
   ClosedCasters() = default;
   ClosedCasters(const mesh::MeshView& mesh, const mesh::EdgeGraph& graph);
 
   /// Returns for each triangle of a closed part the side (as mesh::Side, of the triangle as stored) on which the region
-  /// of the light's centre lies: outside of the part, or, if the part is around c, inside. Returns `on` for triangles
-  /// of open parts. `light` resolves ties. Exact, except that the outside is found by the sign of the enclosed volume,
-  /// in double. `mesh` is the constructor's.
+  /// of the light's centre c lies: the outside of the part, or its inside if the part is around c. Returns `on` for
+  /// triangles of open parts. `light` resolves ties. Exact, except that the outside is found by the sign of the
+  /// enclosed volume, in double. `mesh` must be the one given to the constructor.
   [[nodiscard]] std::vector<mesh::Side> light_sides(const mesh::MeshView& mesh, const Light& light,
                                                     const glm::vec3& c) const;
 
  private:
   struct Part {
     std::vector<std::uint32_t> triangles;
-    int outside = 1;  // the outside, once the triangles are wound by turn_
+    int outside = 1;  // side of the triangles, as wound by turn_, that is the part's outside
     glm::dvec3 lower{0}, upper{0};
   };
   [[nodiscard]] bool is_around(const Part& part, const mesh::MeshView& mesh, const Light& light,

@@ -14,8 +14,8 @@ namespace penumbra::visibility {
 /// Returns Rec. 709's luminance.
 double luminance_of(const glm::dvec3& color);
 
-/// A direction by its height, the cosine of the angle to `up`, and the azimuth, in turns from the picture's left: 1/2
-/// is its middle.
+/// A direction, given by its height (the cosine of the angle to `up`) and its azimuth (in turns from the picture's left
+/// border: 1/2 is the middle).
 struct SkyPlace {
   double height = 0, turn = 0;
 };
@@ -43,7 +43,7 @@ struct DomeSamples {
   double power = 0;               ///< ∫ luminance dω
 };
 /// Returns a light sample for each point of the unit square, each for the same fraction of ∫ luminance dω. `picture`:
-/// null for constant radiance. Empty if the picture has no light there.
+/// null for constant radiance. `half`: the part above the horizon. Empty if that part of the picture is black.
 DomeSamples dome_samples(const scenes::Texture* picture, bool half, const std::vector<glm::dvec2>& unit);
 
 }  // namespace penumbra::visibility

@@ -19,7 +19,7 @@ constexpr const char* name_of(ErrorCause cause) {
   return kNames[static_cast<std::size_t>(cause)];
 }
 
-/// A run of a method, or of one that differs from it only in the repaired cause.
+/// A run of a method, or of another method that differs from it only in the repaired cause.
 struct RepairRun {
   std::string method;
   MethodOptions options;
@@ -27,12 +27,12 @@ struct RepairRun {
   std::uint32_t light_samples = 0;  ///< light samples of the light, or of each part; 0: those of the command line
 };
 
-/// Relation of a sequence of runs to the state without a cause.
+/// How a sequence of runs gives the result without a cause.
 enum class RepairEnd : std::uint8_t {
-  last,   ///< the last run has that state
-  limit,  ///< each run halves the size of the cause; the limit is estimated from the last three, where the original run
-          ///< counts as the first
-  settled,  ///< the first run with the same V as its predecessor has that state
+  last,     ///< the last run has no such error
+  limit,    ///< each run halves the size of the cause; the limit is estimated from the last three runs of the original
+            ///< run and these
+  settled,  ///< the first run with the same V as its predecessor has no such error
 };
 
 /// Repair of a single cause.
@@ -47,7 +47,8 @@ struct ErrorRepairs {
   std::vector<ErrorRepair> alone;  ///< one for each cause, in the order of kErrorCauses
   /// Runs with all possible repairs together, the most thorough first: the first that succeeds counts.
   std::vector<RepairRun> together;
-  std::vector<RepairRun> one_view = {};  ///< like `together`, for the view; empty if `view` cannot be separated
+  std::vector<RepairRun> one_view = {};  ///< like `together`, but the cause `view` stays; empty if `view` cannot be
+                                         ///< separated
 };
 
 }  // namespace penumbra::visibility

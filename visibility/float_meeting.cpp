@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rays of one direction against a triangle, where arithmetic in float32 cannot be of another opinion.
+// Tests whether rays of one direction meet a triangle; gives an answer only where float32 arithmetic cannot disagree.
 
 #include "visibility/float_meeting.hpp"
 
@@ -34,10 +34,10 @@ FloatMeeting float_rays_meet(const RayStarts& starts, const glm::dvec3& directio
                    c = glm::dvec3(corners[2]) - starts.middle;
   const glm::dvec3 around = starts.half + starts.room, wide = glm::abs(direction);
   const glm::dvec3 wide_a = glm::abs(a) + around, wide_b = glm::abs(b) + around, wide_c = glm::abs(c) + around;
-  // On which side of the edge from x to y the ray passes: d · (x × y) = d · (x × (y − x)). Its terms are those of
-  // d · ((y − x) × (y + x)), which Embree's robust rays compute; moving the start by δ changes it by d · ((x − y) ×
-  // δ), which the room in `wide_x` and `wide_y` covers. It is linear in the start: least and greatest at the box's
-  // corners.
+  // The side of the edge from x to y on which the ray passes is the sign of d · (x × y) = d · (x × (y − x)). Its terms
+  // are those of d · ((y − x) × (y + x)), which Embree's robust rays compute; moving the start by δ changes it by d ·
+  // ((x − y) × δ), which the room in `wide_x` and `wide_y` covers. The value is linear in the start, so its least and
+  // greatest values are at the box's corners.
   const auto side = [&](const glm::dvec3& x, const glm::dvec3& y, const glm::dvec3& wide_x, const glm::dvec3& wide_y) {
     const glm::dvec3 edge = y - x;
     const double spread = glm::dot(glm::abs(glm::cross(edge, direction)), starts.half);

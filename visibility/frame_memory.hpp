@@ -41,7 +41,7 @@ class RemembersFrames {
   ~RemembersFrames() = default;
 };
 
-/// Gives the memory to a method that takes one; others are as they are.
+/// Gives the memory to a method that takes one; does nothing for others.
 inline void remember(Method& method, FrameMemory* memory) {
   if (auto* const remembers = dynamic_cast<RemembersFrames*>(&method)) remembers->remember(memory);
 }

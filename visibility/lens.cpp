@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Points on a square that are in different cells of a grid, in different columns and in different rows of a fine one:
-// Kensler, "Correlated multi-jittered sampling" (Pixar Technical Memo 13-01, 2013), with other permutations. From the
-// square to the disk: Shirley, Chiu, "A low distortion map between disk and square" (1997).
+// Points on a square, each in its own cell of a grid and in its own column and row of a finer grid: Kensler,
+// "Correlated multi-jittered sampling" (Pixar Technical Memo 13-01, 2013), with other permutations. From the square to
+// the disk: Shirley, Chiu, "A low distortion map between disk and square" (1997).
 
 #include "visibility/lens.hpp"
 
@@ -42,8 +42,8 @@ glm::dvec2 on_disk(const glm::dvec2& square) {
   return {radius * std::cos(angle), radius * std::sin(angle)};
 }
 
-/// Returns the largest divisor that is no larger than the root: the number of columns of cells into which moments
-/// divide a view sample.
+/// Returns the largest divisor of `moments` up to its square root: moments divide a view sample into this many columns
+/// of cells.
 std::uint32_t columns_of(std::uint32_t moments) {
   std::uint32_t columns = 1;
   for (std::uint32_t i = 2; i * i <= moments; ++i) {

@@ -83,15 +83,16 @@ struct Light {
   };
   std::optional<Directions> sun = {};
 
-  /// A dome: `sun` is set, since its points are directions, here unit vectors rounded once. No plane has a picture of a
-  /// dome; each face of a cube has one, as made by light_faces (dome_faces.hpp): a square, s and t in [−1, 1], or for a
-  /// side face of half a dome the part t ≥ 0. Edges are straight on the faces.
+  /// A dome: `sun` is set, since its points are directions, here unit vectors rounded once. No single plane shows a
+  /// whole dome, but each face of a cube shows a part of it, as made by light_faces (dome_faces.hpp): a square, s and t
+  /// in [−1, 1], or for a side face of half a dome the part t ≥ 0. Edges are straight on the faces.
   struct Dome {
     std::array<glm::vec3, 3> axes{};  ///< stored; faces look along ± these, the third is `up`. Faces share corners: all
                                       ///< directions are covered once, without gaps
     bool half = false;                    ///< only the part above the plane of the first two axes
-    std::shared_ptr<const Sky> sky = {};  ///< the picture, of this light, its copies and its faces; null: one radiance
-    double power = 1;        ///< for radiance 1, 1/π ∫ luminance dω: that of all samples, which have equal parts
+    std::shared_ptr<const Sky> sky = {};  ///< the picture, shared with copies and faces of this light; null: constant
+                                          ///< radiance
+    double power = 1;        ///< for radiance 1, 1/π ∫ luminance dω; all samples have equal parts of it
     std::int32_t face = -1;  ///< −1: the whole dome
     std::array<std::uint32_t, 7> first{};  ///< for the whole dome: face i has the samples from first[i] to first[i + 1]
   };
@@ -128,8 +129,8 @@ struct Light {
   std::vector<glm::vec3> sample_colors;  ///< with a texture, for each light sample, its texel's colour; for a dome with
                                          ///< a picture, its texel's colour over its luminance. Else empty
 
-  /// For each object of the scene, 1: it casts no shadow of this light. Empty: there is none. Methods can ignore this:
-  /// the host gives them a scene in which these objects do not cast shadows (cast_for).
+  /// For each object of the scene, 1: it casts no shadow of this light. Empty: there is no such object. Methods can
+  /// ignore this: the host gives them a scene in which these objects do not cast shadows (cast_for).
   std::vector<std::uint8_t> unshaded_by = {};
   /// Name of an object with holes, or a translucent one, that casts a shadow of this light; empty: there is none. The
   /// host computes this part of the shadow, for each light sample (visibility/alpha/).
@@ -137,7 +138,7 @@ struct Light {
   /// Name of a translucent object among these (alphaMode BLEND); empty: there is none. For methods that draw surfaces
   /// with holes themselves (MethodDescription::draws_holes), the host computes only this part.
   std::string dimmed_by = {};
-  /// For each object, 1: this light does not light it, V = 0. Empty: there is none. Handled by the host.
+  /// For each object, 1: this light does not light it, V = 0. Empty: there is no such object. Handled by the host.
   std::vector<std::uint8_t> unlit = {};
 
   [[nodiscard]] std::uint32_t sample_count() const { return static_cast<std::uint32_t>(coordinates.size()); }
@@ -180,7 +181,7 @@ void require_kind(const Light& light, LightKinds kinds, fmt::format_string<Value
 Light make_light(const scenes::Scene& scene, std::uint32_t light, const glm::dvec3& origin,
                  const SampleRequest& request, std::vector<std::string>* notes = nullptr);
 
-/// Makes a light that may be in pieces: each piece, with the requested light samples; for any other light that light.
+/// Makes the pieces of a light in pieces, each with the requested light samples; for any other light, that one light.
 /// Pieces without an area in float32 relative to `origin` are left out, unless all are.
 std::vector<Light> make_light_pieces(const scenes::Scene& scene, std::uint32_t light, const glm::dvec3& origin,
                                      const SampleRequest& request, std::vector<std::string>* notes = nullptr);
@@ -198,8 +199,8 @@ glm::vec3 center_of(const Light& light);
 struct LightFrame {
   glm::dvec3 center{0}, u{0}, v{0};
 };
-/// Returns the stored frame. Not for spheres, which have no stored axes. For a sun these are directions: center is the
-/// middle's.
+/// Returns the stored frame. Not for spheres, which have no stored axes. For a sun the vectors are directions, and
+/// `center` is the middle one.
 LightFrame light_frame(const Light& light);
 /// Returns the light's frame as p sees it: for a planar light the stored frame; for a sphere the disk bounded by the
 /// circle along which lines from p touch the sphere, u × v toward p. With c and r the sphere's centre and radius, in

@@ -14,7 +14,7 @@
 namespace penumbra::visibility {
 namespace {
 
-/// Returns the one of `count` cells of [0, 1] that contains `share`.
+/// Returns which of `count` equal cells of [0, 1] contains `share`.
 std::uint32_t cell_at(double share, std::uint32_t count) {
   const double cell = std::floor(share * count);
   return static_cast<std::uint32_t>(std::clamp(cell, 0.0, static_cast<double>(count - 1)));
@@ -51,9 +51,9 @@ std::vector<double> sample_weights(const LightTexture& texture, const std::vecto
         "coarser texture",
         light, coordinates.size(), texture.width, texture.height);
   }
-  // Sums are rounded to the grid, not weights, so that weights add up to exactly 1. Neighbouring sums share their
-  // rounding except for the last addition, division and step: four steps at most; `sum` itself is off by 4096 · 2⁻⁵³ of
-  // its size.
+  // Sums, not weights, are rounded to multiples of kStep, so that weights add up to exactly 1. Neighbouring sums share
+  // their rounding except for the last addition, division and step: four steps at most; `sum` itself is off by 4096 ·
+  // 2⁻⁵³ of its size.
   constexpr double kStep = 0x1p-52;
   std::vector<double> weights;
   double before = 0;

@@ -23,7 +23,8 @@ struct LightTexture {
   /// Mean of the luminance. Its integral over the light is mean · area, over the coordinates 4 · mean. Above 0.
   double mean_luminance = 0;
 
-  /// Returns the texel at (s, t), which is clamped to [−1, 1]². On a border: the right one, the lower one.
+  /// Returns the texel at (s, t), which is clamped to [−1, 1]². On a border between texels: the one to the right, or
+  /// below.
   [[nodiscard]] std::size_t texel_at(const glm::dvec2& st) const;
 };
 

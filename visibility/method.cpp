@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Names of families and outputs, and what a method does that does not override a function of its interface: it refuses
-// to give masks or form factors. No shadow is computed here.
+// Names of families and outputs, and the default implementations in class Method, which refuse requests for masks or
+// form factors. No shadow is computed here.
 
 #include "visibility/method.hpp"
 

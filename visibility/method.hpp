@@ -40,7 +40,7 @@ struct LightSpan {
   float smallest = 0;  ///< least half-size of a light
   float farthest = std::numeric_limits<float>::infinity();
 };
-/// Span of methods that have lights in the scene's float32: these multiply up to six lengths.
+/// Span of methods that represent lights in float32 together with the scene: they multiply up to six lengths.
 inline constexpr LightSpan kFloatSpan{0x1p-28F, 0x1p28F};
 
 /// Description of a method, printed by `penumbra methods` and `penumbra inspect`.
@@ -53,12 +53,12 @@ struct MethodDescription {
   LightKinds lights;        ///< supported lights
   bool textures = true;     ///< weights V by a light's texture
   bool any_pattern = true;  ///< supports every pattern; else only light samples in rows (patterns rows and grid)
-  bool on_request = false;  ///< included in a comparison only by name, or with its whole family: it takes long, or
-                            ///< serves for contrast
+  bool on_request = false;  ///< included in a comparison only if named, or with its whole family: it takes long, or
+                            ///< serves only for contrast
   bool shares_of_samples = false;  ///< V without masks is the fraction of visible light samples, as with masks
   bool draws_holes = false;        ///< draws surfaces with holes (alphaMode MASK) itself: the host must not apply them
                                    ///< again
-  /// Memory that the method takes at least for each triangle of a mesh. Measured on meshes of one and five million
+  /// Least memory that the method takes for each triangle of a mesh. Measured on meshes of one and five million
   /// triangles, and rounded down considerably: a mesh that is refused for this reason would not have fitted.
   std::uint64_t bytes_per_triangle = 50;
   std::vector<OptionDescription> options;
@@ -66,7 +66,8 @@ struct MethodDescription {
   LightSpan span = {};                       ///< supported sizes of lights; by default any size
   /// Returns the verdict on a mesh with these defects, with the reason. Set for every method in the table of methods.
   MeshVerdict (*verdict_on)(const mesh::Diagnosis& mesh) = nullptr;
-  /// Returns runs without each cause of its error, for options that the method has. Null: its error has no budget.
+  /// Returns runs that avoid each cause of the method's error, for the given options. Null: there is no error budget
+  /// for the method.
   ErrorRepairs (*repairs)(const MethodDescription& method, const MethodOptions& given) = nullptr;
   /// Returns the width of a texel of the method's maps at each view sample, across the light's normal, in scene floats;
   /// infinite where no map is used. Null: the method has no maps. Empty result: widths are not defined.
@@ -106,9 +107,9 @@ class Method {
   /// pixel skips the others and gives NaN as their V; other methods may ignore this. Default: all pixels.
   virtual void want_pixels([[maybe_unused]] std::span<const std::uint32_t> pixels) {}
 
-  /// Announces whether read_form_factors follows each evaluate. Then a method of Output::radiance may compute them
-  /// together with V, where they cost less than afterwards, in the time of evaluate. Default: it may follow, and V need
-  /// not wait for it.
+  /// Announces whether read_form_factors follows each evaluate. If so, a method of Output::radiance may compute form
+  /// factors during evaluate, together with V, where that costs less than afterwards. Default: read_form_factors may
+  /// follow, but V is not delayed for it.
   virtual void want_form_factors([[maybe_unused]] bool wanted) {}
 
   /// Announces that meshes follow one another as frames. The method may then keep data for the next mesh, at the cost
@@ -147,7 +148,7 @@ class Method {
 };
 
 /// Returns the name of an object that lets this light through and whose part of the shadow the host computes for each
-/// light sample, if this method does the rest (Light::filtered_by, Light::dimmed_by). Empty: there is none.
+/// light sample, if this method does the rest (Light::filtered_by, Light::dimmed_by). Empty: there is no such object.
 const std::string& left_to_host(const MethodDescription& description, const Light& light);
 
 /// Throws InputError for a light that the method does not support, naming alternatives.

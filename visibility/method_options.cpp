@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Parses and checks the options of a method, KEY=VALUE, by what the method declares of each. A wrong key or value is
-// refused with the possible ones and the closest of these.
+// Parses a method's options, KEY=VALUE, and checks them against their declarations. A wrong key or value is refused;
+// the message lists the possible ones and names the closest.
 
 #include "visibility/method_options.hpp"
 

@@ -105,7 +105,7 @@ using RealOption = NumberOption<double>;
 class ParsedOptions {
  public:
   /// Throws UsageError for a key that is not in `options` and for a value that its option cannot have; the message
-  /// lists the possibilities, and the closest one. `method` is for messages.
+  /// lists the possible ones and names the closest. `method` is for messages.
   ParsedOptions(std::string_view method, std::span<const OptionDescription> options, const MethodOptions& given);
 
   /// Returns the option's value. Asserts that the method has the option.

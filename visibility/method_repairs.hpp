@@ -17,19 +17,20 @@ MethodOptions options_with(const MethodDescription& method, const MethodOptions&
 /// Returns the repair of a cause that cannot be separated; `words` give the reason.
 ErrorRepair inseparable(ErrorCause cause, std::string words);
 
-/// Returns a method's repair of one cause. Has one repair for each cause, in their order.
+/// Returns a method's repair of one cause. `repairs` has one entry for each cause, in their order.
 ErrorRepair& repair_of(ErrorRepairs& repairs, ErrorCause cause);
 
 /// Number of light samples that approximate the whole light: their V is off by about 0.0025 in a penumbra.
 inline constexpr std::uint32_t kRepairSamples = 1024;
 
-/// Returns the repair of view by the light in 2 × 2 and 4 × 4 parts, each seen from its own centre.
+/// Returns the repair of the cause `view`: the light in 2 × 2 and 4 × 4 parts, with the scene seen from the centre of
+/// each part.
 ErrorRepair parted_light(const MethodDescription& method, const MethodOptions& given);
 
-/// Returns the repair of samples by the same method with kRepairSamples light samples.
+/// Returns the repair of the cause `samples`: the same method with kRepairSamples light samples.
 ErrorRepair more_light_samples(const MethodDescription& method, const MethodOptions& given);
 
-/// Returns a run whose V is the visible area itself, of every light.
+/// Returns a run whose V is the visible area itself, for every kind of light.
 RepairRun visible_area();
 
 /// Reasons why a method of the geometry family does not have a cause, or why nothing separates it.
@@ -43,10 +44,11 @@ struct GeometryReasons {
   std::string samples = "it has no light samples";
   std::string falloff = "the light that an edge hides is no formula of a distance";
 };
-/// Returns repairs that separate no cause. `together` is the visible area.
+/// Returns repairs that separate no cause. `together` computes the visible area.
 ErrorRepairs no_repairs(const GeometryReasons& reasons);
 
-/// Returns the repairs of methods each of whose bits is the truth of its pair: their light samples are all their error.
+/// Returns the repairs of methods whose mask bits are the exact truth of their pairs: light samples are their only
+/// cause of error.
 ErrorRepairs exact_pair_repairs(const MethodDescription& method, const MethodOptions& given);
 
 /// Returns the repairs of methods that decide exactly whether the light's centre is hidden.

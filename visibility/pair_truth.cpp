@@ -41,12 +41,12 @@ struct EdgeSign {
 };
 
 /// Returns the sign of (p, l; a b): the side of the line p→l on which the edge a→b passes. It is the sign of det(l − p,
-/// a − p, b − p), affine in l; so at l + ε·u + ε²·v it is, where it vanishes at l, the sign of det(u, a − p, b − p),
-/// and where that vanishes too, of det(v, a − p, b − p). Antisymmetric in a and b: neighbouring triangles agree about
-/// their edge. All three vanish only if p is on the line a b (then p is on the triangle's plane, and the triangle is
-/// not met) or on the light's plane (then condition (2) has already refused the pair). For a sun l is a direction and
-/// stands for l − p; its axes span a plane that contains no direction to it. For a dome the axes are those of the face
-/// that contains l.
+/// a − p, b − p), which is affine in l. If that is zero, the sign at l + ε·u + ε²·v counts: that of det(u, a − p, b −
+/// p), or, if this is zero too, of det(v, a − p, b − p). It is antisymmetric in a and b, so neighbouring triangles
+/// agree about their edge. All three vanish only if p is on the line a b (then p is on the triangle's plane, and the
+/// triangle is not met) or on the light's plane (then condition (2) has already refused the pair). For a sun l is a
+/// direction and stands for l − p; its axes span a plane that contains no direction to it. For a dome the axes are
+/// those of the face that contains l.
 EdgeSign edge_sign(const glm::vec3& p, const glm::vec3& l, const glm::vec3& a, const glm::vec3& b, const Light& light) {
   const int sign = static_cast<int>(light.sun ? side_of_direction(p, a, b, l) : side_of_plane(p, l, a, b));
   if (sign != 0) return {sign, false};
@@ -127,7 +127,7 @@ Meeting segment_meets_triangle(const glm::vec3& p, const glm::vec3& l, const std
 PlanePoint::PlanePoint(const Light& light, const glm::dvec2& at) : st(at) {
   const auto [c, u, v] = light_frame(light);
   rounded = c + st.x * u + st.y * v;
-  // A rounding of each of two differences, two products and two sums, of no more than these lengths.
+  // Two differences, two products and two sums are rounded, each at most as large as these lengths.
   off = 0x1p-50 * (glm::length(c) + std::abs(st.x) * glm::length(u) + std::abs(st.y) * glm::length(v));
 }
 
@@ -179,7 +179,8 @@ int sign_above(const Light& light, const std::array<glm::vec3, 3>& carrier, cons
 bool outside_sphere(const Light& light, const glm::vec3& p) {
   const glm::dvec3 d = glm::dvec3(p) - glm::dvec3(light.center);
   const double far = glm::dot(d, d), near = light.radius * light.radius;
-  // Differences, squares and two sums: less than 8 roundings of either; results that underflow are not certain.
+  // Differences, squares and two sums have fewer than 8 roundings, relative to `far` or `near`; results that underflow
+  // are not certain.
   const double error = 0x1p-49 * (far + near);
   if (error > 0x1p-900 && std::abs(far - near) > error) return far > near;
   const ExactVector exact = difference(p, light.center);

@@ -36,7 +36,7 @@ int edge_side(const glm::vec3& p, const glm::vec3& l, const glm::vec3& a, const 
 Meeting segment_meets_triangle(const glm::vec3& p, const glm::vec3& l, const std::array<glm::vec3, 3>& corners,
                                const Light& light);
 
-/// The point centre + s u + t v of a light's plane, of its stored points. Not for a sphere or sun.
+/// The point centre + s u + t v of a light's plane, exact for the stored points. Not for a sphere or sun.
 struct PlanePoint {
   PlanePoint(const Light& light, const glm::dvec2& at);
 

@@ -50,7 +50,7 @@ std::uint64_t sub(std::uint64_t a, std::uint64_t b) {
   return a >= b ? a - b : a + kPrime - b;
 }
 
-/// x⁻¹ = x^(p − 2), p − 2 = 4·(2⁵⁹ − 1) + 1; x^(2^k − 1) doubles its k by k squarings and one product.
+/// x⁻¹ = x^(p − 2), with p − 2 = 4·(2⁵⁹ − 1) + 1. From x^(2^k − 1), k squarings and one product give x^(2^(2k) − 1).
 std::uint64_t inverse(std::uint64_t x) {
   const auto extend = [](std::uint64_t power, std::uint64_t times, int squarings) {
     for (int i = 0; i < squarings; ++i) power = mul(power, power);
@@ -138,7 +138,7 @@ std::uint64_t key_of(const PlaneResidues& plane, std::uint64_t scale) {
   return std::max(key, kNoRatio + 1);
 }
 
-/// Computes the keys of some triangles. One inverse for all: that of their pivots' product (Montgomery).
+/// Computes the keys of some triangles, with a single inverse, that of the product of all pivots (Montgomery).
 void find_keys(const SceneFloats& scene, std::uint32_t first, std::span<std::uint64_t> keys) {
   std::vector<PlaneResidues> planes(keys.size());
   std::vector<std::uint64_t> before(keys.size());  // the product of the pivots of all previous planes
@@ -217,8 +217,9 @@ std::vector<std::uint32_t> plane_ids(const SceneFloats& scene) {
     }
   });
 
-  // Compares each triangle with the first one of its key. Remaining are keys that collided (about one pair in 2⁶⁴) and
-  // planes without a key (contrived): each is compared with every plane that could be its own, in order of triangles.
+  // Compares each triangle with the first one of its key. What remains are keys that collided (about one pair in 2⁶⁴)
+  // and planes without a key (contrived): each such triangle is compared with every plane that could be its own, in
+  // order of triangles.
   const std::vector<std::uint32_t> first = first_of_same(
       count, [&](std::size_t i) { return keys[i]; }, [&](std::size_t i, std::size_t j) { return keys[i] == keys[j]; });
   tbb::concurrent_vector<std::uint32_t> collided, keyless;
@@ -238,7 +239,7 @@ std::vector<std::uint32_t> plane_ids(const SceneFloats& scene) {
   std::sort(collided.begin(), collided.end());
   for (const auto* leftovers : {&collided, &keyless}) {
     for (const std::uint32_t triangle : *leftovers) {
-      std::uint32_t giver = 0;  // plane[i] == i: i gives its plane the number
+      std::uint32_t giver = 0;  // plane[i] == i: the plane has the number of triangle i
       while (giver < count && (plane[giver] != giver || !coplanar(scene.corners(giver), scene.corners(triangle)))) {
         ++giver;
       }

@@ -10,8 +10,8 @@
 
 namespace penumbra::visibility {
 
-/// Returns whether a triangle receives shadows of a light (Light::index): not the light's own body, nor objects that
-/// receive none. For those V = 1, regardless of casters.
+/// Returns whether a triangle receives shadows of a light (Light::index). False for the light's own body and for
+/// objects that receive no shadows: there V = 1, regardless of casters.
 [[nodiscard]] inline bool is_receiver(const SceneFloats& scene, std::int32_t light, std::uint32_t triangle) {
   return scene.emits[triangle] != light && scene.receives_shadow[triangle] != 0;
 }

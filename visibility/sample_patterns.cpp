@@ -85,8 +85,8 @@ std::vector<glm::dvec2> turned_squares(std::uint32_t rows, std::uint32_t columns
   return samples;
 }
 
-/// Returns the layout of rotated squares: ⌈count / 4⌉ tiles or more, in round(√) rows as other patterns have points;
-/// for LxB as many rows and columns of tiles as contain L rows of B points, two by two.
+/// Returns the layout of rotated squares: at least ⌈count / 4⌉ tiles, in as many rows as the square root of their
+/// number, rounded; for LxB, enough rows and columns of tiles, of two by two points each, for L rows of B points.
 SampleLayout tiles_of(const SampleRequest& request, std::uint32_t count) {
   const auto tiles = (count + 3) / 4;
   const auto rows = request.rows != 0 ? (request.rows + 1) / 2

@@ -3,8 +3,9 @@
 
 namespace penumbra::visibility {
 
-/// Shares of a light are sums and quotients of floats, which Vulkan lets be off by 2.5 units in the last place (a
-/// quotient of equal numbers need not be 1): this is room for two of them, and far below the error of any method.
+/// Tolerance for shares of a light, which are sums and quotients of floats. Vulkan permits an error of 2.5 units in the
+/// last place in a quotient (equal numbers need not give 1). This allows for two of them, and is far below the error of
+/// any method.
 inline constexpr float kRoundedShare = 0x1p-20F;
 
 /// Returns whether `visibility` is a share of a light: from 0 to 1, or outside by rounding alone. False for NaN.

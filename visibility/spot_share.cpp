@@ -17,8 +17,8 @@ namespace {
 
 /// The lamp's disk as p sees it, in units of the disk's radius: x toward the cone's axis, y across.
 struct FacingDisk {
-  double size = 0;    ///< its radius over its distance
-  double cosine = 0;  ///< of the angle between the cone's axis and the direction from the middle to p
+  double size = 0;    ///< the disk's radius over its distance
+  double cosine = 0;  ///< of the angle between the cone's axis and the direction from the disk's middle to p
   double sine = 0;    ///< of the same angle
   double tilt = 0;    ///< growth of p's cosine along x, over its cosine at the middle
   double scale = 1, offset = 0;
@@ -44,13 +44,13 @@ struct FacingDisk {
   }
 };
 
-/// Gauss and Legendre's four points of [−1, 1], and their weights.
+/// The four points of Gauss–Legendre quadrature on [−1, 1], and their weights.
 constexpr std::array<double, 4> kPoints{-0.8611363115940526, -0.3399810435848563, 0.3399810435848563,
                                         0.8611363115940526};
 constexpr std::array<double, 4> kWeights{0.3478548451374538, 0.6521451548625461, 0.6521451548625461,
                                          0.3478548451374538};
 
-/// Returns the integral over x within the chord at y, piece by piece between the ends of the cone's edge.
+/// Returns the integral over x within the chord at y, in pieces: it is cut where the cone's soft edge begins and ends.
 double over_chord(const FacingDisk& disk, double y, double half) {
   std::array<double, 6> ends{-half, half};
   std::size_t count = 2;
@@ -80,20 +80,20 @@ double mean_over_chords(const FacingDisk& disk, int chords) {
 }
 
 double mean_over(const FacingDisk& disk) {
-  // The cosines of the points farthest from the cone's axis and nearest to it: the middle's angle plus and minus the
-  // disk's.
+  // Cosines at the disk's points farthest from the cone's axis and nearest to it: of the middle's angle plus and minus
+  // the angle that the disk's radius subtends.
   const double rim = std::sqrt(1 + disk.size * disk.size), along = disk.cosine / rim,
                across = disk.size * disk.sine / rim;
   const double least = along - across, most = disk.sine > disk.size * disk.cosine ? along + across : 1.0;
   const double darkest = least * disk.scale + disk.offset, brightest = most * disk.scale + disk.offset;
   if (brightest <= 0) return 0;
   if (darkest >= 1) {
-    // Means of 1 / r⁵ and of x² / r⁵ over the disk, r the distance to its point.
+    // Means of 1 / r⁵ and of x² / r⁵ over the disk, where r is the distance from p to a point of it.
     const double cube = rim * rim * rim, plain = (rim * rim + rim + 1) / (1.5 * cube * (rim + 1));
     const double squared = (2 * rim + 1) / (3 * cube * (rim + 1) * (rim + 1));
     return disk.cosine * plain - disk.tilt * disk.size * disk.sine * squared;
   }
-  // If no end of the cone's edge crosses the disk, the integrand is smooth.
+  // If neither the beginning nor the end of the cone's soft edge crosses the disk, the integrand is smooth.
   return mean_over_chords(disk, darkest >= 0 && brightest <= 1 ? 3 : 12);
 }
 
@@ -111,8 +111,8 @@ double spot_share(const Light& light, const glm::vec3& p, const glm::vec3& n) {
   }
   FacingDisk disk{
       .size = light.radius / length, .cosine = cosine, .scale = light.spot->scale, .offset = light.spot->offset};
-  // From the lamp's middle as p sees it, the axis lies in the direction of the reversed component of the lamp's
-  // direction across the line of sight.
+  // As seen from p, the cone's axis lies, from the lamp's middle, along −across: `across` is the component of the
+  // lamp's direction orthogonal to the line of sight.
   const glm::dvec3 across = light.spot->direction - cosine * toward / length;
   disk.sine = glm::length(across);
   const double facing = -glm::dot(toward, glm::dvec3(n)) / length;

@@ -57,8 +57,8 @@ glm::dvec3 shares_on_line(const glm::dvec3& p, const glm::dvec3& direction, cons
 /// double, the nearest texel of level 0. 1 for a surface without alpha.
 double alpha_at(const SceneFloats& scene, std::uint32_t triangle, const glm::dvec3& shares);
 
-/// Returns the transmittance there: 0 or 1 for MASK (opaque where alpha is at least the cutoff), 1 − alpha for BLEND,
-/// else 0.
+/// Returns the surface's transmittance at these barycentric coordinates: 0 or 1 for MASK (opaque where alpha is at
+/// least the cutoff), 1 − alpha for BLEND, else 0.
 double transmittance_at(const SceneFloats& scene, std::uint32_t triangle, const glm::dvec3& shares);
 
 }  // namespace penumbra::visibility

@@ -101,8 +101,8 @@ bool cone_above(const std::array<glm::vec3, 3>& carrier, std::int8_t facing, con
   return CGAL::sign(middle * middle - tangent * tangent * (u * u + v * v)) == CGAL::POSITIVE;
 }
 
-/// Classifies pixels for one light. Neighbours mostly have the same carrier, and most of a class is that of the
-/// carrier.
+/// Classifies pixels for one light. Neighbours mostly have the same carrier, and most of the classification depends on
+/// the carrier alone.
 class Classifier {
  public:
   Classifier(const SceneFloats& scene, const ViewSamples& samples, const Light& light)
@@ -110,11 +110,11 @@ class Classifier {
     if (is_planar(light.kind)) plane_.emplace(light.center, light.center_u, light.center_v);
   }
 
-  /// The carrier of the view sample classified last, from the side that it was seen from.
+  /// The carrier of the view sample classified last, as seen from one side.
   struct Carrier {
     std::int32_t triangle = ViewSamples::kBackground;
     std::int8_t facing = 0;
-    PixelClass anywhere = PixelClass::background;  ///< judged: p's place decides
+    PixelClass anywhere = PixelClass::background;  ///< class of all its points; judged: it depends on p
     std::optional<PixelClass> in_front = {};       ///< for p in front of the light; nullopt: not yet asked
   };
   [[nodiscard]] PixelClass operator()(std::size_t pixel, Carrier& last) const;
@@ -164,7 +164,7 @@ PixelClass Classifier::operator()(std::size_t pixel, Carrier& last) const {
   return *last.in_front;
 }
 
-/// Calls `body` for each pixel, with a `Last` of neighbouring pixels that come one after the other.
+/// Calls `body` for each pixel, with a `Last` that consecutive neighbouring pixels share.
 template <typename Last, typename Body>
 void for_each_pixel(const ViewSamples& samples, const Body& body) {
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, samples.size(), 256),
@@ -174,7 +174,7 @@ void for_each_pixel(const ViewSamples& samples, const Body& body) {
                     });
 }
 
-/// The plane that carried the last view sample, what was seen of it, and from where.
+/// The plane that carried the last view sample, the start of the ray that met it, and the side that was seen.
 struct CarrierPlane {
   std::int32_t triangle = ViewSamples::kBackground;
   glm::dvec3 corner{0};
@@ -244,7 +244,8 @@ PinholeCamera make_camera(const scenes::Camera& camera, const glm::dvec3& origin
                      camera.up.x, camera.up.y, camera.up.z);
   }
   result.right = glm::normalize(right);
-  // So short a product has rounding along `forward`: places on the screen require orthogonal axes.
+  // The rounding of so short a product has a component along `forward`, but places on the screen require orthogonal
+  // axes.
   if (glm::length(right) < 0x1p-16 * glm::length(camera.up))
     result.right = glm::normalize(result.right - glm::dot(result.right, result.forward) * result.forward);
   result.up = glm::cross(result.right, result.forward);
@@ -315,10 +316,11 @@ ViewSamples complete_view_samples(const SceneFloats& scene, const PinholeCamera&
     const std::optional<PlaneHit> hit = meet_plane(ray, last.corner, last.sides->normal());
     const glm::vec3 p = hit ? glm::vec3(ray.start + hit->t * ray.direction) + 0.0f : glm::vec3(0);
     if (!hit || !std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) {
-      triangle = ViewSamples::kBackground;  // a rasteriser's proposal that the ray only meets at infinity: edge-on
+      triangle = ViewSamples::kBackground;  // the rasteriser's triangle is edge-on: the ray meets its plane only at
+                                            // infinity
       return;
     }
-    if (last.facing == 0 || last.start != ray.start) {  // rays of a lens, and parallel ones, start apart
+    if (last.facing == 0 || last.start != ray.start) {  // rays of a lens, and parallel rays, have different starts
       last.start = ray.start;
       last.facing = facing_of(ray, *last.sides, hit->eye_height);
       last.n = glm::vec3(glm::normalize(last.sides->normal() * static_cast<double>(last.facing))) + 0.0f;

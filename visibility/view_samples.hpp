@@ -22,12 +22,13 @@ struct ViewRay {
 
 /// A camera relative to the scene's origin, in double. The ray of pixel (x, y), y down, is
 /// eye + t · (middle + ((2(x + ½)/W − 1) · aspect · right + (1 − 2(y + ½)/H) · up) · tan(fov/2)). All but `middle` are
-/// unit vectors, at right angles; that is the ray through the picture's middle, middle · forward = 1, and `forward`
-/// itself unless the lens is shifted: t is the distance along the view axis. Orthographic: (eye + ((2(x + ½)/W − 1) ·
-/// aspect · right + (1 − 2(y + ½)/H) · up) · half_height) + t · forward; there a shift has moved the eye. Through a
-/// lens the ray begins at the lens's point for that pixel, and meets the one without a lens at the focus distance; t is
-/// the distance along the view axis all the same. A camera may have some rows of its picture only: y then counts from
-/// `first_row`, H is the whole picture's height, and each ray is the same to the bit.
+/// orthogonal unit vectors. `middle` is the direction of the ray through the picture's middle, with middle · forward =
+/// 1; it is `forward` itself unless the lens is shifted. So t is the distance along the view axis. Orthographic: (eye +
+/// ((2(x + ½)/W − 1) · aspect · right + (1 − 2(y + ½)/H) · up) · half_height) + t · forward; a shift has then moved the
+/// eye. With a lens the ray begins at the lens's point for that pixel, and meets the ray of a camera without a lens at
+/// the focus distance; t is still the distance along the view axis. A camera may cover only some rows of its picture: y
+/// then counts from `first_row`, H is the whole picture's height, and each ray has the same bits as for the whole
+/// picture.
 struct PinholeCamera {
   glm::dvec3 eye{0}, right{1, 0, 0}, up{0, 1, 0}, forward{0, 0, -1}, middle{0, 0, -1};
   double tan_half_fov = 1;
@@ -99,7 +100,7 @@ ViewSamples brute_force_view_samples(const SceneFloats& scene, const PinholeCame
 
 /// Kind of receiver that a pixel is for one light.
 enum class PixelClass : std::uint8_t {
-  background,  ///< A = 0
+  background,  ///< no surface: the image's alpha is 0
   emitter,     ///< carries the light's own body: V = 1
   unshadowed,  ///< receivesShadow is false: V = 1
   judged,      ///< the whole light is above the tangent plane and p is in front of the light
