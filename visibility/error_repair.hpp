@@ -30,8 +30,8 @@ struct RepairRun {
 /// How a sequence of runs gives the result without a cause.
 enum class RepairEnd : std::uint8_t {
   last,     ///< the last run has no such error
-  limit,    ///< each run halves the size of the cause; the limit is estimated from the last three runs of the original
-            ///< run and these
+  limit,    ///< each run halves the size of the cause; the limit is estimated from the last three of all runs, the
+            ///< original one being the first
   settled,  ///< the first run with the same V as its predecessor has no such error
 };
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Attenuation of masks by surfaces with holes and translucent surfaces: for each view sample, finds the triangles in
-// the pyramid from the view sample to the visible part of the light; for each of them, in double, the light samples not
-// certainly missed; for each of those, applies the exact predicate and the texel's alpha.
+// the pyramid from the view sample to the visible part of the light. For each triangle, double arithmetic finds the
+// light samples that it may affect; for each of these, the exact predicate decides, and the texel's alpha is applied.
 
 #include "visibility/alpha/alpha_filter.hpp"
 
@@ -49,7 +49,7 @@ struct Slopes {
 /// rounding.
 class Pyramid {
  public:
-  /// `directions`: not empty. `ends`: each vector is a whole segment.
+  /// `directions`: not empty. `ends`: each vector is a whole segment, not the direction of a ray.
   Pyramid(const glm::dvec3& p, std::span<const glm::dvec3> directions, bool ends) : p_(p) {
     glm::dvec3 middle(0);
     for (const glm::dvec3& direction : directions) middle += direction;
@@ -63,7 +63,7 @@ class Pyramid {
     Slopes all;
     for (const glm::dvec3& direction : directions) {
       const std::optional<glm::dvec2> slope = slope_of(direction);
-      if (!slope) return;  // all directions: nothing is culled
+      if (!slope) return;  // the directions span too wide an angle: nothing is culled
       farthest = std::max(farthest, glm::dot(direction, middle_));
       all.add(*slope);
       const std::size_t number = slopes_++;
@@ -92,7 +92,7 @@ class Pyramid {
     }
     return slopes;
   }
-  /// Returns the slopes of the directions from index kBlock · number on.
+  /// Returns bounds of the slopes of a block of directions, which begins at index kBlock · number.
   [[nodiscard]] const Slopes& block(std::size_t number) const { return blocks_[number]; }
 
   /// Returns whether a part of the box may be on the inner side of all planes.
@@ -207,7 +207,7 @@ class PixelFilter {
     const std::array corners = scene_.corners(triangle);
     const std::array d{glm::dvec3(corners[0]) - from, glm::dvec3(corners[1]) - from, glm::dvec3(corners[2]) - from};
     const std::array edges{glm::cross(d[0], d[1]), glm::cross(d[1], d[2]), glm::cross(d[2], d[0])};
-    // direction · (a × b) is rounded by fewer than 16 · 2⁻⁵³ · 6 of the product of the lengths
+    // direction · (a × b) has a rounding error below 16 · 2⁻⁵³ · 6 of the product of the lengths
     // (visibility/certain_meeting).
     const double reach = std::max({glm::length(d[0]), glm::length(d[1]), glm::length(d[2])});
     const double error = 0x1p-46 * reach * reach;

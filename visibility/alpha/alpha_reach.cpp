@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// A triangle is met on no segment from p to the light if a plane separates it from the hull of both. As for any two
-// convex bodies (Gottschalk, Lin, Manocha 1996), the planes of their faces are tried: those through p and two
-// neighbouring corners of the light, the light's own, the carrier's (objects below it are on no segment to a light
-// point above it), those through p and an edge of the triangle, and the triangle's own. Each test allows for rounding
-// in favour of meeting:
+// No segment from p to the light meets a triangle if a plane separates the triangle from the hull of p and the light.
+// As for any two convex bodies (Gottschalk, Lin, Manocha 1996), the planes of their faces are tried: those through p
+// and two neighbouring corners of the light, the light's own, the carrier's (objects below it are on no segment to a
+// light point above it), those through p and an edge of the triangle, and the triangle's own. Each test allows for
+// rounding in favour of meeting:
 //
 // - A computed point of the light is within kRoom · size of the hull of the corners used here, size the largest
 //   coordinate of p and light (for a sun's directions: 1 + tangent). Stored corners are rounded to float32 once, frames
 //   are differences of stored corners: at most four roundings of 2⁻²⁴ · size in a coordinate, a distance of √3 · 2⁻²² ·
 //   size.
-// - Products of differences of floats, in double, are rounded by less than kRounding of the product of their lengths: a
-//   difference by 2⁻⁵³ of itself, a cross product of two and its product with a third by fewer than 16 · 2⁻⁵³.
-
+// - Products of differences of floats, in double, have rounding errors below kRounding of the product of their lengths:
+//   a difference, 2⁻⁵³ of itself; a cross product of two and its dot product with a third, less than 16 · 2⁻⁵³.
 #include "visibility/alpha/alpha_reach.hpp"
 
 #include "base/size1.hpp"
@@ -91,7 +90,8 @@ class Directions {
       add_wall(normal_);
       add_wall(-normal_);
     }
-    // Heights over the carrier's plane are between p's, which is taken as exactly 0, and that of a light point above.
+    // Points of segments have heights over the carrier's plane between that of p, which is taken as exactly 0, and that
+    // of a light point above the plane.
     const auto [a, b, c] = scene.corners(static_cast<std::uint32_t>(samples.triangle[pixel]));
     const glm::dvec3 first = glm::dvec3(b) - glm::dvec3(a), second = glm::dvec3(c) - glm::dvec3(a);
     const glm::dvec3 down = -static_cast<double>(samples.facing[pixel]) * glm::cross(first, second),
@@ -125,12 +125,12 @@ class Directions {
   }
 
  private:
-  /// Adds a wall through p, or as far along the normal as the segments reach.
+  /// Adds a wall orthogonal to `normal`: through p, or as far along the normal as the segments reach.
   void add_wall(const glm::dvec3& normal) {
     double most = 0;
     for (const glm::dvec3& direction : directions_) most = std::max(most, glm::dot(normal, direction));
     const double size = size1(normal), reach = most + size * room_;
-    // A direction has a length of at least 1 − 2⁻²⁰: x is at most |x − p| (1 + 2⁻¹⁹) of it away.
+    // A sun's direction d has a length of at least 1 − 2⁻²⁰, so a point x = p + t d has t ≤ |x − p| (1 + 2⁻¹⁹).
     walls_.push_back(ends_ ? Wall{normal, reach, kRounding * size}
                            : Wall{normal, 0, reach * (1 + 0x1p-18) + kRounding * size});
   }
@@ -156,8 +156,8 @@ class Directions {
     const double error = kRounding * size * size1(to[0]);
     if (!(std::abs(height) > error)) return false;
     if (height < 0) normal = -normal;
-    const double least = ends_ ? -(std::abs(height) - error) : 0;  // of a segment's end, minus p's height; of a
-                                                                   // direction
+    const double least = ends_ ? -(std::abs(height) - error) : 0;  // for a segment's end, its height minus p's; for a
+                                                                   // ray, the direction's
     return std::ranges::all_of(directions_, [&](const glm::dvec3& direction) {
       return glm::dot(normal, direction) > least + size * (room_ + kRounding * size1(direction));
     });

@@ -24,7 +24,8 @@ struct DeviceLight {
   float deviation = 0;                 ///< the largest distance of a stored sample from its place in this frame
 };
 
-/// Returns a frame with a sphere's size, for checks of size as for planar lights; not a frame of the sphere.
+/// Returns a frame as large as a sphere, only for the checks of size that planar lights get; the sphere itself has no
+/// frame.
 DeviceLight box_of_sphere(const Light& light, float scale);
 
 /// Returns the frame of a rectangle; for a disk, ellipse or polygon that of a rectangle around it along the first
@@ -34,7 +35,7 @@ DeviceLight make_device_light(const Light& light, float scale);
 /// Returns whether the light samples are rows of a rectangle: DeviceLight::rows.
 bool has_rows(const Light& light);
 
-/// Returns at least the largest magnitude of a coordinate in scene and light, times `scale`: rounding errors of
+/// Returns an upper bound of the magnitudes of all coordinates in scene and light, times `scale`: rounding errors of
 /// positions are proportional to it.
 float reach_of(const SceneFloats& scene, const DeviceLight& frame, float scale);
 

@@ -35,7 +35,8 @@ class DiskPart {
   /// Returns the pieces, in order and closed. Empty: nothing is inside. A single piece without length and with an arc
   /// of ±2π: the whole disk is inside.
   [[nodiscard]] std::span<const Piece> pieces() const& { return std::span(pieces_).first(count_); }
-  std::span<const Piece> pieces() const&& = delete;  ///< of a temporary: a range-for over them would outlive it
+  std::span<const Piece> pieces() const&& = delete;  ///< deleted for temporaries: a range-for over the pieces would
+                                                     ///< outlive them
   /// Returns the area, with an error below 16 · 2⁻⁵³ for each corner: each edge has three terms, sums of a few
   /// roundings of numbers up to 2.
   [[nodiscard]] double area() const;

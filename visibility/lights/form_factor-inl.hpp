@@ -24,7 +24,7 @@ namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-constexpr std::size_t kWidest = 64;  // lanes: no vector has as many
+constexpr std::size_t kWidest = 64;  // lanes: more than any vector has
 using D = hn::CappedTag<double, kWidest>;
 using V = hn::Vec<D>;
 using M = hn::Mask<D>;

@@ -21,7 +21,8 @@ namespace {
 
 using std::numbers::pi;
 
-/// A disk's rim as seen from an element: ∫ 1, cos φ, sin φ over A − B cos φ, from one angle to another.
+/// Integrals along a disk's rim as seen from an element: of 1, cos φ and sin φ, each divided by A − B cos φ, from one
+/// angle to another.
 class Rim {
  public:
   Rim(double radius, double off_axis, double height)
@@ -229,7 +230,7 @@ double form_factor(const FormFactorEllipse& ellipse, const glm::dvec3& n) {
   const double along = -axes.matrix[order[2]][order[2]];
   const double alpha = axes.matrix[order[0]][order[0]] / along,
                beta = axes.matrix[order[1]][order[1]] / along;  // squares
-  if (!(along > 0) || !(beta > 0)) return 0;                    // no wider than rounding
+  if (!(along > 0) || !(beta > 0)) return 0;                    // the cone is no wider than rounding errors
   // The plane Z = 1 + m Y cuts the cone in a circle: m² = (α² − β²) / (β² (1 + α²)). With q = β m the circle extends
   // from Y = −β / (1 + q) to β / (1 − q).
   const double q = std::sqrt((alpha - beta) / (1 + alpha)), b = std::sqrt(beta), m = q / b;

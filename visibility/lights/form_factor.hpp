@@ -59,8 +59,8 @@ class FormFactorLoop {
   std::optional<glm::dvec3> down_, up_;  // a cut that waits for its partner; never both
 };
 
-/// A curved edge: from angle `from` on by `arc` (radians) along center + cos φ u + sin φ v, an ellipse's rim. All of it
-/// must be above the element's plane.
+/// A curved edge: part of an ellipse's rim, center + cos φ u + sin φ v, from the angle `from` to `from` + `arc`
+/// (radians). All of it must be above the element's plane.
 ///
 /// By quadrature: n · (r × r′) / |r|² is analytic in φ except where |r|² = 0, which is farther away than δ = ln(1 + (√2
 /// − 1) |r| / (|u| + |v|)): |r(φ + ε) − r(φ)| ≤ (|u| + |v|) (e^|ε| − 1), and r · r = 0 needs a change of (√2 − 1) |r|.

@@ -26,8 +26,8 @@ LightTexture texture_part(const LightTexture& texture, std::uint32_t n, const gl
 
 /// Divides a planar light into `count` × `count` parts, row by row along its u (Yang et al. 2009, section 5): a
 /// rectangle's are equal, and black ones are left out; other lights are cut by a grid over their bounding rectangle, a
-/// disk or ellipse as the image of a regular polygon of 256 sides with its area (parts of an ellipse are 2e-5 of its
-/// area off). Parts of less than 2⁻²⁰ of the grid's cell are left out. With `count` 1 every light is its only part.
+/// disk or ellipse as the image of a regular polygon of 256 sides with its area (parts of an ellipse are off by 2e-5 of
+/// its area). Parts of less than 2⁻²⁰ of the grid's cell are left out. With `count` 1 every light is its own only part.
 /// Throws InputError for a light without a plane.
 std::vector<LightPart> light_parts(const Light& light, std::uint32_t count);
 

@@ -19,7 +19,7 @@
 namespace penumbra::visibility {
 namespace {
 
-/// The light's plane in double; places in it are in cells of a grid with about as many cells as light samples.
+/// The light's plane in double; the unit of places in it is a cell of a grid with about as many cells as light samples.
 class Plane {
  public:
   explicit Plane(const Light& light) : center_(light.center) {
@@ -145,8 +145,9 @@ LightTouch find_touch(const SceneFloats& scene, const TriangleTree& tree, const 
   const double rounding = 0x1p-44 * plane.skew() * static_cast<double>(std::max({largest.x, largest.y, largest.z}));
   const double delta = samples.off + rounding, around = 1.0 / 64 + 1024 * delta * plane.cells_a_length();
   const bool all_on_plane = std::ranges::find(samples.on_plane, false) == samples.on_plane.end();
-  // Distance that the flattest segment covers while it rises by 3 δ: where the level is certain (bound level), H is at
-  // least 2⁻²⁰ of p's distance from the light's middle and 2⁻²⁰ of the light, so no light sample is farther than 2²⁰ H.
+  // Distance that the flattest segment covers while it rises by 3 δ: where p's side of the light is certain (bound
+  // level of docs/view-sample.md), p's height H is at least 2⁻²⁰ of its distance from the light's middle and 2⁻²⁰ of
+  // the light's size, so no light sample is farther than 2²⁰ H.
   const double flat = 0x1p22 * delta, flat_cells = around + flat * plane.cells_a_length();
   const auto reach = static_cast<float>(1.01 * (flat + around * plane.length_of_cell()));
 
@@ -155,7 +156,8 @@ LightTouch find_touch(const SceneFloats& scene, const TriangleTree& tree, const 
   tree.for_each_near(box.low - reach, box.high + reach, [&](std::uint32_t triangle) {
     if (scene.emits[triangle] == light.index) return;
     const std::array<glm::vec3, 3> corners = scene.corners(triangle);
-    // Where double decides exactly which corners are in the plane, light samples in the plane are safe.
+    // If double arithmetic decides exactly which corners are in the plane, light samples exactly in the plane need no
+    // exact decision.
     const bool clear = std::ranges::all_of(corners, [&](const glm::vec3& corner) {
       const double height = plane.height(corner);
       return height == 0 || std::abs(height) > rounding;

@@ -11,8 +11,8 @@
 namespace penumbra::visibility {
 
 /// Triangles that touch a light. Light samples are stored in float32, up to a unit in the last place off the light's
-/// plane: in front of or behind a triangle that lies in that plane, or ends in it. Methods that skip triangles not in
-/// front of the plane cannot decide this; they leave such light samples to the exact decision.
+/// plane: they may be in front of or behind a triangle that lies in that plane, or ends in it. Methods that skip
+/// triangles not in front of the plane cannot decide this; they leave such light samples to the exact decision.
 struct LightTouch {
   /// A view sample whose height over the light's plane is less than this fraction of its distance from the farthest
   /// light sample sees the plane at such a small angle that objects close to the plane may affect any light sample.
@@ -28,8 +28,8 @@ struct LightTouch {
 /// the light's plane is within 1/64 + 1024 δ κ cells of the sample: δ bounds the samples' distance from the plane (and
 /// its rounding in double), κ is the number of cells in a unit of length (of a grid with about as many cells as light
 /// samples, if these are not in rows). From a view sample that is not flat (kFlat), the segment to a light sample moves
-/// sideways by at most 3 · 256 δ between its end and a height of 2 δ; from the flattest that are not open as a whole
-/// (bound level), by 2²² δ.
+/// sideways by at most 3 · 256 δ between its end and a height of 2 δ; from the flattest view samples whose side of the
+/// light is certain (bound level of docs/view-sample.md), by 2²² δ.
 LightTouch find_touch(const SceneFloats& scene, const TriangleTree& tree, const Light& light);
 
 }  // namespace penumbra::visibility

@@ -28,8 +28,8 @@ class UnshadowedLight {
   /// plane.
   [[nodiscard]] bool above_horizon() const;
   /// Returns the form factor of the whole light: rectangle c ± u ± v, polygon by its outline in the frame's plane, disk
-  /// and visible disk of a sphere as a circle, ellipse as its frame's, sun as a disk at distance 1. For a sun of one
-  /// direction, that of its irradiance: n · d.
+  /// and visible disk of a sphere as a circle, ellipse as the frame's ellipse, sun as a disk at distance 1. For a sun
+  /// of one direction d, whose radiance stands for irradiance / π: n · d.
   [[nodiscard]] double whole() const;
   /// Returns the form factor of a polygon in the frame's coordinates (s, t), counter-clockwise; for the frame of a disk
   /// or a sun that of the polygon's part in the unit disk: the polygon must then be convex with up to 10 corners.

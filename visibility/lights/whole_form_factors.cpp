@@ -138,7 +138,7 @@ Wholes of_polygon(const Light& light, const WholeLight& whole, const V3& p, cons
     sum = hn::Add(sum, terms(before, corner, vector(whole.corners[i].edge), n));
     before = corner;
   }
-  // A rectangle runs counter-clockwise as seen from its front, an outline may have either orientation.
+  // A rectangle runs counter-clockwise as seen from its front; an outline may have either orientation.
   const V signed_sum = hn::IfThenElse(sides.front, hn::Neg(sum), sum);
   const V value = is_rectangle ? hn::IfThenElse(hn::Gt(signed_sum, zero), signed_sum, zero) : hn::Abs(sum);
   const M lit = light.two_sided ? above : hn::And(above, sides.front);
@@ -158,10 +158,10 @@ Wholes of_disk(const V3& center, const V3& normal, V radius, const V3& n) {
   off = off - times(dot(off, z), z);
   const V rho = hn::Sqrt(dot(off, off));
   const M beside =
-      hn::Gt(rho, hn::Mul(number(0x1p-50), hn::Sqrt(dot(center, center))));  // on the axis x is any direction
+      hn::Gt(rho, hn::Mul(number(0x1p-50), hn::Sqrt(dot(center, center))));  // on the axis, x may have any direction
   const V3 x = over(off, rho), y = cross(z, x);
   const V nx = dot(n, x), ny = dot(n, y), nz = dot(n, z);
-  // Equations of class Rim.
+  // Equations of class Rim (form_factor.cpp).
   const V b = hn::Mul(hn::Mul(number(2), rho), radius);
   const V rr = hn::Mul(radius, radius), oo = hn::Mul(rho, rho), hh = hn::Mul(h, h);
   const V a = hn::Add(hn::Add(rr, oo), hh);

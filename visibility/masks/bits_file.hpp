@@ -23,8 +23,8 @@ namespace penumbra::visibility {
 //       1 int32      carrying triangle, −1 background
 //       ⌈N/32⌉ uint32  bit j mod 32 of word ⌊j/32⌋ is set iff light sample j is visible
 
-/// Writes such a file in bands of rows, as tiles are finished; it appears whole with commit() or not at all. `samples`
-/// must outlive the writer.
+/// Writes a file of `--bits` in bands of rows, as tiles are finished. The file appears complete with commit() or not at
+/// all. `samples` must outlive the writer.
 class BitsWriter {
  public:
   /// Throws UsageError for a sphere light: its points differ from pixel to pixel.
@@ -34,7 +34,7 @@ class BitsWriter {
   /// Appends the masks of the next pixels in scan-line order, words_per_mask() words each.
   void append(std::span<const std::uint32_t> masks);
 
-  /// Call after the last pixel; as AtomicFile's functions.
+  /// To be called after the last pixel; see the functions of the same names in AtomicFile.
   void settle();
   void commit();
 

@@ -70,7 +70,7 @@ class DomeMethod final : public Method {
   Tile tile_;
   std::size_t pixels_ = 0;  // pixels of the tile
   std::vector<std::uint32_t> masks_, part_;
-  std::vector<std::uint8_t> sees_all_;  // for each face so far, whether all of it is visible
+  std::vector<std::uint8_t> sees_all_;  // for each pixel, whether it sees all of every face so far
   std::vector<glm::dvec3> form_factors_;
   std::vector<float> part_visibility_;
   std::vector<glm::dvec3> part_form_factors_;
@@ -161,8 +161,8 @@ void DomeMethod::add_form_factors(const Light& face, std::size_t first_pixel, st
   }
 }
 
-/// Returns for each pixel of the tile the dome's form factor without occluders, for a picture its luminance, 0 where
-/// that is rounding: once for all pixels of the same normal.
+/// Returns for each pixel of the tile the dome's form factor without occluders; for a picture its luminance, or 0 where
+/// that is within rounding. Computes it once for all pixels with the same normal.
 std::vector<double> DomeMethod::whole_form_factors() const {
   const std::span<const glm::vec3> n = normals();
   std::vector<double> whole(n.size());
@@ -179,7 +179,7 @@ std::vector<double> DomeMethod::whole_form_factors() const {
   std::vector<std::uint32_t> order(n.size());
   std::iota(order.begin(), order.end(), 0U);
   std::sort(order.begin(), order.end(), less);
-  std::vector<std::size_t> first;  // of the pixels of each normal
+  std::vector<std::size_t> first;  // position in `order` of the first pixel with each normal
   for (std::size_t i = 0; i < order.size(); ++i) {
     if (i == 0 || less(order[i - 1], order[i])) first.push_back(i);
   }

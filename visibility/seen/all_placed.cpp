@@ -23,8 +23,8 @@ constexpr std::size_t kMostOfRun = 100'000;
 
 using Corners = std::array<glm::vec3, 3>;
 
-/// Exact: a difference of float32 is off by 2⁻⁵³ of itself in double, and each term of the product by twice that and a
-/// rounding; four terms' bounds of 2⁻⁵⁰ decide nearly all triangles without exact numbers.
+/// Exact. A difference of float32 is off by 2⁻⁵³ of itself in double, and each term of the cross product by twice that
+/// and one rounding: the bound of 2⁻⁵⁰ of the terms decides nearly all triangles without exact numbers.
 bool has_area(const Corners& corners) {
   const glm::dvec3 a = glm::dvec3(corners[1]) - glm::dvec3(corners[0]),
                    b = glm::dvec3(corners[2]) - glm::dvec3(corners[0]);

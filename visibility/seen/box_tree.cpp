@@ -13,7 +13,7 @@ namespace penumbra::visibility {
 namespace {
 
 constexpr std::size_t kSlices = 16;
-/// Depth from which on nodes are halved: 2³² boxes then are 32 levels more.
+/// Depth from which on nodes are halved: 2³² boxes then need 32 more levels.
 constexpr std::uint32_t kSlicedDepth = BoxTree::kDepth - 34;
 
 /// Boxes of a slice, or of several.

@@ -22,7 +22,7 @@ namespace {
 
 using Corners = std::array<glm::vec3, 3>;
 
-/// Returns whether a direction is below the plane of the point's surface beyond doubt; then nothing is asked about it.
+/// Returns whether a direction is below the plane of the point's surface beyond doubt; such a direction needs no ray.
 bool is_below(const SeenPoint& point, const glm::dvec3& direction) {
   const glm::dvec3 a = point.carrier[0], b = glm::dvec3(point.carrier[1]) - a, c = glm::dvec3(point.carrier[2]) - a;
   const glm::dvec3 normal = glm::cross(b, c);
@@ -49,7 +49,7 @@ class DomeRays::Walk {
     candidates_.clear();
     nearest_ = TreeRay::kEndless;
     const PlacedMeshes& meshes = rays_.meshes_;
-    const double around = kFloatDoubt * starts_->room;  // by which the point that methods have may be elsewhere
+    const double around = kFloatDoubt * starts_->room;  // largest difference from the point that a method uses
     const TreeRay ray(starts_->middle, direction_, glm::dvec3(around), kFloatBeside);
     walk_nearest(
         meshes.tree(), nearest_, [&](const MiddleBox& box) { return ray.enter(box); },

@@ -27,12 +27,12 @@ struct LightHull {
   std::optional<Front> front = {};
   double room = 0;  ///< distance by which light points may be outside the hull
 };
-/// Returns the hull of the pieces of one light, which are no domes.
+/// Returns the hull of the pieces of one light. Not for domes.
 LightHull hull_of(std::span<const Light> pieces);
 
 /// All segments from the points of a box to a light: bounded by the planes around the box and the light's corners as
-/// seen along each axis (Haines and Wallace 1991), and by planes along the sides of the light. Conservative: also holds
-/// surfaces that are near, and on no segment.
+/// seen along each axis (Haines and Wallace 1991), and by planes along the sides of the light. Conservative: it may
+/// contain nearby surfaces that no segment meets.
 class LightShaft {
  public:
   /// `reach`: length along any axis up to which rays of directions are followed.

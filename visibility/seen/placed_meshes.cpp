@@ -75,7 +75,8 @@ PlacedMeshes::MeshTree PlacedMeshes::tree_of(const mesh::TriangleSoup& soup) {
   return {nullptr, {boxes, kTrianglesOfLeaf}, 2 * sides / static_cast<double>(std::max<std::size_t>(boxes.size(), 1))};
 }
 
-/// Keeps the trees over meshes that were there before, at any place: readers give a frame's meshes as new objects.
+/// Keeps the trees over meshes that the previous scene had as well, at any index. Meshes at the same index are also
+/// compared by content, since readers make new objects for each frame.
 void PlacedMeshes::find_trees() {
   std::vector<MeshTree> before = std::exchange(trees_, {});
   trees_.reserve(instances_->meshes.size());

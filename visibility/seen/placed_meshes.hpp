@@ -36,8 +36,9 @@ class PlacedMeshes {
     glm::dvec3 offset{0};
     /// Largest rounding error of positions, in double and in float32, by which boxes are enlarged.
     double room = 0;
-    MiddleBox in_world = {};  ///< of all its triangles
-    /// Inverse of `linear`, if it has one with relative errors below 2⁻³²; then rays may walk in the part's own space.
+    MiddleBox in_world = {};  ///< box around all of the part's triangles
+    /// Inverse of `linear`, if there is one with relative errors below 2⁻³²; then rays may be traced in the part's own
+    /// space.
     glm::dmat3 to_own{0};
     bool has_own = false;
     glm::dvec3 own_reach{0};  ///< sums of the absolute values in each row of `to_own`
@@ -52,8 +53,8 @@ class PlacedMeshes {
   PlacedMeshes(const PlacedMeshes&) = delete;
   PlacedMeshes& operator=(const PlacedMeshes&) = delete;
 
-  /// Places the meshes, as another scene has them or the same one after a change. Trees over meshes that the last scene
-  /// had are kept. Both arguments must outlive all calls until the next place() or leave().
+  /// Places the meshes of another scene, or of the same one after a change. Trees over meshes that the last scene had
+  /// are kept. Both arguments must outlive all calls until the next place() or leave().
   void place(const scenes::Scene& scene, const scenes::Instances& instances);
   /// Releases the scene, and keeps the trees over its shared meshes.
   void leave();

@@ -176,7 +176,7 @@ SeenPart part_of(const PlacedMeshes& meshes, TriangleBits& seen) {
 SeenPart seen_part(const PlacedMeshes& meshes, const PinholeCamera& camera, std::span<const Light> lights,
                    const Tile& rows, const PartOptions& options) {
   TriangleBits seen(meshes.triangles());
-  std::vector<Light> others;  // beside domes
+  std::vector<Light> others;  // lights other than domes
   std::vector<DomeRays> domes;
   const auto is_dome = [](const Light& light) { return light.dome.has_value(); };
   const bool any_dome = std::ranges::any_of(lights, is_dome), all = any_dome && !options.dome_samples;

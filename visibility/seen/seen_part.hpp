@@ -29,17 +29,17 @@ struct PartOptions {
   /// True: of a dome only the light samples are evaluated, so that one blocker of each suffices. False: areas of a dome
   /// need all triangles, since its directions go everywhere.
   bool dome_samples = false;
-  /// Receives the triangles that the rows' pixels see, for viewed_part(), beside those that it has; null: not
-  /// requested.
+  /// The triangles that the rows' pixels see are appended to this list, for viewed_part(); null: not requested.
   std::vector<std::uint64_t>* viewed = nullptr;
 };
 
-/// Finds the part for the view samples in some rows of the picture. `lights`: all lights that shine on these, pieces of
-/// one light side by side. Throws ResourceError, with the figures, if memory does not suffice.
+/// Finds the part for the view samples in some rows of the picture. `lights`: all lights that shine on these, with the
+/// pieces of one light next to one another. Throws ResourceError, with the figures, if memory does not suffice.
 SeenPart seen_part(const PlacedMeshes& meshes, const PinholeCamera& camera, std::span<const Light> lights,
                    const Tile& rows, const PartOptions& options = {});
 
-/// Returns the part that pixels see: what is in it is nearest in its pixel. `viewed`: as seen_part() gives it.
+/// Returns only the triangles that pixels see, without those between them and the lights. `viewed`: as filled by
+/// seen_part().
 SeenPart viewed_part(const PlacedMeshes& meshes, std::span<const std::uint64_t> viewed);
 
 }  // namespace penumbra::visibility

@@ -19,7 +19,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 constexpr hn::CappedTag<double, 8> kDoubles{};
 using Doubles = hn::Vec<decltype(kDoubles)>;
 
-/// A bit for each vector of planes: those that cut a box, and must be compared with what is in it.
+/// A bit for each vector of planes; set: the planes cut a box, and must be compared with its contents.
 using Cutting = std::uint64_t;
 
 Cutting all_of(const ShaftPlanes& planes) {
@@ -32,7 +32,8 @@ Doubles dot(Doubles x, Doubles y, Doubles z, const glm::dvec3& point) {
                  hn::Mul(z, hn::Set(kDoubles, point.z)));
 }
 
-/// Returns whether the box reaches into the shaft, as far as `cutting` tells; removes planes that the box is inside of.
+/// Returns whether the box may reach into the shaft, tested with the planes in `cutting`; removes planes that the whole
+/// box is inside of.
 bool touches(const ShaftPlanes& planes, const MiddleBox& box, Cutting& cutting) {
   for (Cutting left = cutting; left != 0; left &= left - 1) {
     const auto number = static_cast<std::uint32_t>(std::countr_zero(left));

@@ -23,7 +23,7 @@ struct ShaftPlanes {
     most[count++] = farthest;
   }
 
-  alignas(64) std::array<double, kMost> x{}, y{}, z{}, most{};  ///< behind `count` all are 0, which bounds nothing
+  alignas(64) std::array<double, kMost> x{}, y{}, z{}, most{};  ///< entries from `count` on are 0, which bounds nothing
   std::uint32_t count = 0;
 };
 

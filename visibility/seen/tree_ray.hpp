@@ -45,7 +45,7 @@ struct TreeRay {
 };
 
 /// Calls take(item) for the items of leaves whose boxes a ray enters up to `nearest`, nearest first; take() may lower
-/// `nearest`, and ends the walk by a value below 0. `enter`: parameter at which the ray enters a node's box.
+/// `nearest`; a value below 0 ends the walk. `enter`: parameter at which the ray enters a node's box.
 template <typename Enter, typename Take>
 void walk_nearest(const BoxTree& tree, const double& nearest, const Enter& enter, const Take& take) {
   struct Waiting {

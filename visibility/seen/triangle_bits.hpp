@@ -28,7 +28,7 @@ class TriangleBits {
   }
   /// Returns the number of bits that are set.
   [[nodiscard]] std::uint64_t count() const;
-  /// Calls take(bit) for each bit that is set, from `first` to before `end`, in ascending order.
+  /// Calls take(bit) for each bit that is set, in [first, end), in ascending order.
   template <typename Take>
   void for_each(std::uint64_t first, std::uint64_t end, const Take& take) const;
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Flux from regions of a dome's picture: sides on the borders of faces from tables, other sides texel by texel.
+// Computes the flux from regions of a dome's picture as a sum over their sides: those on borders of faces by tables,
+// others texel by texel.
 
 #include "visibility/skies/sky.hpp"
 
@@ -28,7 +29,7 @@ namespace penumbra::visibility {
 using std::numbers::pi;
 
 /// A fixed arc with the integral from its beginning to each border of texels, so that the integral over any part of it
-/// takes two places.
+/// takes two look-ups.
 class SkyLine {
  public:
   SkyLine(const SkyTexels& texels, const SkyArc& arc, SkyPole pole) : texels_(&texels), arc_(arc), pole_(pole) {
@@ -165,7 +166,7 @@ const SkyFlux& Sky::of_face(std::size_t face) const {
   return tables().faces.at(face).whole;
 }
 
-/// The cut has the places of corners exactly: sides on the face's border stay there.
+/// The cut keeps corners exactly, so sides on the face's border stay there.
 SkyFlux Sky::of_face_above(std::size_t number, const glm::dvec3& n) const {
   SkyTables& all = tables();
   const std::array<double, 4> key{static_cast<double>(number), n.x, n.y, n.z};
@@ -189,8 +190,9 @@ SkyFlux Sky::of_face_above(std::size_t number, const glm::dvec3& n) const {
   return flux;
 }
 
-/// The border is the great circle across n: its upper half with the north pole's integrals, its lower half with the
-/// south pole's, and between them the difference of the two over the equator's half above the plane.
+/// The region's border is the great circle orthogonal to n. Its upper half takes the integrals from the north pole, its
+/// lower half those from the south pole; the difference between both, over the half of the equator above the plane, is
+/// added.
 SkyFlux Sky::above(const glm::dvec3& n) const {
   const SkyTexels& texels = tables().texels;
   const glm::dvec3 up = glm::normalize(tables().to_sky * n);

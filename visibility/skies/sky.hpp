@@ -39,15 +39,15 @@ class Sky {
   void prepare() const { std::ignore = tables(); }
   /// Returns the part of the flux that a straight side of a region contributes, by Stokes' theorem: the contributions
   /// of the sides of a polygon, counter-clockwise in (s, t) of dome_face, add up to the flux from the polygon. A side
-  /// on the border of a face, or at t = 0, takes few steps; any other one for each texel that it crosses.
-  /// `exposure`: ∫ luminance dτ along the side is added, τ the angle along it; not for fixed sides, which are exact. A
-  /// side that is off by ε changes the flux by ε times its exposure.
+  /// on the border of a face, or at t = 0, takes few steps; any other side takes one for each texel that it crosses. ∫
+  /// luminance dτ along the side, τ the angle along it, is added to `exposure`, except for sides on those borders,
+  /// which are exact. A side that is off by ε changes the flux by ε times its exposure.
   [[nodiscard]] SkyFlux side(std::size_t face, const glm::dvec2& from, const glm::dvec2& to, double& exposure) const;
   /// Returns the flux from the emitting part of a face (dome_face_corners).
   [[nodiscard]] const SkyFlux& of_face(std::size_t face) const;
-  /// Returns the flux from the emitting part of a face above the plane across n, a vector in world space.
+  /// Returns the flux from the emitting part of a face above the plane orthogonal to n, a vector in world space.
   [[nodiscard]] SkyFlux of_face_above(std::size_t face, const glm::dvec3& n) const;
-  /// Returns the flux from all directions above the plane across n.
+  /// Returns the flux from all directions above the plane orthogonal to n.
   [[nodiscard]] SkyFlux above(const glm::dvec3& n) const;
   /// Returns the form factor of a flux at an element of unit normal n, for each colour: 1/π n · flux.
   [[nodiscard]] glm::dvec3 form_factor(const SkyFlux& flux, const glm::dvec3& n) const;
@@ -62,7 +62,7 @@ class Sky {
   DomeFrame frame_;
   Light::Dome dome_;
   mutable std::once_flag once_;
-  mutable scenes::Texture picture_;  // until there are tables
+  mutable scenes::Texture picture_;  // used until the tables are made
   mutable std::unique_ptr<SkyTables> tables_;
 };
 

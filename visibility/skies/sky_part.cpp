@@ -32,7 +32,7 @@ void SkyPart::add_above(const glm::dvec3& n) {
   flux_ += sky_.of_face_above(face_, n);
 }
 
-/// Adds the sides that did not cancel. Ends that should be equal may differ by rounding: what is between them is
+/// Adds the sides that did not cancel. Ends that should be equal may differ by rounding: the side between them is
 /// shorter than kShortest, and changes the flux by less than that times the picture's light.
 void SkyPart::add_levels(std::vector<End>& ends, Level level) {
   constexpr double kShortest = 0x1p-46;

@@ -20,13 +20,14 @@ class SkyPart {
 
   /// The coordinate that is equal along the two level sides of a trapezoid.
   enum class Level { s, t };
-  /// Adds a trapezoid, counter-clockwise, which begins with a level side for Level::t, and before one for Level::s.
+  /// Adds a trapezoid, counter-clockwise. Its first side is level for Level::t, its second side for Level::s.
   void add(const std::array<glm::dvec2, 4>& corners, Level level);
-  /// Adds all of the face above the plane across a unit vector.
+  /// Adds all of the face above the plane orthogonal to a unit vector.
   void add_above(const glm::dvec3& n);
   /// Returns the sum of the exposures of all sides (Sky::side); complete after take_form_factor.
   [[nodiscard]] double exposure() const { return exposure_; }
-  /// Returns the form factor of all that was added for each colour, at an element of unit normal n; forgets the parts.
+  /// Returns the form factor, for each colour, of everything that was added, at an element of unit normal n; then
+  /// forgets the parts.
   glm::dvec3 take_form_factor(const glm::dvec3& n);
 
  private:

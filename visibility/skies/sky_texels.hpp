@@ -12,7 +12,7 @@
 /// Texels of a dome's picture, and integrals along great circles over them. Inside visibility/skies/ only.
 namespace penumbra::visibility {
 
-/// A direction on a great circle, by what the integral along the circle needs.
+/// A direction on a great circle, given by the values that the integral along the circle needs.
 struct SkyPoint {
   double cosine = 1, sine = 0;  ///< of the azimuth
   double latitude = 0;
@@ -53,7 +53,7 @@ enum class SkyPole { north, south };
 /// k₁ the prefix sum of c [A] plus c A(z₀), k₂ that of c [z²] / 2 less c (1 − z₀²) / 2.
 class SkyTexels {
  public:
-  /// `half`: what is below z = 0 is black.
+  /// `half`: the half below z = 0 is black.
   SkyTexels(const scenes::Texture& picture, bool half);
 
   /// Adds the integral along an arc to `flux`. Returns ∫ luminance dτ along the arc.
@@ -76,7 +76,7 @@ class SkyTexels {
 
  private:
   struct Sums {
-    glm::dvec3 level{0}, upward{0};  // of radiance [A], and of radiance [z²] / 2
+    glm::dvec3 level{0}, upward{0};  // prefix sums of radiance [A], and of radiance [z²] / 2
   };
   struct Texel {
     glm::dvec3 radiance{0}, k1{0}, k2{0};

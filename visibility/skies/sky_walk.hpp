@@ -11,8 +11,8 @@
 /// The walk of SkyTexels along a great circle, from border to border of texels. Inside visibility/skies/ only.
 namespace penumbra::visibility {
 
-/// Walks along an arc whose latitude only rises or only falls. On the circle the slope at an azimuth is
-/// −(axis.x cos φ + axis.y sin φ) / axis.z: slopes tell which border comes first, without angles.
+/// Walks along an arc whose latitude only rises or only falls. On the circle the slope at an azimuth is −(axis.x cos φ
+/// + axis.y sin φ) / axis.z: comparing slopes shows which border comes first, without computing angles.
 template <typename Visit>
 void SkyTexels::walk_one_way(const SkyArc& arc, Place& at, Place end, const Visit& visit) const {
   const glm::dvec3& axis = arc.axis;
@@ -32,7 +32,7 @@ void SkyTexels::walk_one_way(const SkyArc& arc, Place& at, Place end, const Visi
     const Border& border = borders_[rises ? cell.row : cell.row + 1];
     SkyPoint next;
     if (rises ? slope > border.slope && cell.row > 0 : slope < border.slope && cell.row + 1 < rows_) {
-      // The azimuth from that of the axis: by its cosine u; its sine is positive where the arc rises.
+      // u and w are cosine and sine of the azimuth relative to the axis's azimuth; w is positive where the arc rises.
       const double u = std::clamp(-axis.z * border.slope / level, -1.0, 1.0);
       const double w = (rises ? 1 : -1) * std::sqrt((1 - u) * (1 + u));
       next.cosine = (axis.x * u - axis.y * w) / level;

@@ -38,8 +38,8 @@ namespace {
 
 HWY_EXPORT(count_below);
 
-/// For at most this many items the rank of each is counted, each against each, which vector units do faster than a
-/// search for the median with its branches.
+/// For at most this many items, ranks are counted by comparing every item with every other: on vector units that is
+/// faster than a search for the median with its branches.
 constexpr std::size_t kCounted = 64;
 
 }  // namespace
@@ -52,7 +52,7 @@ void put_least_first(std::span<Divided> items, std::size_t first, int axis, floa
                      });
     return;
   }
-  // Keys along the axis; below each, as many positions as items.
+  // A key is the item's step along the axis, and in the bits below that its index, so that all keys differ.
   constexpr std::int32_t kSteps = 1 << 24;
   alignas(64) std::array<std::int32_t, kCounted> keys, below;
   const double steps = upper > lower ? kSteps / (static_cast<double>(upper) - lower) : 0;

@@ -19,12 +19,12 @@ struct Divided {
   std::uint32_t at;
 };
 
-/// Moves the `first` smallest items along an axis, on which they extend from `lower` to `upper`, in front of all
-/// others: with a resolution of 2⁻²⁴ of that, which does not affect the tree's quality. Equal items keep their order.
+/// Moves the `first` smallest items along an axis to the front. Items extend from `lower` to `upper`; differences below
+/// 2⁻²⁴ of that may be ignored, which does not affect the tree's quality. Equal items keep their order.
 void put_least_first(std::span<Divided> items, std::size_t first, int axis, float lower, float upper);
 
-/// Calls take(part) with parts of `step` items, of which the last may have fewer: halves along the longest side of the
-/// middles' bounds.
+/// Divides the items in halves along the longest side of the middles' bounds, again and again, and calls take(part)
+/// with parts of `step` items, of which the last may have fewer.
 template <typename Take>
 void halve(std::span<Divided> items, std::size_t step, const Take& take) {
   const std::size_t parts = (items.size() + step - 1) / step, first = parts / 2 * step;

@@ -74,7 +74,7 @@ Size size_of(std::size_t count) {
   return size;
 }
 
-/// Begin of a subtree: its root is the first of its nodes, or, if it has none, its leaf.
+/// The beginning of a subtree: its root is the first of its nodes, or, if it has none, its leaf.
 struct Place {
   std::uint32_t node = 0, leaf = 0;
 
@@ -209,7 +209,7 @@ class Along {
     }
   }
 
-  /// Returns whether only leaves are below, or it is one.
+  /// Returns whether the reference is a leaf, or has only leaves below it.
   [[nodiscard]] bool is_last(std::uint32_t reference) const {
     return is_leaf(reference) || std::ranges::all_of(guide_.nodes[reference], [](const Child& child) {
              return child.reference == TriangleTree::kNoChild || is_leaf(child.reference);

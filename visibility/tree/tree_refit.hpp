@@ -24,7 +24,7 @@ double tree_cost(const TriangleTree& tree);
 void refit_tree(TriangleTree& tree, const std::function<Bounds(std::uint32_t)>& box,
                 const std::function<bool(std::size_t leaf)>& has_moved);
 
-/// Returns whether its leaves contain exactly the triangles that cast shadows.
+/// Returns whether the tree's leaves contain exactly the triangles that cast shadows.
 bool holds_casters(const TriangleTree& tree, const SceneFloats& scene);
 /// Refits a tree to a scene with the same casters.
 void refit_triangle_tree(TriangleTree& tree, const SceneFloats& scene);

@@ -37,7 +37,7 @@ namespace {
 /// which costs a processor more than a hundred cycles.
 constexpr float kThinnest = 0x1p-40F;
 
-/// Returns the next larger float of a positive one; as std::nextafter, which is a function call.
+/// Returns the next larger float of a positive one, like std::nextafter but without a function call.
 float next_above(float x) {
   constexpr float kMost = std::numeric_limits<float>::max();
   return std::bit_cast<float>(std::bit_cast<std::uint32_t>(std::min(x, kMost)) + 1);

@@ -26,8 +26,8 @@ namespace {
 
 constexpr std::uint32_t kWidth = TriangleTree::kWidth;
 
-/// For at most this many boxes the heuristic is not worth its time: one node, whose leaves are full. Their edges, half
-/// as many again, fill another (tree_along.cpp).
+/// For at most this many boxes the heuristic is not worth its time: they get one node, whose leaves are full. Their
+/// edges, 1.5 times as many, fill one node of a tree over edges (tree_along.cpp).
 constexpr std::uint32_t kTogether = 5 * kWidth;
 
 /// Below this depth, groups are halved regardless of their shape: this bounds the tree's depth.

@@ -26,7 +26,7 @@ Bounds box_around(const SceneFloats& scene, const PinholeCamera& camera, std::ui
   const glm::dvec3 far = glm::max(glm::abs(glm::dvec3(lower) - camera.eye), glm::abs(glm::dvec3(upper) - camera.eye));
   const double away = glm::length(far) + (camera.lens ? camera.lens->radius : 0);
   const double half = camera.half_height ? *camera.half_height : camera.tan_half_fov * away;
-  // Size of a pixel there, and the rounding of the sum to float.
+  // Size of a pixel at that distance, and the rounding of the sum to float.
   const double pixel =
       2 * half / camera.picture_height() + 0x1p-22 * glm::length(glm::max(glm::abs(lower), glm::abs(upper)));
   const auto pad = static_cast<float>(std::min(pixel, 0x1p100));
@@ -101,7 +101,7 @@ void ViewWalk::meet(std::uint32_t x, std::uint32_t y, std::vector<Met>& met) con
     const std::uint32_t triangle = triangles_[i];
     if (const std::optional<double> t = cover(ray, scene_.corners(triangle))) met.push_back({*t, triangle});
   });
-  // Two triangles with equal corners: the first of the file wins.
+  // Of triangles with equal corners, the first in the file wins.
   std::ranges::sort(met, [&](const Met& a, const Met& b) {
     if (a.t != b.t) return a.t < b.t;
     if (scene_.comes_before(a.triangle, b.triangle)) return true;

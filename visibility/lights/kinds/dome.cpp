@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Domes: directions all around. Light samples are strata of luminance × solid angle, so that a sun in a picture gets
-// samples in proportion to its light: the unit square's y selects the row of texels, and the place in it, by the sums
-// of all rows, x the texel of the row by its luminance (M. Pharr, W. Jakob, G. Humphreys, Physically Based Rendering,
-// 12.6). For constant radiance, rows have equal solid angle: heights are evenly spaced, and so are angles.
+// samples in proportion to its light: y of the unit square selects a row of texels and the height within it, by the
+// sums of the rows; x selects the texel in that row, by its luminance (M. Pharr, W. Jakob, G. Humphreys, Physically
+// Based Rendering, 12.6). For constant radiance, rows have equal solid angle: heights are evenly spaced, and so are
+// angles.
 
 #include "base/assert.hpp"
 #include "base/error.hpp"

@@ -19,7 +19,7 @@ struct LightBehaviour {
 
 const LightBehaviour& behaviour_of(LightKind kind);
 
-// The rows, each in its own file.
+// The rows of the table, each defined in its kind's file.
 extern const LightBehaviour kRectangleBehaviour, kDiskBehaviour, kEllipseBehaviour, kPolygonBehaviour, kSphereBehaviour,
     kSunBehaviour, kDomeBehaviour;
 

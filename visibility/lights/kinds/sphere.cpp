@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Spheres: each p sees a different disk (light_frame_from), so that no points are stored. With a cone: spot lamps.
+// Spheres: each p sees a different disk (light_frame_from), so that no points are stored. Spheres with a cone are spot
+// lamps.
 
 #include "visibility/lights/kinds/light_kinds.hpp"
 
