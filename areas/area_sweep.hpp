@@ -10,13 +10,13 @@
 
 namespace penumbra::areas {
 
-/// Edge of a polygon that runs counter-clockwise. Count of a vertical line that crosses the edge upward: +1 for an edge
-/// that runs toward larger s (the polygon is above the edge), −1 for one that runs back.
+/// Edge of a polygon that runs counter-clockwise. A vertical line that crosses the edge upward counts +1 if the edge
+/// runs toward larger s (the polygon is above the edge), −1 if it runs back.
 template <typename Number>
 struct SweepEdge {
   Number s0, t0, s1, t1;  ///< s0 < s1
   int cover = 0;          ///< added to the depth of the covering polygons
-  int region = 0;         ///< added to the region itself
+  int region = 0;         ///< added to the depth of the region itself
 };
 
 /// Edge of a sweep at a slab: its height at the two ends of the strip, and in the slab's middle and at its ends.
@@ -29,8 +29,8 @@ struct ActiveEdge {
 };
 
 /// Measures plain area. A measure defines: the contribution between two edges that do not cross within a slab, as the
-/// mean over the slab of the contribution to a vertical line; the begin of further strips; and the current strip and
-/// slab.
+/// mean over the slab of the contribution to a vertical line; the positions at which further strips begin; and the
+/// current strip and slab.
 template <typename Number>
 struct PlainMeasure {
   static constexpr bool kNeedsEnds = false;
@@ -145,15 +145,15 @@ class AreaSweep {
     }
   }
 
-  /// Insertion sort: from slab to slab the order hardly changes.
+  /// Sorts by insertion, since the order hardly changes from slab to slab.
   void sort_active() {
     for (std::size_t i = 1; i < active_.size(); ++i) {
       for (std::size_t j = i; j > 0 && active_[j].t < active_[j - 1].t; --j) std::swap(active_[j], active_[j - 1]);
     }
   }
 
-  /// Returns whether some edges cross: sorted by their middles, edges that do not cross are sorted at both ends as
-  /// well.
+  /// Returns whether some edges cross within the slab. Edges that do not, once sorted by their middles, are also sorted
+  /// at both ends.
   [[nodiscard]] bool some_cross() const {
     for (std::size_t i = 1; i < active_.size(); ++i) {
       if (active_[i].left < active_[i - 1].left || active_[i].right < active_[i - 1].right) return true;
@@ -181,7 +181,7 @@ class AreaSweep {
   }
 
   Measure measure_;
-  std::vector<Number> breaks_, crossings_;  // of a strip: left, right, then the values between
+  std::vector<Number> breaks_, crossings_;  // of a strip: its left and right end, then the values between
   std::vector<Active> active_;
 };
 

@@ -30,7 +30,8 @@ struct ProjectivePoint {
 using ProjectiveEdge = std::pair<ProjectivePoint, ProjectivePoint>;
 using Polygon = std::vector<ProjectivePoint>;
 
-/// Clip planes of a triangle, in this order. Left and right leave only W ≥ 0, and W = 0 only at p itself.
+/// Clip planes of a triangle, in this order. After clipping at left and right only points with W ≥ 0 remain, and W = 0
+/// only at p itself.
 enum class ClipPlane : std::uint8_t { light, left, right, bottom, top };
 constexpr std::size_t kClipPlanes = 5;
 constexpr unsigned bit_of(ClipPlane plane) {
@@ -38,12 +39,13 @@ constexpr unsigned bit_of(ClipPlane plane) {
 }
 constexpr unsigned kAllClipPlanes = (1u << kClipPlanes) - 1;
 
-/// Stored points of a light, whose differences integers hold exactly (visibility::LightFrame rounds these), and the
-/// grid of all of them: shared by view samples. Only a sphere's depends on p. For a sun, c is the direction from any p
-/// to the sun's middle: r = −c, and every point with W > 0 can hide something.
+/// Stored points of a light, and the grid that represents them and their differences as exact integers
+/// (visibility::LightFrame rounds the differences). All view samples share them, except for a sphere, whose points
+/// depend on p. For a sun, c is the direction from any p to the sun's middle: r = −c, and every point with W > 0 can
+/// hide something.
 struct IntegerFrame {
-  glm::dvec3 c{0}, u_end{0}, v_end{0};  ///< u = u_end − origin, with origin c, as stored; or 0 for a sphere, whose axes
-                                        ///< are given
+  glm::dvec3 c{0}, u_end{0}, v_end{0};  ///< u = u_end − origin, v = v_end − origin; origin is the stored c, or 0 for a
+                                        ///< sphere, whose axes are given directly
   glm::dvec3 origin{0};
   IntegerGrid grid;      ///< of all these points
   bool endless = false;  ///< a sun
@@ -67,25 +69,27 @@ class BackProjection {
   [[nodiscard]] mpz_class height(ClipPlane plane, const ProjectivePoint& q) const;
   /// Returns the part of the edge on the inner side of all `planes` (bits); nullopt if it is a point or empty.
   [[nodiscard]] std::optional<ProjectiveEdge> clip_edge(ProjectiveEdge edge, unsigned planes) const;
-  /// Returns the part of a convex polygon on the inner side. `cut` is the edge that closes the polygon along the plane,
-  /// if it was cut; also if only its boundary is inside, so that the result always is a closed polygon.
+  /// Returns the part of a convex polygon on the inner side. `cut` becomes the edge that closes the polygon along the
+  /// plane, if the polygon was cut. That includes polygons of which only the boundary is inside, so the result is
+  /// always closed.
   [[nodiscard]] Polygon clip_polygon(const Polygon& polygon, ClipPlane plane, std::optional<ProjectiveEdge>& cut) const;
-  /// Returns the height over the plane (a, b, c) of the points of the light: det(b − a, c − a, l − a), times `sign`.
+  /// Returns the height of a light point l over the plane (a, b, c), as a function of l's coordinates: det(b − a, c −
+  /// a, l − a), times `sign`.
   [[nodiscard]] HalfPlane above_plane(const std::array<glm::vec3, 3>& corners, int sign) const;
 
  private:
   using Integers = std::array<mpz_class, 3>;
 
   IntegerGrid grid_;
-  Integers p_, c_, u_, v_;       ///< c: of a sun a direction
+  Integers p_, c_, u_, v_;       ///< c is a direction for a sun
   Integers to_s_, to_t_, to_w_;  ///< S, T, W are the products of these with q − p
   mpz_class reach_;              ///< K, made positive
   bool mirrored_ = false, endless_ = false;
   GridBox box_;
 };
 
-/// Returns a · |height of b| + b · |height of a|: the crossing of a plane with the edge from a to b, on different
-/// sides.
+/// Returns a · |height of b| + b · |height of a|: the crossing of a plane with the edge from a to b, which are on
+/// different sides of it.
 ProjectivePoint crossing(const ProjectivePoint& a, const mpz_class& height_a, const ProjectivePoint& b,
                          const mpz_class& height_b);
 

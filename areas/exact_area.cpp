@@ -67,9 +67,9 @@ bool all_inside(const GridBox& box, const HalfPlane& half_plane) {
 }  // namespace
 
 struct ExactAreaData {
-  TriangleTree own_tree;  ///< unless the caller has one
+  TriangleTree own_tree;  ///< used unless the caller has a tree
   WeldedScene scene;
-  IntegerGrid grid;  ///< of all positions
+  IntegerGrid grid;  ///< grid of all positions
   const Light* light = nullptr;
   IntegerFrame frame;  ///< unused for a sphere
   Region region;
@@ -101,8 +101,8 @@ Number measure_uncovered(Measure measure, std::vector<SweepEdge<Number>>& edges,
   return area;
 }
 
-/// Returns the visible fraction of the light's region, by area or by luminance. `edges` are the region's, and the
-/// workspace.
+/// Returns the visible fraction of the light's region, by area or by luminance. `edges`: the region's edges; also used
+/// as workspace.
 template <typename Number>
 double share_left(const Question& question, std::vector<SweepEdge<Number>> edges, AreaWork& work) {
   const ExactAreaData& data = question.data;
@@ -223,7 +223,7 @@ double ExactArea::visible_share(const Receiver& receiver, SweepArithmetic arithm
   BackProjection projection(frame, grid, receiver.p);
   if (projection.on_plane()) return 0;
 
-  // Whether the horizon cuts the region; most view samples see all of it.
+  // `whole`: the horizon does not cut the region. Most view samples see all of it.
   const HalfPlane above = projection.above_plane(data_->scene.scene->corners(receiver.carrier), receiver.facing);
   const bool whole = all_inside(data_->box, above);
   const Region cut = whole ? Region() : clip(data_->region, above);

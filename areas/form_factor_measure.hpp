@@ -13,7 +13,8 @@
 
 namespace penumbra::areas {
 
-/// Measure of the sweep (area_sweep.hpp) that measures as Measure does, and passes each trapezoid to a FormFactorSum.
+/// A measure for the sweep (area_sweep.hpp) that has the results of `Measure`, and also passes each trapezoid to a
+/// FormFactorSum.
 template <typename Number, typename Measure>
 class FormFactorMeasure {
  public:

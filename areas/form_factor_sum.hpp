@@ -64,8 +64,8 @@ class FormFactorSum {
     if (seen.light().dome && seen.light().dome->sky) sky_.emplace(seen.light());
   }
 
-  /// Begins a slab, from left to right; add_between then adds the parts between two edges, with the edges' heights at
-  /// the slab's ends. With a texture a slab lies within one column of blocks.
+  /// Begins the next slab, from left to right; add_between then adds the parts between two edges, with the edges'
+  /// heights at the slab's ends. With a texture a slab lies within one column of blocks.
   void enter_slab(double from, double to);
   struct Side {
     const void* edge;  ///< used for comparison only

@@ -90,7 +90,7 @@ GridBox box_around(const Region& region) {
 
 void IntegerGrid::include(double value) {
   if (value == 0) return;
-  // value = ± mantissa · 2^(exponent − 1075), as IEEE 754 stores it; the lowest of its bits is worth 2^lowest.
+  // value = ± mantissa · 2^(exponent − 1075), as IEEE 754 stores it; its lowest set bit has the value 2^lowest.
   constexpr int kMantissa = 52;
   const auto bits = std::bit_cast<std::uint64_t>(value);
   const int exponent = static_cast<int>(bits >> kMantissa & 0x7ff);

@@ -45,7 +45,7 @@ struct GridBox {
 };
 GridBox box_around(const Region& region);
 
-/// Power of two, 2^bits, that makes all of a set of doubles integers.
+/// The power of two, 2^bits, that turns all doubles of a set into integers when multiplied with them.
 class IntegerGrid {
  public:
   void include(double value);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Classifies points against the clip planes of a light's shaft in double, with error bounds; the exact test is
-// BackProjection's.
+// Classifies points against the clip planes of a light's shaft in double, with error bounds. BackProjection has the
+// exact test.
 
 #include "areas/light_shaft.hpp"
 

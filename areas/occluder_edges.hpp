@@ -19,7 +19,7 @@
 
 namespace penumbra::areas {
 
-/// Scene with known shared edges of its triangles. Borrows the scene and its tree.
+/// A scene in which the edges that triangles share are known. Borrows the scene and its tree.
 struct WeldedScene {
   const visibility::SceneFloats* scene = nullptr;
   const visibility::TriangleTree* tree = nullptr;
@@ -49,7 +49,7 @@ class OccluderEdges {
 
   template <typename Visit>
   void for_each_candidate(Visit&& visit) const;
-  /// Adds all of a triangle's boundary or nothing: then the sums stay closed, whichever triangles are left out.
+  /// Adds all of a triangle's boundary or nothing: so the sums stay closed, whichever triangles are left out.
   void add_triangle(std::uint32_t triangle);
   /// Clips a triangle, and adds the closing edges along the crossed planes. Along left and right no vertical line
   /// crosses the closing edges, and the space above the top is not measured: the cuts at the light's plane and at the
