@@ -24,8 +24,8 @@ struct MethodRow {
   /// Returns whether the light's shadows are computed on the Vulkan device. Looks for a GPU only if the answer depends
   /// on it.
   std::function<bool(const render::Machine&, const Options&, const visibility::Light&)> on_device;
-  /// A picture takes seconds on a Vulkan device that is a processor, milliseconds on a GPU: left out of the default
-  /// comparison there.
+  /// True if a picture takes milliseconds on a GPU, but seconds on a Vulkan device that is a processor: there the
+  /// method is left out of the default comparison.
   bool slow_on_processors = false;
   int precedence = 0;  ///< rows with higher values come first, regardless of family; others keep the order of the
                        ///< tables

@@ -135,8 +135,8 @@ void BlockedSamples::hide(const glm::vec3& p, const std::array<glm::vec3, 3>& co
   std::array<BoxSide, 4> sides;
   std::ranges::transform(spaces, sides.begin(), [&](const HalfSpace& space) { return side_of(space, middle_, half_); });
   if (!certain) {
-    // All three edges may have the wrong orientation: then the triangle is certainly missed only if it lies on
-    // different sides of two of them.
+    // All three half-spaces may have the wrong orientation, but have the same one: the triangle is certainly missed if
+    // the whole light is inside of one and outside of another.
     const auto edges = std::span(sides).first(3);
     if (std::ranges::any_of(edges, &BoxSide::all) && std::ranges::any_of(edges, &BoxSide::none)) {
       ++counts.missed;

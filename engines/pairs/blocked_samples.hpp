@@ -13,9 +13,9 @@
 
 namespace penumbra::pairs {
 
-/// Relative error of a determinant of three differences, per product of its rows' lengths.
-/// Each difference is right to 2⁻⁵³ of itself in each coordinate, which gives three such errors; the determinant rounds
-/// six products of three, each at most the product of the rows' lengths, and their sums: fewer than 16 · 2⁻⁵³ · 6 of
+/// Relative error of a determinant of three differences, per product of its rows' lengths. Each difference has a
+/// relative error of 2⁻⁵³ in each coordinate, which gives three such errors. The determinant also rounds six products
+/// of three factors, each at most the product of the rows' lengths, and their sums: in all less than 16 · 2⁻⁵³ · 6 of
 /// that product (visibility/certain_meeting.cpp). Here one row is itself a sum, w + (o − p), with three more roundings
 /// of at most |w| + |o − p|: still below 2⁻⁴⁶ of the product with this sum in place of the row's length.
 inline constexpr double kDeterminant = 0x1p-46;

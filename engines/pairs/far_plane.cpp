@@ -52,8 +52,8 @@ class Slab {
 FarPlane::FarPlane(const LightBox& light, double side, double reach, std::span<const std::uint32_t> pixels,
                    std::span<const glm::vec3> p, double per_pixel)
     : light_(light), side_(side) {
-  // Fewer than 8 roundings of twice the reach, and clipping interpolates with as many; light samples are `off` their
-  // plane, which moves the point that a segment meets by no more.
+  // A place has fewer than 8 roundings of twice the reach, and interpolation in clipping has as many. Light samples are
+  // up to `off` from their plane, which moves the point where a segment meets a triangle by no more than that.
   error_ = 0x1p-46 * reach + (light.sun ? 0 : light.off);
   for (const std::uint32_t pixel : pixels) {
     const glm::dvec3 at = place(p[pixel]);
@@ -82,8 +82,8 @@ double FarPlane::nearest(const std::array<glm::vec3, 3>& corners) const {
 }
 
 /// Returns whether the part of a triangle nearer than n = kNear · far certainly projects outside of the window: q = k
-/// (x − f l), with k ≥ far / n and f in [0, 1) as in the header. If x is beyond all of the light and its centre in one
-/// direction by m > 0, q is beyond m far / n in that direction.
+/// (x − f l), with k ≥ far / n and f in [0, 1) as in far_plane.hpp. If x is beyond all of the light and its centre in
+/// one direction by m > 0, q is beyond m far / n in that direction.
 bool FarPlane::misses_window(std::span<const glm::dvec3> polygon) const {
   const double least = 0.99 / kNear;
   for (int i = 0; i < 2; ++i) {
@@ -104,7 +104,8 @@ void FarPlane::add_upper(Footprint& footprint, std::span<const glm::dvec3> polyg
     for (const glm::dvec2& l : light_.corners()) {
       const glm::dvec2 direction = light_.sun ? -l : glm::dvec2(x) - l;
       footprint.add(light_.sun ? glm::dvec2(x) + k * direction : l + k * direction);
-      // Error of x, once more for each multiple of its height in the extrapolation; error of a sun's slope: `off`.
+      // The error of x counts once more for each multiple of x's height in the extrapolation; a sun's slopes are off by
+      // `off`.
       const double error = light_.sun ? error_ * (4 + 4 * glm::length(l)) + std::abs(k) * (light_.off + 0x1p-50)
                                       : k * error_ * (4 + 4 * glm::length(direction) / x.z);
       footprint.error = std::max(footprint.error, error);

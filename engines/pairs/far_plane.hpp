@@ -18,12 +18,12 @@ namespace penumbra::pairs {
 /// the hull of the projections of its corners from the light's corners (Sintorn, Eisemann and Assarsson 2008, sections
 /// 4.1 and 4.2).
 ///
-/// The footprint contains the place q of each view sample p, also of those above the plane, that a point x of the
-/// triangle hides a light point l from: with k = f / x_h and s = p_h / x_h, 1 ≤ s ≤ k, p = l + s (x − l), so
+/// The footprint contains the place q of each view sample p, also of those above the plane, from which a point x of the
+/// triangle hides a light point l: with k = f / x_h and s = p_h / x_h, 1 ≤ s ≤ k, p = l + s (x − l), so
 /// q = p f / p_h = k x + k (1/s − 1) l = k x + (1 − k) l',  l' = l (k − k/s) / (k − 1),
 /// and l' is between the centre, 0, and l. For each l', q is the end of the segment from l' through x. For one l' the
-/// ends of all x of a triangle form a triangle; for all l' and x their hull is that of the corners' projections. A sun
-/// is the same from infinity: q = x − (f − x_h) σ', σ' between 0 and σ.
+/// ends of all x of a triangle form a triangle; for all l' and x their hull is that of the corners' projections. For a
+/// sun the same holds with light points at infinity: q = x − (f − x_h) σ', σ' between 0 and σ.
 class FarPlane {
  public:
   /// Largest slope of the frustum: |a| or |b| of a view sample over its distance h.
@@ -44,7 +44,8 @@ class FarPlane {
   std::span<const double> heights() const&& = delete;
   [[nodiscard]] LightPixels& light_pixels() { return light_pixels_; }
 
-  /// Returns the triangle's footprint; one without points and not `everywhere` hides nothing from any view sample.
+  /// Returns the triangle's footprint. If it has no points and is not `everywhere`, the triangle hides nothing from any
+  /// view sample.
   [[nodiscard]] Footprint footprint(const std::array<glm::vec3, 3>& corners) const;
   /// Returns a lower bound of the triangle's distance from the light: less than the height of every view sample from
   /// which it hides anything.

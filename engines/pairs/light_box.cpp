@@ -33,8 +33,8 @@ LightBox make_light_box(const visibility::Light& light) {
     box.axis = glm::normalize(glm::cross(frame.u, frame.v));
   }
   box.along = glm::cross(box.axis, box.across);
-  constexpr double kFlattest = 0x1p-8;  // component of a direction along the axis, relative to its length; double keeps
-                                        // 44 digits of the remainder
+  constexpr double kFlattest = 0x1p-8;  // least component of a direction along the axis, relative to its length; double
+                                        // keeps 44 digits of the remainder
   double reach = 0;
   for (const glm::vec3& l : light.points) {
     if (box.sun && !(-box.place(glm::dvec3(l)).z >= kFlattest * glm::length(glm::dvec3(l)))) {

@@ -102,8 +102,8 @@ PixelRange LightPixels::rows_of(const PixelHull& hull) const {
   return range_of(from - hull.margin, to + hull.margin, rows_);
 }
 
-/// The hull, enlarged by its margin in x and y, is in a row where the hull itself is within the margin of the row; the
-/// part of an edge in a row is computed to a few roundings of its extent, which the margin includes, too.
+/// The hull enlarged by its margin reaches a row where the hull itself comes within the margin of that row. The part of
+/// an edge in a row has an error of a few roundings of the edge's extent, which the margin includes, too.
 PixelRange LightPixels::columns_of(const PixelHull& hull, std::uint32_t row) const {
   if (hull.everywhere) return {0, columns_ - 1};
   const double low = row == 0 ? -std::numeric_limits<double>::max() : row - 2 * hull.margin,

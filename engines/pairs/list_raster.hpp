@@ -32,8 +32,8 @@ struct ListCounts {
 /// Draws triangles conservatively. `footprint_of(triangle)` returns the region in which the triangle may hide anything;
 /// `nearest_of(triangle)` a lower bound of the depths of all places that it hides anything from. For each place (its
 /// index) in the lists of touched light pixels, `stays(triangle, number, state)` is called; false removes the place
-/// from its list for good. Cores share bands of rows, each core with its own `State`, which `finish(state)` gets at the
-/// end; calls of `finish` do not overlap.
+/// from its list for good. Bands of rows are drawn in parallel, each with its own `State`, which is passed to
+/// `finish(state)` at the end of the band; calls of `finish` do not overlap.
 template <typename State, typename FootprintOf, typename NearestOf, typename Stays, typename Finish>
 ListCounts draw(const ListRaster& in, const FootprintOf& footprint_of, const NearestOf& nearest_of, const Stays& stays,
                 const Finish& finish) {

@@ -21,9 +21,10 @@
 namespace penumbra::vectors {
 namespace {
 
-/// A thinner sun's light points differ by no more than float32's rounding.
+/// Smallest tangent of half a sun's angle: the light points of a thinner sun would differ by no more than float32's
+/// rounding.
 constexpr double kThinnest = 0x1p-12;
-constexpr std::uint32_t kCells = 16;  ///< cells a side, without light samples
+constexpr std::uint32_t kCells = 16;  ///< cells on a side, if light samples are not used
 constexpr double kFlattest = 0x1p8;   ///< tangent of half a cone's angle; for wider cones exact predicates decide
 constexpr double kRoundingOf = 0x1p-24;
 
@@ -48,8 +49,8 @@ struct Rectangle {
 };
 
 /// Returns whether a triangle may meet the box of half-sizes `half` around `middle`; false if a side of the box or the
-/// triangle's plane certainly separates them. A leaf of the tree, or a sphere, around a large triangle reaches far
-/// beyond it.
+/// triangle's plane certainly separates them. The test is needed because a leaf of the tree, or a sphere, around a
+/// large triangle reaches far beyond it.
 bool may_meet_box(const std::array<glm::vec3, 3>& corners, const glm::vec3& middle, const glm::vec3& half) {
   const glm::dvec3 from = middle, size = half;
   const glm::dvec3 a = glm::dvec3(corners[0]) - from, b = glm::dvec3(corners[1]) - from,
@@ -160,13 +161,14 @@ SampleClass ConeLight::classify(const ViewInput& view, std::uint32_t pixel, Grid
   at.above_error = static_cast<float>(error);
   if (above.z + span < -error) return SampleClass::none_visible;
   if (!near_.empty() && touches(*view.grid.cones, cone, glm::dvec3(at.p))) return SampleClass::open;
-  // Areas are also bounded by the middle of half a face.
+  // For areas, a face of half a dome may also end at its middle.
   at.straddles = above.z - span <= error || (light_.dome && light_.dome->half && !light_samples_);
   return SampleClass::in_front;
 }
 
-/// Returns whether a caster may meet the square around the disk, or its plane so close to it that its side is not
-/// certain in float. Also true if places in the plane have errors of half a square or more. (bound ends)
+/// Returns whether a caster may meet the square around the disk, or come so close to the disk's plane there that float
+/// arithmetic does not determine its side. Also true if places in the plane have errors of half a square or more.
+/// (bound ends of docs/edge-scatter.md)
 bool ConeLight::touches(const LightGrid::Cones& cones, const LightCone& cone, const glm::dvec3& p) const {
   const double around = around_disk(cones, cone);
   if (!(around < 1.5)) return true;
@@ -253,7 +255,7 @@ void see_cone(const LightGrid& grid, ClusterSample& at) {
   const LightCone& cone = grid.cones->of[at.cone];
   const double height = glm::length(cone.middle), radius = glm::length(cone.u);
   const glm::dvec3 across(grid.across), along(grid.along), axis(grid.axis);
-  // way_of maps the grid's coordinates to a direction; `turn` maps on to the light's coordinates.
+  // direction_of maps the grid's coordinates to a direction; `turn` maps this on to the light's coordinates.
   const glm::dmat3 direction_of(across / glm::dot(across, across), along / glm::dot(along, along), -axis);
   const glm::dvec2 half(grid.half_cells);
   const glm::dvec3 x = half.x / glm::dot(cone.u, cone.u) * cone.u, y = half.y / glm::dot(cone.v, cone.v) * cone.v,

@@ -15,8 +15,8 @@
 /// body. docs/edge-scatter.md, "Ends".
 namespace penumbra::vectors {
 
-/// The disk's plane, in double. For every edge and triangle, a vertex is on the same side of the plane and a side of a
-/// caster crosses it at the same place; vector code uses the same operations.
+/// The disk's plane, in double. All edges and triangles get the same result for the side of the plane that a common
+/// vertex is on, and for the place where a common edge crosses the plane; vector code uses the same operations.
 struct DiskPlane {
   DiskPlane(const LightCone& cone, const glm::dvec3& from);
 

@@ -26,8 +26,8 @@ hn::Mask<D> used_lanes(std::uint32_t used, std::size_t lane) {
   return hn::LoadMaskBits(D(), bytes);
 }
 
-/// Tests whether an object meets the shaft whose corners all have n·x ≥ `least` for each of the four planes, and lie
-/// between `low` and `high` along the axis.
+/// Tests whether an object may meet the shaft: all of the object's corners have n·x ≥ least(n) for each of the shaft's
+/// four planes, and lie between `low` and `high` along the axis.
 struct ShaftTest {
   const Shaft& shaft;
 
@@ -42,7 +42,8 @@ struct ShaftTest {
   }
 };
 
-/// One of an edge's triangles, relative to the cluster: n · p − at > error in front of it, < −error behind.
+/// One of an edge's triangles, relative to the cluster: p is in front of it if n · p − at > error, behind it if <
+/// −error.
 struct EdgeSideWide {
   Point n;
   V at, error;
@@ -78,7 +79,8 @@ HWY_INLINE EdgeSideWide side_of(const EdgeInput& in, const WideEdges& leaf, std:
   return s;
 }
 
-/// Returns whether the two terms of k_e cancel, or are both zero, for the whole cluster. (bound side)
+/// Returns whether, for the whole cluster, the edge's triangles add nothing to its signed multiplicity k_e: their terms
+/// cancel or are both zero. (bound side of docs/edge-scatter.md)
 hn::Mask<D> is_none(const EdgeSideWide& s, const EdgeSideWide& t) {
   return hn::Or(hn::Or(hn::And(s.positive, t.negative), hn::And(s.negative, t.positive)),
                 hn::And(s.nothing, t.nothing));

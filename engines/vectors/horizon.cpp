@@ -37,8 +37,8 @@ std::uint32_t cut(Tag d, hn::Vec<Tag> value, float error, std::uint32_t place, s
   return may_be & ~is_above & lanes;
 }
 
-/// Returns the limit beyond which a sum certainly tells the side of a vector of light samples: the limits and the sum
-/// round three products and three sums of at most four times these terms.
+/// Returns how far a bound of A s + B t + C over several light samples must be from 0 to decide the side of all of
+/// them: the bound and the sums themselves round three products and three sums, of at most four times these terms.
 float sure_of(const GridSample& at) {
   return at.above_error + 64 * kRound * (std::abs(at.above.x) + std::abs(at.above.y) + std::abs(at.above.z));
 }
@@ -116,7 +116,8 @@ void cut_at_horizon_here(const LightGrid& grid, const GridSample& at, Open& open
     const float least = hn::GetLane(hn::MinOfLanes(d, value_of_row)),
                 most = hn::GetLane(hn::MaxOfLanes(d, value_of_row));
     const std::uint32_t lanes = (1U << hn::Lanes(d)) - 1, place = first % 16;
-    // Begins at the side that is farthest below: after the first column that is above, all are.
+    // Begins with the column that is farthest below the horizon, so all columns after the first one above the horizon
+    // are above it, too.
     for (std::uint32_t i = 0; i < grid.columns; ++i) {
       const std::uint32_t column = per_column < 0 ? grid.columns - 1 - i : i;
       const float of_column = static_cast<float>(column) * per_column;

@@ -95,7 +95,8 @@ LightGrid make_light_grid(const LightGridInput& input) {
   grid.axis = glm::vec3(axes[2]);
   grid.axes = axes_of(input.plane[1] - input.plane[0], input.plane[2] - input.plane[0], input.side, grid.half_cells);
   if (const auto& window = input.window) {
-    grid.corner = window->corner;  // its error is that of (bound foot), and reach includes the skew
+    grid.corner = window->corner;  // its error is that of (bound foot) of docs/edge-scatter.md, and reach includes the
+                                   // skew
     grid.corner_off = 0x1p-49 * static_cast<double>(input.reach);
     grid.axes = axes_of(0.5 * window->u, 0.5 * window->v, input.side, grid.half_cells);
   }
@@ -200,8 +201,8 @@ ClusterSample complete(const LightGrid& grid, const Cluster& cluster, const Grid
   place.per_reach = 8 * kRound;
   place.per_foot = kMore * (kRound * (4 * lengths + 8) + grid.deviation / at.height);
   place.fixed = kMore * (kRound * grid.per_length * 4 * at.away + cells + grid.per_length * grid.deviation);
-  // A direction is off by 8 ε of its length, and sideways by as many cells: for a small light relative to its height,
-  // that is more.
+  // A direction is off by 8 ε of its length, also sideways. In the second term this is divided by the window's size in
+  // cells; it is the larger term where the light is small for its height.
   const glm::vec2 off = glm::abs(at.foot - grid.first_cell), window = 2.0F * grid.half_cells + 2.0F;
   place.per_lift = 64 * kRound *
                    (1 + 0.125F * (std::max(off.x, off.y) + grid.per_length * at.height) / std::min(window.x, window.y));

@@ -63,7 +63,8 @@ struct LightGrid {
   /// Additional data for a sphere or sun.
   struct Cones {
     std::span<const LightCone> of;  ///< cone of each view sample (GridSample::cone)
-    bool end = false;               ///< true if the light is an end behind which nothing hides it; false for a sun
+    bool end = false;               ///< true if segments end at the light, so that nothing behind it hides it; false
+                                    ///< for a sun
     float deviation = 0;            ///< distance of a stored light point from its place, in units of LightCone::u
     float lowest_end = 0;           ///< casters above this height over the grid's plane are not behind the light
     double reach = 0;               ///< reach of scene and light, independent of the grid's rectangle
@@ -116,8 +117,8 @@ struct Placing {
   float per_lift = 0;
   float through_p = 0;  ///< likewise an edge whose clipped part is shorter than (far_x + far) times this
 };
-/// Height below the light's plane under which an end of an edge may result from cutting the edge there; for a group of
-/// view samples, whose heights are rounded once more, twice this height. (bound cut)
+/// An end of an edge that is less than this distance below the light's plane may be the place where the edge was cut
+/// there; for a group of view samples, whose heights are rounded once more, twice this distance. (bound cut)
 inline float near_cut(const LightGrid& grid) {
   return 256 * kRound * grid.reach;
 }

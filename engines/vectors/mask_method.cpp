@@ -261,7 +261,7 @@ void MaskMethod::do_region(const LightGrid& grid, std::uint32_t left, std::uint3
       if (kind == SampleClass::in_front) ++count;
       if (kind == SampleClass::all_visible) visible_[pixel] = light_->sample_count();
       if (kind == SampleClass::open && grid.side > 0 && !decide_open(at))
-        decide_all(at, judge);  // only one of the two sides decides them
+        decide_all(at, judge);  // only for one of the light's two sides, not twice
     }
     ends[i / (kSmallBlock * kSmallBlock)] = count;
   }

@@ -28,8 +28,8 @@ enum class Blocks : std::uint8_t {
   small,  ///< for casters so dense that neighbours see different edges
 };
 
-/// A method on all of the processor's cores, region of pixels by region, each from its lists to its bits in one pass.
-/// Implements the steps before and after the lists for all such methods.
+/// Base class of methods that run on all of the processor's cores: each region of pixels is processed from its lists to
+/// its bits in one pass. Implements the steps before and after the lists for all such methods.
 class MaskMethod : public visibility::Method {
  public:
   /// `pass`: name of its single stage in the pass times.

@@ -122,7 +122,8 @@ void find_near_disks(const LightGrid& grid, std::span<const GridSample> samples,
   }
   // Rounding is far below a thousandth of the slab.
   const double slab = 1.01 * slab_of(*grid.cones);
-  constexpr double kCorner = 1.5 * 1.42;  // of the largest square that is not left to exact predicates
+  constexpr double kCorner = 1.5 * 1.42;  // distance of a corner, in radii of the disk, for the largest square that is
+                                          // not left to exact predicates
   span.across = kCorner * widest + beside + slab;
   span.over += slab;
   HWY_DYNAMIC_DISPATCH(find_near_here)(span, among, out);

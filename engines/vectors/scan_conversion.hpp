@@ -10,8 +10,8 @@ namespace penumbra::vectors {
 /// centre are culled, a vector at a time, others are sorted into tiles of pixels, and each tile keeps its smallest t.
 ///
 /// Time grows with triangles plus covered pixels; additional memory: 16 bytes for each pixel and lists of tiles, up to
-/// 100 MB. The rays' places are trusted to a pixel: for a triangle so nearly edge-on that the signs of cover() are
-/// rounding alone, pixels more than one pixel outside of the box of its projection are left out.
+/// 100 MB. Places of rays are taken to be right to a pixel: for a triangle so nearly edge-on that the signs of cover()
+/// are rounding alone, pixels more than one pixel outside of the box of its projection are left out.
 visibility::ViewSamples scan_view_samples(const visibility::SceneFloats& scene,
                                           const visibility::PinholeCamera& camera);
 

@@ -47,12 +47,12 @@ struct alignas(64) WideTriangles {
 };
 
 struct WideEdgeTree {
-  std::vector<std::uint32_t> roots;  ///< none, or 0 and those of appended trees
+  std::vector<std::uint32_t> roots;  ///< empty, or node 0 and the roots of appended trees
   UnsetList<WideNode> nodes;
   WideLeaves<WideEdges> leaves;
 };
 struct WideTriangleTree {
-  std::vector<std::uint32_t> roots;  ///< none or 0
+  std::vector<std::uint32_t> roots;  ///< empty, or node 0
   UnsetList<WideNode> nodes;
   WideLeaves<WideTriangles> leaves;
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Traversals of hierarchies with the shaft from a cluster of view samples to the light, eight children at a time, as in
-// find_edges.comp. Inside engines/vectors/ only.
+// volumes/edges/device/find_edges.comp. Inside engines/vectors/ only.
 
 #if defined(PENUMBRA_VECTORS_WALK_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef PENUMBRA_VECTORS_WALK_INL_HPP
@@ -50,8 +50,8 @@ Point minus(const Point& p, const glm::vec3& q) {
   const D d;
   return {hn::Sub(p.x, hn::Set(d, q.x)), hn::Sub(p.y, hn::Set(d, q.y)), hn::Sub(p.z, hn::Set(d, q.z))};
 }
-/// Fixed order, without fused multiplications: later stages compute the same products again from equal floats, and must
-/// get equal results.
+/// Computes in a fixed order, without fused multiplications: later stages compute the same products again from equal
+/// floats, and must get equal results.
 V dot(const Point& p, const glm::vec3& q) {
   const D d;
   return hn::Add(hn::Add(hn::Mul(p.x, hn::Set(d, q.x)), hn::Mul(p.y, hn::Set(d, q.y))), hn::Mul(p.z, hn::Set(d, q.z)));
@@ -123,7 +123,7 @@ hn::Mask<D> same_side(const WalkInput& in, const WideNode& node, std::size_t lan
 }
 
 /// Returns whether objects within these extents, relative to the single view sample and at most `far` from it, appear
-/// between two rows of light samples and to the right of the light's left side. (bound gaps)
+/// between two rows of light samples and to the right of the light's left side. (bound gaps of docs/edge-scatter.md)
 hn::Mask<D> between_rows(const WalkInput& in, const Extent& across, const Extent& along, const Extent& level, V far) {
   const D d;
   const auto set = [&](float x) { return hn::Set(d, x); };
@@ -205,7 +205,7 @@ void walk(const WalkInput& in, const Shaft& shaft, const Tree& tree, const std::
           std::vector<std::uint32_t>& levels, Leaf leaf) {
   levels.assign(roots.rbegin(), roots.rend());
   const auto is_leaf = [](std::uint32_t reference) { return (reference & kLeafBit) != 0; };
-  std::size_t begin = 0;  // begin of the last level
+  std::size_t begin = 0;  // where the last level begins
   for (bool ends = false; !ends;) {
     const std::size_t end = levels.size();
     ends = true;

@@ -159,7 +159,8 @@ class WideLeaves {
     }
 
    private:
-    /// Blocks in an array that is cached for the next frame's, since the system provides memory slowly.
+    /// Number of blocks in one array. Arrays are cached for those of the next frame, since the system provides memory
+    /// slowly.
     static constexpr std::size_t kSlab = (KeptArrays::kLeast - 1) / (kBlock * sizeof(Leaf)) + 1;
 
     std::unique_ptr<std::atomic<Leaf*>[]> firsts_;  // for each block its leaves, or null
