@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Finds directions in which nothing, or one large triangle, is in the way of a whole box.
+// Finds directions in which nothing, or one large triangle, is in the way of all rays from a box.
 //
 // A ray along d from a point of the box B meets the box N only if the ray from 0 along d meets N − B, the box of all
 // differences. So each node of the tree is tested once, with the directions that are left at its parent.
@@ -34,9 +34,9 @@ struct CommonAnswers::Search {
   const Bounds& box;
   const std::uint32_t own;
   const std::span<std::uint32_t> clear;
-  const double side;                  // the box's largest
-  const double room;                  // by which all boxes are enlarged: points are rounded
-  std::vector<std::uint32_t> active;  // lists of directions, those of a node behind those of its parent
+  const double side;                  // the box's largest side
+  const double room;                  // margin of all boxes, since points are rounded
+  std::vector<std::uint32_t> active;  // lists of directions: those of a node follow those of its parent
 
   void block(std::size_t first) {
     for (std::size_t i = first; i < active.size(); ++i) clear[active[i] / 32] &= ~(1U << (active[i] % 32));
@@ -74,7 +74,7 @@ struct CommonAnswers::Search {
       append_meeting(first, last, child.lower, child.upper);
       if (active.size() > start) {
         if (largest_side(child.lower, child.upper) <= side)
-          block(start);  // smaller boxes inside would be met from some point of a box as large as this
+          block(start);  // descending would not help: rays from a box this large would meet the smaller boxes, too
         else if (is_leaf)
           try_triangles(directions.tree_.leaves[below], start);
         else
@@ -105,7 +105,7 @@ CommonAnswers::CommonAnswers(const SceneFloats& scene, std::span<const glm::vec3
   set_directions(directions);
 }
 
-/// Returns the plane of all triangles below a node or leaf, and writes it down; kNoPlane if there are several.
+/// Returns the plane of all triangles below a node or leaf, and stores it; kNoPlane if there are several.
 std::uint32_t CommonAnswers::note_plane(std::uint32_t reference) {
   const std::uint32_t number = reference & ~TriangleTree::kLeafBit;
   std::uint32_t common = SceneFloats::kNoPlane;

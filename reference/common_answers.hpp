@@ -36,7 +36,7 @@ class CommonAnswers {
 
   const visibility::SceneFloats* scene_;
   visibility::TriangleTree tree_;
-  std::vector<std::uint32_t> node_plane_, leaf_plane_;  // that of all their triangles; kNoPlane: of several planes
+  std::vector<std::uint32_t> node_plane_, leaf_plane_;  // the plane of all triangles below; kNoPlane: there are several
   std::vector<std::array<glm::vec3, 3>> large_;         // the triangles that add_blocked tries
   std::vector<glm::dvec3> directions_, inverse_;
 };

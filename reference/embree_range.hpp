@@ -33,7 +33,7 @@ class EmbreeRange {
 
   [[nodiscard]] double scale() const { return scale_; }
 
-  /// Returns a direction as long as the mesh is large: rays along it are never too short.
+  /// Returns a direction scaled to about the size of the mesh, so that rays along it are never too short.
   [[nodiscard]] static glm::vec3 direction(const glm::vec3& d);
 
   /// Returns the length of the shortest ray, by the largest component of its scaled direction, that Embree can handle.

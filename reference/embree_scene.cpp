@@ -21,7 +21,7 @@ struct EmbreeScene::Parts {
   RTCScene scene = nullptr;
   std::vector<std::uint32_t> triangles;
   EmbreeRange range;
-  // Shared with Embree, which reads from them; its own arrays would be filled a small page at a time.
+  // Shared with Embree, which reads from them; Embree's own arrays would be filled one small memory page at a time.
   UnsetList<glm::vec3> positions;
   UnsetList<mesh::Triangle> corners;
   std::atomic<std::int64_t> bytes = 0, peak_bytes = 0;

@@ -18,9 +18,9 @@ struct HiddenBy {
   bool other = false;  ///< a triangle of another object
   /// The shortest distance along a ray to a hiding triangle, in scene floats; infinity: none was met.
   double nearest = std::numeric_limits<double>::infinity();
-  /// The width of their penumbra at the view sample, in extents of the light (for a sun, at distance 1): with s the
-  /// fraction of the ray at which the nearest triangle hides it, the mean of s / (1 − s) over hidden rays, as between
-  /// parallel planes; for a sun the mean distance. 0: none was met.
+  /// The width of these triangles' penumbra at the view sample, in extents of the light (for a sun, at distance 1): the
+  /// mean of s / (1 − s) over hidden rays, as between parallel planes, where s is the fraction of the ray at which the
+  /// nearest triangle hides the light; for a sun the mean distance. 0: none was met.
   double widening = 0;
 };
 

@@ -68,16 +68,17 @@ class RayTraced final : public visibility::Method {
                          std::span<std::uint32_t> visible);
   template <int kWidth>
   void trace_pixel(std::size_t pixel, Workspace& work, std::span<std::uint32_t> visible);
-  /// Traces rays to a dome, a ray of each of some neighbouring pixels at once: in one direction they stay together in
-  /// the tree, where the rays of one pixel part at its root. `pixels`: indices into the tile; at most kWidth.
+  /// Traces rays to a dome in packets of one ray from each of some neighbouring pixels. Rays in one direction stay
+  /// together in the tree, while rays from one pixel would diverge at its root. `pixels`: indices into the tile; at
+  /// most kWidth.
   template <int kWidth>
   void trace_neighbours(const visibility::Tile& tile, std::span<const std::size_t> pixels, Workspace& work);
-  /// Pixels of a tile, from `top` and `left` to before `bottom` and `right`.
+  /// Pixels of a tile: rows in [top, bottom), columns in [left, right).
   struct Block {
     std::size_t top = 0, bottom = 0, left = 0, right = 0;
   };
-  /// Finds the directions of a dome in which something large is in the way of all of these pixels and, where they lie
-  /// on one plane, those in which nothing is (elsewhere each pixel's neighbours may be).
+  /// Finds the directions of a dome in which one large triangle is in the way of all of these pixels. If the pixels lie
+  /// on one plane, also finds those in which nothing is in their way (otherwise their own surfaces may be).
   void find_common(const visibility::Tile& tile, const Block& block, Workspace& work) const;
   template <int kWidth>
   void trace_to_dome(const visibility::Tile& tile, const Block& block, Workspace& work);

@@ -11,7 +11,7 @@
 namespace penumbra::reference {
 
 std::vector<std::uint32_t> tracing_order(const visibility::Light& light) {
-  const auto spread = [](double coordinate) {  // inserts a zero between every two of 16 bits
+  const auto spread = [](double coordinate) {  // inserts a zero between neighbouring bits, for 16 bits
     auto x = static_cast<std::uint32_t>(std::clamp((coordinate + 1) / 2, 0.0, 1.0) * 65535);
     x = (x | (x << 8)) & 0x00ff00ffu;
     x = (x | (x << 4)) & 0x0f0f0f0fu;
