@@ -2,8 +2,8 @@
 // M. McCool, Shadow volume reconstruction from depth maps, ACM Transactions on Graphics 19 (1), 2000: edges of a shadow
 // map become shadow volumes. Departures: an edge is where neither texel's surface, continued along its own slope, meets
 // the other's, in place of a filter over the map; walls run along texels' borders, without the paper's templates that
-// cut corners; the map's own border has walls, so that the eye may be outside. Of two faces of a hemicube, whose depths
-// are the same on their common border, these walls cancel where both are.
+// cut corners; the map's own border has walls, so that the eye may be outside. On the common border of two faces of a
+// hemicube the depths are the same, so the walls of both faces cancel there.
 
 #include "hybrids/map_volumes.hpp"
 
@@ -35,7 +35,7 @@ class InverseDepths {
     const float depth = map_.depths[static_cast<std::size_t>(place[1] * size + place[0])];
     return depth < 1 ? 1 / (map_.far * static_cast<double>(depth)) : 0;
   }
-  /// Returns the surface of a texel, continued `steps` texels away from `before`, a neighbour.
+  /// Returns the inverse distance of a texel's surface, continued by `steps` texels away from its neighbour `before`.
   [[nodiscard]] double continued(const Place& place, const Place& before, double steps) const {
     const double here = at(place), there = at(before);
     return there > 0 && are_near(here, there) ? here + steps * (here - there) : here;
@@ -52,8 +52,8 @@ class InverseDepths {
   }
 
  private:
-  /// Returns whether two distances differ by less than so many widths of a texel there: Δz = jump · z · step, and
-  /// Δ(1/z) = Δz / z².
+  /// Returns whether two distances differ by less than `jump` widths of a texel at that distance: Δz = jump · z · step,
+  /// and Δ(1/z) = Δz / z².
   [[nodiscard]] bool are_near(double v, double w) const { return std::abs(v - w) <= tolerance_ * std::max(v, w); }
 
   const DepthMap& map_;
@@ -89,7 +89,7 @@ void add_walls(const DepthMap& map, double jump, volumes::LightVolumes& volumes)
       return inverse.continued(of, {2 * of[0] - beyond[0], 2 * of[1] - beyond[1]}, 0.5);
     };
     const double begins = at_border(near, far), ends = inverse.at(far) > 0 ? at_border(far, near) : 0;
-    if (!(begins > ends)) return;  // their slopes meet between them
+    if (!(begins > ends)) return;  // the continued surfaces meet between the texels
     add(a, b, begins, 1);
     if (ends > 0) add(a, b, ends, -1);
   };

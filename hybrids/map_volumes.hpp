@@ -11,7 +11,8 @@
 
 namespace penumbra::hybrids {
 
-/// A shadow map of a light's centre: distances along the face's axis over `far`, row by row; 1 where nothing is seen.
+/// A shadow map seen from a light's centre: distances along the face's axis divided by `far`, row by row; 1 where
+/// nothing is seen.
 struct DepthMap {
   maps::Face face;
   std::span<const float> depths;
@@ -21,8 +22,8 @@ struct DepthMap {
 };
 
 /// Adds the sides of the shadow volumes that a map shows: a wall between the depths of two neighbouring texels whose
-/// surfaces are `jump` widths of a texel or more apart. Without caps: these are the surfaces themselves. A wall is the
-/// side that begins at the nearer surface, less the side that begins at the farther one.
+/// surfaces are `jump` widths of a texel or more apart. No caps are added, since the surfaces themselves are the caps.
+/// A wall is the side that begins at the nearer surface, minus the side that begins at the farther one.
 void add_walls(const DepthMap& map, double jump, volumes::LightVolumes& volumes);
 
 /// Returns whether the map shows a surface between its light and x.

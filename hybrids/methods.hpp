@@ -14,7 +14,7 @@ std::unique_ptr<visibility::Method> make_hybrid_volume(const render::Device& dev
                                                        const visibility::MethodOptions& options);
 visibility::MethodDescription hybrid_volume_description();
 
-/// Makes its variant mccool.
+/// Makes the variant `mccool` of `hybrid-volume`.
 std::unique_ptr<visibility::Method> make_reconstructed_volume(const render::Device& device,
                                                               const visibility::MethodOptions& options);
 

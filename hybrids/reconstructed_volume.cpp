@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Hard shadows by volumes that are reconstructed from a shadow map: M. McCool 2000 (map_volumes.cpp). The volumes have
-// no caps, since nothing is seen through the surfaces that the map shows: what is counted are the walls between the eye
-// and a view sample, from the eye's own place on.
+// no caps, since nothing is seen through the surfaces that the map shows. The walls between the eye and a view sample
+// are counted, beginning at the eye.
 
 #include "hybrids/map_volumes.hpp"
 #include "hybrids/methods.hpp"
@@ -53,7 +53,8 @@ class ReconstructedVolume final : public visibility::Method {
     PENUMBRA_ASSERT(visibility.size() == counts.size(), "{} values for a tile of {} pixels", visibility.size(),
                     counts.size());
     for (std::size_t i = 0; i < counts.size(); ++i) {
-      // The host has counted triangles where the device was in doubt.
+      // Where the device was in doubt, the host has counted the triangles between p and the light: the eye is not part
+      // of that.
       const std::int32_t start = eye_in_shadow_ && count_.doubts()[i] == 0 ? 1 : 0;
       const Kind kind = count_.kinds()[i];
       visibility[i] = kind == Kind::lit || (kind == Kind::counted && start + counts[i] == 0) ? 1.0F : 0.0F;
