@@ -18,9 +18,9 @@ namespace penumbra::reference {
 /// Mesh and view samples are below 2¹⁴ and light points below 2⁶⁰: Embree accepts no numbers beyond 1.8 · 10¹⁸, and no
 /// intermediate value of its robust test, at most 2³⁶ times the largest component of a direction, overflows. For a
 /// triangle whose largest edge component is e and a ray of length R, the terms of sums are of the size e² R, and of e²
-/// before the ray enters; underflow loses at most 2⁻¹²⁶. That is less than a thirtieth of their rounding error where e
-/// ≥ 2⁻⁵⁰ and e² R ≥ 2⁻⁹⁵. A direction to a sun is multiplied by a power of two that makes its largest component 2¹³ to
-/// 2¹⁴.
+/// before they are multiplied with the ray; underflow loses at most 2⁻¹²⁶. That is less than a thirtieth of their
+/// rounding error where e ≥ 2⁻⁵⁰ and e² R ≥ 2⁻⁹⁵. A direction to a sun is multiplied by a power of two that makes its
+/// largest component 2¹³ to 2¹⁴.
 class EmbreeRange {
  public:
   /// Throws InputError if a casting triangle is too small relative to the scene.

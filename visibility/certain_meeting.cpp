@@ -22,7 +22,7 @@ std::optional<bool> decide(const glm::dvec3& p, const Direction& from_p, const s
   const auto& [direction, off, ends] = from_p;
   const std::array d{glm::dvec3(corners[0]) - p, glm::dvec3(corners[1]) - p, glm::dvec3(corners[2]) - p};
   const std::array squared{glm::dot(d[0], d[0]), glm::dot(d[1], d[1]), glm::dot(d[2], d[2])};
-  // An error of l changes a determinant as much as a vector longer by 2⁴⁶ times the error.
+  // An error of l adds as much to a determinant's error bound as a segment that is longer by 2⁴⁶ times that error.
   const double way_length = glm::length(direction) + 0x1p46 * off, way_squared = way_length * way_length;
   // Each difference has a relative error of 2⁻⁵³ in each coordinate, so a determinant of three has three such errors.
   // It also rounds six products of three factors, each at most the product of the rows' lengths, and their sums: in all

@@ -52,8 +52,8 @@ class ClosedCasters {
 std::vector<mesh::Side> light_sides(const mesh::MeshView& mesh, const mesh::EdgeGraph& graph, const Light& light,
                                     const glm::vec3& c);
 
-/// Sets the facings of triangles that do not count to `on`; `facings` is mesh::facings from the light's centre, or from
-/// a view sample.
+/// Sets the facings of triangles that do not count to `on`; `facings` is mesh::facings from the light's centre
+/// (`from_light`), or from a view sample.
 void keep_one_layer(std::span<const mesh::Side> light_sides, bool from_light, std::span<mesh::Side> facings);
 
 }  // namespace penumbra::visibility

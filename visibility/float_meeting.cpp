@@ -48,8 +48,8 @@ FloatMeeting float_rays_meet(const RayStarts& starts, const glm::dvec3& directio
   if (ab * bc < 0) return FloatMeeting::no;
   const int ca = side(c, a, wide_c, wide_a);
   if (ab * ca < 0 || bc * ca < 0) return FloatMeeting::no;
-  // The three sides add up to n · direction, n = (b − a) × (c − a): a common sign is its sign, and the ray's
-  // parameter at the plane is n · a over it.
+  // The three sides add up to n · direction, n = (b − a) × (c − a): if they have one sign, that is its sign, too. The
+  // ray's parameter at the plane is n · a divided by n · direction.
   if (ab == 0 || bc == 0 || ca == 0) return FloatMeeting::maybe;
   const glm::dvec3 to_b = b - a, to_c = c - a, n = glm::cross(to_b, to_c);
   const double doubt =

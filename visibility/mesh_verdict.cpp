@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Words a method's verdict on a mesh: a sentence of the method, then the counts of the defects that matter to it. Not
-// from a paper; docs/defects.md has the verdicts of all methods.
+// Makes the text of a method's verdict on a mesh: a sentence of the method, then the counts of the defects that matter
+// to it. Not from a paper; docs/defects.md has the verdicts of all methods.
 
 #include "visibility/mesh_verdict.hpp"
 

@@ -8,8 +8,8 @@
 
 namespace penumbra::visibility {
 
-/// Returns one point of light_points_for of a sphere, from the disk that p sees (light_frame_from). + 0 turns −0 into
-/// +0.
+/// Returns one of the points that light_points_for gives for a sphere, on the disk that p sees (light_frame_from). + 0
+/// turns −0 into +0.
 inline glm::vec3 sphere_point(const LightFrame& seen, const glm::dvec2& st) {
   return glm::vec3(seen.center + st.x * seen.u + st.y * seen.v) + 0.0f;
 }

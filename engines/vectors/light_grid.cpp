@@ -81,8 +81,8 @@ LightGrid make_light_grid(const LightGridInput& input) {
   grid.columns = in_rows ? input.columns : some;
   grid.deviation = input.light.deviation;
   if (!input.window) {
-    // Edges are placed from the frame's corner, and counting begins at the corner in the plane of the stored points:
-    // the frame's rounding is the difference, whether or not light samples show it.
+    // Places of edges are relative to the frame's corner, but counting begins at the corner in the plane of the stored
+    // points. They differ by the frame's rounding, whether or not light samples show it.
     const glm::dvec3 apart = glm::dvec3(input.light.center) - u - v - grid.corner;
     grid.deviation += 1.0001F * static_cast<float>(glm::length(apart));
   }
@@ -95,7 +95,7 @@ LightGrid make_light_grid(const LightGridInput& input) {
   grid.axis = glm::vec3(axes[2]);
   grid.axes = axes_of(input.plane[1] - input.plane[0], input.plane[2] - input.plane[0], input.side, grid.half_cells);
   if (const auto& window = input.window) {
-    grid.corner = window->corner;  // its error is that of (bound foot) of docs/edge-scatter.md, and reach includes the
+    grid.corner = window->corner;  // its error is (bound foot) of volumes/scatter/vectors/rows.cpp; reach includes the
                                    // skew
     grid.corner_off = 0x1p-49 * static_cast<double>(input.reach);
     grid.axes = axes_of(0.5 * window->u, 0.5 * window->v, input.side, grid.half_cells);

@@ -11,6 +11,7 @@
 //   size.
 // - Products of differences of floats, in double, have rounding errors below kRounding of the product of their lengths:
 //   a difference, 2⁻⁵³ of itself; a cross product of two and its dot product with a third, less than 16 · 2⁻⁵³.
+
 #include "visibility/alpha/alpha_reach.hpp"
 
 #include "base/size1.hpp"

@@ -20,8 +20,8 @@ struct TreeRay {
   static constexpr double kEndless = std::numeric_limits<double>::infinity();
 
   glm::dvec3 start, inverse;
-  glm::dvec3 room;   ///< by which boxes are enlarged
-  double pixel = 0;  ///< by which boxes are enlarged as well, times their distance
+  glm::dvec3 room;   ///< distance along each axis by which boxes are enlarged
+  double pixel = 0;  ///< boxes are also enlarged by this share of their distance
 
   TreeRay(const glm::dvec3& from, const glm::dvec3& direction, const glm::dvec3& around, double pixels)
       : start(from), room(around), pixel(pixels) {

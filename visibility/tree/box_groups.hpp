@@ -10,8 +10,8 @@
 #include <span>
 #include <vector>
 
-/// Groups of neighbouring boxes: a tree is built over them instead of single boxes, a tenth as many. Inside
-/// visibility/tree/ only.
+/// Groups of neighbouring boxes: a tree is built over them instead of single boxes, since there are only a tenth as
+/// many. Inside visibility/tree/ only.
 namespace penumbra::visibility {
 
 /// Uninitialised: lists of these are filled on all cores.

@@ -17,7 +17,8 @@ namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Counts for each of the first `count` keys the smaller ones. Keys and counts must be padded to whole vectors.
+/// Counts, for each of the first `count` keys, how many keys are smaller. Keys and counts must be padded to whole
+/// vectors.
 void count_below(const std::int32_t* keys, std::size_t count, std::int32_t* below) {
   const hn::CappedTag<std::int32_t, 16> d;
   for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {

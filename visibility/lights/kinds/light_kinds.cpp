@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The table of kinds of light, a row a kind, and what round kinds share: the test of the horizon and the form factor of
-// a circle. Each kind's formulas, with their sources, are in its own file of this folder.
+// The table of kinds of light, one row per kind, and the functions that round kinds share: the test of the horizon and
+// the form factor of a circle. Each kind's formulas, with their sources, are in its own file of this folder.
 
 #include "visibility/lights/kinds/light_kinds.hpp"
 

@@ -60,9 +60,9 @@ void make_polygon(const scenes::LightShape& shape, const LightBuilder& to) {
   if (!(light.area > 0)) to.refuse_zero_area(" (its corners lie on a line)");
   for (const glm::dvec3& corner : corners) light.outline.push_back(to.stored(corner));
 
-  // The plane of condition (2): the first three corners that are not on a line, nor so nearly that rounding would
-  // determine the plane. If rounding has reversed them, they are swapped so that the light still emits to the intended
-  // side.
+  // Chooses the plane for condition (2) of the truth of a pair: that of the first three corners that are not on a line,
+  // nor so nearly on one that rounding would determine the plane. If rounding has reversed them, they are swapped so
+  // that the light still emits to the intended side.
   const double enough = enough_height(light.outline);
   bool found = false;
   for (std::size_t i = 0; i < count && !found; ++i) {
