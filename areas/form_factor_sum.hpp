@@ -27,7 +27,7 @@ struct Trapezoid {
 };
 
 /// Texture in the form used by form factors, where every texel costs a polygon: texels, or for a texture with more than
-/// kMost a side the means of blocks of texels (the last column and row of blocks may be narrower).
+/// kMost on a side the means of blocks of texels (the last column and row of blocks may be narrower).
 class TextureBlocks {
  public:
   static constexpr std::uint32_t kMost = 64;

@@ -2,8 +2,8 @@
 // Combines a shadow map with shadow volumes: E. Chan, F. Durand, An efficient hybrid shadow rendering algorithm, EGSR
 // 2004. A view sample is at a silhouette where the four texels around it disagree; shadow volumes are drawn for these
 // samples alone, under a mask that keeps all others out of the stencil, and the map decides the others. Departures: the
-// map compares the receiver's plane (receiverPlane=off: its depth, as published), and the mask consists of view samples
-// that are left out, not of a depth test.
+// map compares the receiver's plane (receiverPlane=off: its depth, as published), and view samples are masked by
+// leaving them out, not by a depth test.
 
 #include "hybrids/methods.hpp"
 #include "hybrids/options.hpp"

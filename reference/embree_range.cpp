@@ -17,8 +17,8 @@ namespace penumbra::reference {
 namespace {
 
 constexpr int kMeshExponent = 14;      // exponent of the first power of two above all coordinates of the mesh
-constexpr double kFarthest = 0x1p60;   // distance of light points
-constexpr double kSmallest = 0x1p-50;  // least largest edge component of a triangle
+constexpr double kFarthest = 0x1p60;   // largest distance of light points
+constexpr double kSmallest = 0x1p-50;  // lower bound of a triangle's largest edge component
 constexpr double kLeastTerm = 0x1p-95;
 
 double largest_component(const glm::dvec3& x) {

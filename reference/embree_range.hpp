@@ -36,7 +36,8 @@ class EmbreeRange {
   /// Returns a direction scaled to about the size of the mesh, so that rays along it are never too short.
   [[nodiscard]] static glm::vec3 direction(const glm::vec3& d);
 
-  /// Returns the length of the shortest ray, by the largest component of its scaled direction, that Embree can handle.
+  /// Returns the length of the shortest ray that Embree can handle, measured by the largest component of its scaled
+  /// direction.
   [[nodiscard]] float shortest_ray() const { return shortest_ray_; }
 
  private:

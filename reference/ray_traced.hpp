@@ -46,7 +46,7 @@ class RayTraced final : public visibility::Method {
   struct PixelContext {
     RTCIntersectContext embree;
     const std::uint32_t* plane_of_primitive;
-    const std::uint32_t* carrier_planes;  ///< for each number (`id`) of a ray
+    const std::uint32_t* carrier_planes;  ///< plane of the carrier, for each number (`id`) of a ray
   };
   static void ignore_own_plane(const RTCFilterFunctionNArguments* hits);
 

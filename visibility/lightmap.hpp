@@ -26,7 +26,7 @@ enum class SurfaceSide : std::uint8_t {
   back,
 };
 
-/// Returns the view sample of each point, `camera.width` in a row. p is the weighted sum of the scene's stored float32
+/// Returns the view sample of each point, `camera.width` per row. p is the weighted sum of the scene's stored float32
 /// corners, in double, rounded once; n and `facing` are those of the triangle's plane on the chosen side, exactly;
 /// depth is the distance from the camera's eye along its axis, which affects nothing. Points of triangles without area
 /// become background. `soup`: the scene's triangles with their original order of corners.

@@ -121,7 +121,7 @@ class Method {
   virtual void prepare_light(const Light& light) = 0;
   /// Takes the view samples (upload; work shared by all methods, not part of `shadow`). `samples` must outlive its use.
   virtual void prepare_view(const ViewSamples& samples) = 0;
-  /// Returns the most pixel rows that one evaluate can handle within the device's limits; at least 1.
+  /// Returns the largest number of pixel rows that one evaluate can handle within the device's limits; at least 1.
   [[nodiscard]] virtual std::uint32_t max_tile_rows() const = 0;
   /// Computes V or masks from stored view samples, in the method's own memory.
   virtual void evaluate(const Tile& tile) = 0;
@@ -141,7 +141,7 @@ class Method {
   /// Returns counters for --stats (candidate pairs, retries, fallbacks …) of the evaluate calls since prepare_light.
   [[nodiscard]] virtual std::map<std::string, std::uint64_t> counters() const { return {}; }
   /// Returns, since the last call, the structures made for meshes (treesBuilt, edgesBuilt …), and those updated from
-  /// the previous mesh (treesRefit, edgesRefit …). Documented in frames.md.
+  /// the previous mesh (treesRefit, edgesRefit …). Documented in docs/frames.md.
   virtual std::map<std::string, std::uint64_t> take_mesh_counters() { return {}; }
   /// Returns the peak number of bytes of device memory (or, for CPU methods, of their own structures).
   [[nodiscard]] virtual std::uint64_t memory_bytes() const { return 0; }

@@ -115,7 +115,7 @@ class Classifier {
     std::int32_t triangle = ViewSamples::kBackground;
     std::int8_t facing = 0;
     PixelClass anywhere = PixelClass::background;  ///< class of all its points; judged: it depends on p
-    std::optional<PixelClass> in_front = {};       ///< for p in front of the light; nullopt: not yet asked
+    std::optional<PixelClass> in_front = {};       ///< for p in front of the light; nullopt: not yet computed
   };
   [[nodiscard]] PixelClass operator()(std::size_t pixel, Carrier& last) const;
 
@@ -180,7 +180,7 @@ struct CarrierPlane {
   glm::dvec3 corner{0};
   std::optional<mesh::SidesOfPlane> sides;
   glm::dvec3 start{0};
-  std::int8_t facing = 0;  ///< from `start`; 0: not yet asked
+  std::int8_t facing = 0;  ///< from `start`; 0: not yet computed
   glm::vec3 n{0};          ///< on that side
 };
 

@@ -94,8 +94,8 @@ ViewSamples complete_view_samples(const SceneFloats& scene, const PinholeCamera&
 /// Returns the triangle that carries a pixel's view sample, by definition: tests all. kBackground if there is none.
 std::int32_t carrier_of(const SceneFloats& scene, const PinholeCamera& camera, std::uint32_t x, std::uint32_t y);
 
-/// Returns the view samples by testing every triangle at every pixel: the C++ twin of the visibility buffer. Slow; the
-/// reference in tests.
+/// Returns the view samples by testing every triangle at every pixel: the C++ counterpart of the visibility buffer.
+/// Slow; the reference in tests.
 ViewSamples brute_force_view_samples(const SceneFloats& scene, const PinholeCamera& camera);
 
 /// Kind of receiver that a pixel is for one light.

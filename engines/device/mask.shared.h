@@ -24,7 +24,7 @@ struct MaskWord {
 
 const uint kWholePixel = 0x80000000u;
 
-// Values of a hider other than a triangle's index.
+// Values of OpenBits::hider (open_judge.hpp) that are not the index of a triangle.
 const uint kCarrier = 0xfffffffeu;      // p's own triangle: the question is whether the light sample is above the
                                         // horizon
 const uint kAnyTriangle = 0xffffffffu;  // any triangle: the question is whether the light sample is visible

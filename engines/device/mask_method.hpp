@@ -31,7 +31,7 @@ enum class Attempt : std::uint8_t {
 
 /// Base class of methods on the Vulkan device that compute the light samples visible from each view sample. Implements
 /// the steps around a method's lists and kernels that are the same for all: uploads, tiles, growing lists, open light
-/// samples decided by exact predicates, masks and V. The twin of vectors::MaskMethod.
+/// samples decided by exact predicates, masks and V. The counterpart of vectors::MaskMethod.
 ///
 /// Kernels write into masks() (MaskLayout) and counts() (visible light samples of a pixel; if none or all are visible,
 /// the mask is undefined), and append questions to questions(), each with the number of bytes given to the constructor,

@@ -16,7 +16,7 @@ namespace penumbra::device {
 struct OpenBits {
   std::uint32_t pixel = 0;                  ///< pixel of the tile; | gpu::kWholePixel: its mask is undefined so far
   std::uint32_t word = 0;                   ///< index of the word in the pixel's mask
-  std::uint32_t bits = 0;                   ///< bits that are no light sample stay unset
+  std::uint32_t bits = 0;                   ///< bits without a light sample are never set
   std::uint32_t hider = gpu::kAnyTriangle;  ///< kAnyTriangle, gpu::kCarrier, or a triangle: decides whether that one
                                             ///< hides the light samples
 };

@@ -19,8 +19,8 @@ class PartWalk {
   /// Returns the number of parts; a part's number has three bits for each level, from the lowest.
   [[nodiscard]] std::uint32_t parts() const { return 1U << (3 * levels_); }
 
-  /// A traversal that was cut off, for the error message. cut() throws ResourceError if the remaining part of the
-  /// deepest traversal is a single leaf.
+  /// A traversal that was cut off, for the error message. go_deeper() throws ResourceError if parts are already as
+  /// small as single leaves.
   struct Cut {
     const std::string& method;
     const std::string& device;

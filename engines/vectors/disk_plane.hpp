@@ -11,8 +11,8 @@
 #include <cmath>
 #include <tuple>
 
-/// Casters at the disk of a sphere that a view sample sees, for casters that reach into the light, such as a lamp's own
-/// body. docs/edge-scatter.md, "Ends".
+/// Casters at the disk that a view sample sees of a sphere light. This is for casters that reach into the light, such
+/// as a lamp's own body. docs/edge-scatter.md, "Ends".
 namespace penumbra::vectors {
 
 /// The disk's plane, in double. All edges and triangles get the same result for the side of the plane that a common

@@ -94,8 +94,7 @@ std::size_t count_edge_leaves(const EdgeInput& input, const std::vector<std::uin
 /// Narrows the roots of a cluster to those of a sub-cluster.
 void narrow_edge_roots(const EdgeInput& input, std::vector<std::uint32_t>& roots);
 void narrow_triangle_roots(const TriangleInput& input, std::vector<std::uint32_t>& roots);
-/// Finds roots for the traversals for triangles in `shaft` by the cluster's sub-clusters, as find_edge_roots does for
-/// edges.
+/// Finds roots for the sub-clusters' traversals for triangles in `shaft`, as find_edge_roots does for edges.
 void find_triangle_roots(const TriangleInput& input, TriangleTable& triangles, std::vector<std::uint32_t>& roots);
 /// Returns the number of leaves that the shaft meets, at most `most`.
 std::size_t count_leaves(const TriangleInput& input, const std::vector<std::uint32_t>& roots,

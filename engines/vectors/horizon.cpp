@@ -26,8 +26,8 @@ std::uint32_t bits_of(Tag d, hn::Mask<Tag> which) {
   return bytes[0] | std::uint32_t{bytes[1]} << 8U;
 }
 
-/// Clears the `lanes` bits from `place` on of light samples that are not above, and returns the bits of those that are
-/// uncertain.
+/// Clears the bits of a vector of light samples, from bit `place` on, that are not certainly above the horizon; returns
+/// the bits of the uncertain ones.
 template <class Tag>
 std::uint32_t cut(Tag d, hn::Vec<Tag> value, float error, std::uint32_t place, std::uint16_t& word) {
   const std::uint32_t lanes = (1U << hn::Lanes(d)) - 1;

@@ -12,8 +12,8 @@ namespace penumbra::vectors {
 
 /// Sets all light samples, or none.
 void fill(const LightGrid& grid, bool visible, SampleMask& mask);
-/// Clears light samples that are not strictly above the carrier's plane. The mask's count is set before and after.
-/// (bound horizon)
+/// Clears light samples that are not strictly above the carrier's plane. The mask's count must be set before the call,
+/// and is updated. (bound horizon of docs/view-sample.md)
 void cut_at_horizon(const LightGrid& grid, const GridSample& at, Open& open, SampleMask& mask);
 /// Sets the mask of a view sample with no triangle between it and the light: everything above its horizon is visible.
 /// Samples that are already open are decided.

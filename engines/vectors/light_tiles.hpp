@@ -28,9 +28,9 @@ class SlotFloats {
   std::vector<Tile> tiles_;
 };
 
-/// Light samples at arbitrary places of a light: sixteen neighbours form a tile, tiles side by side a row of tiles.
-/// Tiles are about as high as wide, so that a straight edge has few of them on both of its sides. A light sample's slot
-/// is its position in this order; a tile's sixteen bits are a word of masks.
+/// Light samples at arbitrary places of a light: sixteen neighbours form a tile, and tiles side by side form a row of
+/// tiles. Tiles are about as high as wide, so that a straight edge crosses few of them. A light sample's slot is its
+/// position in this order; a tile's sixteen bits are a word of masks.
 struct LightTiles {
   static constexpr std::uint32_t kWide = SlotFloats::kWide;  ///< light samples of a tile
   static constexpr std::uint32_t kNone = 0xffffffffU;

@@ -25,8 +25,8 @@
 namespace penumbra::vectors {
 namespace {
 
-constexpr std::uint32_t kBlock = 8, kSmallBlock = 4;  // pixels a side of a block, whose clusters share lists
-constexpr std::uint32_t kRegion = 16;                 // pixels a side of a region, whose blocks share the roots of
+constexpr std::uint32_t kBlock = 8, kSmallBlock = 4;  // pixels on a side of a block, whose clusters share lists
+constexpr std::uint32_t kRegion = 16;                 // pixels on a side of a region, whose blocks share the roots of
                                                       // traversals
 constexpr std::size_t kRegionPixels = std::size_t{kRegion} * kRegion;
 // Mask memory per tile: enough to keep all threads busy; more would cost page faults.
@@ -244,7 +244,7 @@ void MaskMethod::do_region(const LightGrid& grid, std::uint32_t left, std::uint3
   ExactOpenJudge judge(pairs, grid);
   const ViewInput view{*scene_, *samples_, device_light_, grid, normals_, scale_};
   std::vector<GridSample>& samples = buffers().samples;
-  // ends of the clusters of its small blocks
+  // for each small block of the region, the end of its view samples in `samples`
   std::array<std::size_t, kRegionPixels / (std::size_t{kSmallBlock} * kSmallBlock)> ends{};
   samples.resize(kRegionPixels);
   std::vector<LightCone>& cones = buffers().cones;

@@ -7,7 +7,7 @@
 // z = d along right, down and forward; q = u / z (or v / z); all sizes of vectors are sums of components' sizes.
 //   d       p − (float32 of the eye) − rest: two roundings of at most its own size, and the part of the eye that two
 //           floats omit, below 2⁻⁴⁷: together 2⁻²³ |d| + 2⁻⁴⁷
-//   u, v, z its error, the axes' rounding, a product's and two sums': 6 · 2⁻²⁴ R + 2⁻⁴⁷, less than η = 2⁻²¹ R + 2⁻⁴⁵
+//   u, v, z error of d, rounding of the axes, a product and two sums: 6 · 2⁻²⁴ R + 2⁻⁴⁷, less than η = 2⁻²¹ R + 2⁻⁴⁵
 //   q       computed with z > 256 η, it is off by at most η (1 + |u / z|) / z ≤ 1.005 η (1 + |q|) / z, which η's slack
 //           of a third covers
 //   pixels  scale · q, then the middle, the margin and a half: nine roundings of 2⁻²⁴, none of more than

@@ -10,7 +10,7 @@
 
 namespace penumbra::vectors {
 
-/// Pixels a side of a tile: its data fits into the first-level cache.
+/// Pixels on a side of a tile: its data fits into the first-level cache.
 inline constexpr std::uint32_t kScanTile = 32;
 /// Slots of a tile, including those that the last vector of the last row reads beyond the end.
 inline constexpr std::size_t kScanSlots = std::size_t{kScanTile} * kScanTile + 8;

@@ -51,7 +51,7 @@ void BitsWriter::append(std::span<const std::uint32_t> masks) {
   const std::size_t count = masks.size() / words_per_mask_;
   PENUMBRA_ASSERT(masks.size() % words_per_mask_ == 0 && next_pixel_ + count <= samples_.size(),
                   "{} words after pixel {} of {}", masks.size(), next_pixel_, samples_.size());
-  constexpr std::size_t kChunk = 4096;  // pixels a system call
+  constexpr std::size_t kChunk = 4096;  // pixels written by one system call
   std::vector<std::byte> bytes;
   for (std::size_t done = 0; done < count;) {
     bytes.clear();

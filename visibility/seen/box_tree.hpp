@@ -11,13 +11,13 @@
 
 namespace penumbra::visibility {
 
-/// An axis-aligned box, by its middle and half its sides; in double, since meshes lie in spaces of their own.
+/// An axis-aligned box, by its middle and half its sides; in double, since each mesh has its own space.
 struct MiddleBox {
   glm::dvec3 middle{0}, half{0};
 };
 
-/// A hierarchy over boxes, two children a node: each node is divided between two of sixteen slices, by the surface area
-/// heuristic; far down, or where all middles are the same, in halves.
+/// A hierarchy over boxes, two children per node: each node is divided between two of sixteen slices, by the surface
+/// area heuristic; far down, or where all middles are the same, in halves.
 class BoxTree {
  public:
   struct Node {

@@ -71,7 +71,7 @@ void LightShaft::for_each_plane(const Take& take) const {
   }
 }
 
-/// A shaft in the own space of a part of the placed meshes, for the part's boxes and triangles.
+/// A shaft in the space of one part of the placed meshes, for that part's boxes and triangles.
 class ShaftOfPart {
  public:
   ShaftOfPart(const LightShaft& shaft, const PlacedMeshes::Part& part);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Gathers the triangles that pixels see, and those that may lie between their view samples and the lights, as a scene
-// of its own whose view samples, V and masks are those of the whole scene (docs/instances.md).
+// Gathers the triangles that pixels see, and those that may lie between their view samples and the lights, as a
+// separate scene whose view samples, V and masks are those of the whole scene (docs/instances.md).
 
 #include "visibility/seen/seen_part.hpp"
 
@@ -26,7 +26,7 @@
 namespace penumbra::visibility {
 namespace {
 
-constexpr std::uint32_t kBlock = 16;  // pixels a side; the points of a block are sorted into clusters together
+constexpr std::uint32_t kBlock = 16;  // pixels on a side; the points of a block are sorted into clusters together
 
 /// Finds the triangles between points and lights.
 class Shafts {

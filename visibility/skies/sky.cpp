@@ -86,7 +86,7 @@ struct SkyTables {
 
   std::array<SkyFace, kDomeFaces> faces;
 
-  /// Parts of faces above planes, by face and plane: neighbouring view samples often ask for the same.
+  /// Flux from parts of faces above planes, by face and plane: neighbouring view samples often need the same one.
   static constexpr std::size_t kMostKept = 1U << 16U;
   std::mutex mutex;
   std::map<std::array<double, 4>, SkyFlux> above;

@@ -15,7 +15,7 @@ namespace penumbra::visibility {
 /// vector unit handles a corner at once.
 class BoxAround {
  public:
-  using Corner = float __attribute__((vector_size(16)));  // GCC's and clang's
+  using Corner = float __attribute__((vector_size(16)));  // a vector extension of GCC and clang
 
   /// `Box`: a lower and an upper corner, each followed by a word (NumberedBox, BoxGroup).
   template <typename Box>

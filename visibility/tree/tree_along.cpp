@@ -25,7 +25,7 @@ using Child = TriangleTree::Child;
 
 constexpr std::size_t kWidth = TriangleTree::kWidth;
 constexpr std::size_t kTogether = kWidth * kWidth;    // for at most this many boxes the guide is not used
-constexpr std::size_t kTask = std::size_t{1} << 13U;  // boxes worth a task
+constexpr std::size_t kTask = std::size_t{1} << 13U;  // boxes that justify a separate task
 
 bool is_leaf(std::uint32_t reference) {
   return (reference & TriangleTree::kLeafBit) != 0;

@@ -33,7 +33,7 @@ constexpr std::uint32_t kTogether = 5 * kWidth;
 /// Below this depth, groups are halved regardless of their shape: this bounds the tree's depth.
 constexpr std::uint32_t kDeep = 24;
 
-constexpr std::uint32_t kTask = 1U << 13U;  // boxes worth a task
+constexpr std::uint32_t kTask = 1U << 13U;  // boxes that justify a separate task
 
 /// Consecutive groups.
 struct Range {

@@ -18,7 +18,7 @@
 namespace penumbra::visibility {
 
 /// An eight-wide bounding volume hierarchy over the triangles that cast shadows, by the surface area heuristic in
-/// blocks of eight. Designed for one lane for each child and one for each triangle. A function of the scene alone,
+/// blocks of eight. Designed for vector code with one lane for each child or triangle. A function of the scene alone,
 /// independent of the number of threads.
 struct TriangleTree {
   static constexpr std::uint32_t kWidth = 8;

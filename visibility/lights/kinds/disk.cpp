@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Disks: circles of a radius, with axes chosen around the normal.
+// Disks: circles given by a radius, with axes chosen around the normal.
 
 #include "visibility/axes_around.hpp"
 #include "visibility/lights/kinds/light_kinds.hpp"

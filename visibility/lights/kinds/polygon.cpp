@@ -24,10 +24,10 @@ double least_height(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& 
   return longest > 0 ? glm::length(glm::cross(b - a, c - a)) / longest : 0;
 }
 
-/// Returns the height that a triangle of a polygon's stored corners needs to define the polygon's plane: so that
-/// rounding of one corner, by √3 · 2⁻²⁴ of the largest coordinate at most, rotates it by √3 / 128 (0.8 degrees) at
-/// most, and of all three by twice that: gradients of barycentric coordinates are no longer than 1 / height and add up
-/// to 0. For a polygon too small for that, the result is about an eighth of its largest height.
+/// Returns the least height of a triangle of stored corners that may define the polygon's plane. With this height,
+/// rounding one corner, by at most √3 · 2⁻²⁴ of the largest coordinate, rotates the plane by at most √3 / 128 (0.8
+/// degrees), and rounding all three by at most twice that: gradients of barycentric coordinates are no longer than 1 /
+/// height and add up to 0. For a polygon too small for that, the result is about an eighth of its largest height.
 double enough_height(const std::vector<glm::vec3>& corners) {
   const glm::dvec3 first(corners.front());
   glm::dvec3 farthest = first;
