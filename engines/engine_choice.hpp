@@ -19,9 +19,9 @@ inline constexpr visibility::ChoiceOption kEngine{
     "engine",
     {{"auto", Engine::automatic}, {"vulkan", Engine::vulkan}, {"native", Engine::vectors}},
     Engine::automatic,
-    "vulkan: on the device alone; native: on the processor's own vector units, where they can do the light; auto: "
+    "vulkan: only on the device; native: on the processor's own vector units, if they support the light; auto: "
     "native "
-    "where there is no GPU, or it cannot do the light. The same bits"};
+    "if there is no GPU, or it does not support the light. All give the same bits"};
 
 /// Returns whether a method runs on vector units for lights that they support. Looks for a GPU only for
 /// Engine::automatic.

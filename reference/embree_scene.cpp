@@ -52,7 +52,7 @@ struct EmbreeScene::Parts {
     const RTCError error = rtcGetDeviceError(from);
     if (error == RTC_ERROR_NONE) return;
     if (error == RTC_ERROR_OUT_OF_MEMORY) throw_out_of_memory();
-    throw ResourceError("Embree failed with error {}{}; check that libembree3 and this processor fit",
+    throw ResourceError("Embree failed with error {}{}; check that libembree3 supports this processor",
                         static_cast<int>(error), error == RTC_ERROR_UNSUPPORTED_CPU ? " (unsupported processor)" : "");
   }
 };
@@ -64,7 +64,7 @@ EmbreeScene::EmbreeScene(const visibility::SceneFloats& scene, std::vector<std::
   parts.device = rtcNewDevice(nullptr);
   if (parts.device == nullptr) {
     parts.check(nullptr);
-    throw ResourceError("Embree gives no device; check that libembree3 and this processor fit");
+    throw ResourceError("Embree could not create a device; check that libembree3 supports this processor");
   }
   rtcSetDeviceMemoryMonitorFunction(parts.device, Parts::count_memory, parts_.get());
   parts.scene = rtcNewScene(parts.device);

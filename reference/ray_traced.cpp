@@ -42,7 +42,7 @@ constexpr std::uint32_t kNeverMet = SceneFloats::kNoPlane;        // plane index
 constexpr visibility::ChoiceOption kPacket{"packet",
                                            {{"auto", 0}, {"1", 1}, {"4", 4}, {"8", 8}, {"16", 16}},
                                            0,
-                                           "shadow rays traced together; auto: as the processor does"};
+                                           "shadow rays traced together; auto: as many as the processor's vectors hold"};
 
 visibility::MeshVerdict ray_traced_verdict(const mesh::Diagnosis& mesh) {
   return {visibility::Verdict::approximate,

@@ -33,7 +33,7 @@ const char* name_of(Output output) {
 
 void Method::read_masks(std::span<std::uint32_t> masks) {
   throw UsageError(
-      "method {} gives V alone, not one bit a light sample ({} words asked for); take a method whose output "
+      "method {} gives only V, not one bit per light sample ({} words requested); take a method whose output "
       "is a mask (see `penumbra methods`)",
       description().name, masks.size());
 }
@@ -50,8 +50,8 @@ const std::string& left_to_host(const MethodDescription& description, const Ligh
 void check_light(const MethodDescription& description, const Light& light) {
   if (light.texture && !description.textures) {
     throw InputError(
-        "light \"{}\" has a texture; method {}, as asked for, does not weigh V by it. Take another light (--light) or "
-        "method (--method: edge-scatter and raytrace do textures; of maps contour, packet and backproject)",
+        "light \"{}\" has a texture; method {}, with these options, does not weight V by it. Take another light (--light) or "
+        "method (--method: edge-scatter and raytrace support textures; so do contour, packet and backproject)",
         light.name, description.name);
   }
   if (light.rows == 0 && !description.any_pattern && is_parallelogram(light.kind)) {
@@ -66,22 +66,22 @@ void check_light(const MethodDescription& description, const Light& light) {
       throw InputError(
           "light \"{}\": its light passes through \"{}\" (alphaMode MASK or BLEND); method {} finds shadows by the "
           "edges "
-          "of triangles, and what an alpha texture cuts out has other edges. Take a method that draws the holes of "
+          "of triangles, but holes of an alpha texture have other edges. Take a method that draws the holes of "
           "MASK "
           "(--method: shadow-map, pcss, backproject and most maps), or one whose output is a mask (--method: "
-          "edge-scatter, view-sample, raytrace), which is asked light sample by light sample",
+          "edge-scatter, view-sample, raytrace): there each light sample is tested separately",
           light.name, through, description.name);
     }
     throw InputError(
-        "light \"{}\": its light passes through \"{}\" (alphaMode {}BLEND), which is asked light sample by light "
-        "sample; method {}{} answers with {} alone. Take a method whose output is a mask (--method: edge-scatter, "
-        "view-sample, raytrace; `penumbra methods` has all)",
+        "light \"{}\": its light passes through \"{}\" (alphaMode {}BLEND), which must be tested light sample by light "
+        "sample; method {}{} gives only {}. Take a method whose output is a mask (--method: edge-scatter, "
+        "view-sample, raytrace; `penumbra methods` lists all)",
         light.name, through, description.draws_holes ? "" : "MASK or ", description.name,
         description.gives_area() ? ", as asked for," : "", description.gives_area() ? "areas" : "V");
   }
   require_kind(light, description.lights,
-               "; method {}, as asked for, can do: {}. Take another light (--light) or method (--method; edge-scatter "
-               "and raytrace do every kind)",
+               "; method {}, with these options, supports: {}. Take another light (--light) or method (--method; edge-scatter "
+               "and raytrace support every kind)",
                description.name, description.lights.words());
 }
 

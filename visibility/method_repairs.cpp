@@ -32,7 +32,7 @@ ErrorRepair parted_light(const MethodDescription& method, const MethodOptions& g
   return {.cause = ErrorCause::view,
           .end = RepairEnd::limit,
           .runs = {{method.name, options, 2}, {method.name, options, 4}},
-          .words = "the light in 2 × 2 and 4 × 4 parts, each seen from its own centre, and the limit of that"};
+          .words = "the light in 2 × 2 and 4 × 4 parts, with the scene seen from the centre of each, and the limit of both"};
 }
 
 ErrorRepair more_light_samples(const MethodDescription& method, const MethodOptions& given) {
@@ -64,17 +64,17 @@ ErrorRepairs exact_pair_repairs(const MethodDescription& method, const MethodOpt
   ErrorRepairs repairs = no_repairs({});
   repair_of(repairs, ErrorCause::samples) = {.cause = ErrorCause::samples,
                                              .runs = {visible_area()},
-                                             .words = "light samples without end: the visible area itself"};
+                                             .words = "infinitely many light samples: the visible area itself"};
   return repairs;
 }
 
 ErrorRepairs exact_centre_repairs(const MethodDescription& /*method*/, const MethodOptions& /*given*/) {
   ErrorRepairs repairs = no_repairs({.layers = "a point is hidden or not, by one surface or by many",
-                                     .fusion = "a point is hidden or not: nothing is added"});
+                                     .fusion = "a point is hidden or not: nothing is added up"});
   repair_of(repairs, ErrorCause::view) = {
       .cause = ErrorCause::view,
       .runs = {visible_area()},
-      .words = "sub-lights without end, each with the hard shadow of its own centre: the visible area itself"};
+      .words = "infinitely many sub-lights, each with the hard shadow of its own centre: the visible area itself"};
   return repairs;
 }
 

@@ -35,14 +35,14 @@ RepairRun visible_area();
 
 /// Reasons why a method of the geometry family does not have a cause, or why nothing separates it.
 struct GeometryReasons {
-  std::string resolution = "it has no map: edges are where the mesh has them";
-  std::string view = "it looks from every light sample";
-  std::string layers = "it has all surfaces, not the nearest alone";
-  std::string fusion = "what is hidden twice counts once";
-  std::string gaps = "neighbouring triangles share their edges: there is nothing between them";
-  std::string bias = "signs decide, and need no bias";
+  std::string resolution = "it has no map: edges have their exact places";
+  std::string view = "it computes visibility from every light sample";
+  std::string layers = "it uses all surfaces, not only the nearest";
+  std::string fusion = "a part of the light that several triangles hide counts once";
+  std::string gaps = "neighbouring triangles share their edges: there are no gaps between them";
+  std::string bias = "it compares exact signs, which need no bias";
   std::string samples = "it has no light samples";
-  std::string falloff = "the light that an edge hides is no formula of a distance";
+  std::string falloff = "it does not estimate hidden light from a distance to an edge";
 };
 /// Returns repairs that separate no cause. `together` computes the visible area.
 ErrorRepairs no_repairs(const GeometryReasons& reasons);

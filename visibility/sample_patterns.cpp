@@ -94,7 +94,7 @@ SampleLayout tiles_of(const SampleRequest& request, std::uint32_t count) {
   const std::uint32_t columns = request.rows != 0 ? (request.columns + 1) / 2 : (tiles + rows - 1) / rows;
   if (4 * std::uint64_t{rows} * columns > kMaxLightSamples) {
     throw UsageError(
-        "light samples: pattern rgss makes {} x {} squares of four of them, {} points; 1 to {} can be done", rows,
+        "light samples: pattern rgss makes {} x {} squares of four, {} light samples; 1 to {} are possible", rows,
         columns, 4 * std::uint64_t{rows} * columns, kMaxLightSamples);
   }
   return {4 * rows * columns, rows, columns};
@@ -124,10 +124,10 @@ SampleLayout layout_of(const SampleRequest& request) {
       explicit_rows ? static_cast<std::uint64_t>(request.rows) * request.columns : request.count;
   if (wanted == 0 || wanted > kMaxLightSamples) {
     if (explicit_rows) {
-      throw UsageError("light samples: {}x{} are {} samples; 1 to {} can be done", request.rows, request.columns,
+      throw UsageError("light samples: {}x{} are {} samples; 1 to {} are possible", request.rows, request.columns,
                        wanted, kMaxLightSamples);
     }
-    throw UsageError("light samples: {} asked for; 1 to {} can be done", wanted, kMaxLightSamples);
+    throw UsageError("light samples: {} requested; 1 to {} are possible", wanted, kMaxLightSamples);
   }
   const auto count = static_cast<std::uint32_t>(wanted);
   if (request.pattern == SamplePattern::rgss) return tiles_of(request, count);

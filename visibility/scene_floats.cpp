@@ -101,7 +101,7 @@ void refuse_subnormal(const SceneFloats& floats) {
     size = std::max({size, std::abs(floats.lower[axis]), std::abs(floats.upper[axis])});
   }
   if (size == 0 || size >= kSmallestScene) return;
-  throw InputError("the scene reaches only {} from its middle; float32 has full precision from 1e-36 on: scale it up",
+  throw InputError("the scene reaches only {} from its middle; float32 has full precision only above 1e-36: scale the scene up",
                    size);
 }
 
@@ -145,7 +145,7 @@ SceneFloats make_scene_floats(const scenes::Scene& scene) {
   constexpr std::uint64_t kMostTriangles = (std::uint64_t{1} << 32U) / 3;
   const std::uint64_t count_of_triangles = scene.soup.triangles.size();
   if (count_of_triangles > kMostTriangles) {
-    throw ResourceError("a scene of {} triangles; up to {} can be numbered here: make its meshes smaller",
+    throw ResourceError("the scene has {} triangles; at most {} are possible here: make its meshes smaller",
                         count_of_triangles, kMostTriangles);
   }
   require_memory(count_of_triangles * kFloatsOfTriangle + scene.soup.positions.size() * sizeof(glm::vec3),

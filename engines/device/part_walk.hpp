@@ -29,7 +29,7 @@ class PartWalk {
   };
   void go_deeper(const Cut& cut) {
     if (levels_ >= cut.depth) {
-      throw ResourceError("{}: {} cuts off loops that a hierarchy over {} triangles needs", cut.method, cut.device,
+      throw ResourceError("{}: {} ends loops too early for a hierarchy over {} triangles", cut.method, cut.device,
                           cut.triangles);
     }
     ++levels_;

@@ -40,7 +40,7 @@ LightBox make_light_box(const visibility::Light& light) {
     if (box.sun && !(-box.place(glm::dvec3(l)).z >= kFlattest * glm::length(glm::dvec3(l)))) {
       throw InputError(
           "light \"{}\": a sun of more than 179.5 degrees is too wide for this method; edge-scatter, view-sample, "
-          "depth-complexity and raytrace can do it",
+          "depth-complexity and raytrace support it",
           light.name);
     }
     const glm::dvec2 at = box.sample(l);

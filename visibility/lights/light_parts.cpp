@@ -167,7 +167,7 @@ LightTexture texture_part(const LightTexture& texture, std::uint32_t n, const gl
 
 std::vector<LightPart> light_parts(const Light& light, std::uint32_t count) {
   if (count == 1) return {{light, 1}};
-  require_kind(light, kPlanarLights, ", which has no plane to be cut in; take sublights=1");
+  require_kind(light, kPlanarLights, ", which has no plane in which it could be divided; take sublights=1");
   std::vector<LightPart> parts =
       is_parallelogram(light.kind) ? rectangle_parts(light, count) : polygon_parts(light, count);
   const double sum = std::accumulate(parts.begin(), parts.end(), 0.0,

@@ -156,7 +156,7 @@ SeenPart part_of(const PlacedMeshes& meshes, TriangleBits& seen) {
   if (seen.count() == 0) seen.set(0);  // nothing is in sight, but a scene needs a triangle
   const std::uint64_t count = seen.count();
   require_memory(count * sizeof(std::uint32_t) + mesh::soup_bytes(count, 2 * count),
-                 fmt::format("what is seen of a scene of {} triangles, or may shade that ({} triangles),",
+                 fmt::format("the visible part of a scene of {} triangles, with the triangles that may shade it ({} triangles),",
                              meshes.triangles(), count),
                  "choose a smaller --size, or a camera that sees less");
   part.numbers.reserve(count);

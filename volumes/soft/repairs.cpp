@@ -116,7 +116,7 @@ ErrorRepairs soft_irregular_repairs(const MethodDescription& method, const Metho
         ErrorCause::fusion, "the map has one layer, and what it does not know cannot be joined: only of umbra=layers");
   } else if (options.at("fusion") == "union") {
     repair_of(repairs, ErrorCause::fusion) =
-        visibility::inseparable(ErrorCause::fusion, "what is hidden twice counts once");
+        visibility::inseparable(ErrorCause::fusion, "a part of the light that several triangles hide counts once");
     repair_of(repairs, ErrorCause::samples) = visibility::more_light_samples(method, given);
   } else {
     RepairRun joined = with("fusion", "union");

@@ -55,7 +55,7 @@ void make_dome(const scenes::LightShape& shape, const LightBuilder& to) {
   Light& light = to.light;
   if (!(glm::length(dome.up) > 0) || !std::isfinite(dome.rotate))
     throw InputError(
-        "light \"{}\": a dome needs a direction that is up, and a finite angle; they are ({}, {}, {}) and {}",
+        "light \"{}\": a dome needs an up direction other than 0, and a finite angle; they are ({}, {}, {}) and {}",
         light.name, dome.up.x, dome.up.y, dome.up.z, dome.rotate);
   const DomeFrame frame = dome_frame(dome.up, 0), turned = dome_frame(dome.up, dome.rotate);
   light.dome = Light::Dome{};
